@@ -1,0 +1,53 @@
+# Schuler Bench as a container:
+#
+#   docker build -t schuler-bench .
+#   docker run --read-only -e SCHULER_TOKEN=... -v schuler-data:/data -p 127.0.0.1:8080:8080 schuler-bench
+#
+# The base is pinned by tag. Its digest was not at hand when this was written: add @sha256:... from your registry.
+# tests/docker carries these steps out without a Docker engine.
+
+FROM python:3.11-slim-bookworm AS builder
+WORKDIR /src
+
+COPY requirements.lock requirements-build.lock ./
+RUN python -m venv --without-pip /opt/schuler \
+ && python -m pip --python /opt/schuler/bin/python install --require-hashes --only-binary :all: -r requirements.lock
+RUN python -m pip install --require-hashes --only-binary :all: -r requirements-build.lock
+
+COPY pyproject.toml README.md LICENSE ./
+COPY app/ app/
+COPY assets/ assets/
+COPY navcore/ navcore/
+RUN python -m pip wheel --no-deps --no-index --no-build-isolation --wheel-dir /wheels . \
+ && python -m pip --python /opt/schuler/bin/python install --no-deps --no-index /wheels/*.whl
+
+# Machine code is kept for the processor that compiled it. On another one the first start compiles anew, into /data.
+ENV SCHULER_CACHE_DIR=/opt/schuler-kernels
+RUN mkdir -p /opt/schuler-kernels && /opt/schuler/bin/python -m navcore.compiled
+
+
+FROM python:3.11-slim-bookworm
+RUN python -m pip uninstall --yes pip setuptools wheel
+RUN useradd --system --uid 10001 --home-dir /data --shell /usr/sbin/nologin schuler
+RUN install -d -o schuler -g schuler /data
+
+# The same paths as in the builder: the kernel cache is tied to them.
+COPY --from=builder /opt/schuler /opt/schuler
+COPY --from=builder /opt/schuler-kernels /opt/schuler-kernels
+
+# All that is ever written goes below /data, so the root may be read-only.
+ENV PATH=/opt/schuler/bin:$PATH \
+    HOME=/data \
+    TMPDIR=/data \
+    SCHULER_CACHE_DIR=/opt/schuler-kernels \
+    PYTHONDONTWRITEBYTECODE=1
+USER schuler
+WORKDIR /data
+VOLUME ["/data"]
+EXPOSE 8080
+
+HEALTHCHECK --interval=30s --timeout=5s --start-period=60s --retries=3 \
+    CMD ["python", "-c", "import urllib.request; urllib.request.urlopen('http://127.0.0.1:8080/healthz', timeout=4)"]
+
+# Beyond loopback the server refuses to start without a token: pass it as SCHULER_TOKEN, not on the command line.
+CMD ["schuler", "serve", "--host", "0.0.0.0", "--port", "8080"]

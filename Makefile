@@ -1,0 +1,100 @@
+# Schuler Bench. `make run` serves the dashboard, `make test` checks and tests everything.
+# Kept to what GNU make 3.81 (the one of macOS) understands.
+
+SHELL  := /bin/sh
+BIN    := .venv/bin
+STAMPS := .venv/.stamps
+PIP    := $(BIN)/python -m pip --disable-pip-version-check --no-input --quiet
+LOCKED := install --require-hashes --only-binary :all:
+
+# A virtual environment that was copied, moved, or has lost its Python is made anew.
+MADE_HERE := $(shell test "`cat $(STAMPS)/python 2>/dev/null`" = "`pwd -P`" && $(BIN)/python -c 'import pip' 2>/dev/null && echo yes)
+ifneq ($(MADE_HERE),yes)
+$(STAMPS)/python: REMAKE
+endif
+
+KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
+
+.PHONY: help setup run test check format unit lock clean REMAKE
+
+help:
+	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'
+	@echo 'make test     install what is needed, then lint, check types and run every test'
+	@echo 'make setup    .venv with the command .venv/bin/schuler, kernels compiled'
+	@echo 'make check    lint, format and types only'
+	@echo 'make unit     the fast tests only'
+	@echo 'make format   lay the code out'
+	@echo 'make lock     resolve the locked requirements again (UPGRADE=--upgrade: to the newest versions)'
+	@echo 'make clean    remove .venv and everything that was made'
+	@echo 'PYTHON=...    the Python to make .venv with (3.11 or newer)'
+
+setup: $(STAMPS)/kernels
+
+run: setup
+	@$(BIN)/schuler serve --open
+
+test: setup $(STAMPS)/test
+	@$(BIN)/python -m tests.stages
+
+check: $(STAMPS)/test
+	@$(BIN)/python -m tests.stages lint
+
+unit: setup $(STAMPS)/test
+	@$(BIN)/python -m tests.stages unit
+
+format: $(STAMPS)/test
+	@$(BIN)/ruff check --fix --select I .
+	@$(BIN)/ruff format .
+
+# ---------------------------------------------------------------- the virtual environment, step by step
+
+$(STAMPS)/python:
+	@python=''; for candidate in $(if $(PYTHON),"$(PYTHON)",python3 python3.14 python3.13 python3.12 python3.11); do \
+	  if "$$candidate" -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1; then python=$$candidate; break; fi; \
+	done; \
+	if [ -z "$$python" ]; then \
+	  echo 'Schuler Bench needs Python 3.11 or newer; found: $(if $(PYTHON),$(PYTHON),python3) =' \
+	    "`$(if $(PYTHON),"$(PYTHON)",python3) --version 2>&1 || echo none`" >&2; \
+	  echo 'Install one, or name it: make PYTHON=/path/to/python3.12 $(MAKECMDGOALS)' >&2; exit 1; \
+	fi; \
+	if ! "$$python" -c 'import venv, ensurepip' >/dev/null 2>&1; then \
+	  echo "$$python has no venv module. On Debian or Ubuntu: apt-get install python3-venv" >&2; exit 1; \
+	fi; \
+	echo "== virtual environment of `"$$python" --version`"; \
+	rm -rf $(STAMPS); \
+	if $(BIN)/python -c 'import pip, sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1; then clear=; else clear=--clear; fi; \
+	"$$python" -m venv $$clear .venv
+	@mkdir -p $(STAMPS) && pwd -P > $@
+
+$(STAMPS)/runtime: requirements.lock requirements-build.lock pyproject.toml $(STAMPS)/python
+	@echo '== installing the locked packages'; start=`date +%s`; \
+	$(PIP) $(LOCKED) -r requirements.lock -r requirements-build.lock && \
+	$(PIP) install --no-deps --no-build-isolation --no-index --editable . && \
+	echo "== installed in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@
+
+$(STAMPS)/kernels: $(STAMPS)/runtime $(KERNEL_SOURCES)
+	@echo '== compiling the kernels'; start=`date +%s`; \
+	$(BIN)/python -m navcore.compiled && \
+	echo "== compiled in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@
+
+$(STAMPS)/test: requirements-test.lock $(STAMPS)/runtime
+	@echo '== installing the locked packages of the tests'; start=`date +%s`; \
+	$(PIP) $(LOCKED) -r requirements-test.lock && \
+	echo "== installed in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@
+
+# ---------------------------------------------------------------- upkeep
+
+# One resolution for every platform and Python, with hashes and without any address.
+UV_COMPILE = $(BIN)/python -m uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
+	--generate-hashes --no-emit-index-url --no-emit-find-links --no-annotate --no-header $(UPGRADE)
+
+lock: $(STAMPS)/python
+	@$(PIP) install 'uv>=0.9'
+	@$(UV_COMPILE) pyproject.toml --output-file requirements.lock
+	@$(UV_COMPILE) --group build --constraints requirements.lock --output-file requirements-build.lock
+	@$(UV_COMPILE) --group test --constraints requirements.lock --constraints requirements-build.lock \
+	  --output-file requirements-test.lock
+
+clean:
+	rm -rf .venv build dist test-output .hypothesis .pytest_cache .ruff_cache
+	find app navcore tests -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,94 @@
+"""The one decorator for compiled kernels, and where their machine code is kept.
+
+numba's on-disk cache does not notice an edit in *another* file that a kernel inlines, so the cache folder is
+named after a hash of all kernel sources and of the versions that made it. The folder lies under
+``SCHULER_CACHE_DIR``, else the user's cache folder, else (read-only home) a temporary folder; a cache that was
+shipped read-only is copied to a writable place first, since numba refuses a folder that it cannot write to.
+
+``python -m navcore.compiled`` compiles every kernel once.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+
+_PACKAGE = Path(__file__).resolve().parent
+_IMPORT = re.compile(r"^from (navcore[\w.]*) import", re.MULTILINE)
+_F = TypeVar("_F", bound=Callable[..., Any])
+
+
+def kernel_sources() -> list[Path]:
+    """Return the files whose text goes into compiled code: those that import this module, and what they import."""
+    texts = {path: path.read_text("utf-8") for path in _PACKAGE.rglob("*.py")}
+    found = {path for path, text in texts.items() if "from navcore.compiled import" in text}
+    waiting = list(found)
+    while waiting:
+        for module in _IMPORT.findall(texts[waiting.pop()]):
+            stem = _PACKAGE.parent.joinpath(*module.split("."))
+            for path in (stem.with_suffix(".py"), stem / "__init__.py"):
+                if path in texts and path not in found:
+                    found.add(path)
+                    waiting.append(path)
+    return sorted(found)
+
+
+def kernel_hash() -> str:
+    """Hash of all kernel sources and of the Python, numba and numpy versions, 16 hex digits."""
+    digest = hashlib.sha256(f"{sys.version}|{numba.__version__}|{platform.machine()}".encode())
+    for path in kernel_sources():
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _user_cache() -> Path:
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+
+
+def _writable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False
+
+
+def cache_folder() -> Path:
+    """Folder of the machine code of exactly these sources; writable, made when missing."""
+    name = f"kernels-{kernel_hash()}"
+    shipped = os.environ.get("SCHULER_CACHE_DIR")
+    bases = ([Path(shipped)] if shipped else []) + [_user_cache() / "schuler-bench"]
+    for base in bases:
+        if _writable(base / name):
+            return base / name
+    fallback = Path(tempfile.gettempdir()) / f"schuler-bench-{os.getuid()}" / name
+    if shipped and (Path(shipped) / name).is_dir() and not fallback.is_dir():
+        shutil.copytree(Path(shipped) / name, fallback)
+    fallback.mkdir(parents=True, exist_ok=True)
+    return fallback
+
+
+numba.config.CACHE_DIR = str(cache_folder())  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def kernel(function: _F) -> _F:
+    """Compile a function of scalars and arrays: cached on disk, GIL released, no Python exceptions on 1/0."""
+    return numba.njit(cache=True, nogil=True, error_model="numpy")(function)  # pyright: ignore[reportReturnType]
+
+
+def inlined(function: _F) -> _F:
+    """Compile a small function that kernels call, inlined by LLVM."""
+    return numba.njit(nogil=True, error_model="numpy", forceinline=True)(function)  # pyright: ignore[reportReturnType]

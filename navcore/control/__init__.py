@@ -1,0 +1,1 @@
+"""The damping law, once for every fidelity: policy (when) -> switching (how) -> correction (what)."""

@@ -1,0 +1,28 @@
+"""What every switching method has."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from navcore.parameters import Parameters
+
+
+class SwitchingParameters(Parameters):
+    """Base of the ``switching`` block of a method; subclasses narrow ``id`` to a Literal.
+
+    Attributes
+    ----------
+    code : int
+        Number by which the compiled dispatch knows the method.
+    """
+
+    code: ClassVar[int]
+    id: str
+
+    def packed(self) -> list[float]:
+        """Values for ``p[SWITCHING_PARAMETERS:]``, at most 8."""
+        return []
+
+    def ring_rows(self, law_step_s: float) -> int:
+        """Law calls of history that the method needs."""
+        return 0

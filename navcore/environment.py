@@ -1,0 +1,130 @@
+"""What all methods of a scenario share: truth, coefficients, sensor errors and log; made once and kept.
+
+Kept by what each stage depends on, so that a slider on a network or policy recomputes none of it, and one on a
+sensor error neither the truth nor its coefficients.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from cachetools import LRUCache
+
+from navcore.errors import InputError
+from navcore.mechanization.trajectory import Coefficients, coefficients
+from navcore.motion.base import Truth
+from navcore.scenario import Scenario
+from navcore.sensors.base import ReferenceErrors, SensorErrors
+from navcore.sensors.imu import imu_errors
+from navcore.sensors.reference import reference_errors
+
+_CACHE_BYTES = 300 * 1024 * 1024
+_lock = threading.Lock()
+
+
+@dataclass(frozen=True)
+class Environment:
+    """Shared inputs of all methods.
+
+    Attributes
+    ----------
+    steps : int
+        Integration steps.
+    truth_half : Truth
+        True motion on the half-step grid.
+    coefficients : Coefficients
+        Coefficients of the error model on it.
+    sensors : SensorErrors
+        Inertial sensor errors, mean over each step.
+    reference : ReferenceErrors
+        Log errors at the log's epochs.
+    warnings : tuple of str
+        What the recordings made necessary to say.
+    """
+
+    steps: int
+    truth_half: Truth
+    coefficients: Coefficients
+    sensors: SensorErrors
+    reference: ReferenceErrors
+    warnings: tuple[str, ...]
+
+
+def _size(value: Any) -> int:
+    arrays = [item for item in vars(value).values() if isinstance(item, np.ndarray)]
+    return 1024 + sum(array.nbytes for array in arrays)
+
+
+_cache: LRUCache[Hashable, Any] = LRUCache(_CACHE_BYTES, getsizeof=_size)
+
+
+def _kept(key: Hashable, make: Callable[[], Any]) -> Any:
+    with _lock:
+        if key in _cache:
+            return _cache[key]
+    value = make()
+    with _lock:
+        if _size(value) <= _CACHE_BYTES:
+            _cache[key] = value
+    return value
+
+
+def _file_state(files: Any) -> tuple[tuple[str, int, int], ...]:
+    paths = [files] if isinstance(files, str) else list(files or [])
+    states = []
+    for path in paths:
+        try:
+            stat = Path(path).stat()
+            states.append((path, stat.st_mtime_ns, stat.st_size))
+        except OSError:
+            states.append((path, 0, -1))
+    return tuple(states)
+
+
+def environment(scenario: Scenario) -> Environment:
+    """Make, or take from the cache, what all methods share.
+
+    Raises
+    ------
+    InputError
+        The motion cannot be carried out, or a recording cannot serve the run.
+    """
+    steps, h, earth = scenario.steps, scenario.run.step_s, scenario.earth
+    channel = scenario.run.fidelity == "channel"
+    motion_key = (scenario.motion, _file_state(getattr(scenario.motion, "file", None)))
+    log_key = (scenario.reference, _file_state(scenario.reference.file))
+    # t = 0 is the first epoch that track and log share, so each depends on the other's files.
+    truth_key = (motion_key, log_key[1], scenario.site, steps, h, earth.name)
+    seed = scenario.run.seed
+
+    def make_truth() -> Truth:
+        try:
+            return scenario.motion.truth(2 * steps + 1, 0.5 * h, scenario.site.site(), earth)
+        except InputError as error:
+            raise error.located("", "motion.") from None
+
+    def make_reference() -> ReferenceErrors:
+        try:
+            return reference_errors(scenario.reference, truth, steps * h, seed, earth)
+        except InputError as error:
+            raise error.located("", "reference.") from None
+
+    truth = _kept(("truth", truth_key), make_truth)
+    return Environment(
+        steps=steps,
+        truth_half=truth,
+        coefficients=_kept(
+            ("coefficients", truth_key, channel), lambda: coefficients(truth, earth, coupled=not channel)
+        ),
+        sensors=_kept(
+            ("sensors", truth_key, channel, scenario.imu, seed),
+            lambda: imu_errors(scenario.imu, truth, steps, h, earth, seed, level_body=channel),
+        ),
+        reference=_kept(("reference", truth_key, log_key, seed), make_reference),
+        warnings=(),
+    )

@@ -1,0 +1,20 @@
+"""Factors to SI of the units that exist at the edges: ``value_si = value * FACTOR``."""
+
+from __future__ import annotations
+
+import math
+
+DEG = math.pi / 180.0
+ARCMIN = DEG / 60.0
+ARCSEC = DEG / 3600.0
+MINUTE = 60.0
+HOUR = 3600.0
+DEG_PER_HOUR = DEG / HOUR
+DEG_PER_SQRT_HOUR = DEG / math.sqrt(HOUR)
+"""Angular random walk, deg/sqrt(h) -> rad/sqrt(s)."""
+KNOT = 1852.0 / 3600.0
+NAUTICAL_MILE = 1852.0
+STANDARD_GRAVITY = 9.80665
+MICRO_G = 1e-6 * STANDARD_GRAVITY
+"""Accelerometer bias unit, m/s^2; also velocity random walk ug/sqrt(Hz) -> (m/s^2)/sqrt(Hz)."""
+PPM = 1e-6

@@ -1,0 +1,201 @@
+"""The compiled error model against its slow twin, against its eigenvalues and against closed forms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from navcore.control.law import Law, prepare_law
+from navcore.control.policy.constant import Constant
+from navcore.control.policy.threshold import Threshold
+from navcore.control.switching.hard import Hard
+from navcore.earth import EARTH_RATE, SPHERE, WGS84, Earth
+from navcore.filters import discretise
+from navcore.mechanization.error_model import ErrorModelRun, system_matrix
+from navcore.mechanization.error_model_twin import TwinLaw, run_twin
+from navcore.mechanization.recorder import make_recorder
+from navcore.mechanization.trajectory import coefficients
+from navcore.motion.base import (
+    AE, AN, COLUMNS, HEADING, HEIGHT, LAT, VE, VN, VU, Truth,
+)  # fmt: skip
+from navcore.network.base import NetworkParameters
+from navcore.network.classic import Classic2Network
+from navcore.network.compass import CompassNetwork
+from navcore.network.complementary import ComplementaryNetwork
+from navcore.network.undamped import UndampedNetwork
+from navcore.sensors.base import ReferenceErrors, SensorErrors
+
+LAT0 = math.radians(45.7796)
+STEPS = 900
+
+
+def _moving_truth(steps: int, step_s: float) -> np.ndarray:
+    """A made-up but smooth motion; the error model does not ask whether position and velocity agree."""
+    t = np.arange(2 * steps + 1) * 0.5 * step_s
+    rows = np.zeros((len(t), COLUMNS))
+    rows[:, LAT] = LAT0 + 1e-5 * t
+    rows[:, HEIGHT] = 30.0 + 2.0 * np.sin(0.01 * t)
+    rows[:, VE], rows[:, VN], rows[:, VU] = 8 + 3 * np.sin(0.01 * t), -4 * np.cos(0.02 * t), 0.02 * np.cos(0.01 * t)
+    rows[:, AE], rows[:, AN] = 0.03 * np.cos(0.01 * t), 0.08 * np.sin(0.02 * t)
+    rows[:, HEADING] = 0.3
+    return rows
+
+
+def _inputs(steps: int):
+    rng = np.random.default_rng(7)
+    eps = rng.normal(0, 5e-8, (steps, 3))
+    nabla = rng.normal(0, 5e-4, (steps, 3))
+    dv_r = rng.normal(0.2, 0.3, (steps + 1, 2))
+    valid = np.ones(steps + 1, bool)
+    valid[300:360] = False
+    x0 = np.array([0.1, -0.2, 1e-5, 2e-5, 3e-4, -2e-4, 2e-3])
+    return eps, nabla, dv_r, valid, x0
+
+
+def _law(damping: str, parameters: NetworkParameters, omega_s: float, limit: float | None, step_s: float) -> Law:
+    policy = Constant() if limit is None else Threshold(limit_mps=limit)
+    return prepare_law(damping, parameters, parameters.transfer(omega_s), policy, Hard(), step_s)
+
+
+def _compiled(truth: np.ndarray, law: Law, earth: Earth, step_s: float, inputs, coupled: bool = True) -> np.ndarray:
+    eps, nabla, dv_r, valid, x0 = inputs
+    steps = len(eps)
+    run = ErrorModelRun(
+        step_s, steps, coefficients(Truth(0.5 * step_s, truth), earth, coupled), SensorErrors(eps, nabla),
+        ReferenceErrors(np.arange(steps + 1) * step_s, dv_r, valid, False, 0.5 * step_s), law, x0.copy(),
+        make_recorder(steps, step_s, step_s),
+    )  # fmt: skip
+    states = [x0.copy()]
+    while run.position < steps:
+        run.advance(1)
+        states.append(run.x.copy())
+    return np.array(states)
+
+
+@pytest.mark.parametrize("earth", [SPHERE, WGS84], ids=lambda e: e.name)
+@pytest.mark.parametrize(
+    ("damping", "parameters", "limit"),
+    [
+        ("free", UndampedNetwork(), None),
+        ("external", ComplementaryNetwork(zeta=0.5), None),
+        ("external", Classic2Network(), 0.45),
+        ("external", CompassNetwork(sigma=0.0088, xi=0.7, realisation="network"), 0.6),
+        ("internal", Classic2Network(), None),
+    ],
+    ids=["free", "complementary", "threshold", "compass-network", "internal"],
+)
+def test_kernel_equals_twin_sample_by_sample(earth, damping, parameters, limit):
+    truth, inputs = _moving_truth(STEPS, 1.0), _inputs(STEPS)
+    omega_s = earth.schuler_frequency(LAT0)
+    compiled = _compiled(truth, _law(damping, parameters, omega_s, limit, 1.0), earth, 1.0, inputs)
+    law = None
+    if damping != "free":
+        d = discretise(parameters.transfer(omega_s), 1.0)
+        a = np.eye(len(d.B)) + d.dA
+        law = TwinLaw(a, d.B, -d.C, 1.0 - d.D, damping == "internal", math.inf if limit is None else limit)
+    eps, nabla, dv_r, valid, x0 = inputs
+    twin = run_twin(truth, eps, nabla, dv_r, valid, x0, law, earth, 1.0)
+    scale = np.abs(twin).max(axis=0)
+    assert np.all(np.abs(compiled - twin) <= 1e-11 * scale)
+    if damping != "free":
+        free = run_twin(truth, eps, nabla, dv_r, valid, x0, None, earth, 1.0)
+        assert np.abs(free - twin).max() > 1e-5, "the law must have done something"
+
+
+def test_eigenvalues_at_rest_are_earth_and_split_schuler_lines():
+    radius, gravity = 6378137.0, 9.80665
+    f = system_matrix(LAT0, radius, gravity, EARTH_RATE)[np.ix_([0, 1, 2, 4, 5, 6], [0, 1, 2, 4, 5, 6])]
+    wz = EARTH_RATE * math.sin(LAT0)
+    schuler = math.sqrt(gravity / radius + wz * wz)
+    expected = np.array([EARTH_RATE, schuler - wz, schuler + wz])
+    found = np.linalg.eigvals(f)
+    assert np.sort(found.imag[found.imag > 0]) == pytest.approx(expected, rel=1e-9)
+    assert np.abs(found.real).max() < 1e-9 * schuler
+
+
+def test_kernel_moves_like_its_system_matrix():
+    """Free motion of the kernel at rest is expm(F t): the matrix whose eigenvalues are asserted is the kernel's."""
+    from scipy.linalg import expm
+
+    steps = 3000
+    truth = np.zeros((1, COLUMNS))
+    truth[0, LAT] = LAT0
+    quiet = (np.zeros((steps, 3)), np.zeros((steps, 3)), np.zeros((steps + 1, 2)), np.ones(steps + 1, bool))
+    x0 = np.array([0.1, -0.2, 1e-5, 2e-5, 3e-4, -2e-4, 2e-3])
+    law = _law("free", UndampedNetwork(), SPHERE.schuler_frequency(LAT0), None, 1.0)
+    states = _compiled(truth, law, SPHERE, 1.0, (*quiet, x0))
+    exact = expm(system_matrix(LAT0, 6378137.0, 9.80665, EARTH_RATE) * steps) @ x0
+    assert np.all(np.abs(states[-1] - exact) <= 1e-9 * np.abs(states).max(axis=0))
+
+
+@pytest.mark.parametrize(("sigma", "xi"), [(0.0088, 0.7), (0.004, 1.0), (0.003, 1.4)])
+def test_channel_compass_follows_the_loops_tilt_response(sigma, xi):
+    """Velocity feedback, network form and Zha's transient are one: phi(t)/phi0 to 0.1 % of phi0."""
+    from navcore.loop import initial_tilt_response
+
+    step_s, steps = 0.05, 12000
+    omega_s = SPHERE.schuler_frequency(0.0)
+    truth = np.zeros((1, COLUMNS))
+    x0 = np.array([0.0, 0.0, 0.0, 0.0, 1e-3, 0.0, 0.0])
+    quiet = (np.zeros((steps, 3)), np.zeros((steps, 3)), np.zeros((steps + 1, 2)), np.ones(steps + 1, bool), x0)
+    for realisation in ("feedback", "network"):
+        parameters = CompassNetwork(sigma=sigma, xi=xi, realisation=realisation)
+        law = _law("external", parameters, omega_s, None, step_s)
+        phi = _compiled(truth, law, SPHERE, step_s, quiet, coupled=False)[:, 4] / 1e-3
+        t = np.arange(steps + 1) * step_s
+        expected = initial_tilt_response(parameters.transfer(omega_s), t)
+        assert np.abs(phi - expected).max() < 1e-3
+
+
+def test_feedback_pulls_the_velocity_onto_the_log_and_the_network_form_does_not():
+    """Standing dV_r: feedback gives dV -> dV_r; a network with H(0) = 1 rejects it (physics.md 3.1)."""
+    steps = 40000
+    truth = np.zeros((1, COLUMNS))
+    omega_s = SPHERE.schuler_frequency(0.0)
+    quiet = (np.zeros((steps, 3)), np.zeros((steps, 3)), np.full((steps + 1, 2), 0.5), np.ones(steps + 1, bool))
+    inputs = (*quiet, np.zeros(7))
+    feedback = _compiled(truth, _law("external", CompassNetwork(), omega_s, None, 1.0), SPHERE, 1.0, inputs, False)
+    network = _compiled(
+        truth, _law("external", ComplementaryNetwork(zeta=0.5), omega_s, None, 1.0), SPHERE, 1.0, inputs, False
+    )
+    assert feedback[-1, :2] == pytest.approx([0.5, 0.5], rel=1e-6)
+    assert np.abs(network[-1, :2]).max() < 1e-4
+
+
+def test_as_printed_lacks_the_transport_rate_of_the_reference():
+    """Deng 4 on a moving vehicle: the platform misses V/R, a constant rate that the loop turns into a tilt."""
+    steps = 3000
+    truth = _moving_truth(steps, 1.0)
+    truth[:, VE], truth[:, VN], truth[:, AE], truth[:, AN] = 10.0, 0.0, 0.0, 0.0
+    omega_s = SPHERE.schuler_frequency(LAT0)
+    quiet = (np.zeros((steps, 3)), np.zeros((steps, 3)), np.zeros((steps + 1, 2)), np.ones(steps + 1, bool))
+    inputs = (*quiet, np.zeros(7))
+    tilt = {
+        realisation: np.abs(
+            _compiled(
+                truth, _law("external", CompassNetwork(realisation=realisation), omega_s, None, 1.0), SPHERE, 1.0, inputs
+            )[:, 5]
+        ).max()
+        for realisation in ("feedback", "as_printed")
+    }
+    assert tilt["feedback"] < 1e-9
+    assert tilt["as_printed"] > 1e-5
+
+
+def test_diverging_model_stops_and_says_so():
+    steps = 40000
+    truth = np.zeros((1, COLUMNS))
+    quiet = (np.zeros((steps, 3)), np.zeros((steps, 3)), np.zeros((steps + 1, 2)), np.ones(steps + 1, bool))
+    parameters = CompassNetwork(k1=0.001, k2=1.0, k3=0.5, realisation="network")
+    law = _law("external", parameters, SPHERE.schuler_frequency(0.0), None, 1.0)
+    run = ErrorModelRun(
+        1.0, steps, coefficients(Truth(0.5, truth), SPHERE, False), SensorErrors(quiet[0], quiet[1]),
+        ReferenceErrors(np.arange(steps + 1.0), quiet[2], quiet[3], False, 5.0), law,
+        np.array([0, 0, 0, 0, 1e-4, 0, 0.0]), make_recorder(steps, 1.0, 10.0),
+    )  # fmt: skip
+    while not run.advance(5000):
+        pass
+    assert run.diverged and 0 < run.position < steps
+    assert np.all(np.isfinite(run.recorder.stats))
