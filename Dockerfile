@@ -22,6 +22,8 @@ RUN python -m pip wheel --no-deps --no-index --no-build-isolation --wheel-dir /w
  && python -m pip --python /opt/schuler/bin/python install --no-deps --no-index /wheels/*.whl
 
 # Machine code is kept for the processor that compiled it. On another one the first start compiles anew, into /data.
+# Away from the sources: the cache is tied to the path of the installed modules.
+WORKDIR /opt/schuler
 ENV SCHULER_CACHE_DIR=/opt/schuler-kernels
 RUN mkdir -p /opt/schuler-kernels && /opt/schuler/bin/python -m navcore.compiled
 

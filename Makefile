@@ -54,7 +54,7 @@ $(STAMPS)/python:
 	done; \
 	if [ -z "$$python" ]; then \
 	  echo 'Schuler Bench needs Python 3.11 or newer; found: $(if $(PYTHON),$(PYTHON),python3) =' \
-	    "`$(if $(PYTHON),"$(PYTHON)",python3) --version 2>&1 || echo none`" >&2; \
+	    "`$(if $(PYTHON),"$(PYTHON)",python3) --version 2>/dev/null || echo none`" >&2; \
 	  echo 'Install one, or name it: make PYTHON=/path/to/python3.12 $(MAKECMDGOALS)' >&2; exit 1; \
 	fi; \
 	if ! "$$python" -c 'import venv, ensurepip' >/dev/null 2>&1; then \
@@ -66,18 +66,21 @@ $(STAMPS)/python:
 	"$$python" -m venv $$clear .venv
 	@mkdir -p $(STAMPS) && pwd -P > $@
 
-$(STAMPS)/runtime: requirements.lock requirements-build.lock pyproject.toml $(STAMPS)/python
+$(STAMPS)/packages: requirements.lock requirements-build.lock $(STAMPS)/python
 	@echo '== installing the locked packages'; start=`date +%s`; \
 	$(PIP) $(LOCKED) -r requirements.lock -r requirements-build.lock && \
-	$(PIP) install --no-deps --no-build-isolation --no-index --editable . && \
 	echo "== installed in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@
 
-$(STAMPS)/kernels: $(STAMPS)/runtime $(KERNEL_SOURCES)
+# The version is in navcore/__init__.py, the command in pyproject.toml.
+$(STAMPS)/project: pyproject.toml navcore/__init__.py $(STAMPS)/packages
+	@$(PIP) install --no-deps --no-build-isolation --no-index --editable . && touch $@
+
+$(STAMPS)/kernels: $(STAMPS)/project $(KERNEL_SOURCES)
 	@echo '== compiling the kernels'; start=`date +%s`; \
 	$(BIN)/python -m navcore.compiled && \
 	echo "== compiled in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@
 
-$(STAMPS)/test: requirements-test.lock $(STAMPS)/runtime
+$(STAMPS)/test: requirements-test.lock $(STAMPS)/project
 	@echo '== installing the locked packages of the tests'; start=`date +%s`; \
 	$(PIP) $(LOCKED) -r requirements-test.lock && \
 	echo "== installed in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@

@@ -5,7 +5,8 @@ The contract, stated once for the whole package:
 - **Frames.** Navigation frame n = east, north, up (ENU). Body frame b = right (starboard), forward, up.
   Pitch about x (bow up positive), roll about y (starboard down positive), heading clockwise from true
   north. ``C_b^n = Rz(-heading) Rx(pitch) Ry(roll)``.
-- **Errors.** Computed attitude ``C~ = (I - [phi x]) C`` with ``phi = [phi_E, phi_N, phi_U]``. Sensor errors are
+- **Errors.** Computed attitude ``C~ = (I - [phi x]) C`` with ``phi = [phi_E, phi_N, phi_U]``. Sensor errors
+are
   measured minus true, velocity and position errors computed minus true.
 - **Units.** SI and radians everywhere. Other units exist only at the edges (scenario fields, screens, files);
   their factors live in `navcore.units`.
@@ -21,4 +22,50 @@ control law -> run -> metrics, figures, files.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from navcore.errors import Fault, InputError
+    from navcore.metrics import metrics
+    from navcore.network import parse_network
+    from navcore.run import MethodRun, Run
+    from navcore.scenario import Scenario
+    from navcore.scenario_file import load, presets
+    from navcore.simulate import simulate
+
 __version__ = "0.1.0"
+
+__all__ = [
+    "Fault",
+    "InputError",
+    "MethodRun",
+    "Run",
+    "Scenario",
+    "load",
+    "metrics",
+    "parse_network",
+    "presets",
+    "simulate",
+]
+
+_HOME = {
+    "Fault": "errors",
+    "InputError": "errors",
+    "MethodRun": "run",
+    "Run": "run",
+    "Scenario": "scenario",
+    "load": "scenario_file",
+    "metrics": "metrics",
+    "parse_network": "network",
+    "presets": "scenario_file",
+    "simulate": "simulate",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used: the package itself must load in no time."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'navcore' has no attribute {name!r}")
+    from importlib import import_module
+
+    return getattr(import_module(f"navcore.{_HOME[name]}"), name)

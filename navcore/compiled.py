@@ -2,8 +2,9 @@
 
 numba's on-disk cache does not notice an edit in *another* file that a kernel inlines, so the cache folder is
 named after a hash of all kernel sources and of the versions that made it. The folder lies under
-``SCHULER_CACHE_DIR``, else the user's cache folder, else (read-only home) a temporary folder; a cache that was
-shipped read-only is copied to a writable place first, since numba refuses a folder that it cannot write to.
+``SCHULER_CACHE_DIR``, else the user's cache folder, else (read-only home) a temporary folder; a cache that
+was shipped read-only is copied to a writable place first, since numba refuses a folder that it cannot write
+to.
 
 ``python -m navcore.compiled`` compiles every kernel once.
 """
@@ -22,6 +23,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+from numba.core import config
 
 _PACKAGE = Path(__file__).resolve().parent
 _IMPORT = re.compile(r"^from (navcore[\w.]*) import", re.MULTILINE)
@@ -29,7 +31,7 @@ _F = TypeVar("_F", bound=Callable[..., Any])
 
 
 def kernel_sources() -> list[Path]:
-    """Return the files whose text goes into compiled code: those that import this module, and what they import."""
+    """Return the files whose text is compiled: those that import this module, and what they import."""
     texts = {path: path.read_text("utf-8") for path in _PACKAGE.rglob("*.py")}
     found = {path for path, text in texts.items() if "from navcore.compiled import" in text}
     waiting = list(found)
@@ -81,7 +83,7 @@ def cache_folder() -> Path:
     return fallback
 
 
-numba.config.CACHE_DIR = str(cache_folder())  # pyright: ignore[reportAttributeAccessIssue]
+config.CACHE_DIR = str(cache_folder())  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def kernel(function: _F) -> _F:
@@ -92,3 +94,15 @@ def kernel(function: _F) -> _F:
 def inlined(function: _F) -> _F:
     """Compile a small function that kernels call, inlined by LLVM."""
     return numba.njit(nogil=True, error_model="numpy", forceinline=True)(function)  # pyright: ignore[reportReturnType]
+
+
+def main() -> None:
+    """Compile every kernel into the cache, saying what is under way."""
+    from navcore.warm import warm
+
+    warm(lambda what: print(f"kernels: {what}", file=sys.stderr, flush=True))
+    print(f"kernels: ready in {cache_folder()}", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()

@@ -71,7 +71,7 @@ class Earth:
         return float(meridian_radius(self.e2, s)), float(prime_vertical_radius(self.e2, s))
 
     def gravity(self, lat: float, height: float = 0.0) -> float:
-        """Gravity at a latitude (rad) and height (m), m/s^2; on the sphere the same everywhere at height 0."""
+        """Gravity at a latitude (rad) and height (m), m/s^2."""
         return float(normal_gravity(self.g_equator, self.somigliana_k, self.e2, math.sin(lat), height))
 
     def schuler_frequency(self, lat: float) -> float:

@@ -1,7 +1,7 @@
 """What all methods of a scenario share: truth, coefficients, sensor errors and log; made once and kept.
 
-Kept by what each stage depends on, so that a slider on a network or policy recomputes none of it, and one on a
-sensor error neither the truth nor its coefficients.
+Kept by what each stage depends on, so that a slider on a network or policy recomputes none of it, and one on
+a sensor error neither the truth nor its coefficients.
 """
 
 from __future__ import annotations
@@ -18,9 +18,11 @@ from cachetools import LRUCache
 from navcore.errors import InputError
 from navcore.mechanization.trajectory import Coefficients, coefficients
 from navcore.motion.base import Truth
+from navcore.motion.track import TrackMotion
 from navcore.scenario import Scenario
 from navcore.sensors.base import ReferenceErrors, SensorErrors
 from navcore.sensors.imu import imu_errors
+from navcore.sensors.recorded import recorded_window, recording_notices
 from navcore.sensors.reference import reference_errors
 
 _CACHE_BYTES = 300 * 1024 * 1024
@@ -102,15 +104,21 @@ def environment(scenario: Scenario) -> Environment:
     truth_key = (motion_key, log_key[1], scenario.site, steps, h, earth.name)
     seed = scenario.run.seed
 
+    window = recorded_window(scenario.motion, scenario.reference)
+    start_utc = None if window is None else window.start_s
+
     def make_truth() -> Truth:
+        grid = (2 * steps + 1, 0.5 * h, scenario.site.site(), earth)
         try:
-            return scenario.motion.truth(2 * steps + 1, 0.5 * h, scenario.site.site(), earth)
+            if isinstance(scenario.motion, TrackMotion):
+                return scenario.motion.truth(*grid, start_utc=start_utc)
+            return scenario.motion.truth(*grid)
         except InputError as error:
             raise error.located("", "motion.") from None
 
     def make_reference() -> ReferenceErrors:
         try:
-            return reference_errors(scenario.reference, truth, steps * h, seed, earth)
+            return reference_errors(scenario.reference, truth, steps * h, seed, step_s=h, start_utc=start_utc)
         except InputError as error:
             raise error.located("", "reference.") from None
 
@@ -126,5 +134,5 @@ def environment(scenario: Scenario) -> Environment:
             lambda: imu_errors(scenario.imu, truth, steps, h, earth, seed, level_body=channel),
         ),
         reference=_kept(("reference", truth_key, log_key, seed), make_reference),
-        warnings=(),
+        warnings=recording_notices(scenario.motion, scenario.reference),
     )

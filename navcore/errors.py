@@ -65,6 +65,8 @@ class InputError(ValueError):
             Put before each field name, e.g. ``reference.``.
         """
         return InputError(
-            Fault(f.where or where, f"{prefix}{f.field}" if f.field else prefix.rstrip("."), f.value, f.allowed)
+            Fault(
+                f.where or where, f"{prefix}{f.field}" if f.field else prefix.rstrip("."), f.value, f.allowed
+            )
             for f in self.faults
         )

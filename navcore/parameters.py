@@ -31,7 +31,7 @@ def quantity(
     slider: tuple[float, float] | None = None,
     log: bool = False,
 ) -> Any:
-    """Declare a numeric field.
+    """Declare a numeric field; TOML's true or "0.7" is refused there, not quietly read as a number.
 
     Parameters
     ----------
@@ -61,12 +61,40 @@ def quantity(
         extra["slider"] = list(slider)
     if log:
         extra["log"] = True
-    return Field(default=default, ge=ge, gt=gt, le=le, lt=lt, description=help or None, json_schema_extra=extra)
+    return Field(
+        default=default,
+        ge=ge,
+        gt=gt,
+        le=le,
+        lt=lt,
+        strict=True,
+        description=help or None,
+        json_schema_extra=extra,
+    )
+
+
+def choice(default: str, *, label: str = "", help: str = "") -> Any:
+    """Declare a field whose type is a Literal: one of a few words.
+
+    Parameters
+    ----------
+    default : str
+        Default word.
+    label, help
+        As of `quantity`.
+
+    Returns
+    -------
+    pydantic field declaration.
+    """
+    return Field(
+        default=default, description=help or None, json_schema_extra={"label": label} if label else None
+    )
 
 
 def bounded(*, unit: str = "", ge: float | None = None, le: float | None = None) -> Any:
-    """Bounds of one element of a vector field: ``tuple[Annotated[float, bounded(unit="m", ge=0.0)], ...]``."""
-    return Field(ge=ge, le=le, json_schema_extra={"unit": unit})
+    """Bounds of one element of a vector: ``tuple[Annotated[float, bounded(unit="m", ge=0.0)], ...]``."""
+    return Field(ge=ge, le=le, strict=True, json_schema_extra={"unit": unit})
 
 
 def vector_quantity(
@@ -112,7 +140,7 @@ def vector_quantity(
 
 
 def element_of(info: FieldInfo) -> FieldInfo | None:
-    """Bounds and unit of one element of a vector field, as a field that `allowed_range` reads; None for others."""
+    """Bounds and unit of a vector's elements, as a field that `allowed_range` reads; None for others."""
     for element in get_args(info.annotation)[:1]:
         if get_origin(element) is Annotated:
             return next((extra for extra in get_args(element)[1:] if isinstance(extra, FieldInfo)), None)
@@ -120,7 +148,7 @@ def element_of(info: FieldInfo) -> FieldInfo | None:
 
 
 def allowed_range(info: FieldInfo) -> str:
-    """Say the allowed range of a numeric field in words, e.g. ``must be > 0 and <= 5 (rad/s)``; empty if open."""
+    """Say a field's allowed range in words, e.g. ``must be > 0 and <= 5 (rad/s)``; empty if open."""
     signs = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
     parts = [
         f"{sign} {getattr(rule, name):g}"

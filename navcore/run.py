@@ -122,7 +122,8 @@ def plot_series(recorder: Recorder, step_s: float) -> PlotSeries:
     t = np.empty(2 * bins)
     t[0::2] = (start + 0.25 * (length - 1)) * step_s
     t[1::2] = (start + 0.75 * (length - 1)) * step_s
-    return PlotSeries(t, values)
+    points = 2 * bins - int(length[-1] == 1)
+    return PlotSeries(t[:points], values[:points])
 
 
 def statistics(recorder: Recorder) -> dict[str, dict[str, float]]:

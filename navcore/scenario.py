@@ -1,9 +1,9 @@
-"""The scenario: joins the parameter models of the parts (schema 1) and checks what only the whole can tell."""
+"""The scenario: joins the parameter models of the parts, checks what only the whole can tell."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError
 
@@ -18,7 +18,7 @@ from navcore.motion import Motion, StaticMotion
 from navcore.motion.base import Site
 from navcore.network import Network
 from navcore.network.undamped import UndampedNetwork
-from navcore.parameters import Parameters, quantity
+from navcore.parameters import Parameters, bounded, choice, quantity, vector_quantity
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import LogEvent, Reference
 from navcore.units import ARCMIN, ARCSEC, DEG, HOUR
@@ -34,31 +34,55 @@ Text = Field(default="", max_length=300)
 class RunSettings(Parameters):
     """Block ``run``: fidelity, duration, steps, seed, Earth."""
 
-    fidelity: Literal["channel", "error_model"] = Field(
-        "error_model", description="channel: two decoupled level channels; error_model: the full linear model."
+    fidelity: Literal["channel", "error_model"] = choice(
+        "error_model", help="channel: two decoupled level channels; error_model: the full linear model."
     )
     duration_h: float = quantity(
-        10.0, unit="h", gt=0.0, le=8760.0, slider=(0.5, 72.0), log=True, label="duration", help="Length of the run."
+        10.0,
+        unit="h",
+        gt=0.0,
+        le=8760.0,
+        slider=(0.5, 72.0),
+        log=True,
+        label="duration",
+        help="Length of the run.",
     )
     step_s: float = quantity(
-        1.0, unit="s", ge=0.005, le=10.0, label="step", help="Integration step; the law runs at the same step."
+        1.0,
+        unit="s",
+        ge=0.005,
+        le=10.0,
+        label="step",
+        help="Integration step; the law runs at the same step.",
     )
     rate_hz: float = quantity(100.0, unit="Hz", ge=1.0, le=1000.0, help="IMU rate of a strapdown run.")
     output_step_s: float = quantity(
         10.0, unit="s", gt=0.0, le=86400.0, label="output step", help="Interval of the output rows."
     )
-    seed: int = Field(1, ge=0, le=2**31 - 1, description="Seed of every random number of the run.")
-    earth: Literal["wgs84", "sphere"] = Field("wgs84", description="Earth model; the sphere is for textbook formulas.")
+    seed: int = Field(
+        default=1, strict=True, ge=0, le=2**31 - 1, description="Seed of every random number of the run."
+    )
+    earth: Literal["wgs84", "sphere"] = choice(
+        "wgs84", help="Earth model; the sphere is for textbook formulas."
+    )
 
 
 class SiteSettings(Parameters):
     """Block ``site``: where the motion starts."""
 
     lat_deg: float = quantity(
-        32.06, unit="deg", ge=-89.0, le=89.0, slider=(-80.0, 80.0), label="latitude", help="Geodetic latitude."
+        32.06,
+        unit="deg",
+        ge=-89.0,
+        le=89.0,
+        slider=(-80.0, 80.0),
+        label="latitude",
+        help="Geodetic latitude.",
     )
     lon_deg: float = quantity(118.8, unit="deg", ge=-180.0, le=180.0, label="longitude", help="Longitude.")
-    height_m: float = quantity(0.0, unit="m", ge=-500.0, le=20000.0, label="height", help="Height above the ellipsoid.")
+    height_m: float = quantity(
+        0.0, unit="m", ge=-500.0, le=20000.0, label="height", help="Height above the ellipsoid."
+    )
 
     def site(self) -> Site:
         """Start position in SI."""
@@ -69,36 +93,36 @@ class Alignment(Parameters):
     """Block ``alignment``: navigation starts from ``initial_error`` directly."""
 
     kind: Literal["none"] = "none"
-    duration_s: float = quantity(600.0, unit="s", gt=0.0, le=86400.0, help="Length of the alignment, before t = 0.")
+    duration_s: float = quantity(
+        600.0, unit="s", gt=0.0, le=86400.0, help="Length of the alignment, before t = 0."
+    )
+
+
+_Tilt = Annotated[float, bounded(unit="arcmin", ge=-600.0, le=600.0)]
+_Velocity = Annotated[float, bounded(unit="m/s", ge=-100.0, le=100.0)]
+_Position = Annotated[float, bounded(unit="arcsec", ge=-36000.0, le=36000.0)]
 
 
 class InitialError(Parameters):
     """Block ``initial_error``: computed minus true at t = 0."""
 
-    attitude_arcmin: tuple[float, float, float] = Field(
-        (0.0, 0.0, 0.0), description="phi_E, phi_N, phi_U, arcmin; each within +-600."
-    )
-    velocity_mps: tuple[float, float] = Field((0.0, 0.0), description="dV_E, dV_N, m/s; each within +-100.")
-    position_arcsec: tuple[float, float] = Field(
-        (0.0, 0.0), description="Latitude, longitude, arcsec; each within +-36000."
-    )
+    attitude_arcmin: tuple[_Tilt, _Tilt, _Tilt] = vector_quantity(
+        (0.0, 0.0, 0.0), unit="arcmin", elements=("phi_E", "phi_N", "phi_U"), slider=(-10.0, 10.0),
+        label="initial misalignment", help="Misalignment at t = 0.",
+    )  # fmt: skip
+    velocity_mps: tuple[_Velocity, _Velocity] = vector_quantity(
+        (0.0, 0.0), unit="m/s", elements=("E", "N"), slider=(-2.0, 2.0),
+        label="initial velocity error", help="Velocity error at t = 0.",
+    )  # fmt: skip
+    position_arcsec: tuple[_Position, _Position] = vector_quantity(
+        (0.0, 0.0), unit="arcsec", elements=("latitude", "longitude"), slider=(-60.0, 60.0),
+        label="initial position error", help="Position error at t = 0.",
+    )  # fmt: skip
 
     def state(self) -> list[float]:
         """Seven error states in SI: dV_E, dV_N, dL, dlambda, phi_E, phi_N, phi_U."""
         angles = [value * ARCMIN for value in self.attitude_arcmin]
         return [*self.velocity_mps, *(value * ARCSEC for value in self.position_arcsec), *angles]
-
-    def faults(self) -> Iterator[Fault]:
-        """Range of each element."""
-        for name, limit, unit in (
-            ("attitude_arcmin", 600.0, "arcmin"),
-            ("velocity_mps", 100.0, "m/s"),
-            ("position_arcsec", 36000.0, "arcsec"),
-        ):
-            for i, value in enumerate(getattr(self, name)):
-                if abs(value) > limit:
-                    allowed = f"must be >= -{limit:g} and <= {limit:g} ({unit})"
-                    yield Fault("", f"initial_error.{name}.{i}", value, allowed)
 
 
 class View(Parameters):
@@ -110,15 +134,20 @@ class View(Parameters):
 class Method(Parameters):
     """One ``[[method]]``: a way of damping, run on the same truth, IMU and log as the others."""
 
-    name: str = Field("", max_length=60, description="Name on plots and in files; made from the network when empty.")
+    name: str = Field(
+        default="", max_length=60, description="Name on plots and in files; made from the network when empty."
+    )
     damping: Literal["free", "internal", "external"] = Field(
-        "free", description="free: none; internal: own velocity; external: against the reference velocity."
+        default="free",
+        description="free: none; internal: own velocity; external: against the reference velocity.",
     )
     network: Network = Field(default_factory=UndampedNetwork)
     policy: Policy = Field(default_factory=Constant)
     switching: Switching = Field(default_factory=Hard)
     event: tuple[LogEvent, ...] = Field(
-        (), max_length=50, description="Log events that only this method sees: several cases in one scenario."
+        default=(),
+        max_length=50,
+        description="Log events that only this method sees: several cases in one scenario.",
     )
 
     def label(self) -> str:
@@ -131,7 +160,7 @@ class Method(Parameters):
 class Scenario(Parameters):
     """A complete, checked scenario. Build it with `Scenario.parse` or `navcore.scenario_file.load`."""
 
-    schema_version: Literal[1] = Field(SCHEMA, alias="schema")
+    schema_version: Literal[1] = Field(default=SCHEMA, alias="schema")
     title: str = Text
     source: str = Text
     run: RunSettings = RunSettings()
@@ -141,7 +170,7 @@ class Scenario(Parameters):
     alignment: Alignment = Alignment()
     initial_error: InitialError = InitialError()
     reference: Reference = Reference()
-    method: tuple[Method, ...] = Field((Method(name="free"),), min_length=1, max_length=MAX_METHODS)
+    method: tuple[Method, ...] = (Method(name="free"),)
     view: View = View()
 
     @classmethod
@@ -182,13 +211,16 @@ class Scenario(Parameters):
         """What only the whole scenario can tell: lengths, names, missing references, refused networks."""
         run = self.run
         if self.steps < 1:
-            yield Fault("", "run.duration_h", run.duration_h, f"must hold at least one step of {run.step_s:g} s")
+            yield Fault(
+                "", "run.duration_h", run.duration_h, f"must hold at least one step of {run.step_s:g} s"
+            )
         if self.steps > MAX_STEPS:
             yield Fault(
                 "", "run.duration_h", run.duration_h,
-                f"{run.duration_h * HOUR / run.step_s:.3g} steps of {run.step_s:g} s: at most {MAX_STEPS} are run",
+                f"is {run.duration_h * HOUR / run.step_s:.3g} steps of {run.step_s:g} s; at most {MAX_STEPS}",
             )  # fmt: skip
-        yield from self.initial_error.faults()
+        if not 1 <= len(self.method) <= MAX_METHODS:
+            yield Fault("", "method", len(self.method), f"must be 1 to {MAX_METHODS} blocks [[method]]")
         yield from _method_faults(self)
 
     def canonical(self) -> dict[str, Any]:
@@ -204,10 +236,18 @@ def _method_faults(scenario: Scenario) -> Iterator[Fault]:
         if other != i:
             yield Fault("", f"{at}.name", method.label(), f"must differ from the name of method.{other}")
         if method.damping == "external" and scenario.reference.kind == "none":
-            yield Fault("", f"{at}.damping", "external", 'needs a reference velocity: reference.kind must not be "none"')
+            yield Fault(
+                "",
+                f"{at}.damping",
+                "external",
+                'needs a reference velocity: reference.kind must not be "none"',
+            )
         if method.policy.needs_reference and method.damping != "free" and scenario.reference.kind == "none":
             yield Fault(
-                "", f"{at}.policy.id", method.policy.id, 'needs a reference velocity: reference.kind must not be "none"'
+                "",
+                f"{at}.policy.id",
+                method.policy.id,
+                'needs a reference velocity: reference.kind must not be "none"',
             )
         if method.event and scenario.reference.kind != "log":
             yield Fault("", f"{at}.event", None, 'needs reference.kind = "log"')

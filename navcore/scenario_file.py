@@ -164,7 +164,7 @@ def to_toml(scenario: Scenario) -> str:
 
 
 def scenario_hash(scenario: Scenario) -> str:
-    """SHA-256 of the canonical resolved scenario; a file counts by its name and content, not by its folder."""
+    """SHA-256 of the canonical scenario; a file counts by its name and content, not by its folder."""
     data = scenario.canonical()
     for block, field in _FILE_FIELDS:
         if data.get(block, {}).get(field):

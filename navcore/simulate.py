@@ -38,7 +38,8 @@ def simulate(scenario: Scenario, progress: Progress | None = None, cancelled: Ca
     progress : callable, optional
         Called with the fraction done, 0..1, from any thread.
     cancelled : callable, optional
-        Asked between chunks; when it says True the run stops and what was computed is kept (status "stopped").
+        Asked between chunks; when it says True the run stops and what was computed is kept (status
+        "stopped").
 
     Raises
     ------

@@ -1,9 +1,9 @@
 """The damping law: one call a step gives the correction of both channels (compiled, both fidelities).
 
-What it returns for each channel: c (m/s), added to the computed velocity where the platform's transport rate is
-formed, V* = V_c + c, and a (m/s^2), fed back into the velocity integrator. Network form: c = Q(s) d with
-Q = 1 - H and d = V_r - V_c (external) or -V_c (internal), a = 0. Velocity feedback (`compass`, physics.md 3.1):
-c = -K2 d + P with P' = -K3 d, a = K1 d. Both are the same state-space block.
+What it returns for each channel: c (m/s), added to the computed velocity where the platform's transport rate
+is formed, V* = V_c + c, and a (m/s^2), fed back into the velocity integrator. Network form: c = Q(s) d with
+Q = 1 - H and d = V_r - V_c (external) or -V_c (internal), a = 0. Velocity feedback (`compass`, physics.md
+3.1): c = -K2 d + P with P' = -K3 d, a = K1 d. Both are the same state-space block.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Where everything lies in the law's arrays: parameters ``p``, state ``s`` and history ``ring``.
 
 Laid out once for every policy and switching method of physics.md section 4, so that adding one is a new file
-and a dispatch line, not a new layout. The network itself is part of the *state*: `adaptive`, `schedule`, `ramp`
-and `step` re-tune it while it runs.
+and a dispatch line, not a new layout. The network itself is part of the *state*: `adaptive`, `schedule`,
+`ramp` and `step` re-tune it while it runs.
 """
 
 from __future__ import annotations

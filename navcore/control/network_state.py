@@ -22,8 +22,8 @@ from navcore.control.layout import (
 def clear_network(p, s, u_e, u_n):
     """Put the network into its start state for the inputs u_E, u_N (m/s).
 
-    External: empty (no difference before the start, as in the papers). Internal: the steady state, or a constant
-    speed would look like an acceleration.
+    External: empty (no difference before the start, as in the papers). Internal: the steady state, or a
+    constant speed would look like an acceleration.
     """
     steady = 1.0 if p[DAMPING] == INTERNAL else 0.0
     for i in range(int(p[ORDER])):
@@ -46,6 +46,6 @@ def _advance_channel(n, s, x, u):
 
 @inlined
 def advance_network(p, s, u_e, u_n):
-    """Feed one sample to Q = 1 - H of both channels; return its outputs c_E, c_N (delta form, physics.md 3.5)."""
+    """Feed one sample to Q = 1 - H of both channels; return its outputs c_E, c_N (delta form)."""
     n = int(p[ORDER])
     return _advance_channel(n, s, X_E, u_e), _advance_channel(n, s, X_N, u_n)

@@ -1,1 +1,1 @@
-"""Mechanizations: what an inertial navigation system makes of its sensors, with the damping law inside the loop."""
+"""Mechanizations: what a navigation system makes of its sensors, with the damping law inside the loop."""

@@ -1,12 +1,12 @@
-"""The linear phi-angle error model with the damping law inside, compiled (fidelities `channel`, `error_model`).
+"""The linear phi-angle error model with the damping law inside, compiled.
 
-Seven states x = [dV_E, dV_N, dL, dlambda, phi_E, phi_N, phi_U], integrated by RK4 at the run's step; sensor errors
-and the law's correction are held over a step. With the Schuler frequency at 1.24e-3 rad/s and a step of 1 s the
-RK4 error is below 1e-14 a step; what remains is the hold of the correction, half a step of delay, which belongs
-to the sampled law itself (contract: the *difference* of the last log epoch is held).
+Seven states x = [dV_E, dV_N, dL, dlambda, phi_E, phi_N, phi_U], integrated by RK4 at the run's step; sensor
+errors and the law's correction are held over a step. With the Schuler frequency at 1.24e-3 rad/s and a step
+of 1 s the RK4 error is below 1e-14 a step; what remains is the hold of the correction, half a step of delay,
+which belongs to the sampled law itself (contract: the *difference* of the last log epoch is held).
 
-The equations are those of physics.md section 2 with transport and Coriolis terms and f x phi along the trajectory
-(Titterton & Weston ch. 12; Groves ch. 14); the vertical channel is locked.
+The equations are those of physics.md section 2 with transport and Coriolis terms and f x phi along the
+trajectory (Titterton & Weston ch. 12; Groves ch. 14); the vertical channel is locked.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from navcore.compiled import inlined, kernel
-from navcore.control.layout import DAMPED, DIFFERENCE, EPOCH_INDEX, VALID, XI
 from navcore.control.law import Law, law_step
+from navcore.control.layout import DAMPED, DIFFERENCE, EPOCH_INDEX, VALID, XI
 from navcore.mechanization.recorder import Recorder, flush, record
 from navcore.mechanization.trajectory import (
     EARTH_N,
@@ -62,8 +62,24 @@ def _rate(c, i, x0, x1, x2, x4, x5, x6, eps_e, eps_n, eps_u, nab_e, nab_n, c_e, 
     coriolis_up = c[i, W_U] + c[i, EARTH_U]
     d_up = 2.0 * c[i, EARTH_N] * x2 + up
     d_north = -2.0 * c[i, EARTH_U] * x2 + x0 * c[i, INV_N]
-    r0 = c[i, F_N] * x6 - c[i, F_U] * x5 + coriolis_up * x1 + d_up * c[i, V_N] - d_north * c[i, V_U] + nab_e + a_e
-    r1 = c[i, F_U] * x4 - c[i, F_E] * x6 - coriolis_up * x0 - d_up * c[i, V_E] - x1 * c[i, INV_M] * c[i, V_U] + nab_n + a_n
+    r0 = (
+        c[i, F_N] * x6
+        - c[i, F_U] * x5
+        + coriolis_up * x1
+        + d_up * c[i, V_N]
+        - d_north * c[i, V_U]
+        + nab_e
+        + a_e
+    )
+    r1 = (
+        c[i, F_U] * x4
+        - c[i, F_E] * x6
+        - coriolis_up * x0
+        - d_up * c[i, V_E]
+        - x1 * c[i, INV_M] * c[i, V_U]
+        + nab_n
+        + a_n
+    )
     r2 = x1 * c[i, INV_M]
     r3 = (x0 + c[i, V_E] * c[i, TAN_LAT] * x2) * c[i, INV_N] * c[i, SEC_LAT]
     r4 = c[i, W_U] * x5 - c[i, W_N] * x6 - (x1 + c_n) * c[i, INV_M] - eps_e
@@ -106,7 +122,8 @@ def _advance(
     for k in range(first, last):
         x0, x1, x2, x3, x4, x5, x6 = x[0], x[1], x[2], x[3], x[4], x[5], x[6]
         if not (abs(x4) < TILT_LIMIT and abs(x5) < TILT_LIMIT and abs(x6) < TILT_LIMIT
-                and abs(x0) < VELOCITY_LIMIT and abs(x1) < VELOCITY_LIMIT and math.isfinite(x2 + x3)):  # fmt: skip
+                and abs(x0) < VELOCITY_LIMIT and abs(x1) < VELOCITY_LIMIT
+                and math.isfinite(x2 + x3)):  # fmt: skip
             flush(k - 1, bin_width, buffer, stats, bin_low, bin_high, bin_order, cursor)
             return k, DIVERGED
         t = k * h
@@ -126,7 +143,8 @@ def _advance(
         eps_e, eps_n, eps_u, nab_e, nab_n = gyro[g, 0], gyro[g, 1], gyro[g, 2], accel[a, 0], accel[a, 1]
         i1, i2 = i0 + half_stride, i0 + 2 * half_stride
         k0, k1, k2, k3, k4, k5, k6 = _rate(
-            half, i0, x0, x1, x2, x4, x5, x6, eps_e, eps_n, eps_u, nab_e, nab_n, c_e, c_n, a_e, a_n)  # fmt: skip
+            half, i0, x0, x1, x2, x4, x5, x6,
+            eps_e, eps_n, eps_u, nab_e, nab_n, c_e, c_n, a_e, a_n)  # fmt: skip
         l0, l1, l2, l3, l4, l5, l6 = _rate(
             half, i1, x0 + h2 * k0, x1 + h2 * k1, x2 + h2 * k2, x4 + h2 * k4, x5 + h2 * k5, x6 + h2 * k6,
             eps_e, eps_n, eps_u, nab_e, nab_n, c_e, c_n, a_e, a_n)  # fmt: skip
@@ -176,7 +194,8 @@ class ErrorModelRun:
         last = min(self.position + steps, self.steps + 1)
         c, r, log = self.coefficients, self.recorder, self.reference
         reached, code = _advance(
-            self.position, last, self.steps, self.step_s, c.half, c.law, self.sensors.gyro, self.sensors.accel,
+            self.position, last, self.steps, self.step_s, c.half, c.law,
+            self.sensors.gyro, self.sensors.accel,
             log.time_s, log.error, log.valid, log.body_frame, log.hold_s,
             self.law.p, self.law.s, self.law.ring, self.x, r.row_steps, r.rows, r.stats,
             r.bin_width, r.bin_low, r.bin_high, r.bin_order, r.buffer, r.cursor,

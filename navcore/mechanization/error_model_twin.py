@@ -1,7 +1,7 @@
 """The error model once more, slow and obvious: vectors, cross products, matrices, plain Python.
 
-The compiled kernel is tested against this sample by sample. It shares no code with it: coefficients come straight
-from the truth, the rate from vector formulas, and the law from a small class with matrices.
+The compiled kernel is tested against this sample by sample. It shares no code with it: coefficients come
+straight from the truth, the rate from vector formulas, and the law from a small class with matrices.
 """
 
 from __future__ import annotations
@@ -17,7 +17,9 @@ from navcore.motion.base import AE, AN, AU, HEIGHT, LAT, VE, VN, VU
 Vector = np.ndarray
 
 
-def model_rate(truth: Vector, x: Vector, eps: Vector, nabla: Vector, c: Vector, a: Vector, earth: Earth) -> Vector:
+def model_rate(
+    truth: Vector, x: Vector, eps: Vector, nabla: Vector, c: Vector, a: Vector, earth: Earth
+) -> Vector:
     """Time derivative of the seven error states at one row of the truth table.
 
     Parameters

@@ -1,7 +1,7 @@
 """What a kernel keeps of a run: output rows, statistics on every step, and minima and maxima for the plots.
 
-A 24 h run has 86,401 states; only the output rows are stored. Statistics and the extremes of each plot bin are
-formed on the way, so that a peak of one second is neither lost in the metrics nor on the screen.
+A 24 h run has 86,401 states; only the output rows are stored. Statistics and the extremes of each plot bin
+are formed on the way, so that a peak of one second is neither lost in the metrics nor on the screen.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def output_steps(steps: int, step_s: float, output_step_s: float) -> np.ndarray:
     """Steps nearest to 0, output_step_s, ... and the last one; int64, strictly increasing."""
     every = max(output_step_s / step_s, 1.0)
     wanted = np.rint(np.arange(int(steps / every + 1e-9) + 1) * every).astype(np.int64)
-    return np.unique(np.append(wanted[wanted <= steps], steps))
+    return wanted if wanted[-1] == steps else np.append(wanted, steps)
 
 
 def make_recorder(steps: int, step_s: float, output_step_s: float) -> Recorder:
@@ -89,7 +89,7 @@ def make_recorder(steps: int, step_s: float, output_step_s: float) -> Recorder:
 
 @inlined
 def record(k, x, m, n_cos, damped, xi, row_steps, rows, buffer, cursor):
-    """Take state x = [dV_E, dV_N, dL, dlambda, phi_E, phi_N, phi_U] of step k into the buffer and the rows."""
+    """Take the error state x (order: dV_E, dV_N, dL, dlambda, phi) of step k into buffer and rows."""
     d_lat, d_lon = m * x[2], n_cos * x[3]
     position = math.sqrt(d_lat * d_lat + d_lon * d_lon)
     i = cursor[CURSOR_BUFFER]
@@ -108,8 +108,8 @@ def record(k, x, m, n_cos, damped, xi, row_steps, rows, buffer, cursor):
 def flush(k, bin_width, buffer, stats, bin_low, bin_high, bin_order, cursor):
     """Empty the buffer, whose last entry is step k, into the statistics and the bin of step k.
 
-    One quantity at a time: with all eight in one pass every sum goes through memory, which took three times as
-    long as the integration itself.
+    One quantity at a time: with all eight in one pass every sum goes through memory, which took three times
+    as long as the integration itself.
     """
     b, count = k // bin_width, cursor[CURSOR_BUFFER]
     for q in range(QUANTITIES):

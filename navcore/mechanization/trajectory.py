@@ -1,4 +1,4 @@
-"""Coefficients of the linear error model along the true trajectory, on the half-step grid of its integrator."""
+"""Coefficients of the linear error model along the true trajectory, each half step."""
 
 from __future__ import annotations
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,9 @@ from navcore.earth import Earth
 from navcore.parameters import Parameters
 
 # Columns of Truth.values.
-LAT, LON, HEIGHT, VE, VN, VU, AE, AN, AU, PITCH, ROLL, HEADING, PITCH_RATE, ROLL_RATE, HEADING_RATE = range(15)
+LAT, LON, HEIGHT, VE, VN, VU, AE, AN, AU, PITCH, ROLL, HEADING, PITCH_RATE, ROLL_RATE, HEADING_RATE = range(
+    15
+)
 COLUMNS = 15
 
 
@@ -53,7 +56,7 @@ class Truth:
 class MotionParameters(Parameters, ABC):
     """Base of the motion blocks of a scenario; subclasses narrow ``kind`` to a Literal."""
 
-    kind: str
+    kind: Any  # a Literal in each subclass
 
     @abstractmethod
     def truth(self, count: int, step_s: float, site: Site, earth: Earth) -> Truth:

@@ -18,7 +18,16 @@ from navcore.mechanization.error_model_twin import TwinLaw, run_twin
 from navcore.mechanization.recorder import make_recorder
 from navcore.mechanization.trajectory import coefficients
 from navcore.motion.base import (
-    AE, AN, COLUMNS, HEADING, HEIGHT, LAT, VE, VN, VU, Truth,
+    AE,
+    AN,
+    COLUMNS,
+    HEADING,
+    HEIGHT,
+    LAT,
+    VE,
+    VN,
+    VU,
+    Truth,
 )  # fmt: skip
 from navcore.network.base import NetworkParameters
 from navcore.network.classic import Classic2Network
@@ -37,7 +46,11 @@ def _moving_truth(steps: int, step_s: float) -> np.ndarray:
     rows = np.zeros((len(t), COLUMNS))
     rows[:, LAT] = LAT0 + 1e-5 * t
     rows[:, HEIGHT] = 30.0 + 2.0 * np.sin(0.01 * t)
-    rows[:, VE], rows[:, VN], rows[:, VU] = 8 + 3 * np.sin(0.01 * t), -4 * np.cos(0.02 * t), 0.02 * np.cos(0.01 * t)
+    rows[:, VE], rows[:, VN], rows[:, VU] = (
+        8 + 3 * np.sin(0.01 * t),
+        -4 * np.cos(0.02 * t),
+        0.02 * np.cos(0.01 * t),
+    )
     rows[:, AE], rows[:, AN] = 0.03 * np.cos(0.01 * t), 0.08 * np.sin(0.02 * t)
     rows[:, HEADING] = 0.3
     return rows
@@ -54,12 +67,16 @@ def _inputs(steps: int):
     return eps, nabla, dv_r, valid, x0
 
 
-def _law(damping: str, parameters: NetworkParameters, omega_s: float, limit: float | None, step_s: float) -> Law:
+def _law(
+    damping: str, parameters: NetworkParameters, omega_s: float, limit: float | None, step_s: float
+) -> Law:
     policy = Constant() if limit is None else Threshold(limit_mps=limit)
     return prepare_law(damping, parameters, parameters.transfer(omega_s), policy, Hard(), step_s)
 
 
-def _compiled(truth: np.ndarray, law: Law, earth: Earth, step_s: float, inputs, coupled: bool = True) -> np.ndarray:
+def _compiled(
+    truth: np.ndarray, law: Law, earth: Earth, step_s: float, inputs, coupled: bool = True
+) -> np.ndarray:
     eps, nabla, dv_r, valid, x0 = inputs
     steps = len(eps)
     run = ErrorModelRun(
@@ -116,7 +133,7 @@ def test_eigenvalues_at_rest_are_earth_and_split_schuler_lines():
 
 
 def test_kernel_moves_like_its_system_matrix():
-    """Free motion of the kernel at rest is expm(F t): the matrix whose eigenvalues are asserted is the kernel's."""
+    """Free motion at rest is expm(F t): the matrix whose eigenvalues are asserted is the kernel's."""
     from scipy.linalg import expm
 
     steps = 3000
@@ -139,7 +156,13 @@ def test_channel_compass_follows_the_loops_tilt_response(sigma, xi):
     omega_s = SPHERE.schuler_frequency(0.0)
     truth = np.zeros((1, COLUMNS))
     x0 = np.array([0.0, 0.0, 0.0, 0.0, 1e-3, 0.0, 0.0])
-    quiet = (np.zeros((steps, 3)), np.zeros((steps, 3)), np.zeros((steps + 1, 2)), np.ones(steps + 1, bool), x0)
+    quiet = (
+        np.zeros((steps, 3)),
+        np.zeros((steps, 3)),
+        np.zeros((steps + 1, 2)),
+        np.ones(steps + 1, bool),
+        x0,
+    )
     for realisation in ("feedback", "network"):
         parameters = CompassNetwork(sigma=sigma, xi=xi, realisation=realisation)
         law = _law("external", parameters, omega_s, None, step_s)
@@ -154,18 +177,30 @@ def test_feedback_pulls_the_velocity_onto_the_log_and_the_network_form_does_not(
     steps = 40000
     truth = np.zeros((1, COLUMNS))
     omega_s = SPHERE.schuler_frequency(0.0)
-    quiet = (np.zeros((steps, 3)), np.zeros((steps, 3)), np.full((steps + 1, 2), 0.5), np.ones(steps + 1, bool))
+    quiet = (
+        np.zeros((steps, 3)),
+        np.zeros((steps, 3)),
+        np.full((steps + 1, 2), 0.5),
+        np.ones(steps + 1, bool),
+    )
     inputs = (*quiet, np.zeros(7))
-    feedback = _compiled(truth, _law("external", CompassNetwork(), omega_s, None, 1.0), SPHERE, 1.0, inputs, False)
+    feedback = _compiled(
+        truth, _law("external", CompassNetwork(), omega_s, None, 1.0), SPHERE, 1.0, inputs, False
+    )
     network = _compiled(
-        truth, _law("external", ComplementaryNetwork(zeta=0.5), omega_s, None, 1.0), SPHERE, 1.0, inputs, False
+        truth,
+        _law("external", ComplementaryNetwork(zeta=0.5), omega_s, None, 1.0),
+        SPHERE,
+        1.0,
+        inputs,
+        False,
     )
     assert feedback[-1, :2] == pytest.approx([0.5, 0.5], rel=1e-6)
     assert np.abs(network[-1, :2]).max() < 1e-4
 
 
 def test_as_printed_lacks_the_transport_rate_of_the_reference():
-    """Deng 4 on a moving vehicle: the platform misses V/R, a constant rate that the loop turns into a tilt."""
+    """Deng 4 on a moving vehicle: the platform misses V/R, and the loop turns that into a tilt."""
     steps = 3000
     truth = _moving_truth(steps, 1.0)
     truth[:, VE], truth[:, VN], truth[:, AE], truth[:, AN] = 10.0, 0.0, 0.0, 0.0
@@ -175,7 +210,11 @@ def test_as_printed_lacks_the_transport_rate_of_the_reference():
     tilt = {
         realisation: np.abs(
             _compiled(
-                truth, _law("external", CompassNetwork(realisation=realisation), omega_s, None, 1.0), SPHERE, 1.0, inputs
+                truth,
+                _law("external", CompassNetwork(realisation=realisation), omega_s, None, 1.0),
+                SPHERE,
+                1.0,
+                inputs,
             )[:, 5]
         ).max()
         for realisation in ("feedback", "as_printed")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from navcore.parameters import Parameters
 
@@ -20,7 +20,7 @@ class PolicyParameters(Parameters):
 
     code: ClassVar[int]
     needs_reference: ClassVar[bool] = False
-    id: str
+    id: Any  # a Literal in each subclass
 
     def packed(self) -> list[float]:
         """Values for ``p[POLICY_PARAMETERS:]``, at most 16."""

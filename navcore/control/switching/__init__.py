@@ -1,4 +1,4 @@
-"""Switching methods: how the loop passes between damped and undamped. One file, one registry and dispatch line."""
+"""Switching methods: how the loop passes between damped and undamped; one file and registry line each."""
 
 from __future__ import annotations
 

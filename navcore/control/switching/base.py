@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from navcore.parameters import Parameters
 
@@ -17,7 +17,7 @@ class SwitchingParameters(Parameters):
     """
 
     code: ClassVar[int]
-    id: str
+    id: Any  # a Literal in each subclass
 
     def packed(self) -> list[float]:
         """Values for ``p[SWITCHING_PARAMETERS:]``, at most 8."""

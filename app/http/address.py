@@ -1,0 +1,138 @@
+"""Where the server listens, and under which names it may be addressed."""
+
+from __future__ import annotations
+
+import errno
+import ipaddress
+import os
+import re
+import socket
+from collections.abc import Iterable
+from urllib.parse import urlsplit
+
+from navcore.errors import Fault, InputError
+
+LOOPBACK_NAMES = ("localhost", "127.0.0.1", "[::1]")
+_DEFAULT_PORT = {"http": 80, "https": 443}
+_HOST = re.compile(r"[a-z0-9]([a-z0-9._-]*[a-z0-9])?|\[[0-9a-f:.]+\]")
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """Bind the address, before viser is even imported.
+
+    viser would take the next port silently when one is busy, and hang on a host that cannot be bound. Handing
+    it a bound socket leaves neither case, and no moment in which another program could take the port.
+
+    Parameters
+    ----------
+    host : str
+        Name or address of this machine; the first of its addresses is used, IPv4 before IPv6.
+    port : int
+        0 to 65535; 0 takes any free port.
+
+    Returns
+    -------
+    socket.socket
+        Bound, not yet listening.
+
+    Raises
+    ------
+    InputError
+        The host is not this machine's, the port is busy, reserved or out of range.
+    """
+    if isinstance(port, bool) or not isinstance(port, int) or not 0 <= port <= 65535:
+        raise _fault("--port", port, "must be a whole number from 0 to 65535")
+    if not host:
+        raise _fault("--host", host, "must be a name or address of this machine, for example 127.0.0.1")
+    try:
+        found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
+    except (OSError, UnicodeError):
+        raise _fault("--host", host, "no such host; must be a name or address of this machine") from None
+    family, kind, protocol, _, address = min(found, key=lambda entry: entry[0] != socket.AF_INET)
+    listener = socket.socket(family, kind, protocol)
+    try:
+        if os.name == "posix":
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind(address)
+        # Linux lets two sockets bind one port until one of them listens: claim it now.
+        listener.listen(100)
+    except OSError as error:
+        listener.close()
+        raise _why_not_bound(error, host, port) from None
+    listener.setblocking(False)
+    return listener
+
+
+def is_loopback(listener: socket.socket) -> bool:
+    """Whether only this machine can reach the socket."""
+    return ipaddress.ip_address(listener.getsockname()[0].partition("%")[0]).is_loopback
+
+
+def authority(host: str, port: int, scheme: str = "http") -> str:
+    """Return ``host:port`` as a browser writes it: lower case, IPv6 in brackets, no default port."""
+    name = host.lower()
+    if ":" in name and not name.startswith("["):
+        name = f"[{name}]"
+    return name if port == _DEFAULT_PORT[scheme] else f"{name}:{port}"
+
+
+def parse_origins(texts: Iterable[str]) -> frozenset[str]:
+    """Check and normalise the origins given by the user.
+
+    Parameters
+    ----------
+    texts : iterable of str
+        For example ``https://bench.example.org`` or ``http://10.1.2.3:8080``; no path, no pattern.
+
+    Returns
+    -------
+    frozenset of str
+        As browsers send them in the Origin header.
+
+    Raises
+    ------
+    InputError
+        One fault for each text that is not an origin.
+    """
+    faults, origins = [], set()
+    for text in texts:
+        origin = _origin(text)
+        if origin is None:
+            wanted = (
+                "must be scheme://host or scheme://host:port with http or https, without a path or pattern"
+            )
+            faults.append(Fault("serve", "--allow-origin", text, wanted))
+        else:
+            origins.add(origin)
+    if faults:
+        raise InputError(faults)
+    return frozenset(origins)
+
+
+def _origin(text: str) -> str | None:
+    try:
+        parts = urlsplit(text)
+        port, scheme = parts.port, parts.scheme
+    except ValueError:
+        return None
+    host = parts.netloc.lower()
+    if port is not None:
+        host = host.rpartition(":")[0]
+    plain = parts.path in ("", "/") and "?" not in text and "#" not in text
+    if scheme not in _DEFAULT_PORT or not plain or not _HOST.fullmatch(host):
+        return None
+    return f"{scheme}://{authority(host, _DEFAULT_PORT[scheme] if port is None else port, scheme)}"
+
+
+def _fault(field: str, value: object, allowed: str) -> InputError:
+    return InputError([Fault("serve", field, value, allowed)])
+
+
+def _why_not_bound(error: OSError, host: str, port: int) -> InputError:
+    if error.errno == errno.EADDRINUSE:
+        return _fault("--port", port, f"is in use on {host}; choose another, or 0 for any free one")
+    if error.errno in (errno.EACCES, errno.EPERM):
+        return _fault("--port", port, "is reserved for the system; choose one from 1024 to 65535")
+    if error.errno == errno.EADDRNOTAVAIL:
+        return _fault("--host", host, "is not an address of this machine")
+    return _fault("--host", host, f"cannot be listened on: {error.strerror or error}")

@@ -1,0 +1,46 @@
+"""Response headers: what the browser must not do with our page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+def security_headers(script_hashes: Iterable[str], host: str) -> dict[str, str]:
+    """Return the headers of every answer.
+
+    Scripts run only from this server's own files or with a known hash: no inline handler and no ``eval``, so
+    that text which reaches the page as HTML by mistake stays harmless. viser needs: its two inline scripts
+    (by hash), WebAssembly (zstd), workers made from blobs, inline styles, pictures and fonts from blobs and
+    data addresses.
+
+    Parameters
+    ----------
+    script_hashes : iterable of str
+        ``sha256-...`` of the inline scripts of the page.
+    host : str
+        The Host header, already checked; the websocket goes there. Some browsers do not count it as 'self'.
+    """
+    hashes = " ".join(f"'{value}'" for value in script_hashes)
+    socket = f"ws://{host} wss://{host}" if host else ""
+    policy = {
+        "default-src": "'none'",
+        "script-src": f"'self' 'wasm-unsafe-eval' {hashes}",
+        "worker-src": "blob:",
+        "style-src": "'self' 'unsafe-inline'",
+        "img-src": "'self' data: blob:",
+        "font-src": "'self' data:",
+        "connect-src": f"'self' {socket} data: blob:",
+        "base-uri": "'none'",
+        "form-action": "'none'",
+        "frame-ancestors": "'none'",
+    }
+    return {
+        "Content-Security-Policy": "; ".join(f"{key} {value}".strip() for key, value in policy.items()),
+        "X-Content-Type-Options": "nosniff",
+        "X-Frame-Options": "DENY",
+        # The path of a page is a capability: whoever knows it sees the visitor's work.
+        "Referrer-Policy": "no-referrer",
+        "Cross-Origin-Opener-Policy": "same-origin",
+        "Cross-Origin-Resource-Policy": "same-origin",
+        "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
+    }

@@ -1,0 +1,191 @@
+"""What is answered to an HTTP request: page, script files, health, redirects, refusals."""
+
+from __future__ import annotations
+
+import asyncio
+import email.utils
+import html
+import json
+import re
+import secrets
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from http import HTTPStatus
+from urllib.parse import parse_qsl, urlencode
+
+from websockets.datastructures import Headers
+from websockets.http11 import Request, Response
+
+from app.http.access import Access, Refusal, refuse_address, refuse_unknown
+from app.http.connection import Connection
+from app.http.headers import security_headers
+from app.http.limits import Limits
+from app.http.page import File, Page
+
+_SESSION_PATH = re.compile(r"/s/([A-Za-z0-9_-]{8,64})(/?)")
+_FULL = "All places are taken; try again later."
+_FOR_EVER = "private, max-age=31536000, immutable"
+
+
+def new_session_id() -> str:
+    """Return a fresh session id: whoever knows it sees the visitor's work, so it is not to be guessed."""
+    return secrets.token_urlsafe(18)
+
+
+@dataclass
+class Site:
+    """Answers every request; a None answer lets a websocket open.
+
+    Attributes
+    ----------
+    access : Access
+        Who may come in.
+    limits : Limits
+        How many.
+    version : str
+        For ``/healthz``.
+    script_hashes : tuple of str
+        Of the page's inline scripts.
+    load_page : callable
+        Makes the page at the first request for it.
+    visitors : callable
+        Number of open websockets.
+    """
+
+    access: Access
+    limits: Limits
+    version: str
+    script_hashes: tuple[str, ...]
+    load_page: Callable[[], Page]
+    visitors: Callable[[], int]
+    ready: threading.Event = field(default_factory=threading.Event)
+    _page: Page | None = None
+    _loading: asyncio.Lock = field(default_factory=asyncio.Lock)
+
+    async def process_request(self, connection: Connection, request: Request) -> Response | None:
+        """Answer a request; None accepts a websocket and notes its session."""
+        while not self.ready.is_set():
+            await asyncio.sleep(0.005)
+        headers = request.headers
+        path, _, query = request.path.partition("?")
+        refusal = refuse_address(self.access, headers)
+        if refusal is not None:
+            return _refuse(refusal)
+        if path == "/healthz":
+            health = json.dumps({"status": "ok", "version": self.version})
+            return _respond(HTTPStatus.OK, health, "application/json")
+        websocket = any("websocket" in value.lower() for value in headers.get_all("Upgrade"))
+        if not websocket and "token" in dict(parse_qsl(query)) and self.access.token is not None:
+            return self._exchange_token(path, query, headers)
+        refusal = refuse_unknown(self.access, headers)
+        if refusal is not None:
+            return _refuse(refusal)
+        return self._open(connection, path) if websocket else await self._get(path, query, headers)
+
+    def process_response(self, connection: Connection, request: Request, response: Response) -> None:
+        """Add the security headers to whatever is answered, the library's own refusals included."""
+        del connection
+        if response.status_code == HTTPStatus.SWITCHING_PROTOCOLS:
+            return
+        host = request.headers.get_all("Host")
+        known = host[0].lower() if len(host) == 1 and host[0].lower() in self.access.hosts else ""
+        for name, value in security_headers(self.script_hashes, known).items():
+            response.headers[name] = value
+
+    def _open(self, connection: Connection, path: str) -> Response | None:
+        found = _SESSION_PATH.fullmatch(path)
+        if found is None:
+            return _not_found()
+        if self.visitors() >= self.limits.visitors:
+            return _respond(HTTPStatus.SERVICE_UNAVAILABLE, _FULL, extra={"Retry-After": "30"})
+        connection.session_id = found.group(1)
+        return None
+
+    async def _get(self, path: str, query: str, headers: Headers) -> Response:
+        if path == "/":
+            return _redirect(_with_query(f"s/{new_session_id()}/", query))
+        session = _SESSION_PATH.fullmatch(path)
+        if session is not None and not session.group(2):
+            return _redirect(_with_query(f"{session.group(1)}/", query))
+        if session is not None:
+            if self.visitors() >= self.limits.visitors:
+                return _respond(HTTPStatus.SERVICE_UNAVAILABLE, _FULL, extra={"Retry-After": "30"})
+            page = await self._loaded()
+            return await _serve(page.html, headers, "no-cache")
+        if path.startswith("/static/"):
+            script = (await self._loaded()).scripts.get(path.removeprefix("/static/"))
+            if script is not None:
+                return await _serve(script, headers, _FOR_EVER)
+        return _not_found()
+
+    async def _loaded(self) -> Page:
+        async with self._loading:
+            if self._page is None:
+                self._page = await asyncio.to_thread(self.load_page)
+            return self._page
+
+    def _exchange_token(self, path: str, query: str, headers: Headers) -> Response:
+        pairs = parse_qsl(query, keep_blank_values=True)
+        if not all(self.access.token_is_right(value) for name, value in pairs if name == "token"):
+            return _refuse(Refusal(HTTPStatus.UNAUTHORIZED, "Wrong token."))
+        if path != "/" and _SESSION_PATH.fullmatch(path) is None:
+            return _not_found()
+        # Relative to the last part of the path, whatever a reverse proxy has put before it.
+        rest = urlencode([pair for pair in pairs if pair[0] != "token"])
+        target = _with_query(path.rpartition("/")[2] or "./", rest)
+        cookie = {"Set-Cookie": self.access.cookie_header(headers["Host"].lower())}
+        if "cross-site" in headers.get_all("Sec-Fetch-Site"):
+            # Coming from a link on another site, the browser would withhold a strict cookie from a redirect;
+            # a page that moves on by itself counts as ours.
+            refresh = f'<meta http-equiv="refresh" content="0;url={html.escape(target)}">'
+            moving_on = f"<!doctype html>{refresh}<title>...</title>"
+            return _respond(HTTPStatus.OK, moving_on, "text/html; charset=utf-8", cookie)
+        return _redirect(target, cookie)
+
+
+async def _serve(file: File, headers: Headers, cache: str) -> Response:
+    zipped = any("gzip" in value.lower() for value in headers.get_all("Accept-Encoding"))
+    extra = {"Cache-Control": cache, "Vary": "Accept-Encoding"}
+    if zipped:
+        extra["Content-Encoding"] = "gzip"
+    content = await asyncio.to_thread(lambda: file.zipped) if zipped else file.plain
+    return _respond(HTTPStatus.OK, content, file.content_type, extra)
+
+
+def _refuse(refusal: Refusal) -> Response:
+    unknown = refusal.status == HTTPStatus.UNAUTHORIZED
+    challenge = {"WWW-Authenticate": 'Bearer realm="schuler"'} if unknown else {}
+    return _respond(refusal.status, refusal.reason, extra=challenge)
+
+
+def _not_found() -> Response:
+    return _respond(HTTPStatus.NOT_FOUND, "No such page.")
+
+
+def _redirect(target: str, extra: dict[str, str] | None = None) -> Response:
+    return _respond(HTTPStatus.FOUND, "", extra={"Location": target, **(extra or {})})
+
+
+def _respond(
+    status: HTTPStatus,
+    body: str | bytes,
+    content_type: str = "text/plain; charset=utf-8",
+    extra: dict[str, str] | None = None,
+) -> Response:
+    content = body if isinstance(body, bytes) else body.encode()
+    if content_type.startswith("text/plain") and content:
+        content += b"\n"
+    headers = {
+        "Date": email.utils.formatdate(usegmt=True),
+        "Content-Type": content_type,
+        "Content-Length": str(len(content)),
+        "Cache-Control": "no-store",
+        "Connection": "close",
+        **(extra or {}),
+    }
+    return Response(status.value, status.phrase, Headers(headers), content)
+
+
+def _with_query(target: str, query: str) -> str:
+    return f"{target}?{query}" if query and re.fullmatch(r"[!-~]*", query) else target

@@ -1,0 +1,245 @@
+"""Loading recorded streams: each file read once (cached), then joined by UTC."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from navcore.errors import Fault, InputError
+from navcore.io.nmea import NmeaLog, looks_like_nmea, nmea_warnings, read_nmea
+from navcore.io.nmea_sentences import Reading
+from navcore.io.series import Recording, Series, SourceReport, stream_report, tidy, utc_text
+from navcore.io.source import read_text, require_file
+from navcore.units import HOUR
+
+PathLike = str | os.PathLike[str]
+Rows = list[tuple[float, tuple[float, ...]]]
+_SLACK_S = 0.01
+_MIXED_DATES = "some files give times without a date and some with one: they cannot be joined"
+
+
+@dataclass(frozen=True)
+class Window:
+    """Time that several streams share.
+
+    Attributes
+    ----------
+    start_s, end_s : float
+        UTC, s; t = 0 of the navigation is ``start_s``, the first epoch of any stream that all of them cover.
+    cover_s : float
+        UTC from which on all streams are usable, s; at most one interval of a stream before ``start_s``.
+    """
+
+    start_s: float
+    end_s: float
+    cover_s: float
+
+    @property
+    def span_s(self) -> float:
+        """Length, s."""
+        return self.end_s - self.start_s
+
+    def covers(self, start_s: float, duration_s: float) -> bool:
+        """Whether a run of this duration from this start lies within, to 10 ms."""
+        return start_s >= self.cover_s - _SLACK_S and start_s + duration_s <= self.end_s + _SLACK_S
+
+
+FileKey = tuple[str, int, int]
+"""Resolved path, time of the last change (ns) and size: what the caches go by."""
+
+
+def load(paths: PathLike | Sequence[PathLike], where: str = "", field: str = "") -> Recording:
+    """Read one or several files; each quantity comes from the first file of the list that holds it.
+
+    Parameters
+    ----------
+    paths : path or sequence of paths
+        NMEA 0183 or CSV text, Parquet or MAT, told apart by content.
+    where, field : str
+        Place and field that faults about the files name.
+
+    Returns
+    -------
+    Recording
+
+    Raises
+    ------
+    InputError
+        A file is missing or refused, or dated and undated files are mixed.
+    """
+    parts: list[Recording] = []
+    faults: list[Fault] = []
+    for key in file_keys(paths, where, field):
+        try:
+            parts.append(_load_cached(key))
+        except InputError as error:
+            faults += [replace(fault, field=fault.field or field) for fault in error.faults]
+    if faults:
+        raise InputError(faults)
+    quantities: dict[str, Series] = {}
+    for part in parts:
+        quantities = part.quantities() | quantities
+    if len({series.dated for series in quantities.values()}) > 1:
+        raise InputError(Fault(where, field, None, _MIXED_DATES))
+    sources = tuple(source for part in parts for source in part.sources)
+    return Recording(**quantities, sources=sources)
+
+
+def file_keys(paths: PathLike | Sequence[PathLike], where: str = "", field: str = "") -> tuple[FileKey, ...]:
+    """State of each file; raises `InputError` when none is named or one cannot be read."""
+    listed = [paths] if isinstance(paths, str | os.PathLike) else list(paths)
+    if not listed or any(not str(path) for path in listed):
+        raise InputError(Fault(where, field, None, "name at least one file"))
+    keys: list[FileKey] = []
+    faults: list[Fault] = []
+    for path in listed:
+        try:
+            found = require_file(path, where, field)
+        except InputError as error:
+            faults += error.faults
+            continue
+        status = found.stat()
+        keys.append((str(found.resolve()), status.st_mtime_ns, status.st_size))
+    if faults:
+        raise InputError(faults)
+    return tuple(keys)
+
+
+@lru_cache(maxsize=8)
+def _load_cached(key: FileKey) -> Recording:
+    return read_recording(Path(key[0]))
+
+
+def read_recording(path: Path) -> Recording:
+    """Read one file by its content, without the cache; raises `InputError`."""
+    from navcore.io import csv, tables
+
+    with path.open("rb") as stream:
+        head = stream.read(tables.SNIFFED_BYTES)
+    if tables.looks_like_table(head):
+        return tables.read_table(path)
+    text = read_text(path)
+    if not looks_like_nmea(text) and csv.looks_like_csv(text):
+        return csv.read_csv(path)
+    return nmea_recording(path)
+
+
+def nmea_recording(path: Path) -> Recording:
+    """Read one NMEA 0183 log into a `Recording`; raises `InputError`."""
+    log = read_nmea(path)
+    tally = log.tally
+    streams = tuple(
+        stream_report(address, count, address in log.readings, tally.times.get(address, ()))
+        for address, count in tally.intact.most_common()
+    )
+    invalid = sum(not _all_valid(reading) for rows in log.readings.values() for _, reading in rows)
+    warnings = nmea_warnings(tally) + (
+        [f"{invalid} readings flagged invalid by the instrument"] if invalid else []
+    )
+    source = SourceReport(
+        path.name, "NMEA 0183 log", tally.lines, streams, tally.bad.total(), tally.unparsable,
+        tally.without_checksum, invalid, tally.untimed, tally.jitter, tuple(warnings),
+    )  # fmt: skip
+    return Recording(
+        position=_positions(path, log),
+        velocity=_series(path, log, *_pick(log, ("RMC", "VTG"), "velocity")),
+        water=_along_axes(path, log, *_pick(log, ("VBW", "VHW"), "water")),
+        ground=_along_axes(path, log, *_pick(log, ("VBW",), "ground")),
+        heading=_series(path, log, *_pick(log, ("HDT", "VHW"), "heading")),
+        sources=(source,),
+    )
+
+
+def _all_valid(reading: Reading) -> bool:
+    return reading.valid and all(axes is None or axes[2] for axes in (reading.water, reading.ground))
+
+
+def _rows(log: NmeaLog, address: str, quantity: str) -> Rows:
+    rows = ((time_s, getattr(reading, quantity)) for time_s, reading in log.readings.get(address, ()))
+    return [(t, v if isinstance(v, tuple) else (v,)) for t, v in rows if v is not None]
+
+
+def _pick(log: NmeaLog, kinds: Iterable[str], quantity: str) -> tuple[str, Rows]:
+    """Address and rows of the first kind that has the quantity; of several talkers the one with most."""
+    for kind in kinds:
+        found = {a: _rows(log, a, quantity) for a in log.readings if a[2:] == kind}
+        address = max(found, key=lambda a: len(found[a]), default=None)
+        if address is not None and found[address]:
+            return address, found[address]
+    return "", []
+
+
+def _series(path: Path, log: NmeaLog, address: str, rows: Rows) -> Series | None:
+    time_s = np.array([time for time, _ in rows])
+    values = np.array([value for _, value in rows], dtype=float)
+    return tidy(time_s, values, path.name, address, dated=log.tally.dated)
+
+
+def _along_axes(path: Path, log: NmeaLog, address: str, rows: Rows) -> Series | None:
+    """Series of starboard and forward speeds whose third value is the log's own valid flag."""
+    series = _series(path, log, address, rows)
+    if series is None:
+        return None
+    valid = series.values[:, 2] != 0.0
+    return replace(series, values=np.where(valid[:, None], series.values[:, :2], 0.0), valid=valid)
+
+
+def _positions(path: Path, log: NmeaLog) -> Series | None:
+    """Fixes of the talker that gives most, from GGA (it has the height) and, where GGA is silent, RMC."""
+    talkers: dict[str, Rows] = {}
+    for kind in ("GGA", "RMC"):
+        for address in log.readings:
+            if address[2:] == kind:
+                talkers.setdefault(address[:2], []).extend(_rows(log, address, "position"))
+    best = max(talkers, key=lambda talker: len(talkers[talker]), default=None)
+    if best is None or not talkers[best]:
+        return None
+    kinds = "+".join(kind for kind in ("GGA", "RMC") if _rows(log, best + kind, "position"))
+    return _series(path, log, best + kinds, talkers[best])
+
+
+def shared_window(series: Iterable[Series], field: str = "file") -> Window:
+    """Time that all streams share; t = 0 is the first epoch of any of them within it.
+
+    A stream covers one median interval (at most 2 s) before its first and after its last sample: a sample
+    stands for its interval.
+
+    Raises
+    ------
+    InputError
+        The streams do not overlap, or dated and undated ones are mixed.
+    """
+    streams = list(series)
+    if len({stream.dated for stream in streams}) > 1:
+        raise InputError(Fault("", field, None, _MIXED_DATES))
+    begin = max(stream.time_s[0] - stream.reach_s for stream in streams)
+    end = min(stream.time_s[-1] + stream.reach_s for stream in streams)
+    epochs = [
+        stream.time_s[np.searchsorted(stream.time_s, begin)]
+        for stream in streams
+        if begin <= stream.time_s[-1]
+    ]
+    start = min(epochs, default=math.inf)
+    if not start < end:
+        spans = "; ".join(f"{s.source} {utc_text(s.time_s[0])} to {utc_text(s.time_s[-1])}" for s in streams)
+        raise InputError(Fault("", field, None, f"the streams share no time: {spans}"))
+    return Window(float(start), float(end), float(begin))
+
+
+def require_cover(window: Window, start_s: float, duration_s: float, what: str, file: object) -> None:
+    """Raise `InputError` (field ``file``) for a run that is longer than the record, naming what there is."""
+    if window.covers(start_s, duration_s):
+        return
+    span = max(window.end_s - start_s, 0.0)
+    hours = math.floor(span / HOUR * 1e4) / 1e4
+    allowed = (
+        f"{what} lasts {span:.1f} s = {hours:.4f} h from {utc_text(start_s)}, the run {duration_s:.1f} s: "
+        f"run.duration_h must be <= {hours:.4f}"
+    )
+    raise InputError(Fault("", "file", file, allowed))

@@ -1,0 +1,218 @@
+"""What a recording holds: time series in UTC, and an account of the files they came from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, fields
+from datetime import UTC, datetime
+
+import numpy as np
+
+GAP_FACTOR = 3.0
+"""A gap is a distance of two samples beyond this many median intervals."""
+LONGEST_REACH_S = 2.0
+"""First and last samples of a stream stand for one median interval around them, but never for longer."""
+
+
+@dataclass(frozen=True)
+class Series:
+    """One recorded quantity.
+
+    Attributes
+    ----------
+    time_s : ndarray, shape (n,)
+        UTC, s since 1970 (s since the file's own zero if it has no date), strictly increasing.
+    values : ndarray, shape (n, k)
+        SI and radians; columns as stated in `Recording`.
+    valid : ndarray of bool, shape (n,)
+        False where the instrument itself called its reading invalid; such values are zero.
+    file, what : str
+        Name of the file, and the sentences or columns, that it came from.
+    dated : bool
+        False when the file gives times without a date, so that it cannot be joined with one that has dates.
+    """
+
+    time_s: np.ndarray
+    values: np.ndarray
+    valid: np.ndarray
+    file: str
+    what: str
+    dated: bool = True
+
+    def __post_init__(self) -> None:
+        """Lock the arrays: a cached recording is shared by all who load it."""
+        for array in (self.time_s, self.values, self.valid):
+            array.flags.writeable = False
+
+    @property
+    def source(self) -> str:
+        """File and sentences or columns."""
+        return f"{self.file} {self.what}"
+
+    @property
+    def interval_s(self) -> float:
+        """Median distance of the samples, s; 0 for fewer than two."""
+        return median_interval(self.time_s)
+
+    @property
+    def reach_s(self) -> float:
+        """How long before its first and after its last sample the stream is still usable, s."""
+        return min(self.interval_s, LONGEST_REACH_S)
+
+    def gaps(self) -> tuple[int, float]:
+        """Count of gaps and the longest one, s (0 when there is none)."""
+        return gaps_of(self.time_s)
+
+
+def median_interval(time_s: np.ndarray) -> float:
+    """Median distance of increasing times, s; 0 for fewer than two."""
+    return float(np.median(np.diff(time_s))) if time_s.size > 1 else 0.0
+
+
+def gaps_of(time_s: np.ndarray) -> tuple[int, float]:
+    """Count of gaps (beyond `GAP_FACTOR` median intervals) and the longest one, s."""
+    steps = np.diff(time_s)
+    gaps = steps[steps > GAP_FACTOR * median_interval(time_s)]
+    return int(gaps.size), float(gaps.max(initial=0.0))
+
+
+def tidy(
+    time_s: np.ndarray,
+    values: np.ndarray,
+    file: str,
+    what: str,
+    *,
+    valid: np.ndarray | None = None,
+    dated: bool = True,
+) -> Series | None:
+    """Sort by time and keep the first of several readings at one time (within 1 ms); None when empty."""
+    if time_s.size == 0:
+        return None
+    flags = np.ones(time_s.size, dtype=bool) if valid is None else valid
+    order = np.argsort(time_s, kind="stable")
+    ordered = time_s[order]
+    first = np.ones(time_s.size, dtype=bool)
+    first[1:] = np.diff(ordered) > 1e-3
+    chosen = order[first]
+    kept = np.where(flags[chosen, None], values[chosen], 0.0)
+    return Series(time_s[chosen], kept, flags[chosen], file, what, dated)
+
+
+@dataclass(frozen=True)
+class StreamReport:
+    """One kind of sentence or the rows of a table.
+
+    Attributes
+    ----------
+    name : str
+        Sentence address such as ``VDVBW``, or ``rows``.
+    count : int
+        Intact ones.
+    used : bool
+        Whether this reader takes anything from it.
+    start_s, end_s : float
+        UTC of the first and the last one; NaN where unknown.
+    rate_hz : float
+        1 / median interval (kinds not used: count / span, since they often come in bursts); NaN if unknown.
+    gaps : int
+        Distances beyond three median intervals; not counted for kinds that are not used.
+    longest_gap_s : float
+        The longest of these, s.
+    """
+
+    name: str
+    count: int
+    used: bool
+    start_s: float = float("nan")
+    end_s: float = float("nan")
+    rate_hz: float = float("nan")
+    gaps: int = 0
+    longest_gap_s: float = 0.0
+
+
+def stream_report(name: str, count: int, used: bool, times: Iterable[float]) -> StreamReport:
+    """Rate, span and gaps of the sorted ``times``."""
+    time_s = np.sort(np.fromiter(times, dtype=float))
+    if time_s.size == 0:
+        return StreamReport(name, count, used)
+    span = float(time_s[-1] - time_s[0])
+    interval = median_interval(time_s) if used else span / max(time_s.size - 1, 1)
+    rate = 1.0 / interval if interval > 0.0 else float("nan")
+    gaps = gaps_of(time_s) if used else (0, 0.0)
+    return StreamReport(name, count, used, float(time_s[0]), float(time_s[-1]), rate, *gaps)
+
+
+@dataclass(frozen=True)
+class SourceReport:
+    """Account of one file.
+
+    Attributes
+    ----------
+    name : str
+        File name.
+    kind : str
+        What it was read as, e.g. ``NMEA 0183``.
+    lines : int
+        Lines (rows) that are not empty.
+    streams : tuple of StreamReport
+        By falling count.
+    checksum_faults, unparsable, without_checksum, invalid, untimed, jitter : int
+        Lines left out for a wrong checksum or because they make no sense; lines without a checksum (used);
+        readings that the instrument flags as invalid; sentences before any known time (left out); times that
+        run backwards within the tolerance (sorted).
+    warnings : tuple of str
+        What the user should know.
+    """
+
+    name: str
+    kind: str
+    lines: int
+    streams: tuple[StreamReport, ...]
+    checksum_faults: int = 0
+    unparsable: int = 0
+    without_checksum: int = 0
+    invalid: int = 0
+    untimed: int = 0
+    jitter: int = 0
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Recording:
+    """Streams of one or several files; a quantity that none holds is None.
+
+    Attributes
+    ----------
+    position : Series, columns latitude, longitude (rad), height (m, NaN where unknown)
+    velocity : Series, columns E, N, over the ground (m/s)
+    water, ground : Series, columns starboard, forward, through the water and over the ground (m/s)
+    heading : Series, one column, rad in [0, 2 pi)
+    attitude : Series, columns pitch, roll (rad)
+    sources : tuple of SourceReport
+        One for each file.
+    """
+
+    position: Series | None = None
+    velocity: Series | None = None
+    water: Series | None = None
+    ground: Series | None = None
+    heading: Series | None = None
+    attitude: Series | None = None
+    sources: tuple[SourceReport, ...] = field(default=())
+
+    def quantities(self) -> dict[str, Series]:
+        """Return what there is, by attribute name."""
+        found = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "sources"}
+        return {name: series for name, series in found.items() if series is not None}
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Warnings of all files, each with the file's name."""
+        return tuple(f"{s.name}: {warning}" for s in self.sources for warning in s.warnings)
+
+
+def utc_text(time_s: float) -> str:
+    """UTC in ISO 8601 to 0.1 s, e.g. ``2018-12-06T00:00:00.6Z``."""
+    tenths = round(time_s * 10.0)
+    whole = datetime.fromtimestamp(tenths // 10, UTC)
+    return f"{whole:%Y-%m-%dT%H:%M:%S}.{tenths % 10}Z"

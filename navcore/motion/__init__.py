@@ -1,0 +1,25 @@
+"""Motions of the vehicle: one file each, its parameters beside its truth; the scenario's block ``motion``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from navcore.motion.base import MotionParameters
+from navcore.motion.legs import LegsMotion
+from navcore.motion.static import StaticMotion
+from navcore.motion.swing import SwingMotion
+from navcore.motion.track import TrackMotion
+
+MOTIONS: dict[str, type[MotionParameters]] = {
+    "static": StaticMotion,
+    "swing": SwingMotion,
+    "legs": LegsMotion,
+    "track": TrackMotion,
+}
+"""All motions by ``kind``."""
+
+Motion = Annotated[StaticMotion | SwingMotion | LegsMotion | TrackMotion, Field(discriminator="kind")]
+
+__all__ = ["MOTIONS", "LegsMotion", "Motion", "StaticMotion", "SwingMotion", "TrackMotion"]

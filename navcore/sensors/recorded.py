@@ -1,0 +1,205 @@
+"""A recorded log as the reference: its error is what it says minus the true velocity of the motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from navcore.errors import Fault, InputError
+from navcore.io.recording import Window, load, require_cover, shared_window
+from navcore.io.series import Recording, Series
+from navcore.motion.base import Truth
+from navcore.motion.track import TrackMotion
+from navcore.sensors.base import ReferenceErrors
+from navcore.sensors.reference import Reference, event_velocity, in_service
+from navcore.sensors.simulated_log import hold_time
+from navcore.sensors.true_state import horizontal_state, to_navigation
+
+_RECORDED_FIELDS = {"kind", "frame", "event", "outage", "file", "speed"}
+
+
+def log_recording(reference: Reference) -> Recording:
+    """Read (or take from the cache) the files of the log; raises `InputError` with field ``file``."""
+    return load(reference.file or (), field="file")
+
+
+def log_series(reference: Reference, recording: Recording) -> tuple[Series, bool]:
+    """Choose the speed that serves as reference.
+
+    Returns
+    -------
+    series : Series
+        Starboard and forward, or east and north.
+    along_axes : bool
+        True for starboard and forward.
+
+    Raises
+    ------
+    InputError
+        The files hold no speed.
+    """
+    wanted = {"water": recording.water, "ground": recording.ground}
+    series = wanted.pop(reference.speed) or next(iter(wanted.values()))
+    if series is not None:
+        return series, True
+    if recording.velocity is not None:
+        return recording.velocity, False
+    expected = "VBW, VHW, VTG or RMC sentences, or columns speed_mps, speed_kn or ve_mps and vn_mps"
+    allowed = f"holds no speed: expected {expected}"
+    raise InputError(Fault("", "file", reference.file, allowed))
+
+
+def _streams(reference: Reference) -> list[Series]:
+    recording = log_recording(reference)
+    series, along_axes = log_series(reference, recording)
+    turned_by = recording.heading if along_axes and reference.frame == "enu" else None
+    return [s for s in (series, turned_by) if s is not None]
+
+
+def recorded_window(motion: object, reference: Reference) -> Window | None:
+    """Time that everything recorded in a scenario shares; its start is t = 0 for the track and for the log.
+
+    Parameters
+    ----------
+    motion : MotionParameters
+        Only a `TrackMotion` is recorded.
+    reference : Reference
+        Only ``kind = "file"`` is recorded.
+
+    Returns
+    -------
+    Window, or None when nothing is recorded.
+
+    Raises
+    ------
+    InputError
+        A file is missing or wrong, or the recordings share no time (field names begin with the block).
+    """
+    streams: list[Series] = []
+    if isinstance(motion, TrackMotion):
+        try:
+            streams += motion.streams().series()
+        except InputError as error:
+            raise error.located("", "motion.") from None
+    if reference.kind == "file":
+        try:
+            streams += _streams(reference)
+        except InputError as error:
+            raise error.located("", "reference.") from None
+    return (
+        shared_window(streams, "reference.file" if reference.kind == "file" else "motion.file")
+        if streams
+        else None
+    )
+
+
+def recorded_errors(
+    reference: Reference, truth: Truth, duration_s: float, start_utc: float | None = None
+) -> ReferenceErrors:
+    """Errors of a recorded log at its own epochs within the run.
+
+    Speeds along the ship's axes are turned by the true heading of the motion when ``frame = "body"`` (the
+    mechanization then adds what the computed heading changes), and by the heading recorded with the log, if
+    there is one, when ``frame = "enu"``. Readings that the log itself calls invalid are not valid.
+
+    Parameters
+    ----------
+    reference : Reference
+        With ``kind = "file"``.
+    truth : Truth
+        True motion over the run.
+    duration_s : float
+        Length of the run, s.
+    start_utc : float, optional
+        UTC of t = 0; default: the first epoch of the log.
+
+    Raises
+    ------
+    InputError
+        A file is missing or wrong, it holds no speed, or it is shorter than the run.
+    """
+    recording = log_recording(reference)
+    series, along_axes = log_series(reference, recording)
+    window = shared_window(_streams(reference))
+    start = window.start_s if start_utc is None else start_utc
+    require_cover(window, start, duration_s, "the log", reference.file)
+    elapsed = series.time_s - start
+    within = (elapsed >= 0.0) & (elapsed <= duration_s)
+    time_s, values = elapsed[within], series.values[within]
+    velocity, heading = horizontal_state(truth, time_s)
+    if along_axes:
+        if reference.frame == "enu" and recording.heading is not None:
+            heading = heading_at(recording.heading, series.time_s[within])
+        values = to_navigation(values, heading)
+    valid = series.valid[within] & in_service(reference.outage, time_s)
+    error = values - velocity + event_velocity(reference.event, time_s)
+    return ReferenceErrors(
+        time_s=time_s,
+        error=np.where(valid[:, None], error, 0.0),
+        valid=valid,
+        body_frame=along_axes and reference.frame == "body",
+        hold_s=hold_time(series.interval_s),
+    )
+
+
+def heading_at(heading: Series, time_s: np.ndarray) -> np.ndarray:
+    """Recorded heading at UTC times, linear between readings, rad, not wrapped; shape (m,)."""
+    return np.interp(time_s, heading.time_s, np.unwrap(heading.values[:, 0]))
+
+
+def recording_notices(motion: object, reference: Reference) -> tuple[str, ...]:
+    """What the user should know about the recordings of a scenario, and about settings they leave unused.
+
+    Raises
+    ------
+    InputError
+        As `recorded_window`.
+    """
+    recorded_window(motion, reference)
+    track = motion if isinstance(motion, TrackMotion) else None
+    notices = list(_track_notices(track)) if track else []
+    notices += (
+        _log_notices(track, reference) if reference.kind == "file" else _unused(reference, {"file": None})
+    )
+    return tuple(dict.fromkeys(notices))
+
+
+def _track_notices(track: TrackMotion) -> Iterator[str]:
+    streams = track.streams()
+    yield from track.recording().warnings
+    for series in streams.series():
+        count, longest = series.gaps()
+        if count:
+            yield f"{series.source}: {count} gaps (longest {longest:.1f} s) bridged by the smoothing"
+    if streams.attitude is not None and (track.pitch_deg or track.roll_deg):
+        yield "motion.pitch_deg and roll_deg are not used: the recording holds pitch and roll"
+
+
+def _log_notices(track: TrackMotion | None, reference: Reference) -> Iterator[str]:
+    recording = log_recording(reference)
+    series, along_axes = log_series(reference, recording)
+    yield from recording.warnings
+    if along_axes and series is not getattr(recording, reference.speed):
+        yield f"{series.file} holds no {reference.speed} speed: its other speed is used"
+    if not along_axes and reference.frame == "body":
+        yield f'{series.source} gives east and north: reference.frame = "body" has no effect'
+    if track is None:
+        yield "a recorded log without a recorded track: it errs by all its difference from the motion"
+    elif not along_axes and series.file == track.streams().position.file:
+        yield f"{series.source}: the log comes from the same receiver as the track, its errors cancel in part"
+    count, longest = series.gaps()
+    if count:
+        gaps = f"{count} gaps (longest {longest:.1f} s)"
+        yield f"{series.source}: {gaps}, undamped after {hold_time(series.interval_s):.1f} s"
+    defaults = {
+        name: field.default for name, field in Reference.model_fields.items() if name not in _RECORDED_FIELDS
+    }
+    yield from _unused(reference, defaults)
+
+
+def _unused(reference: Reference, defaults: dict[str, Any]) -> list[str]:
+    names = [f"reference.{name}" for name, default in defaults.items() if getattr(reference, name) != default]
+    verb = "is" if len(names) == 1 else "are"
+    return [f'{", ".join(names)} {verb} not used with reference.kind = "{reference.kind}"'] if names else []

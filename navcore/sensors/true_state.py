@@ -1,0 +1,69 @@
+"""True velocity and heading at any time, from the truth on its grid."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from navcore.motion.base import AE, AN, HEADING, HEADING_RATE, VE, VN, Truth
+
+
+def horizontal_state(truth: Truth, time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Horizontal velocity and heading, between grid points by the cubic through values and derivatives.
+
+    Parameters
+    ----------
+    truth : Truth
+        True motion on its grid.
+    time_s : ndarray, shape (m,)
+        Times; those outside the grid are taken at its ends.
+
+    Returns
+    -------
+    velocity : ndarray, shape (m, 2), or (1, 2) for a constant truth
+        E, N, m/s.
+    heading : ndarray, shape (m,) or (1,)
+        rad, not wrapped.
+    """
+    values = truth.values
+    if truth.constant:
+        return values[:, [VE, VN]], values[:, HEADING]
+    last = values.shape[0] - 1
+    place = np.clip(time_s / truth.step_s, 0.0, last)
+    nearest = np.rint(place).astype(np.int64)
+    if np.all(np.abs(place - nearest) < 1e-6):
+        return np.column_stack([values[nearest, VE], values[nearest, VN]]), values[nearest, HEADING]
+    left = np.minimum(place.astype(np.int64), last - 1)
+    rows, rates = (VE, VN, HEADING), (AE, AN, HEADING_RATE)
+    state = _hermite(values, truth.step_s, left, place - left, rows, rates)
+    return state[:, :2], state[:, 2]
+
+
+def _hermite(
+    values: np.ndarray,
+    step_s: float,
+    left: np.ndarray,
+    fraction: np.ndarray,
+    columns: tuple[int, ...],
+    derivatives: tuple[int, ...],
+) -> np.ndarray:
+    u = fraction[:, None]
+    begin, end = values[left][:, columns], values[left + 1][:, columns]
+    slope_begin, slope_end = values[left][:, derivatives] * step_s, values[left + 1][:, derivatives] * step_s
+    rise = end - begin
+    return begin + u * (slope_begin + u * (3.0 * rise - 2.0 * slope_begin - slope_end + u * (
+        slope_begin + slope_end - 2.0 * rise
+    )))  # fmt: skip
+
+
+def to_navigation(starboard_forward: np.ndarray, heading: np.ndarray) -> np.ndarray:
+    """Turn speeds along the ship's axes to E, N by a heading (rad), level ship; shape (m, 2)."""
+    sine, cosine = np.sin(heading), np.cos(heading)
+    starboard, forward = starboard_forward[:, 0], starboard_forward[:, 1]
+    return np.column_stack([starboard * cosine + forward * sine, forward * cosine - starboard * sine])
+
+
+def to_ship(east_north: np.ndarray, heading: np.ndarray) -> np.ndarray:
+    """Turn E, N to speeds starboard, forward by a heading (rad), level ship; shape (m, 2)."""
+    sine, cosine = np.sin(heading), np.cos(heading)
+    east, north = east_north[:, 0], east_north[:, 1]
+    return np.column_stack([east * cosine - north * sine, east * sine + north * cosine])

@@ -1,0 +1,46 @@
+"""No preset's metrics change silently.
+
+Tolerances: 1e-6 of a quantity's largest magnitude for every statistic (compilers may order sums differently,
+which is some 1e-12), 1e-9 for the loop. When a change is meant: ``python -m tests.acceptance.golden_files``.
+"""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from navcore.scenario_file import presets
+from tests.acceptance.golden_files import FOLDER, present
+
+
+def test_every_preset_has_its_golden_file_and_no_file_is_left_over():
+    assert sorted(path.stem for path in FOLDER.glob("*.json")) == sorted(presets())
+
+
+@pytest.mark.parametrize("name", sorted(presets()))
+def test_metrics_are_the_golden_ones(name):
+    golden = json.loads((FOLDER / f"{name}.json").read_text("utf-8"))
+    now = present(name)
+    assert [(m["name"], m["status"]) for m in now] == [(m["name"], m["status"]) for m in golden]
+    for then, method in zip(golden, now, strict=True):
+        assert_same_loop(then["loop"], method["loop"])
+        assert method["errors"].keys() == then["errors"].keys()
+        for quantity, statistics in then["errors"].items():
+            scale = abs(statistics["max_abs"])
+            for key, value in statistics.items():
+                found = method["errors"][quantity][key]
+                where = (method["name"], quantity, key)
+                assert found == pytest.approx(value, abs=1e-6 * scale, rel=0.0), where
+
+
+def assert_same_loop(then, now):
+    assert now["stable"] == then["stable"]
+    scale = np.max(np.abs(then["poles"]))
+    np.testing.assert_allclose(now["poles"], then["poles"], atol=1e-9 * scale)
+    for key in ("h0", "damping_ratio"):
+        assert now[key] == pytest.approx(then[key], rel=1e-9, abs=1e-12)
+    # found by stepping along the response
+    settling = then["settling_s"]
+    assert now["settling_s"] == (None if settling is None else pytest.approx(settling, rel=1e-6))

@@ -1,0 +1,196 @@
+"""serving.md 6-9, 11, 13: messages no page sends, against a running server."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import threading
+from typing import Any
+
+import msgspec
+import pytest
+from websockets.exceptions import ConnectionClosed
+
+from app.http.limits import MIB
+from tests.attack.conftest import Bench, eventually
+from tests.attack.wire import CAMERA, visit
+
+pytestmark = pytest.mark.attack
+
+
+def still_served(bench: Bench) -> None:
+    """A well-behaved visitor finds everything as it should be."""
+    with visit(bench.port, "well-behaved") as visitor:
+        gain = visitor.control("gain")
+        visitor.set(gain, 0.7)
+        eventually(lambda: bench.of("well-behaved")["gain"].value == 0.7)
+
+
+def test_a_good_value_arrives(bench: Bench) -> None:
+    with visit(bench.port, "good-values") as visitor:
+        sent = {"gain": 0.9, "count": 8, "network": "pole2", "on": False, "title": "new", "triple": [3, 2, 1]}
+        for label, value in sent.items():
+            visitor.set(visitor.control(label), value)
+        visitor.set(visitor.control("last"), True)
+        handles = bench.of("good-values")
+        eventually(lambda: ("last", True) in bench.events)
+        held = {label: handles[label].value for label in sent}
+    assert held == {**sent, "triple": (3.0, 2.0, 1.0)}
+
+
+@pytest.mark.parametrize(
+    ("label", "values"),
+    [
+        ("gain", [1e9, math.nan, -5, "wide", True, None, [1], math.inf, {}]),
+        ("count", [2.5, math.nan, "7", b"7"]),
+        ("network", ["no such network", 1, None]),
+        ("on", [1, "yes", None]),
+        ("title", [1, b"x", "x" * 30_000]),
+        ("triple", [[1, 2], [1, 2, math.nan], "123", 4]),
+        ("frozen", [0.7]),
+        ("log", ["x", {"name": "x", "content": b"x"}]),
+    ],
+)
+def test_bad_values_are_not_stored(bench: Bench, label: str, values: list[Any]) -> None:
+    session = f"bad-{label}-values"
+    bench.events.clear()
+    with visit(bench.port, session) as visitor:
+        uuid = visitor.control(label)
+        before = bench.of(session)[label].value
+        for value in values:
+            visitor.set(uuid, value)
+        visitor.set(visitor.control("last"), True)
+        eventually(lambda: ("last", True) in bench.events)
+        assert bench.of(session)[label].value == before
+        assert label not in {event[0] for event in bench.events}
+        if label not in ("frozen", "log"):
+            assert visitor.notice().startswith(f"{label} must ")
+            held = list(before) if isinstance(before, tuple) else before
+            back = visitor.wait_for(lambda m: m["type"] == "GuiUpdateMessage" and m["uuid"] == uuid)
+            assert back["updates"] == {"value": held}
+
+
+@pytest.mark.parametrize("name", ["update_cb", "props", "removed", "sync_cb", "gui_api", "no_such_name"])
+def test_nothing_but_the_value_can_be_overwritten(bench: Bench, name: str) -> None:
+    with visit(bench.port, "overwriter") as visitor:
+        uuid = visitor.control("gain")
+        state = bench.of("overwriter")["gain"]._impl
+        before = getattr(state, name, None)
+        visitor.set(uuid, 0.6, **{name: []})
+        assert visitor.closed_with() == 1008
+        assert getattr(state, name, None) is before
+        assert state.value == 0.5
+    still_served(bench)
+
+
+@pytest.mark.parametrize(
+    "frame",
+    [
+        b"",
+        b"\xc1\xc1",
+        b"\x91" * 50_000,
+        "text",
+        msgspec.msgpack.encode({"type": "NoSuchMessage"}),
+        msgspec.msgpack.encode({"type": "RunJavascriptMessage", "source": "alert(1)"}),
+        msgspec.msgpack.encode({**CAMERA, "wxyz": "north"}),
+        msgspec.msgpack.encode({"type": "GuiUpdateMessage", "uuid": ["x"], "updates": {}}),
+    ],
+    ids=["empty", "no msgpack", "deep", "text", "unknown", "of the server", "wrong field", "wrong id"],
+)
+def test_malformed_frames_end_that_connection_only(bench: Bench, frame: bytes | str, capfd) -> None:
+    with visit(bench.port, "bystander") as bystander, visit(bench.port, "offender") as offender:
+        bystander.control("last")
+        offender.control("last")
+        offender.socket.send(frame)
+        with contextlib.suppress(ConnectionClosed):
+            offender.set(offender.control("gain"), 0.9)
+        assert offender.closed_with() == 1008
+        assert bench.of("offender")["gain"].value == 0.5, "nothing after it is obeyed"
+        bystander.set(bystander.control("gain"), 0.8)
+        eventually(lambda: bench.of("bystander")["gain"].value == 0.8)
+    eventually(lambda: len(bench.server.viser.get_clients()) == 0)
+    assert "".join(capfd.readouterr()) == ""
+
+
+def test_huge_frame_ends_that_connection_only(bench: Bench) -> None:
+    with visit(bench.port, "huge-sender") as visitor:
+        visitor.control("last")
+        with contextlib.suppress(ConnectionClosed):  # while it is still being sent
+            visitor.socket.send(b"\x00" * (9 * MIB))
+        assert visitor.closed_with() == 1009
+    still_served(bench)
+
+
+def test_share_tunnel_request_opens_nothing(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    import viser._viser
+
+    opened = []
+    monkeypatch.setattr(viser._viser, "ViserTunnel", lambda *arguments: opened.append(arguments))
+    before = threading.active_count()
+    with visit(bench.port, "the-sharer") as visitor:
+        last = visitor.control("last")
+        visitor.send(type="ShareUrlRequest")
+        visitor.send(type="ShareUrlDisconnect")
+        bench.events.clear()
+        visitor.set(last, True)
+        eventually(lambda: ("last", True) in bench.events)
+    assert opened == [] and bench.server.viser._share_tunnel is None
+    assert threading.active_count() <= before + 8, "no tunnel thread; a few pool threads may be new"
+
+
+def test_controls_of_another_visitor_are_out_of_reach(bench: Bench) -> None:
+    with visit(bench.port, "visitor-a") as a, visit(bench.port, "visitor-b") as b:
+        of_b = b.control("gain")
+        a.control("last")
+        bench.events.clear()
+        a.set(of_b, 0.9)
+        a.send(type="GuiButtonHoldMessage", uuid=b.control("last"), frequency=10.0)
+        a.set(b.control("last"), True)
+        a.set(a.control("last"), True)
+        eventually(lambda: ("last", True) in bench.events)
+        assert bench.of("visitor-b")["gain"].value == 0.5
+        assert bench.events.count(("last", True)) == 1
+
+
+class TestUpload:
+    def announce(self, visitor: Any, size: int, parts: int, name: str = "log.txt") -> None:
+        visitor.send(
+            type="FileTransferStartUpload",
+            source_component_uuid=visitor.control("log"),
+            transfer_uuid="t",
+            filename=name,
+            mime_type="text/plain",
+            part_count=parts,
+            size_bytes=size,
+        )
+
+    def part(self, visitor: Any, index: int, content: bytes, label: str = "log") -> None:
+        component = visitor.control(label)
+        kind = {"type": "FileTransferPart", "source_component_uuid": component, "transfer_uuid": "t"}
+        visitor.send(**kind, part_index=index, content=content)
+
+    def test_arrives_with_a_clean_name(self, bench: Bench) -> None:
+        with visit(bench.port, "uploader") as visitor:
+            self.announce(visitor, 6, 2, "../../etc/passwd")
+            self.part(visitor, 0, b"abc")
+            self.part(visitor, 1, b"def")
+            handle = bench.of("uploader")["log"]
+            eventually(lambda: handle.value.content == b"abcdef")
+            assert handle.value.name == "passwd"
+
+    def test_of_64_mib_is_refused_before_it_is_sent(self, bench: Bench) -> None:
+        with visit(bench.port, "heavy-uploader") as visitor:
+            self.announce(visitor, 64 * MIB, 128)
+            assert "at most 32 MiB" in visitor.notice()
+            done = visitor.wait_for(lambda m: m["type"] == "FileTransferPartAck")
+            assert done["transferred_bytes"] == done["total_bytes"], "the page's progress bar ends"
+            client = next(iter(bench.server.viser.get_clients().values()))
+            assert client.gui._current_file_upload_states == {}
+
+    def test_cannot_be_written_into_another_control(self, bench: Bench) -> None:
+        with visit(bench.port, "cross-writer") as visitor:
+            self.announce(visitor, 6, 2)
+            self.part(visitor, 0, b"abc")
+            self.part(visitor, 1, b"def", label="gain")
+            assert visitor.closed_with() == 1008
+            assert bench.of("cross-writer")["gain"].value == 0.5

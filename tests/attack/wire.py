@@ -1,0 +1,142 @@
+"""A hostile (or plain) client: HTTP and websocket requests as no browser would make them."""
+
+from __future__ import annotations
+
+import http.client
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+import msgspec
+import zstandard
+from websockets.sync.client import ClientConnection, connect
+
+SESSION = "session-of-a-test"
+UPGRADE = {
+    "Upgrade": "websocket",
+    "Connection": "Upgrade",
+    "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA==",
+    "Sec-WebSocket-Version": "13",
+    "Sec-WebSocket-Protocol": "viser-v1.1.1",
+}
+CAMERA = {
+    "type": "ViewerCameraMessage",
+    "wxyz": [1, 0, 0, 0],
+    "position": [3, 3, 3],
+    "fov": 1.3,
+    "near": 0.01,
+    "far": 1000,
+    "image_height": 600,
+    "image_width": 800,
+    "look_at": [0, 0, 0],
+    "up_direction": [0, 0, 1],
+}
+
+
+@dataclass
+class Answer:
+    status: int
+    headers: http.client.HTTPMessage
+    body: bytes
+
+
+def ask(port: int, path: str = "/", headers: dict[str, str | list[str]] | None = None) -> Answer:
+    """GET, without following redirects; a header may come several times, Host may be wrong or missing."""
+    given = {"Host": f"127.0.0.1:{port}", **(headers or {})}
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+    try:
+        connection.putrequest("GET", path, skip_host=True, skip_accept_encoding=True)
+        for name, values in given.items():
+            for value in [values] if isinstance(values, str) else values:
+                connection.putheader(name, value)
+        connection.endheaders()
+        response = connection.getresponse()
+        body = b"" if response.status == 101 else response.read()
+        answer = Answer(response.status, response.headers, body)
+        response.close()
+        return answer
+    finally:
+        connection.close()
+
+
+def shake_hands(port: int, path: str = f"/s/{SESSION}", **headers: str) -> Answer:
+    """Ask for a websocket and hang up; status 101 means it would have opened."""
+    given: dict[str, str | list[str]] = {
+        **UPGRADE,
+        **{name.replace("_", "-"): v for name, v in headers.items()},
+    }
+    return ask(port, path, given)
+
+
+def decode(raw: bytes) -> list[dict[str, Any]]:
+    """viser's wire format: two lengths, then zstd-compressed msgpack."""
+    packed = int.from_bytes(raw[8:16], "little")
+    inner = zstandard.ZstdDecompressor().decompress(
+        raw[16 : 16 + packed],
+        max_output_size=int.from_bytes(raw[:8], "little"),
+    )
+    return msgspec.msgpack.decode(inner)["messages"]
+
+
+@dataclass
+class Visitor:
+    """What a browser does, without a browser."""
+
+    socket: ClientConnection
+    received: list[dict[str, Any]] = field(default_factory=list)
+
+    def send(self, **message: Any) -> None:
+        self.socket.send(msgspec.msgpack.encode(message))
+
+    def set(self, uuid: str, value: Any, **more: Any) -> None:
+        self.send(type="GuiUpdateMessage", uuid=uuid, updates={"value": value, **more})
+
+    def wait_for(self, wanted: Callable[[dict[str, Any]], bool], seconds: float = 5.0) -> dict[str, Any]:
+        """First message that fits, among those received so far and those to come."""
+        seen, until = 0, time.monotonic() + seconds
+        while True:
+            for message in self.received[seen:]:
+                if wanted(message):
+                    return message
+            seen = len(self.received)
+            self.received += decode(self.socket.recv(timeout=until - time.monotonic()))
+
+    def control(self, label: str) -> str:
+        """Wait for a control; return its id."""
+        return self.wait_for(lambda m: m.get("props", {}).get("label") == label)["uuid"]
+
+    def notice(self) -> str:
+        """Wait for a notification and take it out; return its text."""
+        found = self.wait_for(lambda m: m["type"] == "NotificationShowMessage")
+        self.received.remove(found)
+        return found["props"]["body"]
+
+    def closed_with(self, seconds: float = 5.0) -> int | None:
+        """Read until the server closes the connection; return its code."""
+        until = time.monotonic() + seconds
+        try:
+            while True:
+                self.socket.recv(timeout=until - time.monotonic())
+        except TimeoutError:
+            return None
+        except Exception:
+            return self.socket.close_code
+
+
+@contextmanager
+def visit(port: int, session: str = SESSION, camera: bool = True, **options: Any) -> Iterator[Visitor]:
+    """Open a page's websocket; with `camera` the server counts it as a connected client."""
+    with connect(
+        f"ws://127.0.0.1:{port}/s/{session}",
+        subprotocols=["viser-v1.1.1"],
+        compression=None,
+        max_size=None,
+        close_timeout=1,
+        **options,
+    ) as socket:
+        visitor = Visitor(socket)
+        if camera:
+            visitor.send(**CAMERA)
+        yield visitor

@@ -1,0 +1,94 @@
+"""Where a Chromium for the browser tests is, and how one is got."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+NAMES = ("chromium", "chromium-browser", "google-chrome-stable", "google-chrome")
+
+# Software WebGL, since a test machine has no graphics card; and no calls home.
+FLAGS = (
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+    "--no-first-run",
+    "--disable-quic",
+    "--disable-sync",
+    "--disable-background-networking",
+    "--disable-component-update",
+)
+
+
+def find_chromium() -> Path | None:
+    """Return the executable that SCHULER_CHROMIUM names, else the system's, else playwright's own."""
+    named = os.environ.get("SCHULER_CHROMIUM")
+    if named:
+        return Path(named) if Path(named).is_file() else None
+    for name in NAMES:
+        found = shutil.which(name)
+        if found:
+            return Path(found)
+    return _playwrights_own()
+
+
+def _playwrights_own() -> Path | None:
+    from playwright.sync_api import Error, sync_playwright
+
+    try:
+        with sync_playwright() as playwright:
+            path = Path(playwright.chromium.executable_path)
+    except Error:
+        return None
+    return path if path.is_file() else None
+
+
+def provide_chromium() -> tuple[Path | None, str]:
+    """Find a Chromium, or install one where that is possible.
+
+    Returns the executable and what was done, or None and why there is none.
+    """
+    found = find_chromium()
+    if found:
+        return found, "found"
+    if os.geteuid() == 0 and shutil.which("apt-get"):
+        how, failed = "apt-get install chromium", _apt_install()
+    else:
+        how = "playwright install chromium"
+        failed = _run([sys.executable, "-m", "playwright", "install", "chromium"])
+    found = find_chromium()
+    if found:
+        return found, f"installed by {how}"
+    return None, f"no Chromium, and '{how}' did not bring one: {failed or 'it is not where it is looked for'}"
+
+
+def _apt_install() -> str:
+    quiet = os.environ | {"DEBIAN_FRONTEND": "noninteractive"}
+    # An update that fails for one source of several may still have brought what is needed.
+    _run(["apt-get", "update", "-q"], quiet)
+    return _run(["apt-get", "install", "-q", "-y", "--no-install-recommends", "chromium"], quiet)
+
+
+def _run(command: list[str], environment: dict[str, str] | None = None) -> str:
+    """Run a command; return its last line of output when it failed, else an empty string."""
+    try:
+        done = subprocess.run(
+            command,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            timeout=900,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return str(error)
+    if done.returncode == 0:
+        return ""
+    lines = done.stdout.strip().splitlines()
+    return lines[-1] if lines else f"exit {done.returncode}"

@@ -1,0 +1,80 @@
+"""Fixtures that every folder of tests shares."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import settings
+
+from navcore.compiled import cache_folder
+from tests.chromium import FLAGS, find_chromium
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+REPO_ROOT = Path(__file__).resolve().parent.parent
+
+# The same examples on every run: a failure on one machine is a failure on all.
+settings.register_profile("schuler", deadline=None, derandomize=True, database=None)
+settings.load_profile("schuler")
+
+
+def pytest_configure() -> None:
+    """Let all workers, and what a test starts with another HOME, use the kernels already compiled."""
+    os.environ.setdefault("SCHULER_CACHE_DIR", str(cache_folder().parent))
+    os.environ.setdefault("MPLBACKEND", "Agg")
+
+
+@pytest.fixture(scope="session")
+def repo_root() -> Path:
+    """Top folder of the checkout."""
+    return REPO_ROOT
+
+
+@pytest.fixture(scope="session")
+def shared_data() -> Path:
+    """Folder of the recorded data, which is not part of the repository."""
+    folder = Path(os.environ.get("SCHULER_SHARED_DATA") or REPO_ROOT.parent / "shared" / "data")
+    if not folder.is_dir():
+        pytest.skip(f"the recorded data is not at {folder} (SCHULER_SHARED_DATA names another folder)")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Path:
+    """Executable of a Chromium."""
+    path = find_chromium()
+    if path is None:
+        pytest.skip("no Chromium here (SCHULER_CHROMIUM names one; `make test` installs one where it can)")
+    return path
+
+
+@pytest.fixture(scope="session")
+def browser(chromium: Path) -> Iterator[Browser]:
+    """One headless browser for the whole session."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        launched = playwright.chromium.launch(executable_path=str(chromium), headless=True, args=list(FLAGS))
+        yield launched
+        launched.close()
+
+
+@pytest.fixture
+def page(browser: Browser) -> Iterator[Page]:
+    """Page of a visitor of its own: cookies and storage are empty."""
+    context = browser.new_context(viewport={"width": 1366, "height": 768})
+    yield context.new_page()
+    context.close()
+
+
+@pytest.fixture(scope="session")
+def session_page(browser: Browser) -> Iterator[Page]:
+    """Page kept over the whole session, for tests that only look or that put back what they change."""
+    context = browser.new_context(viewport={"width": 1920, "height": 1080})
+    yield context.new_page()
+    context.close()

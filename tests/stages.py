@@ -1,0 +1,141 @@
+"""Runs all checks and tests in stages and sums them up: ``python -m tests.stages [lint | unit]``.
+
+The last line printed is ``N passed, N failed, N skipped`` over all stages; a check (ruff, basedpyright)
+counts as one test. The exit code is 1 when anything failed or when a test stage ran no test at all.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+import time
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.chromium import provide_chromium
+
+ROOT = Path(__file__).resolve().parent.parent
+STAMPS = ROOT / ".venv" / ".stamps"
+CODE = ["app", "navcore", "tests"]
+
+
+@dataclass(frozen=True)
+class Count:
+    """What a stage brought: passed, failed and skipped tests, and its wall time."""
+
+    stage: str
+    passed: int
+    failed: int
+    skipped: int
+    seconds: float
+
+
+CHECKS = {
+    "ruff check": ["ruff", "check", "--quiet", "."],
+    "ruff format": ["ruff", "format", "--check", "--quiet", "."],
+    "basedpyright": ["basedpyright", "--level", "warning"],
+}
+
+# The first stage takes every folder that has no stage of its own, so that no test is forgotten.
+STAGES = {
+    "unit, acceptance, doctests": [
+        *CODE,
+        *(f"--ignore=tests/{own}" for own in ("attack", "browser", "docker")),
+        "-n2",
+        "-mnot browser and not attack",
+    ],
+    "container": ["tests/docker"],
+    "attack": ["tests/attack"],
+    "browser": ["tests/browser"],
+}
+
+
+def read_counts(stage: str, report: Path, exit_code: int, seconds: float) -> Count:
+    """Read a JUnit report; a run that died, wrote none or held no test counts as one failure."""
+    passed = failed = skipped = 0
+    if report.is_file():
+        for suite in ElementTree.parse(report).getroot().iter("testsuite"):
+            bad = int(suite.get("failures", 0)) + int(suite.get("errors", 0))
+            left_out = int(suite.get("skipped", 0))
+            passed += int(suite.get("tests", 0)) - bad - left_out
+            failed, skipped = failed + bad, skipped + left_out
+    if (exit_code != 0 and failed == 0) or passed + failed + skipped == 0:
+        failed += 1
+    return Count(stage, passed, failed, skipped, seconds)
+
+
+def closing_line(counts: Iterable[Count]) -> str:
+    """Sum of all stages."""
+    counts = list(counts)
+    passed, failed, skipped = (
+        sum(getattr(c, key) for c in counts) for key in ("passed", "failed", "skipped")
+    )
+    return f"{passed} passed, {failed} failed, {skipped} skipped"
+
+
+def table(counts: Iterable[Count]) -> str:
+    """One line a stage."""
+    rows = [
+        f"{c.stage:<28} {c.seconds:8.1f} s {c.passed:6d} passed {c.failed:4d} failed {c.skipped:4d} skipped"
+        for c in counts
+    ]
+    return "\n".join(rows)
+
+
+def run_check(name: str) -> Count:
+    """Run one linter."""
+    print(f"== {name}", flush=True)
+    start = time.perf_counter()
+    bad = int(subprocess.run([sys.executable, "-m", *CHECKS[name]], cwd=ROOT).returncode != 0)
+    return Count(name, 1 - bad, bad, 0, time.perf_counter() - start)
+
+
+def run_stage(name: str) -> Count | None:
+    """Run the tests of one stage; None when it has no folder."""
+    folders = [part for part in STAGES[name] if not part.startswith("-")]
+    if not all((ROOT / folder).is_dir() for folder in folders):
+        print(f"== {name}: left out, there is no {' '.join(folders)}", flush=True)
+        return None
+    if name == "browser":
+        path, how = provide_chromium()
+        print(
+            f"== Chromium: {path} ({how})" if path else f"== tests/browser will be skipped: {how}", flush=True
+        )
+    print(f"== {name}", flush=True)
+    start = time.perf_counter()
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder) / "report.xml"
+        command = [sys.executable, "-m", "pytest", "-q", f"--junitxml={report}", *STAGES[name]]
+        exit_code = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL).returncode
+        return read_counts(name, report, exit_code, time.perf_counter() - start)
+
+
+def setup_times() -> str:
+    """Wall times that the Makefile noted when it installed and compiled."""
+    named = {"packages": "install", "kernels": "compile the kernels", "test": "install for the tests"}
+    rows = []
+    for stamp, what in named.items():
+        if (STAMPS / stamp).is_file():
+            rows.append(f"{what:<28} {(STAMPS / stamp).read_text().strip():>6}   s  (when it was last done)")
+    return "\n".join(rows)
+
+
+def main(arguments: list[str]) -> int:
+    """Run what is asked for, all by default; return the exit code."""
+    wanted = arguments[0] if arguments else "all"
+    if wanted not in ("all", "lint", "unit"):
+        print(f"stages: {wanted}: all, lint or unit", file=sys.stderr)
+        return 2
+    counts = [run_check(name) for name in CHECKS] if wanted != "unit" else []
+    if wanted != "lint":
+        stages = list(STAGES) if wanted == "all" else list(STAGES)[:1]
+        counts += [count for count in map(run_stage, stages) if count]
+    print(f"\n{setup_times()}\n{table(counts)}\n\n{closing_line(counts)}", flush=True)
+    return int(any(count.failed for count in counts))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,221 @@
+"""Networks in discrete time (physics.md 3.5): every network, every step from 1 s to 5 ms."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import comb
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from navcore.errors import InputError
+from navcore.filters import DiscreteNetwork, discretise
+from navcore.network import NETWORKS, parse_network
+from navcore.network.base import LinearNetwork
+
+OMEGA_S = float(np.sqrt(9.80665 / 6378137.0))
+STEPS = [1.0, 0.5, 0.1, 0.05, 0.01, 0.005]
+BLOCKS = [
+    *({"id": name} for name in NETWORKS),
+    {"id": "compass", "sigma": 0.13},
+    {"id": "compass", "xi": 1.0},
+    {"id": "compass", "k1": 0.0264, "k2": 156.063, "k3": 0.904},
+    {"id": "compass", "k1": 7.68e-3, "k2": 6.68, "k3": 7.68e-3},
+    {"id": "complementary", "zeta": 1.3},
+    {"id": "complementary", "zeta": 0.04, "eta": 0.9},
+    {"id": "pole2", "xi": 0.04},
+    {"id": "pole2", "xi": 0.99},
+    {"id": "pole2", "variant": "as_printed"},
+    {"id": "unity2", "zeta": 0.04},
+    {"id": "unity2", "zeta": 1.0},
+    {"id": "unity2", "alpha": 0.01},
+    {"id": "custom", "poles": [-1e-3, -1e-3, -1e-3, -1e-3], "gain": 1e-12},
+    {"id": "custom", "zeros": [-1e-3], "poles": [[-1e-3, 2e-3], [-1e-3, -2e-3]], "gain": 5e-3},
+]
+
+
+def network_of(block: dict[str, object]) -> LinearNetwork:
+    return parse_network(block).transfer(OMEGA_S)
+
+
+def warped(omega: np.ndarray, step_s: float) -> np.ndarray:
+    return OMEGA_S * np.tan(0.5 * omega * step_s) / np.tan(0.5 * OMEGA_S * step_s)
+
+
+@pytest.mark.parametrize("step_s", STEPS)
+@pytest.mark.parametrize("block", BLOCKS, ids=str)
+def test_stable(block: dict[str, object], step_s: float) -> None:
+    discrete = discretise(network_of(block), step_s)
+    roots = np.linalg.eigvals(discrete.dA)
+    # |1 + d| < 1 without forming 1 + d
+    assert np.all(2.0 * roots.real + np.abs(roots) ** 2 < 0.0)
+
+
+@pytest.mark.parametrize("step_s", STEPS)
+@pytest.mark.parametrize("block", BLOCKS, ids=str)
+def test_response_is_the_continuous_one_at_the_warped_frequency(
+    block: dict[str, object], step_s: float
+) -> None:
+    network = network_of(block)
+    discrete = discretise(network, step_s)
+    omega = np.concatenate([[0.0], OMEGA_S * np.logspace(-4, 2, 400)])
+    expected = network.response(warped(omega, step_s))
+    error = np.max(np.abs(discrete.response(omega) / expected - 1.0))
+    # 1e-6 is asked; what state space in delta form reaches is held
+    assert error < 1e-11
+
+
+@pytest.mark.parametrize("step_s", STEPS)
+@pytest.mark.parametrize("block", BLOCKS, ids=str)
+def test_response_is_the_continuous_one_up_to_three_schuler_frequencies(
+    block: dict[str, object], step_s: float
+) -> None:
+    network = network_of(block)
+    omega = np.linspace(0.0, 3.0 * OMEGA_S, 400)
+    expected = network.response(omega)
+    # relative: |H| is of the order of 100 for `compass`. At T = 1 s warping itself leaves 1.02e-6 times
+    # |d ln H/d ln omega|, which is below 1 in the catalogue, but not in every network of a user's own
+    h = 1e-4
+    slope = np.log(network.response(omega[1:] * (1 + h)) / network.response(omega[1:] * (1 - h))) / (2 * h)
+    steepest = float(np.max(np.abs(slope), initial=0.0))
+    assert steepest < 0.98 or block["id"] == "custom"
+    error = np.max(np.abs(discretise(network, step_s).response(omega) / expected - 1.0))
+    assert error < 1e-6 * max(1.0, 1.03 * steepest)
+
+
+@pytest.mark.parametrize("step_s", STEPS)
+def test_exact_at_the_schuler_frequency(step_s: float) -> None:
+    for block in BLOCKS:
+        network = network_of(block)
+        found = complex(discretise(network, step_s).response(OMEGA_S))
+        assert found == pytest.approx(complex(network.response(OMEGA_S)), rel=1e-12)
+
+
+def run(discrete: DiscreteNetwork, x: np.ndarray, u: np.ndarray) -> np.ndarray:
+    y = np.empty(len(u))
+    for k, value in enumerate(u):
+        y[k] = discrete.C @ x + discrete.D * value
+        x = x + discrete.dA @ x + discrete.B * value
+    return y
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=str)
+def test_recursion_has_the_response(block: dict[str, object]) -> None:
+    """Run the update order itself (y before x): a sine comes out as H_d says after the transient."""
+    network = network_of(block)
+    discrete = discretise(network, 1.0)
+    omega = 2.0 * np.pi / 600.0
+    slowest = float(np.min(-network.poles.real)) if network.order else 1.0
+    count = 600 * int(np.ceil((45.0 / slowest + 600.0) / 600.0))
+    time = np.arange(count)
+    y = run(discrete, np.zeros(discrete.order), np.cos(omega * time))[-600:]
+    expected = np.real(discrete.response(omega) * np.exp(1j * omega * time[-600:]))
+    np.testing.assert_allclose(y, expected, atol=1e-9 * np.max(np.abs(expected)))
+
+
+@pytest.mark.parametrize("step_s", [1.0, 0.005])
+@pytest.mark.parametrize("block", BLOCKS, ids=str)
+def test_steady_state_stays_and_gives_h0(block: dict[str, object], step_s: float) -> None:
+    network = network_of(block)
+    discrete = discretise(network, step_s)
+    y = run(discrete, discrete.steady_state(7.0), np.full(2000, 7.0))
+    np.testing.assert_allclose(y, 7.0 * network.h0, rtol=1e-10)
+
+
+def test_steady_state_of_an_integrator_is_refused() -> None:
+    discrete = discretise(network_of({"id": "custom", "zeros": [-0.1], "poles": [0]}), 1.0)
+    with pytest.raises(InputError, match="pole at zero"):
+        discrete.steady_state(1.0)
+    np.testing.assert_array_equal(discrete.steady_state(0.0), [0.0])
+
+
+def test_shapes_without_states() -> None:
+    discrete = discretise(network_of({"id": "none"}), 0.1)
+    assert (discrete.order, discrete.D, discrete.step_s) == (0, 1.0, 0.1)
+    assert discrete.response(np.ones((2, 3))).shape == (2, 3)
+    assert discrete.steady_state(3.0).shape == (0,)
+
+
+@pytest.mark.parametrize("step_s", [0.0, -1.0, 4000.0, float("nan")])
+def test_steps_out_of_range_are_refused(step_s: float) -> None:
+    with pytest.raises(InputError, match="step_s"):
+        discretise(network_of({"id": "classic2"}), step_s)
+
+
+def test_an_unstable_pole_on_the_bilinear_singularity_is_refused() -> None:
+    step_s = 1.0
+    pole = OMEGA_S / np.tan(0.5 * OMEGA_S * step_s)
+    network = network_of({"id": "custom", "zeros": [-1.0], "poles": [float(pole)]})
+    with pytest.raises(InputError, match="unstable pole at 2 rad/s"):
+        discretise(network, step_s)
+    assert discretise(network, 0.9 * step_s).order == 1
+
+
+@given(
+    zeta=st.floats(0.01, 5.0),
+    r=st.floats(1.05, 5.0),
+    zeta2=st.floats(0.05, 5.0),
+    step_s=st.floats(0.005, 1.0),
+)
+@settings(max_examples=60)
+def test_any_unity2_is_discretised_well(zeta: float, r: float, zeta2: float, step_s: float) -> None:
+    network = network_of({"id": "unity2", "zeta": zeta, "r": r, "zeta2": zeta2})
+    discrete = discretise(network, step_s)
+    roots = np.linalg.eigvals(discrete.dA)
+    assert np.all(2.0 * roots.real + np.abs(roots) ** 2 < 0.0)
+    omega = OMEGA_S * np.logspace(-2, 2, 30)
+    expected = network.response(warped(omega, step_s))
+    assert np.max(np.abs(discrete.response(omega) / expected - 1.0)) < 1e-10
+
+
+# Why the direct form is never run: its coefficients, rounded to a double, are those of another network.
+
+
+def direct_form(polynomial: np.ndarray, a: float) -> list[Fraction]:
+    """Coefficients in z of (a (z+1))^n polynomial((z-1)/(a (z+1))), exactly."""
+    n = len(polynomial) - 1
+    total = [Fraction(0)] * (n + 1)
+    for power, coefficient in enumerate(reversed(polynomial)):
+        term = [Fraction(float(coefficient)) * Fraction(a) ** (n - power)]
+        for root in [-1] * power + [1] * (n - power):
+            term = [x + root * y for x, y in zip([*term, Fraction(0)], [Fraction(0), *term], strict=True)]
+        total = [x + y for x, y in zip(total, term, strict=True)]
+    return total
+
+
+def rounded_in_delta(z_form: list[Fraction], leading: Fraction, kind: type) -> np.ndarray:
+    """Round the coefficients as a program would store them, then shift exactly to delta = z - 1."""
+    stored = [Fraction(float(kind(float(c / leading)))) for c in z_form]
+    n = len(stored) - 1
+    shifted = [Fraction(0)] * (n + 1)
+    for i, c in enumerate(stored):
+        for j in range(n - i + 1):
+            shifted[n - j] += c * comb(n - i, j)
+    return np.array([float(c) for c in shifted])
+
+
+def direct_form_error(network: LinearNetwork, step_s: float, kind: type) -> tuple[float, float]:
+    """Largest relative error of H up to 3 omega_s, and the largest pole radius minus 1."""
+    a = float(np.tan(0.5 * OMEGA_S * step_s))
+    num, den = direct_form(network.num_p, a), direct_form(network.den_p, a)
+    num_delta, den_delta = (rounded_in_delta(c, den[0], kind) for c in (num, den))
+    omega = OMEGA_S * np.logspace(-2, np.log10(3.0), 200)
+    delta = np.expm1(1j * omega * step_s)
+    found = np.polyval(num_delta, delta) / np.polyval(den_delta, delta)
+    error = np.max(np.abs(found / network.response(warped(omega, step_s)) - 1.0))
+    roots = np.roots(den_delta / a ** np.arange(len(den_delta))) * a
+    return float(error), float(np.max(np.abs(1.0 + roots)) - 1.0)
+
+
+def test_direct_form_of_complementary_fails_where_delta_form_does_not() -> None:
+    network = network_of({"id": "complementary"})
+    at_1, radius_1 = direct_form_error(network, 1.0, np.float64)
+    assert at_1 > 1e-5 and radius_1 < 0.0  # 2e-4 over this range: already beyond the 1e-6 asked
+    at_tenth, _ = direct_form_error(network, 0.1, np.float64)
+    assert at_tenth > 0.1
+    _, radius_hundredth = direct_form_error(network, 0.01, np.float64)
+    assert radius_hundredth > 0.0
+    _, radius_single = direct_form_error(network, 1.0, np.float32)
+    assert radius_single > 0.0

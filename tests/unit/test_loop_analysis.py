@@ -1,0 +1,159 @@
+"""Stability, damping and settling of the closed loop."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from navcore.loop import analyse, initial_tilt_response
+from navcore.loop.analysis import closed_loop_polynomial
+from navcore.network import NETWORKS, parse_network
+
+OMEGA_S = float(np.sqrt(9.80665 / 6378137.0))
+
+
+def loop_of(text: str):
+    return analyse(parse_network(text).transfer(OMEGA_S))
+
+
+def test_free_loop_counts_as_stable_and_undamped() -> None:
+    loop = loop_of('id = "none"')
+    assert loop.stable
+    assert loop.damping_ratio == 0.0
+    assert loop.natural_frequency == pytest.approx(OMEGA_S, rel=1e-15)
+    assert loop.settling_s is None
+    assert loop.warnings == ("undamped",)
+    assert loop_of('id = "custom", gain = 1.0').warnings == ("undamped",)
+
+
+def test_unstable_loops_say_so() -> None:
+    loop = loop_of('id = "compass", k1 = -0.01, k2 = 5.0, k3 = 1.0')
+    assert not loop.stable
+    assert loop.damping_ratio < 0.0
+    assert loop.settling_s is None
+    assert loop.warnings[0].startswith("unstable")
+    # H = s/(s + K1) with a repeated pair on the axis grows too, though no pole lies to the right
+    twice = loop_of('id = "custom", num = [1.0, 0.0, 0.0], den = [1.0, 0.0, 1.0]')
+    assert not twice.stable
+
+
+def test_real_poles_only_have_damping_one_and_the_slowest_rate() -> None:
+    loop = loop_of('id = "compass", sigma = 0.0088, xi = 3.0')
+    assert np.all(loop.poles.imag == 0.0)
+    assert loop.damping_ratio == 1.0
+    assert loop.natural_frequency == pytest.approx(np.min(np.abs(loop.poles)))
+
+
+@pytest.mark.parametrize(
+    ("text", "part"),
+    [
+        (
+            'id = "compass"',
+            "H(0) = 34.26 differs from 1: the loop is not Schuler-tuned, it needs the reference",
+        ),
+        ('id = "pole2"', "H(0) = 0.6481 differs"),
+        ('id = "compass", k1 = 0.01, k2 = 5.0, k3 = 0.0', "H(0) = 0: a closed-loop pole at zero"),
+    ],
+)
+def test_warnings_about_h0(text: str, part: str) -> None:
+    loop = loop_of(text)
+    assert loop.stable
+    assert any(part in warning for warning in loop.warnings)
+
+
+@pytest.mark.parametrize("name", ["classic2", "classic3", "complementary", "unity2"])
+def test_no_warning_within_a_thousandth_of_unity(name: str) -> None:
+    assert loop_of(f'id = "{name}"').warnings == ()
+
+
+@given(
+    block=st.one_of(
+        st.builds(
+            lambda s, x: {"id": "compass", "sigma": s, "xi": x}, st.floats(1e-5, 1.0), st.floats(0.01, 10.0)
+        ),
+        st.builds(
+            lambda z, e: {"id": "complementary", "zeta": z, "eta": e},
+            st.floats(0.01, 10.0),
+            st.floats(0.01, 10),
+        ),
+        st.builds(
+            lambda x, a, b: {"id": "pole2", "xi": x, "n1": a, "n2": b},
+            st.floats(0.01, 5.0),
+            st.floats(20.0, 100.0),
+            st.floats(0.1, 5.0),
+        ),
+        st.builds(
+            lambda z, r, z2: {"id": "unity2", "zeta": z, "r": r, "zeta2": z2},
+            st.floats(0.01, 5.0),
+            st.floats(1.01, 10.0),
+            st.floats(0.01, 5.0),
+        ),
+        st.builds(
+            lambda z, r, a: {"id": "unity2", "zeta": z, "r": r, "alpha": a},
+            st.floats(0.01, 5.0),
+            st.floats(1.01, 10.0),
+            st.floats(1e-6, 10.0),
+        ),
+    )
+)
+def test_poles_known_by_design_are_those_of_the_polynomial(block: dict[str, object]) -> None:
+    network = parse_network(block).transfer(OMEGA_S)
+    assert network.closed_loop_p is not None
+    designed = np.real(np.poly(network.closed_loop_p))
+    actual = closed_loop_polynomial(network)
+    np.testing.assert_allclose(designed, actual, rtol=1e-9, atol=1e-9 * np.min(np.abs(actual)))
+    assert analyse(network).stable
+
+
+@given(zeta=st.floats(0.005, 1.5), r=st.floats(1.05, 5.0))
+@settings(max_examples=25)
+def test_settling_agrees_with_a_dense_search(zeta: float, r: float) -> None:
+    network = parse_network({"id": "unity2", "zeta": zeta, "r": r}).transfer(OMEGA_S)
+    loop = analyse(network)
+    assert loop.settling_s is not None
+    slowest = float(np.min(-loop.poles.real))
+    grid = np.linspace(0.0, 10.0 / slowest, 60_001)
+    over = np.flatnonzero(np.abs(initial_tilt_response(network, grid)) > 0.02)
+    assert grid[over[-1]] - 1e-6 / OMEGA_S <= loop.settling_s <= grid[over[-1] + 1] + 1e-6 / OMEGA_S
+
+
+def test_at_the_settling_time_the_response_is_two_percent() -> None:
+    for name in ("classic2", "classic3", "compass", "complementary", "pole2", "unity2"):
+        network = parse_network({"id": name}).transfer(OMEGA_S)
+        settling = analyse(network).settling_s
+        assert settling is not None
+        value = initial_tilt_response(network, np.array([settling]))
+        assert abs(value[0]) == pytest.approx(0.02, rel=1e-6)
+
+
+def test_a_last_peak_just_above_the_level_is_not_missed() -> None:
+    """Tune zeta until the last peak only just exceeds 2 %: the settling time must lie at that peak."""
+    for zeta in (0.11, 0.2, 0.31):
+        previous = None
+        for step in np.linspace(0.0, 0.01, 30):
+            network = parse_network({"id": "unity2", "zeta": zeta + step}).transfer(OMEGA_S)
+            settling = analyse(network).settling_s
+            assert settling is not None
+            after = settling + np.linspace(1.0, 20_000.0, 8_000)
+            assert np.max(np.abs(initial_tilt_response(network, after))) <= 0.02 * (1.0 + 1e-9)
+            assert previous is None or settling < previous * 1.001
+            previous = settling
+
+
+def test_stiff_network_settles_by_its_slow_mode() -> None:
+    network = parse_network('id = "custom", zeros = [-0.0012, -90.0], poles = [-0.008, -100.0]').transfer(
+        OMEGA_S
+    )
+    loop = analyse(network)
+    slowest = float(np.min(-loop.poles.real))
+    assert loop.settling_s is not None
+    assert 1.0 / slowest < loop.settling_s < 8.0 / slowest
+
+
+@pytest.mark.parametrize("name", NETWORKS)
+def test_other_schuler_frequencies_work_alike(name: str) -> None:
+    for omega_s in (1.23e-3, 1.25e-3):
+        loop = analyse(parse_network({"id": name}).transfer(omega_s))
+        assert loop.stable

@@ -1,0 +1,226 @@
+"""Motion `legs`: what each field means, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from navcore.earth import WGS84
+from navcore.errors import InputError
+from navcore.motion.base import AE, AN, HEADING, HEADING_RATE, LAT, PITCH, ROLL, VE, VN, Site
+from navcore.motion.legs import LegsMotion
+from navcore.units import DEG, KNOT
+
+SITE = Site(math.radians(40.0), math.radians(-70.0), 0.0)
+
+
+def _values(*legs: dict[str, Any], until: float = 400.0, step: float = 0.5, **fields: Any) -> np.ndarray:
+    count = round(until / step) + 1
+    return LegsMotion(leg=legs, **fields).truth(count, step, SITE, WGS84).values
+
+
+def _speed(values: np.ndarray) -> np.ndarray:
+    return values[:, VE] * np.sin(values[:, HEADING]) + values[:, VN] * np.cos(values[:, HEADING])
+
+
+def _acceleration(values: np.ndarray) -> np.ndarray:
+    return values[:, AE] * np.sin(values[:, HEADING]) + values[:, AN] * np.cos(values[:, HEADING])
+
+
+def test_first_leg_gives_the_initial_speed_and_heading() -> None:
+    values = _values({"speed_mps": 7.0, "heading_deg": 45.0}, heading_deg=300.0, pitch_deg=1.0, roll_deg=-2.0)
+    assert _speed(values) == pytest.approx(np.full(801, 7.0))
+    assert values[:, HEADING] == pytest.approx(np.full(801, 45.0 * DEG))
+    assert values[:, VE] == pytest.approx(np.full(801, 7.0 * math.sin(45.0 * DEG)))
+    assert (values[:, PITCH] == 1.0 * DEG).all()
+    assert (values[:, ROLL] == -2.0 * DEG).all()
+
+
+def test_without_a_heading_the_motion_has_it() -> None:
+    assert _values({"speed_kn": 10.0}, heading_deg=300.0)[0, HEADING] == pytest.approx(300.0 * DEG)
+
+
+def test_knots_and_metres_a_second_are_the_same_speed() -> None:
+    knots = _values({"duration_s": 100.0, "speed_kn": 10.0}, {"speed_kn": 12.0})
+    metres = _values({"duration_s": 100.0, "speed_mps": 10.0 * KNOT}, {"speed_mps": 12.0 * KNOT})
+    assert knots == pytest.approx(metres, rel=1e-13)
+    assert _speed(knots)[-1] == pytest.approx(12.0 * 1852.0 / 3600.0)
+
+
+def test_a_speed_is_reached_at_a_mean_of_a_tenth_by_default() -> None:
+    values = _values({"duration_s": 100.0, "speed_mps": 5.0}, {"speed_mps": 8.0})
+    speed = _speed(values)
+    assert speed[200] == pytest.approx(5.0)
+    assert speed[230] == pytest.approx(6.5)  # half way after 15 of 30 s
+    assert 7.99 < speed[259] < 8.0
+    assert speed[260:] == pytest.approx(np.full(541, 8.0))
+    assert _acceleration(values).max() == pytest.approx(0.2)
+
+
+def test_a_given_acceleration_sets_the_time_whatever_its_sign() -> None:
+    for accel in (0.3, -0.3):
+        values = _values({"duration_s": 100.0, "speed_mps": 8.0}, {"speed_mps": 5.0, "accel_mps2": accel})
+        speed = _speed(values)
+        assert speed[210] == pytest.approx(6.5)
+        assert speed[220:] == pytest.approx(np.full(581, 5.0))
+        assert _acceleration(values).min() == pytest.approx(-0.6)
+
+
+def test_acceleration_alone_acts_over_the_whole_leg() -> None:
+    # Sun's profile: 2 kn, then the acceleration rises to 4 kn/min and falls to 0 within 4 min.
+    mean = 2.0 * KNOT / 60.0
+    values = _values(
+        {"duration_s": 60.0, "speed_kn": 2.0, "heading_deg": 45.0},
+        {"duration_s": 240.0, "accel_mps2": mean}, {"duration_s": 10.0},
+    )  # fmt: skip
+    speed = _speed(values) / KNOT
+    assert speed[120] == pytest.approx(2.0)
+    assert speed[360] == pytest.approx(6.0)
+    assert _acceleration(values)[360] == pytest.approx(4.0 * KNOT / 60.0)
+    assert speed[600:] == pytest.approx(np.full(201, 10.0))
+
+
+def test_in_the_first_leg_acceleration_and_turn_start_from_its_speed_and_heading() -> None:
+    leg = {"duration_s": 200.0, "speed_mps": 3.0, "accel_mps2": 0.02, "heading_deg": 10.0, "turn_dps": -0.5}
+    values = _values(leg)
+    assert _speed(values)[[0, 400]] == pytest.approx([3.0, 7.0])
+    assert values[[0, 400, 800], HEADING] == pytest.approx(np.radians([10.0, -90.0, -90.0]))
+
+
+@pytest.mark.parametrize(
+    ("start", "leg", "end", "time"),
+    [
+        (10.0, {"heading_deg": 70.0}, 70.0, 60.0),
+        (10.0, {"heading_deg": 350.0}, -10.0, 20.0),
+        (350.0, {"heading_deg": 10.0}, 370.0, 20.0),
+        (10.0, {"heading_deg": 190.0}, 190.0, 180.0),
+        (200.0, {"heading_deg": 20.0}, 380.0, 180.0),
+        (10.0, {"heading_deg": 70.0, "turn_dps": 3.0}, 70.0, 20.0),
+        (10.0, {"heading_deg": 70.0, "turn_dps": -3.0}, -290.0, 100.0),
+        (10.0, {"heading_deg": 350.0, "turn_dps": 2.0}, 350.0, 170.0),
+        (10.0, {"heading_deg": 190.0, "turn_dps": -1.0}, -170.0, 180.0),
+        (10.0, {"heading_deg": 370.0 - 360.0, "turn_dps": -1.0}, 10.0, 0.0),
+        (10.0, {"heading_deg": -350.0}, 10.0, 0.0),
+        (10.0, {"duration_s": 120.0, "turn_dps": -0.25}, -20.0, 120.0),
+    ],
+)
+def test_turns(start: float, leg: dict[str, Any], end: float, time: float) -> None:
+    first = {"duration_s": 100.0, "speed_mps": 6.0, "heading_deg": start}
+    values = _values(first, leg)
+    heading = values[:, HEADING] / DEG
+    assert heading[:201] == pytest.approx(np.full(201, start))
+    done = 200 + round(2.0 * time)
+    assert heading[done:] == pytest.approx(np.full(801 - done, end))
+    if time:
+        assert heading[200 + round(time)] == pytest.approx(0.5 * (start + end))
+        rate = values[:, HEADING_RATE] / DEG
+        assert rate[200 + round(time)] == pytest.approx(2.0 * (end - start) / time)
+    assert np.hypot(values[:, VE], values[:, VN]) == pytest.approx(np.full(801, 6.0))
+
+
+def test_a_full_circle_is_not_turned_over_a_rounding_error() -> None:
+    first = {"duration_s": 100.0, "speed_mps": 6.0, "heading_deg": 0.1}
+    third = {"duration_s": 100.0, "turn_dps": 0.2 / 100.0}
+    values = _values(first, third, {"duration_s": 10.0, "heading_deg": 0.1 + 0.2 - 1e-12, "turn_dps": 1.0})
+    assert np.abs(values[:, HEADING]).max() < 0.4 * DEG
+
+
+def test_acceleration_and_turn_rate_are_continuous() -> None:
+    legs = (
+        {"duration_s": 20.0, "speed_mps": 5.0, "heading_deg": 80.0},
+        {"duration_s": 60.0, "speed_mps": 8.0, "heading_deg": 30.0},
+        {"duration_s": 30.0, "accel_mps2": -0.1, "turn_dps": 2.0},
+    )
+    steps = [
+        np.abs(np.diff(_values(*legs, until=120.0, step=h)[:, [AE, AN, HEADING_RATE]], axis=0)).max(axis=0)
+        for h in (0.02, 0.01)
+    ]
+    assert steps[0] / steps[1] == pytest.approx([2.0, 2.0, 2.0], rel=0.02)
+
+
+def test_astern_the_ship_moves_against_its_heading() -> None:
+    values = _values({"duration_s": 50.0, "speed_mps": 0.0}, {"speed_mps": -2.0, "heading_deg": 0.0})
+    assert values[-1, VN] == pytest.approx(-2.0)
+    assert values[-1, LAT] < SITE.lat
+
+
+def test_at_rest_one_row_stands_for_all_times() -> None:
+    truth = LegsMotion(leg=[{"heading_deg": 33.0}, {"duration_s": 5.0}]).truth(1001, 0.5, SITE, WGS84)
+    assert truth.constant
+    assert truth.values[0, HEADING] == pytest.approx(33.0 * DEG)
+    turning = LegsMotion(leg=[{"duration_s": 5.0, "turn_dps": 1.0}]).truth(1001, 0.5, SITE, WGS84)
+    assert turning.values.shape == (1001, 15)
+    assert (turning.values[:, LAT] == SITE.lat).all()
+
+
+RUN = {"duration_s": 60.0, "speed_mps": 5.0}
+
+
+@pytest.mark.parametrize(
+    ("legs", "field", "words"),
+    [
+        ([], "leg", "at least one"),
+        ([{"speed_mps": 1.0, "speed_kn": 2.0}], "leg.0.speed_kn", "not both"),
+        ([RUN, {"duration_s": 29.0, "speed_mps": 8.0}], "leg.1.speed_mps", "takes 30 s"),
+        ([RUN, {"duration_s": 10.0, "speed_kn": 20.0}], "leg.1.speed_kn", "ends after 10 s"),
+        ([RUN, {"speed_mps": 8.0, "accel_mps2": 0.0}], "leg.1.speed_mps", "never ends"),
+        ([RUN, RUN, {"duration_s": 59.0, "heading_deg": -60.0}], "leg.2.heading_deg", "takes 60 s"),
+        ([RUN, {"heading_deg": 60.0, "turn_dps": 0.0}], "leg.1.heading_deg", "never ends"),
+        (
+            [{"duration_s": 50.0, "speed_mps": 490.0, "accel_mps2": 1.0}],
+            "leg.0.accel_mps2",
+            "leads to 540 m/s",
+        ),
+        ([RUN, {"duration_s": 600.0, "accel_mps2": -0.1}], "leg.1.accel_mps2", "leads to -55 m/s"),
+    ],
+)
+def test_impossible_legs_are_refused_by_leg_and_field(legs: list[Any], field: str, words: str) -> None:
+    with pytest.raises(ValueError, match=words) as caught:
+        LegsMotion(leg=legs)
+    assert f"{field}" in str(caught.value)
+
+
+def test_every_change_that_does_not_fit_is_named() -> None:
+    short = {"duration_s": 1.0, "speed_mps": 9.0, "heading_deg": 90.0}
+    with pytest.raises(ValueError, match=r"leg\.1\.speed_mps = 9\.0.*\n.*leg\.1\.heading_deg = 90\.0"):
+        LegsMotion(leg=[RUN, short])
+
+
+def test_a_change_that_just_fits_is_taken() -> None:
+    values = _values(RUN, {"duration_s": 30.0, "speed_mps": 8.0, "heading_deg": 30.0})
+    assert _speed(values)[-1] == pytest.approx(8.0)
+
+
+@pytest.mark.parametrize(
+    "leg",
+    [
+        {"duration_s": 0.0},
+        {"speed_mps": 501.0},
+        {"accel_mps2": -21.0},
+        {"turn_dps": 61.0},
+        {"heading_deg": 361.0},
+    ],
+)
+def test_leg_fields_out_of_range_are_refused(leg: dict[str, float]) -> None:
+    with pytest.raises(ValueError, match=f"leg.0.{next(iter(leg))}"):
+        LegsMotion(leg=[leg])
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_leg_that_leads_to_a_pole_is_named(sign: float) -> None:
+    motion = LegsMotion(
+        leg=[
+            {"duration_s": 3600.0, "speed_mps": 300.0, "heading_deg": 90.0},
+            {"heading_deg": 90.0 - sign * 90.0},
+        ]
+    )
+    site = Site(sign * 80.0 * DEG, 0.0, 0.0)
+    with pytest.raises(InputError) as caught:
+        motion.truth(20_001, 0.5, site, WGS84)
+    (fault,) = caught.value.faults
+    assert fault.field == "leg.1"
+    assert "89.5 deg of latitude" in fault.allowed
+    assert motion.truth(7201, 0.5, site, WGS84).values.shape == (7201, 15)

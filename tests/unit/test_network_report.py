@@ -1,0 +1,53 @@
+"""The document of ``schuler network --json``."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from navcore.earth import SPHERE
+from navcore.network import NETWORKS, parse_network
+from navcore.network.report import network_report
+
+KEYS = [
+    "id",
+    "num",
+    "den",
+    "zeros",
+    "poles",
+    "gain",
+    "h0",
+    "closed_loop_poles",
+    "stable",
+    "damping_ratio",
+    "natural_frequency_rad_s",
+    "settling_s",
+    "warnings",
+]
+
+
+@pytest.mark.parametrize("name", NETWORKS)
+def test_keys_are_the_contract_and_json_holds_them(name: str) -> None:
+    report = network_report(parse_network({"id": name}))
+    assert list(report) == KEYS
+    assert json.loads(json.dumps(report, allow_nan=False)) == report
+    assert len(report["closed_loop_poles"]) == len(report["poles"]) + 2
+    assert all(len(pair) == 2 for pair in report["zeros"] + report["poles"] + report["closed_loop_poles"])
+
+
+def test_free_loop() -> None:
+    report = network_report(parse_network('id = "none"'))
+    omega_s = SPHERE.schuler_frequency(0.0)
+    assert report["stable"] is True
+    assert report["damping_ratio"] == 0.0
+    assert report["settling_s"] is None
+    assert report["warnings"] == ["undamped"]
+    assert report["natural_frequency_rad_s"] == pytest.approx(omega_s, rel=1e-12)
+    assert report["closed_loop_poles"] == [[0.0, pytest.approx(-omega_s)], [0.0, pytest.approx(omega_s)]]
+
+
+def test_an_infinite_h0_becomes_null() -> None:
+    report = network_report(parse_network('id = "custom", zeros = [-1], poles = [0]'))
+    assert report["h0"] is None
+    json.dumps(report, allow_nan=False)

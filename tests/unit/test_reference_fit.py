@@ -1,0 +1,107 @@
+"""The fit of a log's error gives back what simulated logs were made with."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from navcore.errors import InputError
+from navcore.motion.base import AE, AN, COLUMNS, HEADING, VE, VN, Truth
+from navcore.sensors.fit import LogAlongTrack, _autocovariance, fit_delay, fit_log_error
+from navcore.sensors.reference import Reference, reference_errors
+from navcore.sensors.true_state import horizontal_state, to_ship
+from navcore.units import DEG
+
+AT_REST = Truth(0.5, np.zeros((1, COLUMNS)))
+
+
+def surging(duration_s: float) -> Truth:
+    """Heading 040; speed 5 m/s that swings by 1 m/s in 200 s."""
+    t = np.arange(int(2 * duration_s) + 1) * 0.5
+    swing = 2.0 * math.pi / 200.0
+    along = np.array([math.sin(40.0 * DEG), math.cos(40.0 * DEG)])
+    values = np.zeros((t.size, COLUMNS))
+    values[:, [VE, VN]] = (5.0 + np.sin(swing * t))[:, None] * along
+    values[:, [AE, AN]] = (swing * np.cos(swing * t))[:, None] * along
+    values[:, HEADING] = 40.0 * DEG
+    return Truth(0.5, values)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_bias_noise_and_drift_of_a_long_record_come_back(seed):
+    made = Reference(
+        kind="log", bias_mps=(0.1, -0.2), noise_mps=0.03, drift_mps=0.05, drift_tau_s=20.0, rate_hz=1.0
+    )
+    simulated = reference_errors(made, AT_REST, 40_000.0, seed)
+    fit = fit_log_error(simulated.time_s, simulated.error)
+    assert np.all(np.abs(fit.bias - made.bias_mps) < 4.0 * fit.bias_std)
+    # Independent formula: the variance of the mean of a Gauss-Markov process is 2 tau / T of its own.
+    assert fit.bias_std == pytest.approx(0.05 * math.sqrt(40.0 / 40_000.0), rel=0.15)
+    assert fit.noise == pytest.approx(0.03, rel=0.05)
+    assert fit.drift == pytest.approx(0.05, rel=0.05)
+    assert fit.drift_tau_s == pytest.approx(20.0, rel=0.15)
+    assert (fit.rate_hz, fit.span_s) == pytest.approx((1.0, 40_000.0))
+
+
+def test_a_short_record_gives_a_wide_but_honest_bias():
+    deviations = []
+    for seed in range(40):
+        made = Reference(kind="log", bias_mps=(0.1, -0.2), noise_mps=0.01, drift_mps=0.05, drift_tau_s=20.0)
+        simulated = reference_errors(made, AT_REST, 714.0, seed)
+        fit = fit_log_error(simulated.time_s, simulated.error)
+        deviations += [*((fit.bias - made.bias_mps) / fit.bias_std)]
+    # The drift of a short record is underestimated, so the uncertainty is too small, but not by half.
+    assert 0.7 < np.std(deviations) < 1.6
+
+
+def test_white_noise_alone_has_no_drift():
+    simulated = reference_errors(Reference(kind="log", noise_mps=0.1), AT_REST, 20_000.0, 1)
+    fit = fit_log_error(simulated.time_s, simulated.error)
+    assert fit.noise == pytest.approx(0.1, rel=0.03)
+    assert fit.drift < 0.02
+
+
+def test_a_perfect_log_fits_to_nothing():
+    fit = fit_log_error(np.arange(100.0), np.zeros((100, 2)))
+    assert (fit.noise, fit.drift) == (0.0, 0.0)
+    assert fit.reference().drift_mps == 0.0
+
+
+def test_the_delay_of_a_log_is_found_and_taken_out():
+    motion = surging(1200.0)
+    made = Reference(kind="log", frame="body", bias_mps=(0.1, -0.2), noise_mps=0.02, delay_s=12.6)
+    simulated = reference_errors(made, motion, 1200.0, 1)
+    velocity, heading = horizontal_state(motion, simulated.time_s)
+    log = LogAlongTrack(simulated.time_s, to_ship(velocity + simulated.error, heading), motion)
+    assert np.std(log.error()[1][:, 1]) > 0.2
+    delay = fit_delay(log)
+    assert delay == pytest.approx(12.6, abs=0.3)
+    fit = fit_log_error(*log.error(delay), delay_s=delay)
+    assert fit.bias == pytest.approx([0.1, -0.2], abs=0.005)
+    assert fit.noise == pytest.approx(0.02, rel=0.1)
+    assert fit.drift < 0.006
+
+
+def test_too_short_records_are_refused():
+    with pytest.raises(InputError, match="a fit needs 50"):
+        fit_log_error(np.arange(49.0), np.zeros((49, 2)))
+    with pytest.raises(InputError, match="a fit needs 50"):
+        fit_delay(LogAlongTrack(np.arange(80.0), np.zeros((80, 2)), AT_REST))
+
+
+def test_the_fitted_error_makes_a_reference():
+    simulated = reference_errors(Reference(kind="log", noise_mps=0.1, rate_hz=0.911), AT_REST, 2000.0, 1)
+    reference = fit_log_error(simulated.time_s, simulated.error, delay_s=12.6).reference()
+    assert reference.frame == "body"
+    assert reference.delay_s == 12.6
+    assert reference.rate_hz == 0.911
+    assert reference.noise_mps == pytest.approx(0.1, rel=0.05)
+
+
+def test_the_autocovariance_is_the_mean_of_products():
+    values = np.random.default_rng(1).standard_normal((200, 2))
+    found = _autocovariance(values, 20)
+    for lag in (0, 1, 19):
+        assert found[lag] == pytest.approx(np.mean(values[: 200 - lag] * values[lag:], axis=0))

@@ -1,0 +1,135 @@
+"""simulate(): identical inputs for all methods, cancel, divergence, rows, statistics, plot curves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from navcore.mechanization.recorder import NAMES, output_steps
+from navcore.scenario import Scenario
+from navcore.simulate import simulate
+
+COMPASS = {"damping": "external", "network": {"id": "compass"}}
+NOISY = {
+    "run": {"duration_h": 2.0, "seed": 5},
+    "imu": {"gyro_bias_dph": [0.01, 0.02, 0.0], "gyro_arw_dpsh": 0.01, "accel_vrw_ugpshz": 20.0},
+    "reference": {"kind": "log", "noise_mps": 0.2, "bias_mps": [0.1, -0.2]},
+}
+
+
+def _run(**changes):
+    return simulate(Scenario.parse({**NOISY, **changes}))
+
+
+def test_order_and_company_of_methods_change_nothing():
+    alone = _run(method=[{"name": "c", **COMPASS}])
+    first = _run(method=[{"name": "c", **COMPASS}, {"name": "f"}])
+    last = _run(method=[{"name": "f"}, {"name": "c", **COMPASS}])
+    assert np.array_equal(alone.methods[0].rows, first.methods[0].rows)
+    assert np.array_equal(first.methods[0].rows, last.methods[1].rows)
+    assert np.array_equal(first.methods[1].rows, last.methods[0].rows)
+    assert not np.array_equal(first.methods[0].rows, first.methods[1].rows)
+
+
+def test_another_seed_gives_another_run():
+    other = _run(run={"duration_h": 2.0, "seed": 6}, method=[COMPASS])
+    assert not np.array_equal(_run(method=[COMPASS]).methods[0].rows, other.methods[0].rows)
+
+
+def test_rows_hold_start_every_output_step_and_the_end():
+    run = _run(run={"duration_h": 0.0141, "output_step_s": 20.0})
+    assert run.t_s.tolist() == [0.0, 20.0, 40.0, 50.0]
+    assert run.methods[0].rows.shape == (4, 10)
+    assert output_steps(7, 1.0, 0.1).tolist() == list(range(8))
+
+
+def test_statistics_are_those_of_every_step():
+    """With a row each step the metrics must be recomputable from the rows."""
+    run = _run(run={"duration_h": 1.2, "output_step_s": 1.0}, method=[COMPASS])
+    method = run.methods[0]
+    for i, name in enumerate(NAMES):
+        column = method.rows[:, i]
+        found = method.errors[name]
+        assert found["mean"] == pytest.approx(column.mean(), rel=1e-9, abs=1e-15)
+        assert found["std"] == pytest.approx(column.std(), rel=1e-6, abs=1e-12)
+        assert found["rms"] == pytest.approx(np.sqrt(np.mean(column**2)), rel=1e-9)
+        assert found["max_abs"] == np.abs(column).max()
+        assert found["final"] == column[-1]
+
+
+def test_plot_curves_keep_every_extreme_in_order():
+    run = _run(run={"duration_h": 4.0, "output_step_s": 1.0}, method=[COMPASS])
+    plot, rows = run.methods[0].plot, run.methods[0].rows
+    assert len(plot.t_s) <= 2000 and np.all(np.diff(plot.t_s) > 0)
+    assert np.array_equal(plot.values.max(axis=0), rows[:, :8].max(axis=0))
+    assert np.array_equal(plot.values.min(axis=0), rows[:, :8].min(axis=0))
+    smooth = np.interp(plot.t_s, run.t_s, rows[:, 7])
+    assert np.abs(plot.values[:, 7] - smooth).max() < 0.02 * rows[:, 7].max()
+
+
+def test_cancel_keeps_what_was_computed_and_marks_it():
+    calls = []
+
+    def cancelled() -> bool:
+        calls.append(1)
+        return len(calls) >= 2
+
+    scenario = Scenario.parse({"run": {"duration_h": 100.0}, "initial_error": {"velocity_mps": [0.1, 0]}})
+    run = simulate(scenario, cancelled=cancelled)
+    method = run.methods[0]
+    assert run.status == method.status == "stopped"
+    assert "stopped by the user at" in method.warnings[-1]
+    assert 0 < len(method.t_s) < len(run.t_s) and np.all(np.isfinite(method.rows))
+
+
+def test_a_diverging_method_does_not_stop_the_others():
+    unstable = {"damping": "external", "network": {"id": "compass", "k1": 0.001, "k2": 1.0, "k3": 0.5}}
+    run = _run(run={"duration_h": 24.0}, method=[unstable, {"name": "free"}])
+    assert [m.status for m in run.methods] == ["diverged", "ok"]
+    assert "left the range of the linear model" in run.methods[0].reason
+    assert len(run.methods[1].t_s) == len(run.t_s) > len(run.methods[0].t_s)
+
+
+def test_progress_rises_to_one():
+    seen: list[float] = []
+    simulate(Scenario.parse({"run": {"duration_h": 50.0}}), progress=seen.append)
+    assert seen[-1] == 1.0 and seen == sorted(seen) and len(seen) > 2
+
+
+def test_an_outage_leaves_the_loop_undamped_until_the_log_returns():
+    run = _run(
+        run={"duration_h": 1.0, "output_step_s": 1.0},
+        reference={"kind": "log", "outage": [{"t_h": 0.5, "duration_s": 600.0}]},
+        method=[COMPASS],
+    )
+    damped = run.methods[0].rows[:, 8]
+    assert damped[:1800].all() and not damped[1800:2400].any() and damped[2401:].all()
+    assert run.methods[0].rows[2000, 9] == 0.0 and run.methods[0].rows[100, 9] == 0.7
+
+
+def test_a_heading_error_turns_a_body_log():
+    """frame = "body": dV_r = phi_U x V, which velocity feedback follows."""
+    scenario = {
+        "run": {"duration_h": 0.5, "output_step_s": 1.0},
+        "motion": {"kind": "legs", "leg": [{"duration_s": 1800.0, "speed_mps": 10.0, "heading_deg": 0.0}]},
+        "initial_error": {"attitude_arcmin": [0, 0, 10]},
+        "method": [COMPASS],
+    }
+    enu = simulate(Scenario.parse({**scenario, "reference": {"kind": "log"}})).methods[0].rows
+    body = (
+        simulate(Scenario.parse({**scenario, "reference": {"kind": "log", "frame": "body"}})).methods[0].rows
+    )
+    expected = np.mean(body[900:, 2]) * 10.0
+    assert np.mean(body[900:, 3] - enu[900:, 3]) == pytest.approx(expected, rel=0.05)
+
+
+def test_internal_damping_does_not_take_a_constant_speed_for_an_acceleration():
+    scenario = {
+        "run": {"duration_h": 2.0, "fidelity": "channel"},
+        "method": [{"damping": "internal", "network": {"id": "complementary"}}],
+    }
+    legs = [{"duration_s": 3600.0, "speed_mps": 10.0}, {"duration_s": 3600.0, "speed_mps": 5.0}]
+    steady = simulate(Scenario.parse({**scenario, "motion": {"kind": "legs", "leg": legs[:1]}}))
+    manoeuvre = simulate(Scenario.parse({**scenario, "motion": {"kind": "legs", "leg": legs}}))
+    assert steady.methods[0].errors["phi_e_rad"]["max_abs"] < 1e-12
+    assert manoeuvre.methods[0].errors["phi_e_rad"]["max_abs"] > 1e-5
