@@ -23,25 +23,28 @@ SPHERE_GRAVITY = 9.80665
 EarthName = Literal["wgs84", "sphere"]
 
 
-@inlined
-def meridian_radius(e2, sin_lat):
+def _meridian_radius(e2, sin_lat):
     """Radius of curvature M in the meridian, m."""
     x = 1.0 - e2 * sin_lat * sin_lat
     return SEMI_MAJOR_AXIS * (1.0 - e2) / (x * math.sqrt(x))
 
 
-@inlined
-def prime_vertical_radius(e2, sin_lat):
+def _prime_vertical_radius(e2, sin_lat):
     """Radius of curvature N in the prime vertical, m."""
     return SEMI_MAJOR_AXIS / math.sqrt(1.0 - e2 * sin_lat * sin_lat)
 
 
-@inlined
-def normal_gravity(g_equator, k, e2, sin_lat, height):
+def _normal_gravity(g_equator, k, e2, sin_lat, height):
     """Somigliana gravity with the first-order free-air term, m/s^2."""
     s2 = sin_lat * sin_lat
     surface = g_equator * (1.0 + k * s2) / math.sqrt(1.0 - e2 * s2)
     return surface * (1.0 - 2.0 * height / SEMI_MAJOR_AXIS)
+
+
+# Plain for a call from Python (compiling takes some 100 ms a process), compiled for the kernels.
+meridian_radius = inlined(_meridian_radius)
+prime_vertical_radius = inlined(_prime_vertical_radius)
+normal_gravity = inlined(_normal_gravity)
 
 
 @dataclass(frozen=True)
@@ -68,11 +71,11 @@ class Earth:
     def radii(self, lat: float) -> tuple[float, float]:
         """Radii of curvature (M meridian, N prime vertical) at a latitude in rad, m."""
         s = math.sin(lat)
-        return float(meridian_radius(self.e2, s)), float(prime_vertical_radius(self.e2, s))
+        return float(_meridian_radius(self.e2, s)), float(_prime_vertical_radius(self.e2, s))
 
     def gravity(self, lat: float, height: float = 0.0) -> float:
         """Gravity at a latitude (rad) and height (m), m/s^2."""
-        return float(normal_gravity(self.g_equator, self.somigliana_k, self.e2, math.sin(lat), height))
+        return float(_normal_gravity(self.g_equator, self.somigliana_k, self.e2, math.sin(lat), height))
 
     def schuler_frequency(self, lat: float) -> float:
         """omega_s = sqrt(g(L)/a) with a = 6378137 m, rad/s (contract: one value for site and networks)."""

@@ -17,14 +17,17 @@ from cachetools import LRUCache
 
 from navcore.errors import InputError
 from navcore.mechanization.trajectory import Coefficients, coefficients
-from navcore.motion.base import Truth
+from navcore.motion.base import LAT, Truth
 from navcore.motion.track import TrackMotion
 from navcore.scenario import Scenario
 from navcore.sensors.base import ReferenceErrors, SensorErrors
 from navcore.sensors.imu import imu_errors
 from navcore.sensors.recorded import recorded_window, recording_notices
 from navcore.sensors.reference import reference_errors
+from navcore.units import DEG
 
+FAR_FROM_SITE_DEG = 2.0
+"""Latitude by which a track may start off the site before the user is told, deg."""
 _CACHE_BYTES = 300 * 1024 * 1024
 _lock = threading.Lock()
 
@@ -88,6 +91,17 @@ def _file_state(files: Any) -> tuple[tuple[str, int, int], ...]:
     return tuple(states)
 
 
+def _site_notices(scenario: Scenario, truth: Truth) -> list[str]:
+    """Say so when a recorded track starts far from the site, whose gravity gives omega_s."""
+    start = float(truth.values[0, LAT]) / DEG
+    if abs(start - scenario.site.lat_deg) < FAR_FROM_SITE_DEG:
+        return []
+    return [
+        f"the track starts at latitude {start:.2f} deg, the site is at {scenario.site.lat_deg:g} deg: "
+        "omega_s, and with it every network, is that of the site"
+    ]
+
+
 def environment(scenario: Scenario) -> Environment:
     """Make, or take from the cache, what all methods share.
 
@@ -116,6 +130,11 @@ def environment(scenario: Scenario) -> Environment:
         except InputError as error:
             raise error.located("", "motion.") from None
 
+    def make_sensors() -> SensorErrors:
+        errors = imu_errors(scenario.imu, truth, steps, h, earth, seed, level_body=channel)
+        # `channel` has no heading: its up gyro drives nothing.
+        return SensorErrors(errors.gyro * (1.0, 1.0, 0.0), errors.accel) if channel else errors
+
     def make_reference() -> ReferenceErrors:
         try:
             return reference_errors(scenario.reference, truth, steps * h, seed, step_s=h, start_utc=start_utc)
@@ -131,8 +150,8 @@ def environment(scenario: Scenario) -> Environment:
         ),
         sensors=_kept(
             ("sensors", truth_key, channel, scenario.imu, seed),
-            lambda: imu_errors(scenario.imu, truth, steps, h, earth, seed, level_body=channel),
+            make_sensors,
         ),
         reference=_kept(("reference", truth_key, log_key, seed), make_reference),
-        warnings=recording_notices(scenario.motion, scenario.reference),
+        warnings=(*recording_notices(scenario.motion, scenario.reference), *_site_notices(scenario, truth)),
     )

@@ -31,7 +31,8 @@ class Loop:
         Of the least damped pair: -Re/|p| and |p| (rad/s). With real poles only: 1 and the slowest pole's
         rate; negative when unstable. Poles at zero are left out.
     settling_s : float or None
-        Last time at which the response to a unit initial tilt exceeds 2 %; None when it never comes to rest.
+        Last time at which the response to a unit initial tilt exceeds 2 %; None when it never comes to rest, or
+        not within months (damping below 2.5e-4).
     warnings : tuple of str
         In plain words.
     """
@@ -110,7 +111,7 @@ def _settling(network: LinearNetwork, poles: ComplexArray, zero: np.ndarray) -> 
     numerator = network.den_p if np.any(zero) else np.append(network.den_p, 0.0)
     moving = poles[~zero]
     tau = last_exceedance(state_space(numerator, moving), moving)
-    return None if tau is None else tau / network.omega_s
+    return None if tau is None else float(tau / network.omega_s)
 
 
 def _warnings(network: LinearNetwork, unstable: bool, undamped: bool, zero: bool) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from navcore.loop.response import ExponentialLadder
+from navcore.network.base import ComplexArray
 from navcore.network.state_space import StateSpace
 
 LEVEL = 0.02
@@ -16,12 +17,13 @@ _NEAR_LEVEL = 0.97 * LEVEL
 _PHASE_STEP = 0.25
 _DEAD = 18.0
 _MARGIN = 8.0
-_COARSEST, _FINEST = 7, 17
+_COARSEST, _FINEST = 7, 18
+_LEAST_DAMPING = 2.5e-4
 _ZOOM = 5
 _ZOOMS = 2
 
 
-def last_exceedance(system: StateSpace, poles: np.ndarray) -> float | None:
+def last_exceedance(system: StateSpace, poles: ComplexArray) -> float | None:
     """Last normalised time at which |C e^(A tau) B| exceeds `LEVEL`.
 
     The time axis is searched backwards in octaves; in each the grid resolves the oscillations still alive,
@@ -38,9 +40,12 @@ def last_exceedance(system: StateSpace, poles: np.ndarray) -> float | None:
     Returns
     -------
     float or None
-        Normalised time; 0 when the level is never exceeded, None when no end was found.
+        Normalised time; 0 when the level is never exceeded, None when no end was found or a pair is damped by
+        less than 2.5e-4 (at Schuler frequency that is months, and the grid could not resolve them).
     """
-    end = (_MARGIN - math.log(LEVEL)) / float(np.min(-np.real(poles)))
+    if np.any(-poles.real < _LEAST_DAMPING * np.abs(poles)):
+        return None
+    end = (_MARGIN - math.log(LEVEL)) / float(np.min(-poles.real))
     for _ in range(4):
         found = _Search(system, poles, end).run()
         if found < 0.999 * end:
@@ -50,7 +55,7 @@ def last_exceedance(system: StateSpace, poles: np.ndarray) -> float | None:
 
 
 class _Search:
-    def __init__(self, system: StateSpace, poles: np.ndarray, end: float) -> None:
+    def __init__(self, system: StateSpace, poles: ComplexArray, end: float) -> None:
         self.system, self.end = system, end
         self.octaves = max(1, math.ceil(math.log2(end * 100.0 * float(np.max(np.abs(poles))))))
         self.rates = [(-pole.real, abs(pole.imag)) for pole in poles.tolist()]

@@ -111,8 +111,10 @@ def test_a_ctrl_c_outside_a_run_is_one_line(capsys, monkeypatch):
 
 
 def test_a_wrapped_box_becomes_one_line():
-    box = "╭─ T ──────╮\n│ one two  │\n│ three    │\n│ ──────── │\n│ For more │\n╰──────────╯"
+    box = "╭─ T ──────╮\n│ one two  │\n│ three    │\n│ ──────── │\n│ For more │\n╰──────────╯\n"
     assert one_line(box) == "one two three"
+    plain = " T          \n ---------- \n  one two   \n  three     \n  ----------\n  For more  \n\n"
+    assert one_line(plain) == "one two three"
     assert one_line("plain words") == "plain words"
 
 

@@ -134,6 +134,19 @@ def test_modules_are_short(repo_root: Path):
     assert {name: length for name, length in lengths.items() if length >= LONGEST_MODULE} == {}
 
 
+def test_public_names_are_no_modules():
+    """A name that is also a module's turns into that module once the module is loaded."""
+    code = (
+        "import navcore, types\n"
+        "first = [getattr(navcore, name) for name in navcore.__all__]\n"
+        "again = [getattr(navcore, name) for name in navcore.__all__]\n"
+        "print([n for n, a, b in zip(navcore.__all__, first, again)"
+        " if a is not b or isinstance(b, types.ModuleType)])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.stdout.strip() == "[]", done.stdout + done.stderr
+
+
 def test_every_parameter_of_a_public_function_is_in_its_docstring():
     names = getattr(navcore, "__all__", None) or list(vars(navcore))
     public = {name: getattr(navcore, name) for name in names}
