@@ -15,7 +15,7 @@ endif
 
 KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
-.PHONY: help setup run test check format unit lock clean REMAKE
+.PHONY: help setup run test check format unit guide lock clean REMAKE
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'
@@ -24,6 +24,7 @@ help:
 	@echo 'make check    lint, format and types only'
 	@echo 'make unit     the fast tests only'
 	@echo 'make format   lay the code out'
+	@echo 'make guide    write docs/scenario.md and the JSON Schema anew from the parameter models'
 	@echo 'make lock     resolve the locked requirements again (UPGRADE=--upgrade: to the newest versions)'
 	@echo 'make clean    remove .venv and everything that was made'
 	@echo 'PYTHON=...    the Python to make .venv with (3.11 or newer)'
@@ -86,6 +87,10 @@ $(STAMPS)/test: requirements-test.lock $(STAMPS)/project
 	echo "== installed in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@
 
 # ---------------------------------------------------------------- upkeep
+
+guide: $(STAMPS)/runtime
+	@$(BIN)/python -m navcore.scenario_guide
+	@$(BIN)/python -m navcore.schema_file
 
 # One resolution for every platform and Python, with hashes and without any address.
 UV_COMPILE = $(BIN)/python -m uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \

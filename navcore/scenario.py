@@ -28,8 +28,6 @@ MAX_STEPS = 3_000_000
 """About 35 days at 1 s: bounds the memory of a run to some hundred MB and its time to seconds."""
 MAX_METHODS = 12
 
-Text = Field(default="", max_length=300)
-
 
 class RunSettings(Parameters):
     """Block ``run``: fidelity, duration, steps, seed, Earth."""
@@ -92,7 +90,7 @@ class SiteSettings(Parameters):
 class Alignment(Parameters):
     """Block ``alignment``: navigation starts from ``initial_error`` directly."""
 
-    kind: Literal["none"] = "none"
+    kind: Literal["none"] = choice("none", help="none: navigation starts from initial_error at t = 0.")
     duration_s: float = quantity(
         600.0, unit="s", gt=0.0, le=86400.0, help="Length of the alignment, before t = 0."
     )
@@ -128,7 +126,9 @@ class InitialError(Parameters):
 class View(Parameters):
     """Block ``view``: where the dashboard opens."""
 
-    focus: Literal["errors", "bode", "step"] = "errors"
+    focus: Literal["errors", "bode", "step"] = choice(
+        "errors", help="Which panel the dashboard brings to the front."
+    )
 
 
 class Method(Parameters):
@@ -158,11 +158,14 @@ class Method(Parameters):
 
 
 class Scenario(Parameters):
-    """A complete, checked scenario. Build it with `Scenario.parse` or `navcore.scenario_file.load`."""
+    """A complete, checked scenario.
 
-    schema_version: Literal[1] = Field(default=SCHEMA, alias="schema")
-    title: str = Text
-    source: str = Text
+    Build it with `Scenario.parse` or `navcore.scenario_file.load`.
+    """
+
+    schema_version: Literal[1] = Field(default=SCHEMA, alias="schema", description="Version of this format.")
+    title: str = Field(default="", max_length=300, description="What the scenario shows, in one line.")
+    source: str = Field(default="", max_length=300, description="Where it is from: paper and figure, say.")
     run: RunSettings = RunSettings()
     site: SiteSettings = SiteSettings()
     motion: Motion = Field(default_factory=StaticMotion)
