@@ -72,15 +72,27 @@ def cache_folder() -> Path:
     """Folder of the machine code of exactly these sources; writable, made when missing."""
     name = f"kernels-{kernel_hash()}"
     shipped = os.environ.get("SCHULER_CACHE_DIR")
-    bases = ([Path(shipped)] if shipped else []) + [_user_cache() / "schuler-bench"]
-    for base in bases:
+    bases = [_user_cache() / "schuler-bench", Path(tempfile.gettempdir()) / f"schuler-bench-{os.getuid()}"]
+    for base in [Path(shipped), *bases] if shipped else bases:
+        if shipped and not (base / name).exists() and (Path(shipped) / name).is_dir() and _writable(base):
+            _copy_writable(Path(shipped) / name, base / name)
         if _writable(base / name):
             return base / name
-    fallback = Path(tempfile.gettempdir()) / f"schuler-bench-{os.getuid()}" / name
-    if shipped and (Path(shipped) / name).is_dir() and not fallback.is_dir():
-        shutil.copytree(Path(shipped) / name, fallback)
-    fallback.mkdir(parents=True, exist_ok=True)
-    return fallback
+    raise OSError("no folder for compiled kernels can be written to: name one in SCHULER_CACHE_DIR")
+
+
+def _copy_writable(source: Path, target: Path) -> None:
+    # Renamed into place, so that a process that starts at the same time never sees half a copy.
+    with tempfile.TemporaryDirectory(dir=target.parent) as made:
+        copy = Path(made) / "copy"
+        shutil.copytree(source, copy)
+        for path in (copy, *copy.rglob("*")):
+            path.chmod(path.stat().st_mode | 0o200)
+        try:
+            copy.rename(target)
+        except OSError:
+            if not target.is_dir():
+                raise
 
 
 config.CACHE_DIR = str(cache_folder())  # pyright: ignore[reportAttributeAccessIssue]

@@ -155,6 +155,7 @@ def _exchange(run: Run, target: Path, format: Format) -> None:
 
 
 def _replace_inside(run: Run, target: Path, format: Format) -> None:
+    target.mkdir(exist_ok=True)
     complete = target / f".new-{secrets.token_hex(4)}"
     try:
         complete.mkdir()

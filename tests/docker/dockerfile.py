@@ -173,8 +173,12 @@ class Build:
         if not image.startswith("python:"):
             raise ValueError(f"line {instruction.line}: no stand-in for the base {image}")
         self.name, self.workdir, self.variables, self.user = name or "last", "/", {}, "root"
-        base = self.root / "usr" / "local"
-        subprocess.run([sys.executable, "-m", "venv", str(base)], check=True)
+        base, kept = self.root / "usr" / "local", self.folder / "base"
+        if kept.is_dir():
+            shutil.copytree(kept, base, symlinks=True, copy_function=os.link)
+        else:
+            subprocess.run([sys.executable, "-m", "venv", str(base)], check=True)
+            shutil.copytree(base, kept, symlinks=True, copy_function=os.link)
         (self.root / "root").mkdir()
 
     def _run(self, instruction: Instruction) -> None:

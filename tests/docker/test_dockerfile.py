@@ -22,6 +22,8 @@ UNREACHABLE = re.compile(
     r"NewConnectionError|NameResolutionError|ConnectTimeout|Could not find a version .*none\)"
 )
 
+PREFIX = "schuler-image-"
+
 
 @pytest.fixture(scope="module")
 def instructions(repo_root: Path):
@@ -109,7 +111,9 @@ def test_dockerignore_lets_only_the_program_through(repo_root: Path, tmp_path: P
 @pytest.fixture(scope="module")
 def image(repo_root: Path, instructions) -> Iterator[Build]:
     """The last stage, built; skipped where the locked packages cannot be reached."""
-    folder = Path(tempfile.mkdtemp(prefix="schuler-image-", dir=_roomy_memory())).resolve()
+    place = Path(_roomy_memory() or tempfile.gettempdir()).resolve()
+    _remove_leftovers(place)
+    folder = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{os.getpid()}-", dir=place))
     try:
         context = folder / "context"
         copy_context(repo_root, context, (repo_root / ".dockerignore").read_text("utf-8"))
@@ -133,6 +137,25 @@ def _roomy_memory() -> str | None:
         return None
     state = os.statvfs(memory)
     return memory if state.f_bavail * state.f_frsize > 4 * 2**30 and not state.f_flag & os.ST_NOEXEC else None
+
+
+def _remove_leftovers(place: Path) -> None:
+    """Remove what a run that was killed has left: a gigabyte, in memory."""
+    for left in place.glob(f"{PREFIX}*"):
+        pid = left.name.removeprefix(PREFIX).partition("-")[0]
+        if pid.isdigit() and left.stat().st_uid == os.getuid() and not _alive(int(pid)):
+            _set_writable(left, True)
+            shutil.rmtree(left)
+
+
+def _alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        pass
+    return True
 
 
 def _set_writable(folder: Path, writable: bool) -> None:
