@@ -61,7 +61,9 @@ def _user_cache() -> Path:
 
 def _writable(folder: Path) -> bool:
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if folder.stat().st_uid != os.getuid():  # what lies there is loaded as code
+            return False
         with tempfile.TemporaryFile(dir=folder):
             return True
     except OSError:

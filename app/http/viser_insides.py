@@ -178,6 +178,15 @@ def plotly_is_on_the_page(owner: viser.ViserServer | viser.ClientHandle) -> None
     owner.gui._setup_plotly_js = True
 
 
+def leaving_is_no_fault(client: viser.ClientHandle) -> None:
+    """Do not warn of what is written to a visitor who has just gone.
+
+    viser reports a departure only after it has closed the connection; whatever is on its way in between is
+    dropped, which is as it should be, but with a warning.
+    """
+    client._websock_connection.get_message_buffer()._warned_push_after_done = True
+
+
 def find_control(server: viser.ViserServer, client_id: int, uuid: str) -> Control | None:
     """Return the control a browser's message is about; viser offers no look-up by its id."""
     handle = _find_handle(server, client_id, uuid)

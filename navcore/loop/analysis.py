@@ -31,8 +31,8 @@ class Loop:
         Of the least damped pair: -Re/|p| and |p| (rad/s). With real poles only: 1 and the slowest pole's
         rate; negative when unstable. Poles at zero are left out.
     settling_s : float or None
-        Last time at which the response to a unit initial tilt exceeds 2 %; None when it never comes to rest, or
-        not within months (damping below 2.5e-4).
+        Last time at which the response to a unit initial tilt exceeds 2 %; None when it never comes to rest,
+        or not within months (damping below 2.5e-4).
     warnings : tuple of str
         In plain words.
     """

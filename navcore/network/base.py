@@ -13,7 +13,6 @@ from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ConfigDict
 
 from navcore.errors import Fault, InputError
 from navcore.parameters import Parameters
@@ -99,9 +98,6 @@ class NetworkParameters(Parameters):
     source : str
         Paper and equation.
     """
-
-    # strict: TOML's true or "0.7" must be refused, not quietly read as a number
-    model_config = ConfigDict(strict=True)
 
     title: ClassVar[str] = ""
     source: ClassVar[str] = ""

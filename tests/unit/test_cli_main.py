@@ -115,6 +115,8 @@ def test_a_wrapped_box_becomes_one_line():
     assert one_line(box) == "one two three"
     plain = " T          \n ---------- \n  one two   \n  three     \n  ----------\n  For more  \n\n"
     assert one_line(plain) == "one two three"
+    coloured = box.replace("│", "\x1b[31m│\x1b[0m").replace("one", "\x1b[0m\x1b[1mone")
+    assert one_line(coloured) == "one two three"
     assert one_line("plain words") == "plain words"
 
 

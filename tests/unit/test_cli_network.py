@@ -28,7 +28,8 @@ def network(text: str, capsys: pytest.CaptureFixture[str]) -> dict:
     ("text", "poles", "damping"),
     [
         ('id = "classic2"', [-0.982 - 1.003j, -0.982 + 1.003j, -2.674, -9.879], 0.699),
-        ('id = "classic3"', [-1.3253, -0.5946 - 1.3823j, -0.5946 + 1.3823j, -7.618 - 1.290j, -7.618 + 1.290j], 0.395),
+        ('id = "classic3"', [-1.3253, -0.5946 + 1.3823j, -0.5946 - 1.3823j, -7.618 + 1.290j, -7.618 - 1.290j],
+         0.395),
     ],
 )  # fmt: skip
 def test_closed_loops_of_9_1(text, poles, damping, capsys):

@@ -39,7 +39,16 @@ def test_the_schema_file_is_up_to_date(capsys):
 
 def test_the_schema_knows_the_fields_and_their_ranges():
     schema = json.loads(schema_text())
-    assert set(schema["properties"]) >= {"schema", "run", "site", "motion", "imu", "reference", "method", "view"}
+    assert set(schema["properties"]) >= {
+        "schema",
+        "run",
+        "site",
+        "motion",
+        "imu",
+        "reference",
+        "method",
+        "view",
+    }
     duration = schema["$defs"]["RunSettings"]["properties"]["duration_h"]
     assert (duration["exclusiveMinimum"], duration["maximum"], duration["unit"]) == (0.0, 8760.0, "h")
     assert "required" not in schema  # every field has a default

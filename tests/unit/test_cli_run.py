@@ -18,7 +18,8 @@ from navcore.simulate import simulate
 
 SHORT = ["--set", "run.duration_h=0.1"]
 COLUMNS = [
-    "method", "t_s", "phi_e_rad", "phi_n_rad", "phi_u_rad", "dve_mps", "dvn_mps", "dlat_m", "dlon_m", "damped", "xi",
+    "method", "t_s", "phi_e_rad", "phi_n_rad", "phi_u_rad", "dve_mps", "dvn_mps", "dlat_m", "dlon_m",
+    "damped", "xi",
 ]  # fmt: skip
 QUANTITIES = [*COLUMNS[2:9], "position_m"]
 
@@ -58,7 +59,16 @@ def test_the_command_gives_the_numbers_of_the_library(capsys):
 def test_people_get_a_table_with_units(capsys):
     assert main(["run", "zha-fast", *SHORT]) == 0
     out = capsys.readouterr().out
-    for word in ("Zha 2019, fig. 1", "arcsec", "m/s", "RMS", "largest", "at the end", "fast (compass)", "every step of"):
+    for word in (
+        "Zha 2019, fig. 1",
+        "arcsec",
+        "m/s",
+        "RMS",
+        "largest",
+        "at the end",
+        "fast (compass)",
+        "every step of",
+    ):
         assert word in out
     assert max(len(line) for line in out.splitlines()) < 160
 
@@ -145,7 +155,12 @@ def test_a_diverging_method_is_written_marked_and_exit_3(tmp_path, capsys):
     unstable = '{ id = "custom", num = [1.0, 0.003], den = [1.0, 0.001] }'
     sets = [f"method.1.network={unstable}", 'method.1.name="unstable"', "run.duration_h=50.0"]
     sets += ["imu.accel_bias_ug=[50.0, 50.0, 0.0]"]
-    arguments = ["zha-fast", *(word for item in sets for word in ("--set", item)), "--out", str(tmp_path / "o")]
+    arguments = [
+        "zha-fast",
+        *(word for item in sets for word in ("--set", item)),
+        "--out",
+        str(tmp_path / "o"),
+    ]
     code = main(["run", *arguments, "--json"])
     captured = capsys.readouterr()
     document = json.loads(captured.out)

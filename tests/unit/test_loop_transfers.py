@@ -179,6 +179,18 @@ def test_steady_states_that_grow_or_never_come() -> None:
     assert steady_state(unstable)["eps"]["phi"] is None
 
 
+@pytest.mark.parametrize("rate", [2e-3, 3e-3, 5e-3, 7e-3])
+def test_rounding_does_not_turn_unit_dc_gain_into_an_endless_growth(rate: float) -> None:
+    """The product of the zeros is that of the poles: H(0) = 1, but for the last digit."""
+    zeros, first = [-6.9e-4, -45.0 * rate], -4.0 * rate
+    block = {"id": "custom", "zeros": zeros, "poles": [first, zeros[0] * zeros[1] / first]}
+    steady = steady_state(parse_network(block).transfer(OMEGA_S))
+    growth = steady["acceleration"]["dv"]
+    assert growth is not None
+    assert np.isfinite(growth)
+    assert steady["dv_r"]["dv"] == 0.0
+
+
 def test_time_responses_end_at_the_steady_state() -> None:
     network = parse_network('id = "unity2"').transfer(OMEGA_S)
     late = np.array([0.0, 1e6])
@@ -276,6 +288,24 @@ def test_margins_are_at_the_edge_of_stability() -> None:
         assert abs(at) == pytest.approx(1.0, rel=1e-6)
         assert abs(np.angle(-at)) == pytest.approx(found.phase_rad, rel=1e-6)
         assert found.delay_s == pytest.approx(np.angle(-at) / found.crossover_rad_s, rel=1e-6)
+
+
+def test_the_smallest_delay_margin_of_several_crossovers_counts() -> None:
+    """A light resonance lifts |L| through 1 again above the first crossover."""
+    w = 3.0 * OMEGA_S
+    classic = parse_network('id = "classic2"').transfer(OMEGA_S)
+    num = np.polymul(classic.num, [1.0, 2 * 0.3 * w, w**2])
+    den = np.polymul(classic.den, [1.0, 2 * 0.1 * w, w**2])
+    network = parse_network({"id": "custom", "num": num.tolist(), "den": den.tolist()}).transfer(OMEGA_S)
+    omega = OMEGA_S * np.logspace(-1, 2, 400_001)
+    loop = network.response(omega) * OMEGA_S**2 / (1j * omega) ** 2
+    crossings = np.flatnonzero(np.diff(np.sign(np.abs(loop) - 1.0)))
+    assert len(crossings) == 3
+    delays = np.mod(np.angle(-loop[crossings]), 2.0 * np.pi) / omega[crossings]
+    found = margins(network)
+    assert found is not None
+    assert found.delay_s == pytest.approx(np.min(delays), rel=1e-3)
+    assert found.phase_rad == pytest.approx(np.min(np.abs(np.angle(-loop[crossings]))), rel=1e-3)
 
 
 def test_a_gain_limit_is_where_the_loop_turns_unstable() -> None:

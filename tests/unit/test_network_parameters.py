@@ -49,7 +49,9 @@ def test_every_field_has_a_default_and_says_what_it_is(name: str) -> None:
         assert not info.is_required() or field == "id"
         if field != "id":
             assert info.description, f"{name}.{field} has no help"
-            assert {"unit", "label"} & set(extra_of(info)), f"{name}.{field} was not made with quantity() or choice()"
+            assert {"unit", "label"} & set(extra_of(info)), (
+                f"{name}.{field} was not made with quantity() or choice()"
+            )
 
 
 @pytest.mark.parametrize("name", NETWORKS)

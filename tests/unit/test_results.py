@@ -71,7 +71,9 @@ def test_whatever_no_run_wrote_is_named(make, tmp_path):
     with pytest.raises(InputError) as refused:
         require_replaceable(tmp_path)
     said = str(refused.value)
-    assert {"folder of our name": "metrics.json", "hidden file": ".git", "five files": "a, b, c and 2 more"}[make] in said
+    assert {"folder of our name": "metrics.json", "hidden file": ".git", "five files": "a, b, c and 2 more"}[
+        make
+    ] in said
 
 
 def test_nothing_and_an_empty_folder_may_be_taken(tmp_path):
@@ -106,7 +108,10 @@ def test_series_of_all_methods_follow_each_other():
         {
             "run": {"duration_h": 0.02, "output_step_s": 7.0},
             "reference": {"kind": "log"},
-            "method": [{"name": 'a, "b"'}, {"name": "c", "damping": "external", "network": {"id": "classic2"}}],
+            "method": [
+                {"name": 'a, "b"'},
+                {"name": "c", "damping": "external", "network": {"id": "classic2"}},
+            ],
         }
     )
     table = timeseries(simulate(scenario))

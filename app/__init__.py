@@ -1,0 +1,1 @@
+"""app: the dashboard and the command ``schuler``, on top of `navcore`."""

@@ -1,0 +1,115 @@
+"""A dashboard in a process of its own, as ``schuler serve`` starts it."""
+
+from __future__ import annotations
+
+import http.client
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+from urllib.parse import urljoin
+
+_ROOT = Path(__file__).resolve().parents[2]
+_MIB = 1024.0 * 1024.0
+
+
+def environment() -> dict[str, str]:
+    """Environment in which a child finds this very installation, whatever the current folder."""
+    paths = [str(_ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
+    kept = {name: value for name, value in os.environ.items() if name != "SCHULER_TOKEN"}
+    return {**kept, "PYTHONPATH": os.pathsep.join(paths)}
+
+
+def free_port() -> int:
+    """Port that nobody listens on at this moment."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Server:
+    """A running dashboard, used as a context.
+
+    Attributes
+    ----------
+    port : int
+        Where it listens.
+    startup_s : float
+        From the start of the process until the page was served.
+    """
+
+    def __init__(self) -> None:
+        self.port = free_port()
+        self.startup_s = 0.0
+
+    def __enter__(self) -> Self:
+        words = [sys.executable, "-m", "app", "serve", "--port", str(self.port)]
+        began = time.perf_counter()
+        self._process = subprocess.Popen(
+            words, env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL
+        )
+        try:
+            self._wait_for_page()
+        except BaseException:
+            self._end()
+            raise
+        self.startup_s = time.perf_counter() - began
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._end()
+
+    def rss_mb(self) -> float:
+        """Memory the process holds now, MiB."""
+        status = Path(f"/proc/{self._process.pid}/statm")
+        if status.exists():
+            return int(status.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / _MIB
+        listed = subprocess.run(
+            ["ps", "-o", "rss=", "-p", str(self._process.pid)], capture_output=True, text=True, check=True
+        )
+        return int(listed.stdout) * 1024.0 / _MIB
+
+    def _wait_for_page(self, seconds: float = 30.0) -> None:
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            if self._process.poll() is not None:
+                raise RuntimeError(f"the dashboard ended with exit code {self._process.returncode}")
+            try:
+                if self._page() == 200:
+                    return
+            except OSError:
+                time.sleep(0.005)
+        raise TimeoutError(f"the dashboard served no page within {seconds:g} s")
+
+    def _page(self) -> int:
+        """Ask for the page, follow the way to a new session; return the status."""
+        path, status = "/", 0
+        for _ in range(3):
+            connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
+            try:
+                connection.request("GET", path)
+                response = connection.getresponse()
+                response.read()
+                status = response.status
+                if status not in (301, 302, 303, 307, 308):
+                    return status
+                path = urljoin(path, response.headers["Location"])
+            finally:
+                connection.close()
+        return status
+
+    def _end(self) -> None:
+        if self._process.poll() is None:
+            self._process.send_signal(signal.SIGTERM)
+            try:
+                self._process.wait(6.0)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()

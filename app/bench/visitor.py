@@ -1,0 +1,151 @@
+"""A visitor without a browser: opens the page's websocket, moves controls, waits for the figures."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
+from types import TracebackType
+from typing import Any, Self
+
+_RUN = re.compile(r'data-run="(\d+)"')
+_CAMERA = {
+    "type": "ViewerCameraMessage",
+    "wxyz": [1, 0, 0, 0],
+    "position": [3, 3, 3],
+    "fov": 1.3,
+    "near": 0.01,
+    "far": 1000,
+    "image_height": 1080,
+    "image_width": 1920,
+    "look_at": [0, 0, 0],
+    "up_direction": [0, 0, 1],
+}
+PAGE_STATE = "page state"
+"""Label of the control through which a browser reports its size and front tabs (app.page)."""
+
+
+class Visitor:
+    """One page's websocket, used as a context.
+
+    Parameters
+    ----------
+    port : int
+        Of a server on this machine.
+    session : str
+        Part of the page's address.
+    """
+
+    def __init__(self, port: int, session: str = "bench-session") -> None:
+        self._address = f"ws://127.0.0.1:{port}/s/{session}"
+        self._origin = f"http://127.0.0.1:{port}"
+        self._stack = ExitStack()
+        self.controls: dict[str, dict[str, Any]] = {}
+        """Newest control of each label, as the server described it."""
+        self._held: dict[str, Any] = {}
+        self.run_number = 0
+        self.arrived_s = 0.0
+        """When the last byte of the newest run had come, by `time.perf_counter`."""
+
+    def __enter__(self) -> Self:
+        import viser
+        from websockets.sync.client import connect
+        from websockets.typing import Origin, Subprotocol
+
+        self._socket = self._stack.enter_context(
+            connect(
+                self._address,
+                origin=Origin(self._origin),
+                subprotocols=[Subprotocol(f"viser-v{viser.__version__}")],
+                compression=None,
+                max_size=None,
+                close_timeout=1,
+            )
+        )
+        self._send(_CAMERA)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._stack.close()
+
+    def set(self, label: str, value: Any) -> float:
+        """Set the control with this label; return when that was, by `time.perf_counter`."""
+        uuid = self.control(label)["uuid"]
+        self._held[uuid] = value
+        self._send({"type": "GuiUpdateMessage", "uuid": uuid, "updates": {"value": value}})
+        return time.perf_counter()
+
+    def control(self, label: str) -> dict[str, Any]:
+        """Wait for a control; return the message that made it."""
+        self.wait(lambda: label in self.controls, f"a control labelled {label!r}")
+        return self.controls[label]
+
+    def held(self, label: str) -> Any:
+        """Value that the server last showed in a control."""
+        return self._held.get(self.control(label)["uuid"])
+
+    def wait_for_run(self, number: int) -> float:
+        """Wait until the figures of this or a later run are there; return when their last byte came."""
+        self.wait(lambda: self.run_number >= number, f"run {number}")
+        return self.arrived_s
+
+    def wait(self, done: Callable[[], bool], what: str, seconds: float = 30.0) -> None:
+        """Read until something is so.
+
+        Raises
+        ------
+        TimeoutError
+            It did not happen in time.
+        """
+        until = time.monotonic() + seconds
+        while not done():
+            left = until - time.monotonic()
+            if left <= 0.0:
+                raise TimeoutError(f"the dashboard did not send {what} within {seconds:g} s")
+            try:
+                self._read(left)
+            except TimeoutError:
+                continue
+
+    def rest(self, seconds: float) -> None:
+        """Keep reading for a while, as a browser does."""
+        until = time.monotonic() + seconds
+        while (left := until - time.monotonic()) > 0.0:
+            try:
+                self._read(left)
+            except TimeoutError:
+                return
+
+    def _send(self, message: dict[str, Any]) -> None:
+        import msgspec
+
+        self._socket.send(msgspec.msgpack.encode(message))
+
+    def _read(self, seconds: float) -> None:
+        raw = self._socket.recv(timeout=seconds)
+        came = time.perf_counter()
+        for message in _decoded(bytes(raw)):  # pyright: ignore[reportArgumentType]
+            props = message.get("props") or message.get("updates") or {}
+            if "label" in props and "uuid" in message and "props" in message:
+                self.controls[props["label"]] = message
+                self._held[message["uuid"]] = message.get("value")
+            elif "value" in props:
+                self._held[message["uuid"]] = props["value"]
+            found = _RUN.search(str(props.get("content", ""))[:200])
+            if found is not None and int(found[1]) > self.run_number:
+                self.run_number, self.arrived_s = int(found[1]), came
+
+
+def _decoded(raw: bytes) -> list[dict[str, Any]]:
+    """Undo viser's wire format: two lengths, then zstd-compressed msgpack."""
+    import msgspec
+    import zstandard
+
+    packed = int.from_bytes(raw[8:16], "little")
+    inner = zstandard.ZstdDecompressor().decompress(
+        raw[16 : 16 + packed], max_output_size=int.from_bytes(raw[:8], "little")
+    )
+    return msgspec.msgpack.decode(inner)["messages"]

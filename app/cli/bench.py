@@ -1,0 +1,40 @@
+"""``schuler bench``: how fast it is on this machine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.cli.terminal import emit, emit_json, on_terminal, say
+
+
+@dataclass(frozen=True)
+class BenchCommand:
+    """Measure speed and memory on this machine: medians of at least five repeats.
+
+    Attributes
+    ----------
+    json : bool
+        Print one JSON document.
+    """
+
+    json: bool = False
+
+    def execute(self) -> int:
+        """Measure and print; 3 when the dashboard does not answer."""
+        from app.bench import bench
+        from app.bench.text import bench_text
+
+        def tell(what: str) -> None:
+            if on_terminal():
+                say(f"{what} ...")
+
+        try:
+            numbers = bench(tell)
+        except (RuntimeError, TimeoutError) as error:
+            say(f"bench: stopped: {error}")
+            return 3
+        if self.json:
+            emit_json({key: round(value, 4) for key, value in numbers.items()})
+        else:
+            emit("\n".join(bench_text(numbers)))
+        return 0

@@ -1,0 +1,57 @@
+"""``schuler check``: what a log, track or scenario holds, and what is wrong with it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+from tyro.conf import Positional, arg
+
+from app.cli.terminal import emit, emit_json, say
+
+if TYPE_CHECKING:
+    from navcore.io.check import FileReport
+
+
+@dataclass(frozen=True)
+class CheckCommand:
+    """Say what a log, track, heading or scenario (or a preset, by its name) holds and what is wrong with it.
+
+    Attributes
+    ----------
+    file : str
+        The file.
+    json : bool
+        Print one JSON document.
+    """
+
+    file: Annotated[Positional[str], arg(metavar="FILE")]
+    json: bool = False
+
+    def execute(self) -> int:
+        """Print the report; 0 when the file was understood, else 2."""
+        report = check(self.file)
+        if self.json:
+            emit_json(report.as_dict())
+        elif report.ok:
+            emit("\n".join(report.lines()))
+        for fault in report.faults:
+            say(str(fault))
+        return 0 if report.ok else 2
+
+
+def check(file: str) -> FileReport:
+    """Check a file, or a preset by its name."""
+    from pathlib import Path
+
+    from app.cli.check_scenario import SCENARIO_CHECKER, check_scenario
+    from navcore.errors import InputError
+    from navcore.io.check import FileReport, check_file
+    from navcore.scenario_file import presets
+
+    if file in presets() and not Path(file).exists():
+        try:
+            return check_scenario(file)
+        except InputError as error:
+            return FileReport(file, "", faults=error.faults)
+    return check_file(file, [SCENARIO_CHECKER])

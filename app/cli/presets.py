@@ -1,0 +1,48 @@
+"""``schuler presets``: the scenarios that come with the product."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from app.cli.table import columns
+from app.cli.terminal import emit, emit_json
+
+
+@dataclass(frozen=True)
+class PresetsCommand:
+    """List the presets, and where the JSON Schema of a scenario lies.
+
+    Attributes
+    ----------
+    json : bool
+        Print one JSON document.
+    """
+
+    json: bool = False
+
+    def execute(self) -> int:
+        """Print the list."""
+        document = presets_document()
+        if self.json:
+            emit_json(document)
+        else:
+            listed = document["presets"]
+            width = max(len(preset["name"]) for preset in listed)
+            lines = [f"{p['name']:<{width}}  {p['title']} ({p['source']})" for p in listed]
+            emit("\n".join([*lines, "", *columns([["schema of a scenario:", document["schema_file"]]])]))
+        return 0
+
+
+def presets_document() -> dict[str, Any]:
+    """Presets with title, source and fidelity; studies (none exist yet); path of the JSON Schema."""
+    from navcore.assets import asset_path
+    from navcore.scenario_file import load, presets
+    from navcore.schema_file import SCHEMA_FILE
+
+    scenarios = {name: load(name) for name in presets()}
+    listed = [
+        {"name": name, "title": s.title, "source": s.source, "fidelity": s.run.fidelity}
+        for name, s in scenarios.items()
+    ]
+    return {"presets": listed, "studies": [], "schema_file": str(asset_path(SCHEMA_FILE))}

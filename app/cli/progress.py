@@ -1,0 +1,75 @@
+"""A progress bar on stderr that shows up only when a run takes long enough to wonder."""
+
+from __future__ import annotations
+
+import threading
+from types import TracebackType
+from typing import TYPE_CHECKING, Self
+
+if TYPE_CHECKING:
+    from rich.progress import Progress, TaskID
+
+_APPEARS_AFTER_S = 0.5
+
+
+class Bar:
+    """Progress of one run; shown (and its library imported) only after half a second.
+
+    Parameters
+    ----------
+    title : str
+        Shown beside the bar, as plain text.
+    show : bool
+        False: never shown.
+    """
+
+    def __init__(self, title: str, show: bool) -> None:
+        self._title = title
+        self._fraction = 0.0
+        self._shown: tuple[Progress, TaskID] | None = None
+        self._lock = threading.Lock()
+        self._timer = threading.Timer(_APPEARS_AFTER_S, self._appear) if show else None
+
+    def __enter__(self) -> Self:
+        if self._timer is not None:
+            self._timer.daemon = True
+            self._timer.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+        with self._lock:
+            self._timer = None
+            if self._shown is not None:
+                self._shown[0].stop()
+
+    def advance(self, fraction: float) -> None:
+        """Tell the fraction done, 0..1; from any thread."""
+        self._fraction = fraction
+        if self._shown is not None:
+            progress, task = self._shown
+            progress.update(task, completed=fraction)
+
+    def _appear(self) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+        with self._lock:
+            if self._timer is None:
+                return
+            progress = Progress(
+                TextColumn("{task.description}", markup=False),
+                BarColumn(),
+                TextColumn("{task.percentage:>3.0f} %", markup=False),
+                TimeElapsedColumn(),
+                TimeRemainingColumn(),
+                console=Console(stderr=True),
+                transient=True,
+            )
+            task = progress.add_task(self._title, total=1.0)
+            progress.update(task, completed=self._fraction)
+            self._shown = (progress, task)
+            progress.start()

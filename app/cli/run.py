@@ -1,0 +1,75 @@
+"""``schuler run``: simulate a scenario, print its metrics, write its files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from tyro.conf import Positional, UseAppendAction, arg
+
+from app.cli.terminal import emit, emit_json, on_terminal, say
+
+if TYPE_CHECKING:
+    from navcore.run import Run
+
+
+@dataclass(frozen=True)
+class RunCommand:
+    """Run a scenario: every method on the same truth, sensors and log.
+
+    Attributes
+    ----------
+    scenario : str
+        Name of a preset, or a TOML file.
+    set : tuple of str
+        Override one field, e.g. method.0.network.xi=0.5.
+    out : Path or None
+        Folder for scenario.toml, metrics.json and the time series: made, or replaced as a whole.
+    format : {"parquet", "csv"}
+        Of the time series.
+    json : bool
+        Print the metrics as one JSON document.
+    quiet : bool
+        No progress bar.
+    """
+
+    scenario: Annotated[Positional[str], arg(metavar="SCENARIO")]
+    set: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="KEY=VALUE")] = ()
+    out: Annotated[Path | None, arg(metavar="DIR")] = None
+    format: Literal["parquet", "csv"] = "parquet"
+    json: bool = False
+    quiet: bool = False
+
+    def execute(self) -> int:
+        """Run, write, print; 0 when every method went through, else 3."""
+        from navcore.io.results import require_replaceable, write_results
+        from navcore.metrics import metrics
+        from navcore.scenario_file import load
+
+        if self.out is not None:
+            require_replaceable(self.out)
+        run = _simulate(load(self.scenario, self.set), show=on_terminal() and not self.quiet)
+        if self.out is not None:
+            write_results(run, self.out, self.format)
+        if self.json:
+            emit_json(metrics(run))
+        else:
+            from app.cli.run_text import run_text
+
+            emit("\n".join(run_text(run)))
+        for method in run.methods:
+            if method.reason:
+                say(f"{self.scenario}: {method.method.name}: {method.status}: {method.reason}")
+        return 0 if run.status == "ok" else 3
+
+
+def _simulate(scenario: object, show: bool) -> Run:
+    from app.cli.progress import Bar
+    from app.cli.stop import stop_on_signal
+    from navcore.scenario import Scenario
+    from navcore.simulate import simulate
+
+    assert isinstance(scenario, Scenario)
+    with stop_on_signal() as stopped, Bar(scenario.title or "running", show) as bar:
+        return simulate(scenario, bar.advance, stopped)

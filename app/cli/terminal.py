@@ -1,0 +1,82 @@
+"""stdout and stderr: results, one JSON document, notes; none of them can end in a traceback."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import sys
+from typing import Any, TextIO
+
+_lost: list[str] = []
+
+
+def prepare_streams() -> None:
+    """Let no character that the terminal cannot show end the command."""
+    _lost.clear()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def emit(text: str) -> None:
+    """Print a result to stdout; a reader that went away is no fault of ours."""
+    _write(sys.stdout, text)
+
+
+def emit_json(document: Any) -> None:
+    """Print one JSON document to stdout; NaN and infinity must have been replaced before."""
+    emit(json.dumps(document, indent=2, allow_nan=False))
+
+
+def say(text: str) -> None:
+    """Print one line to stderr."""
+    _write(sys.stderr, text)
+
+
+def finish() -> bool:
+    """Flush both streams; False when stdout took no more for another reason than that its reader left."""
+    for stream in (sys.stdout, sys.stderr):
+        _write(stream, None)
+    for reason in _lost:
+        _write(sys.stderr, f"standard output: cannot be written: {reason}")
+    return not _lost
+
+
+def on_terminal() -> bool:
+    """True when someone watches stderr."""
+    try:
+        return sys.stderr is not None and sys.stderr.isatty()
+    except ValueError:
+        return False
+
+
+def lost(stream: TextIO, error: OSError) -> None:
+    """Note that a stream took no more, and write nothing further to it."""
+    if stream is sys.stdout and not isinstance(error, BrokenPipeError):
+        _lost.append(error.strerror or str(error))
+    _silence(stream)
+
+
+def _write(stream: TextIO | None, text: str | None) -> None:
+    if stream is None:
+        return
+    try:
+        if text is None:
+            stream.flush()
+        else:
+            print(text, file=stream, flush=True)
+    except OSError as error:
+        lost(stream, error)
+    except ValueError:  # closed by whoever called us
+        return
+
+
+def _silence(stream: TextIO) -> None:
+    """Send what is still buffered nowhere, or Python complains about it on its way out."""
+    try:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)
+    except (OSError, ValueError):
+        return

@@ -1,0 +1,1 @@
+"""Run -> figure data: pure functions without viser, without physics of their own."""

@@ -1,0 +1,155 @@
+"""The metrics of all methods as a table: the numbers of `Run.errors` and `Run.loop`, only put into units."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from html import escape
+
+from app.figures import style
+from app.figures.units import (
+    ARCMINUTES,
+    ARCSECONDS,
+    METRES,
+    METRES_PER_SECOND,
+    NAUTICAL_MILES,
+    Unit,
+    duration,
+    number,
+)
+from navcore.run import MethodRun, Run
+
+STATISTICS = ("rms", "max_abs", "final")
+_HEADINGS = ("rms", "max", "final")
+_DIGITS = 5
+
+# Fixed units: numbers of two runs can be compared at a glance.
+_QUANTITIES: tuple[tuple[str, str, Unit], ...] = (
+    ("tilt φE", "phi_e_rad", ARCSECONDS),
+    ("tilt φN", "phi_n_rad", ARCSECONDS),
+    ("heading φU", "phi_u_rad", ARCMINUTES),
+    ("velocity δVE", "dve_mps", METRES_PER_SECOND),
+    ("velocity δVN", "dvn_mps", METRES_PER_SECOND),
+    ("latitude", "dlat_m", METRES),
+    ("longitude", "dlon_m", METRES),
+    ("position", "position_m", METRES),
+    ("position", "position_m", NAUTICAL_MILES),
+)
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the table.
+
+    Attributes
+    ----------
+    label : str
+        What is shown.
+    unit : str
+        Its unit; may be empty.
+    cells : tuple of tuple of str
+        For every method either one text or one for each of `STATISTICS`.
+    """
+
+    label: str
+    unit: str
+    cells: tuple[tuple[str, ...], ...]
+
+
+def metrics_rows(run: Run) -> tuple[Row, ...]:
+    """Lines of the table: the loop's figures, then the errors of each quantity."""
+    return (*_loop_rows(run), *(_error_row(run, *quantity) for quantity in _QUANTITIES))
+
+
+def _loop_rows(run: Run) -> list[Row]:
+    shown = {
+        "damping ratio": lambda m: number(m.loop.damping_ratio, _DIGITS),
+        "settles to 2 %": _settling,
+        "H(0)": lambda m: number(m.loop.h0, _DIGITS),
+    }
+    rows = [Row(label, "", tuple((text(m),) for m in run.methods)) for label, text in shown.items()]
+    if run.status != "ok":
+        rows.insert(0, Row("run", "", tuple((m.status,) for m in run.methods)))
+    return rows
+
+
+def _settling(method: MethodRun) -> str:
+    if not method.loop.stable:
+        return "unstable"
+    settles = method.loop.settling_s
+    return "never" if settles is None else duration(settles, _DIGITS)
+
+
+def _error_row(run: Run, label: str, name: str, unit: Unit) -> Row:
+    cells = tuple(
+        tuple(number(method.errors[name][statistic] / unit.si, _DIGITS) for statistic in STATISTICS)
+        for method in run.methods
+    )
+    return Row(label, unit.name, cells)
+
+
+def metrics_markdown(run: Run) -> str:
+    """Table in Markdown: a column a method, errors as rms / max / final over all steps of the run."""
+    names = [_plain(m.method.name) for m in run.methods]
+    lines = [
+        "| " + " | ".join(["errors: rms / max / final", *names]) + " |",
+        "|" + "---|" * (len(names) + 1),
+    ]
+    for row in metrics_rows(run):
+        label = f"{row.label} ({row.unit})" if row.unit else row.label
+        lines.append("| " + " | ".join([label, *(" / ".join(cell) for cell in row.cells)]) + " |")
+    return "\n".join(lines)
+
+
+def _plain(name: str) -> str:
+    """Name without what Markdown would read as markup."""
+    return "".join(f"\\{letter}" if letter in "|*_`[]<>\\#" else letter for letter in name)
+
+
+def metrics_html(run: Run, methods: Sequence[int] | None = None) -> str:
+    """Return the same table as HTML, with the methods' colours and aligned figures.
+
+    Parameters
+    ----------
+    run : Run
+        Result.
+    methods : sequence of int, optional
+        Places of the methods to show, where all of them side by side are too wide; all when None.
+    """
+    shown = range(len(run.methods)) if methods is None else methods
+    head = "".join(
+        f'<th colspan="3" style="{_HEAD};border-bottom:3px solid {style.method_color(i)}">'
+        f"{escape(run.methods[i].method.name)}</th>"
+        for i in shown
+    )
+    below = "".join(f'<th style="{_NUMBER};{_MUTED}">{name}</th>' for name in _HEADINGS) * len(shown)
+    rows = (replace(row, cells=tuple(row.cells[i] for i in shown)) for row in metrics_rows(run))
+    body = "".join(_html_row(row) for row in rows)
+    return (
+        f'<div style="overflow-x:auto"><table style="{_TABLE}"><thead><tr><th></th><th></th>{head}</tr>'
+        f'<tr><th></th><th style="{_MUTED};text-align:left">unit</th>{below}</tr></thead>'
+        f"<tbody>{body}</tbody></table></div>"
+    )
+
+
+_TABLE = (
+    f"border-collapse:collapse;font-size:{style.FONT_SIZE}px;color:{style.INK};width:100%;"
+    "font-variant-numeric:tabular-nums;line-height:1.5"
+)
+_HEAD = "text-align:center;padding:2px 8px;font-weight:600"
+_NUMBER = "text-align:right;padding:1px 8px;white-space:nowrap"
+_MUTED = f"color:{style.MUTED};font-weight:400"
+_LINE = f"border-top:1px solid {style.GRID}"
+
+
+def _html_row(row: Row) -> str:
+    cells = "".join(
+        f'<td colspan="3" style="text-align:center;padding:1px 8px">{escape(cell[0])}</td>'
+        if len(cell) == 1
+        else "".join(f'<td style="{_NUMBER}">{escape(value)}</td>' for value in cell)
+        for cell in row.cells
+    )
+    return (
+        f'<tr style="{_LINE}"><td style="padding:1px 8px 1px 2px;white-space:nowrap">{escape(row.label)}</td>'
+        f'<td style="{_MUTED};padding:1px 8px 1px 0">{escape(row.unit)}</td>{cells}</tr>'
+    )

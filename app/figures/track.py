@@ -1,0 +1,237 @@
+"""True and computed trajectories as a small map: metres scaled to scene units, errors exaggerated."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.figures import style
+from app.figures.graticule import Graticule, LocalMap, SceneLabel, graticule, round_down, round_up, scale_bar
+from app.figures.units import length_unit, number
+from navcore.mechanization.recorder import D_LAT, D_LON
+from navcore.motion.base import HEADING, LAT, LON, PITCH, ROLL
+from navcore.run import MethodRun, Run
+
+MAX_POINTS = 1000
+"""Points of a line: a 24 h track at this density is smooth on any screen."""
+HALF_WIDTH = 5.0
+"""Half width of the map in scene units."""
+SHIP_LENGTH = 1.4
+"""Scene units; the ship is a symbol, not to scale."""
+_STATIC_M = 20.0
+_VISIBLE = 0.35
+"""Exaggerated errors reach at most this part of the track's size."""
+_FILL = 0.9
+_CUT = 3.0
+_DASH = 0.16
+_LIFT = 0.02
+_SCALES = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)
+
+
+@dataclass(frozen=True, eq=False)
+class MethodTrack:
+    """What one method computed.
+
+    Attributes
+    ----------
+    name : str
+        The method's.
+    color : (int, int, int)
+        The method's, as in every plot.
+    points : ndarray of float32, shape (k, 3)
+        Computed track, error exaggerated, scene units; shorter than the truth when the method ended early.
+    error_m : ndarray, shape (k, 2)
+        True size of the error at these points, east and north, m.
+    """
+
+    name: str
+    color: tuple[int, int, int]
+    points: np.ndarray
+    error_m: np.ndarray
+
+    def error_text(self, index: int) -> str:
+        """Name and error at a point, e.g. ``free 3.21 km``."""
+        size = math.hypot(*self.error_m[min(index, len(self.error_m) - 1)])
+        unit = length_unit(size)
+        return f"{self.name} {number(float(f'{size / unit.si:.3g}'))} {unit.name}"
+
+
+@dataclass(frozen=True, eq=False)
+class TrackScene:
+    """Everything the 3D view shows; scene units east, north, up, origin at the middle of the map.
+
+    Attributes
+    ----------
+    t_s : ndarray, shape (k,)
+        Times of the points, s.
+    truth : ndarray of float32, shape (k, 3)
+        True track.
+    wxyz : ndarray, shape (k, 4)
+        Attitude of the ship: body to scene quaternion, w first.
+    methods : tuple of MethodTrack
+        Computed tracks in the scenario's order.
+    exaggeration : float
+        Factor by which the position errors are drawn larger.
+    metres_per_unit : float
+        Scale of the map.
+    static : bool
+        The vehicle stays where it is: the map is as large as the errors.
+    graticule : Graticule
+        Lines of latitude and longitude.
+    bar : ndarray of float32, shape (3, 2, 3)
+        Scale bar.
+    labels : tuple of SceneLabel
+        Of the scale bar and of north.
+    caption : str
+        Exaggeration and scale in words.
+    """
+
+    t_s: np.ndarray
+    truth: np.ndarray
+    wxyz: np.ndarray
+    methods: tuple[MethodTrack, ...]
+    exaggeration: float
+    metres_per_unit: float
+    static: bool
+    graticule: Graticule
+    bar: np.ndarray
+    labels: tuple[SceneLabel, ...]
+    caption: str
+
+    def index_at(self, t_s: float) -> int:
+        """Index of the last point not later than ``t_s``, within the track."""
+        return int(np.clip(np.searchsorted(self.t_s, t_s, side="right") - 1, 0, len(self.t_s) - 1))
+
+    def error_vectors(self, index: int) -> np.ndarray:
+        """True position to computed one for every method at a point, float32, shape (methods, 2, 3)."""
+        vectors = np.empty((len(self.methods), 2, 3), dtype=np.float32)
+        for row, method in enumerate(self.methods):
+            at = min(index, len(method.points) - 1)
+            vectors[row, 0], vectors[row, 1] = self.truth[at], method.points[at]
+        return vectors
+
+    def truth_dashes(self) -> np.ndarray:
+        """Truth as dashes, float32, shape (n, 2, 3): what is true is dashed, what is computed is solid."""
+        pairs = segments(self.truth)
+        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(pairs[:, 1] - pairs[:, 0], axis=1))])
+        return pairs[np.floor(along[:-1] / _DASH).astype(int) % 2 == 0]
+
+
+def segments(points: np.ndarray) -> np.ndarray:
+    """Polyline, shape (k, 3), as the pairs of points that viser's line segments take, shape (k - 1, 2, 3)."""
+    return np.stack([points[:-1], points[1:]], axis=1)
+
+
+def track(run: Run, exaggeration: float | None = None) -> TrackScene:
+    """Map of the run.
+
+    Parameters
+    ----------
+    run : Run
+        Result.
+    exaggeration : float, optional
+        Factor on the position errors; chosen from 1, 2, 5, 10, ... so that they show when None.
+    """
+    chosen = _chosen(len(run.t_s))
+    t_s, rows = run.t_s[chosen], run.truth[chosen]
+    lat, lon = rows[:, LAT], np.unwrap(rows[:, LON])
+    lat0, lon0 = 0.5 * (lat.min() + lat.max()), 0.5 * (lon.min() + lon.max())
+    meridian, prime_vertical = run.scenario.earth.radii(float(lat0))
+    per_lon = prime_vertical * math.cos(lat0)
+    true_m = np.column_stack([(lon - lon0) * per_lon, (lat - lat0) * meridian])
+    half_m = float(np.max(np.abs(true_m), initial=0.0))
+    static = half_m < _STATIC_M
+    peak = _peak(run)
+    errors = [_errors(method, chosen, peak) for method in run.methods]
+    factor = exaggeration or (1.0 if static else _exaggeration(half_m, peak))
+    computed_m = [true_m[: len(error)] + factor * error for error in errors]
+    middle, metres = _frame([true_m, *computed_m], static)
+    area = LocalMap(
+        lat0=float(lat0 + middle[1] / meridian),
+        lon0=float(lon0 + middle[0] / per_lon),
+        metres_per_lat=meridian,
+        metres_per_lon=per_lon,
+        metres_per_unit=metres,
+    )
+    bar, bar_label = scale_bar(metres, HALF_WIDTH)
+    north = SceneLabel("▲ N", (-HALF_WIDTH, HALF_WIDTH + 0.45, 0.0))
+    tracks = tuple(
+        MethodTrack(m.method.name, style.method_rgb(i), _scene(computed, middle, metres, _LIFT), error)
+        for i, (m, computed, error) in enumerate(zip(run.methods, computed_m, errors, strict=True))
+    )
+    return TrackScene(
+        t_s=t_s,
+        truth=_scene(true_m, middle, metres, 2.0 * _LIFT),
+        wxyz=attitude_quaternions(rows[:, PITCH], rows[:, ROLL], rows[:, HEADING]),
+        methods=tracks,
+        exaggeration=factor,
+        metres_per_unit=metres,
+        static=static,
+        graticule=graticule(area, HALF_WIDTH),
+        bar=bar,
+        labels=(bar_label, north),
+        caption=_caption(factor, static),
+    )
+
+
+def attitude_quaternions(pitch: np.ndarray, roll: np.ndarray, heading: np.ndarray) -> np.ndarray:
+    """Quaternions (w, x, y, z) of C_b^n = Rz(-heading) Rx(pitch) Ry(roll), angles in rad, shape (k, 4)."""
+    cp, sp = np.cos(0.5 * pitch), np.sin(0.5 * pitch)
+    cr, sr = np.cos(0.5 * roll), np.sin(0.5 * roll)
+    ch, sh = np.cos(0.5 * heading), -np.sin(0.5 * heading)
+    a, b, c, d = cp * cr, sp * cr, cp * sr, sp * sr
+    return np.column_stack([ch * a - sh * d, ch * b - sh * c, ch * c + sh * b, ch * d + sh * a])
+
+
+def _chosen(count: int) -> np.ndarray:
+    """Indices of the output rows that are drawn: evenly spread, first and last included."""
+    return np.unique(np.linspace(0, max(count - 1, 0), min(count, MAX_POINTS)).round().astype(int))
+
+
+def _peak(run: Run) -> float:
+    """Largest position error of the methods that did not diverge (else of all), m."""
+    good = [m for m in run.methods if m.status != "diverged"] or list(run.methods)
+    return max((m.errors["position_m"]["max_abs"] for m in good), default=0.0)
+
+
+def _errors(method: MethodRun, chosen: np.ndarray, peak_m: float) -> np.ndarray:
+    """Position error east and north at the drawn rows, m, as far as the method came and stays on the map."""
+    rows = method.rows[chosen[chosen < len(method.rows)]]
+    error = rows[:, [D_LON, D_LAT]]
+    if method.status == "diverged" and peak_m > 0.0:
+        beyond = np.flatnonzero(~(np.hypot(error[:, 0], error[:, 1]) <= _CUT * peak_m))
+        error = error[: beyond[0]] if len(beyond) else error
+    return error if len(error) else np.zeros((1, 2))
+
+
+def _exaggeration(track_half_m: float, peak_m: float) -> float:
+    if peak_m <= 0.0:
+        return 1.0
+    return max(1.0, round_down(_VISIBLE * 2.0 * track_half_m / peak_m))
+
+
+def _frame(parts: list[np.ndarray], static: bool) -> tuple[np.ndarray, float]:
+    """Middle of the map (m) and metres per scene unit, from a coarse series so that the map stands still."""
+    everything = np.concatenate(parts)
+    everything = everything[np.isfinite(everything).all(axis=1)]
+    low, high = everything.min(axis=0), everything.max(axis=0)
+    middle = np.zeros(2) if static else 0.5 * (low + high)
+    half = float(np.max(np.maximum(high - middle, middle - low)))
+    if half <= 0.0:
+        return middle, 1.0
+    return middle, round_up(half / (_FILL * HALF_WIDTH), _SCALES)
+
+
+def _scene(points_m: np.ndarray, middle: np.ndarray, metres_per_unit: float, lift: float) -> np.ndarray:
+    made = np.full((len(points_m), 3), lift, dtype=np.float32)
+    made[:, :2] = (points_m - middle) / metres_per_unit
+    return made
+
+
+def _caption(factor: float, static: bool) -> str:
+    if static:
+        return "position errors to scale" if factor == 1.0 else f"position errors x {number(factor)}"
+    how = "to scale" if factor == 1.0 else f"drawn x {number(factor)}"
+    return f"position errors {how}; ship not to scale"

@@ -1,0 +1,283 @@
+"""One open page: builds the widgets, hands what the user does to the session, and shows what comes back.
+
+For programs that watch the page: the element ``#sb-run`` carries ``data-run`` (the number of the run that is
+shown), ``data-digest`` (of the run's arrays) and, as its text, the run's metrics as JSON. It is the last
+thing sent for a run. A control is found by its label's exact text.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import threading
+import time
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app import notices
+from app.actions import Actions, as_json
+from app.editor import Editor
+from app.figures import style
+from app.figures.track import track
+from app.http.viser_insides import leaving_is_no_fault
+from app.layout import layout_for, read_state
+from app.panels.control import Control
+from app.panels.files import FilesPanel
+from app.panels.header import HeaderPanel
+from app.panels.inputs import LogPanel, RunPanel, SensorPanel
+from app.panels.method import MethodPanel
+from app.panels.results import TABS, ResultsPanel
+from app.scene import SceneDrawer
+from app.session import Session
+from navcore.errors import InputError
+from navcore.metrics import metrics
+from navcore.run import Run
+
+if TYPE_CHECKING:
+    import viser
+
+PAGE_STATE = "page state"
+"""Label of the control through which the page reports its size and front tabs (static/page.js)."""
+
+_SIZE_WAIT_S = 1.0
+_EDIT_TABS = ("Method", "Sensors", "Log", "Run", "Files")
+
+
+class Page:
+    """A browser page on a session: a view of it (`app.session.View`).
+
+    Parameters
+    ----------
+    client : viser.ClientHandle
+        The browser.
+    session : Session
+        Whose work is shown.
+    """
+
+    def __init__(self, client: viser.ClientHandle, session: Session) -> None:
+        self.client, self.session = client, session
+        self.gui = client.gui
+        self._closed = self._built = False
+        self._reported = threading.Event()
+        self._window = (0, 0)
+        self._front: tuple[str, ...] = ()
+        self._stale = set(TABS)
+        self._editor = Editor(client, session, self, self._controls, lambda: self.method.shown_network)
+        self._actions = Actions(client, session, self._again)
+        self._build()
+
+    # ------------------------------------------------------------ building
+
+    def _build(self) -> None:
+        gui, session = self.gui, self.session
+        leaving_is_no_fault(self.client)
+        self._state = gui.add_text(PAGE_STATE, "", order=1)
+        self._state.on_update(lambda _: self._on_state())
+        css = (Path(__file__).parent / "static" / "page.css").read_text(encoding="utf-8")
+        css = css.replace("PAGE_STATE", self._state._impl.uuid)
+        gui.add_html(f"<style>{css}{style.UPLOT_CSS}</style>", order=0)
+        self.client.flush()
+        if not self._reported.wait(_SIZE_WAIT_S):
+            # No word from the script: the view covers the window as long as nothing is docked, but its size
+            # counts device pixels.
+            camera = self.client.camera
+            self._window = (max(camera.image_width, 1280), max(camera.image_height, 720))
+        with session.lock, self.client.atomic():
+            self._layout = layout_for(*self._window)
+            gui.main_panel.dock_left()
+            gui.main_panel.set_width(self._layout.left_px)
+            self._make_left()
+            self._results = self._make_results()
+            self._scene = SceneDrawer(self.client.scene)
+            self._run_element = gui.add_html("", order=2)
+            self.refresh()
+        self.client.flush()
+        self._built = True
+        self._arrange()
+        self._scene.point_camera(self.client.camera, self._layout.view_aspect)
+        session.attach(self)
+        if session.run is not None:
+            self.run_ended()
+
+    def _make_left(self) -> None:
+        gui, session, actions, edit = self.gui, self.session, self._actions, self._editor.edit
+        self.header = HeaderPanel(
+            gui, actions.scenarios(), actions.choose_scenario, session.cancel_run, session.redo_run,
+            self._move_ship, self._exaggerate,
+        )  # fmt: skip
+        self.header.show_exaggeration(session.exaggeration)
+        group = gui.add_tab_group(order=20)
+        tabs = {name: group.add_tab(name) for name in _EDIT_TABS}
+        self.method = MethodPanel(gui, tabs["Method"], edit, actions.select, actions.arrange_methods)
+        self.sensors = SensorPanel(gui, tabs["Sensors"], edit, self._again)
+        self.log = LogPanel(gui, tabs["Log"], edit, self._again, actions.arrange_log)
+        self.run_panel = RunPanel(gui, tabs["Run"], edit)
+        self.files = FilesPanel(
+            gui, tabs["Files"], actions.take_file, actions.use_files, actions.forget_files, actions.give_file
+        )
+
+    def _controls(self) -> list[Control]:
+        panels = (self.method, self.sensors, self.log, self.run_panel)
+        sections = [section for panel in panels for section in panel.sections.values()]
+        return [control for section in sections for control in section.controls.values()]
+
+    def _make_results(self) -> ResultsPanel:
+        return ResultsPanel(
+            self.gui, self._layout, self.session.transfer, self._choose_transfer, self._again_pictures
+        )
+
+    def close(self) -> None:
+        """The browser has gone."""
+        with self.session.lock:
+            self._closed = True
+        self._editor.close()
+        self.session.detach(self)
+
+    # ------------------------------------------------------------ what the pictures are of
+
+    def _choose_transfer(self, id: str) -> None:
+        with self.session.lock:
+            self.session.transfer = id
+        self._again_pictures()
+
+    def _exaggerate(self, factor: float | None) -> None:
+        with self.session.lock:
+            self.session.exaggeration = factor
+            if self.session.run is not None:
+                self._draw_track(self.session.run)
+        self.client.flush()
+
+    def _move_ship(self) -> None:
+        with self.session.lock, self.client.atomic():
+            if self.session.run is not None:
+                self._scene.move_ship(self.header.ship_time_s(self.session.run))
+        self.client.flush()
+
+    # ------------------------------------------------------------ what the session says
+
+    def scenario_changed(self, by: object) -> None:
+        """Show the session's scenario in all controls."""
+        if by is not self:
+            self._editor.moved = None
+        with self.client.atomic():
+            self.refresh()
+
+    def refresh(self) -> None:
+        """Let every control show the session's scenario; the one in hand stays as it is."""
+        session = self.session
+        scenario, index, moved = session.scenario, session.selected, self._editor.moved
+        self.header.show_scenario(scenario, session.origin, self._actions.scenarios())
+        self.method.show(scenario, index, moved)
+        self.method.show_warnings(session.run, scenario, index)
+        for panel in (self.sensors, self.log, self.run_panel):
+            panel.show(scenario, moved)
+        self.files.show(session.uploads)
+
+    def run_progressed(self, fraction: float, elapsed_s: float) -> None:
+        """Mark the picture as old once a run takes its time."""
+        if elapsed_s > 0.5 and not self._closed:
+            self.header.show_progress(fraction, self.session.run_number)
+            self.client.flush()
+
+    def run_stopped(self) -> None:
+        """The user stopped the run."""
+        self.header.show_stopped(self.session.run_number)
+        self.client.flush()
+
+    def run_refused(self, error: InputError) -> None:
+        """The scenario cannot run; the last good one is back."""
+        title = "The scenario cannot run; the last good one is back"
+        notices.tell(self.client, title, notices.fault_lines(error))
+        if self.session.run is not None:
+            self.run_ended()
+
+    def run_failed(self, error: Exception) -> None:
+        """Something of ours went wrong; the last good picture stays."""
+        notices.tell(self.client, "Something went wrong", [f"{type(error).__name__}: {error}"])
+        self.header.show_failed(self.session.run_number)
+        self.client.flush()
+
+    def run_ended(self) -> None:
+        """Show the session's run: the figures of the tabs in front, the map, and last the run element."""
+        began = time.perf_counter()
+        session = self.session
+        run, number = session.run, session.run_number
+        if run is None or self._closed:
+            return
+        wanted = set(self._front).intersection(TABS) or set(TABS)
+        pictures = self._results.make(run, number, session.transfer, wanted)
+        content = _run_element(run, number)
+        with session.lock, self.client.atomic():
+            self._stale = set(TABS) - wanted
+            self._results.show(pictures)
+            self._draw_track(run)
+            self.method.show_warnings(run, session.scenario, session.selected)
+            frame_ms = 1e3 * (run.elapsed_s + time.perf_counter() - began)
+            self.header.show_run(run, number, outdated=session.outdated, frame_ms=frame_ms)
+            self._run_element.content = content
+        self.client.flush()
+
+    def _draw_track(self, run: Run) -> None:
+        self._scene.draw(track(run, self.session.exaggeration), self.header.ship_time_s(run))
+
+    def _again(self) -> None:
+        with self.session.lock, self.client.atomic():
+            self.refresh()
+
+    def _again_pictures(self) -> None:
+        """Make the figures in front anew, from the run there is."""
+        self._stale = set(TABS)
+        self._show_stale()
+
+    def _show_stale(self) -> None:
+        with self.session.lock:
+            run, number = self.session.run, self.session.run_number
+            wanted = self._stale.intersection(self._front or TABS)
+        if run is None or not wanted:
+            return
+        pictures = self._results.make(run, number, self.session.transfer, wanted)
+        with self.session.lock, self.client.atomic():
+            if self._closed or self.session.run is not run:
+                return
+            self._stale -= wanted
+            self._results.show(pictures)
+        self.client.flush()
+
+    # ------------------------------------------------------------ size and tabs
+
+    def _on_state(self) -> None:
+        window, front = read_state(self._state.value)
+        if window is None:
+            return
+        self._window = window
+        if front:
+            self._front = front
+        self._reported.set()
+        if self._built:
+            self._arrange()
+            self._show_stale()
+
+    def _arrange(self) -> None:
+        """Lay the results out anew if the window has another size now."""
+        with self.session.lock, self.client.atomic():
+            layout = layout_for(*self._window)
+            if self._closed or layout == self._layout:
+                return
+            self._layout = layout
+            self.gui.main_panel.set_width(layout.left_px)
+            self._results.remove()
+            self._results = self._make_results()
+            self._front, self._stale = (), set(TABS)
+        self._scene.point_camera(self.client.camera, layout.view_aspect)
+        self.client.flush()
+
+
+def _run_element(run: Run, number: int) -> str:
+    digest = hashlib.blake2b(digest_size=16)
+    for method in run.methods:
+        digest.update(method.plot.values.tobytes())
+        digest.update(method.rows.tobytes())
+    return (
+        f'<div id="sb-run" hidden data-run="{number}" data-status="{run.status}" '
+        f'data-digest="{digest.hexdigest()}">{escape(as_json(metrics(run)).decode())}</div>'
+    )

@@ -1,0 +1,1 @@
+"""Arrangement of widgets, one panel a file; no arithmetic, no lists of fields."""

@@ -1,0 +1,169 @@
+"""Tabs "Sensors", "Log" and "Run": what all methods share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from app import edits, form, notices
+from app.form import FieldSpec, Path
+from app.panels.control import Control, Edit
+from app.panels.section import Section
+from navcore.motion import MOTIONS
+from navcore.motion.swing import Oscillation
+from navcore.scenario import InitialError, RunSettings, Scenario, SiteSettings
+from navcore.sensors.imu import Imu
+from navcore.sensors.reference import LogEvent, Outage, Reference
+
+if TYPE_CHECKING:
+    import viser
+
+ADD_EVENT, REMOVE_EVENT, ADD_OUTAGE, REMOVE_OUTAGE = (
+    "add event",
+    "remove event",
+    "add outage",
+    "remove outage",
+)
+_FIRST_SENSORS = 8
+"""Fields of the IMU model, in its order, that are shown without asking."""
+_FIRST_LOG = 7
+_KINDS = {"event": LogEvent, "outage": Outage}
+
+Arrange = Callable[[str], None]
+Again = Callable[[], None]
+"""Shows everything anew, after a panel was asked for more or less."""
+
+
+class SensorPanel:
+    """Errors of gyros and accelerometers."""
+
+    def __init__(self, gui: viser.GuiApi, tab: viser.GuiTabHandle, edit: Edit, again: Again) -> None:
+        self._specs = form.fields(Imu, ("imu",))
+        with tab:
+            gui.add_html(
+                notices.small("Measured minus true, body axes x starboard, y forward, z up."), order=0
+            )
+            self._all = gui.add_checkbox(
+                "all errors", False, hint="Drift, scale factor, misalignment and quantisation too.", order=99
+            )
+        self._all.on_update(lambda event: again() if event.client is not None else None)
+        self.sections = {"first": Section(gui, tab, edit, 1.0), "more": Section(gui, tab, edit, 100.0)}
+
+    def show(self, scenario: Scenario, moved: Control | None) -> None:
+        """Show the scenario's values; errors that it sets are always shown."""
+        first, more = self._specs[:_FIRST_SENSORS], self._specs[_FIRST_SENSORS:]
+        if not self._all.value:
+            more = [spec for spec in more if edits.value_at(scenario, spec.path) != spec.default]
+        for name, specs in (("first", first), ("more", more)):
+            self.sections[name].show(specs, _values(scenario, specs), moved)
+
+
+class LogPanel:
+    """The reference velocity, its errors, events and outages."""
+
+    def __init__(
+        self, gui: viser.GuiApi, tab: viser.GuiTabHandle, edit: Edit, again: Again, arrange: Arrange
+    ) -> None:
+        self._specs = form.fields(Reference, ("reference",))
+        with tab:
+            self._all = gui.add_checkbox(
+                "all log errors", False, hint="Scale, delay, resolution, current and tide too.", order=29
+            )
+            self._buttons = gui.add_button_group(
+                "events",
+                (ADD_EVENT, REMOVE_EVENT),
+                hint="A passing disturbance: its acceleration is integrated into the log's velocity.",
+                order=60,
+            )
+            self._outages = gui.add_button_group(
+                "outages",
+                (ADD_OUTAGE, REMOVE_OUTAGE),
+                hint="A time in which the log gives nothing: undamped meanwhile.",
+                order=200,
+            )
+        self._all.on_update(lambda event: again() if event.client is not None else None)
+        for group in (self._buttons, self._outages):
+            group.on_click(lambda event: arrange(event.target.value) if event.client is not None else None)
+        places = {"kind": 0.0, "first": 1.0, "more": 30.0, "event": 61.0, "outage": 201.0}
+        self.sections = {name: Section(gui, tab, edit, order) for name, order in places.items()}
+
+    def show(self, scenario: Scenario, moved: Control | None) -> None:
+        """Show the scenario's values; errors that it sets are always shown."""
+        kind = scenario.reference.kind
+        shown = {"none": [], "file": [spec for spec in self._specs if spec.kind == "choice"]}
+        specs = shown.get(kind, self._specs)
+        first, more = specs[:_FIRST_LOG], specs[_FIRST_LOG:]
+        self._all.visible = bool(more)
+        if not self._all.value:
+            more = [spec for spec in more if edits.value_at(scenario, spec.path) != spec.default]
+        self._buttons.visible = self._outages.visible = kind != "none"
+        listed = {
+            "kind": [form.choice(Reference, "kind", ("reference",))],
+            "first": first,
+            "more": more,
+            "event": _blocks(scenario, "event"),
+            "outage": _blocks(scenario, "outage"),
+        }
+        for name, found in listed.items():
+            self.sections[name].show(found, _values(scenario, found), moved)
+
+
+class RunPanel:
+    """Duration, site, motion, initial errors, seed."""
+
+    def __init__(self, gui: viser.GuiApi, tab: viser.GuiTabHandle, edit: Edit) -> None:
+        with tab:
+            gui.add_html(notices.heading("Run and site"), order=0)
+            gui.add_html(notices.heading("Motion"), order=30)
+            self._about = gui.add_html("", order=59, visible=False)
+            gui.add_html(notices.heading("Errors at the start"), order=60)
+        places = {"run": 1.0, "site": 15.0, "motion": 31.0, "initial": 61.0}
+        self.sections = {name: Section(gui, tab, edit, order) for name, order in places.items()}
+
+    def show(self, scenario: Scenario, moved: Control | None) -> None:
+        """Show the scenario's values."""
+        motion = scenario.motion
+        kind = FieldSpec(("motion", "kind"), "motion", _told(MOTIONS), "choice", "static", tuple(MOTIONS))
+        listed = {
+            "run": [spec for spec in form.fields(RunSettings, ("run",)) if _counts(spec)],
+            "site": form.fields(SiteSettings, ("site",)),
+            "motion": [kind, *form.fields(type(motion), ("motion",)), *_swings(scenario)],
+            "initial": form.fields(InitialError, ("initial_error",)),
+        }
+        for name, specs in listed.items():
+            self.sections[name].show(specs, _values(scenario, specs), moved)
+        legs = len(getattr(motion, "leg", ()))
+        text = f"{legs} legs, as the scenario file gives them." if legs else ""
+        self._about.content, self._about.visible = notices.small(text), bool(text)
+
+
+def _counts(spec: FieldSpec) -> bool:
+    """Without the strapdown's IMU rate, which no fidelity built so far uses."""
+    return spec.path[-1] != "rate_hz"
+
+
+def _swings(scenario: Scenario) -> list[FieldSpec]:
+    """Fields of the blocks inside a motion, one block an angle."""
+    return [
+        spec
+        for name, info in type(scenario.motion).model_fields.items()
+        if info.annotation is Oscillation
+        for spec in form.fields(Oscillation, ("motion", name), prefix=f"{name} swing")
+    ]
+
+
+def _blocks(scenario: Scenario, name: str) -> list[FieldSpec]:
+    blocks = getattr(scenario.reference, name)
+    return [
+        spec
+        for i in range(len(blocks))
+        for spec in form.fields(_KINDS[name], ("reference", name, i), prefix=f"{name} {i + 1}")
+    ]
+
+
+def _told(members: dict[str, type]) -> str:
+    return "; ".join(f"{key}: {(m.__doc__ or '').strip().splitlines()[0]}" for key, m in members.items())
+
+
+def _values(scenario: Scenario, specs: list[FieldSpec]) -> dict[Path, Any]:
+    return {spec.path: edits.value_at(scenario, spec.path) for spec in specs}

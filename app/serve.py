@@ -1,0 +1,138 @@
+"""Entry of the dashboard: starts the server at once and warms the kernels behind it."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Iterable
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import viser
+
+    from app.http.server import DashboardServer
+    from app.page import Page
+    from app.session import Sessions
+
+PAGE_SCRIPT = Path(__file__).parent / "static" / "page.js"
+_log = logging.getLogger("schuler.serve")
+
+
+class Dashboard:
+    """Gives every browser that opens the page its `app.page.Page`."""
+
+    def __init__(self) -> None:
+        self._pages: dict[int, Page] = {}
+        self._lock = threading.Lock()
+
+    @cached_property
+    def sessions(self) -> Sessions:
+        """All sessions; made with the first page."""
+        from app.session import Sessions
+
+        return Sessions()
+
+    def warm_up(self) -> threading.Thread:
+        """Import what a page needs and load the compiled kernels, in the background."""
+        thread = threading.Thread(target=self._warm_up, name="warm-up", daemon=True)
+        thread.start()
+        return thread
+
+    def _warm_up(self) -> None:
+        try:
+            import app.page  # noqa: F401
+            from app.session import first_scenario
+            from navcore.simulate import simulate
+
+            simulate(first_scenario()[0])
+        except Exception:
+            _log.exception("warming up failed")
+
+    def on_connect(self, client: viser.ClientHandle, session_id: str) -> None:
+        """Build the page of a browser."""
+        from app.page import Page
+
+        with self._lock:
+            session = self.sessions.get(session_id)
+        page = Page(client, session)
+        with self._lock:
+            self._pages[client.client_id] = page
+
+    def on_disconnect(self, client: viser.ClientHandle, session_id: str) -> None:
+        """Close the page of a browser that has gone."""
+        del session_id
+        with self._lock:
+            page = self._pages.pop(client.client_id, None)
+        if page is not None:
+            page.close()
+
+    def close(self) -> None:
+        """End all sessions and remove what was uploaded."""
+        self.sessions.close()
+
+
+def open_dashboard(
+    host: str = "127.0.0.1",
+    port: int = 8080,
+    *,
+    token: str | None = None,
+    allow_origins: Iterable[str] = (),
+) -> tuple[DashboardServer, Dashboard]:
+    """Start the dashboard and return at once.
+
+    Raises
+    ------
+    InputError
+        See `app.http.server.start`.
+    """
+    from app.http.server import start
+
+    dashboard = Dashboard()
+    server = start(
+        host,
+        port,
+        token=token,
+        allow_origins=allow_origins,
+        on_connect=dashboard.on_connect,
+        on_disconnect=dashboard.on_disconnect,
+        page_scripts=[PAGE_SCRIPT],
+    )
+    # No axes cross in the middle of the map; they belong to the server's scene.
+    server.viser.scene.world_axes.visible = False
+    dashboard.warm_up()
+    return server, dashboard
+
+
+def serve(
+    host: str = "127.0.0.1",
+    port: int = 8080,
+    *,
+    token: str | None = None,
+    allow_origins: Iterable[str] = (),
+    open_browser: bool = False,
+) -> None:
+    """Serve the dashboard until SIGINT or SIGTERM.
+
+    Parameters
+    ----------
+    host, port, token, allow_origins
+        See `app.http.server.start`.
+    open_browser : bool
+        Open the page in the user's browser.
+
+    Raises
+    ------
+    InputError
+        The address cannot be served.
+    """
+    server, dashboard = open_dashboard(host, port, token=token, allow_origins=allow_origins)
+    print(f"Schuler Bench: {server.url}  (Ctrl+C ends it)", flush=True)
+    if open_browser:
+        import webbrowser
+
+        address = server.url if token is None else f"{server.url}?token={token}"
+        threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+    server.wait()
+    dashboard.close()

@@ -1,0 +1,44 @@
+"""The dashboard, served from this process, and pages on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.browser.driver import Bench
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+    from app.http.server import DashboardServer
+    from app.serve import Dashboard
+    from app.session import Session
+
+
+@pytest.fixture(scope="session")
+def dashboard() -> Iterator[tuple[DashboardServer, Dashboard]]:
+    """One server for all browser tests; every test has a session of its own."""
+    from app.serve import open_dashboard
+
+    server, dashboard = open_dashboard(port=0)
+    yield server, dashboard
+    server.stop()
+    dashboard.close()
+
+
+@pytest.fixture(scope="session")
+def bench(browser: Browser, dashboard: tuple[DashboardServer, Dashboard]) -> Iterator[Bench]:
+    """The page that most tests share; in its window frequency and errors are both in view."""
+    context = browser.new_context(viewport={"width": 1920, "height": 1080}, accept_downloads=True)
+    page = context.new_page()
+    page.set_default_timeout(30_000)
+    yield Bench(page, dashboard[0].url, dashboard[1].sessions).open()
+    context.close()
+
+
+@pytest.fixture
+def session(bench: Bench) -> Session:
+    """What the server keeps of the shared page's visitor."""
+    return bench.session

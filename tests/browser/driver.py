@@ -1,0 +1,235 @@
+"""Drives the dashboard's page as a user would, and reads what the page itself holds."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import TYPE_CHECKING, Any
+
+from navcore.scenario_file import load
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Locator, Page
+
+    from app.session import Session, Sessions
+
+THROTTLE_MS = 80
+"""The page sends one value in 50 ms, whichever control it comes from."""
+
+_UP_TO_DATE = """() => {
+  const plots = [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null);
+  const run = document.querySelector('#sb-run').dataset.run;
+  return plots.length > 0 && plots.every(p => String(p._fullLayout?.meta?.run) === run);
+}"""
+_PLOTLY = """() => {
+  const plain = values => Array.from(values ?? [], v => (Number.isFinite(v) ? v : null));
+  const plots = [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null);
+  return plots.flatMap(p => p._fullData.map(t => ({name: t.name, x: plain(t.x), y: plain(t.y)})));
+}"""
+_UPLOT = """() => {
+  const charts = Object.values(window.__viserTestpoints?.uplots ?? {}).map(entry => entry.chart);
+  return charts.map(c => ({label: c.axes[1].label, data: c.data.map(d => Array.from(d))}));
+}"""
+# Sums that any change of a value or of its place changes: whole arrays would take a second to hand over.
+_SUMS = """count => {
+  const sum = values => {
+    let total = 0;
+    (values ?? []).forEach((v, i) => { if (Number.isFinite(v)) total += v * (1 + (i % 97)); });
+    return `${values?.length ?? 0}:${total}`;
+  };
+  const plots = [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null);
+  const charts = Object.values(window.__viserTestpoints?.uplots ?? {}).map(entry => entry.chart);
+  const nodes = window.__viserSceneTree.getState();
+  const lines = [...Array(count).keys()].map(i => nodes[`/track/method${i}`]?.message.props.points);
+  return {
+    plotly: plots.flatMap(p => p._fullData.map(t => [t.name, sum(t.x), sum(t.y)])),
+    curves: charts.map(c => c.data.map(sum)),
+    track: lines.map(points => sum(points)),
+  };
+}"""
+_LINE = """name => {
+  const node = window.__viserSceneTree.getState()[name];
+  return node ? Array.from(node.message.props.points) : null;
+}"""
+
+
+class Bench:
+    """The page of one visitor.
+
+    Parameters
+    ----------
+    page : playwright Page
+        Not yet opened.
+    url : str
+        Of the dashboard.
+    sessions : Sessions
+        Of the dashboard, which runs in this process.
+    """
+
+    def __init__(self, page: Page, url: str, sessions: Sessions) -> None:
+        self.page = page
+        self.url = url
+        self.sessions = sessions
+        self.faults: list[str] = []
+        page.on("pageerror", lambda error: self.faults.append(str(error)))
+        page.on("console", lambda m: self.faults.append(m.text) if m.type == "error" else None)
+
+    def open(self, path: str = "") -> Bench:
+        """Open the page (a new session without a path) and wait for its first run."""
+        self.page.goto(f"{self.url}{path}?fixedDpr=0.25")
+        self.page.wait_for_selector("#sb-run[data-run]", state="attached")
+        self.page.wait_for_selector(".uplot canvas, .js-plotly-plot .trace", state="attached")
+        self.close_notices()
+        return self
+
+    @property
+    def session_id(self) -> str:
+        """Id of the session, from the page's address."""
+        return re.search(r"/s/([^/?]+)/", self.page.url)[1]
+
+    @property
+    def session(self) -> Session:
+        """What the server keeps of this visitor."""
+        return self.sessions.get(self.session_id)
+
+    # ------------------------------------------------------------ acting
+
+    def tab(self, *names: str) -> None:
+        """Bring tabs to the front."""
+        for name in names:
+            tab = self.page.get_by_role("tab", name=name, exact=True)
+            if tab.get_attribute("aria-selected") != "true":
+                tab.click()
+                self.page.wait_for_timeout(THROTTLE_MS)
+
+    def id(self, label: str) -> str:
+        """Id of the control with exactly this label."""
+        script = (
+            "l => [...document.querySelectorAll('label')].find(e => e.textContent === l)?.htmlFor ?? null"
+        )
+        self.page.wait_for_function(f"l => ({script})(l) !== null", arg=label, timeout=5000)
+        return self.page.evaluate(script, label)
+
+    def slider(self, label: str) -> Locator:
+        return self.page.locator(f"[id='{self.id(label)}'] [role=slider]")
+
+    def box(self, label: str) -> Locator:
+        return self.page.locator(f"input[id='{self.id(label)}']")
+
+    def value(self, label: str) -> float:
+        """Number in an exact box."""
+        return float(self.box(label).input_value())
+
+    def press(self, label: str, key: str = "ArrowRight") -> None:
+        """Move a slider by a key and wait for the run that follows."""
+        number = self.run
+        self.slider(label).press(key)
+        self.wait_for_run(number)
+
+    def type(self, label: str, text: str) -> None:
+        """Type into an exact box and wait for the run that follows."""
+        number = self.run
+        self.box(label).fill(text)
+        self.wait_for_run(number)
+
+    def choose(self, label: str, option: str) -> None:
+        """Choose in a dropdown; a run need not follow."""
+        self.page.wait_for_timeout(THROTTLE_MS)
+        self.box(label).click()
+        self.page.get_by_role("option", name=option, exact=True).click()
+        self.page.wait_for_timeout(THROTTLE_MS)
+
+    def choose_and_run(self, label: str, option: str) -> None:
+        number = self.run
+        self.choose(label, option)
+        self.wait_for_run(number)
+
+    def upload(self, file: Any) -> None:
+        """Upload a path, or a mapping of name, mimeType and buffer."""
+        self.page.locator("input[type=file]").set_input_files(file)
+
+    def close_notices(self) -> None:
+        # Not by the mouse: notices move while others close.
+        script = (
+            "() => document.querySelectorAll('.mantine-Notification-closeButton').forEach(b => b.click())"
+        )
+        shown = self.page.locator(".mantine-Notification-root")
+        for _ in range(50):  # closing some lets others come that waited for room
+            self.page.evaluate(script)
+            if shown.count() == 0:
+                return
+            self.page.wait_for_timeout(THROTTLE_MS)
+
+    # ------------------------------------------------------------ waiting and reading
+
+    @property
+    def run(self) -> int:
+        """Number of the run that is shown."""
+        return int(self.page.locator("#sb-run").get_attribute("data-run"))
+
+    def wait_for_run(self, after: int) -> None:
+        """Wait until a later run is shown."""
+        self.page.wait_for_function(
+            "n => Number(document.querySelector('#sb-run').dataset.run) > n", arg=after, timeout=20_000
+        )
+
+    def reset(self, preset: str, selected: int = 0) -> None:
+        """Let the visitor's session begin anew with a preset, without a click."""
+        scenario, session = load(preset), self.session
+        with session.lock:
+            number = session.run_number
+            fresh = session.change(scenario, None, origin=preset, selected=selected)
+            session.select(selected, None)
+        if fresh:
+            self.wait_for_run(number)
+        self.close_notices()
+
+    def settle(self) -> None:
+        """Wait until what was done has been sent, run and shown."""
+        self.page.wait_for_timeout(2 * THROTTLE_MS)
+        assert self.session.wait_idle(20.0)
+        shown = "n => Number(document.querySelector('#sb-run').dataset.run) === n"
+        self.page.wait_for_function(shown, arg=self.session.run_number, timeout=20_000)
+
+    @property
+    def metrics(self) -> dict[str, Any]:
+        """The numbers that the page carries."""
+        return json.loads(self.page.locator("#sb-run").text_content())
+
+    @property
+    def digest(self) -> str | None:
+        return self.page.locator("#sb-run").get_attribute("data-digest")
+
+    @property
+    def status(self) -> str:
+        """The line about the run."""
+        return self.page.locator("#sb-status").text_content() or ""
+
+    @property
+    def notes(self) -> list[str]:
+        """Notes beside controls that are in view."""
+        return [note.inner_text() for note in self.page.locator(".sb-note:visible").all()]
+
+    def notice(self, text: str) -> str:
+        """Wait for a notice with this text; return all of it."""
+        found = self.page.locator(".mantine-Notification-root").filter(has_text=text).first
+        found.wait_for(timeout=8000)
+        return found.inner_text()
+
+    def plotly(self) -> list[dict[str, Any]]:
+        """Traces of the plotly figures in view, as plotly holds them, once they are those of the run."""
+        self.page.wait_for_function(_UP_TO_DATE, timeout=8000)
+        return self.page.evaluate(_PLOTLY)
+
+    def sums(self, methods: int = 3) -> dict[str, Any]:
+        """Sums over what plotly, uPlot and the 3D scene hold, once the plots in view are those of the run."""
+        self.page.wait_for_function(_UP_TO_DATE, timeout=8000)
+        return self.page.evaluate(_SUMS, methods)
+
+    def curves(self) -> list[dict[str, Any]]:
+        """Error curves, as uPlot holds them."""
+        return self.page.evaluate(_UPLOT)
+
+    def line(self, name: str) -> list[float] | None:
+        """Points of a line in the 3D scene, as the page's scene tree holds them."""
+        return self.page.evaluate(_LINE, name)

@@ -1,0 +1,183 @@
+"""Every group of controls moves what it should: Bode plot, poles, error curves and the track in 3D."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from tests.browser.driver import Bench
+
+pytestmark = pytest.mark.browser
+
+BODE, POLES, ERRORS, TRACK = "bode", "poles", "errors", "track"
+
+
+def snapshot(bench: Bench, *, poles: bool) -> dict[str, Any]:
+    """What the page itself holds of all pictures; 3D as the lines of all methods."""
+    sums = bench.sums()
+    found = {BODE: sums["plotly"], ERRORS: sums["curves"], TRACK: sums["track"]}
+    if poles:
+        bench.tab("Poles")
+        found[POLES] = bench.sums()["plotly"]
+        bench.tab("Frequency")
+    return found
+
+
+def changed(before: dict[str, Any], after: dict[str, Any]) -> set[str]:
+    return {key for key in before if before[key] != after[key]}
+
+
+@pytest.fixture
+def damped(bench: Bench) -> Bench:
+    """The moving preset with the third method in hand, as it comes."""
+    bench.reset("sikuliaq-like", selected=2)
+    bench.tab("Frequency", "Errors", "Method")
+    return bench
+
+
+NETWORKS = [
+    ("compass", ["sigma (1/s)", "xi", "K1 (1/s)", "K2", "K3 (1/s)"]),
+    ("complementary", ["zeta", "eta"]),
+    ("pole2", ["xi", "n1", "n2"]),
+    ("unity2", ["zeta", "r", "zeta2", "alpha (rad/s)"]),
+]
+
+
+@pytest.mark.parametrize(("network", "labels"), NETWORKS, ids=[name for name, _ in NETWORKS])
+def test_network_sliders_move_every_picture(damped: Bench, network: str, labels: list[str]) -> None:
+    if network != "complementary":
+        damped.choose_and_run("network", network)
+    for label in labels:
+        # the tab of the poles takes seconds to come and go: it is looked at for the first slider
+        poles = label == labels[0]
+        before, old = snapshot(damped, poles=poles), damped.value(f"{label}, exact")
+        damped.press(label)
+        assert damped.value(f"{label}, exact") > old
+        moved = {BODE, ERRORS, TRACK} | ({POLES} if poles else set())
+        assert changed(before, snapshot(damped, poles=poles)) == moved, label
+    assert damped.faults == []
+
+
+def test_variant_and_realisation_change_the_loop(damped: Bench) -> None:
+    damped.choose_and_run("network", "pole2")
+    damped.type("xi, exact", "0.08")
+    before = snapshot(damped, poles=True)
+    damped.choose_and_run("variant", "as_printed")
+    assert changed(before, snapshot(damped, poles=True)) == {BODE, POLES, ERRORS, TRACK}
+    damped.page.wait_for_selector(".sb-note.sb-error")
+    assert any("unstable" in note for note in damped.notes)
+
+
+def test_custom_network_takes_zeros_and_poles_as_text(damped: Bench) -> None:
+    damped.choose_and_run("network", "custom")
+    row = damped.page.get_by_text("zeros (rad/s)", exact=True).locator("xpath=ancestor::div[2]")
+    before = snapshot(damped, poles=True)
+    number = damped.run
+    row.locator("input").fill("-0.001, -0.08")
+    damped.wait_for_run(number)
+    assert changed(before, snapshot(damped, poles=True)) == {BODE, POLES, ERRORS, TRACK}
+    number = damped.run
+    row.locator("input").fill("-0.001, -0.08+")
+    damped.notice("zeros (rad/s): not taken over")
+    assert row.locator("input").input_value() == "-0.001, -0.08"
+    assert damped.run == number
+
+
+def test_threshold_decides_when_the_method_is_damped(damped: Bench) -> None:
+    damped.choose("policy", "threshold")
+    damped.settle()
+    before = snapshot(damped, poles=False)
+    damped.type("threshold (m/s), exact", "0.1")
+    assert changed(before, snapshot(damped, poles=False)) == {ERRORS, TRACK}
+    before = snapshot(damped, poles=False)
+    damped.press("threshold (m/s)", "ArrowLeft")
+    assert changed(before, snapshot(damped, poles=False)) == {ERRORS, TRACK}
+
+
+SHARED = [
+    ("Sensors", "gyro bias y (deg/h)"),
+    ("Sensors", "angular random walk (deg/sqrt(h))"),
+    ("Sensors", "accelerometer bias x (ug)"),
+    ("Sensors", "velocity random walk (ug/sqrt(Hz))"),
+    ("Log", "bias N / forward (m/s)"),
+    ("Log", "noise (m/s)"),
+    ("Log", "drift (m/s)"),
+    ("Run", "initial misalignment phi_U (arcmin)"),
+    ("Run", "initial velocity error E (m/s)"),
+]
+
+
+def test_sensor_log_and_initial_errors_move_curves_and_track_only(damped: Bench) -> None:
+    for tab, label in SHARED:
+        damped.tab(tab)
+        before = snapshot(damped, poles=False)
+        damped.press(label)
+        assert changed(before, snapshot(damped, poles=False)) == {ERRORS, TRACK}, label
+
+
+def test_latitude_duration_and_seed(damped: Bench) -> None:
+    damped.tab("Run")
+    before = snapshot(damped, poles=False)
+    damped.press("latitude (deg)", "ArrowLeft")
+    assert changed(before, snapshot(damped, poles=False)) == {BODE, ERRORS, TRACK}
+    damped.type("duration (h), exact", "7.5")
+    assert max(damped.curves()[0]["data"][0]) == pytest.approx(7.5)
+    before = snapshot(damped, poles=False)
+    damped.type("seed", "4")
+    assert changed(before, snapshot(damped, poles=False)) == {ERRORS, TRACK}
+
+
+def test_events_and_outages_of_the_log_come_and_go(damped: Bench) -> None:
+    damped.tab("Log")
+    number = damped.run
+    damped.page.get_by_role("button", name="add event", exact=True).click()
+    damped.wait_for_run(number)
+    before = snapshot(damped, poles=False)
+    damped.press("event 1 acceleration of dV_r E (m/s2)")
+    assert changed(before, snapshot(damped, poles=False)) == {ERRORS, TRACK}
+    number = damped.run
+    damped.page.get_by_role("button", name="remove event", exact=True).click()
+    damped.wait_for_run(number)
+    assert damped.page.get_by_text("event 1 begins (h)", exact=True).count() == 0
+
+
+def test_rarer_errors_are_shown_on_request(damped: Bench) -> None:
+    damped.tab("Sensors")
+    assert damped.page.get_by_text("gyro misalignment xy (arcsec)", exact=True).count() == 0
+    damped.page.get_by_label("all errors").check()
+    damped.press("gyro misalignment xy (arcsec)")
+    damped.page.get_by_label("all errors").uncheck()
+    assert damped.page.get_by_text("gyro misalignment xy (arcsec)", exact=True).count() == 1  # it is set now
+
+
+def test_transfer_is_chosen(damped: Bench) -> None:
+    before = snapshot(damped, poles=False)
+    number = damped.run
+    damped.choose("transfer", "velocity error from log error")
+    assert changed(before, snapshot(damped, poles=False)) == {BODE}
+    assert damped.run == number
+
+
+def test_ship_and_exaggeration_move_in_3d(damped: Bench) -> None:
+    ship = "() => JSON.stringify(window.__viserSceneTree.getState()['/ship'].position)"
+    at_end, number = damped.page.evaluate(ship), damped.run
+    damped.slider("time of the ship (%)").press("Home")
+    damped.page.wait_for_function(f"end => ({ship})() !== end", arg=at_end)
+    before = damped.line("/track/method0")
+    damped.choose("errors in 3D drawn (x)", "50")
+    damped.page.wait_for_timeout(300)
+    assert damped.line("/track/method0") != before
+    caption = "() => window.__viserSceneTree.getState()['/map/caption0'].message.props.text"
+    assert "x 50" in damped.page.evaluate(caption)
+    damped.choose("errors in 3D drawn (x)", "fit")
+    assert damped.run == number
+
+
+def test_the_3d_view_is_drawn_anew_when_the_track_moves(damped: Bench) -> None:
+    canvas = damped.page.locator("canvas").first
+    before = canvas.screenshot()
+    damped.tab("Sensors")
+    damped.type("gyro bias z (deg/h), exact", "0.05")
+    damped.page.wait_for_timeout(500)
+    assert canvas.screenshot() != before

@@ -1,0 +1,131 @@
+"""At three window sizes nothing is clipped, empty or unlabelled; sliders and boxes stand in one row."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from app.layout import WIDE_FROM_PX, layout_for
+from app.panels.results import TABS
+from tests.browser.driver import Bench
+
+pytestmark = pytest.mark.browser
+
+SIZES = [(1920, 1080), (1366, 768), (1280, 720)]
+
+# Of every scrolling area in view: how much is cut off to the right and below.
+_CUT = """() => [...document.querySelectorAll('.mantine-ScrollArea-viewport')]
+  .filter(e => e.clientHeight > 0 && e.getBoundingClientRect().left > innerWidth / 3)
+  .map(e => [e.scrollWidth - e.clientWidth, e.scrollHeight - e.clientHeight])"""
+# Plots in view, with the part of their panel's height that they fill together.
+_FILLED = """() => [...document.querySelectorAll('.mantine-ScrollArea-viewport')]
+  .filter(e => e.clientHeight > 0 && e.getBoundingClientRect().left > innerWidth / 3)
+  .map(e => [...e.querySelectorAll('.js-plotly-plot, .uplot')].map(p => p.getBoundingClientRect()))
+  .map((boxes, i, all) => boxes.length
+    ? Math.max(...boxes.map(b => b.bottom)) - Math.min(...boxes.map(b => b.top)) : null)"""
+# Texts of the plots in view that reach beyond their plot.
+_TEXT_OUTSIDE = """() => {
+  const plots = [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null);
+  const beyond = (b, f) =>
+    b.left < f.left - 1 || b.right > f.right + 1 || b.bottom > f.bottom + 1 || b.top < f.top - 1;
+  return plots.flatMap(plot => {
+    const frame = plot.getBoundingClientRect();
+    const texts = [...plot.querySelectorAll('text')].map(t => [t.textContent, t.getBoundingClientRect()]);
+    return texts.filter(([_, box]) => box.width > 0 && beyond(box, frame)).map(([text]) => text);
+  });
+}"""
+
+
+def panels(width: int) -> int:
+    """Number of panels with results in a window of this width."""
+    return 2 if width >= WIDE_FROM_PX else 1
+
+
+@pytest.fixture(scope="module")
+def resized(bench: Bench) -> Iterator[Bench]:
+    """The shared page; its window has its old size afterwards."""
+    bench.reset("sikuliaq-like", selected=2)
+    yield bench
+    resize(bench, SIZES[0])
+
+
+@pytest.fixture(params=SIZES, ids=lambda size: f"{size[0]}x{size[1]}")
+def sized(request: pytest.FixtureRequest, resized: Bench) -> Bench:
+    resize(resized, request.param)
+    return resized
+
+
+def resize(bench: Bench, size: tuple[int, int]) -> None:
+    """Give the window another size and wait until the page is laid out anew."""
+    width, height = size
+    layout = layout_for(width, height)
+    bench.page.set_viewport_size({"width": width, "height": height})
+    bench.page.wait_for_function(
+        """([panels, right]) => {
+          const lists = [...document.querySelectorAll('[role=tablist]')].map(l => l.getBoundingClientRect());
+          const beside = lists.filter(box => box.left > innerWidth / 3);
+          const wide = beside.every(box => Math.abs(innerWidth - box.left - right) < 12);
+          return beside.length === panels && wide;
+        }""",
+        arg=[panels(width), layout.right_px],
+        timeout=20_000,
+    )
+
+
+def test_every_tab_fits_its_panel(sized: Bench) -> None:
+    for tab in TABS:
+        sized.tab(tab)
+        sized.page.wait_for_timeout(500)
+        for right, below in sized.page.evaluate(_CUT):
+            assert right <= 0, f"{tab}: {right} px cut off at the right"
+            if tab != "Scenario":
+                assert below <= 0, f"{tab}: {below} px below the panel"
+        if tab in ("Frequency", "Poles", "Step"):
+            assert sized.plotly(), tab
+            assert sized.page.evaluate(_TEXT_OUTSIDE) == [], tab
+    assert sized.page.locator(".sb-table").inner_text()
+    assert "schema = 1" in sized.page.locator("pre").first.inner_text()
+    assert sized.faults == []
+
+
+def test_plots_fill_their_panels(sized: Bench) -> None:
+    size = sized.page.viewport_size
+    for tab in ("Frequency", "Errors"):
+        sized.tab(tab)
+        sized.page.wait_for_timeout(400)
+    filled = [height for height in sized.page.evaluate(_FILLED) if height is not None]
+    assert filled
+    for height in filled:
+        assert height >= 0.75 * size["height"] / panels(size["width"]) - 60
+
+
+@pytest.mark.parametrize("sized", [SIZES[-1]], indirect=True)
+def test_every_axis_is_labelled_with_its_unit(sized: Bench) -> None:
+    for tab in ("Frequency", "Poles", "Step"):
+        sized.tab(tab)
+        sized.plotly()
+        titles = sized.page.evaluate(
+            """() => [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null)
+              .flatMap(p => Object.entries(p._fullLayout).filter(([k]) => /^[xy]axis/.test(k))
+              .map(([k, a]) => [k, a.title?.text ?? '', a.matches ?? '', a.showticklabels]))"""
+        )
+        assert titles
+        for name, title, matches, ticks in titles:
+            assert title or matches or not ticks, f"{tab}: {name} has no title"
+    sized.tab("Errors")
+    for chart in sized.curves():
+        assert "(" in chart["label"]
+
+
+@pytest.mark.parametrize("sized", [SIZES[-1]], indirect=True)
+def test_a_slider_and_its_exact_box_stand_in_one_row(sized: Bench) -> None:
+    sized.tab("Sensors")
+    for label in ("gyro bias x (deg/h)", "velocity random walk (ug/sqrt(Hz))"):
+        slider, box = sized.slider(label).bounding_box(), sized.box(f"{label}, exact").bounding_box()
+        assert abs((slider["y"] + slider["height"] / 2) - (box["y"] + box["height"] / 2)) < 16
+        assert slider["x"] + slider["width"] < box["x"]
+        assert box["width"] > 55
+    # viser's own rounded box of a slider, and the page's report of its size, are out of sight
+    assert not sized.page.locator(".mantine-Slider-root ~ .mantine-NumberInput-root").first.is_visible()
+    assert not sized.page.get_by_text("page state", exact=True).is_visible()

@@ -1,0 +1,115 @@
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.figures import style
+from app.figures.table import STATISTICS, metrics_html, metrics_markdown, metrics_rows
+from app.figures.units import angle_unit, length_unit, number, speed_unit, time_unit
+from app.figures.warnings import notices_for, severity, warnings_for
+from navcore.units import ARCMIN, ARCSEC, NAUTICAL_MILE
+from tests.unit.figures_runs import THREE, UNSTABLE, diverging, run_of, static_run
+
+FACTORS = {"arcsec": ARCSEC, "arcmin": ARCMIN, "m/s": 1.0, "m": 1.0, "nmi": NAUTICAL_MILE}
+QUANTITIES = {
+    "tilt φE": "phi_e_rad",
+    "tilt φN": "phi_n_rad",
+    "heading φU": "phi_u_rad",
+    "velocity δVE": "dve_mps",
+    "velocity δVN": "dvn_mps",
+    "latitude": "dlat_m",
+    "longitude": "dlon_m",
+    "position": "position_m",
+}
+
+
+def test_every_number_is_the_runs_to_five_digits() -> None:
+    run = static_run()
+    rows = [row for row in metrics_rows(run) if row.unit]
+    assert {row.label for row in rows} == set(QUANTITIES)
+    assert {row.unit for row in rows if row.label == "position"} == {"m", "nmi"}
+    for row in rows:
+        for cell, method in zip(row.cells, run.methods, strict=True):
+            for text, statistic in zip(cell, STATISTICS, strict=True):
+                value = method.errors[QUANTITIES[row.label]][statistic] / FACTORS[row.unit]
+                assert float(text) == pytest.approx(value, rel=6e-5)
+                assert len(re.sub(r"e.*|[^0-9]", "", text).lstrip("0")) <= 5
+
+
+def test_loop_figures() -> None:
+    rows = {row.label: [cell[0] for cell in row.cells] for row in metrics_rows(static_run())}
+    assert rows["damping ratio"] == ["0", number(static_run().methods[1].loop.damping_ratio), "0.7"]
+    assert rows["settles to 2 %"][0] == "never"
+    assert rows["settles to 2 %"][2].endswith(" min")
+    assert rows["H(0)"][:2] == ["1", "1"]
+    assert "run" not in rows
+
+
+def test_unstable_and_diverged_are_said() -> None:
+    run = diverging(run_of(method=[THREE[1], UNSTABLE]), 1, rows=200)
+    rows = {row.label: [cell[0] for cell in row.cells] for row in metrics_rows(run)}
+    assert rows["run"] == ["ok", "diverged"]
+    assert rows["settles to 2 %"][1] == "unstable"
+
+
+def test_markdown_and_html_hold_the_same_texts() -> None:
+    run = static_run()
+    markdown, html = metrics_markdown(run), metrics_html(run)
+    lines = markdown.splitlines()
+    assert len(lines) == len(metrics_rows(run)) + 2
+    assert all(line.count("|") == 5 for line in lines)
+    for row in metrics_rows(run):
+        for cell in row.cells:
+            assert " / ".join(cell) in markdown
+            assert all(f">{text}</td>" in html for text in cell)
+    assert all(style.method_color(i) in html for i in range(3))
+
+
+def test_names_are_no_markup() -> None:
+    run = run_of(method=[{"name": "a|b<script>"}])
+    assert "a\\|b\\<script\\>" in metrics_markdown(run)
+    assert "<script>" not in metrics_html(run) and "a|b&lt;script&gt;" in metrics_html(run)
+
+
+def test_warnings_name_their_method_and_keep_their_words() -> None:
+    run = run_of(method=[*THREE, UNSTABLE])
+    found = warnings_for(run)
+    assert 1 not in found
+    assert found[2] == list(run.methods[2].warnings) and "H(0)" in found[2][0]
+    assert "unstable" in found[3][0]
+    assert (severity(run, 1), severity(run, 2), severity(run, 3)) == (None, "warning", "error")
+
+
+def test_reason_of_an_early_end_comes_first_and_once() -> None:
+    run = diverging(static_run(), 2, rows=100)
+    reason = run.methods[2].reason
+    method = replace(run.methods[2], warnings=(*run.methods[2].warnings, reason))
+    run = replace(run, methods=(*run.methods[:2], method))
+    assert warnings_for(run)[2].count(reason) == 1
+    assert warnings_for(run)[2][0] == reason
+    assert notices_for(replace(run, warnings=("a", "a", "b"))) == ["a", "b"]
+
+
+@pytest.mark.parametrize(
+    ("unit", "name"),
+    [
+        (angle_unit(0.0), "arcsec"),
+        (angle_unit(5e-4 * ARCSEC), "mas"),
+        (angle_unit(30.0 * ARCSEC), "arcsec"),
+        (angle_unit(5.0 * ARCMIN), "arcmin"),
+        (angle_unit(np.deg2rad(20.0)), "deg"),
+        (speed_unit(0.5), "m/s"),
+        (speed_unit(0.006), "mm/s"),
+        (length_unit(900.0), "m"),
+        (length_unit(9000.0), "km"),
+        (length_unit(50000.0), "nmi"),
+        (length_unit(float("nan")), "m"),
+        (time_unit(10799.0), "min"),
+        (time_unit(10800.0), "h"),
+    ],
+)
+def test_units_follow_the_size(unit, name: str) -> None:
+    assert unit.name == name

@@ -1,0 +1,229 @@
+"""One visitor's work: runs, refusals, reloads, several pages, many visitors."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from app import edits, session
+from app.session import Session, Sessions, first_editable, first_scenario
+from navcore.errors import Fault, InputError
+from navcore.scenario import Scenario
+
+DURATION = ("run", "duration_h")
+
+
+class Watcher:
+    """A page that only notes what it is told."""
+
+    def __init__(self) -> None:
+        self.told: list[tuple[str, Any]] = []
+
+    def names(self) -> list[str]:
+        return [name for name, _ in self.told]
+
+    def scenario_changed(self, by: object) -> None:
+        self.told.append(("changed", by))
+
+    def run_progressed(self, fraction: float, elapsed_s: float) -> None:
+        self.told.append(("progress", fraction))
+
+    def run_ended(self) -> None:
+        self.told.append(("ended", None))
+
+    def run_stopped(self) -> None:
+        self.told.append(("stopped", None))
+
+    def run_refused(self, error: InputError) -> None:
+        self.told.append(("refused", error))
+
+    def run_failed(self, error: Exception) -> None:
+        self.told.append(("failed", error))
+
+
+def answer(scenario: Scenario, status: str = "ok") -> Any:
+    return SimpleNamespace(scenario=scenario, status=status)
+
+
+def simulate(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Any:
+    """Stand-in: 3 h cannot run, 4 h is a fault of ours, 5 h lasts until it is stopped."""
+    hours = scenario.run.duration_h
+    if hours == 3.0:
+        raise InputError(Fault("", "motion.file", None, "is gone"))
+    if hours == 4.0:
+        raise ZeroDivisionError("ours")
+    if hours == 5.0:
+        progress(0.5)
+        while not cancelled():
+            threading.Event().wait(0.002)
+        return answer(scenario, "stopped")
+    return answer(scenario)
+
+
+@pytest.fixture
+def scenario() -> Scenario:
+    return Scenario.parse({"reference": {"kind": "log"}, "run": {"duration_h": 1.0}})
+
+
+@pytest.fixture
+def work(scenario: Scenario, tmp_path: Path) -> Iterator[tuple[Session, Watcher]]:
+    made, page = Session("a" * 20, scenario, "preset", tmp_path / "up", simulate), Watcher()
+    made.attach(page)
+    assert made.wait_idle(5.0)
+    yield made, page
+    made.close()
+
+
+def test_a_page_gets_its_first_run(work: tuple[Session, Watcher], scenario: Scenario) -> None:
+    made, page = work
+    assert page.names() == ["ended"]
+    assert made.run.scenario == scenario
+    assert (made.run_number, made.outdated) == (1, False)
+
+
+def test_a_change_is_run_and_told_with_who_made_it(work: tuple[Session, Watcher]) -> None:
+    made, page = work
+    changed = edits.with_value(made.scenario, DURATION, 2.0)
+    assert made.change(changed, page)
+    assert made.wait_idle(5.0)
+    assert page.told[1:] == [("changed", page), ("ended", None)]
+    assert made.run.scenario == changed
+    assert not made.change(changed, page)
+    assert made.run_number == 2
+
+
+def test_a_scenario_that_cannot_run_gives_way_to_the_last_good_one(work: tuple[Session, Watcher]) -> None:
+    made, page = work
+    good = made.scenario
+    made.change(edits.with_value(good, DURATION, 3.0), page)
+    assert made.wait_idle(5.0)
+    assert page.names() == ["ended", "changed", "changed", "refused"]
+    assert "is gone" in str(page.told[-1][1])
+    assert made.scenario == good
+    assert made.run.scenario == good
+    assert not made.outdated
+
+
+def test_a_fault_of_ours_is_told_and_the_last_good_run_stays(work: tuple[Session, Watcher]) -> None:
+    made, page = work
+    made.change(edits.with_value(made.scenario, DURATION, 4.0), page)
+    assert made.wait_idle(5.0)
+    assert page.names()[-1] == "failed"
+    assert isinstance(page.told[-1][1], ZeroDivisionError)
+    assert made.run.scenario.run.duration_h == 1.0
+    assert made.outdated
+
+
+def test_a_long_run_is_stopped_by_the_user(work: tuple[Session, Watcher]) -> None:
+    made, page = work
+    made.change(edits.with_value(made.scenario, DURATION, 5.0), page)
+    while "progress" not in page.names() and made._worker._watch is None:
+        threading.Event().wait(0.002)
+    made.cancel_run()
+    assert made.wait_idle(5.0)
+    assert page.names()[-1] in ("stopped", "changed")  # not even begun: nothing to tell
+    assert made.run.scenario.run.duration_h == 1.0
+    assert made.outdated
+
+
+def test_a_long_run_gives_way_to_a_new_change(
+    work: tuple[Session, Watcher], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.worker.SUPERSEDE_AFTER_S", 0.0)
+    made, page = work
+    made.change(edits.with_value(made.scenario, DURATION, 5.0), page)
+    made.change(edits.with_value(made.scenario, DURATION, 2.0), page)
+    assert made.wait_idle(5.0)
+    assert page.names()[-1] == "ended"
+    assert "stopped" not in page.names()
+    assert made.run.scenario.run.duration_h == 2.0
+
+
+def test_a_page_whose_drawing_fails_does_not_hold_up_the_other(work: tuple[Session, Watcher]) -> None:
+    made, page = work
+    other = Watcher()
+
+    def broken() -> None:
+        raise RuntimeError("no picture")
+
+    other.run_ended = broken
+    made._views.insert(0, other)
+    made.change(edits.with_value(made.scenario, DURATION, 2.0), page)
+    assert made.wait_idle(5.0)
+    assert other.names() == ["changed", "failed"]
+    assert page.names()[-1] == "ended"
+
+
+def test_two_pages_of_one_visitor_show_the_same(work: tuple[Session, Watcher]) -> None:
+    made, page = work
+    other = Watcher()
+    made.attach(other)
+    made.change(edits.with_value(made.scenario, DURATION, 2.0), page)
+    assert made.wait_idle(5.0)
+    assert other.told == [("changed", page), ("ended", None)]
+    made.detach(page)
+    assert made.open_pages == 1
+
+
+def test_selection_stays_within_the_methods(work: tuple[Session, Watcher]) -> None:
+    made, page = work
+    two, at = edits.with_method(made.scenario, None)
+    made.change(two, page, selected=at)
+    assert made.selected == 1
+    made.change(edits.without_method(made.scenario, 1), page)
+    assert made.selected == 0
+
+
+# ------------------------------------------------------------ many visitors
+
+
+def test_a_session_is_kept_over_a_reload(scenario: Scenario) -> None:
+    sessions = Sessions(lambda: (scenario, "preset"))
+    first = sessions.get("one-visitor")
+    first.change(edits.with_value(scenario, DURATION, 2.0), None)
+    assert sessions.get("one-visitor") is first
+    assert sessions.get("another-one").scenario == scenario
+    sessions.close()
+
+
+def test_only_a_bounded_number_of_sessions_without_a_page_is_kept(
+    scenario: Scenario, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session, "MOST_SESSIONS", 3)
+    monkeypatch.setattr(session, "MOST_IDLE_RUNS", 1)
+    sessions = Sessions(lambda: (scenario, "preset"))
+    watched = sessions.get("watched")
+    watched._views.append(Watcher())
+    for number in range(10):
+        sessions.get(f"visitor-{number}").run = answer(scenario)
+    assert len(sessions) == 5  # three idle ones, the present one, and the one with an open page
+    assert sessions.get("watched") is watched
+    assert sum(s.run is not None for s in sessions._by_id.values()) <= 3
+    sessions.close()
+
+
+def test_uploads_go_with_their_session(scenario: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(session, "MOST_SESSIONS", 1)
+    sessions = Sessions(lambda: (scenario, "preset"))
+    old = sessions.get("old")
+    old.uploads.folder.mkdir(parents=True)
+    (old.uploads.folder / "log.txt").write_text("x")
+    for number in range(3):
+        sessions.get(f"visitor-{number}")
+    assert not old.uploads.folder.exists()
+    root = sessions._folder
+    sessions.close()
+    assert not root.exists()
+
+
+def test_a_new_visitor_sees_a_preset_with_something_to_tune() -> None:
+    scenario, name = first_scenario()
+    assert name
+    method = scenario.method[first_editable(scenario)]
+    assert method.damping != "free"
+    assert len(type(method.network).model_fields) > 1
