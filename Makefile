@@ -88,7 +88,7 @@ $(STAMPS)/test: requirements-test.lock $(STAMPS)/project
 
 # ---------------------------------------------------------------- upkeep
 
-guide: $(STAMPS)/runtime
+guide: $(STAMPS)/project
 	@$(BIN)/python -m navcore.scenario_guide
 	@$(BIN)/python -m navcore.schema_file
 

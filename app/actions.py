@@ -14,7 +14,7 @@ from app.panels.method import ADD, COPY
 from app.session import Session, first_editable
 from app.uploads import opened_scenario, recorded_scenario, with_plain_names
 from navcore.errors import InputError
-from navcore.metrics import metrics
+from navcore.measures import metrics
 from navcore.scenario_file import load, presets, to_toml
 
 if TYPE_CHECKING:

@@ -30,7 +30,7 @@ from app.panels.results import TABS, ResultsPanel
 from app.scene import SceneDrawer
 from app.session import Session
 from navcore.errors import InputError
-from navcore.metrics import metrics
+from navcore.measures import metrics
 from navcore.run import Run
 
 if TYPE_CHECKING:

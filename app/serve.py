@@ -44,7 +44,7 @@ class Dashboard:
         try:
             import app.page  # noqa: F401
             from app.session import first_scenario
-            from navcore.simulate import simulate
+            from navcore.simulation import simulate
 
             simulate(first_scenario()[0])
         except Exception:

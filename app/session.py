@@ -72,7 +72,7 @@ class Session:
     folder : Path
         For uploads; need not exist.
     simulate : callable, optional
-        In place of `navcore.simulate.simulate`.
+        In place of `navcore.simulation.simulate`.
 
     Attributes
     ----------
@@ -235,7 +235,7 @@ class Session:
 
 
 def _simulate(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Run:
-    from navcore.simulate import simulate
+    from navcore.simulation import simulate
 
     return simulate(scenario, progress, cancelled)
 

@@ -26,12 +26,12 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from navcore.errors import Fault, InputError
-    from navcore.metrics import metrics
+    from navcore.measures import metrics
     from navcore.network import parse_network
     from navcore.run import MethodRun, Run
     from navcore.scenario import Scenario
     from navcore.scenario_file import load, presets
-    from navcore.simulate import simulate
+    from navcore.simulation import simulate
 
 __version__ = "0.1.0"
 
@@ -55,10 +55,10 @@ _HOME = {
     "Run": "run",
     "Scenario": "scenario",
     "load": "scenario_file",
-    "metrics": "metrics",
+    "metrics": "measures",
     "parse_network": "network",
     "presets": "scenario_file",
-    "simulate": "simulate",
+    "simulate": "simulation",
 }
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from navcore.scenario import Scenario
-from navcore.simulate import simulate
+from navcore.simulation import simulate
 
 _IMU: dict[str, Any] = {
     "gyro_bias_dph": [0.01, 0.01, 0.01],

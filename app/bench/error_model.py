@@ -7,7 +7,7 @@ import time
 from typing import Any
 
 from navcore.scenario import Scenario
-from navcore.simulate import simulate
+from navcore.simulation import simulate
 
 REPEATS = 7
 _NETWORKS: tuple[dict[str, Any], ...] = (

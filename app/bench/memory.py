@@ -36,7 +36,7 @@ def _peak_mb() -> float:
 
 def _above_start() -> float:
     from app.bench.error_model import day
-    from navcore.simulate import simulate
+    from navcore.simulation import simulate
 
     simulate(day(seed=1, duration_h=0.1))
     start = _peak_mb()

@@ -44,7 +44,7 @@ class RunCommand:
     def execute(self) -> int:
         """Run, write, print; 0 when every method went through, else 3."""
         from navcore.io.results import require_replaceable, write_results
-        from navcore.metrics import metrics
+        from navcore.measures import metrics
         from navcore.scenario_file import load
 
         if self.out is not None:
@@ -68,7 +68,7 @@ def _simulate(scenario: object, show: bool) -> Run:
     from app.cli.progress import Bar
     from app.cli.stop import stop_on_signal
     from navcore.scenario import Scenario
-    from navcore.simulate import simulate
+    from navcore.simulation import simulate
 
     assert isinstance(scenario, Scenario)
     with stop_on_signal() as stopped, Bar(scenario.title or "running", show) as bar:

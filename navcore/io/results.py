@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from navcore.errors import Fault, InputError
-from navcore.metrics import metrics
+from navcore.measures import metrics
 from navcore.run import Run
 from navcore.scenario_file import to_toml
 

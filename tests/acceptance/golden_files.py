@@ -11,9 +11,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from navcore.metrics import metrics
+from navcore.measures import metrics
 from navcore.scenario_file import load, presets
-from navcore.simulate import simulate
+from navcore.simulation import simulate
 
 FOLDER = Path(__file__).resolve().parent / "golden"
 

@@ -9,7 +9,7 @@ from navcore.loop import RADIUS, frequency_response
 from navcore.network import LinearNetwork
 from navcore.network.complementary import ComplementaryNetwork
 from navcore.scenario_file import load
-from navcore.simulate import simulate
+from navcore.simulation import simulate
 
 
 def gain(network: LinearNetwork, omega: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ import pytest
 from navcore.mechanization.recorder import DV_E, PHI_N
 from navcore.run import MethodRun, Run
 from navcore.scenario_file import load
-from navcore.simulate import simulate
+from navcore.simulation import simulate
 from navcore.units import HOUR
 
 CHANGE_MPS = (1.0, 0.5, 1.0, 1.5)

@@ -112,7 +112,7 @@ def test_water_speed_differs_by_the_tidal_stream(ship, track):
 def test_a_run_along_the_recordings_by_all_three_methods(ship, repo_root):
     from navcore.scenario import Scenario
     from navcore.scenario_file import read_toml
-    from navcore.simulate import simulate
+    from navcore.simulation import simulate
 
     data = read_toml(repo_root / "examples" / "ship_log.toml", "ship_log.toml")
     data["motion"]["file"] = [ship["gnss"], ship["gyro"]]

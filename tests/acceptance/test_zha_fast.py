@@ -12,7 +12,7 @@ from navcore.mechanization.recorder import PHI_E
 from navcore.network import parse_network
 from navcore.run import MethodRun, Run
 from navcore.scenario_file import load
-from navcore.simulate import simulate
+from navcore.simulation import simulate
 from navcore.units import DEG_PER_HOUR
 
 DRIFT = 0.01 * DEG_PER_HOUR

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from navcore.scenario import Scenario
-from navcore.simulate import simulate
+from navcore.simulation import simulate
 from navcore.units import ARCSEC
 
 # physics.md section 7, zhao-initial: 2", 2", 0.1 m/s, 0.6', 0.6', 7'; section 9.4: sphere, 45.7796 N, 24 h

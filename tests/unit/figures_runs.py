@@ -10,7 +10,7 @@ import numpy as np
 
 from navcore.run import MethodRun, PlotSeries, Run
 from navcore.scenario import Scenario
-from navcore.simulate import simulate
+from navcore.simulation import simulate
 
 THREE = (
     {"name": "free"},

@@ -12,9 +12,9 @@ import pytest
 
 from app.cli import main
 from app.cli.progress import Bar
-from navcore.metrics import metrics
+from navcore.measures import metrics
 from navcore.scenario_file import load
-from navcore.simulate import simulate
+from navcore.simulation import simulate
 
 SHORT = ["--set", "run.duration_h=0.1"]
 COLUMNS = [
@@ -118,7 +118,7 @@ def test_a_folder_of_an_earlier_run_is_replaced_as_a_whole(tmp_path, capsys):
 def test_a_folder_with_other_files_is_refused_before_anything_is_run(tmp_path, capsys, monkeypatch):
     (tmp_path / "thesis.tex").write_text("years of work")
     (tmp_path / "metrics.json").write_text("old")
-    monkeypatch.setattr("navcore.simulate.simulate", lambda *_: pytest.fail("was run"))
+    monkeypatch.setattr("navcore.simulation.simulate", lambda *_: pytest.fail("was run"))
     assert main(["run", "zha-fast", "--out", str(tmp_path)]) == 2
     err = capsys.readouterr().err
     assert err.count("\n") == 1

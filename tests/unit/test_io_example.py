@@ -10,7 +10,7 @@ import pytest
 
 from navcore.errors import InputError
 from navcore.scenario_file import load
-from navcore.simulate import simulate
+from navcore.simulation import simulate
 from tests.nmea import ship_files
 
 

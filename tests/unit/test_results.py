@@ -11,10 +11,10 @@ import pytest
 from navcore.errors import InputError
 from navcore.io import results
 from navcore.io.results import require_replaceable, timeseries, write_results
-from navcore.metrics import metrics
+from navcore.measures import metrics
 from navcore.run import Run
 from navcore.scenario import Scenario
-from navcore.simulate import simulate
+from navcore.simulation import simulate
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 
 from navcore.mechanization.recorder import NAMES, output_steps
 from navcore.scenario import Scenario
-from navcore.simulate import simulate
+from navcore.simulation import simulate
 
 COMPASS = {"damping": "external", "network": {"id": "compass"}}
 NOISY = {

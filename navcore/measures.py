@@ -19,7 +19,7 @@ def metrics(run: Run) -> dict[str, Any]:
     Parameters
     ----------
     run : Run
-        From `navcore.simulate.simulate`.
+        From `navcore.simulation.simulate`.
 
     Returns
     -------
