@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-_LONGEST_VALUE = 80
+_LONGEST_VALUE = 200
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,8 @@ class Fault:
 
 def _shorten(value: object) -> str:
     text = repr(value) if isinstance(value, str) else str(value)
-    return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 3] + "..."
+    half = (_LONGEST_VALUE - 3) // 2  # of a path, the end tells most
+    return text if len(text) <= _LONGEST_VALUE else f"{text[:half]}...{text[-half:]}"
 
 
 class InputError(ValueError):

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from typing import Annotated, Any, get_args, get_origin
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from pydantic.fields import FieldInfo
+
+from navcore.errors import Fault, InputError
 
 
 class Parameters(BaseModel):
@@ -71,6 +73,16 @@ def quantity(
         description=help or None,
         json_schema_extra=extra,
     )
+
+
+def _file_name(text: str) -> str:
+    if "\0" in text:
+        raise InputError(Fault("", "", text, "must be the path of a file: no path holds a null character"))
+    return text
+
+
+FileName = Annotated[str, AfterValidator(_file_name)]
+"""Path of a file, absolute or relative to the scenario."""
 
 
 def choice(default: str, *, label: str = "", help: str = "") -> Any:

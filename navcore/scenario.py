@@ -25,7 +25,7 @@ from navcore.units import ARCMIN, ARCSEC, DEG, HOUR
 
 SCHEMA = 1
 MAX_STEPS = 3_000_000
-"""About 35 days at 1 s: bounds the memory of a run to some hundred MB and its time to seconds."""
+"""About 35 days at 1 s: bounds a run to seconds, and its memory to 0.3 GB (1.6 GB along a moving truth)."""
 MAX_METHODS = 12
 
 

@@ -95,7 +95,7 @@ def _not_there(where: str, error: OSError) -> str:
 
 def _resolved(value: Any, folder: Path) -> Any:
     if isinstance(value, str):
-        # No path can hold a null character: left as it is, the field's own check names it.
+        # What no path can be is left as it is: the field's own check names it.
         return str((folder / value).resolve()) if value and "\0" not in value else value
     return [_resolved(item, folder) for item in value] if isinstance(value, list) else value
 

@@ -15,6 +15,7 @@ from navcore.mechanization.error_model import ErrorModelRun
 from navcore.mechanization.recorder import make_recorder
 from navcore.motion.base import COLUMNS
 from navcore.network.base import LinearNetwork
+from navcore.network.undamped import UndampedNetwork
 from navcore.run import MethodRun, Run, Status, plot_series, statistics
 from navcore.scenario import Method, Scenario
 from navcore.sensors.base import ReferenceErrors
@@ -82,7 +83,7 @@ def _truth_rows(env: Environment, steps: np.ndarray) -> np.ndarray:
 def _run_method(
     scenario: Scenario, method: Method, env: Environment, report: Progress, cancelled: Cancelled | None
 ) -> MethodRun:
-    network = method.network.transfer(scenario.omega_s)
+    network = (UndampedNetwork() if method.damping == "free" else method.network).transfer(scenario.omega_s)
     law = _law(scenario, method, network)
     recorder = make_recorder(env.steps, scenario.run.step_s, scenario.run.output_step_s)
     run = ErrorModelRun(

@@ -32,7 +32,7 @@ from navcore.motion.base import (
     Site,
     Truth,
 )
-from navcore.parameters import quantity
+from navcore.parameters import FileName, quantity
 from navcore.units import DEG
 
 FEWEST_FIXES = 5
@@ -66,7 +66,7 @@ class TrackMotion(MotionParameters):
     """
 
     kind: Literal["track"] = "track"
-    file: str | tuple[str, ...] | None = Field(
+    file: FileName | tuple[FileName, ...] | None = Field(
         default=None,
         description="Recorded positions and heading: NMEA 0183 (RMC or GGA, HDT or VHW), CSV, Parquet or MAT "
         "with lat_deg, lon_deg, heading_deg and utc or t_s. Several files are joined by UTC; each quantity "

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from navcore.motion.base import Truth
-from navcore.parameters import Parameters, bounded, quantity, vector_quantity
+from navcore.parameters import FileName, Parameters, bounded, quantity, vector_quantity
 from navcore.sensors.base import ReferenceErrors
 from navcore.units import HOUR
 
@@ -141,7 +141,7 @@ class Reference(Parameters):
     outage: tuple[Outage, ...] = Field(
         default=(), max_length=200, description="Times without log, [[reference.outage]]."
     )
-    file: str | tuple[str, ...] | None = Field(
+    file: FileName | tuple[FileName, ...] | None = Field(
         default=None,
         description="Recorded log: NMEA 0183 (VBW, VHW, VTG, RMC), CSV, Parquet or MAT; several files are "
         "joined by UTC. Speeds along the ship's axes are preferred to course and speed over ground.",
