@@ -1,0 +1,7 @@
+"""Increments of a simulated IMU, by quadrature of the analytic truth (physics.md 6)."""
+
+from __future__ import annotations
+
+from navcore.sensors.imu_simulation.simulation import ImuSimulation
+
+__all__ = ["ImuSimulation"]

@@ -1,0 +1,70 @@
+"""The simulation loop over blocks of tiles: kinematics, signals, increments, errors; one for all motions."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from navcore.compiled import kernel
+from navcore.motion.base import HEIGHT, LAT
+from navcore.sensors.imu_simulation.corrupt import SUMS, add_sums, fill_errors, write_measured
+from navcore.sensors.imu_simulation.kinematics import fill_course, fill_rest, fill_rows, fill_swing
+from navcore.sensors.imu_simulation.signals import (
+    fill_attitude,
+    fill_increments,
+    fill_navigation,
+    fill_navigation_at_rest,
+    fill_signals,
+)
+from navcore.sensors.imu_simulation.work import HALO, TILE, WORK, W
+
+REST, SWING, COURSE, ROWS = 0, 1, 2, 3
+_MOST_TILES = 1024
+
+
+@kernel
+def simulate_blocks(
+    kind, first_block, blocks, block_samples, dt, rest, axes, table, legs, nodes, place, values,
+    e2, g_equator, k, flags, key, bias, drift, white, coupling, lsb, left, measured, sums,
+):  # fmt: skip
+    """Measured increments of ``blocks`` blocks of ``block_samples`` each into ``measured`` (n, 6).
+
+    ``rest`` (15,): truth at rest; ``axes``, ``table``: swing; ``legs``, ``nodes``, ``place``: course;
+    ``values``: rows of truth from one sample before the first block on; ``drift`` (blocks, 6); ``left`` (6,):
+    what quantisation carries over; ``sums`` (blocks, 6) or (0, 6).
+    """
+    w = np.zeros(WORK)
+    fill_rest(rest, w)
+    fill_navigation_at_rest(rest[LAT], rest[HEIGHT], e2, g_equator, k, w)
+    if kind == REST:
+        fill_attitude(W, w)
+        fill_signals(W, w)
+        fill_increments(TILE, dt, w)
+    tiles = -(-block_samples // TILE)
+    size = -(-block_samples // tiles)
+    for n in range(blocks):
+        block = first_block + n
+        if flags & SUMS:
+            sums[n, :] = 0.0
+        for first in range(0, block_samples, size):
+            samples = min(size, block_samples - first)
+            columns = samples + HALO
+            # Whole vectors: the rest of a row would otherwise be done one by one.
+            padded = min(W, (columns + 7) // 8 * 8)
+            t0 = (block * block_samples + first - 1) * dt
+            if kind == COURSE:
+                fill_course(t0, dt, legs, nodes, place, columns, samples, w)
+                fill_navigation(padded, e2, g_equator, k, w)
+            elif kind == ROWS:
+                fill_rows(values, n * block_samples + first, columns, w)
+                fill_navigation(padded, e2, g_equator, k, w)
+            elif kind == SWING:
+                fill_swing(t0, axes, table, padded, w)
+            if kind != REST:
+                fill_attitude(padded, w)
+                fill_signals(padded, w)
+                fill_increments(samples, dt, w)
+            tile = block * _MOST_TILES + first // size
+            fill_errors(tile, samples, dt, flags, key, bias, drift, n, white, coupling, lsb, left, w)
+            write_measured(n * block_samples + first, samples, measured, w)
+            if flags & SUMS:
+                add_sums(n, samples, sums, w)

@@ -1,0 +1,209 @@
+"""Recorded IMUs: PSINS text (integer counts of increments) and CSV (increments or rates), checked.
+
+Body axes are right, forward, up after reading. PSINS: G. Yan's toolbox; increments of angle in counts of
+``gf`` arc-seconds and of velocity in counts of ``af`` ug s.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from navcore.errors import Fault, InputError
+from navcore.units import ARCSEC, DEG
+
+Axes = Literal["rfu", "frd"]
+_PSINS_GRAVITY = 9.780327
+"""The g of PSINS's ug, m/s^2."""
+_LARGEST_FORCE_ERROR = 0.02
+"""Difference between the mean specific force and gravity, as a part of gravity."""
+_LARGEST_TILT = 30.0 * DEG
+_GAP = 1.5
+"""Sample intervals; more is a gap."""
+_RATES = ("gx_rad_s", "gy_rad_s", "gz_rad_s", "fx_mps2", "fy_mps2", "fz_mps2")
+_INCREMENTS = ("dax_rad", "day_rad", "daz_rad", "dvx_mps", "dvy_mps", "dvz_mps")
+
+
+@dataclass(frozen=True)
+class ImuRecord:
+    """A recorded IMU.
+
+    Attributes
+    ----------
+    increments : ndarray, shape (n, 6)
+        Angles (rad) and velocities (m/s) in right, forward, up; each over the interval that ends at its time.
+    rate_hz : float
+        Samples a second.
+    source : str
+        File it came from.
+    lat, lon, height : float or None
+        Position if the file gives one, rad, m.
+    """
+
+    increments: np.ndarray
+    rate_hz: float
+    source: str
+    lat: float | None = None
+    lon: float | None = None
+    height: float | None = None
+
+    @property
+    def duration_s(self) -> float:
+        """Length of the record, s."""
+        return len(self.increments) / self.rate_hz
+
+
+def read_imu(path: str | os.PathLike[str], axes: Axes = "rfu") -> ImuRecord:
+    """Read a recorded IMU: PSINS text (``%`` comments) or CSV with a header.
+
+    CSV columns: ``t_s`` and ``gx_rad_s ... fz_mps2`` (means over the interval that ends at t_s), or
+    ``dax_rad ... dvz_mps`` (increments).
+
+    Parameters
+    ----------
+    path : path
+        File.
+    axes : {"rfu", "frd"}
+        Axes of a CSV: right-forward-up or forward-right-down. PSINS files are right-forward-up.
+
+    Raises
+    ------
+    InputError
+        Unreadable, a gap, NaN, time running backwards, or axes that cannot be right, forward, up.
+    """
+    file = Path(path)
+    try:
+        text = file.read_text("utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        binary = isinstance(error, UnicodeDecodeError)
+        reason = "is not a text file" if binary else (error.strerror or "cannot be read")
+        raise InputError(Fault(str(path), "imu.file", None, reason)) from None
+    record = _psins(text, str(path)) if text.lstrip().startswith("%") else _csv(text, str(path), axes)
+    return record
+
+
+def check_rest(record: ImuRecord, gravity: float, first_s: float = 0.0, last_s: float | None = None) -> None:
+    """Refuse a record whose mean specific force at rest is no gravity, or does not point up.
+
+    Parameters
+    ----------
+    record : ImuRecord
+        The record.
+    gravity : float
+        At its place, m/s^2.
+    first_s, last_s : float
+        Window in which the vehicle hardly moves, s.
+
+    Raises
+    ------
+    InputError
+        Says the size of the force, and which axis looks like up.
+    """
+    n = len(record.increments)
+    first, last = int(first_s * record.rate_hz), n if last_s is None else int(last_s * record.rate_hz)
+    force = record.increments[first:last, 3:].mean(axis=0) * record.rate_hz
+    size = float(np.linalg.norm(force))
+    if abs(size - gravity) > _LARGEST_FORCE_ERROR * gravity:
+        raise InputError(
+            Fault(
+                record.source, "imu.file", None,
+                f"the mean specific force is {size:.4g} m/s2, gravity here is {gravity:.5g}: wrong units "
+                "or scale, or not at rest",
+            )
+        )  # fmt: skip
+    if math.acos(min(1.0, max(-1.0, force[2] / size))) > _LARGEST_TILT:
+        axis = int(np.argmax(np.abs(force)))
+        sign = "+" if force[axis] > 0 else "-"
+        raise InputError(
+            Fault(
+                record.source, "imu.file", None,
+                f"the {sign}{'xyz'[axis]} axis looks like up, but z must point up (x right, y forward): mean "
+                f"specific force {force[0]:.3f}, {force[1]:.3f}, {force[2]:.3f} m/s2; give the right axes",
+            )
+        )  # fmt: skip
+
+
+def _psins(text: str, source: str) -> ImuRecord:
+    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("%")]
+    try:
+        head = [[float(word) for word in line.split()] for line in lines[:3]]
+        _, place, scale = head
+        if len(place) < 6 or len(scale) != 6:
+            raise ValueError
+    except ValueError:
+        expected = (
+            "needs three lines of numbers after the comments: attitude, velocity; place, interval; scales"
+        )
+        raise InputError(Fault(source, "imu.file", None, expected)) from None
+    counts = _numbers(lines[3:], 6, source, first_line=4, separator=None)
+    lat, lon, height, _, interval_ms = place[:5]
+    if not interval_ms > 0.0:
+        raise InputError(Fault(source, "imu.file", interval_ms, "the sampling interval must be > 0 (ms)"))
+    factors = np.array(scale) * np.repeat([ARCSEC, 1e-6 * (place[5] or _PSINS_GRAVITY)], 3)
+    return ImuRecord(counts * factors, 1000.0 / interval_ms, source, lat * DEG, lon * DEG, height)
+
+
+def _csv(text: str, source: str, axes: Axes) -> ImuRecord:
+    lines = [line for line in text.splitlines() if line.strip()]
+    header = [name.strip() for name in lines[0].split(",")] if lines else []
+    kind = next((names for names in (_RATES, _INCREMENTS) if set(names) <= set(header)), None)
+    if kind is None or "t_s" not in header:
+        allowed = f"needs a header with t_s and {', '.join(_RATES)} (or {', '.join(_INCREMENTS)})"
+        raise InputError(Fault(source, "imu.file", ",".join(header), allowed))
+    table = _numbers(lines[1:], len(header), source, first_line=2, separator=",")
+    columns = {name: table[:, i] for i, name in enumerate(header)}
+    interval = _regular(columns["t_s"], source)
+    values = np.column_stack([columns[name] for name in kind]) * (interval if kind is _RATES else 1.0)
+    if axes == "frd":
+        values = values[:, [1, 0, 2, 4, 3, 5]] * np.array([1.0, 1.0, -1.0, 1.0, 1.0, -1.0])
+    return ImuRecord(values, 1.0 / interval, source)
+
+
+def _numbers(
+    lines: list[str], columns: int, source: str, first_line: int, separator: str | None
+) -> np.ndarray:
+    """Rows of numbers; names the first data line that is none."""
+    if len(lines) < 2:
+        raise InputError(Fault(source, "imu.file", None, "holds fewer than two samples"))
+    try:
+        table = np.array([line.split(separator) for line in lines], dtype=float)
+        if table.ndim != 2 or table.shape[1] != columns:
+            raise ValueError
+    except ValueError:
+        bad = next(i for i, line in enumerate(lines) if not _is_row(line, columns, separator))
+        what = f"data line {bad + first_line} is no row of {columns} numbers: {lines[bad][:60]}"
+        raise InputError(Fault(source, "imu.file", None, what)) from None
+    lost = np.flatnonzero(~np.isfinite(table).all(axis=1))
+    if lost.size:
+        what = f"{lost.size} samples are NaN or infinite, the first at sample {lost[0] + 1}"
+        raise InputError(Fault(source, "imu.file", None, what))
+    return table
+
+
+def _is_row(line: str, columns: int, separator: str | None) -> bool:
+    words = line.split(separator)
+    try:
+        return len(words) == columns and all(word.strip() and float(word) is not None for word in words)
+    except ValueError:
+        return False
+
+
+def _regular(time_s: np.ndarray, source: str) -> float:
+    """Sample interval of an even record; gaps and time running backwards are refused with their place."""
+    steps = np.diff(time_s)
+    back = np.flatnonzero(steps <= 0.0)
+    if back.size:
+        what = f"time stands still or runs backwards at t = {time_s[back[0] + 1]:g} s"
+        raise InputError(Fault(source, "imu.file", None, what))
+    interval = float(np.median(steps))
+    gaps = np.flatnonzero(steps > _GAP * interval)
+    if gaps.size:
+        longest = float(steps[gaps].max())
+        what = f"{gaps.size} gaps, the first at t = {time_s[gaps[0]]:g} s, the longest {longest:g} s"
+        raise InputError(Fault(source, "imu.file", None, f"{what}: a strapdown run needs every sample"))
+    return float((time_s[-1] - time_s[0]) / (len(time_s) - 1))

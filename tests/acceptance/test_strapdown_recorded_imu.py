@@ -1,0 +1,59 @@
+"""A parked vehicle's ring-laser-gyro IMU: aligned in its quiet window, then navigated with V_r = 0."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from navcore.alignment import coarse_alignment, fine_alignment
+from navcore.earth import WGS84
+from navcore.mechanization.strapdown import Settings, Start, start_run
+from navcore.mechanization.strapdown.attitude import angles_of
+from navcore.motion.base import COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL
+from navcore.network.compass import CompassNetwork
+from navcore.network.undamped import UndampedNetwork
+from navcore.sensors.recorded_imu import check_rest, read_imu
+from navcore.units import DEG
+from tests.strapdown import law, reference
+
+QUIET = slice(57_000, 95_000)
+COARSE = 12_000
+
+
+@pytest.fixture(scope="module")
+def record(shared_data):
+    return read_imu(shared_data / "imu" / "lasergyro.imu")
+
+
+@pytest.fixture(scope="module")
+def aligned(record):
+    quiet = record.increments[QUIET]
+    check_rest(record, WGS84.gravity(record.lat, record.height), 570.0, 950.0)
+    start = coarse_alignment(quiet[:COARSE], record.rate_hz, record.lat)
+    # The vehicle is parked: the coarse attitude serves again at the window's start.
+    return fine_alignment(quiet, record.rate_hz, start, record.lat, record.height, WGS84)
+
+
+def test_heading_of_the_parked_vehicle(aligned):
+    pitch, roll, heading = np.array(angles_of(*aligned.quaternion)) / DEG
+    assert heading == pytest.approx(90.7, abs=0.3)
+    assert abs(pitch) < 2.0 and abs(roll) < 2.0
+
+
+def test_damping_with_zero_velocity_holds_what_runs_away_free(record, aligned):
+    rest = record.increments[QUIET.stop :]
+    seconds = len(rest) // 100
+    truth = np.zeros((1, COLUMNS))
+    truth[0, [LAT, LON, HEIGHT]] = record.lat, record.lon, record.height
+    truth[0, [PITCH, ROLL, HEADING]] = angles_of(*aligned.quaternion)
+    start = Start(record.lat, record.lon, record.height, np.zeros(3), aligned.quaternion)
+    worst = {}
+    for damping, network in (("free", UndampedNetwork()), ("external", CompassNetwork(sigma=0.0088, xi=0.7))):
+        run = start_run(
+            start, Settings(100.0, seconds * 100, 100, 100, 1.0), WGS84, law(damping, network, 1.0), truth,
+            reference((0, 0), seconds), record.increments[QUIET.stop - 1],
+        )  # fmt: skip
+        run.advance(rest)
+        worst[damping] = np.abs(run.recorder.rows[:, 3:5]).max()
+    assert worst["free"] < 1.0
+    assert worst["external"] < 0.3 * worst["free"]

@@ -1,0 +1,73 @@
+"""Full strapdown against an independent implementation (physics.md 9.5, 9.6), and with perfect sensors."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from navcore.mechanization.recorder import DV_E, DV_N, MAX_ABS, PHI_E, PHI_N, PHI_U, POSITION
+from navcore.motion.static import StaticMotion
+from navcore.network.compass import CompassNetwork
+from navcore.sensors.imu import Imu
+from navcore.units import DEG
+from tests.strapdown import DENG_SWING, DRIVE, navigate, reference
+
+VE_COLUMN = 3
+
+
+def test_free_velocity_under_a_gyro_bias_9_5():
+    run = navigate(StaticMotion(), 100.0, 3600.0, Imu(gyro_bias_dph=(0.0, 0.02, 0.0)))
+    v_e = run.navigation[:, VE_COLUMN]
+    peak = np.abs(v_e).max()
+    for t, wanted in ((1800, 0.9951), (2533, 1.2309), (3600, 0.7646)):
+        assert v_e[t] == pytest.approx(wanted, abs=1e-3 * peak)
+
+
+@pytest.mark.parametrize("law_step_s", [1.0, 0.01], ids=["law_1_hz", "law_100_hz"])
+def test_compass_settles_9_6(law_step_s):
+    imu = Imu(gyro_bias_dph=(0.0, 0.02, 0.0), accel_bias_ug=(50.0, 50.0, 0.0))
+    run = navigate(
+        StaticMotion(), 100.0, 3600.0, imu, [0, 0, 0, 0, 0.1 * DEG, 0.1 * DEG, 0], "external",
+        CompassNetwork(sigma=0.0088, xi=0.7), reference((0, 0), 3600.0, law_step_s), law_step_s,
+    )  # fmt: skip
+    for column, final, settled in ((PHI_E, -0.002868, 541), (PHI_N, 0.002868, 545)):
+        phi = run.recorder.rows[:, column] / DEG
+        assert phi[-1] == pytest.approx(final, abs=1e-3 * 0.1)
+        assert np.flatnonzero(np.abs(phi - phi[-1]) > 0.02 * 0.1)[-1] == pytest.approx(settled, abs=2)
+
+
+@pytest.mark.parametrize("attitude", [(0, 0, 0), (0, 0, 90), (10, 20, 310), (6, 8, 75), (-30, 45, 200)])
+def test_perfect_sensors_at_rest_leave_no_velocity(attitude):
+    pitch, roll, heading = attitude
+    motion = StaticMotion(pitch_deg=pitch, roll_deg=roll, heading_deg=heading)
+    stats = navigate(motion, 200.0, 3 * 3600.0).recorder.stats
+    assert stats[[DV_E, DV_N], MAX_ABS].max() <= 1e-9
+
+
+def test_perfect_sensors_on_deng_swing():
+    stats = navigate(DENG_SWING, 200.0, 1.5 * 3600.0).recorder.stats[:, MAX_ABS]
+    assert stats[[PHI_E, PHI_N, PHI_U]].max() <= 1e-8
+    assert stats[[DV_E, DV_N]].max() <= 1e-5
+    assert stats[POSITION] <= 0.05
+
+
+def test_swing_error_falls_with_the_third_power_of_the_rate():
+    rates = np.array([50.0, 100.0, 200.0])
+    worst = np.array([navigate(DENG_SWING, rate, 1800.0).recorder.stats[:, MAX_ABS] for rate in rates])
+    for quantity in (PHI_E, PHI_N, PHI_U, DV_E, DV_N):
+        slope = -np.polyfit(np.log(rates), np.log(worst[:, quantity]), 1)[0]
+        assert slope == pytest.approx(3.0, abs=0.2)
+
+
+def test_perfect_sensors_on_legs():
+    stats = navigate(DRIVE, 200.0, 1.5 * 3600.0).recorder.stats[:, MAX_ABS]
+    assert stats[[PHI_E, PHI_N, PHI_U]].max() <= 1e-10
+    assert stats[[DV_E, DV_N]].max() <= 1e-8
+    assert stats[POSITION] <= 1e-4
+
+
+def test_without_compensation_the_swing_shows():
+    """The switch does something: the uncompensated run is worse by orders of magnitude."""
+    plain = navigate(DENG_SWING, 200.0, 600.0, compensation=False).recorder.stats[:, MAX_ABS]
+    fine = navigate(DENG_SWING, 200.0, 600.0).recorder.stats[:, MAX_ABS]
+    assert plain[DV_E] > 100.0 * fine[DV_E]

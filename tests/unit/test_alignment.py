@@ -1,0 +1,107 @@
+"""Coarse and fine alignment (physics.md 6.1): residuals, steady state, noise, refusals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from navcore.alignment import (
+    CompassLoop,
+    azimuth_gains,
+    coarse_alignment,
+    fine_alignment,
+    steady_misalignment,
+)
+from navcore.earth import WGS84
+from navcore.errors import InputError
+from navcore.mechanization.strapdown.attitude import misalignment, quaternion_of
+from navcore.mechanization.strapdown.run import turned_by
+from navcore.motion.base import HEADING, PITCH, ROLL
+from navcore.motion.static import StaticMotion
+from navcore.sensors.imu import Imu
+from navcore.sensors.imu_simulation import ImuSimulation
+from navcore.units import DEG, DEG_PER_HOUR, MICRO_G
+from tests.strapdown import DENG_SWING, SITE
+
+TILTED = StaticMotion(pitch_deg=6.0, roll_deg=8.0, heading_deg=75.0)
+GRAVITY = WGS84.gravity(SITE.lat)
+
+
+def _record(motion, imu, seconds, rate_hz, seed=1):
+    samples = int(seconds * rate_hz)
+    sim = ImuSimulation(motion, SITE, WGS84, imu, rate_hz, samples, seed)
+    increments = np.concatenate([chunk.copy() for chunk, _ in sim.chunks()])
+    rows = sim.truth_rows(seconds + 1, 1.0)
+    first, last = (np.array(quaternion_of(*rows[i][[PITCH, ROLL, HEADING]])) for i in (0, -1))
+    return increments, first, last
+
+
+def _fine(motion, imu, seconds=600, rate_hz=50.0, seed=1, loop=None):
+    increments, first, last = _record(motion, imu, seconds, rate_hz, seed)
+    start = turned_by(-np.array([0.1, 0.1, 1.0]) * DEG, first)
+    aligned = fine_alignment(increments, rate_hz, start, SITE.lat, SITE.height, WGS84, loop)
+    return np.array(misalignment(*aligned.quaternion, *last)), aligned
+
+
+@pytest.mark.parametrize("motion", [TILTED, DENG_SWING], ids=["static", "swing"])
+def test_noise_free_residual(motion):
+    phi, aligned = _fine(motion, Imu(), rate_hz=200.0 if motion is DENG_SWING else 50.0)
+    assert np.abs(phi[:2]).max() <= 1e-5 * DEG
+    assert abs(phi[2]) <= 0.003 * DEG
+    assert np.abs(aligned.velocity).max() < 1e-4
+
+
+def test_steady_state_formulas_to_one_percent():
+    level = StaticMotion()
+    imu = Imu(gyro_bias_dph=(0.02, 0.02, 0.02), accel_bias_ug=(50.0, -80.0, 0.0))
+    phi, _ = _fine(level, imu, seconds=1500)
+    eps, nabla = np.full(3, 0.02 * DEG_PER_HOUR), np.array([50.0, -80.0, 0.0]) * MICRO_G
+    wanted = steady_misalignment(eps, nabla, SITE.lat, GRAVITY, CompassLoop())
+    np.testing.assert_allclose(phi, wanted, rtol=0.01)
+
+
+def test_angular_random_walk_alone_gives_0_14_deg_of_heading():
+    imu = Imu(gyro_arw_dpsh=0.006)
+    heading = [_fine(StaticMotion(), imu, rate_hz=20.0, seed=seed)[0][2] / DEG for seed in range(80)]
+    assert np.std(heading) == pytest.approx(0.14, rel=0.25)
+
+
+def test_azimuth_poles_are_those_of_the_design():
+    sigma, xi, omega_s = 0.02, 0.707, 1.24e-3
+    k1, k2, k3, k4 = azimuth_gains(sigma, xi, omega_s, GRAVITY)
+    # (s + k4) [s (s + k1) + (1 + k2) ws^2] + g k3, from the north channel with the azimuth loop closed
+    got = np.polyadd(np.polymul([1, k4], [1, k1, (1 + k2) * omega_s**2, 0]), [GRAVITY * k3])
+    design = np.polymul([1, 2 * sigma, sigma**2 / xi**2], [1, 2 * sigma, sigma**2 / xi**2])
+    np.testing.assert_allclose(got, design, rtol=1e-9)
+
+
+@pytest.mark.parametrize("motion", [StaticMotion(), TILTED, DENG_SWING], ids=["level", "tilted", "swing"])
+def test_coarse_alignment_finds_the_attitude(motion):
+    increments, _, last = _record(motion, Imu(), 120, 100.0)
+    phi = np.array(misalignment(*coarse_alignment(increments, 100.0, SITE.lat), *last)) / DEG
+    assert np.abs(phi).max() < 0.01
+
+
+def test_high_latitudes_are_refused_with_the_reason():
+    increments = np.tile([0.0, 0, 0, 0, 0, 0.098], (100, 1))
+    for call in (
+        lambda: coarse_alignment(increments, 100.0, 85.5 * DEG),
+        lambda: fine_alignment(increments, 100.0, np.array([1.0, 0, 0, 0]), -86.0 * DEG, 0.0, WGS84),
+    ):
+        with pytest.raises(InputError, match="85 deg.*horizontal Earth rate"):
+            call()
+
+
+def test_a_record_without_earth_rate_or_gravity_is_refused():
+    still = np.tile([0.0, 0, 0, 0, 0, 0.098], (6000, 1))
+    with pytest.raises(InputError, match="does not turn"):
+        coarse_alignment(still, 100.0, SITE.lat)
+    with pytest.raises(InputError, match="no specific force"):
+        coarse_alignment(np.zeros((6000, 6)), 100.0, SITE.lat)
+
+
+def test_a_loop_too_fast_for_the_imu_is_refused():
+    with pytest.raises(InputError, match="alignment.sigma"):
+        fine_alignment(
+            np.zeros((10, 6)), 1.0, np.array([1.0, 0, 0, 0]), 0.5, 0.0, WGS84, CompassLoop(sigma=1.0)
+        )

@@ -1,0 +1,157 @@
+"""The simulated IMU: exact increments, errors of the stated size, independence of chunks."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from navcore.compiled import kernel
+from navcore.earth import WGS84
+from navcore.motion.base import Truth
+from navcore.motion.inertial import inertial_signals
+from navcore.motion.static import StaticMotion
+from navcore.sensors.imu import Imu
+from navcore.sensors.imu_simulation import ImuSimulation
+from navcore.sensors.imu_simulation import simulation as module
+from navcore.sensors.imu_simulation.normal import fill_normals
+from navcore.sensors.imu_simulation.work import HALF_NORMALS, NORMAL, WORK, W
+from navcore.units import ARCSEC, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
+from tests.strapdown import DENG_SWING, DRIVE, SITE
+
+RATE = 100.0
+
+
+def _increments(motion, imu, seconds, seed=1, rate=RATE):
+    sim = ImuSimulation(motion, SITE, WGS84, imu, rate, int(seconds * rate), seed)
+    return np.concatenate([chunk.copy() for chunk, _ in sim.chunks()])
+
+
+@pytest.mark.parametrize(
+    "motion", [StaticMotion(pitch_deg=3, roll_deg=-4, heading_deg=200), DENG_SWING, DRIVE]
+)
+def test_increments_are_the_integral_of_the_signals(motion):
+    """Against five-point Gauss-Legendre quadrature of the signals of another module."""
+    seconds, per = 5, int(RATE)
+    nodes, weights = np.polynomial.legendre.leggauss(5)
+    sim = ImuSimulation(motion, SITE, WGS84, Imu(), RATE, seconds * per, 1)
+    got = _increments(motion, Imu(), seconds)
+    for k in (0, 1, 37, 63, 64, 65, 250, 499):
+        fine = 2000
+        rows = sim.truth_rows((k + 1) * fine + 1, 1.0 / RATE / fine)
+        rows = rows if len(rows) == 1 else rows[k * fine :]
+        signals = inertial_signals(Truth(1.0, rows), WGS84)
+        if len(signals) == 1:
+            wanted = signals[0] / RATE
+        else:
+            at = np.rint((nodes + 1.0) / 2.0 * fine).astype(int)
+            exact = (at - fine / 2) / (fine / 2)
+            # moments of the rounded nodes are matched by solving for the weights
+            fitted = np.linalg.solve(np.vander(exact, 5, increasing=True).T, [2.0, 0, 2 / 3, 0, 2 / 5])
+            wanted = (fitted @ signals[at]) / 2.0 / RATE
+        np.testing.assert_allclose(got[k], wanted, rtol=0, atol=1e-11)
+    assert weights.sum() == pytest.approx(2.0)
+
+
+def test_the_interval_before_the_start_is_the_backward_continuation():
+    sim = ImuSimulation(DENG_SWING, SITE, WGS84, Imu(), RATE, 500, 1)
+    got = _increments(DENG_SWING, Imu(), 5)
+    extrapolated = 3.0 * got[0] - 3.0 * got[1] + got[2]
+    np.testing.assert_allclose(sim.before(), extrapolated, atol=1e-7)
+    assert np.abs(sim.before() - got[0]).max() > 1e-6
+
+
+def test_noise_has_the_stated_size_and_is_white_and_normal():
+    imu = Imu(gyro_arw_dpsh=0.003, accel_vrw_ugpshz=10.0)
+    error = _increments(StaticMotion(), imu, 4000) - _increments(StaticMotion(), Imu(), 1)[0]
+    n, dt = len(error), 1.0 / RATE
+    wanted = np.repeat([0.003 * DEG_PER_SQRT_HOUR, 10.0 * MICRO_G], 3) * math.sqrt(dt)
+    z = error / wanted
+    assert np.abs(z.mean(axis=0)).max() < 4.0 / math.sqrt(n)
+    assert np.abs(z.std(axis=0) - 1.0).max() < 4.0 / math.sqrt(2 * n)
+    assert np.abs((z**4).mean(axis=0) - 3.0).max() < 4.0 * math.sqrt(96.0 / n)
+    assert np.abs(np.corrcoef(z.T) - np.eye(6)).max() < 4.5 / math.sqrt(n)
+    for lag in (1, 2, 64, 100):
+        assert np.abs((z[lag:] * z[:-lag]).mean(axis=0)).max() < 4.5 / math.sqrt(n)
+
+
+def test_normals_pass_a_distribution_test():
+    from scipy.stats import kstest
+
+    w, parts = np.zeros(WORK), []
+    for tile in range(300):
+        fill_normals(tile, np.uint64(77), 192, w)
+        parts.append(w[NORMAL * W : NORMAL * W + 2 * HALF_NORMALS].copy())
+    assert kstest(np.concatenate(parts), "norm").pvalue > 0.01
+
+
+def test_philox_of_the_paper():
+    """Known answers of Random123 for philox2x32 with ten rounds."""
+    from navcore.sensors.imu_simulation.normal import _philox
+
+    @kernel
+    def call(low, high, key):
+        return _philox(np.uint64(low), np.uint64(high), np.uint64(key))
+
+    assert tuple(int(v) for v in call(0, 0, 0)) == (0xFF1DAE59, 0x6CD10DF2)
+    full = 0xFFFFFFFF
+    assert tuple(int(v) for v in call(full, full, full)) == (0x2C3F628B, 0xAB4FD7AD)
+
+
+def test_the_numbers_do_not_depend_on_the_chunks(monkeypatch):
+    imu = Imu(gyro_arw_dpsh=0.003, gyro_instability_dph=0.1, gyro_lsb=(1e-7, 1e-7, 1e-7))
+    whole = _increments(DRIVE, imu, 30)
+    monkeypatch.setattr(module, "CHUNK_S", 7.0)
+    np.testing.assert_array_equal(_increments(DRIVE, imu, 30), whole)
+    assert np.abs(_increments(DRIVE, imu, 30, seed=2) - whole).max() > 0.0
+
+
+def test_constant_errors_and_scale_factors():
+    imu = Imu(
+        gyro_bias_dph=(1.0, -2.0, 3.0),
+        accel_bias_ug=(10.0, 20.0, -30.0),
+        gyro_scale_ppm=(100.0, 0.0, 0.0),
+        accel_misalignment_arcsec=(0.0, 10.0, 0.0, 0.0, 0.0, 0.0),
+    )
+    error = (_increments(StaticMotion(), imu, 1) - _increments(StaticMotion(), Imu(), 1))[0] * RATE
+    perfect = _increments(StaticMotion(), Imu(), 1)[0] * RATE
+    wanted = np.concatenate(
+        [np.array([1.0, -2.0, 3.0]) * DEG_PER_HOUR, np.array([10.0, 20.0, -30.0]) * MICRO_G]
+    )
+    wanted[0] += 100e-6 * perfect[0]
+    wanted[3] += 10.0 * ARCSEC * perfect[5]
+    np.testing.assert_allclose(error, wanted, atol=1e-12)
+
+
+def test_quantisation_loses_nothing():
+    lsb = 3e-7
+    imu = Imu(gyro_lsb=(lsb, lsb, lsb), accel_lsb=(1e-4, 1e-4, 1e-4))
+    counted, perfect = _increments(DENG_SWING, imu, 60), _increments(DENG_SWING, Imu(), 60)
+    whole = counted[:, :3] / lsb
+    assert np.abs(whole - np.rint(whole)).max() < 1e-6
+    assert np.abs(np.cumsum(counted - perfect, axis=0)).max(axis=0)[:3].max() <= 0.5 * lsb * 1.001
+    assert np.abs(np.cumsum(counted - perfect, axis=0)).max(axis=0)[3:].max() <= 0.5e-4 * 1.001
+
+
+def test_gauss_markov_drift_is_held_by_the_second_and_stationary():
+    imu = Imu(gyro_instability_dph=0.5, gyro_tau_s=20.0)
+    error = (
+        _increments(StaticMotion(), imu, 20000, rate=10.0)
+        - _increments(StaticMotion(), Imu(), 1, rate=10.0)[0]
+    )
+    drift = error[::10, :3] * 10.0 / DEG_PER_HOUR
+    np.testing.assert_allclose(error[:10, 0], error[0, 0], rtol=1e-12)
+    assert drift.std() == pytest.approx(0.5, rel=0.1)
+    assert (drift[1:] * drift[:-1]).mean() / drift.var() == pytest.approx(math.exp(-1 / 20), abs=0.02)
+
+
+def test_sums_are_the_errors_in_the_navigation_frame():
+    imu = Imu(gyro_bias_dph=(1.0, 0.0, 0.0), accel_bias_ug=(0.0, 100.0, 0.0))
+    motion = StaticMotion(heading_deg=90.0)
+    sim = ImuSimulation(motion, SITE, WGS84, imu, RATE, 1000, 1)
+    sums = np.concatenate([s.copy() for _, s in sim.chunks(with_sums=True)])
+    # Heading east: body right is south, forward is east.
+    np.testing.assert_allclose(sums[:, 1], -DEG_PER_HOUR, rtol=1e-9)
+    np.testing.assert_allclose(sums[:, 3], 100.0 * MICRO_G, rtol=1e-9)
+    assert sums.shape == (10, 6)

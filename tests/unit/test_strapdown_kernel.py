@@ -1,0 +1,186 @@
+"""The compiled strapdown kernel against its slow twin, sample by sample, and its bookkeeping."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from navcore.earth import WGS84, attitude_matrix
+from navcore.filters import discretise
+from navcore.mechanization.error_model_twin import TwinLaw
+from navcore.mechanization.strapdown import Settings, start_from, start_run
+from navcore.mechanization.strapdown import layout as at
+from navcore.mechanization.strapdown.attitude import angles_of, misalignment, quaternion_of
+from navcore.mechanization.strapdown.run import turned_by
+from navcore.mechanization.strapdown.twin import run_twin
+from navcore.network.classic import Classic2Network
+from navcore.network.compass import CompassNetwork
+from navcore.network.complementary import ComplementaryNetwork
+from navcore.network.undamped import UndampedNetwork
+from navcore.sensors.imu import Imu
+from navcore.sensors.imu_simulation import ImuSimulation
+from navcore.units import DEG
+from tests.strapdown import DENG_SWING, DRIVE, SITE, law, navigate, reference
+
+RATE, SECONDS = 50.0, 20
+NOISY = Imu(
+    gyro_bias_dph=(5.0, -3.0, 2.0),
+    gyro_arw_dpsh=0.5,
+    accel_bias_ug=(900.0, -500.0, 300.0),
+    accel_vrw_ugpshz=100.0,
+)
+START_ERRORS = np.array([0.3, -0.2, 1e-5, 2e-5, 2e-3, -1e-3, 5e-3])
+
+
+class _FeedbackTwin:
+    """Velocity feedback of physics.md 3.1, held over a law step."""
+
+    def __init__(self, gains: tuple[float, float, float], step_s: float) -> None:
+        self.gains, self.step_s, self.p = gains, step_s, np.zeros(2)
+
+    def step(self, difference: np.ndarray, valid: bool, v_c: np.ndarray):
+        k1, k2, k3 = self.gains
+        # The mean of P over the step: half a step ahead of its start.
+        mean = self.p - 0.5 * k3 * self.step_s * difference
+        self.p = self.p - k3 * self.step_s * difference
+        return mean - k2 * difference, k1 * difference
+
+
+def _damping(kind: str, network, v_r: np.ndarray):
+    omega_s = WGS84.schuler_frequency(SITE.lat)
+    if kind == "feedback":
+        twin = _FeedbackTwin(network.gains(omega_s), 1.0)
+        return lambda k, v: twin.step(v_r - v[:2], True, v[:2])
+    d = discretise(network.transfer(omega_s), 1.0)
+    twin = TwinLaw(np.eye(d.order) + d.dA, d.B, -d.C, 1.0 - d.D, internal=kind == "internal")
+    return lambda k, v: (twin.step(v_r - v[:2], True, v[:2]), np.zeros(2))
+
+
+@pytest.mark.parametrize("motion", [DENG_SWING, DRIVE], ids=["swing", "legs"])
+@pytest.mark.parametrize(
+    ("kind", "network"),
+    [
+        ("free", UndampedNetwork()),
+        ("external", ComplementaryNetwork()),
+        ("internal", Classic2Network()),
+        ("feedback", CompassNetwork(sigma=0.05, xi=0.7)),
+    ],
+)
+def test_kernel_equals_twin_sample_by_sample(motion, kind, network):
+    samples = int(RATE * SECONDS)
+    sim = ImuSimulation(motion, SITE, WGS84, NOISY, RATE, samples, 3)
+    increments = next(iter(sim.chunks()))[0].copy()
+    truth = sim.truth_rows(1, 1.0)[:1]
+    start = start_from(truth[0], START_ERRORS)
+    v_r = np.array([0.4, -0.7])
+    damping = {"feedback": "external"}.get(kind, kind)
+    settings = Settings(RATE, samples, int(RATE), int(RATE), 1.0)
+    run = start_run(
+        start, settings, WGS84, law(damping, network, 1.0), truth, reference(v_r, SECONDS), sim.before()
+    )
+    matrix = np.array([_turn(start.quaternion, axis) for axis in np.eye(3)]).T
+    matrices, velocities, positions = run_twin(
+        increments, sim.before(), RATE, int(RATE), matrix, start.velocity,
+        np.array([start.lat, start.lon, start.height]), WGS84,
+        None if kind == "free" else _damping(kind, network, v_r),
+    )  # fmt: skip
+    for k in range(samples):
+        run.advance(increments[k : k + 1])
+        x = run.x
+        got = np.array([_turn(x[at.Q0 : at.Q0 + 4], axis) for axis in np.eye(3)]).T
+        assert np.abs(got - matrices[k + 1]).max() < 5e-12
+        assert np.abs(x[at.V_E : at.V_U + 1] - velocities[k + 1]).max() < 2e-10
+        assert abs(start.lat + x[at.D_LAT] - positions[k + 1, 0]) < 1e-14
+        assert abs(start.lon + x[at.D_LON] - positions[k + 1, 1]) < 1e-14
+    assert run.code == at.COMPLETE
+
+
+def _turn(q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    u = q[1:]
+    return v + 2.0 * np.cross(u, np.cross(u, v) + q[0] * v)
+
+
+@pytest.mark.parametrize("angles", [(0.1, -0.4, 3.0), (-1.2, 2.0, 6.0), (0.0, 0.0, 0.0)])
+def test_quaternion_is_the_attitude_matrix(angles):
+    q = np.array(quaternion_of(*angles))
+    matrix = np.array([_turn(q, axis) for axis in np.eye(3)]).T
+    np.testing.assert_allclose(matrix, attitude_matrix(*angles), atol=1e-15)
+    np.testing.assert_allclose(angles_of(*q), angles, atol=1e-14)
+
+
+def test_misalignment_has_the_sign_of_the_contract():
+    phi = np.array([1e-5, -2e-5, 3e-5])
+    true = np.array(quaternion_of(0.2, -0.3, 1.0))
+    computed = turned_by(-phi, true)
+    x, y, z = phi
+    skew = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    matrix = np.array([_turn(computed, axis) for axis in np.eye(3)]).T
+    np.testing.assert_allclose(matrix, (np.eye(3) - skew) @ attitude_matrix(0.2, -0.3, 1.0), atol=1e-9)
+    np.testing.assert_allclose(misalignment(*computed, *true), phi, rtol=1e-9)
+    np.testing.assert_allclose(misalignment(*(-computed), *true), phi, rtol=1e-9)
+
+
+def test_chunks_of_any_length_give_the_same_run():
+    whole = navigate(
+        DRIVE, 50.0, 700.0, NOISY, START_ERRORS, "external", Classic2Network(), reference((0, 0), 700)
+    )
+    sim = ImuSimulation(DRIVE, SITE, WGS84, NOISY, 50.0, 35000, 1)
+    increments = np.concatenate([chunk.copy() for chunk, _ in sim.chunks()])
+    truth = sim.truth_rows(701, 1.0)
+    run = start_run(
+        start_from(truth[0], START_ERRORS), Settings(50.0, 35000, 50, 50, 1.0), WGS84,
+        law("external", Classic2Network(), 1.0), truth, reference((0, 0), 700), sim.before(),
+    )  # fmt: skip
+    position, rng = 0, np.random.default_rng(1)
+    while not run.advance(increments[position : (position := position + int(rng.integers(1, 900)))]):
+        pass
+    np.testing.assert_allclose(run.recorder.rows, whole.recorder.rows, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(run.recorder.stats, whole.recorder.stats, rtol=1e-6, atol=1e-9)
+    assert run.recorder.cursor[1] == 701
+
+
+def test_navigation_rows_hold_the_solution():
+    run = navigate(DRIVE, 50.0, 900.0)
+    last = dict(zip(at.NAVIGATION, run.navigation[-1], strict=True))
+    assert last["ve_mps"] == pytest.approx(8.0 * math.sin(30 * DEG), abs=1e-6)
+    assert last["heading_rad"] == pytest.approx(30 * DEG, abs=1e-9)
+    assert last["lat_rad"] > SITE.lat
+
+
+def test_divergence_is_reported_and_stops():
+    run = navigate(DRIVE, 50.0, 600.0, errors=np.array([0, 0, 0, 0, 1.5, 0, 0]))
+    assert run.code == at.DIVERGED and run.diverged and "tilt" in run.reason
+
+
+def test_altimeter_holds_the_height_where_a_free_vertical_channel_runs_away():
+    biased = Imu(accel_bias_ug=(0.0, 0.0, 200.0))
+    run = navigate(DENG_SWING, 50.0, 3600.0, biased, vertical="altimeter")
+    height_error = run.navigation[:, at.NAVIGATION.index("dheight_m")]
+    # dh'' = 2e-3 m/s^2 would give 12.7 km in an hour; the loop leaves nothing of a constant bias.
+    assert 0.5 < np.abs(height_error).max() < 20.0
+    assert abs(height_error[-1]) < 0.05
+
+
+def test_as_printed_lacks_the_transport_rate_of_the_reference():
+    """Deng 4: a moving vehicle tilts the platform of the printed form (physics.md 8)."""
+
+    def tilt(realisation: str) -> float:
+        network = CompassNetwork(sigma=0.02, xi=0.7, realisation=realisation)
+        rows = navigate(DRIVE, 50.0, 1100.0).truth
+        log = reference((0, 0), 1100)
+        log.velocity[:] = rows[:, 3:5]
+        run = navigate(DRIVE, 50.0, 1100.0, damping="external", network=network, log=log)
+        return float(np.abs(run.recorder.rows[:, :2]).max())
+
+    assert tilt("feedback") < 1e-6
+    assert tilt("as_printed") > 1e-5
+
+
+def test_lengths_that_do_not_fit_are_refused():
+    truth, free = np.zeros((3, 15)), law("free", UndampedNetwork(), 1.0)
+    with pytest.raises(ValueError, match="multiple"):
+        start_run(start_from(truth[0]), Settings(50.0, 120, 50, 50, 1.0), WGS84, free, truth)
+    with pytest.raises(ValueError, match="rows of truth"):
+        start_run(start_from(truth[0]), Settings(50.0, 150, 50, 50, 1.0), WGS84, free, truth)
