@@ -1,0 +1,75 @@
+"""Sources run apart: what is switched on, that their errors add up, and which one is said to dominate."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from navcore.scenario import Scenario
+from navcore.scenario_file import load
+from navcore.simulation import simulate
+from navcore.sources import active_sources, apart, only
+
+SCENARIO = {
+    "run": {"duration_h": 3.0, "step_s": 5.0},
+    "imu": {"gyro_bias_dph": [0.0, 0.01, 0.0], "gyro_arw_dpsh": 0.002, "accel_bias_ug": [20.0, 0.0, 0.0]},
+    "initial_error": {"velocity_mps": [0.1, 0.0]},
+    "reference": {"kind": "log", "noise_mps": 0.2, "rate_hz": 0.2},
+    "method": [
+        {"name": "free"},
+        {
+            "name": "damped",
+            "damping": "external",
+            "network": {"id": "classic2"},
+            "event": [{"t_h": 1.0, "duration_s": 100.0, "accel_mps2": [0.01, 0.0]}],
+        },
+    ],
+}
+ALL = ("initial error", "gyro bias", "gyro noise", "accelerometer bias", "log noise", "log events")
+
+
+def test_what_is_switched_on_is_named():
+    assert active_sources(Scenario.parse(SCENARIO)) == ALL
+    assert active_sources(Scenario.parse({})) == ()
+
+
+def test_errors_of_the_sources_add_up_to_the_whole():
+    scenario = Scenario.parse(SCENARIO)
+    whole = simulate(scenario)
+    runs = [simulate(only(scenario, name)) for name in ALL]
+    for i, method in enumerate(whole.methods):
+        together = np.sum([run.methods[i].rows[:, :7] for run in runs], axis=0)
+        scale = np.abs(method.rows[:, :7]).max(axis=0)
+        assert np.abs(together - method.rows[:, :7]).max(axis=0) == pytest.approx(0.0, abs=1e-9 * scale.max())
+
+
+def test_the_largest_source_comes_first():
+    scenario = load("zha-fast", ["imu.accel_bias_ug=[0.01, 0, 0]"])
+    free = apart(scenario, simulate(scenario))[0]
+    assert free.method == "free"
+    (first, share), (second, rest) = free.shares("position_m")
+    assert (first, second) == ("gyro bias", "accelerometer bias")
+    assert share > 0.99
+    assert share + rest == pytest.approx(1.0)
+
+
+def test_a_recorded_log_is_a_source(tmp_path):
+    log = tmp_path / "log.csv"
+    log.write_text("t_s,speed_mps,speed_starboard_mps\n" + "".join(f"{t},0.3,0\n" for t in range(0, 400)))
+    data = {
+        "run": {"duration_h": 0.1},
+        "reference": {"kind": "file", "file": str(log), "frame": "body"},
+        "method": [{"damping": "external", "network": {"id": "classic2"}}],
+    }
+    scenario = Scenario.parse(data)
+    assert active_sources(scenario) == ("recorded log",)
+    (method,) = apart(scenario, simulate(scenario))
+    assert method.contributions[0].rms == pytest.approx(method.whole)
+
+
+def test_cancel_leaves_out_what_has_not_run():
+    scenario = Scenario.parse(SCENARIO)
+    whole = simulate(scenario)
+    asked = iter([False, False, False, True])
+    (free, _) = apart(scenario, whole, cancelled=lambda: next(asked, True))
+    assert len(free.contributions) < len(ALL)
