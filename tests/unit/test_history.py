@@ -1,0 +1,80 @@
+"""Undo and redo: steps, their names, and drags that are one step."""
+
+from __future__ import annotations
+
+from app.history import MOST_STEPS, History, State, change_name
+from navcore.scenario import Scenario
+from navcore.scenario_file import load
+
+FIRST = State(load("zha-fast"), "zha-fast", 0)
+
+
+def changed(state: State, *overrides: str) -> State:
+    return State(load(state.origin, list(overrides)), state.origin, state.selected)
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def test_undo_and_redo_walk_over_the_states():
+    history = History(FIRST, Clock())
+    longer, renamed = changed(FIRST, "run.duration_h=8"), changed(FIRST, "title=x")
+    assert (history.undo(), history.redo(), history.undo_name, history.redo_name) == (None,) * 4
+    history.push(longer)
+    history.push(renamed)
+    assert history.undo() == longer
+    assert history.undo() == FIRST
+    assert history.undo() is None
+    assert history.redo_name == "run.duration_h: 4 → 8"
+    assert history.redo() == longer
+    history.push(FIRST)
+    assert history.redo() is None
+    assert history.undo() == longer
+
+
+def test_a_drag_is_one_step():
+    clock = Clock()
+    history = History(FIRST, clock)
+    for hours in (5, 6, 7):
+        history.push(changed(FIRST, f"run.duration_h={hours}"))
+        clock.now += 0.3
+    assert history.undo_name == "run.duration_h: 4 → 7"
+    clock.now += 2.0
+    history.push(changed(FIRST, "run.duration_h=9"))
+    assert history.undo_name == "run.duration_h: 7 → 9"
+    assert history.undo() == changed(FIRST, "run.duration_h=7")
+    assert history.undo() == FIRST
+    assert history.undo() is None
+
+
+def test_selecting_another_method_is_no_step():
+    history = History(FIRST, Clock())
+    history.push(State(FIRST.scenario, FIRST.origin, 2))
+    assert history.undo_name is None
+    assert history.state.selected == 2
+
+
+def test_changes_are_named():
+    assert change_name(FIRST, State(load("sun-step"), "sun-step", 0)) == "open sun-step"
+    without = Scenario.parse(FIRST.scenario.canonical() | {"method": [{"name": "free"}]})
+    assert change_name(FIRST, State(without, "zha-fast", 0)) == "remove a method"
+    sets = ["imu.gyro_arw_dpsh=0.1", "imu.accel_vrw_ugpshz=3"]
+    assert change_name(FIRST, changed(FIRST, *sets)) == "change of imu"
+    assert change_name(FIRST, changed(FIRST, *sets, "run.seed=4")) == "change of 3 fields"
+
+
+def test_only_so_many_steps_are_kept():
+    clock = Clock()
+    history = History(FIRST, clock)
+    for seed in range(2, MOST_STEPS + 12):
+        clock.now += 5.0
+        history.push(changed(FIRST, f"run.seed={seed}"))
+    steps = 0
+    while history.undo():
+        steps += 1
+    assert steps == MOST_STEPS
