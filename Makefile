@@ -15,7 +15,7 @@ endif
 
 KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
-.PHONY: help setup run test check format unit guide lock clean REMAKE
+.PHONY: help setup run test check format unit benchmarks guide lock clean REMAKE
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'
@@ -23,6 +23,7 @@ help:
 	@echo 'make setup    .venv with the command .venv/bin/schuler, kernels compiled'
 	@echo 'make check    lint, format and types only'
 	@echo 'make unit     the fast tests only'
+	@echo 'make benchmarks  time the strapdown engine beside python-ins, which it installs into .venv'
 	@echo 'make format   lay the code out'
 	@echo 'make guide    write docs/scenario.md and the JSON Schema anew from the parameter models'
 	@echo 'make lock     resolve the locked requirements again (UPGRADE=--upgrade: to the newest versions)'
@@ -42,6 +43,10 @@ check: $(STAMPS)/test
 
 unit: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.stages unit
+
+# YARDSTICK=FILE: a Python file whose quick(samples, repeats) gives the ns a sample of a reference.
+benchmarks: setup $(STAMPS)/benchmarks
+	@SCHULER_YARDSTICK='$(YARDSTICK)' $(BIN)/python -m benchmarks
 
 format: $(STAMPS)/test
 	@$(BIN)/ruff check --fix --select I .
@@ -86,6 +91,10 @@ $(STAMPS)/test: requirements-test.lock $(STAMPS)/project
 	$(PIP) $(LOCKED) -r requirements-test.lock && \
 	echo "== installed in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@
 
+# What it needs itself is in requirements.lock.
+$(STAMPS)/benchmarks: requirements-benchmarks.lock $(STAMPS)/project
+	@$(PIP) $(LOCKED) --no-deps -r requirements-benchmarks.lock && touch $@
+
 # ---------------------------------------------------------------- upkeep
 
 guide: $(STAMPS)/project
@@ -102,7 +111,10 @@ lock: $(STAMPS)/python
 	@$(UV_COMPILE) --group build --constraints requirements.lock --output-file requirements-build.lock
 	@$(UV_COMPILE) --group test --constraints requirements.lock --constraints requirements-build.lock \
 	  --output-file requirements-test.lock
+	@$(BIN)/python -c 'import tomllib; \
+	  print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["benchmarks"], sep="\n")' \
+	  | $(UV_COMPILE) --no-deps - --output-file requirements-benchmarks.lock
 
 clean:
 	rm -rf .venv build dist test-output .hypothesis .pytest_cache .ruff_cache
-	find app navcore tests -name __pycache__ -type d -prune -exec rm -rf {} +
+	find app benchmarks navcore tests -name __pycache__ -type d -prune -exec rm -rf {} +

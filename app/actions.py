@@ -52,6 +52,12 @@ class Actions:
             opened = load(name)
             self._session.change(opened, None, origin=name, selected=first_editable(opened))
 
+    def verify(self) -> None:
+        """Compare the scenario with the full strapdown."""
+        with self._session.lock:
+            scenario = self._session.scenario
+        self._session.verifier.start(scenario)
+
     # ------------------------------------------------------------ methods and events
 
     def select(self, index: int) -> None:

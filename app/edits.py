@@ -21,6 +21,13 @@ ALTERNATIVES: dict[str, tuple[tuple[str, ...], ...]] = {
 """Parameters of a network that stand for each other: giving one group takes the others away."""
 
 
+_STRAPDOWN_ONLY: dict[str, tuple[str, ...]] = {
+    "run": ("vertical", "compensation"),
+    "alignment": ("kind",),
+    "imu": ("file", "axes", "begin_s"),
+}
+
+
 def with_value(
     scenario: Scenario, path: Path, value: Any, shown: Mapping[str, Any] | None = None
 ) -> Scenario:
@@ -47,6 +54,8 @@ def with_value(
     if len(path) == 4 and path[2] == "network":
         _choose_alternative(scenario, data, path, shown or {})
     _place(data, path, value)
+    if path == ("run", "fidelity") and value != "strapdown":
+        _leave_strapdown(data)
     if path[0] == "method" and path[-1] in ("damping", "id"):
         _forget_made_name(scenario, data, int(path[1]))
     return Scenario.parse(data)
@@ -127,7 +136,8 @@ def value_at(scenario: Scenario, path: Path) -> Any:
 
 def files_of(scenario: Scenario) -> set[str]:
     """Paths of the recordings that the scenario runs on."""
-    named = (getattr(block, "file", None) for block in (scenario.motion, scenario.reference))
+    blocks = (scenario.motion, scenario.reference, scenario.imu)
+    named = (getattr(block, "file", None) for block in blocks)
     return {path for files in named for path in ((files,) if isinstance(files, str) else files or ())}
 
 
@@ -198,6 +208,13 @@ def _shared_fields(path: Path, chosen: str) -> set[str]:
         return set()
     scalar = {"pitch_deg", "roll_deg", "heading_deg"}
     return {name for name in MOTIONS[chosen].model_fields if name in scalar}
+
+
+def _leave_strapdown(data: Any) -> None:
+    """Give up what only a strapdown run can do: another fidelity would be refused with it."""
+    for block, names in _STRAPDOWN_ONLY.items():
+        for name in names:
+            data[block].pop(name, None)
 
 
 def _forget_made_name(scenario: Scenario, data: Any, index: int) -> None:

@@ -16,12 +16,13 @@ from pydantic.fields import FieldInfo
 from navcore.parameters import allowed_range, element_of, extra_of
 
 Path = tuple[str | int, ...]
-Kind = Literal["number", "integer", "choice", "text", "roots", "numbers"]
+Kind = Literal["number", "integer", "flag", "choice", "text", "roots", "numbers", "pairs"]
 
 _AXES = {2: ("E", "N"), 3: ("x", "y", "z")}
 _SLIDER_STEPS = 200
 _SIGNIFICANT = 3
-_DISCRIMINATORS = ("kind", "id")
+_LEFT_OUT = ("kind", "id", "file")
+"""Discriminators, and files: a visitor must name none of the server's."""
 
 
 @dataclass(frozen=True)
@@ -34,11 +35,14 @@ class Slider:
         Ends, in the field's unit.
     log : bool
         Equal ratios instead of equal differences.
+    whole : bool
+        Whole numbers only.
     """
 
     low: float
     high: float
     log: bool
+    whole: bool = False
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -49,7 +53,8 @@ class Slider:
     def step(self) -> float:
         """Position change of one key press, about a two-hundredth of the range: 1, 2 or 5 times 10^n."""
         low, high = self.ends
-        return round_step((high - low) / _SLIDER_STEPS)
+        step = round_step((high - low) / _SLIDER_STEPS)
+        return max(step, 1.0) if self.whole and not self.log else step
 
     def position(self, value: float) -> float:
         """Nearest position to a value; values beyond the ends stand at the end."""
@@ -69,6 +74,8 @@ class Slider:
         0.3
         """
         low, high = self.ends
+        if self.whole:
+            return int(min(max(round(10.0**position if self.log else position), self.low), self.high))
         if self.log:
             return min(max(significant(10.0**position, _SIGNIFICANT), self.low), self.high)
         digits = max(0, 2 - math.floor(math.log10(self.step)))
@@ -88,7 +95,8 @@ class FieldSpec:
     hint : str
         What it does, allowed range and source, for the tooltip.
     kind : str
-        "number", "integer", "choice", "text", "roots" (zeros or poles as text) or "numbers" (coefficients).
+        "number", "integer", "flag" (yes or no), "choice", "text", "roots" (zeros or poles as text), "numbers"
+        (coefficients) or "pairs" (rows of a table).
     default : object
         The model's default; None when a value may be left out.
     choices : tuple of str
@@ -147,7 +155,7 @@ def fields(model: type[BaseModel], path: Path, prefix: str = "") -> list[FieldSp
     """
     found: list[FieldSpec] = []
     for name, info in model.model_fields.items():
-        if name not in _DISCRIMINATORS:
+        if name not in _LEFT_OUT:
             found += _field(name, info, (*path, name), prefix)
     return found
 
@@ -167,6 +175,8 @@ def _field(name: str, info: FieldInfo, path: Path, prefix: str) -> list[FieldSpe
     offered = _literals(annotation)
     if offered:
         return [FieldSpec(path, label, _hint(info, ""), "choice", info.default, offered)]
+    if annotation is bool:
+        return [FieldSpec(path, label, _hint(info, ""), "flag", info.default)]
     if annotation in (int, float):
         kind: Kind = "integer" if annotation is int else "number"
         hint = _hint(info, allowed_range(info))
@@ -185,6 +195,9 @@ def _sequence(
     endless = Ellipsis in get_args(_bare(annotation))
     if endless and get_origin(_bare(arguments[0])) is tuple:
         return [FieldSpec(path, label, _hint(info, ""), "roots", info.default)]
+    if endless and _is_row(_bare(arguments[0])):
+        columns = ": ".join(_bare(arguments[0])._fields)
+        return [FieldSpec(path, label, f"{_hint(info, '')} Written as {columns}, ...", "pairs", info.default)]
     if endless and _bare(arguments[0]) is float:
         return [FieldSpec(path, label, _hint(info, ""), "numbers", info.default)]
     if endless or any(_bare(argument) is not float for argument in arguments):
@@ -207,10 +220,15 @@ def _sequence(
     ]
 
 
+def _is_row(annotation: Any) -> bool:
+    """Whether this is a named pair: a row of a table with two columns."""
+    return isinstance(annotation, type) and len(getattr(annotation, "_fields", ())) == 2
+
+
 def _label(name: str, info: FieldInfo, prefix: str, part: str = "") -> str:
     extra = extra_of(info)
     words = [prefix, extra.get("label") or name.replace("_", " "), part]
-    unit = f"({extra['unit']})" if extra.get("unit") else ""
+    unit = f"({extra['unit']})" if extra.get("unit") not in (None, "", "1") else ""
     return " ".join(word for word in (*words, unit) if word)
 
 
@@ -223,7 +241,10 @@ def _hint(info: FieldInfo, allowed: str) -> str:
 def _slider(info: FieldInfo) -> Slider | None:
     extra = extra_of(info)
     ends = extra.get("slider")
-    return Slider(float(ends[0]), float(ends[1]), bool(extra.get("log"))) if ends else None
+    if not ends:
+        return None
+    whole = _without_none(info.annotation) is int
+    return Slider(float(ends[0]), float(ends[1]), bool(extra.get("log")), whole)
 
 
 def _bare(annotation: Any) -> Any:
@@ -288,6 +309,25 @@ def write_roots(roots: Any) -> str:
 def write_numbers(values: Any) -> str:
     """Inverse of `read_numbers`."""
     return ", ".join(f"{value:.9g}" for value in values or ())
+
+
+def read_pairs(text: str) -> list[list[float]]:
+    """Rows of a table as typed, ``0: 0.99, 0.5: 0.12``; raises ValueError.
+
+    Examples
+    --------
+    >>> read_pairs("0: 0.99, 0.5:0.12"), write_pairs([(0.0, 0.99), [0.5, 0.12]])
+    ([[0.0, 0.99], [0.5, 0.12]], '0: 0.99, 0.5: 0.12')
+    """
+    rows = [[float(number) for number in row.split(":")] for row in text.split(",") if row.strip()]
+    if any(len(row) != 2 for row in rows):
+        raise ValueError("a row is two numbers with a colon between them")
+    return rows
+
+
+def write_pairs(rows: Any) -> str:
+    """Inverse of `read_pairs`."""
+    return ", ".join(f"{first:.9g}: {second:.9g}" for first, second in rows or ())
 
 
 def _root(root: Any) -> str:

@@ -26,9 +26,11 @@ from app.panels.files import FilesPanel
 from app.panels.header import HeaderPanel
 from app.panels.inputs import LogPanel, RunPanel, SensorPanel
 from app.panels.method import MethodPanel
-from app.panels.results import TABS, ResultsPanel
+from app.panels.results import MISPRINTS, PICTURED, ResultsPanel
+from app.panels.verification import VerificationPanel
 from app.scene import SceneDrawer
 from app.session import Session
+from app.verifier import Verified
 from navcore.errors import InputError
 from navcore.measures import metrics
 from navcore.run import Run
@@ -61,7 +63,8 @@ class Page:
         self._reported = threading.Event()
         self._window = (0, 0)
         self._front: tuple[str, ...] = ()
-        self._stale = set(TABS)
+        self._stale = set(PICTURED)
+        self._shown_result = session.verifier.result
         self._editor = Editor(client, session, self, self._controls, lambda: self.method.shown_network)
         self._actions = Actions(client, session, self._again)
         self._build()
@@ -106,6 +109,7 @@ class Page:
             self._move_ship, self._exaggerate,
         )  # fmt: skip
         self.header.show_exaggeration(session.exaggeration)
+        self.verification = VerificationPanel(gui, actions.verify, session.verifier.cancel, order=13.5)
         group = gui.add_tab_group(order=20)
         tabs = {name: group.add_tab(name) for name in _EDIT_TABS}
         self.method = MethodPanel(gui, tabs["Method"], edit, actions.select, actions.arrange_methods)
@@ -169,6 +173,7 @@ class Page:
         self.header.show_scenario(scenario, session.origin, self._actions.scenarios())
         self.method.show(scenario, index, moved)
         self.method.show_warnings(session.run, scenario, index)
+        self.verification.show(session.verifier, scenario)
         for panel in (self.sensors, self.log, self.run_panel):
             panel.show(scenario, moved)
         self.files.show(session.uploads)
@@ -183,6 +188,24 @@ class Page:
         """The user stopped the run."""
         self.header.show_stopped(self.session.run_number)
         self.client.flush()
+
+    def run_waits(self) -> None:
+        """The changed scenario takes long: it runs when the user asks for it."""
+        self.header.show_waiting(self.session.scenario, self.session.run_number)
+        self.client.flush()
+
+    def verification_changed(self) -> None:
+        """A verification has come further, or has ended."""
+        session = self.session
+        with session.lock, self.client.atomic():
+            if self._closed:
+                return
+            self.verification.show(session.verifier, session.scenario)
+            fresh = session.verifier.result is not self._shown_result
+            self._shown_result = session.verifier.result
+        self.client.flush()
+        if fresh:
+            self._again_pictures()
 
     def run_refused(self, error: InputError) -> None:
         """The scenario cannot run; the last good one is back."""
@@ -204,11 +227,11 @@ class Page:
         run, number = session.run, session.run_number
         if run is None or self._closed:
             return
-        wanted = set(self._front).intersection(TABS) or set(TABS)
-        pictures = self._results.make(run, number, session.transfer, wanted)
+        wanted = PICTURED.intersection(self._front) or set(PICTURED)
+        pictures = self._results.make(run, number, session.transfer, wanted, self._verified(run))
         content = _run_element(run, number)
         with session.lock, self.client.atomic():
-            self._stale = set(TABS) - wanted
+            self._stale = PICTURED - wanted
             self._results.show(pictures)
             self._draw_track(run)
             self.method.show_warnings(run, session.scenario, session.selected)
@@ -220,22 +243,25 @@ class Page:
     def _draw_track(self, run: Run) -> None:
         self._scene.draw(track(run, self.session.exaggeration), self.header.ship_time_s(run))
 
+    def _verified(self, run: Run) -> Verified | None:
+        return self.session.verifier.beside(run.scenario)
+
     def _again(self) -> None:
         with self.session.lock, self.client.atomic():
             self.refresh()
 
     def _again_pictures(self) -> None:
         """Make the figures in front anew, from the run there is."""
-        self._stale = set(TABS)
+        self._stale = set(PICTURED)
         self._show_stale()
 
     def _show_stale(self) -> None:
         with self.session.lock:
             run, number = self.session.run, self.session.run_number
-            wanted = self._stale.intersection(self._front or TABS)
+            wanted = self._stale.intersection(self._front or PICTURED)
         if run is None or not wanted:
             return
-        pictures = self._results.make(run, number, self.session.transfer, wanted)
+        pictures = self._results.make(run, number, self.session.transfer, wanted, self._verified(run))
         with self.session.lock, self.client.atomic():
             if self._closed or self.session.run is not run:
                 return
@@ -256,6 +282,8 @@ class Page:
         if self._built:
             self._arrange()
             self._show_stale()
+            if MISPRINTS in self._front:
+                self._results.laboratory.show()
 
     def _arrange(self) -> None:
         """Lay the results out anew if the window has another size now."""
@@ -267,7 +295,7 @@ class Page:
             self.gui.main_panel.set_width(layout.left_px)
             self._results.remove()
             self._results = self._make_results()
-            self._front, self._stale = (), set(TABS)
+            self._front, self._stale = (), set(PICTURED)
         self._scene.point_camera(self.client.camera, layout.view_aspect)
         self.client.flush()
 

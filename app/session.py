@@ -13,16 +13,21 @@ from pathlib import Path
 from typing import Protocol
 
 from app.uploads import Uploads
+from app.verifier import Verifier, Verify
 from app.worker import Watch, Worker
 from navcore.errors import InputError
 from navcore.run import Run
 from navcore.scenario import Scenario
+from navcore.units import HOUR
 
 MOST_SESSIONS = 64
 """Sessions kept without an open page; with one they are always kept."""
 MOST_IDLE_RUNS = 8
 """Runs kept of sessions without an open page; the others are computed again on return."""
 FIRST_PRESET = "sikuliaq-like"
+
+MOST_SAMPLES = 2_500_000
+"""IMU samples, all methods together, of a strapdown run that still follows every change: half a second."""
 
 _REPORT_EVERY_S = 0.1
 _log = logging.getLogger("schuler.session")
@@ -57,6 +62,14 @@ class View(Protocol):
         """Say that something of ours went wrong; the last good picture stays."""
         ...
 
+    def run_waits(self) -> None:
+        """Say that the changed scenario runs only when the user asks for it."""
+        ...
+
+    def verification_changed(self) -> None:
+        """Show how far the verification is, or what it gave."""
+        ...
+
 
 class Session:
     """State of one visitor.
@@ -73,6 +86,8 @@ class Session:
         For uploads; need not exist.
     simulate : callable, optional
         In place of `navcore.simulation.simulate`.
+    verify : callable, optional
+        In place of `navcore.verification.verify`.
 
     Attributes
     ----------
@@ -92,10 +107,18 @@ class Session:
         Transfer shown in the Bode plot.
     exaggeration : float or None
         Of the errors in 3D; None: chosen to fit.
+    verifier : Verifier
+        Compares the scenario with the full strapdown when asked.
     """
 
     def __init__(
-        self, id: str, scenario: Scenario, origin: str, folder: Path, simulate: Simulate | None = None
+        self,
+        id: str,
+        scenario: Scenario,
+        origin: str,
+        folder: Path,
+        simulate: Simulate | None = None,
+        verify: Verify | None = None,
     ) -> None:
         self.id = id
         self.lock = threading.RLock()
@@ -112,6 +135,9 @@ class Session:
         self._views: list[View] = []
         self._simulate = simulate or _simulate
         self._worker: Worker[Scenario] = Worker(self._work, f"session-{id[:8]}")
+        self.verifier = Verifier(
+            lambda: self._tell(lambda view: view.verification_changed()), verify, f"verifier-{id[:8]}"
+        )
 
     # ------------------------------------------------------------ pages
 
@@ -128,6 +154,7 @@ class Session:
             self._views = [other for other in self._views if other is not view]
             if not self._views:
                 self._worker.cancel()
+                self.verifier.cancel()
 
     @property
     def open_pages(self) -> int:
@@ -142,7 +169,8 @@ class Session:
     ) -> bool:
         """Take over a checked scenario and run it; False when nothing changed.
 
-        The single place where the scenario changes.
+        The single place where the scenario changes. One that `runs_on_demand` is run when it is opened
+        (``origin``) and when the user asks for it, not with every move of a control.
         """
         with self.lock:
             same = scenario == self.scenario and origin in (None, self.origin)
@@ -151,10 +179,17 @@ class Session:
             self.selected = min(self.selected, len(scenario.method) - 1)
             if same:
                 return False
+            if origin not in (None, self.origin):
+                self.verifier.forget()
             self.scenario, self.origin, self.outdated = scenario, origin or self.origin, True
+            self.verifier.follow(scenario)
             for view in list(self._views):
                 view.scenario_changed(by)
-            self._worker.submit(scenario)
+            if origin is None and runs_on_demand(scenario):
+                self._worker.cancel()
+                self._tell(lambda view: view.run_waits())
+            else:
+                self._worker.submit(scenario)
             return True
 
     def select(self, index: int, by: object) -> None:
@@ -165,7 +200,7 @@ class Session:
                 view.scenario_changed(by)
 
     def redo_run(self) -> None:
-        """Run the scenario again, after a stop."""
+        """Run the scenario: after a stop, or when it runs on demand."""
         with self.lock:
             self._worker.submit(self.scenario)
 
@@ -174,8 +209,9 @@ class Session:
         self._worker.cancel()
 
     def close(self) -> None:
-        """End the worker and remove the uploaded files."""
+        """End the workers and remove the uploaded files."""
         self._worker.stop()
+        self.verifier.stop()
         self.uploads.clear()
 
     def wait_idle(self, timeout_s: float | None = None) -> bool:
@@ -204,7 +240,9 @@ class Session:
             self._tell(lambda view: view.run_failed(failure))
             return
         if run.status == "stopped":
-            if not watch.superseded():
+            if runs_on_demand(self.scenario) and scenario != self.scenario:
+                self._tell(lambda view: view.run_waits())
+            elif not watch.superseded():
                 self._tell(lambda view: view.run_stopped())
             return
         with self.lock:
@@ -219,6 +257,7 @@ class Session:
             if scenario == self.scenario and self._before[0] != scenario:
                 self.scenario, self.origin, self.selected = self._before
                 self.outdated = self.run is None or self.run.scenario != self.scenario
+                self.verifier.follow(self.scenario)
                 for view in list(self._views):
                     view.scenario_changed(self)
         self._tell(lambda view: view.run_refused(error))
@@ -292,6 +331,14 @@ class Sessions:
             session.close()
         for session in idle[: max(0, len(idle) - MOST_IDLE_RUNS)]:
             session.run = None
+
+
+def runs_on_demand(scenario: Scenario) -> bool:
+    """Whether a run takes so long that it should not follow every move of a slider."""
+    run = scenario.run
+    if run.fidelity != "strapdown":
+        return False
+    return run.duration_h * HOUR * run.rate_hz * len(scenario.method) > MOST_SAMPLES
 
 
 def first_editable(scenario: Scenario) -> int:

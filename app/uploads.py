@@ -19,6 +19,12 @@ LARGEST_FILE = 16 * MIB
 MOST_FILES = 12
 LARGEST_FOLDER = 64 * MIB
 
+_WITH_FILES = ("motion", "reference", "imu")
+"""Blocks of a scenario that may name files: a visitor's must name none of the server's."""
+IMU = "imu"
+_ALIGNED_S = 600.0
+_ALIGNED_PART = 0.5
+"""Of a short IMU record, that is at most spent on the alignment."""
 _SPEEDS = ("water", "ground", "velocity")
 
 
@@ -33,11 +39,13 @@ class Upload:
     kind : str
         What it was understood as.
     quantities : frozenset of str
-        What it holds: position, heading, velocity, water, ground, attitude.
+        What it holds: position, heading, velocity, water, ground, attitude, or `IMU`.
     text : tuple of str
         What it holds, for reading.
     warnings : tuple of str
         What the user should know.
+    details : mapping
+        What the check found in it.
     """
 
     path: Path
@@ -45,6 +53,7 @@ class Upload:
     quantities: frozenset[str]
     text: tuple[str, ...]
     warnings: tuple[str, ...]
+    details: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass
@@ -63,7 +72,7 @@ class Uploads:
     files: dict[str, Upload] = field(default_factory=dict)
 
     def add(self, name: str, content: bytes) -> Upload:
-        """Store and check a log, track or heading file.
+        """Store and check a log, track, heading or IMU file.
 
         Parameters
         ----------
@@ -79,6 +88,7 @@ class Uploads:
         """
         from app.http.frames import safe_file_name
         from navcore.io.check import check_file
+        from navcore.io.check_imu import IMU_CHECKER
 
         name = safe_file_name(name)
         self._refuse_excess(name, len(content))
@@ -86,13 +96,13 @@ class Uploads:
         path = self.folder / name
         fresh = path.with_name(f".{name}.new")
         fresh.write_bytes(content)
-        report = check_file(fresh)
+        report = check_file(fresh, [IMU_CHECKER])
         if not report.ok:
             fresh.unlink()
             raise InputError(Fault(name, f.field, f.value, f.allowed) for f in report.faults)
         fresh.replace(path)
-        quantities = frozenset(report.details.get("quantities", ()))
-        upload = Upload(path, report.kind, quantities, report.text, report.warnings)
+        held = (IMU,) if report.kind.startswith("recorded IMU") else report.details.get("quantities", ())
+        upload = Upload(path, report.kind, frozenset(held), report.text, report.warnings, report.details)
         self.files[name] = upload
         return upload
 
@@ -144,6 +154,8 @@ def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, l
     """
     from navcore.sensors.recorded import recorded_window
 
+    if uploads.holding(IMU):
+        return _on_recorded_imu(scenario, uploads)
     data, notes = scenario.canonical(), []
     speeds = uploads.holding(*_SPEEDS)
     if uploads.holding("position") and uploads.holding("heading"):
@@ -178,6 +190,32 @@ def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, l
     return Scenario.parse(data), notes
 
 
+def _on_recorded_imu(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, list[str]]:
+    """Align and navigate on the newest uploaded IMU record, of a vehicle that stands."""
+    name, upload = next((n, u) for n, u in reversed(uploads.files.items()) if IMU in u.quantities)
+    data, details = scenario.canonical(), upload.details
+    place, span_s = details["place"], float(details["span_s"])
+    aligned_s = math.floor(min(_ALIGNED_S, _ALIGNED_PART * span_s))
+    data["imu"] = {"file": str(upload.path), "axes": "frd" if details["up_axis"] == "-z" else "rfu"}
+    data["motion"], data["reference"] = {"kind": "static"}, {"kind": "log"}
+    data["alignment"] = {"kind": "compass", "duration_s": float(aligned_s)}
+    data["run"] |= {
+        "fidelity": "strapdown",
+        "rate_hz": details["rate_hz"],
+        "duration_h": math.floor(span_s - aligned_s - 1.0) / HOUR,
+        "output_step_s": min(scenario.run.output_step_s, 1.0),
+    }
+    notes = [
+        f"Full strapdown on {name}: {aligned_s} s of alignment, then navigation, with a log that reads zero: "
+        "the vehicle is taken to stand."
+    ]
+    if place is not None:
+        data["site"] = place
+        notes.append(f"The site is that of the file, {place['lat_deg']:.4f} deg, {place['lon_deg']:.4f} deg.")
+    data["title"], data["source"] = "Recorded IMU", name[:300]
+    return Scenario.parse(data), notes
+
+
 def _is_log(uploads: Uploads, path: str) -> bool:
     """A speed log proper, with speeds along the ship's axes; not a receiver's course and speed."""
     held = uploads.files[Path(path).name].quantities
@@ -195,7 +233,7 @@ def shared_files(scenario: Scenario, names: Mapping[str, Path]) -> Scenario:
         A file is named that has not been uploaded.
     """
     data, faults = scenario.canonical(), []
-    for block in ("motion", "reference"):
+    for block in _WITH_FILES:
         named = data.get(block, {}).get("file")
         if not named:
             continue
@@ -205,7 +243,8 @@ def shared_files(scenario: Scenario, names: Mapping[str, Path]) -> Scenario:
         faults += [
             Fault("", f"{block}.file", name, "upload this file first, then the scenario") for name in missing
         ]
-        data[block]["file"] = [str(names[name]) for name in plain if name in names]
+        found = [str(names[name]) for name in plain if name in names]
+        data[block]["file"] = found[0] if isinstance(named, str) and found else found
     if faults:
         raise InputError(faults)
     return Scenario.parse(data)
@@ -237,9 +276,9 @@ def opened_scenario(name: str, content: bytes, uploads: Uploads) -> Scenario:
 def with_plain_names(scenario: Scenario) -> Scenario:
     """For a download: files by their names alone, to be put beside the scenario."""
     data: dict[str, Any] = scenario.canonical()
-    for block in ("motion", "reference"):
+    for block in _WITH_FILES:
         named = data.get(block, {}).get("file")
         if named:
-            wanted = [named] if isinstance(named, str) else list(named)
-            data[block]["file"] = [Path(name).name for name in wanted]
+            single = isinstance(named, str)
+            data[block]["file"] = Path(named).name if single else [Path(name).name for name in named]
     return Scenario.parse(data)

@@ -110,6 +110,11 @@ def inlined(function: _F) -> _F:
     return numba.njit(nogil=True, error_model="numpy", forceinline=True)(function)  # pyright: ignore[reportReturnType]
 
 
+def plain(function: _F) -> _F:
+    """Return the Python function behind a compiled one: for single calls, which are not worth compiling."""
+    return function.py_func  # pyright: ignore[reportFunctionMemberAccess]
+
+
 def main() -> None:
     """Compile every kernel into the cache, saying what is under way."""
     from navcore.warm import warm

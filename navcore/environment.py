@@ -6,14 +6,7 @@ a sensor error neither the truth nor its coefficients.
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Hashable
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
-
-import numpy as np
-from cachetools import LRUCache
 
 from navcore.errors import InputError
 from navcore.mechanization.trajectory import Coefficients, coefficients
@@ -24,12 +17,11 @@ from navcore.sensors.base import ReferenceErrors, SensorErrors
 from navcore.sensors.imu import imu_errors
 from navcore.sensors.recorded import recorded_window, recording_notices
 from navcore.sensors.reference import reference_errors
+from navcore.stage_cache import file_state, kept
 from navcore.units import DEG
 
 FAR_FROM_SITE_DEG = 2.0
 """Latitude by which a track may start off the site before the user is told, deg."""
-_CACHE_BYTES = 300 * 1024 * 1024
-_lock = threading.Lock()
 
 
 @dataclass(frozen=True)
@@ -60,38 +52,7 @@ class Environment:
     warnings: tuple[str, ...]
 
 
-def _size(value: Any) -> int:
-    arrays = [item for item in vars(value).values() if isinstance(item, np.ndarray)]
-    return 1024 + sum(array.nbytes for array in arrays)
-
-
-_cache: LRUCache[Hashable, Any] = LRUCache(_CACHE_BYTES, getsizeof=_size)
-
-
-def _kept(key: Hashable, make: Callable[[], Any]) -> Any:
-    with _lock:
-        if key in _cache:
-            return _cache[key]
-    value = make()
-    with _lock:
-        if _size(value) <= _CACHE_BYTES:
-            _cache[key] = value
-    return value
-
-
-def _file_state(files: Any) -> tuple[tuple[str, int, int], ...]:
-    paths = [files] if isinstance(files, str) else list(files or [])
-    states = []
-    for path in paths:
-        try:
-            stat = Path(path).stat()
-            states.append((path, stat.st_mtime_ns, stat.st_size))
-        except OSError:
-            states.append((path, 0, -1))
-    return tuple(states)
-
-
-def _site_notices(scenario: Scenario, truth: Truth) -> list[str]:
+def site_notices(scenario: Scenario, truth: Truth) -> list[str]:
     """Say so when a recorded track starts far from the site, whose gravity gives omega_s."""
     start = float(truth.values[0, LAT]) / DEG
     if abs(start - scenario.site.lat_deg) < FAR_FROM_SITE_DEG:
@@ -112,8 +73,8 @@ def environment(scenario: Scenario) -> Environment:
     """
     steps, h, earth = scenario.steps, scenario.run.step_s, scenario.earth
     channel = scenario.run.fidelity == "channel"
-    motion_key = (scenario.motion, _file_state(getattr(scenario.motion, "file", None)))
-    log_key = (scenario.reference, _file_state(scenario.reference.file))
+    motion_key = (scenario.motion, file_state(getattr(scenario.motion, "file", None)))
+    log_key = (scenario.reference, file_state(scenario.reference.file))
     # t = 0 is the first epoch that track and log share, so each depends on the other's files.
     truth_key = (motion_key, log_key[1], scenario.site, steps, h, earth.name)
     seed = scenario.run.seed
@@ -141,17 +102,17 @@ def environment(scenario: Scenario) -> Environment:
         except InputError as error:
             raise error.located("", "reference.") from None
 
-    truth = _kept(("truth", truth_key), make_truth)
+    truth = kept(("truth", truth_key), make_truth)
     return Environment(
         steps=steps,
         truth_half=truth,
-        coefficients=_kept(
+        coefficients=kept(
             ("coefficients", truth_key, channel), lambda: coefficients(truth, earth, coupled=not channel)
         ),
-        sensors=_kept(
+        sensors=kept(
             ("sensors", truth_key, channel, scenario.imu, seed),
             make_sensors,
         ),
-        reference=_kept(("reference", truth_key, log_key, seed), make_reference),
-        warnings=(*recording_notices(scenario.motion, scenario.reference), *_site_notices(scenario, truth)),
+        reference=kept(("reference", truth_key, log_key, seed), make_reference),
+        warnings=(*recording_notices(scenario.motion, scenario.reference), *site_notices(scenario, truth)),
     )

@@ -33,7 +33,7 @@ def metrics(run: Run) -> dict[str, Any]:
         "scenario_sha256": scenario_hash(run.scenario),
         "versions": versions(),
         "elapsed_s": round(run.elapsed_s, 4),
-        "computed_on": f"every step of the mechanization, {run.scenario.run.step_s:g} s",
+        "computed_on": run.computed_on,
         "warnings": list(run.warnings),
         "methods": [_method(method) for method in run.methods],
     }

@@ -10,6 +10,7 @@ import numpy as np
 from navcore.loop import Loop
 from navcore.mechanization.recorder import Recorder
 from navcore.network.base import LinearNetwork
+from navcore.sampling import Sampling
 from navcore.scenario import Method, Scenario
 
 Status = Literal["ok", "diverged", "stopped"]
@@ -57,6 +58,11 @@ class MethodRun:
         Statistics on the mechanization's own steps: quantity -> mean, std, rms, max_abs, final.
     plot : PlotSeries
         Curves for the screen.
+    law_series : ndarray, shape (m, 4)
+        At the output rows: the policy's wish (0/1), damped (0/1), xi in force, what the policy measured.
+    navigation : ndarray, shape (m, 11), or None
+        The navigation solution of a strapdown run, columns
+        `navcore.mechanization.strapdown.layout.NAVIGATION`.
     """
 
     method: Method
@@ -69,6 +75,8 @@ class MethodRun:
     rows: np.ndarray
     errors: dict[str, dict[str, float]]
     plot: PlotSeries
+    law_series: np.ndarray
+    navigation: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -89,6 +97,8 @@ class Run:
         About the scenario as a whole (recorded data, say).
     elapsed_s : float
         Wall time of the simulation, s.
+    sampling : Sampling or None
+        Rates of a strapdown run.
     """
 
     scenario: Scenario
@@ -97,6 +107,18 @@ class Run:
     truth: np.ndarray
     warnings: tuple[str, ...]
     elapsed_s: float
+    sampling: Sampling | None = None
+
+    @property
+    def computed_on(self) -> str:
+        """Which states metrics and plots cover, in words."""
+        if self.sampling is None:
+            return f"every step of the mechanization, {self.scenario.run.step_s:g} s"
+        rates = self.sampling
+        return (
+            f"states every {rates.record_step_s:g} s (every {rates.record_every} steps of the mechanization "
+            f"at {rates.rate_hz:g} Hz)"
+        )
 
     @property
     def status(self) -> Status:

@@ -7,6 +7,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError
 
+from navcore.alignment_loop import CompassLoop
+from navcore.averaging import AlignmentMotion, Averaging
+from navcore.averaging.faults import averaging_faults
+from navcore.control.combination import combination_faults
 from navcore.control.policy import Policy
 from navcore.control.policy.constant import Constant
 from navcore.control.switching import Switching
@@ -19,8 +23,10 @@ from navcore.motion.base import Site
 from navcore.network import Network
 from navcore.network.undamped import UndampedNetwork
 from navcore.parameters import Parameters, bounded, choice, quantity, vector_quantity
+from navcore.sampling import Sampling, sampling
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import LogEvent, Reference
+from navcore.strapdown_faults import strapdown_faults
 from navcore.units import ARCMIN, ARCSEC, DEG, HOUR
 
 SCHEMA = 1
@@ -32,8 +38,10 @@ MAX_METHODS = 12
 class RunSettings(Parameters):
     """Block ``run``: fidelity, duration, steps, seed, Earth."""
 
-    fidelity: Literal["channel", "error_model"] = choice(
-        "error_model", help="channel: two decoupled level channels; error_model: the full linear model."
+    fidelity: Literal["channel", "error_model", "strapdown"] = choice(
+        "error_model",
+        help="channel: two decoupled level channels; error_model: the full linear model; strapdown: the full "
+        "nonlinear mechanization on simulated or recorded IMU samples.",
     )
     duration_h: float = quantity(
         10.0,
@@ -51,9 +59,28 @@ class RunSettings(Parameters):
         ge=0.005,
         le=10.0,
         label="step",
-        help="Integration step; the law runs at the same step.",
+        help="Integration step; the law runs at the same step. strapdown: interval of the recorded states, "
+        "and of the law unless a log is faster (rounded to whole samples).",
     )
-    rate_hz: float = quantity(100.0, unit="Hz", ge=1.0, le=1000.0, help="IMU rate of a strapdown run.")
+    rate_hz: float = quantity(
+        100.0,
+        unit="Hz",
+        ge=10.0,
+        le=1000.0,
+        label="IMU rate",
+        help="IMU rate of a strapdown run; a recorded IMU has its own.",
+    )
+    vertical: Literal["locked", "altimeter"] = choice(
+        "locked",
+        help="Vertical channel of a strapdown run. locked: height held, no vertical velocity (a ship); "
+        "altimeter: damped by an altimeter without error (third order, 100 s).",
+    )
+    compensation: bool = Field(
+        default=True,
+        strict=True,
+        description="Coning and sculling compensation of a strapdown run.",
+        json_schema_extra={"label": "coning and sculling compensation"},
+    )
     output_step_s: float = quantity(
         10.0, unit="s", gt=0.0, le=86400.0, label="output step", help="Interval of the output rows."
     )
@@ -88,12 +115,41 @@ class SiteSettings(Parameters):
 
 
 class Alignment(Parameters):
-    """Block ``alignment``: navigation starts from ``initial_error`` directly."""
+    """Block ``alignment``: how navigation gets its first attitude (strapdown).
 
-    kind: Literal["none"] = choice("none", help="none: navigation starts from initial_error at t = 0.")
-    duration_s: float = quantity(
-        600.0, unit="s", gt=0.0, le=86400.0, help="Length of the alignment, before t = 0."
+    ``compass`` (physics.md 6.1): the compass loop with V_r = 0, first its level channels, then the azimuth,
+    on a vehicle that does not travel; ``initial_error`` is what it starts from. With a recorded IMU a coarse
+    alignment by the turning gravity vector comes first. The sensors of the alignment are those of the
+    navigation (same biases), so that its result is correlated with their errors.
+    """
+
+    kind: Literal["none", "compass"] = choice(
+        "none",
+        help="none: navigation starts from initial_error at t = 0. compass: initial_error holds at the start "
+        "of an alignment before t = 0 (strapdown only; |latitude| <= 85 deg).",
     )
+    duration_s: float = quantity(
+        600.0, unit="s", ge=10.0, le=86400.0, help="Length of the alignment, before t = 0."
+    )
+    level_s: float = quantity(
+        120.0, unit="s", gt=0.0, le=86400.0, help="Length of its first part, level channels only."
+    )
+    level_sigma: float = quantity(
+        0.03, unit="1/s", gt=0.0, le=10.0, help="Decay rate of the level loops in the first part."
+    )
+    sigma: float = quantity(
+        0.02, unit="1/s", gt=0.0, le=10.0, help="Decay rate of level and azimuth loops in the second part."
+    )
+    xi: float = quantity(0.707, gt=0.0, le=5.0, help="Damping coefficient of the loops.")
+    motion: tuple[AlignmentMotion, ...] = Field(
+        default=(),
+        max_length=100,
+        description="Small motions of the base in the record from which half-period averaging forecasts.",
+    )
+
+    def loop(self) -> CompassLoop:
+        """Design of the compass loop."""
+        return CompassLoop(self.level_s, self.level_sigma, self.sigma, self.xi)
 
 
 _Tilt = Annotated[float, bounded(unit="arcmin", ge=-600.0, le=600.0)]
@@ -137,10 +193,12 @@ class Method(Parameters):
     name: str = Field(
         default="", max_length=60, description="Name on plots and in files; made from the network when empty."
     )
-    damping: Literal["free", "internal", "external"] = Field(
+    damping: Literal["free", "internal", "external", "averaging"] = Field(
         default="free",
-        description="free: none; internal: own velocity; external: against the reference velocity.",
+        description="free: none; internal: own velocity; external: against the reference velocity; "
+        "averaging: none, but copies of the navigation half a period ahead are averaged (Zhao 2015).",
     )
+    averaging: Averaging = Averaging()
     network: Network = Field(default_factory=UndampedNetwork)
     policy: Policy = Field(default_factory=Constant)
     switching: Switching = Field(default_factory=Hard)
@@ -154,7 +212,14 @@ class Method(Parameters):
         """Name, or one made from the damping and network."""
         if self.name:
             return self.name
-        return "free" if self.damping == "free" else f"{self.network.id} ({self.damping})"
+        if self.damping == "averaging":
+            return f"averaging ({self.averaging.variant})"
+        return "free" if self.undamped else f"{self.network.id} ({self.damping})"
+
+    @property
+    def undamped(self) -> bool:
+        """Whether no network acts: free, and averaging of free copies."""
+        return self.damping in ("free", "averaging")
 
 
 class Scenario(Parameters):
@@ -206,8 +271,20 @@ class Scenario(Parameters):
         return self.earth.schuler_frequency(self.site.lat_deg * DEG)
 
     @property
+    def strapdown(self) -> bool:
+        """Whether the full mechanization is asked for."""
+        return self.run.fidelity == "strapdown"
+
+    @property
+    def sampling(self) -> Sampling:
+        """Rates of a strapdown run (a recorded IMU has its own rate)."""
+        return sampling(self.run, self.reference)
+
+    @property
     def steps(self) -> int:
-        """Whole integration steps within the duration."""
+        """Whole integration steps within the duration; of a strapdown run the recorded intervals."""
+        if self.strapdown:
+            return self.sampling.records
         return int(self.run.duration_h * HOUR / self.run.step_s + 1e-9)
 
     def faults(self) -> Iterator[Fault]:
@@ -225,6 +302,8 @@ class Scenario(Parameters):
         if not 1 <= len(self.method) <= MAX_METHODS:
             yield Fault("", "method", len(self.method), f"must be 1 to {MAX_METHODS} blocks [[method]]")
         yield from _method_faults(self)
+        yield from averaging_faults(self)
+        yield from strapdown_faults(self)
 
     def canonical(self) -> dict[str, Any]:
         """Complete mapping of every field, as written to scenario.toml (None left out)."""
@@ -245,7 +324,7 @@ def _method_faults(scenario: Scenario) -> Iterator[Fault]:
                 "external",
                 'needs a reference velocity: reference.kind must not be "none"',
             )
-        if method.policy.needs_reference and method.damping != "free" and scenario.reference.kind == "none":
+        if method.policy.needs_reference and not method.undamped and scenario.reference.kind == "none":
             yield Fault(
                 "",
                 f"{at}.policy.id",
@@ -258,3 +337,13 @@ def _method_faults(scenario: Scenario) -> Iterator[Fault]:
             method.network.transfer(scenario.omega_s)
         except InputError as error:
             yield from error.located("", f"{at}.network.").faults
+            continue
+        if not method.undamped:
+            found = list(
+                combination_faults(
+                    method.damping, method.network, method.policy, method.switching, scenario.omega_s,
+                    scenario.sampling.law_step_s if scenario.strapdown else scenario.run.step_s,
+                )
+            )  # fmt: skip
+            if found:
+                yield from InputError(found).located("", f"{at}.").faults

@@ -14,7 +14,7 @@ from navcore.assets import asset_path
 from navcore.errors import Fault, InputError
 from navcore.scenario import SCHEMA, Scenario
 
-_FILE_FIELDS = (("motion", "file"), ("reference", "file"))
+_FILE_FIELDS = (("motion", "file"), ("reference", "file"), ("imu", "file"))
 _LARGEST_TOML = 4 * 1024 * 1024
 
 

@@ -11,6 +11,7 @@ from typing import Any, Literal, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
+from navcore.averaging import AlignmentMotion, Averaging
 from navcore.control.policy import POLICIES
 from navcore.control.switching import SWITCHINGS
 from navcore.motion import MOTIONS
@@ -43,11 +44,13 @@ def _sections() -> Iterator[tuple[str, type[Parameters], str]]:
     yield "[[motion.leg]]", Leg, "of legs"
     yield "[imu]", Imu, ""
     yield "[alignment]", Alignment, ""
+    yield "[[alignment.motion]]", AlignmentMotion, ""
     yield "[initial_error]", InitialError, ""
     yield "[reference]", Reference, ""
     yield "[[reference.event]]", LogEvent, "also `event` of a method"
     yield "[[reference.outage]]", Outage, ""
     yield "[[method]]", Method, ""
+    yield "averaging = { ... }", Averaging, ""
     for name, model in NETWORKS.items():
         yield f'network = {{ id = "{name}" }}', model, f"{model.title}. Source: {model.source}."
     for name, model in POLICIES.items():

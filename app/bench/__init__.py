@@ -16,21 +16,31 @@ def bench(tell: Callable[[str], None] = lambda _: None) -> dict[str, float]:
     Returns
     -------
     dict
-        The keys of contract.md that apply to what is built, and ``error_model_24h_cold_ms``,
-        ``run_24h_memory_mb``; medians of at least five repeats, ms, s and MiB.
+        The keys of contract.md; ``error_model_24h_cold_ms``, ``run_24h_memory_mb``; of the full strapdown the
+        law at the IMU's rate, the batch with noise at every sample, and a day (``strapdown_24h_100hz_s``,
+        ``_mb``). With a yardstick (`app.bench.strapdown.YARDSTICK`) its time and the ratios to it. Medians of
+        at least five repeats: ns, ms, s and MiB.
 
     Raises
     ------
+    FileNotFoundError
+        The yardstick is no file.
     RuntimeError, TimeoutError
         The dashboard does not start or does not answer.
     """
     from app.bench.dashboard import measure_dashboard
     from app.bench.error_model import measure_error_model
     from app.bench.memory import measure_memory
+    from app.bench.strapdown import measure_strapdown
+    from app.bench.strapdown_day import measure_strapdown_day
 
     tell("error model, 24 h")
     numbers = measure_error_model()
     tell("memory of a run")
     numbers |= measure_memory()
+    tell("strapdown, a sample")
+    numbers |= measure_strapdown()
+    tell("strapdown, 24 h at 100 Hz")
+    numbers |= measure_strapdown_day()
     tell("dashboard")
     return numbers | measure_dashboard()

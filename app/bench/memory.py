@@ -22,7 +22,8 @@ def measure_memory() -> dict[str, float]:
     return {"run_24h_memory_mb": statistics.median(found)}
 
 
-def _peak_mb() -> float:
+def peak_mb() -> float:
+    """Highest memory that this process has held so far, MiB."""
     status = Path("/proc/self/status")
     if status.exists():
         # On Linux ru_maxrss starts with the peak of the process that made this one.
@@ -39,9 +40,9 @@ def _above_start() -> float:
     from navcore.simulation import simulate
 
     simulate(day(seed=1, duration_h=0.1))
-    start = _peak_mb()
+    start = peak_mb()
     simulate(day(seed=2))
-    return _peak_mb() - start
+    return peak_mb() - start
 
 
 if __name__ == "__main__":

@@ -30,7 +30,7 @@ class BenchCommand:
 
         try:
             numbers = bench(tell)
-        except (RuntimeError, TimeoutError) as error:
+        except (FileNotFoundError, RuntimeError, TimeoutError) as error:
             say(f"bench: stopped: {error}")
             return 3
         if self.json:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CheckCommand:
-    """Say what a log, track, heading or scenario (or a preset, by its name) holds and what is wrong with it.
+    """Say what a log, track, heading, IMU or scenario (or a preset, by its name) holds and what is wrong.
 
     Attributes
     ----------
@@ -47,6 +47,7 @@ def check(file: str) -> FileReport:
     from app.cli.check_scenario import SCENARIO_CHECKER, check_scenario
     from navcore.errors import InputError
     from navcore.io.check import FileReport, check_file
+    from navcore.io.check_imu import IMU_CHECKER
     from navcore.scenario_file import presets
 
     if file in presets() and not Path(file).exists():
@@ -54,4 +55,4 @@ def check(file: str) -> FileReport:
             return check_scenario(file)
         except InputError as error:
             return FileReport(file, "", faults=error.faults)
-    return check_file(file, [SCENARIO_CHECKER])
+    return check_file(file, [SCENARIO_CHECKER, IMU_CHECKER])

@@ -27,10 +27,9 @@ def check_scenario(source: str | Path) -> FileReport:
     """
     scenario = load(str(source))
     try:
-        env = environment(scenario)
+        warnings = list(_environment_warnings(scenario))
     except InputError as error:
         raise error.located(str(source)) from None
-    warnings = list(env.warnings)
     for method in scenario.method:
         warnings += [f"{method.name}: {text}" for text in _warnings(scenario, method)]
     return FileReport(
@@ -43,6 +42,14 @@ def check_scenario(source: str | Path) -> FileReport:
 
 
 SCENARIO_CHECKER = Checker(_recognises, check_scenario)
+
+
+def _environment_warnings(scenario: Scenario) -> tuple[str, ...]:
+    if not scenario.strapdown:
+        return environment(scenario).warnings
+    from navcore.strapdown_environment import strapdown_environment
+
+    return strapdown_environment(scenario).warnings
 
 
 def _warnings(scenario: Scenario, method: Method) -> list[str]:
@@ -59,6 +66,11 @@ def _details(scenario: Scenario) -> dict[str, Any]:
         "fidelity": scenario.run.fidelity,
         "duration_h": scenario.run.duration_h,
         "steps": scenario.steps,
+        **(
+            {"rate_hz": scenario.run.rate_hz, "samples": scenario.sampling.samples}
+            if scenario.strapdown
+            else {}
+        ),
         "motion": scenario.motion.kind,
         "reference": scenario.reference.kind,
         "methods": [
@@ -75,12 +87,18 @@ def _details(scenario: Scenario) -> dict[str, Any]:
     }
 
 
+def _steps(scenario: Scenario) -> str:
+    if scenario.strapdown:
+        return f"{scenario.sampling.samples} samples at {scenario.run.rate_hz:g} Hz"
+    return f"{scenario.steps} steps of {scenario.run.step_s:g} s"
+
+
 def _text(scenario: Scenario) -> list[str]:
     run, site = scenario.run, scenario.site
     head = ", ".join(part for part in (scenario.title, scenario.source) if part)
     lines = [f"  {head}"] if head else []
     lines += [
-        f"  {run.fidelity}, {run.duration_h:g} h in {scenario.steps} steps of {run.step_s:g} s, {run.earth}, "
+        f"  {run.fidelity}, {run.duration_h:g} h, {_steps(scenario)}, {run.earth}, "
         f"latitude {site.lat_deg:g} deg, seed {run.seed}",
         f"  motion {scenario.motion.kind}, reference {scenario.reference.kind}",
     ]

@@ -31,7 +31,7 @@ def run_text(run: Run) -> list[str]:
     lines = [
         *([head] if head else []),
         f"{settings.fidelity}, {settings.duration_h:g} h, {_EARTHS[settings.earth]}, {where}, "
-        f"seed {settings.seed}; statistics over every step of {settings.step_s:g} s",
+        f"seed {settings.seed}; statistics over {run.computed_on}",
         "",
         *columns([["loop", "damping", "H(0)", "settling", "status"], ["", "ratio", "", "min", ""]]
                  + [_loop_row(method) for method in run.methods]),

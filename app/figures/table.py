@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from html import escape
+from typing import TYPE_CHECKING
 
 from app.figures import style
 from app.figures.units import (
@@ -18,6 +19,9 @@ from app.figures.units import (
     number,
 )
 from navcore.run import MethodRun, Run
+
+if TYPE_CHECKING:
+    from navcore.verification import Difference, Verification
 
 STATISTICS = ("rms", "max_abs", "final")
 _HEADINGS = ("rms", "max", "final")
@@ -59,6 +63,35 @@ class Row:
 def metrics_rows(run: Run) -> tuple[Row, ...]:
     """Lines of the table: the loop's figures, then the errors of each quantity."""
     return (*_loop_rows(run), *(_error_row(run, *quantity) for quantity in _QUANTITIES))
+
+
+def difference_rows(verification: Verification) -> tuple[Row, ...]:
+    """Lines with the largest difference between full strapdown and linear model, and its part of the peak."""
+    return tuple(
+        Row(label, unit.name, tuple((_difference(d.get(name), unit),) for d in verification.differences))
+        for label, name, unit in _QUANTITIES[:-1]
+    )
+
+
+def _difference(found: Difference | None, unit: Unit) -> str:
+    if found is None:
+        return "not known"
+    part = "" if found.of_peak is None else f" ({number(100.0 * found.of_peak, 2)} %)"
+    return f"{number(found.peak / unit.si, 3)}{part}"
+
+
+def verdict(verification: Verification) -> str:
+    """Say in one line how far the linear model is from the full strapdown."""
+    worst = [
+        (found.of_peak, label, method.method.name)
+        for method, differences in zip(verification.linear.methods, verification.differences, strict=True)
+        for label, name, _ in _QUANTITIES[:-1]
+        if (found := differences.get(name)) is not None and found.of_peak is not None
+    ]
+    if not worst:
+        return "The two models could not be compared."
+    part, label, name = max(worst)
+    return f"Largest difference: {number(100.0 * part, 2)} % of the peak ({label}, {name})."
 
 
 def _loop_rows(run: Run) -> list[Row]:
@@ -106,7 +139,13 @@ def _plain(name: str) -> str:
     return "".join(f"\\{letter}" if letter in "|*_`[]<>\\#" else letter for letter in name)
 
 
-def metrics_html(run: Run, methods: Sequence[int] | None = None) -> str:
+def metrics_html(
+    run: Run,
+    methods: Sequence[int] | None = None,
+    verification: Verification | None = None,
+    *,
+    old: bool = False,
+) -> str:
     """Return the same table as HTML, with the methods' colours and aligned figures.
 
     Parameters
@@ -115,6 +154,10 @@ def metrics_html(run: Run, methods: Sequence[int] | None = None) -> str:
         Result.
     methods : sequence of int, optional
         Places of the methods to show, where all of them side by side are too wide; all when None.
+    verification : Verification, optional
+        Of the same methods: its differences are added below.
+    old : bool
+        It is of an earlier scenario: shown, and said, as such.
     """
     shown = range(len(run.methods)) if methods is None else methods
     head = "".join(
@@ -123,13 +166,26 @@ def metrics_html(run: Run, methods: Sequence[int] | None = None) -> str:
         for i in shown
     )
     below = "".join(f'<th style="{_NUMBER};{_MUTED}">{name}</th>' for name in _HEADINGS) * len(shown)
-    rows = (replace(row, cells=tuple(row.cells[i] for i in shown)) for row in metrics_rows(run))
-    body = "".join(_html_row(row) for row in rows)
+    body = "".join(_html_row(_part(row, shown)) for row in metrics_rows(run))
+    if verification is not None:
+        compared = "".join(_html_row(_part(row, shown)) for row in difference_rows(verification))
+        faint = "opacity:.5" if old else ""
+        title = "Full strapdown minus linear model: largest difference (part of the strapdown's peak)"
+        title += "; of an earlier scenario" if old else ""
+        body += (
+            f'<tr class="sb-difference" style="{_LINE};{faint}"><td colspan="{2 + 3 * len(shown)}" '
+            f'style="padding:8px 2px 2px;font-weight:600">{title}</td></tr>'
+        )
+        body += compared.replace("<tr ", '<tr class="sb-old" ') if old else compared
     return (
         f'<div style="overflow-x:auto"><table style="{_TABLE}"><thead><tr><th></th><th></th>{head}</tr>'
         f'<tr><th></th><th style="{_MUTED};text-align:left">unit</th>{below}</tr></thead>'
         f"<tbody>{body}</tbody></table></div>"
     )
+
+
+def _part(row: Row, methods: Sequence[int]) -> Row:
+    return replace(row, cells=tuple(row.cells[i] for i in methods))
 
 
 _TABLE = (

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 
 DECIMALS = 12
 """Decimals that a number box takes and shows."""
+_READ = {"roots": form.read_roots, "numbers": form.read_numbers, "pairs": form.read_pairs}
+_WRITE = {"roots": form.write_roots, "numbers": form.write_numbers, "pairs": form.write_pairs}
+_AS_THEY_ARE = ("integer", "choice", "flag")
 EXACT = ", exact"
 """Ends the label of a number box that stands beside a slider."""
 
@@ -66,7 +69,12 @@ class Control:
         self._slider: _Widget | None = None
         self._slider_moved = False
         self.removed = False
-        make = {"choice": self._make_choice, "integer": self._make_integer, "number": self._make_number}
+        make = {
+            "choice": self._make_choice,
+            "flag": self._make_flag,
+            "integer": self._make_integer,
+            "number": self._make_number,
+        }
         self._box = _Widget(make.get(spec.kind, self._make_text)(gui, order, value))
         self._box.handle.on_update(lambda event: edit(self, False) if event.client is not None else None)
         if self._slider is not None:
@@ -83,25 +91,34 @@ class Control:
             spec.label, spec.choices, initial_value=str(value), hint=spec.hint or None, order=order
         )
 
+    def _make_flag(self, gui: viser.GuiApi, order: float, value: Any) -> Any:
+        return gui.add_checkbox(self.spec.label, bool(value), hint=self.spec.hint or None, order=order)
+
     def _make_integer(self, gui: viser.GuiApi, order: float, value: Any) -> Any:
-        return gui.add_number(self.spec.label, int(value), step=1, hint=self.spec.hint or None, order=order)
+        spec, label = self.spec, self._make_slider(gui, order, value)
+        return gui.add_number(label, int(value), step=1, hint=spec.hint or None, order=order + 0.2)
 
     def _make_text(self, gui: viser.GuiApi, order: float, value: Any) -> Any:
         return gui.add_text(self.spec.label, self.as_text(value), hint=self.spec.hint or None, order=order)
 
+    def _make_slider(self, gui: viser.GuiApi, order: float, value: Any) -> str:
+        """Make the slider, if the field has one; return the label of the box beside it."""
+        spec, slider = self.spec, self.spec.slider
+        if slider is None:
+            return spec.label
+        low, high = slider.ends
+        marks = ((low, f"{slider.low:g}"), (high, f"{slider.high:g}"))
+        position = slider.position(0.0 if value is None else float(value))
+        self._slider = _Widget(
+            gui.add_slider(
+                spec.label, low, high, slider.step, position, marks=marks, hint=spec.hint or None, order=order
+            )
+        )
+        return spec.label + EXACT
+
     def _make_number(self, gui: viser.GuiApi, order: float, value: Any) -> Any:
-        spec, slider, label = self.spec, self.spec.slider, self.spec.label
+        spec, label = self.spec, self._make_slider(gui, order, value)
         shown = 0.0 if value is None else float(value)
-        if slider is not None:
-            low, high = slider.ends
-            marks = ((low, f"{slider.low:g}"), (high, f"{slider.high:g}"))
-            self._slider = _Widget(
-                gui.add_slider(
-                    label, low, high, slider.step, slider.position(shown), marks=marks,
-                    hint=spec.hint or None, order=order,
-                )
-            )  # fmt: skip
-            label += EXACT
         # Explicitly a float, or viser would cast every later value to a whole number.
         box = gui.add_number(label, shown, step=self._box_step(), hint=spec.hint or None, order=order + 0.2)
         box.precision = DECIMALS
@@ -145,19 +162,17 @@ class Control:
     def _as_shown(self, value: Any) -> Any:
         if self.spec.kind == "number":
             return float(value)
-        return value if self.spec.kind in ("integer", "choice") else self.as_text(value)
+        return value if self.spec.kind in _AS_THEY_ARE else self.as_text(value)
 
     def as_text(self, value: Any) -> str:
         """Text of a value in a text box."""
-        if self.spec.kind == "roots":
-            return form.write_roots(value)
-        return form.write_numbers(value) if self.spec.kind == "numbers" else str(value or "")
+        write = _WRITE.get(self.spec.kind)
+        return str(value or "") if write is None else write(value)
 
     def read(self, shown: Any) -> Any:
         """Value of the field from what its box holds; raises ValueError for text that cannot be read."""
-        if self.spec.kind == "roots":
-            return form.read_roots(shown)
-        return form.read_numbers(shown) if self.spec.kind == "numbers" else shown
+        read = _READ.get(self.spec.kind)
+        return shown if read is None else read(shown)
 
     @property
     def held(self) -> Any:
@@ -173,7 +188,7 @@ class Control:
     @property
     def typed(self) -> bool:
         """Whether the last value was typed letter by letter, so that a wrong one may only be unfinished."""
-        return self.spec.kind != "choice" and not self._slider_moved
+        return self.spec.kind not in ("choice", "flag") and not self._slider_moved
 
     def say(self, html: str) -> None:
         """Put a note below the control, or take it away."""

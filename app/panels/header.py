@@ -11,11 +11,13 @@ from app.figures import style
 from app.figures.units import duration
 from navcore.run import Run
 from navcore.scenario import Scenario
+from navcore.units import HOUR
 
 if TYPE_CHECKING:
     import viser
 
 UPLOADED = "uploaded"
+RUN_AGAIN, RUN_STRAPDOWN = "Run again", "Run the strapdown"
 FOCUS = {"errors": "Errors", "bode": "Frequency", "step": "Step"}
 """Tab in which a scenario opens, by its block ``view``."""
 SHIP_TIME = "time of the ship (%)"
@@ -71,7 +73,7 @@ class HeaderPanel:
         self._state = gui.add_html("", order=10)
         self._progress = gui.add_progress_bar(0.0, visible=False, order=11)
         self._stop = gui.add_button("Stop the run", color="orange", visible=False, order=12)
-        self._again = gui.add_button("Run again", visible=False, order=13)
+        self._again = gui.add_button(RUN_AGAIN, visible=False, order=13)
         self._scenario = gui.add_dropdown(
             "scenario",
             options,
@@ -144,13 +146,21 @@ class HeaderPanel:
         self._show_state(f"Stopped; the pictures still show run {number}", "#B26A00", old=True)
         self._hide_progress(again=True)
 
+    def show_waiting(self, scenario: Scenario, number: int) -> None:
+        """Say that the pictures are old until the user starts a run that would take long."""
+        samples = scenario.run.duration_h * HOUR * scenario.run.rate_hz / 1e6
+        text = f"{samples:.3g} million samples a method: run it when you are ready"
+        self._show_state(f"Strapdown, {text}; the pictures still show run {number}", "#B26A00", old=True)
+        self._hide_progress(again=True, label=RUN_STRAPDOWN)
+
     def show_failed(self, number: int) -> None:
         """Say that the pictures are the last good ones."""
         self._show_state(f"The run failed; the pictures show run {number}", style.DANGER, old=True)
         self._hide_progress(again=True)
 
-    def _hide_progress(self, *, again: bool) -> None:
+    def _hide_progress(self, *, again: bool, label: str = RUN_AGAIN) -> None:
         self._progress.visible = self._stop.visible = False
+        self._again.label = label
         self._again.visible = again
 
     def _say(self, html: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from app import edits, form, notices
@@ -11,7 +12,7 @@ from app.panels.control import Control, Edit
 from app.panels.section import Section
 from navcore.motion import MOTIONS
 from navcore.motion.swing import Oscillation
-from navcore.scenario import InitialError, RunSettings, Scenario, SiteSettings
+from navcore.scenario import Alignment, InitialError, RunSettings, Scenario, SiteSettings
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import LogEvent, Outage, Reference
 
@@ -29,6 +30,14 @@ _FIRST_SENSORS = 8
 _FIRST_LOG = 7
 _KINDS = {"event": LogEvent, "outage": Outage}
 
+_RATE, _STRAPDOWN_ONLY = "rate_hz", ("vertical", "compensation")
+_RECORDED_ONLY = ("axes", "begin_s")
+_RECORDED_TOLD = "The run is on the recorded IMU {}: it brings its own errors."
+_STRAPDOWN_TOLD = (
+    'Used by "Verify with full strapdown", and where the fidelity is strapdown. A long strapdown run does '
+    "not follow every move of a control: it is started by a button at the top."
+)
+
 Arrange = Callable[[str], None]
 Again = Callable[[], None]
 """Shows everything anew, after a panel was asked for more or less."""
@@ -43,6 +52,7 @@ class SensorPanel:
             gui.add_html(
                 notices.small("Measured minus true, body axes x starboard, y forward, z up."), order=0
             )
+            self._file = gui.add_html("", order=0.5, visible=False)
             self._all = gui.add_checkbox(
                 "all errors", False, hint="Drift, scale factor, misalignment and quantisation too.", order=99
             )
@@ -51,8 +61,15 @@ class SensorPanel:
 
     def show(self, scenario: Scenario, moved: Control | None) -> None:
         """Show the scenario's values; errors that it sets are always shown."""
-        first, more = self._specs[:_FIRST_SENSORS], self._specs[_FIRST_SENSORS:]
-        if not self._all.value:
+        file = scenario.imu.file
+        self._file.content = notices.small(_RECORDED_TOLD.format(FilePath(file).name)) if file else ""
+        self._file.visible, self._all.visible = bool(file), not file
+        recorded = [spec for spec in self._specs if spec.path[-1] in _RECORDED_ONLY]
+        simulated = [spec for spec in self._specs if spec not in recorded]
+        first, more = simulated[:_FIRST_SENSORS], simulated[_FIRST_SENSORS:]
+        if file:
+            first, more = recorded, []
+        elif not self._all.value:
             more = [spec for spec in more if edits.value_at(scenario, spec.path) != spec.default]
         for name, specs in (("first", first), ("more", more)):
             self.sections[name].show(specs, _values(scenario, specs), moved)
@@ -115,20 +132,23 @@ class RunPanel:
         with tab:
             gui.add_html(notices.heading("Run and site"), order=0)
             gui.add_html(notices.heading("Motion"), order=30)
-            self._about = gui.add_html("", order=59, visible=False)
-            gui.add_html(notices.heading("Errors at the start"), order=60)
-        places = {"run": 1.0, "site": 15.0, "motion": 31.0, "initial": 61.0}
+            self._about = gui.add_html("", order=69, visible=False)
+            gui.add_html(notices.heading("Errors at the start"), order=70)
+            gui.add_html(notices.heading("Full strapdown"), order=90)
+            gui.add_html(notices.small(_STRAPDOWN_TOLD), order=91)
+        places = {"run": 1.0, "site": 20.0, "motion": 31.0, "initial": 71.0, "strapdown": 92.0}
         self.sections = {name: Section(gui, tab, edit, order) for name, order in places.items()}
 
     def show(self, scenario: Scenario, moved: Control | None) -> None:
         """Show the scenario's values."""
-        motion = scenario.motion
+        motion, settings = scenario.motion, form.fields(RunSettings, ("run",))
         kind = FieldSpec(("motion", "kind"), "motion", _told(MOTIONS), "choice", "static", tuple(MOTIONS))
         listed = {
-            "run": [spec for spec in form.fields(RunSettings, ("run",)) if _counts(spec)],
+            "run": [spec for spec in settings if spec.path[-1] not in (_RATE, *_STRAPDOWN_ONLY)],
             "site": form.fields(SiteSettings, ("site",)),
             "motion": [kind, *form.fields(type(motion), ("motion",)), *_swings(scenario)],
             "initial": form.fields(InitialError, ("initial_error",)),
+            "strapdown": [*(spec for spec in settings if spec.path[-1] == _RATE), *_strapdown_only(scenario)],
         }
         for name, specs in listed.items():
             self.sections[name].show(specs, _values(scenario, specs), moved)
@@ -137,9 +157,15 @@ class RunPanel:
         self._about.content, self._about.visible = notices.small(text), bool(text)
 
 
-def _counts(spec: FieldSpec) -> bool:
-    """Without the strapdown's IMU rate, which no fidelity built so far uses."""
-    return spec.path[-1] != "rate_hz"
+def _strapdown_only(scenario: Scenario) -> list[FieldSpec]:
+    """What other fidelities refuse: vertical channel, compensation and alignment."""
+    if scenario.run.fidelity != "strapdown":
+        return []
+    settings = [spec for spec in form.fields(RunSettings, ("run",)) if spec.path[-1] in _STRAPDOWN_ONLY]
+    path: Path = ("alignment",)
+    kind = form.choice(Alignment, "kind", path, label="alignment")
+    more = [] if scenario.alignment.kind == "none" else form.fields(Alignment, path, "alignment")
+    return [*settings, kind, *more]
 
 
 def _swings(scenario: Scenario) -> list[FieldSpec]:

@@ -79,7 +79,14 @@ class MethodPanel:
             self._loop = gui.add_html("", order=29, visible=False)
         self._chooser.on_update(self._on_choose)
         buttons.on_click(self._on_button)
-        places = {"method": 2.0, "network": 20.0, "parameters": 30.0, "policy": 70.0, "switching": 100.0}
+        places = {
+            "method": 2.0,
+            "averaging": 10.0,
+            "network": 20.0,
+            "parameters": 30.0,
+            "policy": 70.0,
+            "switching": 100.0,
+        }
         self.sections = {name: Section(gui, tab, edit, order) for name, order in places.items()}
 
     def _on_choose(self, event: viser.GuiEvent[Any]) -> None:
@@ -101,13 +108,15 @@ class MethodPanel:
         method, path = scenario.method[index], ("method", index)
         values = _values(scenario, index)
         self.sections["method"].show(form.fields(Method, path), values, moved)
-        self.sections["network"].show([_catalogue("network", path)], values, moved)
+        averaged = method.damping == "averaging"
         network = form.fields(type(method.network), (*path, "network"))
-        self.sections["parameters"].show(network, values, moved)
+        self.sections["network"].show([] if averaged else [_catalogue("network", path)], values, moved)
+        self.sections["parameters"].show([] if averaged else network, values, moved)
         for part in ("policy", "switching"):
-            block = getattr(method, part)
-            specs = [_catalogue(part, path), *form.fields(type(block), (*path, part))]
-            self.sections[part].show(specs, values, moved)
+            specs = [_catalogue(part, path), *form.fields(type(getattr(method, part)), (*path, part))]
+            self.sections[part].show([] if averaged else specs, _values_at(scenario, specs), moved)
+        block = form.fields(type(method.averaging), (*path, "averaging")) if averaged else []
+        self.sections["averaging"].show(block, _values_at(scenario, block), moved)
         last_gain = self.sections["parameters"].controls.get((*path, "network", "k3"))
         if last_gain is not None:
             known = (*path, "network", "sigma") in values
@@ -165,11 +174,12 @@ def first_line(kind: type) -> str:
 def _values(scenario: Scenario, index: int) -> dict[Path, Any]:
     method, path = scenario.method[index], ("method", index)
     found: dict[Path, Any] = {(*path, "name"): method.name, (*path, "damping"): method.damping}
-    for part in ("policy", "switching"):
-        block = getattr(method, part)
-        found |= {(*path, part, name): getattr(block, name) for name in type(block).model_fields}
     network = edits.network_values(scenario, index) | {"id": method.network.id}
     return found | {(*path, "network", name): _shown(value) for name, value in network.items()}
+
+
+def _values_at(scenario: Scenario, specs: list[FieldSpec]) -> dict[Path, Any]:
+    return {spec.path: edits.value_at(scenario, spec.path) for spec in specs}
 
 
 def _shown(value: Any) -> Any:

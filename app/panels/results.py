@@ -1,46 +1,42 @@
-"""The right column: frequency, poles, step, error curves, metrics and the scenario as text."""
+"""The right column: what the networks do, the misprints, the curves of a run, its numbers and text."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from app import notices
 from app.figures import style
-from app.figures.errors import GROUPS, UplotFigure, error_plots, legend_html, stack_heights
+from app.figures.errors import Overlay, error_plots
 from app.figures.frequency import TRANSFERS, bode
 from app.figures.plotly_data import PlotlyFigure
 from app.figures.poles import poles
 from app.figures.step import step
-from app.figures.table import metrics_html
+from app.figures.switching import switched_methods, switching_plots
+from app.figures.table import metrics_html, verdict
+from app.figures.uplot import UplotFigure
 from app.figures.warnings import notices_for, severity, warnings_for
 from app.layout import CHOOSER_PX, Layout
+from app.panels.curves import ErrorCurves, SwitchingView, curves_of
+from app.panels.laboratory import Laboratory
+from app.verifier import Verified
 from navcore.run import Run
 
 if TYPE_CHECKING:
     import viser
 
-FREQUENCY, POLES, STEP, ERRORS, METRICS, SCENARIO = (
-    "Frequency",
-    "Poles",
-    "Step",
-    "Errors",
-    "Metrics",
-    "Scenario",
-)
-TABS: tuple[str, ...] = (FREQUENCY, POLES, STEP, ERRORS, METRICS, SCENARIO)
-OVERVIEW = "Overview"
-_OVERVIEW_KEYS = ("phi_e", "dve", "phi_n", "dvn", "phi_u", "position")
-"""Two abreast: attitude left, velocity and position right."""
-_LEGEND_ROW_PX = 23
-_LEGEND_MARGIN_PX = 7
-_LEGEND_INDENT_PX = 90
+FREQUENCY, POLES, STEP, MISPRINTS = "Frequency", "Poles", "Step", "Misprints"
+ERRORS, METRICS, SCENARIO, SWITCHING = "Errors", "Metrics", "Scenario", "Switching"
+_UPPER = (FREQUENCY, POLES, STEP, MISPRINTS)
+TABS: tuple[str, ...] = (*_UPPER, ERRORS, METRICS, SCENARIO)
+"""Tabs that are always there; `SWITCHING` stands beside the errors while a method switches."""
+PICTURED = {*TABS, SWITCHING} - {MISPRINTS}
+"""Tabs whose contents follow the run."""
 _METHOD_PX = {True: 215, False: 187}
 """Width of a method in the table of metrics: in the large print of a wide window, in the small one."""
 _ROW_NAME_PX = 110
-_TWO = '<div class="sb-two"></div>'
 
 
 @dataclass(frozen=True)
@@ -55,13 +51,27 @@ class Pictures:
         Tab -> figure.
     curves : dict
         Key -> plot over time; empty when they are not in front.
+    overlay : Overlay or None
+        What is drawn over the curves.
+    switching : tuple of UplotFigure
+        Measures, states and xi of the methods that switch; empty when they are not in front.
+    switches : bool
+        A method of the run switches.
+    table, toml : str
+        HTML of the metrics, text of the scenario; empty when they are not in front.
+    verified : Verified or None
+        Verification of the same methods.
     """
 
     run: Run
     plotly: dict[str, PlotlyFigure]
     curves: dict[str, UplotFigure]
+    overlay: Overlay | None
+    switching: tuple[UplotFigure, ...]
+    switches: bool
     table: str
     toml: str
+    verified: Verified | None
 
 
 class ResultsPanel:
@@ -77,8 +87,8 @@ class ResultsPanel:
         Transfer to show first.
     choose_transfer : callable
         ``choose_transfer(id)``.
-    choose_group : callable
-        ``choose_group()`` when other error curves are wanted.
+    choose_curves : callable
+        ``choose_curves()`` when other curves are wanted.
     """
 
     def __init__(
@@ -87,13 +97,14 @@ class ResultsPanel:
         layout: Layout,
         transfer: str,
         choose_transfer: Callable[[str], None],
-        choose_group: Callable[[], None],
+        choose_curves: Callable[[], None],
     ) -> None:
         self._gui = gui
         self.layout = layout
         self._panels = self._place(gui, layout)
+        self._choose_curves = choose_curves
         upper, lower = self._panels[0], self._panels[-1]
-        tabs = {name: (upper if name in TABS[:3] else lower).add_tab(name) for name in TABS}
+        tabs = {name: (upper if name in _UPPER else lower).add_tab(name) for name in TABS}
         self._labels = {label: id for id, label in TRANSFERS.items()}
         with tabs[FREQUENCY]:
             self._transfer = gui.add_dropdown(
@@ -105,14 +116,9 @@ class ResultsPanel:
             )
         self._plots: dict[str, viser.GuiPlotlyHandle] = {}
         self._tabs = tabs
-        self._curves: dict[str, tuple[tuple[Any, ...], viser.GuiUplotHandle]] = {}
-        with tabs[ERRORS]:
-            groups = (OVERVIEW, *(name for name in GROUPS if name != OVERVIEW))
-            self._group = gui.add_dropdown(
-                "curves", groups, hint="Overview: one small plot a quantity; else larger ones.", order=0
-            )
-            self._legend = gui.add_html("", order=1)
-        self._group.on_update(lambda event: choose_group() if event.client is not None else None)
+        self.laboratory = Laboratory(gui, tabs[MISPRINTS], layout)
+        self._errors = ErrorCurves(gui, tabs[ERRORS], layout, choose_curves)
+        self._switching: SwitchingView | None = None
         with tabs[METRICS]:
             self._table = gui.add_html("")
             self._warnings = gui.add_html("")
@@ -138,7 +144,9 @@ class ResultsPanel:
 
     # ------------------------------------------------------------ making
 
-    def make(self, run: Run, number: int, transfer: str, wanted: set[str]) -> Pictures:
+    def make(
+        self, run: Run, number: int, transfer: str, wanted: set[str], verified: Verified | None = None
+    ) -> Pictures:
         """Make the figures of the wanted tabs; each plotly figure carries the run's number in its layout."""
         below_chooser, full = self.layout.aspect(CHOOSER_PX), self.layout.aspect()
         width = float(self.layout.plot_px)
@@ -152,22 +160,32 @@ class ResultsPanel:
         plotly = {tab: make() for tab, make in makers.items() if tab in wanted}
         for figure in plotly.values():
             figure["layout"]["meta"] = {"run": number}
+        drawn, overlay = curves_of(run, verified)
         return Pictures(
             run=run,
             plotly=plotly,
-            curves=error_plots(run) if ERRORS in wanted else {},
-            table=self._make_table(run) if METRICS in wanted else "",
+            curves=error_plots(drawn, overlay) if wanted & {ERRORS, SWITCHING} else {},
+            overlay=overlay,
+            switching=switching_plots(drawn) if SWITCHING in wanted else (),
+            switches=bool(switched_methods(run)),
+            table=self._make_table(run, verified) if METRICS in wanted else "",
             toml=to_toml(run.scenario) if SCENARIO in wanted else "",
+            verified=verified,
         )
 
-    def _make_table(self, run: Run) -> str:
+    def _make_table(self, run: Run, verified: Verified | None) -> str:
         """Metrics of all methods, in as many tables below each other as the width asks for."""
         most = max((self.layout.plot_px - _ROW_NAME_PX) // _METHOD_PX[self.layout.wide], 1)
         count = len(run.methods)
         tables = -(-count // most)
         each = -(-count // tables)
         parts = (range(first, min(first + each, count)) for first in range(0, count, each))
-        return "".join(f'<div style="margin-bottom:14px">{metrics_html(run, part)}</div>' for part in parts)
+        beside = None if verified is None else verified.verification
+        old = verified is not None and verified.old
+        return "".join(
+            f'<div style="margin-bottom:14px">{metrics_html(run, part, beside, old=old)}</div>'
+            for part in parts
+        )
 
     # ------------------------------------------------------------ showing
 
@@ -181,53 +199,39 @@ class ResultsPanel:
                     self._plots[tab] = self._gui.add_plotly(figure, aspect=aspect)  # pyright: ignore[reportArgumentType]
             else:
                 plot.figure = figure  # pyright: ignore[reportAttributeAccessIssue]
+        self._place_switching(pictures.switches)
         if pictures.curves:
-            self._show_curves(pictures)
+            self._errors.show(pictures.curves, pictures.run, pictures.overlay)
+        if pictures.switching and self._switching is not None:
+            self._switching.show(pictures.curves, pictures.switching, pictures.run)
         if pictures.table:
             narrow = "" if self.layout.wide else " sb-narrow"
             self._table.content = (
                 f'<div class="sb-table{narrow}" style="padding:4px 10px">{pictures.table}</div>'
             )
-            self._warnings.content = _warnings_html(pictures.run)
+            self._warnings.content = _warnings_html(pictures.run, pictures.verified)
         if pictures.toml:
             self._toml.content = (
                 f'<pre style="margin:4px 12px;font-size:12.5px;line-height:1.4;white-space:pre-wrap">'
                 f"{escape(pictures.toml)}</pre>"
             )
 
-    def _show_curves(self, pictures: Pictures) -> None:
-        keys, heights = self._wanted_curves([m.method.name for m in pictures.run.methods])
-        for key in [key for key in self._curves if key not in keys]:
-            self._curves.pop(key)[1].remove()
-        two = len(keys) == len(_OVERVIEW_KEYS)
-        self._legend.content = (_TWO if two else "") + legend_html(pictures.run)
-        for order, (key, height) in enumerate(zip(keys, heights, strict=True)):
-            self._show_curve(pictures.curves[key], order, height, last=order >= len(keys) - (2 if two else 1))
-
-    def _wanted_curves(self, names: list[str]) -> tuple[tuple[str, ...], tuple[int, ...]]:
-        rows = style.legend_rows(names, self.layout.plot_px - _LEGEND_INDENT_PX)
-        room = self.layout.room_px - CHOOSER_PX - _LEGEND_MARGIN_PX - rows * _LEGEND_ROW_PX
-        if self._group.value == OVERVIEW:
-            each = stack_heights(room, len(_OVERVIEW_KEYS) // 2)
-            return _OVERVIEW_KEYS, tuple(height for height in each for _ in range(2))
-        keys = GROUPS[self._group.value]
-        return keys, stack_heights(room, len(keys))
-
-    def _show_curve(self, figure: UplotFigure, order: int, height: int, *, last: bool) -> None:
-        config = (*figure.config_key(), height, last)
-        held = self._curves.get(figure.key)
-        if held is not None and held[0] == config:
-            held[1].data = figure.data
-            return
-        if held is not None:
-            held[1].remove()
-        arguments = figure.kwargs(height=height, time_axis=last, legend=False)
-        with self._tabs[ERRORS]:
-            self._curves[figure.key] = config, self._gui.add_uplot(**arguments, order=10 + order)
+    def _place_switching(self, switches: bool) -> None:
+        """Let the tab "Switching" be there exactly while a method switches."""
+        tab = self._tabs.get(SWITCHING)
+        if switches and tab is None:
+            tab = self._tabs[SWITCHING] = self._panels[-1].add_tab(SWITCHING)
+            self._switching = SwitchingView(self._gui, tab, self.layout, self._choose_curves)
+        elif not switches and tab is not None:
+            self._tabs.pop(SWITCHING).remove()
+            self._switching = None
 
 
-def _warnings_html(run: Run) -> str:
+def _warnings_html(run: Run, verified: Verified | None) -> str:
     parts = [notices.note(notices_for(run), "info")]
+    if verified is not None and not verified.old:
+        parts.append(notices.note([verdict(verified.verification)], "info"))
+        parts.append(notices.note(verified.verification.statements, "warning"))
     for index, texts in warnings_for(run).items():
         name = run.methods[index].method.name
         parts.append(notices.note([f"{name}: {text}" for text in texts], severity(run, index) or "warning"))

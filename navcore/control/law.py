@@ -8,22 +8,32 @@ Q = 1 - H and d = V_r - V_c (external) or -V_c (internal), a = 0. Velocity feedb
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from navcore.compiled import inlined
+from navcore.compiled import inlined, kernel
+from navcore.control.combination import LOW_MARGIN, combination_faults, network_in_force, realisation_of
+from navcore.control.history import remember
 from navcore.control.layout import (
     AS_PRINTED,
+    CLOCK,
     CORRECTION,
     DAMPED,
     DAMPING,
+    DECISION,
     DIFFERENCE,
+    ENGAGED,
     EPOCH_INDEX,
     EXTERNAL,
     FEEDBACK,
+    FEEDBACK_GAIN,
     FEEDBACK_K1,
     FREE,
+    FREEZES,
+    HISTORY,
+    INPUT_SHARE,
     INTERNAL,
     LAW_STEP,
     MAX_STATES,
@@ -37,27 +47,51 @@ from navcore.control.layout import (
     OMEGA_S,
     ORDER,
     PARAMETERS,
+    PLAIN,
     POLICY,
     POLICY_PARAMETERS,
     REALISATION,
+    REMEMBERS,
     RING_COLUMNS,
+    SCHEDULED,
     STARTED,
     STATE,
+    SWITCH_TIME,
     SWITCHING,
     SWITCHING_PARAMETERS,
+    TABLE,
+    TABLE_COLUMNS,
+    TABLE_ROWS,
+    TAN_HALF,
+    TUNING_LOW,
+    TUNING_PARAMETERS,
     VALID,
     WANTED,
+    XI,
+    XI_TARGET,
 )
 from navcore.control.network_state import advance_network, clear_network
 from navcore.control.policy import PolicyParameters, decide
+from navcore.control.policy.adaptive import Adaptive
+from navcore.control.policy.constant import Constant
+from navcore.control.policy.schedule import Schedule, follow_schedule
+from navcore.control.policy.threshold import Threshold, decide_threshold
 from navcore.control.switching import SwitchingParameters, switch
+from navcore.control.switching.hard import Hard
+from navcore.control.tuned_network import tune
+from navcore.errors import InputError
 from navcore.filters import discretise
 from navcore.loop import analyse
 from navcore.network.base import LinearNetwork, NetworkParameters
 from navcore.network.compass import CompassNetwork
 
+__all__ = ["Law", "law_step", "network_in_force", "prepare_law", "realisation_of"]
+
+THRESHOLD = Threshold.code
 _DAMPING_CODES = {"free": FREE, "internal": INTERNAL, "external": EXTERNAL}
 _REALISATION_CODES = {"network": NETWORK, "feedback": FEEDBACK, "as_printed": AS_PRINTED}
+_INPUT_LOWPASS_S = 100.0
+"""Time constant of the mean input by which a re-tuned network knows what stands."""
 
 
 @inlined
@@ -68,21 +102,32 @@ def law_step(p, s, ring, v_e, v_n, accel, heading):
     """
     if p[DAMPING] == FREE:
         return 0.0, 0.0, 0.0, 0.0
+    if p[PLAIN] == 0.0:
+        return _full_step(p, s, ring, v_e, v_n, accel, heading)
+    # What follows gives what the full step gives; inlined without the rest of it, it takes half the time.
     external = p[DAMPING] == EXTERNAL
     u_e = s[DIFFERENCE] if external else -v_e
     u_n = s[DIFFERENCE + 1] if external else -v_n
-    wanted = decide(p, s, ring, accel, heading)
+    wanted = decide_threshold(p, s, ring, accel, heading) if p[POLICY] == THRESHOLD else True
     if external and s[VALID] == 0.0:
         wanted = False
     s[WANTED] = 1.0 if wanted else 0.0
     if s[STARTED] == 0.0:
         s[STARTED] = 1.0
         clear_network(p, s, u_e, u_n)
-    switch(p, s, ring, wanted, u_e, u_n)
+    if wanted and s[DAMPED] == 0.0:
+        clear_network(p, s, u_e, u_n)
+    s[DAMPED] = 1.0 if wanted else 0.0
+    s[XI] = p[NOMINAL_XI] if wanted else 0.0
     if s[DAMPED] == 0.0:
         s[CORRECTION] = 0.0
         s[CORRECTION + 1] = 0.0
         return 0.0, 0.0, 0.0, 0.0
+    return _correct(p, s, v_e, v_n, u_e, u_n, p[FEEDBACK_K1])
+
+
+@inlined
+def _correct(p, s, v_e, v_n, u_e, u_n, k1):
     c_e, c_n = advance_network(p, s, u_e, u_n)
     if p[REALISATION] == AS_PRINTED:
         # Deng 4 forms the platform rate from the difference alone: the reference's transport rate is missing.
@@ -90,7 +135,41 @@ def law_step(p, s, ring, v_e, v_n, accel, heading):
         c_n -= v_n + u_n
     s[CORRECTION] = c_e
     s[CORRECTION + 1] = c_n
-    return c_e, c_n, p[FEEDBACK_K1] * u_e, p[FEEDBACK_K1] * u_n
+    return c_e, c_n, k1 * u_e, k1 * u_n
+
+
+@kernel
+def _full_step(p, s, ring, v_e, v_n, accel, heading):
+    """Every policy and switching method; arguments and result as of `law_step`."""
+    external = p[DAMPING] == EXTERNAL
+    u_e = s[DIFFERENCE] if external else -v_e
+    u_n = s[DIFFERENCE + 1] if external else -v_n
+    if p[HISTORY] != 0.0:
+        remember(p, s, ring, u_e, u_n, accel, heading, p[REMEMBERS])
+    s[WANTED] = -1.0
+    wanted = decide(p, s, ring, accel, heading)
+    if s[WANTED] < 0.0:
+        s[WANTED] = 1.0 if wanted else 0.0
+    if external and s[VALID] == 0.0:
+        wanted = False
+        s[WANTED] = 0.0
+    if wanted and s[DAMPED] == 0.0:
+        s[SWITCH_TIME] = s[CLOCK]
+    if p[SCHEDULED] != 0.0:
+        follow_schedule(p, s, u_e, u_n)
+    if s[STARTED] == 0.0:
+        s[STARTED] = 1.0
+        if p[TUNING_PARAMETERS] != 0.0:
+            tune(p, s, s[XI_TARGET])
+        clear_network(p, s, u_e, u_n)
+    switch(p, s, ring, wanted, u_e, u_n)
+    if s[DAMPED] == 0.0:
+        if p[FREEZES] == 0.0:
+            s[CORRECTION] = 0.0
+            s[CORRECTION + 1] = 0.0
+        return s[CORRECTION], s[CORRECTION + 1], 0.0, 0.0
+    s[ENGAGED] = 1.0
+    return _correct(p, s, v_e, v_n, u_e, u_n, p[FEEDBACK_K1] + s[FEEDBACK_GAIN])
 
 
 @dataclass(frozen=True)
@@ -99,7 +178,7 @@ class Law:
 
     Attributes
     ----------
-    p : ndarray, shape (PARAMETERS + 2 * table rows,)
+    p : ndarray, shape (PARAMETERS + 3 * table rows,)
         Constant parameters, laid out in `navcore.control.layout`.
     s : ndarray, shape (STATE,)
         State at the start.
@@ -127,36 +206,77 @@ def prepare_law(
     damping : {"free", "internal", "external"}
         Kind of damping.
     parameters, network : NetworkParameters, LinearNetwork
-        The network as configured and as H(s).
+        The network as configured, and as H(s) at the site (of `network_in_force` or as configured: what the
+        policy brings itself is formed anew).
     policy, switching : PolicyParameters, SwitchingParameters
         When and how to switch.
     law_step_s : float
         Time between two calls of `law_step`, s.
+
+    Raises
+    ------
+    InputError
+        Network, policy and switching do not go together.
     """
-    realisation = realisation_of(damping, parameters)
-    p = np.zeros(PARAMETERS)
+    omega_s = network.omega_s
+    faults = list(combination_faults(damping, parameters, policy, switching, omega_s, law_step_s))
+    if faults:
+        raise InputError(faults)
+    running = network_in_force(damping, parameters, policy)
+    if running is not parameters:
+        parameters, network = running, running.transfer(omega_s)
+    table = policy.table_rows() if damping != "free" else []
+    p = np.zeros(PARAMETERS + TABLE_COLUMNS * len(table))
     s = np.zeros(STATE)
-    p[DAMPING], p[REALISATION] = _DAMPING_CODES[damping], _REALISATION_CODES[realisation]
-    p[POLICY], p[SWITCHING] = policy.code, switching.code
-    p[LAW_STEP], p[OMEGA_S] = law_step_s, network.omega_s
+    _fill_settings(p, damping, policy, switching, law_step_s)
+    p[REALISATION], p[OMEGA_S] = _REALISATION_CODES[realisation_of(damping, parameters)], omega_s
+    p[TABLE_ROWS], p[TABLE:] = len(table), np.ravel(table)
     xi = parameters.damping_coefficient()
-    p[NOMINAL_XI] = analyse(network).damping_ratio if xi is None else xi
-    _fill(p, POLICY_PARAMETERS, policy.packed())
-    _fill(p, SWITCHING_PARAMETERS, switching.packed())
-    if realisation != "network" and isinstance(parameters, CompassNetwork):
-        _fill_feedback(p, s, parameters.gains(network.omega_s), law_step_s)
-    else:
-        _fill_network(p, s, network, law_step_s)
-    s[EPOCH_INDEX] = -1.0
+    p[NOMINAL_XI] = s[XI_TARGET] = analyse(network).damping_ratio if xi is None else xi
+    s[EPOCH_INDEX], s[DECISION] = -1.0, 1.0
+    _fill_form(p, s, parameters, network, policy, switching)
     rows = max(1, policy.ring_rows(law_step_s), switching.ring_rows(law_step_s))
     return Law(p, s, np.zeros((rows, RING_COLUMNS)))
 
 
-def realisation_of(damping: str, parameters: NetworkParameters) -> str:
-    """Realisation in force: internal damping always uses the network form (contract)."""
-    if damping == "external" and isinstance(parameters, CompassNetwork):
-        return parameters.realisation
-    return "network"
+def _fill_settings(
+    p: np.ndarray, damping: str, policy: PolicyParameters, switching: SwitchingParameters, law_step_s: float
+) -> None:
+    p[DAMPING], p[POLICY], p[SWITCHING] = _DAMPING_CODES[damping], policy.code, switching.code
+    p[LAW_STEP], p[REMEMBERS] = law_step_s, policy.remembers
+    p[HISTORY], p[FREEZES] = policy.keeps_time or switching.keeps_time, switching.freezes
+    p[PLAIN] = isinstance(policy, Constant | Threshold) and isinstance(switching, Hard)
+    p[INPUT_SHARE] = -math.expm1(-law_step_s / _INPUT_LOWPASS_S)
+    _fill(p, POLICY_PARAMETERS, policy.packed(law_step_s))
+    _fill(p, SWITCHING_PARAMETERS, switching.packed(law_step_s))
+
+
+def _fill_form(
+    p: np.ndarray,
+    s: np.ndarray,
+    parameters: NetworkParameters,
+    network: LinearNetwork,
+    policy: PolicyParameters,
+    switching: SwitchingParameters,
+) -> None:
+    """Put the network into the state, in the form in which it runs."""
+    omega_s, law_step_s = p[OMEGA_S], p[LAW_STEP]
+    tuning = parameters.tuning(omega_s) if policy.tunes or switching.tunes else None
+    p[TAN_HALF] = math.tan(0.5 * omega_s * law_step_s)
+    if isinstance(policy, Schedule):
+        # filled by `follow_schedule` at the first call
+        p[SCHEDULED], p[ORDER] = 1.0, 1
+    elif p[DAMPING] != FREE and tuning is not None:
+        p[ORDER] = network.order
+        p[TUNING_LOW] = LOW_MARGIN * parameters.least_coefficient()
+        _fill(p, TUNING_PARAMETERS, tuning)
+        if isinstance(policy, Adaptive):
+            p[NOMINAL_XI] = s[XI_TARGET] = max(p[NOMINAL_XI], p[TUNING_LOW])
+        tune(p, s, s[XI_TARGET])
+    elif p[REALISATION] != NETWORK and isinstance(parameters, CompassNetwork):
+        _fill_feedback(p, s, parameters.gains(omega_s), law_step_s)
+    else:
+        _fill_network(p, s, network, law_step_s)
 
 
 def _fill(target: np.ndarray, start: int, values: list[float]) -> None:

@@ -79,7 +79,10 @@ def write_results(run: Run, folder: str | os.PathLike[str], format: Format = "pa
 
 
 def timeseries(run: Run) -> pyarrow.Table:
-    """Output rows of all methods one after the other, columns as in contract.md; xi is 0 while undamped."""
+    """Output rows of all methods one after the other, columns as in contract.md; xi is 0 while undamped.
+
+    A strapdown run adds the navigation solution.
+    """
     import numpy as np
     import pyarrow as pa
 
@@ -96,6 +99,12 @@ def timeseries(run: Run) -> pyarrow.Table:
     }
     columns |= {name: joined(index) for index, name in enumerate(NAMES[:POSITION])}
     columns |= {"damped": joined(DAMPED_COLUMN).astype(np.int8), "xi": joined(XI_COLUMN)}
+    navigation = [m.navigation for m in run.methods if m.navigation is not None]
+    if navigation:
+        from navcore.mechanization.strapdown.layout import NAVIGATION
+
+        solution = np.concatenate(navigation)
+        columns |= {name: solution[:, index] for index, name in enumerate(NAVIGATION)}
     return pa.table(columns)
 
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from navcore.compiled import inlined, kernel
 from navcore.control.law import Law, law_step
-from navcore.control.layout import DAMPED, DIFFERENCE, EPOCH_INDEX, VALID, XI
+from navcore.control.layout import DAMPED, DIFFERENCE, EPOCH_INDEX, MEASURE, VALID, WANTED, XI
 from navcore.mechanization.recorder import Recorder, flush, record
 from navcore.mechanization.trajectory import (
     EARTH_N,
@@ -134,7 +134,10 @@ def _advance(
             p, s, ring, v_e + x0, v_n + x1, law_rows[j, LAW_ACCEL], law_rows[j, LAW_HEADING]
         )
         i0 = 2 * k * half_stride
-        record(k, x, half[i0, M], half[i0, N_COS], s[DAMPED], s[XI], row_steps, rows, buffer, cursor)
+        record(
+            k, x, half[i0, M], half[i0, N_COS], s[DAMPED], s[XI], s[WANTED], s[MEASURE],
+            row_steps, rows, buffer, cursor,
+        )  # fmt: skip
         if (k + 1) % bin_width == 0 or k + 1 == last:
             flush(k, bin_width, buffer, stats, bin_low, bin_high, bin_order, cursor)
         if k == final:

@@ -1,18 +1,18 @@
 """The error model once more, slow and obvious: vectors, cross products, matrices, plain Python.
 
 The compiled kernel is tested against this sample by sample. It shares no code with it: coefficients come
-straight from the truth, the rate from vector formulas, and the law from a small class with matrices.
+straight from the truth, the rate from vector formulas, and the law from `navcore.control.twin`.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 
 import numpy as np
 
+from navcore.control.twin import TwinLaw
 from navcore.earth import EARTH_RATE, Earth
-from navcore.motion.base import AE, AN, AU, HEIGHT, LAT, VE, VN, VU
+from navcore.motion.base import AE, AN, AU, HEADING, HEIGHT, LAT, VE, VN, VU
 
 Vector = np.ndarray
 
@@ -62,45 +62,6 @@ def model_rate(
     return np.array([dv_rate[0], dv_rate[1], lat_rate, lon_rate, *phi_rate])
 
 
-@dataclass
-class TwinLaw:
-    """External or internal network form with policy `threshold` (limit inf: constant) and `hard` switching.
-
-    Attributes
-    ----------
-    ad, bd, cd, dd : ndarray
-        Discrete state space of Q = 1 - H, matrices of one channel.
-    internal : bool
-        Feed -V_c instead of V_r - V_c.
-    limit : float
-        Threshold, m/s.
-    """
-
-    ad: np.ndarray
-    bd: np.ndarray
-    cd: np.ndarray
-    dd: float
-    internal: bool = False
-    limit: float = math.inf
-    states: np.ndarray = field(default_factory=lambda: np.zeros((2, 0)))
-    damped: bool = False
-
-    def step(self, difference: Vector, valid: bool, v_c: Vector) -> Vector:
-        """Return c_E, c_N for the held difference and the computed velocity."""
-        u = -v_c if self.internal else difference
-        wanted = bool(np.hypot(*difference) <= self.limit) and (valid or self.internal)
-        if wanted and not self.damped:
-            n = len(self.bd)
-            steady = np.linalg.solve(np.eye(n) - self.ad, self.bd) if n else np.zeros(0)
-            self.states = np.outer(u, steady) if self.internal else np.zeros((2, n))
-        self.damped = wanted
-        if not wanted:
-            return np.zeros(2)
-        c = self.states @ self.cd + self.dd * u
-        self.states = self.states @ self.ad.T + np.outer(u, self.bd)
-        return c
-
-
 def run_twin(
     truth_half: np.ndarray,
     eps: np.ndarray,
@@ -144,8 +105,11 @@ def run_twin(
     for k in range(n):
         x, t0, t1, t2 = out[k], truth_half[2 * k], truth_half[2 * k + 1], truth_half[2 * k + 2]
         v_c = t0[[VE, VN]] + x[:2]
-        c = none if law is None else law.step(dv_r[k] - x[:2], bool(valid[k]), v_c)
-        arguments = (eps[k], nabla[k], c, none, earth)
+        c = a = none
+        if law is not None:
+            accel = float(np.hypot(t0[AE], t0[AN]))
+            c, a = law.step(dv_r[k] - x[:2], bool(valid[k]), v_c, accel, float(t0[HEADING]))
+        arguments = (eps[k], nabla[k], c, a, earth)
         k1 = model_rate(t0, x, *arguments)
         k2 = model_rate(t1, x + 0.5 * step_s * k1, *arguments)
         k3 = model_rate(t1, x + 0.5 * step_s * k2, *arguments)

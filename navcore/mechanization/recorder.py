@@ -17,8 +17,10 @@ from navcore.compiled import inlined
 PHI_E, PHI_N, PHI_U, DV_E, DV_N, D_LAT, D_LON, POSITION = range(8)
 QUANTITIES = 8
 NAMES = ("phi_e_rad", "phi_n_rad", "phi_u_rad", "dve_mps", "dvn_mps", "dlat_m", "dlon_m", "position_m")
-DAMPED_COLUMN, XI_COLUMN = 8, 9
-ROW_COLUMNS = 10
+DAMPED_COLUMN, XI_COLUMN, WANTED_COLUMN, MEASURE_COLUMN = 8, 9, 10, 11
+ROW_COLUMNS = 12
+LAW_COLUMNS = (WANTED_COLUMN, DAMPED_COLUMN, XI_COLUMN, MEASURE_COLUMN)
+"""What the switching view draws: the policy's wish, the state, xi in force, what the policy measured."""
 
 SUM, SUM_SQUARES, MAX_ABS, FINAL = range(4)
 STATISTICS = 4
@@ -35,8 +37,8 @@ class Recorder:
     ----------
     row_steps : ndarray of int, shape (m,)
         Steps at which an output row is taken, increasing.
-    rows : ndarray, shape (m, 10)
-        The eight quantities (rad, m/s, m), damped (0/1), xi.
+    rows : ndarray, shape (m, 12)
+        The eight quantities (rad, m/s, m), damped (0/1), xi, wanted (0/1), measure of the policy.
     stats : ndarray, shape (8, 4)
         Sum, sum of squares, largest magnitude and last value, over all steps so far.
     bin_width : int
@@ -88,8 +90,11 @@ def make_recorder(steps: int, step_s: float, output_step_s: float) -> Recorder:
 
 
 @inlined
-def record(k, x, m, n_cos, damped, xi, row_steps, rows, buffer, cursor):
-    """Take the error state x (order: dV_E, dV_N, dL, dlambda, phi) of step k into buffer and rows."""
+def record(k, x, m, n_cos, damped, xi, wanted, measure, row_steps, rows, buffer, cursor):
+    """Take the error state x (order: dV_E, dV_N, dL, dlambda, phi) and the law's state of step k.
+
+    The law's values come as numbers: handed over as an array they cost a sixth of the integration.
+    """
     d_lat, d_lon = m * x[2], n_cos * x[3]
     position = math.sqrt(d_lat * d_lat + d_lon * d_lon)
     i = cursor[CURSOR_BUFFER]
@@ -101,6 +106,7 @@ def record(k, x, m, n_cos, damped, xi, row_steps, rows, buffer, cursor):
         for q in range(QUANTITIES):
             rows[j, q] = buffer[q, i]
         rows[j, DAMPED_COLUMN], rows[j, XI_COLUMN] = damped, xi
+        rows[j, WANTED_COLUMN], rows[j, MEASURE_COLUMN] = wanted, measure
         cursor[CURSOR_ROW] = j + 1
 
 

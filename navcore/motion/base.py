@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from navcore.earth import Earth
 from navcore.parameters import Parameters
+
+if TYPE_CHECKING:
+    from navcore.motion.kinematics import Kinematics
 
 # Columns of Truth.values.
 LAT, LON, HEIGHT, VE, VN, VU, AE, AN, AU, PITCH, ROLL, HEADING, PITCH_RATE, ROLL_RATE, HEADING_RATE = range(
@@ -67,3 +70,31 @@ class MotionParameters(Parameters, ABC):
         InputError
             The motion cannot be carried out (field names relative to the motion block).
         """
+
+    @abstractmethod
+    def kinematics(
+        self, end_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> Kinematics:
+        """Return the motion up to ``end_s`` as compiled loops read it, at any time and step.
+
+        Parameters
+        ----------
+        end_s : float
+            Last time that will be asked for, s.
+        site, earth
+            As of `truth`.
+        start_utc : float, optional
+            UTC (s) of t = 0 of a recorded motion; default: the first epoch that its streams share.
+
+        Raises
+        ------
+        InputError
+            The motion cannot be carried out.
+        """
+
+    def rows(
+        self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> np.ndarray:
+        """Rows of `truth` whatever the step: for one who looks at the motion without integrating over it."""
+        del start_utc
+        return self.truth(count, step_s, site, earth).values

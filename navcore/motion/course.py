@@ -1,9 +1,10 @@
 """A course made of legs as an explicit function of time: speed, heading and position, compiled.
 
-Speed and heading change by raised cosines, so acceleration and turn rate are continuous and everything but
-the position is a closed formula. The position comes from nodes laid once along the course (RK4; up to 60 s
-apart, closer while the vehicle manoeuvres) with a cubic Hermite polynomial between them: it does not
-depend on the times at which it is asked for. Over 24 h it stays within 0.01 mm of an integration to 1e-13.
+Speed and heading change so that acceleration and turn rate are continuous, by raised cosines if nothing else
+is said, and everything but the position is a closed formula. The position comes from nodes laid once along
+the course (RK4; up to 60 s apart, closer while the vehicle manoeuvres) with a cubic Hermite polynomial
+between them: it does not depend on the times at which it is asked for. Over 24 h it stays within 0.01 mm of
+an integration to 1e-13.
 """
 
 from __future__ import annotations
@@ -37,9 +38,10 @@ from navcore.motion.base import (
 from navcore.trigonometry import sincos, sincos_cycles
 from navcore.units import DEG
 
-# Columns of a leg: its start, then start value, change and duration of the change, of speed and of heading.
-START, SPEED, SPEED_CHANGE, SPEED_TIME, COURSE, COURSE_CHANGE, COURSE_TIME = range(7)
-LEG_COLUMNS = 7
+# Columns of a leg: its start, then start value, change and duration of the change, of speed and of heading;
+# how the rates of both go during their changes.
+START, SPEED, SPEED_CHANGE, SPEED_TIME, COURSE, COURSE_CHANGE, COURSE_TIME, SHAPE = range(8)
+RAISED_COSINE, HALF_SINE, TRIANGLE = 0.0, 1.0, 2.0
 # Columns of a node: time, position, its time derivative, 1 / time to the next node.
 TIME, NODE_LAT, NODE_LON, LAT_RATE, LON_RATE, INVERSE_SPAN = range(6)
 NODE_COLUMNS = 6
@@ -79,8 +81,8 @@ class Course:
 
     Attributes
     ----------
-    legs : ndarray, shape (m, 7)
-        One row a leg, columns START ... COURSE_TIME; s, m/s, rad.
+    legs : ndarray, shape (m, 8)
+        One row a leg, columns START ... SHAPE; s, m/s, rad.
     nodes : ndarray, shape (k, 6)
         Position nodes, columns TIME ... INVERSE_SPAN; s, rad, rad/s.
     """
@@ -90,11 +92,22 @@ class Course:
 
 
 @inlined
-def smooth_change(elapsed, duration, change):
-    """Return what is done of a change, change (tau - sin(2 pi tau)/(2 pi)), and its rate."""
+def smooth_change(elapsed, duration, change, shape):
+    """Return what is done of a change and its rate, which rises from 0 and falls to 0 as ``shape`` says.
+
+    With tau = elapsed/duration the part done is tau - sin(2 pi tau)/(2 pi) (RAISED_COSINE),
+    (1 - cos(pi tau))/2 (HALF_SINE), 2 tau^2 and then 1 - 2 (1 - tau)^2 (TRIANGLE).
+    """
     if elapsed >= duration:
         return change, 0.0
     tau = elapsed / duration
+    if shape == TRIANGLE:
+        left = 1.0 - tau
+        done = 2.0 * tau * tau if tau < 0.5 else 1.0 - 2.0 * left * left
+        return change * done, 4.0 * change / duration * min(tau, left)
+    if shape == HALF_SINE:
+        s, c = sincos_cycles(0.5 * tau)
+        return 0.5 * change * (1.0 - c), 0.5 * math.pi * change / duration * s
     s, c = sincos_cycles(tau)
     return change * (tau - s / _TWO_PI), change / duration * (1.0 - c)
 
@@ -103,8 +116,9 @@ def smooth_change(elapsed, duration, change):
 def course_at(t, legs, leg):
     """Speed (m/s), acceleration along the course (m/s^2), heading (rad), turn rate (rad/s) within a leg."""
     elapsed = t - legs[leg, START]
-    gained, acceleration = smooth_change(elapsed, legs[leg, SPEED_TIME], legs[leg, SPEED_CHANGE])
-    turned, turn_rate = smooth_change(elapsed, legs[leg, COURSE_TIME], legs[leg, COURSE_CHANGE])
+    shape = legs[leg, SHAPE]
+    gained, acceleration = smooth_change(elapsed, legs[leg, SPEED_TIME], legs[leg, SPEED_CHANGE], shape)
+    turned, turn_rate = smooth_change(elapsed, legs[leg, COURSE_TIME], legs[leg, COURSE_CHANGE], shape)
     return legs[leg, SPEED] + gained, acceleration, legs[leg, COURSE] + turned, turn_rate
 
 
@@ -221,8 +235,8 @@ def lay_course(legs: np.ndarray, end_s: float, site: Site, earth: Earth) -> Cour
 
     Parameters
     ----------
-    legs : ndarray, shape (m, 7)
-        Columns START ... COURSE_TIME.
+    legs : ndarray, shape (m, 8)
+        Columns START ... SHAPE.
     end_s : float
         Last time that will be asked for, > 0.
     site : Site
@@ -256,7 +270,10 @@ def _pieces(legs: np.ndarray, end_s: float) -> tuple[np.ndarray, np.ndarray, np.
         if leg[START] >= end_s:
             break
         leg_end = legs[number + 1, START] if number + 1 < len(legs) else end_s
-        changes = [leg[START] + leg[SPEED_TIME], leg[START] + leg[COURSE_TIME]]
+        times = [leg[SPEED_TIME], leg[COURSE_TIME]]
+        if leg[SHAPE] == TRIANGLE:  # no node span may hold the peak: the rate has a corner there
+            times += [0.5 * time for time in times]
+        changes = [leg[START] + time for time in times]
         for bound in sorted({min(float(b), float(leg_end), end_s) for b in (*changes, leg_end)}):
             if bound > bounds[-1]:
                 spans.append(_longest_span(leg, bounds[-1]))
@@ -278,6 +295,13 @@ def _longest_span(leg: np.ndarray, start: float) -> float:
     third_derivative = (acceleration + speed * turn_rate) * (turn_rate + _TWO_PI / shortest) ** 2
     fitting = (384.0 * _TOLERANCE / third_derivative) ** 0.25 if third_derivative > 0.0 else math.inf
     return float(min(LONGEST_SPAN, shortest / _SPANS_A_CHANGE, fitting))
+
+
+def askable_before_start(legs: np.ndarray) -> np.ndarray:
+    """Legs whose empty changes have a duration: at t < 0 a quadrature would divide 0 by 0."""
+    legs = legs.copy()
+    legs[:, [SPEED_TIME, COURSE_TIME]] = np.maximum(legs[:, [SPEED_TIME, COURSE_TIME]], 1e-6)
+    return legs
 
 
 @kernel

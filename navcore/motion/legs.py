@@ -14,13 +14,16 @@ from navcore.errors import Fault, InputError
 from navcore.motion.base import Site, Truth
 from navcore.motion.course import (
     COURSE_CHANGE,
+    RAISED_COSINE,
     SPEED,
     SPEED_CHANGE,
     Course,
     PoleReached,
+    askable_before_start,
     lay_course,
     sample_course,
 )
+from navcore.motion.kinematics import COURSE, Kinematics
 from navcore.motion.static import AttitudeMotion
 from navcore.parameters import Parameters, quantity
 from navcore.units import DEG, KNOT
@@ -144,13 +147,24 @@ class LegsMotion(AttitudeMotion):
                 return
 
     def table(self) -> np.ndarray:
-        """Legs as numbers, shape (m, 7), columns of `navcore.motion.course`; s, m/s, rad."""
+        """Legs as numbers, shape (m, 8), columns of `navcore.motion.course`; s, m/s, rad."""
         first = self.leg[0]
         start, speed = 0.0, first.speed or 0.0
         heading = (self.heading_deg if first.heading_deg is None else first.heading_deg) * DEG
         rows = []
         for number, _, (faster, turned) in self._resolved():
-            rows.append([start, speed, faster.amount, faster.time_s, heading, turned.amount, turned.time_s])
+            rows.append(
+                [
+                    start,
+                    speed,
+                    faster.amount,
+                    faster.time_s,
+                    heading,
+                    turned.amount,
+                    turned.time_s,
+                    RAISED_COSINE,
+                ]
+            )
             start += self.leg[number].duration_s
             speed, heading = speed + faster.amount, heading + turned.amount
         return np.array(rows)
@@ -191,6 +205,15 @@ class LegsMotion(AttitudeMotion):
         course = self.course(max(count - 1, 1) * step_s, site, earth)
         pitch, roll = self.pitch_deg * DEG, self.roll_deg * DEG
         return Truth(step_s, sample_course(course, count, step_s, pitch, roll, site.height))
+
+    def kinematics(
+        self, end_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> Kinematics:
+        """Return legs, position nodes and the constant pitch and roll."""
+        course = self.course(end_s, site, earth)
+        return Kinematics(
+            COURSE, self.rest_row(site)[0], legs=askable_before_start(course.legs), nodes=course.nodes
+        )
 
     def _resolved(self) -> Iterator[tuple[int, float, tuple[_Change, _Change]]]:
         """Number of each leg, the speed at its end, and its changes of speed and heading."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from navcore.earth import Earth
 from navcore.motion.base import COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL, MotionParameters, Site, Truth
+from navcore.motion.kinematics import REST, Kinematics
 from navcore.parameters import quantity
 from navcore.units import DEG
 
@@ -54,3 +55,9 @@ class StaticMotion(AttitudeMotion):
     def truth(self, count: int, step_s: float, site: Site, earth: Earth) -> Truth:
         """Return one row that stands for all times, shape (1, 15)."""
         return Truth(step_s, self.rest_row(site))
+
+    def kinematics(
+        self, end_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> Kinematics:
+        """Return the row at rest."""
+        return Kinematics(REST, self.rest_row(site)[0])

@@ -12,6 +12,7 @@ from navcore.compiled import inlined, kernel
 from navcore.earth import Earth
 from navcore.errors import Fault, InputError
 from navcore.motion.base import COLUMNS, HEADING, PITCH, PITCH_RATE, ROLL, Site, Truth
+from navcore.motion.kinematics import SWING, Kinematics
 from navcore.motion.static import AttitudeMotion
 from navcore.parameters import Parameters, quantity
 from navcore.trigonometry import sincos_cycles
@@ -85,15 +86,27 @@ class SwingMotion(AttitudeMotion):
             A swing is too fast for the step: fewer than 8 true states a period.
         """
         self._check_step(step_s)
+        return Truth(step_s, self.rows(count, step_s, site, earth))
+
+    def rows(
+        self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> np.ndarray:
+        """Rows of truth at 0, step_s, ..., however long the step."""
         axes = (self.pitch, self.roll, self.heading)
         if not any(axis.moving for axis in axes):
             row = self.rest_row(site)
             for column, axis in zip((PITCH, ROLL, HEADING), axes, strict=True):
                 row[0, column] += axis.amplitude_deg * DEG * math.sin(axis.phase_deg * DEG)
-            return Truth(step_s, row)
+            return row
         values = np.empty((count, COLUMNS))
         _fill(self.rest_row(site)[0], self.packed(), float(step_s), values)
-        return Truth(step_s, values)
+        return values
+
+    def kinematics(
+        self, end_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> Kinematics:
+        """Return the place and the three oscillations."""
+        return Kinematics(SWING, self.rest_row(site)[0], oscillations=self.packed())
 
     def packed(self) -> np.ndarray:
         """Mean and amplitude (rad), frequency (Hz), phase (cycles) of pitch, roll, heading; shape (3, 4)."""

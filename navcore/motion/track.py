@@ -2,35 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
 
-from navcore.earth import SEMI_MAJOR_AXIS, WGS84, Earth
+from navcore.earth import WGS84, Earth
 from navcore.errors import Fault, InputError
 from navcore.io.recording import FileKey, Window, file_keys, load, require_cover, shared_window
 from navcore.io.series import Recording, Series, utc_text
-from navcore.motion.base import (
-    AE,
-    AN,
-    COLUMNS,
-    HEADING,
-    HEADING_RATE,
-    HEIGHT,
-    LAT,
-    LON,
-    PITCH,
-    PITCH_RATE,
-    ROLL,
-    ROLL_RATE,
-    VE,
-    VN,
-    MotionParameters,
-    Site,
-    Truth,
+from navcore.motion.base import COLUMNS, HEIGHT, LAT, LON, MotionParameters, Site, Truth
+from navcore.motion.kinematics import TRACK, Kinematics
+from navcore.motion.pieces import (
+    PIECE_HEADING,
+    PIECE_LAT,
+    PIECE_LON,
+    PIECE_PITCH,
+    PIECE_ROLL,
+    sample_track,
+    shared_pieces,
 )
 from navcore.parameters import FileName, quantity
 from navcore.units import DEG
@@ -41,6 +34,8 @@ OUTLIER_M = 10.0
 OUTLIER_ACCELERATION = 5.0
 """... nor one that a vehicle within this acceleration (m/s^2) could have reached."""
 _MOST_FAULTS = 5
+Polynomials = tuple[np.ndarray, np.ndarray]
+"""Breakpoints (n + 1,) and coefficients (4, n), highest power first."""
 
 
 @dataclass(frozen=True)
@@ -106,8 +101,8 @@ class TrackMotion(MotionParameters):
     def recorded_start(self, start_utc: float | None = None) -> Site:
         """Smoothed position at t = 0 (``start_utc``, else the start of the own window)."""
         track = self._smoothed()
-        lat, lon = track.path.sample(np.array([track.window.start_s if start_utc is None else start_utc]))
-        return Site(float(lat[0, 0]), float(lon[0, 0]), track.path.height)
+        row = sample_track(self._pieces(track, start_utc), 1, 1.0, track.path.height, WGS84.e2)[0]
+        return Site(float(row[LAT]), float(row[LON]), track.path.height)
 
     def truth(
         self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
@@ -126,21 +121,43 @@ class TrackMotion(MotionParameters):
         InputError
             No position or heading, a fix far off its neighbours, or a run longer than the record.
         """
+        return Truth(step_s, self.rows(count, step_s, site, earth, start_utc))
+
+    def rows(
+        self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> np.ndarray:
+        """Rows of truth at 0, step_s, ...; shape (count, 15)."""
         del site
+        track = self._covering((count - 1) * step_s, start_utc)
+        return sample_track(self._pieces(track, start_utc), count, step_s, track.path.height, earth.e2)
+
+    def kinematics(
+        self, end_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> Kinematics:
+        """Return the pieces of the splines; an IMU's few samples beyond the record prolong the last one."""
+        del site, earth, end_s
+        track, rest = self._smoothed(), np.zeros(COLUMNS)
+        rest[HEIGHT] = track.path.height
+        return Kinematics(TRACK, rest, legs=self._pieces(track, start_utc))
+
+    def _covering(self, span_s: float, start_utc: float | None) -> _Smoothed:
         track = self._smoothed()
         start = track.window.start_s if start_utc is None else start_utc
-        require_cover(track.window, start, (count - 1) * step_s, "the track", self.file)
-        time_s = start + np.arange(count) * step_s
-        values = np.zeros((count, COLUMNS))
-        _fill_path(values, track.path, time_s, earth)
-        values[:, HEADING] = track.heading(time_s)[:, 0]
-        values[:, HEADING_RATE] = track.heading(time_s, 1)[:, 0]
+        require_cover(track.window, start, span_s, "the track", self.file)
+        return track
+
+    def _pieces(self, track: _Smoothed, start_utc: float | None) -> np.ndarray:
+        """All splines on shared pieces; t = 0 at ``start_utc``, else at the start of the own window."""
+        start = track.window.start_s if start_utc is None else start_utc
+        lat, lon = track.path.columns(start)
+        splines = {PIECE_LAT: lat, PIECE_LON: lon, PIECE_HEADING: track.heading.column(0, start)}
         if track.attitude is None:
-            values[:, PITCH], values[:, ROLL] = self.pitch_deg * DEG, self.roll_deg * DEG
-        else:
-            values[:, [PITCH, ROLL]] = track.attitude(time_s)
-            values[:, [PITCH_RATE, ROLL_RATE]] = track.attitude(time_s, 1)
-        return Truth(step_s, values)
+            return shared_pieces(
+                splines, {PIECE_PITCH: self.pitch_deg * DEG, PIECE_ROLL: self.roll_deg * DEG}
+            )
+        splines[PIECE_PITCH] = track.attitude.column(0, start)
+        splines[PIECE_ROLL] = track.attitude.column(1, start)
+        return shared_pieces(splines, {})
 
     def _smoothed(self) -> _Smoothed:
         files = (self.file,) if isinstance(self.file, str) else self.file or ()
@@ -204,22 +221,24 @@ class _Path:
         heights = position.values[np.isfinite(position.values[:, 2]), 2]
         self.height = float(np.median(heights)) if heights.size else 0.0
 
-    def sample(self, time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Latitude and longitude (rad), each with first and second derivative; shape (n, 3) each."""
-        derivatives = [self._spline(time_s, order) / self._metres for order in range(3)]
-        derivatives[0] = derivatives[0] + self._origin
-        stacked = np.stack(derivatives, axis=1)
-        return stacked[:, :, 0], stacked[:, :, 1]
+    def columns(self, start_s: float) -> Iterator[Polynomials]:
+        """Latitude and longitude (rad) as functions of the time since ``start_s``."""
+        for j in range(2):
+            breaks, coefficients = self._spline.column(j, start_s)
+            coefficients = coefficients / self._metres[j]
+            coefficients[3] += self._origin[j]
+            yield breaks, coefficients
 
 
 class _Spline:
     """Cubic spline in time from its first knot, which keeps UTC's large numbers out of the polynomials."""
 
-    def __init__(self, start_s: float, spline: Any) -> None:
-        self._start_s, self._spline = start_s, spline
+    def __init__(self, start_s: float, breaks: np.ndarray, coefficients: np.ndarray) -> None:
+        self._start_s, self._breaks, self._coefficients = start_s, breaks, coefficients
 
-    def __call__(self, time_s: np.ndarray, order: int = 0) -> np.ndarray:
-        return self._spline(time_s - self._start_s, order)
+    def column(self, j: int, start_s: float) -> Polynomials:
+        """Breakpoints since ``start_s`` and coefficients of column j."""
+        return self._breaks + (self._start_s - start_s), self._coefficients[:, :, j]
 
 
 def _smoothed_columns(time_s: np.ndarray, values: np.ndarray, smoothing_s: float) -> _Spline:
@@ -228,9 +247,15 @@ def _smoothed_columns(time_s: np.ndarray, values: np.ndarray, smoothing_s: float
 
     elapsed = time_s - time_s[0]
     if smoothing_s == 0.0 or elapsed.size < FEWEST_FIXES:
-        return _Spline(time_s[0], CubicSpline(elapsed, values, bc_type="natural"))
-    penalty = smoothing_s**4 / float(np.median(np.diff(elapsed)))
-    return _Spline(time_s[0], make_smoothing_spline(elapsed, values, lam=penalty))
+        spline = CubicSpline(elapsed, values, bc_type="natural")
+    else:
+        penalty = smoothing_s**4 / float(np.median(np.diff(elapsed)))
+        spline = make_smoothing_spline(elapsed, values, lam=penalty)
+    starts = elapsed[:-1]
+    coefficients = np.stack(
+        [spline(starts, 3) / 6.0, spline(starts, 2) / 2.0, spline(starts, 1), spline(starts)]
+    )
+    return _Spline(time_s[0], elapsed, coefficients)
 
 
 def _refuse_outliers(position: Series, metres: np.ndarray) -> None:
@@ -258,20 +283,3 @@ def _refuse_outliers(position: Series, metres: np.ndarray) -> None:
             Fault("", "file", position.source, f"and {worst.size - _MOST_FAULTS} more such positions")
         )
     raise InputError(faults)
-
-
-def _fill_path(values: np.ndarray, path: _Path, time_s: np.ndarray, earth: Earth) -> None:
-    """Position, and velocity and acceleration as its derivatives on this Earth at constant height."""
-    lat, lon = path.sample(time_s)
-    sin_lat, cos_lat = np.sin(lat[:, 0]), np.cos(lat[:, 0])
-    w = 1.0 - earth.e2 * sin_lat**2
-    prime_vertical = SEMI_MAJOR_AXIS / np.sqrt(w)
-    meridian = prime_vertical * (1.0 - earth.e2) / w
-    stretch = earth.e2 * sin_lat * cos_lat * lat[:, 1] / w  # d(ln N)/dt; d(ln M)/dt is three times this
-    north_arm, east_arm = meridian + path.height, (prime_vertical + path.height) * cos_lat
-    values[:, LAT], values[:, LON], values[:, HEIGHT] = lat[:, 0], lon[:, 0], path.height
-    values[:, VN] = lat[:, 1] * north_arm
-    values[:, AN] = lat[:, 2] * north_arm + 3.0 * lat[:, 1] * meridian * stretch
-    values[:, VE] = lon[:, 1] * east_arm
-    east_arm_rate = prime_vertical * stretch * cos_lat - (prime_vertical + path.height) * sin_lat * lat[:, 1]
-    values[:, AE] = lon[:, 2] * east_arm + lon[:, 1] * east_arm_rate

@@ -122,6 +122,38 @@ class NetworkParameters(Parameters):
         """Return the parameter that sets the damping (xi or zeta); None where there is none."""
         return None
 
+    def tuning(self, omega_s: float) -> list[float] | None:
+        """Return code and parameters for `navcore.network.retuning`; None where a run cannot re-tune it.
+
+        Parameters
+        ----------
+        omega_s : float
+            Schuler frequency, rad/s.
+        """
+        return None
+
+    def with_damping(self, coefficient: float) -> NetworkParameters:
+        """Return the same network with another damping coefficient.
+
+        Parameters
+        ----------
+        coefficient : float
+            xi or zeta; not checked against the range of the field.
+
+        Raises
+        ------
+        ValueError
+            The network has no such parameter.
+        """
+        for name in ("xi", "zeta"):
+            if name in type(self).model_fields:
+                return self.model_copy(update={name: coefficient})
+        raise ValueError(f"{self.id} has no damping coefficient")
+
+    def least_coefficient(self) -> float:
+        """Return the damping coefficient above which the loop is stable; 0 where all are."""
+        return 0.0
+
 
 def given(data: Any, names: Sequence[str]) -> list[str]:
     """Names of the fields that raw input sets to something."""

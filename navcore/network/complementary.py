@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar, Literal
 
 from navcore.network.base import LinearNetwork, NetworkParameters, linear_network, pair
+from navcore.network.tuning_codes import COMPLEMENTARY
 from navcore.parameters import quantity
 
 
@@ -44,3 +45,7 @@ class ComplementaryNetwork(NetworkParameters):
     def damping_coefficient(self) -> float:
         """Return zeta."""
         return self.zeta
+
+    def tuning(self, omega_s: float) -> list[float]:
+        """Return code, eta."""
+        return [COMPLEMENTARY, self.eta]

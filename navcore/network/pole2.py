@@ -8,6 +8,7 @@ from typing import ClassVar, Literal
 from pydantic import model_validator
 
 from navcore.network.base import LinearNetwork, NetworkParameters, linear_network, pair, refuse
+from navcore.network.tuning_codes import POLE2
 from navcore.parameters import choice, quantity
 
 
@@ -88,3 +89,27 @@ class Pole2Network(NetworkParameters):
     def damping_coefficient(self) -> float:
         """Return xi."""
         return self.xi
+
+    def tuning(self, omega_s: float) -> list[float]:
+        """Return code, n1, n2, and 1 when as printed."""
+        return [POLE2, self.n1, self.n2, float(self.variant == "as_printed")]
+
+    def least_coefficient(self) -> float:
+        """Return the xi above which the printed form is stable; 0 for the exact one.
+
+        Routh's condition on p^4 + a p^3 + (b+1) p^2 + e p + b with a = xi alpha, b = xi^2 beta and
+        e = xi (g + h xi^2) is quadratic in y = xi^2, and opens upwards: it holds above its larger root.
+        """
+        if self.variant == "exact":
+            return 0.0
+        total, product = self.n1 + self.n2, self.n1 * self.n2
+        alpha, beta = total + 2.0, product + 2.0 * total
+        w1 = 2.0 * beta / (alpha + math.sqrt((self.n1 - self.n2) ** 2 + 4.0 - 4.0 * total))
+        g, h = total + 2.0 * total / w1, 2.0 * product
+        quadratic = h * (alpha * beta - h)
+        linear = alpha * beta * g + alpha * h - 2.0 * g * h - alpha * alpha * beta
+        constant = g * (alpha - g)
+        discriminant = linear * linear - 4.0 * quadratic * constant
+        if discriminant < 0.0:
+            return 0.0
+        return math.sqrt(max(0.0, 0.5 * (math.sqrt(discriminant) - linear) / quadratic))

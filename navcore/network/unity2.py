@@ -16,6 +16,7 @@ from navcore.network.base import (
     quadratic_roots,
     refuse,
 )
+from navcore.network.tuning_codes import UNITY2
 from navcore.parameters import quantity
 
 
@@ -103,3 +104,8 @@ class Unity2Network(NetworkParameters):
     def damping_coefficient(self) -> float:
         """Return zeta."""
         return self.zeta
+
+    def tuning(self, omega_s: float) -> list[float]:
+        """Return code, r, zeta2 and alpha / omega_s; 0 where not given."""
+        alpha = 0.0 if self.alpha is None else self.alpha / omega_s
+        return [UNITY2, self.r, self.zeta2 or 0.0, alpha]

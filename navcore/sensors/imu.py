@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import Field
 
 from navcore.earth import Earth
 from navcore.motion.base import Truth
-from navcore.parameters import Parameters, bounded, quantity, vector_quantity
+from navcore.parameters import FileName, Parameters, bounded, choice, quantity, vector_quantity
 from navcore.sensors.base import SensorErrors
 from navcore.sensors.imu_kernels import (
     add_quantisation,
@@ -94,6 +96,7 @@ class Imu(Parameters):
 
     Scalars apply to all three axes. A Gauss-Markov value is held for a step of the run, which is right for
     correlation times well above the step.
+    A recorded IMU (``file``, strapdown only) brings its own errors: those given here are then not used.
     """
 
     gyro_bias_dph: tuple[_GyroBias, _GyroBias, _GyroBias] = vector_quantity(
@@ -157,6 +160,20 @@ class Imu(Parameters):
     accel_lsb: tuple[_AccelLsb, _AccelLsb, _AccelLsb] = vector_quantity(
         _ZERO3, unit="m/s", label="accelerometer count",
         help="Velocity of one count of each accelerometer; 0 for no quantisation.",
+    )  # fmt: skip
+    file: FileName | None = Field(
+        default=None,
+        description="Recorded IMU in place of the simulated one (strapdown): PSINS text, or CSV with t_s and "
+        "gx_rad_s, gy_rad_s, gz_rad_s, fx_mps2, fy_mps2, fz_mps2 (means), or dax_rad ... dvz_mps "
+        "(increments). Alignment and navigation take its samples one after the other.",
+        json_schema_extra={"label": "IMU file"},
+    )
+    axes: Literal["rfu", "frd"] = choice(
+        "rfu",
+        help="Axes of a recorded CSV: right, forward, up, or forward, right, down. PSINS files are rfu.",
+    )
+    begin_s: float = quantity(
+        0.0, unit="s", ge=0.0, le=1e7, label="skip", help="Time of the recorded IMU that is left out before."
     )  # fmt: skip
 
     def gyro(self) -> SensorModel:
@@ -226,20 +243,26 @@ def imu_errors(
         raise ValueError(f"{count} steps need 1 or {2 * count + 1} rows of truth at half steps, not {rows}")
     models = imu.gyro(), imu.accel()
     values = truth_half.values
-    turning = np.eye(3).reshape(1, 9)
-    if not level_body and not all(model.perfect for model in models):
-        turning = _mean_attitude(values, count)
     signal = coupled = np.zeros((2, 1, 3))
     if any(model.measures_motion for model in models):
         signal, coupled = np.empty((2, 2, 1 if rows == 1 else count, 3))
         coupling = np.stack([model.coupling for model in models])
         constants = (earth.e2, earth.g_equator, earth.somigliana_k)
         scaled_signals(values, level_body, *constants, coupling, signal, coupled)
-    gyro, accel = (
-        _navigation_errors(model, turning, signal[i], coupled[i], count, step_s, seed)
-        for i, model in enumerate(models)
-    )
-    return SensorErrors(gyro, accel)
+    level = level_body or all(model.perfect for model in models)
+    # Gyros, accelerometers and attitude at the same time: of a new seed this is a fifth of the whole run.
+    with ThreadPoolExecutor(2) as pool:
+        turning = pool.submit(_level if level else _mean_attitude, values, count)
+        made = [
+            pool.submit(_navigation_errors, model, turning, signal[i], coupled[i], count, step_s, seed)
+            for i, model in enumerate(models)
+        ]
+        return SensorErrors(made[0].result(), made[1].result())
+
+
+def _level(values: np.ndarray, count: int) -> np.ndarray:
+    """C_b^n of a level body pointing north, row by row: (1, 9)."""
+    return np.eye(3).reshape(1, 9)
 
 
 def _mean_attitude(values: np.ndarray, count: int) -> np.ndarray:
@@ -253,7 +276,7 @@ def _mean_attitude(values: np.ndarray, count: int) -> np.ndarray:
 
 def _navigation_errors(
     model: SensorModel,
-    turning: np.ndarray,
+    turned_by: Future[np.ndarray],
     signal: np.ndarray,
     coupled: np.ndarray,
     count: int,
@@ -269,6 +292,7 @@ def _navigation_errors(
     if model.instability > 0.0:
         unit = unit_noise(seed, f"{model.stream}.instability", count, 3)
         drift = gauss_markov(unit, math.exp(-step_s / model.tau_s))
+    turning = turned_by.result()
     moving = turning.shape[0] > 1 or (coupled.shape[0] > 1 and bool(model.coupling.any()))
     error = np.empty((count if moving or not model.constant else 1, 3))
     body_errors(model.bias, model.white / math.sqrt(step_s), white, model.instability, drift, error)

@@ -23,6 +23,8 @@ _PSINS_GRAVITY = 9.780327
 _LARGEST_FORCE_ERROR = 0.02
 """Difference between the mean specific force and gravity, as a part of gravity."""
 _LARGEST_TILT = 30.0 * DEG
+_LARGEST_FILE = 128 * 1024 * 1024
+"""Bytes: a day at 100 Hz."""
 _GAP = 1.5
 """Sample intervals; more is a gap."""
 _RATES = ("gx_rad_s", "gy_rad_s", "gz_rad_s", "fx_mps2", "fy_mps2", "fz_mps2")
@@ -78,13 +80,31 @@ def read_imu(path: str | os.PathLike[str], axes: Axes = "rfu") -> ImuRecord:
     """
     file = Path(path)
     try:
+        if file.stat().st_size > _LARGEST_FILE:
+            allowed = f"is larger than {_LARGEST_FILE >> 20} MB: cut it, a day at 100 Hz is enough"
+            raise InputError(Fault(str(path), "imu.file", None, allowed))
         text = file.read_text("utf-8")
     except (OSError, UnicodeDecodeError) as error:
         binary = isinstance(error, UnicodeDecodeError)
         reason = "is not a text file" if binary else (error.strerror or "cannot be read")
         raise InputError(Fault(str(path), "imu.file", None, reason)) from None
-    record = _psins(text, str(path)) if text.lstrip().startswith("%") else _csv(text, str(path), axes)
-    return record
+    return _psins(text, str(path)) if is_psins(text) else _csv(text, str(path), axes)
+
+
+def is_psins(text: str) -> bool:
+    """Whether a text begins as PSINS files do."""
+    return text.lstrip().startswith("%")
+
+
+def is_imu_header(line: str) -> bool:
+    """Whether the first line of a CSV names some of an IMU's quantities."""
+    return len(set(_RATES + _INCREMENTS) & {name.strip() for name in line.split(",")}) >= 2
+
+
+def upward_axis(force: np.ndarray) -> str:
+    """Axis that looks like up in the mean specific force (3,) of a vehicle at rest: "+z", "-x" ..."""
+    axis = int(np.argmax(np.abs(force)))
+    return ("+" if force[axis] > 0 else "-") + "xyz"[axis]
 
 
 def check_rest(record: ImuRecord, gravity: float, first_s: float = 0.0, last_s: float | None = None) -> None:
@@ -117,13 +137,11 @@ def check_rest(record: ImuRecord, gravity: float, first_s: float = 0.0, last_s: 
             )
         )  # fmt: skip
     if math.acos(min(1.0, max(-1.0, force[2] / size))) > _LARGEST_TILT:
-        axis = int(np.argmax(np.abs(force)))
-        sign = "+" if force[axis] > 0 else "-"
         raise InputError(
             Fault(
                 record.source, "imu.file", None,
-                f"the {sign}{'xyz'[axis]} axis looks like up, but z must point up (x right, y forward): mean "
-                f"specific force {force[0]:.3f}, {force[1]:.3f}, {force[2]:.3f} m/s2; give the right axes",
+                f"the {upward_axis(force)} axis looks like up, but z must point up (x right, y forward): "
+                f"mean specific force {force[0]:.3f}, {force[1]:.3f}, {force[2]:.3f} m/s2",
             )
         )  # fmt: skip
 
@@ -171,8 +189,8 @@ def _numbers(
     if len(lines) < 2:
         raise InputError(Fault(source, "imu.file", None, "holds fewer than two samples"))
     try:
-        table = np.array([line.split(separator) for line in lines], dtype=float)
-        if table.ndim != 2 or table.shape[1] != columns:
+        table = np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2)
+        if table.shape[1] != columns:
             raise ValueError
     except ValueError:
         bad = next(i for i, line in enumerate(lines) if not _is_row(line, columns, separator))

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from navcore.control.law import Law, prepare_law
+from navcore.control.policy import PolicyParameters
 from navcore.control.policy.constant import Constant
 from navcore.control.policy.threshold import Threshold
 from navcore.control.switching.hard import Hard
+from navcore.control.twin import TwinLaw
 from navcore.earth import EARTH_RATE, SPHERE, WGS84, Earth
-from navcore.filters import discretise
 from navcore.mechanization.error_model import ErrorModelRun, system_matrix
-from navcore.mechanization.error_model_twin import TwinLaw, run_twin
+from navcore.mechanization.error_model_twin import run_twin
 from navcore.mechanization.recorder import make_recorder
 from navcore.mechanization.trajectory import coefficients
 from navcore.motion.base import (
@@ -67,11 +68,14 @@ def _inputs(steps: int):
     return eps, nabla, dv_r, valid, x0
 
 
+def _policy(limit: float | None) -> PolicyParameters:
+    return Constant() if limit is None else Threshold(limit_mps=limit)
+
+
 def _law(
     damping: str, parameters: NetworkParameters, omega_s: float, limit: float | None, step_s: float
 ) -> Law:
-    policy = Constant() if limit is None else Threshold(limit_mps=limit)
-    return prepare_law(damping, parameters, parameters.transfer(omega_s), policy, Hard(), step_s)
+    return prepare_law(damping, parameters, parameters.transfer(omega_s), _policy(limit), Hard(), step_s)
 
 
 def _compiled(
@@ -100,8 +104,10 @@ def _compiled(
         ("external", Classic2Network(), 0.45),
         ("external", CompassNetwork(sigma=0.0088, xi=0.7, realisation="network"), 0.6),
         ("internal", Classic2Network(), None),
+        ("external", CompassNetwork(sigma=0.0088, xi=0.7), 0.6),
+        ("external", CompassNetwork(sigma=0.0088, xi=0.7, realisation="as_printed"), None),
     ],
-    ids=["free", "complementary", "threshold", "compass-network", "internal"],
+    ids=["free", "complementary", "threshold", "compass-network", "internal", "feedback", "deng"],
 )
 def test_kernel_equals_twin_sample_by_sample(earth, damping, parameters, limit):
     truth, inputs = _moving_truth(STEPS, 1.0), _inputs(STEPS)
@@ -109,9 +115,7 @@ def test_kernel_equals_twin_sample_by_sample(earth, damping, parameters, limit):
     compiled = _compiled(truth, _law(damping, parameters, omega_s, limit, 1.0), earth, 1.0, inputs)
     law = None
     if damping != "free":
-        d = discretise(parameters.transfer(omega_s), 1.0)
-        a = np.eye(len(d.B)) + d.dA
-        law = TwinLaw(a, d.B, -d.C, 1.0 - d.D, damping == "internal", math.inf if limit is None else limit)
+        law = TwinLaw(damping, parameters, _policy(limit), Hard(), omega_s, 1.0)
     eps, nabla, dv_r, valid, x0 = inputs
     twin = run_twin(truth, eps, nabla, dv_r, valid, x0, law, earth, 1.0)
     scale = np.abs(twin).max(axis=0)

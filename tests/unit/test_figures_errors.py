@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from app.figures import style
-from app.figures.errors import GROUPS, UplotFigure, error_plots, legend_html, stack_heights
+from app.figures.errors import GROUPS, error_plots, legend_html
+from app.figures.uplot import UplotFigure, stack_heights
 from navcore.mechanization.recorder import NAMES
 from tests.unit.figures_runs import diverging, run_of, static_run
 

@@ -41,7 +41,7 @@ def test_every_field_has_a_label_a_help_and_a_slider_within_its_range(model: typ
         if field.slider is not None:
             low, high = field.slider.ends
             assert low < high
-            assert field.slider.step <= (high - low) / 100.0
+            assert field.slider.whole or field.slider.step <= (high - low) / 100.0
 
 
 def test_label_carries_the_unit_and_hint_the_range() -> None:
@@ -64,6 +64,22 @@ def test_literal_becomes_a_choice_and_discriminators_are_left_out() -> None:
     assert (variant.kind, variant.choices) == ("choice", ("exact", "as_printed"))
     assert not any(f.path[-1] in ("id", "kind") for model in BLOCKS for f in form.fields(model, ("x",)))
     assert form.choice(Reference, "kind", ("reference",)).choices == ("none", "log", "file")
+
+
+def test_whole_numbers_flags_and_tables_have_controls_of_their_own() -> None:
+    count = spec(POLICIES["variation"], "count")
+    assert count.kind == "integer" and count.slider is not None
+    assert (count.slider.step, count.slider.value(20.4)) == (1.0, 20)
+    assert isinstance(count.slider.value(20.4), int)
+    assert spec(RunSettings, "coning and sculling compensation").kind == "flag"
+    table = next(field for field in form.fields(POLICIES["adaptive"], ("x",)) if field.kind == "pairs")
+    assert form.read_pairs(form.write_pairs(table.default)) == [list(row) for row in table.default]
+    with pytest.raises(ValueError):
+        form.read_pairs("0: 1: 2")
+
+
+def test_no_control_takes_the_name_of_a_file() -> None:
+    assert not any(field.path[-1] == "file" for model in BLOCKS for field in form.fields(model, ("x",)))
 
 
 def test_files_lists_and_nested_blocks_are_no_controls() -> None:

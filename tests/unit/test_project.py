@@ -21,9 +21,14 @@ from packaging.requirements import Requirement
 import navcore
 from navcore.assets import asset_path, assets_folder
 
-LOCKS = ("requirements.lock", "requirements-build.lock", "requirements-test.lock")
+LOCKS = (
+    "requirements.lock",
+    "requirements-build.lock",
+    "requirements-test.lock",
+    "requirements-benchmarks.lock",
+)
 TOP_LEVEL = {
-    *("app", "assets", "docs", "examples", "navcore", "tests", ".ci"),
+    *("app", "assets", "benchmarks", "docs", "examples", "navcore", "tests", ".ci"),
     *("CHANGELOG.md", "Dockerfile", "LICENSE", "Makefile", "README.md", "pyproject.toml", *LOCKS),
     *(".dockerignore", ".gitattributes", ".gitignore"),
 }
@@ -129,7 +134,7 @@ def test_imports_are_told_apart():
 def test_modules_are_short(repo_root: Path):
     lengths = {
         str(path.relative_to(repo_root)): len(path.read_text("utf-8").splitlines())
-        for path in modules(repo_root, "app", "navcore", "tests")
+        for path in modules(repo_root, "app", "benchmarks", "navcore", "tests")
     }
     assert {name: length for name, length in lengths.items() if length >= LONGEST_MODULE} == {}
 
@@ -220,9 +225,9 @@ def test_lock_holds_pins_and_hashes_and_nothing_else(repo_root: Path, lock: str)
 def test_locks_satisfy_what_the_project_asks_for(repo_root: Path, platform: tuple[str, str]):
     project = tomllib.loads((repo_root / "pyproject.toml").read_text("utf-8"))
     groups = project["dependency-groups"]
-    asked = dict(
-        zip(LOCKS, (project["project"]["dependencies"], groups["build"], groups["test"]), strict=True)
-    )
+    extras = project["project"]["optional-dependencies"]
+    runtime = project["project"]["dependencies"]
+    asked = dict(zip(LOCKS, (runtime, groups["build"], groups["test"], extras["benchmarks"]), strict=True))
     environment = {"sys_platform": platform[0], "platform_machine": platform[1]}
     for lock, texts in asked.items():
         entries = locked(repo_root, lock)
@@ -244,9 +249,9 @@ def test_what_is_imported_is_asked_for(repo_root: Path):
     project = tomllib.loads((repo_root / "pyproject.toml").read_text("utf-8"))
     runtime = {Requirement(text).name for text in project["project"]["dependencies"]}
     testing = runtime | {Requirement(text).name for text in project["dependency-groups"]["test"]}
-    known = {*sys.stdlib_module_names, "app", "navcore", "tests"}
+    known = {*sys.stdlib_module_names, "app", "benchmarks", "navcore", "tests"}
     providers = packages_distributions()
-    for packages, asked in ((("app", "navcore", "examples"), runtime), (("tests",), testing)):
+    for packages, asked in ((("app", "benchmarks", "navcore", "examples"), runtime), (("tests",), testing)):
         for path in modules(repo_root, *packages):
             for name in set(imported(ast.parse(path.read_text("utf-8")))) - known:
                 assert asked & set(providers.get(name, ())), f"{path.relative_to(repo_root)} imports {name}"

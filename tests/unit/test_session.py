@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from app import edits, session
-from app.session import Session, Sessions, first_editable, first_scenario
+from app.session import Session, Sessions, first_editable, first_scenario, runs_on_demand
 from navcore.errors import Fault, InputError
 from navcore.scenario import Scenario
 
@@ -44,6 +44,12 @@ class Watcher:
 
     def run_failed(self, error: Exception) -> None:
         self.told.append(("failed", error))
+
+    def run_waits(self) -> None:
+        self.told.append(("waits", None))
+
+    def verification_changed(self) -> None:
+        self.told.append(("verification", None))
 
 
 def answer(scenario: Scenario, status: str = "ok") -> Any:
@@ -177,6 +183,46 @@ def test_selection_stays_within_the_methods(work: tuple[Session, Watcher]) -> No
     assert made.selected == 1
     made.change(edits.without_method(made.scenario, 1), page)
     assert made.selected == 0
+
+
+# ------------------------------------------------------------ strapdown
+
+
+def strapdown(duration_h: float) -> Scenario:
+    return Scenario.parse({"run": {"fidelity": "strapdown", "duration_h": duration_h, "rate_hz": 200.0}})
+
+
+def test_only_a_long_strapdown_run_waits_for_the_user(work: tuple[Session, Watcher]) -> None:
+    made, page = work
+    assert not runs_on_demand(made.scenario) and not runs_on_demand(strapdown(1.0))
+    assert runs_on_demand(strapdown(6.0))
+    assert runs_on_demand(edits.with_method(strapdown(2.0), 0)[0])
+    made.change(strapdown(6.0), page, origin="opened")  # opened: run at once
+    assert made.wait_idle(5.0)
+    assert (made.run.scenario, page.names()[-1]) == (strapdown(6.0), "ended")
+    made.change(strapdown(7.0), page)
+    assert made.wait_idle(5.0)
+    assert (made.run.scenario, page.names()[-1]) == (strapdown(6.0), "waits")
+    assert made.outdated
+    made.redo_run()
+    assert made.wait_idle(5.0)
+    assert (made.run.scenario, made.outdated) == (strapdown(7.0), False)
+
+
+def test_another_scenario_drops_the_verification_and_the_last_page_stops_it(
+    work: tuple[Session, Watcher], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made, page = work
+    monkeypatch.setattr(made.verifier, "result", answer(made.scenario))
+    monkeypatch.setattr(made.verifier, "scenario", made.scenario)
+    assert made.verifier.beside(made.scenario) is not None
+    made.change(edits.with_value(made.scenario, DURATION, 2.0), page)
+    assert made.verifier.beside(made.scenario).old
+    made.change(edits.with_value(made.scenario, DURATION, 2.5), page, origin="another")
+    assert made.verifier.beside(made.scenario) is None
+    made.verifier.fraction = 0.5
+    made.detach(page)
+    assert made.verifier.fraction is None
 
 
 # ------------------------------------------------------------ many visitors

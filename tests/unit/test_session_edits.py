@@ -138,3 +138,12 @@ def test_events_come_and_go(scenario: Scenario) -> None:
     assert edits.value_at(moved, (*path, 1, "accel_mps2", 0)) == 0.01
     assert len(edits.without_block(moved, path).reference.event) == 1
     assert edits.without_block(scenario, path) == scenario
+
+
+def test_leaving_the_strapdown_gives_up_what_only_it_can_do() -> None:
+    data = {
+        "run": {"fidelity": "strapdown", "vertical": "altimeter", "compensation": False},
+        "alignment": {"kind": "compass"},
+    }
+    left = edits.with_value(Scenario.parse(data), ("run", "fidelity"), "error_model")
+    assert (left.run.vertical, left.run.compensation, left.alignment.kind) == ("locked", True, "none")

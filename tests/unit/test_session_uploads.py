@@ -141,3 +141,34 @@ def test_a_wrong_scenario_file_is_refused_by_name(files: Uploads, content: bytes
     with pytest.raises(InputError) as caught:
         opened_scenario("mine.toml", content, files)
     assert str(caught.value).startswith("mine.toml")
+
+
+# ------------------------------------------------------------ recorded IMU
+
+IMU = "t_s,gx_rad_s,gy_rad_s,gz_rad_s,fx_mps2,fy_mps2,fz_mps2\n" + "".join(
+    f"{0.1 * k:.1f},0.0,6.2e-5,3.9e-5,0.0,0.0,-9.795\n" for k in range(1, 4001)
+)
+
+
+def test_a_recorded_imu_is_aligned_and_navigated_at_its_rate(files: Uploads, scenario: Scenario) -> None:
+    files.add("imu.csv", IMU.encode())
+    made, notes = recorded_scenario(scenario, files)
+    assert (made.run.fidelity, made.run.rate_hz) == ("strapdown", 10.0)
+    assert made.imu.file == str(files.folder / "imu.csv")
+    assert made.imu.axes == "frd"  # -z points up
+    assert (made.alignment.kind, made.alignment.duration_s) == ("compass", 200.0)
+    assert made.run.duration_h * 3600.0 == pytest.approx(199.0, abs=1.01)
+    assert made.method == scenario.method
+    assert "taken to stand" in notes[0]
+
+
+def test_a_scenario_cannot_read_an_imu_file_of_the_server(files: Uploads) -> None:
+    data = {"run": {"fidelity": "strapdown"}, "imu": {"file": "/etc/passwd"}}
+    with pytest.raises(InputError, match="upload this file first"):
+        shared_files(Scenario.parse(data), {})
+    files.add("imu.csv", IMU.encode())
+    ours = shared_files(
+        Scenario.parse(data | {"imu": {"file": "imu.csv"}}), {"imu.csv": files.folder / "imu.csv"}
+    )
+    assert ours.imu.file == str(files.folder / "imu.csv")
+    assert with_plain_names(ours).imu.file == "imu.csv"

@@ -7,11 +7,14 @@ import pytest
 
 from navcore.earth import WGS84
 from navcore.mechanization.strapdown import Settings, start_from, start_run
-from navcore.mechanization.strapdown.batch import WIDTH, BatchRun
+from navcore.mechanization.strapdown.batch import WIDTH, BatchNoise, BatchRun
+from navcore.motion.static import StaticMotion
 from navcore.network.classic import Classic2Network
 from navcore.network.compass import CompassNetwork
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
+from navcore.sensors.imu_simulation.normal import fill_normals, stream_key
+from navcore.sensors.imu_simulation.work import HALF_NORMALS, NORMAL, WORK, W
 from tests.strapdown import DENG_SWING, DRIVE, SITE, law, reference
 
 RATE, SECONDS, RUNS = 50.0, 400, WIDTH + 3
@@ -51,25 +54,60 @@ def test_each_run_is_the_single_run(motion, network):
         np.testing.assert_allclose(batch.errors[:, run, 4:], rows[:, :3], rtol=0, atol=1e-11)
 
 
-def test_noise_is_held_and_added():
+def _unit_normals(run: int, draws: int, seed: int) -> np.ndarray:
+    """Unit normal numbers of a run, one row a draw, as the batch takes them from the counter."""
+    block, lane = divmod(run, WIDTH)
+    each, w, rows = 2 * HALF_NORMALS // (6 * WIDTH), np.zeros(WORK), []
+    key = np.uint64(stream_key(seed, "batch.white"))
+    for group in range(-(-draws // each)):
+        fill_normals((block << 32) + group, key, HALF_NORMALS, w)
+        rows.append(w[NORMAL * W : NORMAL * W + 2 * HALF_NORMALS].reshape(each, 6, WIDTH)[:, :, lane].copy())
+    return np.concatenate(rows)[:draws]
+
+
+@pytest.mark.parametrize("every", [1, 5])
+def test_noise_of_a_run_is_that_of_a_single_run(every):
     biases, sim, increments, truth, starts, settings, log = _make(DENG_SWING, CompassNetwork())
-    laws = [law("free", CompassNetwork(), 1.0) for _ in range(RUNS)]
-    noise = np.random.default_rng(2).normal(size=(len(increments) // 5, RUNS, 6)) * 1e-6
-    batch = BatchRun(starts, laws, biases, settings, WGS84, truth, log, sim.before())
-    assert batch.advance(increments, noise, 5)
-    single = start_run(
-        starts[3],
-        settings,
-        WGS84,
-        law("free", CompassNetwork(), 1.0),
-        truth,
-        log,
-        sim.before() + biases[3] / RATE,
-    )
-    single.advance(increments + biases[3] / RATE + np.repeat(noise[:, 3], 5, axis=0))
-    # The previous increment of the batch carries the present noise: a coning term of 1e-9 rad.
-    np.testing.assert_allclose(batch.errors[:, 3, 4:], single.recorder.rows[:, :3], rtol=0, atol=1e-6)
-    assert np.abs(single.recorder.rows[-1, :3]).max() > 1e-5
+    laws = [law("external", CompassNetwork(), 1.0) for _ in range(RUNS)]
+    walk = np.repeat([1e-6, 1e-4], 3)
+    noise = BatchNoise(walk, 11, every)
+    batch = BatchRun(starts, laws, biases, settings, WGS84, truth, log, sim.before(), noise)
+    # Pieces of no round length: what is drawn must not depend on them.
+    assert any([batch.advance(increments[i : i + 773]) for i in range(0, len(increments), 773)])
+    for run in (3, WIDTH + 1):
+        unit = _unit_normals(run, len(increments) // every, 11)
+        own = biases[run] / RATE + np.repeat(unit * walk / np.sqrt(RATE * every), every, axis=0)
+        single = start_run(
+            starts[run], settings, WGS84, law("external", CompassNetwork(), 1.0), truth, log,
+            sim.before() + biases[run] / RATE,
+        )  # fmt: skip
+        single.advance(increments + own)
+        rows = single.recorder.rows
+        np.testing.assert_allclose(batch.errors[:, run, :2], rows[:, 3:5], rtol=0, atol=2e-9)
+        np.testing.assert_allclose(batch.errors[:, run, 4:], rows[:, :3], rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("every", [1, 10])
+def test_noise_walks_as_asked_for(every):
+    """After t seconds tilts and velocities deviate by the walk times sqrt t, and no two runs alike."""
+    seconds, runs = 4, 400
+    samples = int(RATE) * seconds
+    sim = ImuSimulation(StaticMotion(), SITE, WGS84, Imu(), RATE, samples, 1)
+    (increments, _) = next(iter(sim.chunks()))
+    truth = sim.truth_rows(1, 1.0)
+    walk = np.repeat([2e-6, 3e-4], 3)
+    batch = BatchRun(
+        [start_from(truth[0])] * runs, [law("free", CompassNetwork(), 1.0) for _ in range(runs)],
+        np.zeros((runs, 6)), Settings(RATE, samples, int(RATE), int(RATE), 1.0), WGS84, truth, None,
+        sim.before(), BatchNoise(walk, 5, every),
+    )  # fmt: skip
+    assert batch.advance(increments)
+    last = batch.errors[-1]
+    # 400 runs give a deviation to 3.5 %; tilts of 4e-6 rad add 1e-4 m/s to the 6e-4 m/s in 4 s.
+    np.testing.assert_allclose(last[:, 4:].std(axis=0), 2e-6 * np.sqrt(seconds), rtol=0.15)
+    np.testing.assert_allclose(last[:, :2].std(axis=0), 3e-4 * np.sqrt(seconds), rtol=0.15)
+    assert len(np.unique(last[:, 0])) == runs
+    assert np.abs(np.corrcoef(last[:, [0, 1, 4, 5, 6]].T) - np.eye(5)).max() < 0.3
 
 
 def test_what_a_batch_cannot_do_is_refused():

@@ -7,14 +7,16 @@ import math
 import numpy as np
 import pytest
 
+from navcore.control.policy.constant import Constant
+from navcore.control.switching.hard import Hard
+from navcore.control.twin import TwinLaw
 from navcore.earth import WGS84, attitude_matrix
-from navcore.filters import discretise
-from navcore.mechanization.error_model_twin import TwinLaw
 from navcore.mechanization.strapdown import Settings, start_from, start_run
 from navcore.mechanization.strapdown import layout as at
 from navcore.mechanization.strapdown.attitude import angles_of, misalignment, quaternion_of
 from navcore.mechanization.strapdown.run import turned_by
 from navcore.mechanization.strapdown.twin import run_twin
+from navcore.network.base import NetworkParameters
 from navcore.network.classic import Classic2Network
 from navcore.network.compass import CompassNetwork
 from navcore.network.complementary import ComplementaryNetwork
@@ -34,28 +36,9 @@ NOISY = Imu(
 START_ERRORS = np.array([0.3, -0.2, 1e-5, 2e-5, 2e-3, -1e-3, 5e-3])
 
 
-class _FeedbackTwin:
-    """Velocity feedback of physics.md 3.1, held over a law step."""
-
-    def __init__(self, gains: tuple[float, float, float], step_s: float) -> None:
-        self.gains, self.step_s, self.p = gains, step_s, np.zeros(2)
-
-    def step(self, difference: np.ndarray, valid: bool, v_c: np.ndarray):
-        k1, k2, k3 = self.gains
-        # The mean of P over the step: half a step ahead of its start.
-        mean = self.p - 0.5 * k3 * self.step_s * difference
-        self.p = self.p - k3 * self.step_s * difference
-        return mean - k2 * difference, k1 * difference
-
-
-def _damping(kind: str, network, v_r: np.ndarray):
-    omega_s = WGS84.schuler_frequency(SITE.lat)
-    if kind == "feedback":
-        twin = _FeedbackTwin(network.gains(omega_s), 1.0)
-        return lambda k, v: twin.step(v_r - v[:2], True, v[:2])
-    d = discretise(network.transfer(omega_s), 1.0)
-    twin = TwinLaw(np.eye(d.order) + d.dA, d.B, -d.C, 1.0 - d.D, internal=kind == "internal")
-    return lambda k, v: (twin.step(v_r - v[:2], True, v[:2]), np.zeros(2))
+def _damping(damping: str, network: NetworkParameters, v_r: np.ndarray):
+    twin = TwinLaw(damping, network, Constant(), Hard(), WGS84.schuler_frequency(SITE.lat), 1.0)
+    return lambda k, v: twin.step(v_r - v[:2], True, v[:2])
 
 
 @pytest.mark.parametrize("motion", [DENG_SWING, DRIVE], ids=["swing", "legs"])
@@ -84,7 +67,7 @@ def test_kernel_equals_twin_sample_by_sample(motion, kind, network):
     matrices, velocities, positions = run_twin(
         increments, sim.before(), RATE, int(RATE), matrix, start.velocity,
         np.array([start.lat, start.lon, start.height]), WGS84,
-        None if kind == "free" else _damping(kind, network, v_r),
+        None if kind == "free" else _damping(damping, network, v_r),
     )  # fmt: skip
     for k in range(samples):
         run.advance(increments[k : k + 1])

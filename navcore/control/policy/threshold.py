@@ -7,7 +7,7 @@ from typing import ClassVar, Literal
 
 from navcore.compiled import inlined
 from navcore.control.layout import DIFFERENCE, MEASURE, POLICY_PARAMETERS
-from navcore.control.policy.base import PolicyParameters
+from navcore.control.policy.base import Limit, Measure, PolicyParameters
 from navcore.parameters import quantity
 
 
@@ -16,6 +16,7 @@ class Threshold(PolicyParameters):
 
     code: ClassVar[int] = 1
     needs_reference: ClassVar[bool] = True
+    measure: ClassVar[Measure | None] = Measure("|V_r - V_c|", "m/s", 1.0)
     id: Literal["threshold"] = "threshold"
     limit_mps: float = quantity(
         0.5,
@@ -28,9 +29,13 @@ class Threshold(PolicyParameters):
         help="Undamped while |V_r - V_c| exceeds this (Liu 2021, 3.2).",
     )
 
-    def packed(self) -> list[float]:
+    def packed(self, law_step_s: float) -> list[float]:
         """Limit, m/s."""
         return [self.limit_mps]
+
+    def limits(self) -> tuple[Limit, ...]:
+        """The limit."""
+        return (Limit("limit_mps", self.limit_mps, "m/s"),)
 
 
 @inlined

@@ -2,19 +2,46 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+from pydantic import Field
+
 from navcore.compiled import inlined
+from navcore.control.layout import SWITCHING
 from navcore.control.switching.base import SwitchingParameters
+from navcore.control.switching.bumpless import Bumpless, switch_bumpless
 from navcore.control.switching.hard import Hard, switch_hard
+from navcore.control.switching.keep import Keep, switch_keep
+from navcore.control.switching.ramp import Ramp, switch_ramp
+from navcore.control.switching.step import Step, switch_step
 
-SWITCHINGS: dict[str, type[SwitchingParameters]] = {"hard": Hard}
+SWITCHINGS: dict[str, type[SwitchingParameters]] = {
+    "hard": Hard,
+    "keep": Keep,
+    "ramp": Ramp,
+    "step": Step,
+    "bumpless": Bumpless,
+}
+"""All switching methods by id, in the order in which the page offers them."""
 
-Switching = Hard
+Switching = Annotated[Hard | Keep | Ramp | Step | Bumpless, Field(discriminator="id")]
+"""Type of a field that holds any switching method, told apart by ``id``."""
 
 
 @inlined
 def switch(p, s, ring, wanted, u_e, u_n):
     """Pass to the wanted state by the method named by ``p[SWITCHING]``."""
-    switch_hard(p, s, ring, wanted, u_e, u_n)
+    code = int(p[SWITCHING])
+    if code == 1:
+        switch_keep(p, s, ring, wanted, u_e, u_n)
+    elif code == 2:
+        switch_ramp(p, s, ring, wanted, u_e, u_n)
+    elif code == 3:
+        switch_step(p, s, ring, wanted, u_e, u_n)
+    elif code == 4:
+        switch_bumpless(p, s, ring, wanted, u_e, u_n)
+    else:
+        switch_hard(p, s, ring, wanted, u_e, u_n)
 
 
 __all__ = ["SWITCHINGS", "Switching", "SwitchingParameters", "switch"]

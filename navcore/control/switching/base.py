@@ -14,12 +14,21 @@ class SwitchingParameters(Parameters):
     ----------
     code : int
         Number by which the compiled dispatch knows the method.
+    keeps_time : bool
+        The method needs the clock and the history.
+    tunes : bool
+        The method moves the damping coefficient of a network that can be re-tuned.
+    freezes : bool
+        While undamped the last correction stays.
     """
 
     code: ClassVar[int]
+    keeps_time: ClassVar[bool] = False
+    tunes: ClassVar[bool] = False
+    freezes: ClassVar[bool] = False
     id: Any  # a Literal in each subclass
 
-    def packed(self) -> list[float]:
+    def packed(self, law_step_s: float) -> list[float]:
         """Values for ``p[SWITCHING_PARAMETERS:]``, at most 8."""
         return []
 

@@ -2,7 +2,8 @@
 
 Runs are the inner, vectorised dimension in blocks of `WIDTH`, blocks are spread over threads. All states of a
 block lie in one flat array whose width is known when compiling: with row views LLVM did not vectorise.
-Vertical channel locked. The law runs once an interval for each run, as in the single run.
+Vertical channel locked. The law runs once an interval for each run, as in the single run. White noise of each
+run's own is drawn inside the loop, from a counter: it depends on the key, the run's number and the sample.
 """
 
 from __future__ import annotations
@@ -10,14 +11,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 
 import numpy as np
 
-from navcore.compiled import kernel
+from navcore.compiled import inlined, kernel
 from navcore.control.law import Law
 from navcore.earth import Earth
 from navcore.mechanization.strapdown.attitude import misalignment, quaternion_of
-from navcore.mechanization.strapdown.kernel import LARGEST_LATITUDE, _law_epoch
+from navcore.mechanization.strapdown.kernel import _law_epoch
 from navcore.mechanization.strapdown.layout import (
     E2,
     G_EQUATOR,
@@ -25,6 +27,7 @@ from navcore.mechanization.strapdown.layout import (
     K6,
     K12,
     K_GRAVITY,
+    LARGEST_LATITUDE,
     LAT0,
     LON0,
     STATE,
@@ -33,32 +36,39 @@ from navcore.mechanization.strapdown.layout import (
 from navcore.mechanization.strapdown.run import Settings, Start, VelocityReference, constants, no_reference
 from navcore.mechanization.strapdown.step import earth_terms, strapdown_step
 from navcore.motion.base import HEADING, LAT, LON, PITCH, ROLL, VE, VN
+from navcore.sensors.imu_simulation.normal import fill_normals, stream_key
+from navcore.sensors.imu_simulation.work import HALF_NORMALS, NORMAL, WORK, W
 
 WIDTH = 16
 """Runs of a block."""
 _W = WIDTH
 # Rows of a block's flat state: what changes, then what is held.
 _D_LAT, _D_LON, _V_E, _V_N, _Q, _Z, _M_E, _M_N, _M_LAT = 0, 1, 2, 3, 4, 8, 12, 13, 14
-_C_E, _C_N, _A_E, _A_N, _TERMS, _ORIGIN, _BIAS = 15, 16, 17, 18, 19, 27, 28
-_ROWS = 34
+_C_E, _C_N, _A_E, _A_N, _TERMS, _ORIGIN = 15, 16, 17, 18, 19, 27
+# Of an increment, six each: constant error, deviation of the noise, error now; the previous increment.
+_BIAS, _WHITE, _ERROR, _BEFORE = 28, 34, 40, 46
+_ROWS = 52
+_DRAWS = 2 * HALF_NORMALS // (6 * WIDTH)
+"""Draws of a block's noise that one call of `fill_normals` gives."""
 ERRORS = 7
 """dV_E, dV_N (m/s), dL, dlambda (rad), phi_E, phi_N, phi_U (rad)."""
 
 
 @kernel
-def _run_samples(first, last, increments, before, dt, e2, g_equator, k_gravity, k12, k6, height, x):
-    px, py, pz, ex, ey, ez = before[0], before[1], before[2], before[3], before[4], before[5]
+def _run_samples(first, last, increments, dt, e2, g_equator, k_gravity, k12, k6, height, x):
     for i in range(first, last):
         tx, ty, tz = increments[i, 0], increments[i, 1], increments[i, 2]
         bx, by, bz = increments[i, 3], increments[i, 4], increments[i, 5]
         for j in range(_W):
-            g0, g1, g2 = x[_BIAS * _W + j], x[(_BIAS + 1) * _W + j], x[(_BIAS + 2) * _W + j]
-            f0, f1, f2 = x[(_BIAS + 3) * _W + j], x[(_BIAS + 4) * _W + j], x[(_BIAS + 5) * _W + j]
+            t0, t1, t2 = tx + x[_ERROR * _W + j], ty + x[(_ERROR + 1) * _W + j], tz + x[(_ERROR + 2) * _W + j]
+            b0, b1 = bx + x[(_ERROR + 3) * _W + j], by + x[(_ERROR + 4) * _W + j]
+            b2 = bz + x[(_ERROR + 5) * _W + j]
             d_lat, m_lat = x[_D_LAT * _W + j], x[_M_LAT * _W + j]
             (v_e, v_n, _, q0, q1, q2, q3, z0, z1, z2, z3, m_e, m_n, _, m_lat, m_lon) = strapdown_step(
                 dt, e2, g_equator, k_gravity, k12, k6, False,
-                tx + g0, ty + g1, tz + g2, bx + f0, by + f1, bz + f2,
-                px + g0, py + g1, pz + g2, ex + f0, ey + f1, ez + f2,
+                t0, t1, t2, b0, b1, b2,
+                x[_BEFORE * _W + j], x[(_BEFORE + 1) * _W + j], x[(_BEFORE + 2) * _W + j],
+                x[(_BEFORE + 3) * _W + j], x[(_BEFORE + 4) * _W + j], x[(_BEFORE + 5) * _W + j],
                 x[_TERMS * _W + j], x[(_TERMS + 1) * _W + j], x[(_TERMS + 2) * _W + j],
                 x[(_TERMS + 3) * _W + j], x[(_TERMS + 4) * _W + j], x[(_TERMS + 5) * _W + j],
                 x[(_TERMS + 6) * _W + j], x[(_TERMS + 7) * _W + j],
@@ -69,14 +79,25 @@ def _run_samples(first, last, increments, before, dt, e2, g_equator, k_gravity, 
                 x[_M_E * _W + j], x[_M_N * _W + j], 0.0,
                 x[_C_E * _W + j], x[_C_N * _W + j], x[_A_E * _W + j], x[_A_N * _W + j], 0.0,
             )  # fmt: skip
+            x[_BEFORE * _W + j], x[(_BEFORE + 1) * _W + j], x[(_BEFORE + 2) * _W + j] = t0, t1, t2
+            x[(_BEFORE + 3) * _W + j], x[(_BEFORE + 4) * _W + j], x[(_BEFORE + 5) * _W + j] = b0, b1, b2
             x[_D_LAT * _W + j] = d_lat + m_lat
             x[_D_LON * _W + j] += m_lon
             x[_V_E * _W + j], x[_V_N * _W + j] = v_e, v_n
             x[_Q * _W + j], x[(_Q + 1) * _W + j], x[(_Q + 2) * _W + j], x[(_Q + 3) * _W + j] = q0, q1, q2, q3
             x[_Z * _W + j], x[(_Z + 1) * _W + j], x[(_Z + 2) * _W + j], x[(_Z + 3) * _W + j] = z0, z1, z2, z3
             x[_M_E * _W + j], x[_M_N * _W + j], x[_M_LAT * _W + j] = m_e, m_n, m_lat
-        px, py, pz, ex, ey, ez = tx, ty, tz, bx, by, bz
-    before[0], before[1], before[2], before[3], before[4], before[5] = px, py, pz, ex, ey, ez
+
+
+@inlined
+def _draw(number, block, key, again, x, w):
+    """Put bias and draw ``number`` of the noise into the errors of an increment."""
+    group, place = number // _DRAWS, number % _DRAWS
+    if place == 0 or again:
+        fill_normals((block << 32) + group, key, HALF_NORMALS, w)
+    unit = NORMAL * W + 6 * _W * place
+    for i in range(6 * _W):
+        x[_ERROR * _W + i] = x[_BIAS * _W + i] + x[_WHITE * _W + i] * w[unit + i]
 
 
 @kernel
@@ -107,11 +128,12 @@ def _epoch(k, run, j, record, con, x, last, truth, epoch_s, epoch_v, epoch_valid
 
 @kernel
 def _advance_block(
-    increments, first, law_every, record_every, final, begin, runs, con, x, before, lasts, bias, noise,
-    noise_every, truth, epoch_s, epoch_v, epoch_valid, p, s, ring, out,
+    increments, first, law_every, record_every, final, block, runs, con, x, lasts, noise_every, key,
+    truth, epoch_s, epoch_v, epoch_valid, p, s, ring, out,
 ):  # fmt: skip
-    """Advance one block of runs begin .. begin + runs by a chunk."""
-    dt = con[begin, STEP]
+    """Advance one block, of which ``runs`` runs are in use, by a chunk."""
+    begin = block * _W
+    dt, w = con[begin, STEP], np.empty(WORK)
     k, end = first, first + increments.shape[0]
     while True:
         if k % law_every == 0 and (k < end or k == final):
@@ -126,15 +148,31 @@ def _advance_block(
         if noise_every > 0:
             n = min(n, noise_every - k % noise_every)
             if k % noise_every == 0 or k == first:
-                row = (k - first + first % noise_every) // noise_every
-                for m in range(6):
-                    for j in range(runs):
-                        x[(_BIAS + m) * _W + j] = bias[begin + j, m] + noise[row, begin + j, m]
+                _draw(k // noise_every, block, key, k == first, x, w)
         _run_samples(
-            k - first, k - first + n, increments, before, dt, con[begin, E2], con[begin, G_EQUATOR],
+            k - first, k - first + n, increments, dt, con[begin, E2], con[begin, G_EQUATOR],
             con[begin, K_GRAVITY], con[begin, K12], con[begin, K6], con[begin, HEIGHT0], x,
         )  # fmt: skip
         k += n
+
+
+@dataclass(frozen=True)
+class BatchNoise:
+    """White noise of each run's own sensors.
+
+    Attributes
+    ----------
+    walk : ndarray, shape (6,) or (runs, 6)
+        Random walks of gyros and accelerometers: rad/sqrt(s), m/s/sqrt(s).
+    seed : int
+        Seed of the scenario.
+    every : int
+        Samples for which a drawn number is held; its size is such that the walk stays the same.
+    """
+
+    walk: np.ndarray
+    seed: int
+    every: int = 1
 
 
 class BatchRun:
@@ -158,6 +196,8 @@ class BatchRun:
         Common log.
     before : ndarray, shape (6,), optional
         Perfect increment of the interval that ends at t = 0.
+    noise : BatchNoise, optional
+        White noise; without, a run has its biases only.
 
     Attributes
     ----------
@@ -180,6 +220,7 @@ class BatchRun:
         truth: np.ndarray,
         reference: VelocityReference | None = None,
         before: np.ndarray | None = None,
+        noise: BatchNoise | None = None,
     ) -> None:
         if settings.vertical != "locked":
             raise ValueError("a batch has a locked vertical channel")
@@ -188,58 +229,57 @@ class BatchRun:
         reference = no_reference() if reference is None else reference
         self.settings, self.runs, self.position = settings, len(starts), 0
         self._reference, self._truth = reference, np.ascontiguousarray(truth, dtype=float)
-        self._bias = np.asarray(biases, dtype=float) / settings.rate_hz
+        self._noise_every = 0 if noise is None else noise.every
+        self._key = np.uint64(0 if noise is None else stream_key(noise.seed, "batch.white"))
         self._con = np.stack([constants(start, settings, earth, reference) for start in starts])
         self._p, self._s = np.stack([law.p for law in laws]), np.stack([law.s for law in laws])
         self._ring = np.stack([law.ring for law in laws])
         self._last = np.zeros((self.runs, STATE))
         blocks = -(-self.runs // WIDTH)
         self._x = np.zeros((blocks, _ROWS * WIDTH))
-        self._before = np.zeros((blocks, 6)) if before is None else np.tile(before, (blocks, 1))
         self.errors = np.zeros((settings.samples // settings.record_every + 1, self.runs, ERRORS))
         for run in range(self.runs):
-            self._lay_out(run, starts[run])
+            self._lay_out(run, starts[run], np.asarray(biases, dtype=float)[run] / settings.rate_hz, before)
+            if noise is not None:
+                walk = np.broadcast_to(noise.walk, (self.runs, 6))[run]
+                self._column(run)[_WHITE : _WHITE + 6] = walk / np.sqrt(settings.rate_hz * noise.every)
         for block in range(blocks):
             # Lanes without a run repeat the block's first, so that nothing in them can go wrong.
             lanes = self._x[block].reshape(_ROWS, WIDTH)
             used = min(WIDTH, self.runs - block * WIDTH)
             lanes[:, used:] = lanes[:, :1]
 
-    def _lay_out(self, run: int, start: Start) -> None:
+    def _column(self, run: int) -> np.ndarray:
         block, lane = divmod(run, WIDTH)
-        column = self._x[block].reshape(_ROWS, WIDTH)[:, lane]
+        return self._x[block].reshape(_ROWS, WIDTH)[:, lane]
+
+    def _lay_out(self, run: int, start: Start, bias: np.ndarray, before: np.ndarray | None) -> None:
+        column = self._column(run)
         column[_V_E], column[_V_N] = start.velocity[:2]
         column[_Q : _Q + 4] = start.quaternion
-        column[_BIAS : _BIAS + 6] = self._bias[run]
+        column[_BIAS : _BIAS + 6] = column[_ERROR : _ERROR + 6] = bias
+        column[_BEFORE : _BEFORE + 6] = bias if before is None else before + bias
         column[_TERMS + 6] = 1.0
 
-    def advance(
-        self, increments: np.ndarray, noise: np.ndarray | None = None, noise_every: int = 1, workers: int = 2
-    ) -> bool:
+    def advance(self, increments: np.ndarray, workers: int = 2) -> bool:
         """Integrate a chunk; return True when the batch is complete.
 
         Parameters
         ----------
         increments : ndarray, shape (n, 6)
             Common increments.
-        noise : ndarray, shape (m, runs, 6), optional
-            Further increments of each run, each held for ``noise_every`` samples (its part of one sample).
-        noise_every : int
-            Samples for which a row of the noise holds.
         workers : int
             Threads.
         """
         increments = np.ascontiguousarray(increments[: self.settings.samples - self.position], dtype=float)
-        own = np.zeros((0, self.runs, 6)) if noise is None else np.ascontiguousarray(noise, dtype=float)
         log, set_ = self._reference, self.settings
 
         def one(block: int) -> None:
-            begin = block * WIDTH
             _advance_block(
-                increments, self.position, set_.law_every, set_.record_every, set_.samples, begin,
-                min(WIDTH, self.runs - begin), self._con, self._x[block], self._before[block], self._last,
-                self._bias, own, noise_every if noise is not None else 0, self._truth, log.time_s,
-                log.velocity, log.valid, self._p, self._s, self._ring, self.errors,
+                increments, self.position, set_.law_every, set_.record_every, set_.samples, block,
+                min(WIDTH, self.runs - block * WIDTH), self._con, self._x[block], self._last,
+                self._noise_every, self._key, self._truth, log.time_s, log.velocity, log.valid,
+                self._p, self._s, self._ring, self.errors,
             )  # fmt: skip
 
         with ThreadPoolExecutor(workers) as pool:

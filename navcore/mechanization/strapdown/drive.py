@@ -1,4 +1,7 @@
-"""Drive several strapdown runs through one IMU: a chunk is made once, every run advances by it."""
+"""Drive several strapdown runs through one IMU: a chunk is made once, every run advances by it.
+
+While the runs advance by one chunk, the calling thread makes the next one.
+"""
 
 from __future__ import annotations
 
@@ -29,22 +32,28 @@ def drive(
     runs : sequence of StrapdownRun
         All of the same length and rate.
     chunks : iterable of ndarray, shape (n, 6)
-        Increments from the start on (`ImuSimulation.chunks` gives them first in each pair).
+        Increments from the start on (`ImuSimulation.chunks` gives them first in each pair). A chunk must stay
+        as it is until the one after the next is asked for.
     progress : callable, optional
         Called with the fraction done, 0..1.
     cancelled : callable, optional
-        Asked after each chunk, at most `PIECE` samples.
+        Asked after each piece of a chunk, at most `PIECE` samples.
     workers : int
         Threads.
     """
     total = max(runs[0].settings.samples, 1)
     done, active = 0, list(runs)
+    made = iter(chunks)
     with ThreadPoolExecutor(max(1, min(workers, len(runs)))) as pool:
-        for chunk in chunks:
+        chunk = next(made, None)
+        while chunk is not None:
+            following = None
             for first in range(0, len(chunk), PIECE):
                 piece = chunk[first : first + PIECE]
-                ended = list(pool.map(lambda run, piece=piece: run.advance(piece), active))
-                active = [run for run, end in zip(active, ended, strict=True) if not end]
+                advancing = [pool.submit(run.advance, piece) for run in active]
+                if first + PIECE >= len(chunk):
+                    following = next(made, None)
+                active = [run for run, end in zip(active, advancing, strict=True) if not end.result()]
                 done += len(piece)
                 if progress is not None:
                     progress(min(done / total, 1.0))
@@ -52,4 +61,5 @@ def drive(
                     return True
                 if cancelled is not None and cancelled():
                     return False
+            chunk = following
     return True

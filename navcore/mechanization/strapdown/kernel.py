@@ -6,10 +6,22 @@ import math
 
 from navcore.compiled import inlined, kernel
 from navcore.control.law import law_step
-from navcore.control.layout import DAMPED, DIFFERENCE, EPOCH_INDEX, POLICY, VALID, XI
+from navcore.control.layout import (
+    DAMPED,
+    DAMPING,
+    DIFFERENCE,
+    EPOCH_INDEX,
+    FREE,
+    MEASURE,
+    POLICY,
+    VALID,
+    WANTED,
+    XI,
+)
 from navcore.earth import meridian_radius, prime_vertical_radius
 from navcore.mechanization.recorder import CURSOR_BUFFER, CURSOR_ROW, flush, record
 from navcore.mechanization.strapdown.attitude import angles_of, heading_of, misalignment, quaternion_of
+from navcore.mechanization.strapdown.every_sample import is_steady, run_damped
 from navcore.mechanization.strapdown.layout import (
     A_E,
     A_N,
@@ -36,6 +48,7 @@ from navcore.mechanization.strapdown.layout import (
     K6,
     K12,
     K_GRAVITY,
+    LARGEST_LATITUDE,
     LAST_TIME,
     LAST_V_E,
     LAST_V_N,
@@ -56,11 +69,11 @@ from navcore.mechanization.strapdown.layout import (
     V_N,
     V_U,
 )
+from navcore.mechanization.strapdown.log import held_difference, newest_epoch, usable
 from navcore.mechanization.strapdown.step import earth_terms, strapdown_step
 from navcore.motion.base import HEADING, LAT, LON, PITCH, ROLL, VE, VN, VU
 from navcore.motion.base import HEIGHT as TRUE_HEIGHT
 
-LARGEST_LATITUDE = math.radians(89.9)
 TILT_LIMIT = 1.0
 """Beyond this misalignment (rad) the run has diverged."""
 VELOCITY_LIMIT = 1e4
@@ -73,26 +86,15 @@ _NEEDS_MOTION = 2
 
 @inlined
 def _read_log(t, v_e, v_n, heading, con, x, epoch_s, epoch_v, epoch_valid, s):
-    """Take the newest log epoch at or before t and hold its difference V_r - V_c (contract, log samples).
-
-    Between two law calls the computed velocity at the epoch is interpolated.
-    """
-    j = int(s[EPOCH_INDEX])
-    fresh = False
-    while j + 1 < epoch_s.shape[0] and epoch_s[j + 1] <= t + 1e-9:
-        j += 1
-        fresh = True
-    s[EPOCH_INDEX] = j
-    if fresh:
-        r_e, r_n = epoch_v[j, 0], epoch_v[j, 1]
-        if con[BODY_LOG] != 0.0:
-            sh, ch = math.sin(heading), math.cos(heading)
-            r_e, r_n = r_e * ch + r_n * sh, r_n * ch - r_e * sh
-        elapsed = t - x[LAST_TIME]
-        share = min((t - epoch_s[j]) / elapsed, 1.0) if elapsed > 0.0 else 0.0
-        s[DIFFERENCE] = r_e - (v_e - share * (v_e - x[LAST_V_E]))
-        s[DIFFERENCE + 1] = r_n - (v_n - share * (v_n - x[LAST_V_N]))
-    s[VALID] = 1.0 if j >= 0 and epoch_valid[j] and t - epoch_s[j] <= con[HOLD] else 0.0
+    """Take the newest log epoch at or before t and hold its difference V_r - V_c."""
+    j, before = newest_epoch(t, int(s[EPOCH_INDEX]), epoch_s), int(s[EPOCH_INDEX])
+    if j != before:
+        s[EPOCH_INDEX] = j
+        s[DIFFERENCE], s[DIFFERENCE + 1] = held_difference(
+            t, j, v_e, v_n, heading, con[BODY_LOG] != 0.0, x[LAST_TIME], x[LAST_V_E], x[LAST_V_N],
+            epoch_s, epoch_v,
+        )  # fmt: skip
+    s[VALID] = 1.0 if usable(t, j, con[HOLD], epoch_s, epoch_valid) else 0.0
 
 
 @inlined
@@ -111,7 +113,7 @@ def _law_epoch(t, v_e, v_n, q0, q1, q2, q3, con, x, epoch_s, epoch_v, epoch_vali
 
 @inlined
 def _record_state(
-    k, d_lat, d_lon, h, v_e, v_n, v_u, q0, q1, q2, q3, con, truth, errors, damped, xi,
+    k, d_lat, d_lon, h, v_e, v_n, v_u, q0, q1, q2, q3, con, truth, errors, s,
     row_steps, rows, navigation, buffer, cursor,
 ):  # fmt: skip
     """Record state k against its row of the truth; False when it has diverged."""
@@ -129,7 +131,10 @@ def _record_state(
     j = cursor[CURSOR_ROW]
     e2, sin_lat = con[E2], math.sin(truth[i, LAT])
     n_cos = prime_vertical_radius(e2, sin_lat) * math.cos(truth[i, LAT])
-    record(k, errors, meridian_radius(e2, sin_lat), n_cos, damped, xi, row_steps, rows, buffer, cursor)
+    record(
+        k, errors, meridian_radius(e2, sin_lat), n_cos, s[DAMPED], s[XI], s[WANTED], s[MEASURE],
+        row_steps, rows, buffer, cursor,
+    )  # fmt: skip
     if cursor[CURSOR_ROW] > j:
         pitch, roll, heading = angles_of(q0, q1, q2, q3)
         navigation[j, 0], navigation[j, 1], navigation[j, 2] = lat, con[LON0] + d_lon, h
@@ -140,10 +145,17 @@ def _record_state(
 
 
 @inlined
-def _run_block(first, last, increments, con, x, altimeter, refresh):
+def _form_earth_terms(con, x):
+    x[LAT_OFFSET] = x[D_LAT]
+    for i, term in enumerate(earth_terms(con[E2], con[LAT0] + x[D_LAT], x[HEIGHT])):
+        x[EARTH_TERMS + i] = term
+
+
+@inlined
+def _run_block(first, last, increments, con, x, altimeter):
     """Integrate samples first..last of a chunk with what the law holds in x."""
     dt, e2, g_equator, k_gravity = con[STEP], con[E2], con[G_EQUATOR], con[K_GRAVITY]
-    k12, k6, lat0 = con[K12], con[K6], con[LAT0]
+    k12, k6 = con[K12], con[K6]
     d_lat, d_lon, h, v_e, v_n, v_u = x[D_LAT], x[D_LON], x[HEIGHT], x[V_E], x[V_N], x[V_U]
     q0, q1, q2, q3 = x[Q0], x[Q0 + 1], x[Q0 + 2], x[Q0 + 3]
     z0, z1, z2, z3 = x[CARRY], x[CARRY + 1], x[CARRY + 2], x[CARRY + 3]
@@ -154,10 +166,6 @@ def _run_block(first, last, increments, con, x, altimeter, refresh):
     if altimeter:
         h_rate = con[ALT_K1] * x[ALT_DIFFERENCE]
         a_u = con[ALT_K2] * x[ALT_DIFFERENCE] + x[ALT_INTEGRAL]
-    if refresh:
-        x[LAT_OFFSET] = d_lat
-        for i, term in enumerate(earth_terms(e2, lat0 + d_lat, h)):
-            x[EARTH_TERMS + i] = term
     origin, sin_0, cos_0 = x[LAT_OFFSET], x[EARTH_TERMS], x[EARTH_TERMS + 1]
     n_0, n_1, m_0, m_1 = x[EARTH_TERMS + 2], x[EARTH_TERMS + 3], x[EARTH_TERMS + 4], x[EARTH_TERMS + 5]
     sec_0, sec_1 = x[EARTH_TERMS + 6], x[EARTH_TERMS + 7]
@@ -230,7 +238,7 @@ def advance_kernel(
             record_number += 1
             if not _record_state(
                 r, x[D_LAT], x[D_LON], x[HEIGHT], x[V_E], x[V_N], x[V_U],
-                x[Q0], x[Q0 + 1], x[Q0 + 2], x[Q0 + 3], con, truth, errors, s[DAMPED], s[XI],
+                x[Q0], x[Q0 + 1], x[Q0 + 2], x[Q0 + 3], con, truth, errors, s,
                 row_steps, rows, navigation, buffer, cursor,
             ):  # fmt: skip
                 flush(max(r - 1, 0), bin_width, buffer, stats, bin_low, bin_high, bin_order, cursor)
@@ -239,13 +247,24 @@ def advance_kernel(
                 flush(r, bin_width, buffer, stats, bin_low, bin_high, bin_order, cursor)
         if k == final:
             return k, COMPLETE
-        n = min(to_law, to_record, end - k)
-        j = k - first
+        if refresh:
+            _form_earth_terms(con, x)
+            refresh = False
+        n, j = min(to_law, to_record, end - k), k - first
+        free = p[DAMPING] == FREE
+        at_once = law_every == 1 and not altimeter and (free or is_steady(p, s))
+        if at_once:
+            # Nothing but the law can come before the next record or the next forming of the Earth terms.
+            n = min(to_record, end - k, _REFRESH + 1 - int(x[SINCE]))
         if altimeter:
-            _run_block(j, j + n, increments, con, x, True, refresh)
+            _run_block(j, j + n, increments, con, x, True)
+        elif at_once and not free:
+            n = run_damped(j, j + n, first, increments, con, x, epoch_s, epoch_v, epoch_valid, p, s) - j
         else:
-            _run_block(j, j + n, increments, con, x, False, refresh)
-        refresh = False
+            _run_block(j, j + n, increments, con, x, False)
+        if at_once:
+            x[SINCE] += n - 1
+            to_law = n
         k += n
         to_law -= n
         to_record -= n

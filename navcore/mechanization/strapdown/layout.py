@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 # State x, float64, shape (STATE,).
 D_LAT, D_LON, HEIGHT = 0, 1, 2  # offsets from the start (rad), height (m)
 V_E, V_N, V_U = 3, 4, 5  # m/s
@@ -33,3 +35,6 @@ NAVIGATION = (
 )  # fmt: skip
 
 UNDER_WAY, COMPLETE, DIVERGED, POLE = 0, 1, 2, 3
+
+LARGEST_LATITUDE = math.radians(89.9)
+"""A computed latitude (rad) beyond this ends the run: too near a pole."""

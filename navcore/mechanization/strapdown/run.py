@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
 
+from navcore.compiled import plain
 from navcore.control.law import Law
 from navcore.earth import Earth
 from navcore.mechanization.recorder import QUANTITIES, Recorder, make_recorder
@@ -57,7 +59,8 @@ def velocity_reference(errors: ReferenceErrors, truth) -> VelocityReference:
     if len(errors.time_s) == 0:
         return no_reference()
     velocity, heading = horizontal_state(truth, errors.time_s)
-    measured = np.ascontiguousarray(np.broadcast_to(velocity + errors.error, (len(errors.time_s), 2)))
+    # A new array: one that may not be written to would make numba compile the kernel a second time.
+    measured = velocity + errors.error
     if errors.body_frame:
         measured = to_ship(measured, np.broadcast_to(heading, len(measured)))
     return VelocityReference(errors.time_s, measured, errors.valid, errors.body_frame, errors.hold_s)
@@ -87,7 +90,7 @@ class Start:
 def start_from(true_row: np.ndarray, errors: np.ndarray | None = None) -> Start:
     """Start at a row of truth, shape (15,), with errors dV_E, dV_N, dL, dlambda, phi_E, phi_N, phi_U (SI)."""
     x = np.zeros(7) if errors is None else np.asarray(errors, dtype=float)
-    true = np.array(quaternion_of(true_row[PITCH], true_row[ROLL], true_row[HEADING]))
+    true = np.array(plain(quaternion_of)(true_row[PITCH], true_row[ROLL], true_row[HEADING]))
     return Start(
         float(true_row[LAT] + x[2]),
         float(true_row[LON] + x[3]),
@@ -190,6 +193,11 @@ class StrapdownRun:
     code: int = at.UNDER_WAY
     _errors: np.ndarray = field(default_factory=lambda: np.zeros(7))
 
+    @cached_property
+    def _heights(self) -> np.ndarray:
+        """True heights for the altimeter, m: copied out of the truth once, not with every chunk."""
+        return np.ascontiguousarray(self.truth[:, HEIGHT])
+
     @property
     def diverged(self) -> bool:
         """Whether the run left the range in which it means anything."""
@@ -212,11 +220,10 @@ class StrapdownRun:
         """
         room = self.settings.samples - self.position
         r, log, set_ = self.recorder, self.reference, self.settings
-        heights = self.truth[:, HEIGHT]
         self.position, self.code = advance_kernel(
             np.ascontiguousarray(increments[:room], dtype=float), self.position, set_.samples, set_.law_every,
             set_.record_every, self.con, self.x, self.truth, set_.record_step_s,
-            np.ascontiguousarray(heights), log.time_s, log.velocity, log.valid,
+            self._heights, log.time_s, log.velocity, log.valid,
             self.law.p, self.law.s, self.law.ring, self._errors, self.navigation,
             r.row_steps, r.rows, r.stats, r.bin_width, r.bin_low, r.bin_high, r.bin_order,
             r.buffer, r.cursor,

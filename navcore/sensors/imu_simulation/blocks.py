@@ -6,8 +6,12 @@ import numpy as np
 
 from navcore.compiled import kernel
 from navcore.motion.base import HEIGHT, LAT
+from navcore.motion.kinematics import COURSE, PROFILE, REST, SWING, TRACK, WAVES, WIDTH
+from navcore.motion.pieces import fill_track
+from navcore.motion.profile import fill_profile
+from navcore.motion.waves import fill_waves
 from navcore.sensors.imu_simulation.corrupt import SUMS, add_sums, fill_errors, write_measured
-from navcore.sensors.imu_simulation.kinematics import fill_course, fill_rest, fill_rows, fill_swing
+from navcore.sensors.imu_simulation.kinematics import fill_course, fill_rest, fill_swing
 from navcore.sensors.imu_simulation.signals import (
     fill_attitude,
     fill_increments,
@@ -17,20 +21,20 @@ from navcore.sensors.imu_simulation.signals import (
 )
 from navcore.sensors.imu_simulation.work import HALO, TILE, WORK, W
 
-REST, SWING, COURSE, ROWS = 0, 1, 2, 3
 _MOST_TILES = 1024
+assert W == WIDTH
 
 
 @kernel
 def simulate_blocks(
-    kind, first_block, blocks, block_samples, dt, rest, axes, table, legs, nodes, place, values,
+    kind, first_block, blocks, block_samples, dt, rest, oscillations, turns, legs, nodes, attitude, place,
     e2, g_equator, k, flags, key, bias, drift, white, coupling, lsb, left, measured, sums,
 ):  # fmt: skip
     """Measured increments of ``blocks`` blocks of ``block_samples`` each into ``measured`` (n, 6).
 
-    ``rest`` (15,): truth at rest; ``axes``, ``table``: swing; ``legs``, ``nodes``, ``place``: course;
-    ``values``: rows of truth from one sample before the first block on; ``drift`` (blocks, 6); ``left`` (6,):
-    what quantisation carries over; ``sums`` (blocks, 6) or (0, 6).
+    ``kind`` to ``attitude``: the motion (`navcore.motion.kinematics.Kinematics`); ``turns``: its
+    oscillations' turns in a tile; ``place`` (2,): legs and nodes reached; ``drift`` (blocks, 6); ``left``
+    (6,): what quantisation carries over; ``sums`` (blocks, 6) or (0, 6).
     """
     w = np.zeros(WORK)
     fill_rest(rest, w)
@@ -54,11 +58,17 @@ def simulate_blocks(
             if kind == COURSE:
                 fill_course(t0, dt, legs, nodes, place, columns, samples, w)
                 fill_navigation(padded, e2, g_equator, k, w)
-            elif kind == ROWS:
-                fill_rows(values, n * block_samples + first, columns, w)
+            elif kind == TRACK:
+                fill_track(t0, dt, legs, place, rest[HEIGHT], e2, columns, samples, w)
+                fill_navigation(padded, e2, g_equator, k, w)
+            elif kind == PROFILE:
+                fill_profile(t0, dt, legs, nodes, attitude, place, columns, samples, w)
+                fill_navigation(padded, e2, g_equator, k, w)
+            elif kind == WAVES:
+                fill_waves(t0, dt, oscillations, turns, rest, nodes, place, padded, samples, w)
                 fill_navigation(padded, e2, g_equator, k, w)
             elif kind == SWING:
-                fill_swing(t0, axes, table, padded, w)
+                fill_swing(t0, oscillations, turns, padded, w)
             if kind != REST:
                 fill_attitude(padded, w)
                 fill_signals(padded, w)

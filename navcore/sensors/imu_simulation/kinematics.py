@@ -69,11 +69,3 @@ def fill_course(t0, dt, legs, nodes, place, columns, samples, w):
         w[LAT * W + i], w[LON * W + i] = lat, lon
         w[VE * W + i], w[VN * W + i], w[AE * W + i], w[AN * W + i] = v_e, v_n, a_e, a_n
         w[HEADING * W + i], w[HEADING_RATE * W + i] = heading, turn_rate
-
-
-@inlined
-def fill_rows(values, first, columns, w):
-    """Rows of truth sampled beforehand, from row ``first`` on."""
-    for i in range(columns):
-        for j in range(COLUMNS):
-            w[j * W + i] = values[first + i, j]

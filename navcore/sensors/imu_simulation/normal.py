@@ -75,21 +75,40 @@ def _minus_log(x):
     return -(exponent * _LN2 + 2.0 * s * series)
 
 
-@kernel
-def fill_normals(tile, key, count, w):
-    """Write 2 ``count`` unit normal numbers of a tile to NORMAL W of the work array and HALF_NORMALS further.
-
-    A kernel of its own with constant places and a single loop: inlined into the simulation loop, or with the
-    places as arguments, it was not vectorised (four times the time). ``key``: of the stream, uint64.
-    """
+@inlined
+def _fill_uniforms(tile, key, count, w):
     # The masks tell the compiler that 32-bit products suffice; what they cut off goes into the key.
     place = np.uint64(tile)
     low, mixed = place & _LOW, (key ^ (place >> _32)) & _LOW
     for i in range(count):
         a, b = _philox(np.uint64(i), low, mixed)
-        u = (_as_float(a) + 0.5) * _SCALE
-        v = (_as_float(b) + 0.5) * _SCALE
-        radius = np.sqrt(2.0 * _minus_log(u))
-        s, c = sincos_cycles(v)
+        w[NORMAL * W + i] = (_as_float(a) + 0.5) * _SCALE
+        w[NORMAL * W + HALF_NORMALS + i] = (_as_float(b) + 0.5) * _SCALE
+
+
+@inlined
+def _fill_radii(count, w):
+    for i in range(count):
+        w[NORMAL * W + i] = np.sqrt(2.0 * _minus_log(w[NORMAL * W + i]))
+
+
+@inlined
+def _fill_turned(count, w):
+    for i in range(count):
+        radius = w[NORMAL * W + i]
+        s, c = sincos_cycles(w[NORMAL * W + HALF_NORMALS + i])
         w[NORMAL * W + i] = radius * c
         w[NORMAL * W + HALF_NORMALS + i] = radius * s
+
+
+@kernel
+def fill_normals(tile, key, count, w):
+    """Write 2 ``count`` unit normal numbers of a tile to NORMAL W of the work array and HALF_NORMALS further.
+
+    A kernel of its own with constant places: inlined into the simulation loop, or with the places as
+    arguments, it was not vectorised (four times the time). Three short loops, each of one long chain of
+    operations: the processor then works on several numbers at once. ``key``: of the stream, uint64.
+    """
+    _fill_uniforms(tile, key, count, w)
+    _fill_radii(count, w)
+    _fill_turned(count, w)

@@ -62,8 +62,11 @@ def fill_navigation_at_rest(lat, height, e2, g_equator, k, w):
 
 @inlined
 def _fill_trig(angle, row, columns, w):
+    # Rows whose number is an argument are not vectorised through the flat array (three times the time).
+    angles, sines = w[angle * W : (angle + 1) * W], w[row * W : (row + 1) * W]
+    cosines = w[(row + 1) * W : (row + 2) * W]
     for i in range(columns):
-        w[row * W + i], w[(row + 1) * W + i] = sincos(w[angle * W + i])
+        sines[i], cosines[i] = sincos(angles[i])
 
 
 @inlined
@@ -107,9 +110,9 @@ def fill_signals(columns, w):
 
 @inlined
 def _integrate(row, target, samples, h, w):
+    y, increments = w[row * W : (row + 1) * W], w[target * W : (target + 1) * W]
     for i in range(samples):
-        y = row * W + i
-        w[target * W + i] = h * (13.0 * (w[y + 1] + w[y + 2]) - w[y] - w[y + 3])
+        increments[i] = h * (13.0 * (y[i + 1] + y[i + 2]) - y[i] - y[i + 3])
 
 
 @inlined

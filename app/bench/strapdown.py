@@ -1,0 +1,155 @@
+"""Time a sample of the strapdown engine: free, damped, law at the IMU's rate, in a batch; and of its IMU."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import statistics
+from pathlib import Path
+
+import numpy as np
+
+from app.bench.rounds import Timed, median_ratio, seconds_of, timed_rounds
+from navcore.control.law import Law, prepare_law
+from navcore.control.policy.constant import Constant
+from navcore.control.switching.hard import Hard
+from navcore.earth import WGS84
+from navcore.mechanization.strapdown import Settings, VelocityReference, start_from, start_run
+from navcore.mechanization.strapdown.batch import BatchNoise, BatchRun
+from navcore.motion.base import Site
+from navcore.motion.static import StaticMotion
+from navcore.motion.swing import Oscillation, SwingMotion
+from navcore.network.base import NetworkParameters
+from navcore.network.compass import CompassNetwork
+from navcore.network.complementary import ComplementaryNetwork
+from navcore.network.undamped import UndampedNetwork
+from navcore.sensors.imu import Imu
+from navcore.sensors.imu_simulation import ImuSimulation
+from navcore.units import DEG
+
+ROUNDS = 7
+RATE_HZ = 200.0
+SECONDS = 1800
+BATCH_RUNS, BATCH_SECONDS = 64, 60
+SITE = Site(32.06 * DEG, 118.8 * DEG, 0.0)
+YARDSTICK = "SCHULER_YARDSTICK"
+"""Environment variable: a Python file whose ``quick(samples, repeats)`` gives a reference's ns a sample."""
+_ALL_ERRORS = Imu(
+    gyro_bias_dph=(0.02, 0.02, 0.02), gyro_arw_dpsh=0.006, accel_bias_ug=(50.0, 50.0, 50.0),
+    accel_vrw_ugpshz=10.0, gyro_instability_dph=0.003, accel_instability_ug=10.0,
+    gyro_scale_ppm=(5.0, 5.0, 5.0), accel_scale_ppm=(10.0, 10.0, 10.0),
+)  # fmt: skip
+
+
+class StaticRecord:
+    """Perfect increments of an IMU at rest, and runs on them.
+
+    Parameters
+    ----------
+    seconds : int
+        Length.
+    """
+
+    def __init__(self, seconds: int) -> None:
+        self.samples, self.second = seconds * int(RATE_HZ), int(RATE_HZ)
+        imu = ImuSimulation(StaticMotion(), SITE, WGS84, Imu(), RATE_HZ, self.second, 0)
+        self.before, self.truth = imu.before(), imu.truth_rows(1, 1.0)
+        self.increments = np.tile(self.before, (self.samples, 1))
+
+    def settings(self, law_every: int) -> Settings:
+        """States recorded and output every second."""
+        return Settings(RATE_HZ, self.samples, law_every, self.second, 1.0)
+
+    def law(self, damping: str, network: NetworkParameters, law_every: int) -> Law:
+        """A method's law, always damped."""
+        transfer = network.transfer(WGS84.schuler_frequency(SITE.lat))
+        return prepare_law(damping, network, transfer, Constant(), Hard(), law_every / RATE_HZ)
+
+    def log(self, law_every: int) -> VelocityReference:
+        """A sample at each call of the law."""
+        times = np.arange(self.samples // law_every + 1) * (law_every / RATE_HZ)
+        return VelocityReference(
+            times, np.zeros((len(times), 2)), np.ones(len(times), bool), body_frame=False, hold_s=5.0
+        )
+
+    def run(self, damping: str, network: NetworkParameters, law_every: int) -> Timed:
+        """One method over the whole length."""
+        log = self.log(law_every)
+
+        def once() -> float:
+            law = self.law(damping, network, law_every)
+            run = start_run(
+                start_from(self.truth[0]), self.settings(law_every), WGS84, law, self.truth, log, self.before
+            )
+            return seconds_of(lambda: run.advance(self.increments))
+
+        return once
+
+    def batch(self, runs: int, noise: BatchNoise | None) -> Timed:
+        """Compass damping of many runs, each with its own biases."""
+        log = self.log(self.second)
+        biases = np.random.default_rng(1).normal(size=(runs, 6)) * np.repeat([1e-7, 5e-4], 3)
+
+        def once() -> float:
+            laws = [self.law("external", CompassNetwork(), self.second) for _ in range(runs)]
+            starts = [start_from(self.truth[0])] * runs
+            batch = BatchRun(
+                starts, laws, biases, self.settings(self.second), WGS84, self.truth, log, self.before, noise
+            )
+            return seconds_of(lambda: batch.advance(self.increments, workers=os.cpu_count() or 1))
+
+        return once
+
+
+def swinging_imu(samples: int) -> Timed:
+    """An IMU with all its errors on a swing about three axes."""
+    swing = Oscillation(amplitude_deg=10.0, frequency_hz=0.2)
+    motion = SwingMotion(pitch=swing, roll=swing, heading=swing)
+
+    def once() -> float:
+        imu = ImuSimulation(motion, SITE, WGS84, _ALL_ERRORS, RATE_HZ, samples, 1)
+        return seconds_of(lambda: [None for _ in imu.chunks()])
+
+    return once
+
+
+def _yardstick(samples: int) -> Timed | None:
+    file = os.environ.get(YARDSTICK)
+    if not file:
+        return None
+    spec = importlib.util.spec_from_file_location("yardstick", file)
+    if spec is None or spec.loader is None or not Path(file).is_file():
+        raise FileNotFoundError(f"{YARDSTICK}: no Python file: {file}")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return lambda: 1e-9 * samples * module.quick(samples, 1)
+
+
+def measure_strapdown(rounds: int = ROUNDS, seconds: int = SECONDS) -> dict[str, float]:
+    """Median ns a sample (and run), all pieces timed in turn.
+
+    With a yardstick (`YARDSTICK`) its own time, and the ratio of each to it in the same round, come along.
+    """
+    record, short = StaticRecord(seconds), StaticRecord(min(seconds, BATCH_SECONDS))
+    walk = np.repeat([1e-6, 1e-4], 3)
+    samples, many = record.samples, short.samples * BATCH_RUNS
+    pieces: dict[str, tuple[Timed, int]] = {
+        "strapdown_free_ns_per_sample": (record.run("free", UndampedNetwork(), record.second), samples),
+        "strapdown_damped_ns_per_sample": (record.run("external", CompassNetwork(), record.second), samples),
+        "strapdown_imu_rate_ns_per_sample": (record.run("external", ComplementaryNetwork(), 1), samples),
+        "strapdown_batch_ns_per_sample_run": (short.batch(BATCH_RUNS, None), many),
+        "strapdown_batch_noise_ns_per_sample_run": (short.batch(BATCH_RUNS, BatchNoise(walk, 1)), many),
+        "imu_simulation_ns_per_sample": (swinging_imu(samples), samples),
+    }
+    works = {name: work for name, (work, _) in pieces.items()}
+    yardstick = _yardstick(samples)
+    if yardstick is not None:
+        works["yardstick"] = yardstick
+    times = timed_rounds(works, rounds)
+    found = {name: 1e9 * statistics.median(times[name]) / count for name, (_, count) in pieces.items()}
+    if yardstick is not None:
+        found["yardstick_ns_per_sample"] = 1e9 * statistics.median(times["yardstick"]) / samples
+        for name, (_, count) in pieces.items():
+            ratio = median_ratio(times[name], times["yardstick"]) * samples / count
+            found[f"{name.split('_ns_')[0]}_to_yardstick"] = ratio
+    return found

@@ -1,0 +1,58 @@
+"""A day of the full strapdown, in a process of its own: ``python -m app.bench.strapdown_day``."""
+
+from __future__ import annotations
+
+import json
+import statistics
+import subprocess
+import sys
+
+from app.bench.memory import peak_mb
+from app.bench.rounds import seconds_of
+from navcore.scenario import Scenario
+from navcore.simulation import simulate
+
+REPEATS = 5
+_SWING = {"amplitude_deg": 5.0, "frequency_hz": 0.125}
+
+
+def strapdown_day(seed: int, duration_h: float = 24.0) -> Scenario:
+    """Scenario of the measurement: 100 Hz, a swinging ship, all noises, two methods on a log at 1 Hz."""
+    return Scenario.parse(
+        {
+            "run": {"fidelity": "strapdown", "duration_h": duration_h, "rate_hz": 100.0, "seed": seed},
+            "motion": {"kind": "swing", "pitch": _SWING, "roll": _SWING, "heading": _SWING},
+            "imu": {
+                "gyro_bias_dph": [0.01, 0.01, 0.01],
+                "gyro_arw_dpsh": 0.003,
+                "gyro_instability_dph": 0.003,
+                "accel_bias_ug": [50.0, 50.0, 50.0],
+                "accel_vrw_ugpshz": 10.0,
+                "accel_instability_ug": 10.0,
+            },
+            "reference": {"kind": "log", "bias_mps": [0.1, 0.1], "noise_mps": 0.2, "rate_hz": 1.0},
+            "method": [
+                {"damping": "external", "network": {"id": "complementary", "zeta": 0.7}},
+                {"damping": "external", "network": {"id": "compass", "sigma": 0.0088, "xi": 0.7}},
+            ],
+        }
+    )
+
+
+def measure_strapdown_day() -> dict[str, float]:
+    """Median wall time of a run of 24 h at 100 Hz, s, and the highest memory of its process, MiB."""
+    from app.bench.process import environment
+
+    words = [sys.executable, "-m", "app.bench.strapdown_day"]
+    done = subprocess.run(words, env=environment(), capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def _measured() -> dict[str, float]:
+    simulate(strapdown_day(seed=1, duration_h=0.1))
+    seconds = [seconds_of(lambda k=k: simulate(strapdown_day(seed=2 + k))) for k in range(REPEATS)]
+    return {"strapdown_24h_100hz_s": statistics.median(seconds), "strapdown_24h_100hz_mb": peak_mb()}
+
+
+if __name__ == "__main__":
+    print(json.dumps(_measured()))

@@ -1,0 +1,148 @@
+"""The parts of the report as data: a claim, a table, an exhibit (one figure or table of a paper), a paper."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+from app.papers.runs import Runs
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Verdict = Literal["agrees", "differs"]
+Span = tuple[float, float]
+
+
+def about(value: float, tolerance: float) -> Span:
+    """From ``value`` less to ``value`` plus a relative tolerance."""
+    reach = abs(value) * tolerance
+    return value - reach, value + reach
+
+
+def at_least(value: float) -> Span:
+    """``value`` or more."""
+    return value, math.inf
+
+
+def at_most(value: float) -> Span:
+    """``value`` or less, of either sign."""
+    return -math.inf, value
+
+
+def order_of(value: float, factor: float = 3.0) -> Span:
+    """Same order of magnitude: between ``value / factor`` and ``value * factor``, > 0."""
+    return value / factor, value * factor
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One statement of a paper and how it is checked.
+
+    Attributes
+    ----------
+    says : str
+        What the paper says, in words.
+    printed : str
+        Its number or relation as the paper gives it.
+    agreed : tuple of float
+        Range of our number within which the two agree.
+    ours : callable
+        Our number from the runs, in ``unit``.
+    unit : str
+        Unit of both numbers.
+    strapdown : bool
+        Whether the number is computed in the full strapdown as well; both must agree.
+    why : str
+        Why it differs. Empty when it agrees: the report fails when this and the numbers contradict.
+    note : str
+        What should be known even when it agrees.
+    facts : mapping of str to callable
+        Numbers that ``why`` and ``note`` name in braces.
+    digits : int
+        Significant digits of our number.
+    """
+
+    says: str
+    printed: str
+    agreed: Span
+    ours: Callable[[Runs], float]
+    unit: str = ""
+    strapdown: bool = False
+    why: str = ""
+    note: str = ""
+    facts: Mapping[str, Callable[[Runs], float]] = field(default_factory=dict)
+    digits: int = 3
+
+    def verdict(self, *values: float) -> Verdict:
+        """Agreement of all values with the range."""
+        low, high = self.agreed
+        return "agrees" if all(low <= value <= high for value in values) else "differs"
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table side by side with a paper's: head and rows of text."""
+
+    caption: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class Exhibit:
+    """One figure or table of a paper.
+
+    Attributes
+    ----------
+    name : str
+        Anchor, and name of the picture's file.
+    title : str
+        "Figure 4: ...".
+    presets : tuple of str
+        Presets that show it; the runs behind the claims start from these.
+    setting : str
+        What is run, and what the paper leaves open and how it was filled in.
+    claims : tuple of Claim
+        The paper's statements.
+    tables : tuple of callable
+        Tables to print below.
+    draw : callable, optional
+        Draws the picture on a matplotlib figure.
+    height : float
+        Height of the picture, inches.
+    """
+
+    name: str
+    title: str
+    presets: tuple[str, ...]
+    setting: str
+    claims: tuple[Claim, ...] = ()
+    tables: tuple[Callable[[Runs], Table], ...] = ()
+    draw: Callable[[Runs, Figure], None] | None = field(default=None, repr=False)
+    height: float = 3.2
+
+
+@dataclass(frozen=True)
+class Paper:
+    """A paper: short name, full reference, its exhibits."""
+
+    name: str
+    reference: str
+    exhibits: tuple[Exhibit, ...]
+
+
+def number(value: float, digits: int = 3) -> str:
+    """Text of a number with a fixed count of significant digits, no exponent within 1e-4 .. 1e6."""
+    if not math.isfinite(value):
+        return "-" if math.isnan(value) else "infinite"
+    text = f"{value:.{digits - 1}e}"
+    mantissa, exponent = text.split("e")
+    power = int(exponent)
+    if float(mantissa) == 0.0:
+        return "0"
+    if -4 <= power < 6:
+        return f"{float(text):.{max(digits - 1 - power, 0)}f}"
+    return f"{mantissa}e{power}"

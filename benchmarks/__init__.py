@@ -1,0 +1,1 @@
+"""The strapdown engine beside another, on identical work (``make benchmarks``, extra ``benchmarks``)."""

@@ -1,0 +1,95 @@
+"""The start of navigation after a simulated compass alignment (physics.md 6.1), and the errors of a start."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from navcore.alignment import fine_alignment
+from navcore.compiled import plain
+from navcore.mechanization.strapdown import Start, start_from
+from navcore.mechanization.strapdown.attitude import misalignment, quaternion_of
+from navcore.motion.base import HEADING, HEIGHT, LAT, LON, PITCH, ROLL, VE, VN, MotionParameters, Site
+from navcore.motion.static import StaticMotion
+from navcore.motion.swing import SwingMotion
+from navcore.motion.waves import WavesMotion
+from navcore.scenario import Scenario
+from navcore.sensors.imu_simulation import ImuSimulation
+from navcore.units import DEG
+
+_OTHER_NOISE = 1
+"""Added to the seed: the alignment's white noise is not that of the navigation."""
+
+
+def aligned_start(scenario: Scenario, true_row: np.ndarray) -> Start:
+    """Align at the site before t = 0 with the scenario's IMU and ``initial_error``.
+
+    The vehicle swings as it will (`swing`), lies stopped in the same sea (`waves`), or rests at the attitude
+    of t = 0. Biases, scale factors and misalignments are those of the navigation; white noise and
+    Gauss-Markov drift are drawn anew.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        With ``alignment.kind = "compass"``.
+    true_row : ndarray, shape (15,)
+        True state at t = 0.
+
+    Returns
+    -------
+    Start
+        Aligned attitude, true velocity; position with its initial error, which an alignment cannot remove.
+
+    Raises
+    ------
+    InputError
+        |latitude| above 85 deg, or a loop too fast for the IMU.
+    """
+    alignment, rate = scenario.alignment, scenario.run.rate_hz
+    samples = max(1, round(alignment.duration_s * rate))
+    motion = motion_before(scenario.motion, true_row, samples / rate)
+    site = Site(*(float(true_row[column]) for column in (LAT, LON, HEIGHT)))
+    simulation = ImuSimulation(
+        motion, site, scenario.earth, scenario.imu, rate, samples,
+        scenario.run.seed + _OTHER_NOISE,
+    )  # fmt: skip
+    increments = np.concatenate([chunk.copy() for chunk, _ in simulation.chunks()])
+    errors = np.array(scenario.initial_error.state())
+    ends = simulation.truth_rows(2, samples / rate)
+    aligned = fine_alignment(
+        increments, rate, start_from(ends[0], errors).quaternion, site.lat + errors[2],
+        site.height, scenario.earth, alignment.loop(), errors[:2],
+    )  # fmt: skip
+    left = replace(start_from(ends[-1]), quaternion=aligned.quaternion)
+    errors[:2], errors[4:7] = 0.0, start_errors(left, ends[-1])[4:7]
+    return start_from(true_row, errors)
+
+
+def motion_before(motion: MotionParameters, true_row: np.ndarray, duration_s: float) -> MotionParameters:
+    """Return the motion of a vehicle that does not travel; its attitude ends as ``true_row``, but at sea."""
+    if isinstance(motion, SwingMotion):
+        earlier = {}
+        for name in ("pitch", "roll", "heading"):
+            axis = getattr(motion, name)
+            phase = math.fmod(axis.phase_deg - 360.0 * math.fmod(axis.frequency_hz * duration_s, 1.0), 360.0)
+            earlier[name] = axis.model_copy(update={"phase_deg": phase})
+        return motion.model_copy(update=earlier)
+    if isinstance(motion, WavesMotion):
+        return motion.model_copy(update={"speed_mps": 0.0})
+    return StaticMotion(
+        pitch_deg=true_row[PITCH] / DEG,
+        roll_deg=math.remainder(true_row[ROLL] / DEG, 360.0),
+        heading_deg=math.fmod(true_row[HEADING] / DEG, 360.0),
+    )
+
+
+def start_errors(start: Start, true_row: np.ndarray) -> np.ndarray:
+    """Errors dV_E, dV_N, dL, dlambda, phi of a start against a row of truth, SI, shape (7,)."""
+    t = plain(quaternion_of)(true_row[PITCH], true_row[ROLL], true_row[HEADING])
+    velocity = start.velocity[:2] - true_row[[VE, VN]]
+    place = start.lat - true_row[LAT], start.lon - true_row[LON]
+    q = start.quaternion
+    phi = plain(misalignment)(q[0], q[1], q[2], q[3], t[0], t[1], t[2], t[3])
+    return np.array([*velocity, *place, *phi])

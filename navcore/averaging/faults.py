@@ -1,0 +1,41 @@
+"""Faults of the fields that concern half-period averaging and that only the whole scenario can tell."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from navcore.errors import Fault
+
+if TYPE_CHECKING:
+    from navcore.scenario import Scenario
+
+
+def averaging_faults(scenario: Scenario) -> Iterator[Fault]:
+    """Faults of methods with ``damping = "averaging"`` and of the motions of the alignment."""
+    alignment = scenario.alignment
+    for i, motion in enumerate(alignment.motion):
+        if motion.t_s < -alignment.duration_s:
+            yield Fault(
+                "", f"alignment.motion.{i}.t_s", motion.t_s,
+                f"must be >= {-alignment.duration_s:g} (s): the alignment begins there",
+            )  # fmt: skip
+        elif motion.t_s + motion.duration_s > 0.0:
+            yield Fault(
+                "", f"alignment.motion.{i}.duration_s", motion.duration_s,
+                f"must be <= {-motion.t_s:g} (s): navigation starts at 0",
+            )  # fmt: skip
+    for i, method in enumerate(scenario.method):
+        if method.damping != "averaging":
+            continue
+        if scenario.run.fidelity == "channel":
+            yield Fault(
+                "", f"method.{i}.damping", "averaging",
+                'needs run.fidelity "error_model" or "strapdown": two channels by themselves have neither '
+                "Foucault nor 24 h oscillation",
+            )  # fmt: skip
+        if scenario.imu.file is not None:
+            yield Fault(
+                "", f"method.{i}.damping", "averaging",
+                "needs a simulated IMU: its forecast comes from a simulated alignment record (no imu.file)",
+            )  # fmt: skip

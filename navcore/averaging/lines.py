@@ -1,0 +1,94 @@
+"""How much of an error swings with the Schuler, Foucault and 24 h periods: least squares on known lines.
+
+At rest the lines of the free model are omega_s' + Omega sin L, omega_s' - Omega sin L and Omega (physics.md
+section 1): what is called the Foucault oscillation is the beat of the first two. A vehicle that travels
+changes them; the fit follows the phase along the true motion instead of a frequency.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from navcore.averaging.copies import coupled_lines
+from navcore.earth import EARTH_RATE, Earth
+from navcore.mechanization.trajectory import F_U, INV_M, INV_N, SEC_LAT, V_E, W_U, coefficients
+from navcore.motion.base import Truth
+
+LINES = ("schuler_plus_foucault", "schuler_minus_foucault", "earth")
+_RCOND = 1e-6
+
+
+@dataclass(frozen=True)
+class LineAmplitudes:
+    """Amplitudes of the lines in some curves.
+
+    Attributes
+    ----------
+    amplitude : ndarray, shape (curves, 3)
+        Amplitude of each of `LINES`, in the curve's unit.
+    offset, slope : ndarray, shape (curves,)
+        Constant (at the first time) and trend (unit a second).
+    residual_rms : ndarray, shape (curves,)
+        What the fit leaves.
+    """
+
+    amplitude: np.ndarray
+    offset: np.ndarray
+    slope: np.ndarray
+    residual_rms: np.ndarray
+
+
+def line_phases(time_s: np.ndarray, truth: np.ndarray, earth: Earth) -> np.ndarray:
+    """Phase of each of `LINES` along a true motion, rad.
+
+    The level lines follow gravity, the radii and the rate (Omega + dlambda/dt) sin L of the navigation frame
+    about the vertical; the 24 h line follows Omega + dlambda/dt.
+
+    Parameters
+    ----------
+    time_s : ndarray, shape (m,)
+        Times, s.
+    truth : ndarray, shape (m, 15) or (1, 15)
+        True states, columns of `navcore.motion.base`.
+    earth : Earth
+        WGS-84 or the sphere.
+
+    Returns
+    -------
+    ndarray, shape (m, 3)
+    """
+    c = coefficients(Truth(1.0, np.ascontiguousarray(truth)), earth, coupled=True).half
+    east, north = np.sqrt(c[:, F_U] * c[:, INV_N]), np.sqrt(c[:, F_U] * c[:, INV_M])
+    rates = np.column_stack(
+        [*coupled_lines(east, north, c[:, W_U]), EARTH_RATE + c[:, V_E] * c[:, INV_N] * c[:, SEC_LAT]]
+    )
+    rates = np.broadcast_to(rates, (len(time_s), len(LINES)))
+    steps = 0.5 * (rates[1:] + rates[:-1]) * np.diff(time_s)[:, None]
+    return np.concatenate([np.zeros((1, len(LINES))), np.cumsum(steps, axis=0)])
+
+
+def line_amplitudes(time_s: np.ndarray, curves: np.ndarray, phases: np.ndarray) -> LineAmplitudes:
+    """Fit constant, trend, and a sine and cosine of each line to curves.
+
+    Lines that the record cannot tell apart (a run much shorter than a day, a place near the equator) share
+    what they have in common: the solution of least norm is taken.
+
+    Parameters
+    ----------
+    time_s : ndarray, shape (m,)
+        Times, s.
+    curves : ndarray, shape (m, curves)
+        Say, the eight quantities of a method's rows.
+    phases : ndarray, shape (m, 3)
+        From `line_phases`.
+    """
+    span = max(float(time_s[-1] - time_s[0]), 1e-9)
+    ramp = (time_s - time_s[0]) / span
+    design = np.column_stack([np.ones(len(time_s)), ramp, np.cos(phases), np.sin(phases)])
+    found, *_ = np.linalg.lstsq(design, curves, rcond=_RCOND)
+    count = len(LINES)
+    amplitude = np.hypot(found[2 : 2 + count], found[2 + count :]).T
+    left = curves - design @ found
+    return LineAmplitudes(amplitude, found[0], found[1] / span, np.sqrt(np.mean(left**2, axis=0)))

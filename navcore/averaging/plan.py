@@ -1,0 +1,104 @@
+"""What an averaging method needs before it starts: its copies, its forecast, and what to tell the user."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from navcore.averaging.copies import Copies, copies_of
+from navcore.averaging.forecast import Forecast, forecast_from
+from navcore.averaging.parameters import AlignmentMotion, Averaging
+from navcore.averaging.record import RECORD_STEP_S, alignment_record, standing_row
+from navcore.earth import Earth
+from navcore.motion.base import HEIGHT, LAT
+from navcore.sensors.imu import Imu
+from navcore.units import DEG_PER_HOUR, HOUR
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What an averaging method starts from.
+
+    Attributes
+    ----------
+    copies : Copies
+        Copies and groups.
+    forecast : Forecast
+        Forecast IMU signals in the body axes of t = 0.
+    standing : ndarray, shape (15,)
+        Row of truth of the vehicle before t = 0.
+    notices : tuple of str
+        What the user should know, in plain words.
+    """
+
+    copies: Copies
+    forecast: Forecast
+    standing: np.ndarray
+    notices: tuple[str, ...]
+
+
+def prepare_averaging(
+    averaging: Averaging,
+    true_row: np.ndarray,
+    omega_s: float,
+    earth: Earth,
+    imu: Imu,
+    duration_s: float,
+    motions: Sequence[AlignmentMotion],
+    seed: int,
+    record: np.ndarray | None = None,
+) -> Plan:
+    """Make the plan of an averaging method.
+
+    Parameters
+    ----------
+    averaging : Averaging
+        The method's settings.
+    true_row : ndarray, shape (15,)
+        Truth at t = 0.
+    omega_s : float
+        Schuler frequency of the site, rad/s.
+    earth : Earth
+        WGS-84 or the sphere.
+    imu : Imu
+        Sensor errors.
+    duration_s : float
+        Length of the alignment, s.
+    motions : sequence of AlignmentMotion
+        Small motions of the base during the alignment.
+    seed : int
+        Seed of the scenario.
+    record : ndarray, shape (seconds, 6), optional
+        Increments of a recorded or already simulated alignment (`forecast.second_increments`); one is
+        simulated when left out.
+
+    Raises
+    ------
+    InputError
+        The vehicle moves at t = 0, or hardly ever stands still during the alignment.
+    """
+    standing = standing_row(true_row)
+    if record is None:
+        record = alignment_record(imu, standing, duration_s, motions, earth, seed)
+    forecast = forecast_from(record, RECORD_STEP_S)
+    chosen = copies_of(averaging, omega_s, float(standing[LAT]), float(standing[HEIGHT]), earth)
+    return Plan(chosen, forecast, standing, _notices(chosen, forecast, imu, len(record)))
+
+
+def _notices(chosen: Copies, forecast: Forecast, imu: Imu, seconds: int) -> tuple[str, ...]:
+    still = sum(last - first for first, last in forecast.segments) * RECORD_STEP_S
+    found = []
+    if still < seconds * RECORD_STEP_S:
+        found.append(
+            f"the base moved during the alignment: {seconds * RECORD_STEP_S - still:g} s of "
+            f"{seconds * RECORD_STEP_S:g} s were left out of the forecast"
+        )
+    noise = imu.gyro().white / np.sqrt(still)
+    if noise > 0.0:
+        found.append(
+            f"the forecast of {max(chosen.ahead_s) / HOUR:.1f} h rests on {still:g} s of alignment: the "
+            f"gyros' random walk leaves {noise / DEG_PER_HOUR:.2g} deg/h (1 sigma) in it"
+        )
+    return tuple(found)

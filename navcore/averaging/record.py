@@ -1,0 +1,138 @@
+"""The alignment record: one-second IMU increments of a vehicle at rest, but for small motions of its base."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from navcore.averaging.parameters import AlignmentMotion
+from navcore.earth import Earth, attitude_matrix
+from navcore.errors import Fault, InputError
+from navcore.motion.base import AE, AU, COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL, VE, VU, Truth
+from navcore.motion.inertial import inertial_signals
+from navcore.sensors.imu import Imu, SensorModel
+from navcore.sensors.noise import gauss_markov, unit_noise
+from navcore.units import DEG
+
+RECORD_STEP_S = 1.0
+"""Interval of the record's increments (physics.md section 5), s."""
+FASTEST_START_MPS = 0.01
+"""A vehicle faster than this at t = 0 did not stand before."""
+
+
+def standing_row(true_row: np.ndarray) -> np.ndarray:
+    """Row of truth of the vehicle before t = 0: place and attitude of t = 0, at rest; shape (15,).
+
+    Raises
+    ------
+    InputError
+        The vehicle moves at t = 0: what lies before cannot be forecast from a record at rest.
+    """
+    speed = float(np.linalg.norm(true_row[VE : VU + 1]))
+    if speed > FASTEST_START_MPS:
+        raise InputError(
+            Fault(
+                "", "motion", f"{speed:.3g} m/s at t = 0",
+                "half-period averaging forecasts from an alignment at rest: the motion must start from rest",
+            )
+        )  # fmt: skip
+    row = np.zeros(COLUMNS)
+    kept = [LAT, LON, HEIGHT, PITCH, ROLL, HEADING]
+    row[kept] = true_row[kept]
+    return row
+
+
+def standing_signals(standing: np.ndarray, earth: Earth) -> np.ndarray:
+    """What perfect sensors feel at rest in body axes: rad/s and m/s^2, shape (6,)."""
+    assert not standing[AE : AU + 1].any()
+    return inertial_signals(Truth(RECORD_STEP_S, standing[None, :]), earth)[0]
+
+
+def alignment_record(
+    imu: Imu,
+    standing: np.ndarray,
+    duration_s: float,
+    motions: Sequence[AlignmentMotion],
+    earth: Earth,
+    seed: int,
+) -> np.ndarray:
+    """Measured increments over each second of the alignment, the last one ending at t = 0.
+
+    Sensor errors continue those of the run: the Gauss-Markov drift goes back in time from its value at t = 0,
+    white noise and the rest of quantisation have numbers of their own.
+
+    Parameters
+    ----------
+    imu : Imu
+        Sensor errors.
+    standing : ndarray, shape (15,)
+        From `standing_row`.
+    duration_s : float
+        Length of the alignment, s.
+    motions : sequence of AlignmentMotion
+        Small motions of the base.
+    earth : Earth
+        WGS-84 or the sphere.
+    seed : int
+        Seed of the scenario.
+
+    Returns
+    -------
+    ndarray, shape (seconds, 6)
+        Angles (rad) and velocities (m/s) in body axes.
+    """
+    seconds = max(1, int(duration_s / RECORD_STEP_S + 1e-9))
+    true = _true_increments(standing_signals(standing, earth), standing, seconds, motions)
+    parts = [
+        true[:, 3 * i : 3 * i + 3] + _errors(model, true[:, 3 * i : 3 * i + 3], seed)
+        for i, model in enumerate((imu.gyro(), imu.accel()))
+    ]
+    return np.column_stack(parts)
+
+
+def _true_increments(
+    felt: np.ndarray, standing: np.ndarray, seconds: int, motions: Sequence[AlignmentMotion]
+) -> np.ndarray:
+    """Perfect increments (seconds, 6); each motion ends in the attitude that the next one starts from."""
+    if not motions:
+        return np.tile(felt * RECORD_STEP_S, (seconds, 1))
+    from scipy.spatial.transform import Rotation
+
+    time_s = (np.arange(seconds + 1) - seconds) * RECORD_STEP_S
+    turns = [_share(motion, time_s)[:, None] * np.array(motion.turn_deg) * DEG for motion in motions]
+    turned = np.sum(turns, axis=0)
+    # Body axes at each second seen from those at t = 0.
+    attitude = Rotation.from_rotvec(turned - turned[-1])
+    end = attitude_matrix(standing[PITCH], standing[ROLL], standing[HEADING])
+    seen = [attitude.inv().apply(end.T @ (end @ felt[part])) for part in (slice(0, 3), slice(3, 6))]
+    means = [0.5 * RECORD_STEP_S * (values[:-1] + values[1:]) for values in seen]
+    steps = (attitude[:-1].inv() * attitude[1:]).as_rotvec()
+    return np.column_stack([means[0] + steps, means[1]])
+
+
+def _share(motion: AlignmentMotion, time_s: np.ndarray) -> np.ndarray:
+    """Part of a motion's turn that is done, 0..1, smooth in rate."""
+    place = np.clip((time_s - motion.t_s) / motion.duration_s, 0.0, 1.0)
+    return 0.5 - 0.5 * np.cos(math.pi * place)
+
+
+def _errors(model: SensorModel, true: np.ndarray, seed: int) -> np.ndarray:
+    """Errors of the increments of three gyros or accelerometers, shape of ``true``."""
+    seconds = len(true)
+    error = true @ model.coupling.T + model.bias * RECORD_STEP_S
+    if model.white > 0.0:
+        white = unit_noise(seed, f"{model.stream}.alignment.white", seconds, 3)
+        error = error + model.white * math.sqrt(RECORD_STEP_S) * white
+    if model.instability > 0.0:
+        first = unit_noise(seed, f"{model.stream}.instability", 1, 3)
+        before = unit_noise(seed, f"{model.stream}.alignment.instability", seconds, 3)
+        drift = gauss_markov(np.concatenate([first, before]), math.exp(-RECORD_STEP_S / model.tau_s))
+        error = error + model.instability * RECORD_STEP_S * drift[:0:-1]
+    if model.lsb.any():
+        total = np.cumsum(true + error, axis=0)
+        counted = np.where(model.lsb > 0.0, np.rint(total / np.where(model.lsb > 0.0, model.lsb, 1.0)), 0.0)
+        total = np.where(model.lsb > 0.0, counted * model.lsb, total)
+        error = np.diff(total, axis=0, prepend=0.0) - true
+    return error

@@ -1,0 +1,349 @@
+"""The damping law once more, slow and obvious: matrices, lists of everything that was, plain Python.
+
+The compiled law is tested against this call by call. It shares the parameter models and no code that runs:
+networks come from their H(s), windows from slices of the whole history, the table's curve from scipy.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from navcore.control.combination import network_in_force, realisation_of
+from navcore.control.policy.base import PolicyParameters
+from navcore.control.switching.base import SwitchingParameters
+from navcore.filters import discretise
+from navcore.loop import analyse
+from navcore.network.base import NetworkParameters
+from navcore.network.compass import CompassNetwork
+from navcore.units import DEG, KNOT
+
+Vector = np.ndarray
+
+
+@dataclass
+class _Form:
+    """Discrete state space of Q in one channel, and the continuous one where the law re-tunes it."""
+
+    A: np.ndarray
+    B: np.ndarray
+    C: np.ndarray
+    D: float
+    continuous: tuple[np.ndarray, np.ndarray] | None = None
+
+    @property
+    def steady(self) -> np.ndarray:
+        return np.linalg.solve(np.eye(len(self.B)) - self.A, self.B) if len(self.B) else self.B
+
+
+def _bilinear(A: np.ndarray, B: np.ndarray, C: np.ndarray, D: float, a: float) -> _Form:
+    eye = np.eye(len(B))
+    inverse = np.linalg.inv(eye - a * A)
+    return _Form((eye + a * A) @ inverse, 2.0 * a * inverse @ B, C @ inverse, D + a * C @ inverse @ B, (A, B))
+
+
+def _observer(parameters: NetworkParameters, omega_s: float, a: float) -> _Form:
+    """Q = 1 - H in observer form: the first state is the output."""
+    network = parameters.transfer(omega_s)
+    n = network.order
+    A = np.diag(np.ones(n - 1), 1)
+    A[:, 0] = -network.den_p[1:]
+    return _bilinear(A, (network.den_p - network.num_p)[1:], np.eye(n)[0], 0.0, a)
+
+
+def _outputs(form: _Form, mean: float) -> tuple[np.ndarray, np.ndarray]:
+    """Matrix and offset that give output and derivatives from the state, for a constant input."""
+    assert form.continuous is not None
+    A, B = form.continuous
+    n = len(B)
+    powers = [np.linalg.matrix_power(A, i) for i in range(n)]
+    offset = [sum((powers[j] @ B)[0] for j in range(i)) * mean for i in range(n)]
+    return np.array([power[0] for power in powers]), np.array(offset)
+
+
+class TwinLaw:
+    """Damping law of one method for both channels.
+
+    Parameters
+    ----------
+    damping : {"internal", "external"}
+        Kind of damping.
+    network, policy, switching
+        As configured.
+    omega_s : float
+        Schuler frequency, rad/s.
+    step_s : float
+        Time between two calls, s.
+    """
+
+    def __init__(
+        self,
+        damping: str,
+        network: NetworkParameters,
+        policy: PolicyParameters,
+        switching: SwitchingParameters,
+        omega_s: float,
+        step_s: float,
+    ) -> None:
+        self.policy: Any = policy
+        self.switching: Any = switching
+        self.external, self.omega_s, self.step_s = damping == "external", omega_s, step_s
+        self.network = network_in_force(damping, network, policy)
+        self.realisation = realisation_of(damping, network)
+        self.a = math.tan(0.5 * omega_s * step_s)
+        self.tunes = policy.tunes or switching.tunes
+        self.k1 = 0.0
+        coefficient, transfer = self.network.damping_coefficient(), self.network.transfer(omega_s)
+        self.target = analyse(transfer).damping_ratio if coefficient is None else coefficient
+        self.tuned = self.target
+        self.form = self._form(self.target)
+        self.states = np.zeros((2, len(self.form.B)))
+        self.rows: list[dict[str, Any]] = []
+        self.damped = self.engaged = False
+        self.decision, self.count, self.fresh = True, 0, 0
+        self.xi = self.measure = self.engaged_at = self.stepped_at = 0.0
+        self.mean = self.low = self.correction = np.zeros(2)
+        self.memory: tuple[np.ndarray, np.ndarray, float] = (self.states, np.zeros(2), 0.0)
+
+    def _form(self, xi: float) -> _Form:
+        if self.policy.id == "schedule":
+            return self._gains(*getattr(self.policy, "from"))
+        if self.tunes:
+            self.tuned = xi
+            return _observer(self.network.with_damping(xi), self.omega_s, self.a)
+        if self.realisation != "network" and isinstance(self.network, CompassNetwork):
+            return self._gains(*self.network.gains(self.omega_s))
+        d = discretise(self.network.transfer(self.omega_s), self.step_s)
+        return _Form(np.eye(d.order) + d.dA, d.B, -d.C, 1.0 - d.D)
+
+    def _gains(self, k1: float, k2: float, k3: float) -> _Form:
+        if self.realisation != "network":
+            self.k1, held = k1, k3 * self.step_s
+            return _Form(np.eye(1), np.array([-held]), np.ones(1), -k2 - 0.5 * held)
+        pole, zero = k1 / self.omega_s, (k1 - k3) / self.omega_s
+        return _bilinear(np.array([[-pole]]), np.array([zero + pole * k2]), np.ones(1), -k2, self.a)
+
+    def step(
+        self, difference: Vector, valid: bool, v_c: Vector, accel: float = 0.0, heading: float = 0.0
+    ) -> tuple[Vector, Vector]:
+        """Return (c_E, c_N), (a_E, a_N) for the held difference, V_c (m/s), |acceleration| and heading."""
+        u = difference if self.external else -v_c
+        self.fresh = self.fresh + 1 if valid else 0
+        self._take_mean(u, valid)
+        if self.rows:
+            turned = (heading - self.rows[-1]["heading"] + math.pi) % (2.0 * math.pi) - math.pi
+            total = self.rows[-1]["total"] + turned
+        else:
+            total = 0.0
+        self.rows.append(
+            {"d": difference, "u": u, "x": self.states.copy(), "xi": self.tuned, "damped": self.damped,
+             "accel": accel, "heading": heading, "total": total}
+        )  # fmt: skip
+        wanted = getattr(self, f"_policy_{self.policy.id}")(difference, valid)
+        wanted = wanted and (valid or not self.external)
+        if wanted and not self.damped:
+            self.engaged_at = self.now
+        if self.policy.id == "schedule":
+            self._follow_schedule(u)
+        if len(self.rows) == 1:
+            if self.tunes:
+                self.form = self._form(self.target)
+            self._clear(u)
+        getattr(self, f"_switch_{self.switching.id}")(wanted, u, valid)
+        if not self.damped:
+            if not self.switching.freezes:
+                self.correction = np.zeros(2)
+            return self.correction, np.zeros(2)
+        self.engaged = True
+        c = self._feed(u)
+        if self.realisation == "as_printed":
+            c = c - (v_c + u)
+        self.correction = c
+        return c, self.k1 * u
+
+    @property
+    def now(self) -> float:
+        """Time since the first call, s."""
+        return (len(self.rows) - 1) * self.step_s
+
+    def _calls(self, seconds: float) -> int:
+        return max(1, round(seconds / self.step_s))
+
+    def _take_mean(self, u: Vector, valid: bool) -> None:
+        if not self.rows or (self.external and self.fresh == 1):
+            self.mean = u
+        elif valid or not self.external:
+            self.mean = self.mean + (1.0 - math.exp(-self.step_s / 100.0)) * (u - self.mean)
+
+    def _feed(self, u: Vector) -> Vector:
+        c = self.states @ self.form.C + self.form.D * u
+        self.states = self.states @ self.form.A.T + np.outer(u, self.form.B)
+        return c
+
+    def _clear(self, u: Vector) -> None:
+        self.states = np.zeros_like(self.states) if self.external else np.outer(u, self.form.steady)
+
+    # policies
+
+    def _policy_constant(self, difference: Vector, valid: bool) -> bool:
+        return True
+
+    _policy_schedule = _policy_constant
+
+    def _policy_threshold(self, difference: Vector, valid: bool) -> bool:
+        self.measure = float(np.linalg.norm(difference))
+        return self.measure <= self.policy.limit_mps
+
+    def _policy_yaw_rate(self, difference: Vector, valid: bool) -> bool:
+        window = [row["total"] for row in self.rows[-self._calls(self.policy.window_s) - 1 :]]
+        self.measure = abs(window[-1] - window[0])
+        return self.measure <= self.policy.limit_deg * DEG
+
+    def _policy_acceleration(self, difference: Vector, valid: bool) -> bool:
+        self.measure = float(np.mean([r["accel"] for r in self.rows[-self._calls(self.policy.mean_s) :]]))
+        return self.measure <= self.policy.limit_mps2
+
+    def _policy_variation(self, difference: Vector, valid: bool) -> bool:
+        n, t0 = self._calls(self.policy.n_s), self._calls(self.policy.t0_s)
+        self.measure = 0.0
+        if self.fresh >= n + t0:
+            d = np.array([row["d"] for row in self.rows[-n - t0 :]])
+            self.measure = float(np.max(np.abs(d[-n:].mean(axis=0) - d[:n].mean(axis=0))))
+        wish = self.decision
+        if self.measure <= self.policy.a:
+            wish = True
+        elif self.measure >= self.policy.c:
+            wish = False
+        self.count = 0 if wish == self.decision else self.count + 1
+        if self.count == self.policy.count:
+            self.decision, self.count = wish, 0
+        return self.decision
+
+    def _policy_adaptive(self, difference: Vector, valid: bool) -> bool:
+        if not valid:
+            return True
+        share = 1.0 if self.fresh == 1 else 1.0 - math.exp(-self.step_s / self.policy.lowpass_s)
+        self.low = self.low + share * (difference - self.low)
+        self.measure = float(np.linalg.norm(self.low))
+        self.target = max(self._law(self.measure / KNOT), 1.05 * self.network.least_coefficient())
+        return True
+
+    def _law(self, knots: float) -> float:
+        from scipy.interpolate import PchipInterpolator
+
+        if self.policy.law == "quadratic":
+            xi = 0.3076 * knots**2 - 1.1452 * knots + 0.8101
+        else:
+            x, y = np.array(sorted(self.policy.table)).T
+            xi = float(PchipInterpolator(x, y)(np.clip(knots, x[0], x[-1])))
+        return min(max(xi, 0.04), 0.99)
+
+    def _follow_schedule(self, u: Vector) -> None:
+        share = min((self.now - self.engaged_at) / self.policy.duration_s, 1.0)
+        first, last = np.array(getattr(self.policy, "from")), np.array(self.policy.to)
+        new = self._gains(*(first + share * (last - first)))
+        if self.realisation == "network":
+            self.states = self._discrete(new, self._at_sample(u), u)
+        self.form = new
+
+    # switching
+
+    def _at_sample(self, u: Vector) -> np.ndarray:
+        """Continuous states at the sample, (2, n)."""
+        assert self.form.continuous is not None
+        A, B = self.form.continuous
+        return np.linalg.solve(np.eye(len(B)) - self.a * A, (self.states + self.a * np.outer(u, B)).T).T
+
+    def _discrete(self, form: _Form, v: np.ndarray, u: Vector) -> np.ndarray:
+        assert form.continuous is not None
+        A, B = form.continuous
+        return v - self.a * (v @ A.T + np.outer(u, B))
+
+    def _retune(self, xi: float, u: Vector, mean: Vector, smooth: bool) -> None:
+        if xi == self.tuned:
+            return
+        v, old, new = self._at_sample(u), self.form, self._form(xi)
+        if smooth:
+            for channel in range(2):
+                before, offset = _outputs(old, mean[channel])
+                after, new_offset = _outputs(new, mean[channel])
+                v[channel] = np.linalg.solve(after, before @ v[channel] + offset - new_offset)
+        self.form, self.states = new, self._discrete(new, v, u)
+
+    def _follow_target(self, u: Vector) -> None:
+        if self.tunes:
+            self._retune(self.target, u, self.mean, not (self.external and self.fresh == 1))
+
+    def _set(self, damped: bool, xi: float = 0.0) -> None:
+        self.damped, self.xi = damped, xi
+
+    def _switch_hard(self, wanted: bool, u: Vector, valid: bool) -> None:
+        self._follow_target(u)
+        if wanted and not self.damped:
+            self._clear(u)
+        self._set(wanted, self.target if wanted else 0.0)
+
+    def _switch_keep(self, wanted: bool, u: Vector, valid: bool) -> None:
+        self._follow_target(u)
+        if not wanted and (valid or not self.external):
+            self._feed(u)
+        self._set(wanted, self.target if wanted else 0.0)
+
+    def _switch_ramp(self, wanted: bool, u: Vector, valid: bool) -> None:
+        if not wanted:
+            return self._set(False)
+        if not self.engaged:
+            self.engaged_at = -math.inf
+        left = self.switching.duration_s - 1.0 - (self.now - self.engaged_at)
+        left = 0.0 if abs(left) < 1e-6 else left
+        xi = self.target * math.exp(-max(left, 0.0))
+        if not self.damped:
+            self.form = self._form(xi)
+            self._clear(u)
+        elif left > 1e-6 - self.step_s:
+            self._retune(xi, u, u, self.switching.form == "as_printed")
+        else:
+            self._follow_target(u)
+        return self._set(True, xi)
+
+    def _switch_step(self, wanted: bool, u: Vector, valid: bool) -> None:
+        if self.external and not valid:
+            return self._set(False)
+        target = self.target if wanted else 0.0
+        if not self.damped:
+            if wanted:
+                xi = target if not self.engaged else min(self.switching.size, target)
+                self.form, self.stepped_at = self._form(xi), self.now
+                self._clear(u)
+                self._set(True, xi)
+            return None
+        if self.now - self.stepped_at < self.switching.every_s - 1e-6 or target == self.xi:
+            return None
+        xi = self.xi + float(np.clip(target - self.xi, -self.switching.size, self.switching.size))
+        self.stepped_at = self.now
+        if xi < 1e-9:
+            return self._set(False)
+        self._retune(xi, u, self.mean, True)
+        return self._set(True, xi)
+
+    def _switch_bumpless(self, wanted: bool, u: Vector, valid: bool) -> None:
+        n, age = self._calls(self.switching.n_s), self._calls(self.switching.memory_s)
+        if not wanted:
+            if self.damped and len(self.rows) >= age + n and self.rows[-1 - age]["damped"]:
+                row = self.rows[-1 - age]
+                window = self.rows[len(self.rows) - age - n : len(self.rows) - age]
+                self.memory = (row["x"], np.mean([r["u"] for r in window], axis=0), row["xi"])
+            return self._set(False)
+        if not self.damped:
+            if (self.fresh if self.external else len(self.rows)) < n:
+                return None
+            x0, m0, xi0 = self.memory
+            if self.tunes:
+                self.form = self._form(xi0 or self.target)
+            change = np.mean([row["u"] for row in self.rows[-n:]], axis=0) - m0
+            self.states = x0 + np.outer(change, self.form.steady)
+        self._follow_target(u)
+        return self._set(True, self.target)

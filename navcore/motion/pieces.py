@@ -1,0 +1,158 @@
+"""A recorded track as piecewise cubic polynomials of time: position, heading, pitch and roll, compiled.
+
+Every spline is re-expanded on the pieces that all of them share, so that one search serves five quantities.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from navcore.compiled import inlined, kernel
+from navcore.earth import SEMI_MAJOR_AXIS
+from navcore.motion.base import (
+    AE,
+    AN,
+    AU,
+    COLUMNS,
+    HEADING,
+    HEADING_RATE,
+    HEIGHT,
+    LAT,
+    LON,
+    PITCH,
+    PITCH_RATE,
+    ROLL,
+    ROLL_RATE,
+    VE,
+    VN,
+    VU,
+)
+from navcore.motion.course import leg_at
+from navcore.motion.kinematics import WIDTH, write_rows
+from navcore.trigonometry import sincos
+
+# Columns of a piece: its start, then four coefficients, constant term first, of each quantity (rad).
+START, PIECE_LAT, PIECE_LON, PIECE_HEADING, PIECE_PITCH, PIECE_ROLL = 0, 1, 5, 9, 13, 17
+PIECE_COLUMNS = 21
+
+
+def shared_pieces(
+    splines: dict[int, tuple[np.ndarray, np.ndarray]], constants: dict[int, float]
+) -> np.ndarray:
+    """Expand splines on the union of their breakpoints.
+
+    Parameters
+    ----------
+    splines : dict
+        First column of a quantity -> breakpoints (n + 1,) in s and coefficients (4, n), highest power first
+        (scipy's layout).
+    constants : dict
+        First column of a quantity that does not change -> its value.
+
+    Returns
+    -------
+    ndarray, shape (m, 21)
+        The first piece also serves earlier times, the last one later times.
+    """
+    starts = np.unique(np.concatenate([breaks[:-1] for breaks, _ in splines.values()]))
+    pieces = np.zeros((starts.size, PIECE_COLUMNS))
+    pieces[:, START] = starts
+    for column, (breaks, coefficients) in splines.items():
+        parent = np.clip(np.searchsorted(breaks, starts, side="right") - 1, 0, breaks.size - 2)
+        x = starts - breaks[parent]
+        cubic, square, linear, constant = coefficients[:, parent]
+        pieces[:, column] = constant + x * (linear + x * (square + x * cubic))
+        pieces[:, column + 1] = linear + x * (2.0 * square + 3.0 * x * cubic)
+        pieces[:, column + 2] = square + 3.0 * x * cubic
+        pieces[:, column + 3] = cubic
+    for column, value in constants.items():
+        pieces[:, column] = value
+    return pieces
+
+
+@inlined
+def _value(x, pieces, i, j):
+    return pieces[i, j] + x * (pieces[i, j + 1] + x * (pieces[i, j + 2] + x * pieces[i, j + 3]))
+
+
+@inlined
+def _rate(x, pieces, i, j):
+    return pieces[i, j + 1] + x * (2.0 * pieces[i, j + 2] + 3.0 * x * pieces[i, j + 3])
+
+
+@inlined
+def _rate_of_rate(x, pieces, i, j):
+    return 2.0 * pieces[i, j + 2] + 6.0 * x * pieces[i, j + 3]
+
+
+@inlined
+def path_at(x, pieces, i, height, e2):
+    """Latitude, longitude (rad), V_E, V_N (m/s) and their derivatives (m/s^2) at x s into piece i.
+
+    Velocity and acceleration are the derivatives of the position on this Earth at constant height.
+    """
+    lat, lon = _value(x, pieces, i, PIECE_LAT), _value(x, pieces, i, PIECE_LON)
+    lat_rate, lon_rate = _rate(x, pieces, i, PIECE_LAT), _rate(x, pieces, i, PIECE_LON)
+    sin_lat, cos_lat = sincos(lat)
+    w = 1.0 - e2 * sin_lat * sin_lat
+    prime_vertical = SEMI_MAJOR_AXIS / np.sqrt(w)
+    meridian = prime_vertical * (1.0 - e2) / w
+    stretch = e2 * sin_lat * cos_lat * lat_rate / w  # d(ln N)/dt; d(ln M)/dt is three times this
+    north_arm, east_arm = meridian + height, (prime_vertical + height) * cos_lat
+    east_arm_rate = prime_vertical * stretch * cos_lat - (prime_vertical + height) * sin_lat * lat_rate
+    a_n = _rate_of_rate(x, pieces, i, PIECE_LAT) * north_arm + 3.0 * lat_rate * meridian * stretch
+    a_e = _rate_of_rate(x, pieces, i, PIECE_LON) * east_arm + lon_rate * east_arm_rate
+    return lat, lon, lon_rate * east_arm, lat_rate * north_arm, a_e, a_n
+
+
+@kernel
+def fill_track(t0, dt, pieces, place, height, e2, columns, samples, w):
+    """Fill the buffer ``w`` (`navcore.motion.kinematics.WIDTH`) with a track from t0 on.
+
+    ``place[0]`` is the number of the piece reached, for the next call, which begins ``samples`` steps later.
+    """
+    i = place[0]
+    for k in range(columns):
+        t = t0 + k * dt
+        i = leg_at(t, pieces, i)
+        if k == samples - 1:
+            place[0] = i
+        x = t - pieces[i, START]
+        lat, lon, v_e, v_n, a_e, a_n = path_at(x, pieces, i, height, e2)
+        w[LAT * WIDTH + k], w[LON * WIDTH + k], w[HEIGHT * WIDTH + k] = lat, lon, height
+        w[VE * WIDTH + k], w[VN * WIDTH + k], w[VU * WIDTH + k] = v_e, v_n, 0.0
+        w[AE * WIDTH + k], w[AN * WIDTH + k], w[AU * WIDTH + k] = a_e, a_n, 0.0
+        w[HEADING * WIDTH + k] = _value(x, pieces, i, PIECE_HEADING)
+        w[PITCH * WIDTH + k] = _value(x, pieces, i, PIECE_PITCH)
+        w[ROLL * WIDTH + k] = _value(x, pieces, i, PIECE_ROLL)
+        w[HEADING_RATE * WIDTH + k] = _rate(x, pieces, i, PIECE_HEADING)
+        w[PITCH_RATE * WIDTH + k] = _rate(x, pieces, i, PIECE_PITCH)
+        w[ROLL_RATE * WIDTH + k] = _rate(x, pieces, i, PIECE_ROLL)
+
+
+@kernel
+def _sample(pieces, step, height, e2, out):
+    w, place = np.empty(COLUMNS * WIDTH), np.zeros(2, np.int64)
+    for first in range(0, out.shape[0], WIDTH):
+        rows = min(WIDTH, out.shape[0] - first)
+        fill_track(first * step, step, pieces, place, height, e2, rows, rows, w)
+        write_rows(first, rows, w, out)
+
+
+def sample_track(pieces: np.ndarray, count: int, step_s: float, height: float, e2: float) -> np.ndarray:
+    """Rows of truth at t = 0, step_s, ...; shape (count, 15).
+
+    Parameters
+    ----------
+    pieces : ndarray, shape (m, 21)
+        From `shared_pieces`.
+    count, step_s
+        The times.
+    height : float
+        Height, m.
+    e2 : float
+        First eccentricity squared of the Earth.
+    """
+    out = np.empty((count, COLUMNS))
+    _sample(pieces, float(step_s), float(height), float(e2), out)
+    return out

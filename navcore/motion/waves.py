@@ -1,0 +1,309 @@
+"""Motion `waves`: a ship on a steady course that rolls, pitches, yaws and heaves in a seaway."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+from pydantic import model_validator
+
+from navcore.compiled import inlined, kernel
+from navcore.earth import Earth
+from navcore.errors import Fault, InputError
+from navcore.motion.base import (
+    AU,
+    COLUMNS,
+    HEADING,
+    HEADING_RATE,
+    HEIGHT,
+    LAT,
+    LON,
+    PITCH,
+    PITCH_RATE,
+    ROLL,
+    ROLL_RATE,
+    VE,
+    VN,
+    VU,
+    Site,
+    Truth,
+)
+from navcore.motion.course import PoleReached, lay_course, node_at, position_at
+from navcore.motion.kinematics import FREQUENCY, PHASE, WAVES, WIDTH, Kinematics, write_rows
+from navcore.motion.sea import Answer, fully_developed_peak_period, make_seaway, ship_motion
+from navcore.motion.static import AttitudeMotion
+from navcore.motion.swing import SAMPLES_A_PERIOD, STEEPEST_PITCH_DEG
+from navcore.parameters import choice, quantity
+from navcore.trigonometry import sincos_cycles
+from navcore.units import DEG
+
+# Columns of a component beside FREQUENCY and PHASE: angular frequency and its square, then real and imaginary
+# parts of the answers in pitch, roll, heading and height.
+OMEGA, OMEGA_SQUARED, REAL, IMAGINARY = 0, 1, 4, 8
+COMPONENT_COLUMNS = 12
+_ANSWERS = ("pitch", "roll", "heading", "heave")
+HEAVE = 3
+"""Place of heave among the answers."""
+
+
+def _gain(default: float, what: str, unit: str = "deg/deg") -> float:
+    return quantity(
+        default, unit=unit, ge=0.0, le=5.0, slider=(0.0, 2.0), label=f"{what} gain",
+        help=f"{what} in long waves as a part of what excites it; 0 for none.",
+    )  # fmt: skip
+
+
+def _period(default: float, what: str) -> float:
+    return quantity(
+        default, unit="s", ge=0.5, le=60.0, slider=(3.0, 30.0), label=f"{what} period",
+        help=f"Natural period of the ship's {what}.",
+    )  # fmt: skip
+
+
+def _damping(default: float, what: str) -> float:
+    return quantity(
+        default, unit="1", ge=0.02, le=2.0, slider=(0.02, 1.0), label=f"{what} damping",
+        help=f"Damping ratio of the ship's {what}.",
+    )  # fmt: skip
+
+
+class WavesMotion(AttitudeMotion):
+    """A ship on a steady course in a seaway: it rolls, pitches, yaws and heaves.
+
+    The seaway is a sum of long-crested waves on deep water, drawn from ``seed``; its significant height is
+    exact, its components share the spectrum between 0.5 and 3 times the peak frequency. Each motion answers
+    as a second-order system, at the frequency of encounter: pitch to the slope of the waves along the ship,
+    roll to the slope across, heading to both (largest in quartering seas), heave to the elevation. The means
+    are ``pitch_deg``, ``roll_deg`` and ``heading_deg``, which is the course as well. Heave is a vertical
+    velocity and a change of height about the site's. Everything is a closed formula of time but the position
+    (as in `legs`).
+    """
+
+    kind: Literal["waves"] = "waves"
+    spectrum: Literal["bretschneider", "pierson_moskowitz"] = choice(
+        "bretschneider", label="spectrum",
+        help="bretschneider: height and peak period are free; pierson_moskowitz: a fully developed sea, "
+        "whose peak period follows from the height, 5.0 s x sqrt(height in m).",
+    )  # fmt: skip
+    height_m: float = quantity(
+        2.5, unit="m", ge=0.0, le=20.0, slider=(0.0, 10.0), label="wave height",
+        help="Significant wave height, four times the standard deviation of the surface.",
+    )  # fmt: skip
+    peak_period_s: float = quantity(
+        8.0, unit="s", ge=2.0, le=30.0, slider=(4.0, 20.0), label="peak period",
+        help="Period at the peak of the spectrum; bretschneider only.",
+    )  # fmt: skip
+    direction_deg: float = quantity(
+        60.0, unit="deg", ge=-360.0, le=360.0, slider=(0.0, 360.0), label="waves from",
+        help="Direction the waves come from, clockwise from true north.",
+    )  # fmt: skip
+    spread_deg: float = quantity(
+        15.0, unit="deg", ge=0.0, le=60.0, slider=(0.0, 45.0), label="spread",
+        help="Standard deviation of the components' directions; 0 for a long-crested sea.",
+    )  # fmt: skip
+    components: int = quantity(
+        32, unit="1", ge=8, le=200, slider=(8, 100), label="components",
+        help="Number of sinusoids; their frequencies are irregular, so the motion does not repeat.",
+    )  # fmt: skip
+    seed: int = quantity(
+        1, unit="1", ge=0, le=2**31 - 1, slider=(0, 100), label="sea",
+        help="Seed of the seaway: another number, another sea of the same spectrum.",
+    )  # fmt: skip
+    speed_mps: float = quantity(
+        0.0, unit="m/s", ge=0.0, le=50.0, slider=(0.0, 15.0), label="speed",
+        help="Speed along the mean heading; it changes the frequency at which the waves are met.",
+    )  # fmt: skip
+    pitch_gain: float = _gain(0.7, "pitch")
+    pitch_period_s: float = _period(6.0, "pitch")
+    pitch_damping: float = _damping(0.4, "pitch")
+    roll_gain: float = _gain(0.8, "roll")
+    roll_period_s: float = _period(11.0, "roll")
+    roll_damping: float = _damping(0.12, "roll")
+    heading_gain: float = _gain(0.5, "heading")
+    heading_period_s: float = _period(12.0, "heading")
+    heading_damping: float = _damping(0.5, "heading")
+    heave_gain: float = _gain(1.0, "heave", "m/m")
+    heave_period_s: float = _period(6.0, "heave")
+    heave_damping: float = _damping(0.4, "heave")
+
+    @model_validator(mode="after")
+    def _upright(self) -> WavesMotion:
+        swing = np.hypot(*self._answers(0)).sum() / DEG
+        room = STEEPEST_PITCH_DEG - abs(self.pitch_deg)
+        if swing > room:
+            raise InputError(
+                Fault(
+                    "", "height_m", self.height_m,
+                    f"pitch could reach {swing:.0f} deg about a mean of {self.pitch_deg:g} deg: must stay "
+                    f"within +-{STEEPEST_PITCH_DEG:g} deg; make height_m or pitch_gain smaller",
+                )
+            )  # fmt: skip
+        return self
+
+    @property
+    def modal_period_s(self) -> float:
+        """Period at the peak of the spectrum in use, s."""
+        if self.spectrum == "bretschneider" or self.height_m == 0.0:
+            return self.peak_period_s
+        return fully_developed_peak_period(self.height_m)
+
+    def packed(self) -> np.ndarray:
+        """Components of the ship's motion, shape (n, 12), columns OMEGA ... IMAGINARY + 3; SI, Hz, cycles."""
+        sea = make_seaway(
+            self.height_m, self.modal_period_s, (self.direction_deg + 180.0) * DEG, self.spread_deg * DEG,
+            self.components, np.random.default_rng(self.seed),
+        )  # fmt: skip
+        pitch, roll, heading, heave = (
+            Answer(*(getattr(self, f"{name}_{field}") for field in ("gain", "period_s", "damping")))
+            for name in _ANSWERS
+        )
+        omega, complex_answers = ship_motion(
+            sea, self.speed_mps, self.heading_deg * DEG, pitch=pitch, roll=roll, yaw=heading, heave=heave
+        )
+        packed = np.zeros((self.components, COMPONENT_COLUMNS))
+        packed[:, OMEGA], packed[:, OMEGA_SQUARED] = omega, omega**2
+        packed[:, FREQUENCY] = omega / (2.0 * math.pi)
+        packed[:, REAL : REAL + 4] = np.real(complex_answers)
+        packed[:, IMAGINARY : IMAGINARY + 4] = np.imag(complex_answers)
+        return packed
+
+    def truth(self, count: int, step_s: float, site: Site, earth: Earth) -> Truth:
+        """Return the true motion at ``count`` times 0, step_s, ...; shape (count, 15), or (1, 15) at rest.
+
+        Raises
+        ------
+        InputError
+            The ship moves too fast for the step (fewer than 8 true states a mean period), or leads beyond
+            89.5 deg of latitude.
+        """
+        self._check_step(step_s)
+        return Truth(step_s, self.rows(count, step_s, site, earth))
+
+    def rows(
+        self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> np.ndarray:
+        """Rows of truth at 0, step_s, ..., however long the step."""
+        kin = self.kinematics(max(count - 1, 1) * step_s, site, earth, start_utc)
+        if self.speed_mps == 0.0 and not kin.oscillations[:, REAL:].any():
+            return kin.rest[None, :].copy()
+        values = np.empty((count, COLUMNS))
+        turns = kin.turns(step_s)
+        _sample(kin.rest, kin.oscillations, turns, kin.nodes, float(step_s), values)
+        return values
+
+    def kinematics(
+        self, end_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> Kinematics:
+        """Return the components, the steady velocity (in the row at rest) and the position nodes."""
+        del start_utc
+        rest, heading = self.rest_row(site)[0], self.heading_deg * DEG
+        rest[VE], rest[VN] = self.speed_mps * math.sin(heading), self.speed_mps * math.cos(heading)
+        leg = np.array([[0.0, self.speed_mps, 0.0, 0.0, heading, 0.0, 0.0, 0.0]])
+        try:
+            nodes = lay_course(leg, end_s, site, earth).nodes
+        except PoleReached as reached:
+            raise InputError(
+                Fault(
+                    "", "speed_mps", self.speed_mps,
+                    f"the course passes 89.5 deg of latitude after {reached.time_s:.0f} s: "
+                    "must stay within +-89.5 deg",
+                )
+            ) from None  # fmt: skip
+        return Kinematics(WAVES, rest, oscillations=self.packed(), nodes=nodes)
+
+    def _answers(self, which: int) -> tuple[np.ndarray, np.ndarray]:
+        packed = self.packed()
+        return packed[:, REAL + which], packed[:, IMAGINARY + which]
+
+    def _check_step(self, step_s: float) -> None:
+        packed = self.packed()
+        energy = packed[:, REAL : REAL + 4] ** 2 + packed[:, IMAGINARY : IMAGINARY + 4] ** 2
+        moving = energy.sum(axis=0) > 0.0
+        if not moving.any():
+            return
+        mean_square = packed[:, OMEGA_SQUARED] @ energy[:, moving] / energy[:, moving].sum(axis=0)
+        periods = 2.0 * math.pi / np.sqrt(mean_square)
+        shortest = int(np.argmin(periods))
+        if periods[shortest] < SAMPLES_A_PERIOD * step_s * (1.0 - 1e-9):
+            name = [answer for answer, moves in zip(_ANSWERS, moving, strict=True) if moves][shortest]
+            raise InputError(
+                Fault(
+                    "", "peak_period_s", self.modal_period_s,
+                    f"the mean period of {name} at this course and speed is {periods[shortest]:.1f} s: must "
+                    f"be >= {SAMPLES_A_PERIOD * step_s:g} s with true states every {step_s:g} s (half a step "
+                    "of the run); or make run.step_s smaller",
+                )
+            )  # fmt: skip
+
+
+@inlined
+def _amplitudes(m, which, components, s, c):
+    """Real and imaginary part of one answer, turned by a phase of sine s and cosine c."""
+    real, imaginary = components[m, REAL + which], components[m, IMAGINARY + which]
+    return real * c - imaginary * s, real * s + imaginary * c
+
+
+@inlined
+def _fill_quantity(m, components, s, c, turns, columns, row, rate_row, which, w):
+    """Add one component of a quantity and of its rate, whose phase at the start has sine s and cosine c."""
+    p, q = _amplitudes(m, which, components, s, c)
+    rate_p, rate_q = components[m, OMEGA] * p, components[m, OMEGA] * q
+    # Unsigned, or numba's care for negative indices keeps LLVM from vectorising.
+    first, half = np.uint64(2 * m * WIDTH), np.uint64(WIDTH)
+    for i in range(columns):
+        ci, si = turns[first + np.uint64(i)], turns[first + half + np.uint64(i)]
+        w[row * WIDTH + i] += p * ci - q * si
+        w[rate_row * WIDTH + i] -= rate_q * ci + rate_p * si
+
+
+@inlined
+def _fill_vertical_acceleration(m, components, s, c, turns, columns, w):
+    p, q = _amplitudes(m, HEAVE, components, s, c)
+    p, q = components[m, OMEGA_SQUARED] * p, components[m, OMEGA_SQUARED] * q
+    first, half = np.uint64(2 * m * WIDTH), np.uint64(WIDTH)
+    for i in range(columns):
+        w[AU * WIDTH + i] -= p * turns[first + np.uint64(i)] - q * turns[first + half + np.uint64(i)]
+
+
+@inlined
+def _restart_row(row, rest, columns, w):
+    for i in range(columns):
+        w[row * WIDTH + i] = rest[row]
+
+
+@kernel
+def fill_waves(t0, dt, components, turns, rest, nodes, place, columns, samples, w):
+    """Fill the buffer ``w`` (`navcore.motion.kinematics.WIDTH`) with a ship in waves from t0 on.
+
+    ``turns`` (2 m WIDTH,): cosine and sine of each component's angle after i steps; its phase is taken afresh
+    at t0. ``place[1]`` is the number of the node reached, for the next call, which begins ``samples`` steps
+    later. Horizontal velocity stays as it is.
+    """
+    node = place[1]
+    for i in range(columns):
+        t = t0 + i * dt
+        node = node_at(t, nodes, node)
+        if i == samples - 1:
+            place[1] = node
+        w[LAT * WIDTH + i], w[LON * WIDTH + i] = position_at(t, nodes, node)
+    _restart_row(HEIGHT, rest, columns, w)
+    _restart_row(VU, rest, columns, w)
+    for row in range(AU, HEADING_RATE + 1):
+        _restart_row(row, rest, columns, w)
+    for m in range(components.shape[0]):
+        s, c = sincos_cycles(components[m, FREQUENCY] * t0 + components[m, PHASE])
+        _fill_quantity(m, components, s, c, turns, columns, PITCH, PITCH_RATE, 0, w)
+        _fill_quantity(m, components, s, c, turns, columns, ROLL, ROLL_RATE, 1, w)
+        _fill_quantity(m, components, s, c, turns, columns, HEADING, HEADING_RATE, 2, w)
+        _fill_quantity(m, components, s, c, turns, columns, HEIGHT, VU, HEAVE, w)
+        _fill_vertical_acceleration(m, components, s, c, turns, columns, w)
+
+
+@kernel
+def _sample(rest, components, turns, nodes, step, out):
+    w, place = np.repeat(rest, WIDTH), np.zeros(2, np.int64)
+    for first in range(0, out.shape[0], WIDTH):
+        rows = min(WIDTH, out.shape[0] - first)
+        fill_waves(first * step, step, components, turns, rest, nodes, place, rows, rows, w)
+        write_rows(first, rows, w, out)

@@ -1,0 +1,56 @@
+"""What the tests of the control law share: a law called step by step from Python."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from navcore.control.law import law_step, prepare_law
+from navcore.control.layout import DIFFERENCE, VALID
+from navcore.control.policy import POLICIES
+from navcore.control.switching import SWITCHINGS
+from navcore.earth import SPHERE
+from navcore.network import parse_network
+
+OMEGA_S = SPHERE.schuler_frequency(0.0)
+
+
+class LawRun:
+    """The compiled law of a method, asked from Python; blocks as in a scenario."""
+
+    def __init__(
+        self,
+        network: dict[str, Any],
+        policy: dict[str, Any],
+        switching: dict[str, Any],
+        damping: str = "external",
+        step_s: float = 1.0,
+    ) -> None:
+        self.network = parse_network(network)
+        self.policy = POLICIES[policy["id"]].model_validate(policy)
+        self.switching = SWITCHINGS[switching["id"]].model_validate(switching)
+        transfer = self.network.transfer(OMEGA_S)
+        self.law = prepare_law(damping, self.network, transfer, self.policy, self.switching, step_s)
+        self.s = self.law.s
+
+    def step(
+        self,
+        d_e: float,
+        d_n: float = 0.0,
+        valid: bool = True,
+        v_c: tuple[float, float] = (0.0, 0.0),
+        accel: float = 0.0,
+        heading: float = 0.0,
+    ) -> np.ndarray:
+        """One call: c_E, c_N, a_E, a_N."""
+        self.s[DIFFERENCE], self.s[DIFFERENCE + 1], self.s[VALID] = d_e, d_n, float(valid)
+        return np.array(law_step(self.law.p, self.s, self.law.ring, *v_c, accel, heading))
+
+    def series(self, differences: Any, *places: int, **inputs: Any) -> np.ndarray:
+        """One call for each east difference; the state at ``places`` after each."""
+        rows = []
+        for d in differences:
+            self.step(float(d), **inputs)
+            rows.append([self.s[place] for place in places])
+        return np.array(rows)

@@ -1,0 +1,75 @@
+"""The command with fidelity strapdown: presets, files, faults, stopping."""
+
+from __future__ import annotations
+
+import csv
+import json
+import signal
+
+import pytest
+
+from app.cli import main
+from app.cli.progress import Bar
+from navcore.mechanization.strapdown.layout import NAVIGATION
+
+STRAPDOWN = ["--set", "run.fidelity=strapdown", "--set", "run.duration_h=0.05"]
+
+
+@pytest.mark.parametrize("preset", ["liu-networks", "sikuliaq-like", "zha-fast"])
+def test_a_linear_preset_runs_as_strapdown(preset, capsys):
+    assert main(["run", preset, *STRAPDOWN, "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["computed_on"].startswith("states every 1 s")
+    assert all(method["status"] == "ok" for method in document["methods"])
+
+
+def test_people_read_what_was_run(capsys):
+    assert main(["run", "zha-fast", *STRAPDOWN]) == 0
+    out = capsys.readouterr().out
+    assert "strapdown, 0.05 h" in out and "every 100 steps of the mechanization at 100 Hz" in out
+
+
+def test_csv_has_the_columns_of_the_contract(tmp_path, capsys):
+    assert main(["run", "zha-fast", *STRAPDOWN, "--out", str(tmp_path / "o"), "--format", "csv"]) == 0
+    with (tmp_path / "o" / "timeseries.csv").open(newline="") as stream:
+        header, *rows = csv.reader(stream)
+    assert header[-11:] == list(NAVIGATION) and header[9:11] == ["damped", "xi"]
+    assert len(rows) == 3 * 19 and all(len(row) == len(header) for row in rows)
+
+
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        (["site.lat_deg=88", "alignment.kind=compass"], "zha-fast: site.lat_deg = 88.0: compass alignment"),
+        (["imu.file=/nowhere.imu"], "/nowhere.imu: imu.file: No such file or directory"),
+        (["run.rate_hz=5"], "zha-fast: run.rate_hz = 5: must be >= 10 and <= 1000 (Hz)"),
+    ],
+)
+def test_a_fault_is_one_line_and_exit_2(changes, line, capsys):
+    words = [word for change in changes for word in ("--set", change)]
+    assert main(["run", "zha-fast", *STRAPDOWN, *words]) == 2
+    err = capsys.readouterr().err
+    assert err.startswith(line) and err.count("\n") == 1
+
+
+def test_ctrl_c_keeps_what_was_computed(tmp_path, capsys, monkeypatch):
+    asked = []
+
+    def interrupt_once(bar: Bar, fraction: float) -> None:
+        if not asked:
+            asked.append(fraction)
+            signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(Bar, "advance", interrupt_once)
+    long = ["--set", "run.fidelity=strapdown", "--set", "run.duration_h=100"]
+    code = main(["run", "zha-fast", *long, "--json", "--out", str(tmp_path / "o")])
+    document = json.loads(capsys.readouterr().out)
+    assert code == 3 and {m["status"] for m in document["methods"]} == {"stopped"}
+    assert any("stopped by the user at 60 s" in text for text in document["methods"][0]["warnings"])
+
+
+def test_check_tells_the_samples_of_a_strapdown_scenario(tmp_path, capsys):
+    path = tmp_path / "s.toml"
+    path.write_text('schema = 1\n[run]\nfidelity = "strapdown"\nduration_h = 0.5\nrate_hz = 200.0\n')
+    assert main(["check", str(path)]) == 0
+    assert "strapdown, 0.5 h, 360000 samples at 200 Hz" in capsys.readouterr().out

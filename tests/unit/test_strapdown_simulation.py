@@ -1,0 +1,215 @@
+"""simulate() of fidelity strapdown: identical inputs, cancel, divergence, columns, alignment, law series."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet
+import pytest
+
+from navcore.io.results import timeseries, write_results
+from navcore.measures import metrics
+from navcore.mechanization.recorder import NAMES
+from navcore.mechanization.strapdown.layout import NAVIGATION
+from navcore.motion.base import HEADING, LAT, VE
+from navcore.run import Run
+from navcore.scenario import Scenario
+from navcore.simulation import simulate
+from navcore.units import DEG
+
+COMPASS = {"damping": "external", "network": {"id": "compass", "sigma": 0.0088, "xi": 0.7}}
+UNSTABLE = {"damping": "external", "network": {"id": "compass", "k1": 0.001, "k2": 1.0, "k3": 0.5}}
+CHUNK_S = 60.0
+"""A cancel is asked for after each: at 100 Hz some 2 ms for the IMU and each method."""
+NOISY: dict[str, Any] = {
+    "imu": {"gyro_bias_dph": [0.01, 0.02, 0.0], "gyro_arw_dpsh": 0.01, "accel_vrw_ugpshz": 20.0},
+    "reference": {"kind": "log", "noise_mps": 0.2, "bias_mps": [0.1, -0.2]},
+}
+
+
+def scenario(hours: float = 0.2, **changes: Any) -> Scenario:
+    run = {"fidelity": "strapdown", "duration_h": hours, "seed": 5} | changes.pop("run", {})
+    return Scenario.parse(NOISY | {"run": run} | changes)
+
+
+def run_of(hours: float = 0.2, **changes: Any) -> Run:
+    return simulate(scenario(hours, **changes))
+
+
+def test_order_and_company_of_methods_change_nothing():
+    alone = run_of(method=[{"name": "c", **COMPASS}])
+    first = run_of(method=[{"name": "c", **COMPASS}, {"name": "f"}])
+    last = run_of(method=[{"name": "f"}, {"name": "c", **COMPASS}])
+    assert np.array_equal(alone.methods[0].rows, first.methods[0].rows)
+    assert np.array_equal(first.methods[0].rows, last.methods[1].rows)
+    assert np.array_equal(first.methods[1].rows, last.methods[0].rows)
+    assert not np.array_equal(first.methods[0].rows, first.methods[1].rows)
+
+
+def test_two_equal_methods_see_the_same_samples():
+    run = run_of(method=[{"name": "a", **COMPASS}, {"name": "b", **COMPASS}])
+    assert np.array_equal(run.methods[0].rows, run.methods[1].rows)
+    assert np.abs(run.methods[0].rows[:, :5]).max() > 0.0
+
+
+def test_another_seed_gives_another_run():
+    other = run_of(run={"seed": 6}, method=[COMPASS])
+    assert not np.array_equal(run_of(method=[COMPASS]).methods[0].rows, other.methods[0].rows)
+
+
+def test_rows_hold_start_every_output_step_and_the_end():
+    run = run_of(0.0141, run={"output_step_s": 20.0})
+    assert run.t_s.tolist() == [0.0, 20.0, 40.0, 50.0]
+    method = run.methods[0]
+    assert method.rows.shape == (4, 10) and method.navigation is not None
+    assert method.navigation.shape == (4, len(NAVIGATION)) and method.law_series.shape == (4, 4)
+    assert run.truth.shape == (4, 15)
+
+
+def test_statistics_are_those_of_the_recorded_states():
+    method = run_of(run={"output_step_s": 1.0}, method=[COMPASS]).methods[0]
+    for i, name in enumerate(NAMES):
+        assert method.errors[name]["rms"] == pytest.approx(np.sqrt(np.mean(method.rows[:, i] ** 2)), rel=1e-9)
+        assert method.errors[name]["final"] == method.rows[-1, i]
+
+
+def test_the_metrics_say_which_states_they_cover():
+    run = run_of(0.01, run={"rate_hz": 200.0})
+    assert metrics(run)["computed_on"] == "states every 1 s (every 200 steps of the mechanization at 200 Hz)"
+
+
+@pytest.mark.parametrize("stop_at", [1, 3])
+def test_a_cancel_acts_at_the_next_chunk_and_keeps_what_was_computed(stop_at):
+    asked: list[int] = []
+
+    def cancelled() -> bool:
+        asked.append(1)
+        return len(asked) == stop_at
+
+    run = simulate(scenario(200.0, method=[{"name": "free"}, COMPASS]), cancelled=cancelled)
+    assert len(asked) == stop_at
+    assert run.status == "stopped"
+    for method in run.methods:
+        assert method.status == "stopped"
+        assert f"stopped by the user at {stop_at * CHUNK_S:.0f} s" in method.warnings[-1]
+        assert method.t_s[-1] == stop_at * CHUNK_S - 10.0 and len(method.t_s) < len(run.t_s)
+        assert method.navigation is not None and len(method.navigation) == len(method.t_s)
+
+
+def test_progress_rises_to_one():
+    seen: list[float] = []
+    simulate(scenario(0.5), progress=seen.append)
+    assert seen[-1] == 1.0 and seen == sorted(seen) and len(seen) == 30
+
+
+def test_a_diverging_method_says_why_and_where_and_the_others_finish(tmp_path):
+    run = run_of(
+        12.0, run={"rate_hz": 20.0}, method=[UNSTABLE | {"name": "bad"}, {"name": "free"}],
+        initial_error={"attitude_arcmin": [5.0, 5.0, 0.0]},
+    )  # fmt: skip
+    bad, free = run.methods
+    assert (bad.status, free.status) == ("diverged", "ok")
+    assert "left the range of navigation" in bad.reason and " s = " in bad.reason
+    assert len(free.t_s) == len(run.t_s) > len(bad.t_s)
+    assert np.all(np.isfinite(bad.rows))
+    write_results(run, tmp_path / "out", "csv")
+    assert timeseries(run).num_rows == len(bad.t_s) + len(free.t_s)
+
+
+def test_the_files_carry_the_navigation_solution(tmp_path):
+    motion = {"kind": "legs", "leg": [{"duration_s": 3600.0, "speed_mps": 5.0, "heading_deg": 60.0}]}
+    run = run_of(motion=motion, method=[{"name": "free"}, COMPASS])
+    write_results(run, tmp_path / "out")
+    table = pyarrow.parquet.read_table(tmp_path / "out" / "timeseries.parquet")
+    assert tuple(table.column_names[-11:]) == NAVIGATION
+    assert table.column_names[:3] == ["method", "t_s", "phi_e_rad"]
+    first = {name: table[name].to_numpy()[: len(run.t_s)] for name in table.column_names[1:]}
+    np.testing.assert_allclose(first["ve_mps"] - run.truth[:, VE], first["dve_mps"], atol=1e-9)
+    np.testing.assert_allclose(
+        (first["lat_rad"] - run.truth[:, LAT]) * 6.35e6, first["dlat_m"], rtol=5e-3, atol=1e-3
+    )
+    np.testing.assert_allclose(first["heading_rad"], run.truth[:, HEADING], atol=1e-3)
+    assert np.all(first["dvu_mps"] == 0.0) and np.all(first["height_m"] == 0.0)
+
+
+def test_a_linear_run_has_no_navigation_columns():
+    run = simulate(Scenario.parse({"run": {"duration_h": 0.1}}))
+    assert run.methods[0].navigation is None
+    assert "lat_rad" not in timeseries(run).column_names
+
+
+@pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
+def test_the_law_series_tells_wish_state_xi_and_measure(fidelity):
+    """A log that steps by 2 m/s at 600 s: `threshold` (0.5 m/s) lets go."""
+    run = run_of(
+        0.5, run={"fidelity": fidelity, "output_step_s": 1.0},
+        reference={"kind": "log", "event": [{"t_h": 1 / 6, "duration_s": 1.0, "accel_mps2": [2.0, 0.0]}]},
+        method=[COMPASS | {"policy": {"id": "threshold"}}],
+    )  # fmt: skip
+    method = run.methods[0]
+    wanted, damped, xi, measure = method.law_series.T
+    assert np.array_equal(damped, method.rows[:, 8]) and np.array_equal(xi, method.rows[:, 9])
+    assert wanted[590] == damped[590] == 1.0 and wanted[700] == damped[700] == 0.0
+    assert measure[590] < 0.5 < measure[700]
+    assert np.array_equal(wanted, (measure <= 0.5).astype(float))
+
+
+@pytest.mark.parametrize("vertical", ["locked", "altimeter"])
+def test_the_vertical_channel_is_held_or_damped(vertical):
+    run = run_of(0.5, run={"vertical": vertical}, imu={"accel_bias_ug": [0.0, 0.0, 500.0]})
+    navigation = run.methods[0].navigation
+    assert navigation is not None
+    up_error = np.abs(navigation[:, -2]).max()
+    assert up_error == 0.0 if vertical == "locked" else 0.01 < up_error < 1.0
+
+
+def test_compensation_makes_the_difference_it_should():
+    """Coning at 2 Hz: without compensation the level attitude drifts."""
+    cone = [{"amplitude_deg": 1.0, "frequency_hz": 2.0, "phase_deg": phase} for phase in (0.0, 90.0)]
+    motion = {"kind": "swing", "pitch": cone[0], "roll": cone[1]}
+    worst = {}
+    for on in (True, False):
+        run = run_of(0.05, run={"compensation": on}, imu={}, reference={}, motion=motion)
+        worst[on] = run.methods[0].errors["phi_u_rad"]["max_abs"]
+    assert worst[True] < 0.02 * worst[False]
+
+
+SWING = {"amplitude_deg": 5.0, "frequency_hz": 0.13, "phase_deg": 40.0}
+
+
+@pytest.mark.parametrize(
+    "motion", [{"kind": "static"}, {"kind": "waves"}, {"kind": "swing", "roll": SWING, "heading": SWING}]
+)
+def test_an_alignment_takes_the_initial_error_out(motion):
+    """0.1 deg of tilt and 1 deg of heading: 0.003 deg of heading are left (physics.md 6.1)."""
+    run = run_of(
+        0.02, imu={}, reference={}, motion=motion, alignment={"kind": "compass"},
+        initial_error={"attitude_arcmin": [6.0, -6.0, 60.0], "position_arcsec": [10.0, 0.0]},
+    )  # fmt: skip
+    start = run.methods[0].rows[0]
+    assert abs(start[2]) < 0.004 * DEG and np.abs(start[:2]).max() < 2e-4 * DEG
+    assert start[3] == start[4] == 0.0
+    assert start[5] == pytest.approx(308.0, rel=0.01)
+
+
+def test_an_alignment_leaves_what_the_biases_make_of_it():
+    """phi_N = nabla_E / g: navigation starts with errors that its own sensors made."""
+    run = run_of(0.02, imu={"accel_bias_ug": [100.0, 0.0, 0.0]}, reference={}, alignment={"kind": "compass"})
+    assert run.methods[0].rows[0, 1] == pytest.approx(100e-6, rel=0.02)
+
+
+def test_an_alignment_at_speed_is_told():
+    motion = {"kind": "legs", "leg": [{"duration_s": 3600.0, "speed_mps": 5.0}]}
+    run = run_of(0.02, motion=motion, alignment={"kind": "compass"})
+    assert any("the alignment is made at rest" in text for text in run.warnings)
+
+
+def test_an_alignment_at_sea_leaves_what_one_at_rest_would():
+    """Waves disturb the compass loop by their accelerations only: pure rotation and heave hardly at all."""
+    imu = {"accel_bias_ug": [100.0, 0.0, 0.0], "gyro_bias_dph": [0.01, 0.0, 0.0]}
+    start = {}
+    for name, motion in (("rest", {"kind": "static"}), ("sea", {"kind": "waves", "speed_mps": 5.0})):
+        run = run_of(0.02, imu=imu, reference={}, motion=motion, alignment={"kind": "compass"})
+        start[name] = run.methods[0].rows[0, :3]
+    np.testing.assert_allclose(start["sea"], start["rest"], rtol=0.05, atol=0.002 * DEG)

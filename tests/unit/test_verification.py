@@ -1,0 +1,129 @@
+"""verify(): the error model beside the strapdown on the same noise, and when it is not to be trusted."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from navcore.errors import InputError
+from navcore.mechanization.recorder import NAMES
+from navcore.scenario import Scenario
+from navcore.units import DEG
+from navcore.verification import verify, why_not
+
+METHODS = [
+    {"name": "free"},
+    {"name": "classic2", "damping": "external", "network": {"id": "classic2"}},
+    {"name": "compass", "damping": "external", "network": {"id": "compass", "sigma": 0.0088, "xi": 0.7}},
+]
+
+
+def scenario(**blocks: Any) -> Scenario:
+    data: dict[str, Any] = {
+        "run": {"duration_h": 1.0, "rate_hz": 50.0, "seed": 3} | blocks.pop("run", {}),
+        "imu": {"gyro_bias_dph": [0.01, 0.02, 0.0], "gyro_arw_dpsh": 0.01, "accel_vrw_ugpshz": 20.0},
+        "reference": {"kind": "log", "noise_mps": 0.2, "bias_mps": [0.1, -0.2]},
+        "initial_error": {"attitude_arcmin": [0.5, -0.5, 3.0]},
+        "method": METHODS,
+    }
+    return Scenario.parse(data | blocks)
+
+
+@pytest.mark.parametrize("log_hz", [1.0, 0.7, 10.0])
+def test_on_the_same_noise_both_models_agree(log_hz):
+    """Noise dominates these curves: fed with another noise the models would be far apart."""
+    found = verify(scenario(reference={"kind": "log", "noise_mps": 0.2, "rate_hz": log_hz}))
+    assert found.complete and found.statements == ()
+    assert len(found.differences) == len(METHODS)
+    for difference in found.differences:
+        assert tuple(difference) == NAMES
+        for name, d in difference.items():
+            assert d.of_peak is not None and d.of_peak < 0.03, (name, d)
+
+
+def test_the_difference_is_that_of_the_output_rows():
+    found = verify(scenario())
+    assert np.array_equal(found.strapdown.t_s, found.linear.t_s)
+    full, simple = found.strapdown.methods[1], found.linear.methods[1]
+    gap = np.abs(full.rows[:, 3] - simple.rows[:, 3]).max()
+    assert found.differences[1]["dve_mps"].peak == gap > 0.0
+    assert full.navigation is not None and simple.navigation is None
+    assert (found.strapdown.scenario.run.fidelity, found.linear.scenario.run.fidelity) == (
+        "strapdown", "error_model",
+    )  # fmt: skip
+
+
+def test_an_alignment_gives_both_the_same_start():
+    found = verify(
+        scenario(
+            run={"fidelity": "strapdown"}, alignment={"kind": "compass", "duration_s": 600.0}, imu={},
+            initial_error={"attitude_arcmin": [6.0, -6.0, 60.0]},
+        )
+    )  # fmt: skip
+    start = found.linear.methods[0].rows[0]
+    np.testing.assert_allclose(start[:3], found.strapdown.methods[0].rows[0, :3], atol=1e-12)
+    assert 0.0 < abs(start[2]) < 0.01 * DEG
+
+
+@pytest.mark.parametrize(
+    ("blocks", "said"),
+    [
+        ({"initial_error": {"attitude_arcmin": [90.0, 0.0, 0.0]}}, "free: the tilt reaches 1.5 deg"),
+        ({"initial_error": {"attitude_arcmin": [0.0, 0.0, 600.0]}}, "the heading errs by up to 10 deg"),
+        ({"site": {"lat_deg": 80.0}}, "The latitude reaches 80.0 deg"),
+        ({"run": {"step_s": 0.1}}, "with steps of 1 s in place of 0.1 s"),
+        ({"run": {"duration_h": 73.0, "rate_hz": 10.0}, "method": METHODS[:1]}, "The run is 73 h long"),
+    ],
+)
+def test_why_the_linear_model_is_not_to_be_trusted(blocks, said):
+    assert any(said in text for text in verify(scenario(**blocks)).statements)
+
+
+def test_a_large_difference_is_told_with_its_quantity():
+    found = verify(scenario(initial_error={"attitude_arcmin": [600.0, 0.0, 600.0]}))
+    assert any("of the peak" in text and text.startswith("free: ") for text in found.statements)
+
+
+def test_a_cancel_keeps_what_both_have_computed():
+    asked: list[int] = []
+
+    def cancelled() -> bool:
+        asked.append(1)
+        return len(asked) == 4
+
+    found = verify(scenario(run={"duration_h": 10.0}), cancelled=cancelled)
+    assert len(asked) == 4 and not found.complete
+    assert found.strapdown.status == found.linear.status == "stopped"
+    for full, simple in zip(found.strapdown.methods, found.linear.methods, strict=True):
+        assert 230.0 == full.t_s[-1] <= simple.t_s[-1] < 400.0
+    assert found.differences[0]["dve_mps"].peak < 0.01
+
+
+def test_progress_rises_to_one():
+    seen: list[float] = []
+    verify(scenario(), seen.append)
+    assert seen == sorted(seen) and seen[-1] == 1.0 and len(seen) > 50
+
+
+@pytest.mark.parametrize(
+    ("blocks", "field"),
+    [
+        ({"run": {"fidelity": "channel"}}, "run.fidelity"),
+        ({"run": {"fidelity": "strapdown"}, "imu": {"file": "x.imu"}}, "imu.file"),
+    ],
+)
+def test_what_cannot_be_verified_is_refused_with_the_reason(blocks, field):
+    refused = scenario(**blocks)
+    assert why_not(refused)
+    with pytest.raises(InputError) as caught:
+        verify(refused)
+    assert caught.value.faults[0].field == field
+
+
+def test_what_cannot_be_run_as_strapdown_is_refused():
+    motion = {"kind": "swing", "roll": {"amplitude_deg": 3.0, "frequency_hz": 0.25}}
+    with pytest.raises(InputError, match="too low for the motion"):
+        verify(scenario(motion=motion | {"roll": {"amplitude_deg": 1.0, "frequency_hz": 4.0}}))
+    assert not why_not(scenario(motion=motion))

@@ -1,0 +1,109 @@
+"""Verification in the background: progress, stop, faults, and results that have become old."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from app import edits
+from app.verifier import CHANGED, STOPPED, Verifier
+from navcore.errors import Fault, InputError
+from navcore.scenario import Scenario
+
+DURATION = ("run", "duration_h")
+
+
+def verify(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Any:
+    """Stand-in: 3 h cannot be verified, 4 h is a fault of ours, 5 h lasts until it is stopped."""
+    hours = scenario.run.duration_h
+    if hours == 3.0:
+        raise InputError(Fault("", "run.fidelity", "channel", "leaves the Earth out"))
+    if hours == 4.0:
+        raise ZeroDivisionError("ours")
+    if hours == 5.0:
+        while not cancelled():
+            progress(0.5)
+            threading.Event().wait(0.002)
+        return SimpleNamespace(complete=False)
+    return SimpleNamespace(complete=True, of=scenario)
+
+
+def hours(value: float) -> Scenario:
+    return edits.with_value(Scenario(), DURATION, value)
+
+
+@pytest.fixture
+def made() -> Iterator[tuple[Verifier, list[float | None]]]:
+    told: list[float | None] = []
+    verifier = Verifier(lambda: told.append(verifier.fraction), verify)
+    yield verifier, told
+    verifier.cancel()
+    verifier.stop()
+
+
+def under_way(verifier: Verifier, told: list[float | None]) -> None:
+    verifier.start(hours(5.0))
+    while 0.5 not in told:
+        threading.Event().wait(0.002)
+
+
+def test_a_result_is_of_its_scenario_until_that_changes(made: tuple[Verifier, list]) -> None:
+    verifier, told = made
+    verifier.start(hours(1.0))
+    assert verifier.wait_idle(5.0)
+    assert told == [0.0, None]
+    beside = verifier.beside(hours(1.0))
+    assert beside is not None and not beside.old
+    changed = verifier.beside(hours(2.0))
+    assert changed is not None and changed.old
+    other, _ = edits.with_method(edits.with_value(Scenario(), ("reference", "kind"), "log"), None)
+    assert verifier.beside(other) is None  # not the same methods
+    verifier.forget()
+    assert verifier.beside(hours(1.0)) is None
+
+
+def test_progress_is_told_and_a_stop_keeps_the_earlier_result(made: tuple[Verifier, list]) -> None:
+    verifier, told = made
+    verifier.start(hours(1.0))
+    assert verifier.wait_idle(5.0)
+    kept = verifier.result
+    under_way(verifier, told)
+    verifier.cancel()
+    assert verifier.wait_idle(5.0)
+    assert (verifier.fraction, verifier.words) == (None, (STOPPED,))
+    assert verifier.result is kept
+
+
+def test_a_change_of_the_scenario_stops_it_and_says_so(made: tuple[Verifier, list]) -> None:
+    verifier, told = made
+    under_way(verifier, told)
+    verifier.follow(hours(5.0))
+    assert verifier.fraction is not None
+    verifier.follow(hours(2.0))
+    assert verifier.wait_idle(5.0)
+    assert verifier.words == (CHANGED,)
+    verifier.follow(hours(2.5))
+    assert verifier.words == ()
+    assert verifier.result is None
+
+
+@pytest.mark.parametrize(("length", "words"), [(3.0, "leaves the Earth out"), (4.0, "ZeroDivisionError")])
+def test_what_is_wrong_is_said(made: tuple[Verifier, list], length: float, words: str) -> None:
+    verifier, _ = made
+    verifier.start(hours(length))
+    assert verifier.wait_idle(5.0)
+    assert words in verifier.words[0]
+    assert verifier.result is None
+
+
+def test_a_second_start_takes_the_place_of_the_first(made: tuple[Verifier, list]) -> None:
+    verifier, told = made
+    under_way(verifier, told)
+    verifier.start(hours(1.0))
+    assert verifier.wait_idle(5.0)
+    assert verifier.scenario == hours(1.0)
+    assert verifier.words == ()
