@@ -15,7 +15,7 @@ endif
 
 KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
-.PHONY: help setup run test check format unit benchmarks guide lock clean REMAKE
+.PHONY: help setup run test check format unit benchmarks papers guide lock clean REMAKE
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'
@@ -24,6 +24,7 @@ help:
 	@echo 'make check    lint, format and types only'
 	@echo 'make unit     the fast tests only'
 	@echo 'make benchmarks  time the strapdown engine beside python-ins, which it installs into .venv'
+	@echo 'make papers   run the presets of the five papers and write docs/papers.md with its pictures anew'
 	@echo 'make format   lay the code out'
 	@echo 'make guide    write docs/scenario.md and the JSON Schema anew from the parameter models'
 	@echo 'make lock     resolve the locked requirements again (UPGRADE=--upgrade: to the newest versions)'
@@ -96,6 +97,9 @@ $(STAMPS)/benchmarks: requirements-benchmarks.lock $(STAMPS)/project
 	@$(PIP) $(LOCKED) --no-deps -r requirements-benchmarks.lock && touch $@
 
 # ---------------------------------------------------------------- upkeep
+
+papers: setup
+	@$(BIN)/python -m app.papers
 
 guide: $(STAMPS)/project
 	@$(BIN)/python -m navcore.scenario_guide

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, get_args
 
 from app.form import Path
+from navcore.averaging.parameters import Variant
 from navcore.motion import MOTIONS
 from navcore.network import LinearNetwork
 from navcore.network.compass import sigma_xi_from_gains
@@ -56,7 +57,7 @@ def with_value(
     _place(data, path, value)
     if path == ("run", "fidelity") and value != "strapdown":
         _leave_strapdown(data)
-    if path[0] == "method" and path[-1] in ("damping", "id"):
+    if path[0] == "method" and path[-1] in ("damping", "id", "variant"):
         _forget_made_name(scenario, data, int(path[1]))
     return Scenario.parse(data)
 
@@ -222,10 +223,12 @@ def _forget_made_name(scenario: Scenario, data: Any, index: int) -> None:
     method = scenario.method[index]
     others = [m["name"] for i, m in enumerate(data["method"]) if i != index]
     made = {method.model_copy(update={"name": ""}).label(), method.network.id, "free"}
+    made |= {f"averaging ({variant})" for variant in get_args(Variant)}
     if re.sub(r" \d+$", "", method.name) not in made:
         return
     block = data["method"][index]
-    block["name"] = _free_name("free" if block["damping"] == "free" else block["network"]["id"], others)
+    names = {"free": "free", "averaging": f"averaging ({block['averaging']['variant']})"}
+    block["name"] = _free_name(names.get(block["damping"], block["network"]["id"]), others)
 
 
 def _free_name(name: str, taken: list[str]) -> str:

@@ -227,7 +227,8 @@ def _is_row(annotation: Any) -> bool:
 
 def _label(name: str, info: FieldInfo, prefix: str, part: str = "") -> str:
     extra = extra_of(info)
-    words = [prefix, extra.get("label") or name.replace("_", " "), part]
+    plain = name.removesuffix(f"_{extra.get('unit')}").replace("_", " ")
+    words = [prefix, extra.get("label") or plain, part]
     unit = f"({extra['unit']})" if extra.get("unit") not in (None, "", "1") else ""
     return " ".join(word for word in (*words, unit) if word)
 

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 PAGE_STATE = "page state"
 """Label of the control through which the page reports its size and front tabs (static/page.js)."""
 
-_SIZE_WAIT_S = 1.0
+_SIZE_WAIT_S = 1.5
 _EDIT_TABS = ("Method", "Sensors", "Log", "Run", "Files")
 
 
@@ -101,6 +101,8 @@ class Page:
         session.attach(self)
         if session.run is not None:
             self.run_ended()
+        if session.waits:
+            self.run_waits()
 
     def _make_left(self) -> None:
         gui, session, actions, edit = self.gui, self.session, self._actions, self._editor.edit

@@ -199,6 +199,11 @@ class Session:
             for view in list(self._views):
                 view.scenario_changed(by)
 
+    @property
+    def waits(self) -> bool:
+        """Whether the scenario has changed and runs only when the user asks for it."""
+        return self.outdated and runs_on_demand(self.scenario) and not self._worker.busy
+
     def redo_run(self) -> None:
         """Run the scenario: after a stop, or when it runs on demand."""
         with self.lock:
@@ -331,6 +336,7 @@ class Sessions:
             session.close()
         for session in idle[: max(0, len(idle) - MOST_IDLE_RUNS)]:
             session.run = None
+            session.verifier.forget()
 
 
 def runs_on_demand(scenario: Scenario) -> bool:
@@ -346,7 +352,7 @@ def first_editable(scenario: Scenario) -> int:
     tunable = (
         i
         for i, m in enumerate(scenario.method)
-        if m.damping != "free" and len(type(m.network).model_fields) > 1
+        if not m.undamped and len(type(m.network).model_fields) > 1
     )
     return next(tunable, 0)
 

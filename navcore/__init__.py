@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from navcore.scenario import Scenario
     from navcore.scenario_file import load, presets
     from navcore.simulation import simulate
+    from navcore.verification import Verification, verify
 
 __version__ = "0.1.0"
 
@@ -41,11 +42,13 @@ __all__ = [
     "MethodRun",
     "Run",
     "Scenario",
+    "Verification",
     "load",
     "metrics",
     "parse_network",
     "presets",
     "simulate",
+    "verify",
 ]
 
 _HOME = {
@@ -59,6 +62,8 @@ _HOME = {
     "parse_network": "network",
     "presets": "scenario_file",
     "simulate": "simulation",
+    "Verification": "verification",
+    "verify": "verification",
 }
 
 

@@ -341,7 +341,7 @@ def _method_faults(scenario: Scenario) -> Iterator[Fault]:
         if not method.undamped:
             found = list(
                 combination_faults(
-                    method.damping, method.network, method.policy, method.switching, scenario.omega_s,
+                    method.damping, method.network, method.policy, method.switching,
                     scenario.sampling.law_step_s if scenario.strapdown else scenario.run.step_s,
                 )
             )  # fmt: skip

@@ -16,6 +16,7 @@ from navcore.control.policy import POLICIES
 from navcore.control.switching import SWITCHINGS
 from navcore.motion import MOTIONS
 from navcore.motion.legs import Leg
+from navcore.motion.profile import Point
 from navcore.motion.swing import Oscillation
 from navcore.network import NETWORKS
 from navcore.parameters import Parameters, allowed_range, element_of, extra_of
@@ -42,6 +43,7 @@ def _sections() -> Iterator[tuple[str, type[Parameters], str]]:
         yield f'[motion] kind = "{kind}"', model, ""
     yield "[motion.pitch], [motion.roll], [motion.heading]", Oscillation, "of a swing"
     yield "[[motion.leg]]", Leg, "of legs"
+    yield "[[motion.point]]", Point, "of a profile"
     yield "[imu]", Imu, ""
     yield "[alignment]", Alignment, ""
     yield "[[alignment.motion]]", AlignmentMotion, ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -25,10 +26,24 @@ _MOTIONS: tuple[dict[str, Any], ...] = (
     {"kind": "static"},
     {"kind": "swing", "pitch": _SWING, "roll": _SWING, "heading": _SWING},
     {"kind": "legs", "leg": [{"duration_s": 60.0, "speed_mps": 5.0}, {"duration_s": 60.0, "turn_dps": 1.0}]},
+    {"kind": "waves", "components": 8, "speed_mps": 5.0},
+    {
+        "kind": "profile",
+        "point": [{"t_s": 0.0, "velocity_mps": [0.0, 0.0]}, {"t_s": 60.0, "velocity_mps": [1.0, 2.0]}],
+    },
 )
+_TRACK = "t_s,lat_deg,lon_deg,heading_deg\n"
 
 
 _NETWORK = {"damping": "external", "network": {"id": "complementary"}}
+_POLICIES = [
+    _NETWORK | {"name": policy, "policy": {"id": policy}, "switching": {"id": switching}}
+    for policy, switching in (
+        ("threshold", "hard"), ("variation", "bumpless"), ("yaw_rate", "ramp"), ("acceleration", "keep"),
+    )
+] + [
+    {"damping": "external", "network": {"id": "unity2"}, "policy": {"id": "adaptive"}},
+]  # fmt: skip
 _COMPASS = {"damping": "external", "network": {"id": "compass"}}
 _AVERAGING = {"damping": "averaging"}
 _RATE_HZ = 20.0
@@ -44,17 +59,16 @@ def warm(progress: Callable[[str], None] = lambda what: None) -> None:
     """
     for motion in _MOTIONS:
         progress(f"{motion['kind']} motion, sensors, error model")
-        method = _NETWORK | {"policy": {"id": "threshold"}}
-        simulate(_scenario({"duration_h": 0.02}, motion, 1.0, [method]))
-    progress("half-period averaging")
-    simulate(_scenario({"duration_h": 0.02}, _MOTIONS[1], 1.0, [_AVERAGING]))
-    progress("strapdown mechanization, IMU simulation, compass alignment")
+        simulate(_scenario({"duration_h": 0.02}, motion, 1.0, _POLICIES))
+    progress("recorded track")
+    _warm_track()
+    progress("strapdown mechanization, IMU simulation, compass alignment, averaging")
     strapdown = {"fidelity": "strapdown", "duration_h": 0.02, "rate_hz": _RATE_HZ}
     slow_log, fast_log = 1.0, _RATE_HZ
     for log_hz in (slow_log, fast_log):
-        scenario = _scenario(strapdown, _MOTIONS[1], log_hz, [_COMPASS, _NETWORK, _AVERAGING])
-        alignment = scenario.alignment.model_copy(update={"kind": "compass", "duration_s": 60.0})
-        simulate(scenario.model_copy(update={"alignment": alignment}))
+        simulate(_scenario(strapdown, _MOTIONS[1], log_hz, [_COMPASS, _NETWORK], "compass"))
+    for fidelity in ("error_model", "strapdown"):
+        simulate(_scenario(strapdown | {"fidelity": fidelity}, _MOTIONS[0], 1.0, [_AVERAGING]))
     progress("alignment with a recorded IMU")
     _warm_coarse_alignment()
     progress("many strapdown runs at once")
@@ -62,10 +76,33 @@ def warm(progress: Callable[[str], None] = lambda what: None) -> None:
 
 
 def _scenario(
-    run: dict[str, Any], motion: dict[str, Any], log_hz: float, methods: list[dict[str, Any]]
+    run: dict[str, Any],
+    motion: dict[str, Any],
+    log_hz: float,
+    methods: list[dict[str, Any]],
+    alignment: str = "none",
 ) -> Scenario:
-    log = {"kind": "log", "noise_mps": 0.1, "drift_mps": 0.1, "rate_hz": log_hz}
-    return Scenario.parse({"run": run, "motion": motion, "imu": _IMU, "reference": log, "method": methods})
+    return Scenario.parse(
+        {
+            "run": run,
+            "motion": motion,
+            "imu": _IMU,
+            "reference": {"kind": "log", "noise_mps": 0.1, "drift_mps": 0.1, "rate_hz": log_hz},
+            "alignment": {"kind": alignment, "duration_s": 60.0},
+            "method": methods,
+        }
+    )
+
+
+def _warm_track() -> None:
+    import tempfile
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "track.csv"
+        rows = (f"{k},{0.5 + 1e-5 * k},{1e-5 * k},45.0\n" for k in range(120))
+        path.write_text(_TRACK + "".join(rows), "utf-8")
+        track = {"kind": "track", "file": str(path)}
+        simulate(_scenario({"duration_h": 0.02}, track, 1.0, [_NETWORK]))
 
 
 def _warm_coarse_alignment() -> None:

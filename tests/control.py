@@ -11,7 +11,9 @@ from navcore.control.layout import DIFFERENCE, VALID
 from navcore.control.policy import POLICIES
 from navcore.control.switching import SWITCHINGS
 from navcore.earth import SPHERE
+from navcore.filters import discretise
 from navcore.network import parse_network
+from navcore.network.base import NetworkParameters
 
 OMEGA_S = SPHERE.schuler_frequency(0.0)
 
@@ -54,3 +56,29 @@ class LawRun:
             self.step(float(d), **inputs)
             rows.append([self.s[place] for place in places])
         return np.array(rows)
+
+
+def sampled_radius(parameters: NetworkParameters, omega_s: float, law_step_s: float) -> float:
+    """Spectral radius of one level channel with the network sampled and held; below 1 is stable.
+
+    Parameters
+    ----------
+    parameters : NetworkParameters
+        The network; external damping in network form.
+    omega_s : float
+        rad/s.
+    law_step_s : float
+        s.
+    """
+    discrete = discretise(parameters.transfer(omega_s), law_step_s)
+    angle, n = omega_s * law_step_s, discrete.order
+    cos, sin = np.cos(angle), np.sin(angle)
+    # states v = dV, w = g phi/omega_s, x: v' = omega_s w, w' = -omega_s (v + c), c = -C x - (1 - D) v held
+    step = np.zeros((n + 2, n + 2))
+    step[:2, :2] = [[cos, sin], [-sin, cos]]
+    held = np.array([cos - 1.0, -sin])
+    output = np.concatenate([[-(1.0 - discrete.D), 0.0], -discrete.C])
+    step[:2] += np.outer(held, output)
+    step[2:, 0] = -discrete.B
+    step[2:, 2:] = np.eye(n) + discrete.dA
+    return float(np.max(np.abs(np.linalg.eigvals(step))))

@@ -145,7 +145,7 @@ def _floats(info: FieldInfo | None) -> st.SearchStrategy[float]:
         low, high, exclude_min=above, exclude_max=below, allow_nan=False, allow_subnormal=False
     )
     usual = st.floats(*_slider(info, low, high)).map(lambda value: float(f"{value:.3g}"))
-    # squares and quotients of numbers like 1e-300 leave the range of floats: that is arithmetic, not the models
+    # squares and quotients of numbers like 1e-300 leave the range of floats: arithmetic, not the models
     large_enough = st.one_of(usual, anything).filter(lambda value: value == 0.0 or abs(value) >= _SMALLEST)
     return large_enough.filter(
         lambda value: low <= value <= high and not (above and value == low) and not (below and value == high)

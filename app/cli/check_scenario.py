@@ -53,7 +53,7 @@ def _environment_warnings(scenario: Scenario) -> tuple[str, ...]:
 
 
 def _warnings(scenario: Scenario, method: Method) -> list[str]:
-    if method.damping == "free":
+    if method.undamped:
         return []
     network = method.network.transfer(scenario.omega_s)
     return list(dict.fromkeys((*network.warnings, *analyse(network).warnings)))
@@ -105,6 +105,9 @@ def _text(scenario: Scenario) -> list[str]:
     for m in scenario.method:
         if m.damping == "free":
             lines.append(f"  method {m.name}: free")
+        elif m.undamped:
+            copies = f"{m.averaging.variant}, {'with' if m.averaging.earth else 'without'} the 24 h line"
+            lines.append(f"  method {m.name}: averaging, {copies}")
         else:
             lines.append(
                 f"  method {m.name}: {m.damping}, network {m.network.id}, policy {m.policy.id}, "

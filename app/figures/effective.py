@@ -22,7 +22,7 @@ def _undamped(omega_s: float) -> LinearNetwork:
 
 def effective_network(method: MethodRun) -> LinearNetwork:
     """H(s) that acts in this method: 1 when it runs free."""
-    return _undamped(method.network.omega_s) if method.method.damping == "free" else method.network
+    return _undamped(method.network.omega_s) if method.method.undamped else method.network
 
 
 def closed_loop_poles(method: MethodRun) -> np.ndarray:

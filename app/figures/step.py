@@ -150,7 +150,7 @@ def _trace(
 
 def _settled_mark(method: MethodRun, index: int, tilt: np.ndarray | None, span_s: float) -> dict[str, Any]:
     """Diamond where the response to an initial tilt has come to rest; no point where it does not here."""
-    settles = None if method.method.damping == "free" else method.loop.settling_s
+    settles = None if method.method.undamped else method.loop.settling_s
     x, y = [], []
     if settles is not None and tilt is not None and settles <= span_s:
         x, y = [settles / MINUTE], [float(np.interp(settles, time_grid(span_s, POINTS), tilt))]

@@ -43,10 +43,11 @@ class FilesPanel:
         give: Callable[[str], None],
     ) -> None:
         with tab:
-            gui.add_html(notices.heading("Run on a ship's recording"), order=0)
+            gui.add_html(notices.heading("Run on recordings"), order=0)
             told = (
                 f"Speed log, track and heading: NMEA 0183, CSV, Parquet or MAT, one file after the other, "
-                f"at most {LARGEST_FILE / MIB:.0f} MiB each. A scenario (.toml) is opened."
+                f"at most {LARGEST_FILE / MIB:.0f} MiB each. A recorded IMU (PSINS or CSV) runs as full "
+                "strapdown. A scenario (.toml) is opened."
             )
             gui.add_html(notices.small(told), order=1)
             upload = gui.add_upload_button("Upload a file", hint=told, order=2)

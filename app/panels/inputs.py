@@ -158,14 +158,16 @@ class RunPanel:
 
 
 def _strapdown_only(scenario: Scenario) -> list[FieldSpec]:
-    """What other fidelities refuse: vertical channel, compensation and alignment."""
-    if scenario.run.fidelity != "strapdown":
-        return []
-    settings = [spec for spec in form.fields(RunSettings, ("run",)) if spec.path[-1] in _STRAPDOWN_ONLY]
+    """What other fidelities refuse, and the alignment record that averaging forecasts from in all of them."""
     path: Path = ("alignment",)
-    kind = form.choice(Alignment, "kind", path, label="alignment")
-    more = [] if scenario.alignment.kind == "none" else form.fields(Alignment, path, "alignment")
-    return [*settings, kind, *more]
+    more = form.fields(Alignment, path, "alignment")
+    record = [spec for spec in more if spec.path[-1] == "duration_s"]
+    averaged = any(method.damping == "averaging" for method in scenario.method)
+    if not scenario.strapdown:
+        return record if averaged else []
+    settings = [spec for spec in form.fields(RunSettings, ("run",)) if spec.path[-1] in _STRAPDOWN_ONLY]
+    shown = more if scenario.alignment.kind != "none" else record if averaged else []
+    return [*settings, form.choice(Alignment, "kind", path, label="alignment"), *shown]
 
 
 def _swings(scenario: Scenario) -> list[FieldSpec]:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 _WORDS_PX = {True: 96, False: 186}
 """Room for the words and numbers above the plot, in a wide window and in a narrow one."""
+_BETWEEN_PX = 8
 _MISPRINT, _SWITCH = "misprint", "form shown"
 
 
@@ -86,7 +87,7 @@ class Laboratory:
         self._words.content = (
             f'<div style="height:{words}px;overflow-y:auto">{words_html(MISPRINTS[id], comparison)}</div>'
         )
-        aspect = self._layout.aspect(2 * CHOOSER_PX + words)
+        aspect = self._layout.aspect(2 * CHOOSER_PX + words + _BETWEEN_PX)
         made = comparison_plot(comparison, shown, aspect, width_px=float(self._layout.plot_px))
         made["layout"]["meta"] |= {"misprint": id, "shown": shown}
         if self._plot is not None:

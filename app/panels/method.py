@@ -128,7 +128,7 @@ class MethodPanel:
         if run is not None and run.scenario == scenario:
             loop = (
                 notices.small(loop_text(run.methods[index].loop))
-                if scenario.method[index].damping != "free"
+                if not scenario.method[index].undamped
                 else ""
             )
             texts = [text for text in warnings_for(run).get(index, ()) if text != NO_DESIGN]

@@ -12,6 +12,9 @@ from app.papers.runs import Runs
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+_SMALLEST = 1e-6
+"""What is smaller is rounding in most places, and not the same on every processor."""
+
 Verdict = Literal["agrees", "differs"]
 Span = tuple[float, float]
 
@@ -135,9 +138,11 @@ class Paper:
 
 
 def number(value: float, digits: int = 3) -> str:
-    """Text of a number with a fixed count of significant digits, no exponent within 1e-4 .. 1e6."""
+    """Text of a number with a fixed count of significant digits; no exponent within 1e-4 .. 1e6."""
     if not math.isfinite(value):
         return "-" if math.isnan(value) else "infinite"
+    if 0.0 < abs(value) < _SMALLEST:
+        return "< 1e-6"
     text = f"{value:.{digits - 1}e}"
     mantissa, exponent = text.split("e")
     power = int(exponent)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from app.papers.measure import departure, rms
-from app.papers.runs import STRAPDOWN, Runs, method, scenario_of
+from app.papers.runs import STRAPDOWN_HZ, Runs, method, scenario_of
 from navcore.mechanization.recorder import DV_E, DV_N, PHI_E, PHI_N, POSITION
 from navcore.run import Run
 from navcore.scenario import Scenario
@@ -31,16 +31,17 @@ METHODS = (
     "threshold",
     "variation + hard",
     "variation + ramp",
+    "variation + Liu 19",
     "variation + bumpless",
 )
-NOVEL, BEST = "variation + ramp", "variation + bumpless"
+RAMP, NOVEL, BEST = "variation + ramp", "variation + Liu 19", "variation + bumpless"
 
 # ---------------------------------------------------------------- the log's error of each case
 
 Events = list[dict[str, Any]]
 
 
-def _change(t_h: float, lasts_h: float, change: Sequence[float], within_s: float) -> Events:
+def _change(t_h: float, lasts_h: float, change: Iterable[float], within_s: float) -> Events:
     """A change of the log's error and back."""
     return [
         {"t_h": t, "duration_s": within_s, "accel_mps2": [float(sign * c / within_s) for c in change]}
@@ -136,8 +137,7 @@ def study(runs: Runs, case: str) -> np.ndarray:
 
 def in_strapdown(scenario: Scenario) -> Scenario:
     """The same scenario in the full strapdown."""
-    settings = dict(override.removeprefix("run.").split("=") for override in STRAPDOWN)
-    update = {"fidelity": settings["fidelity"], "rate_hz": float(settings["rate_hz"])}
+    update = {"fidelity": "strapdown", "rate_hz": STRAPDOWN_HZ}
     return scenario.model_copy(update={"run": scenario.run.model_copy(update=update)})
 
 
@@ -194,7 +194,7 @@ def fig_7(runs: Runs) -> Run:
     return runs.keep("fig 7", make)
 
 
-def switched(runs: Runs, switching: str) -> Run:
+def switched(runs: Runs, switching: str, **more: str) -> Run:
     """The same log without the step, undamped for 200 s at 10 h."""
 
     def make() -> Run:
@@ -204,11 +204,11 @@ def switched(runs: Runs, switching: str) -> Run:
             **base.canonical()["method"][0],
             "name": switching,
             "event": [],
-            "switching": {"id": switching},
+            "switching": {"id": switching, **more},
         }
         return simulate(type(base).parse({**base.canonical(), "reference": log, "method": [one]}))
 
-    return runs.keep(("fig 7", switching), make)
+    return runs.keep(("fig 7", switching, *more.values()), make)
 
 
 def overshoot(run: Run, index: int = 0) -> float:

@@ -50,8 +50,8 @@ def _draw(runs: Runs, figure: Figure) -> None:
             axis.set_ylim(*window)
         axis.set_xscale("log" if found.x_axis.log else "linear")
         axis.set_yscale("log" if found.y_axis.log else "linear")
-        labels = [f"{a.label}, {a.unit}" if a.unit else a.label for a in (found.x_axis, found.y_axis)]
-        panel(axis, f"{item.paper}, {item.where}", *labels)
+        x, y = (f"{a.label}, {a.unit}" if a.unit else a.label for a in (found.x_axis, found.y_axis))
+        panel(axis, f"{item.paper}, {item.where}", x, y)
     for axis in list(axes)[len(items) :]:
         axis.set_axis_off()
 

@@ -12,7 +12,8 @@ from navcore.simulation import simulate
 
 _Made = TypeVar("_Made")
 
-STRAPDOWN = ("run.fidelity=strapdown", "run.rate_hz=50.0")
+STRAPDOWN_HZ = 50.0
+STRAPDOWN = ("run.fidelity=strapdown", f"run.rate_hz={STRAPDOWN_HZ}")
 """Overrides that turn a preset of the linear model into its full strapdown."""
 
 

@@ -10,6 +10,7 @@ from app.papers.claim import Claim, Exhibit, Paper, Table, about, at_least, at_m
 from app.papers.measure import hours, peak
 from app.papers.picture import curve, panel
 from app.papers.runs import Runs, method
+from app.papers.sun_optimum import OPTIMUM
 from app.papers.sun_ship import SHIP
 from navcore.earth import SPHERE
 from navcore.loop import analyse, network_step_response
@@ -251,5 +252,5 @@ PAPER = Paper(
     "Sun 2017",
     "Sun, Xu, Liu, Zhang, Li, Tong: *An adaptive damping network designed for strapdown fiber optic "
     "gyrocompass system for ships*, Sensors 17 (3), 494, 2017.",
-    (STEP, LAW, SHIP),
+    (STEP, LAW, OPTIMUM, SHIP),
 )

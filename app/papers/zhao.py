@@ -104,11 +104,13 @@ _SPLIT = (
 )
 
 _NEW = (
-    "averaging cancels what the state at t = 0 holds, nothing that arises later: random walks, and biases that turn with "
-    "the vehicle, raise new Schuler oscillations. (Zhao 6.3 says as much of his own figure 12.)"
+    "averaging cancels what the state at t = 0 holds, nothing that arises later: random walks, and biases "
+    "that turn with the vehicle, raise new Schuler oscillations. (Zhao 6.3 says as much of his own figure "
+    "12.)"
 )
 _FORECAST = (
-    "the forecast of half a day carries the mean gyro noise of the alignment record, and the biases turn with the vehicle."
+    "the forecast of half a day carries the mean gyro noise of the alignment record, and the biases turn "
+    "with the vehicle."
 )
 
 PAPER = Paper(

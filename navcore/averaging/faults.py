@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from navcore.errors import Fault
+from navcore.averaging.record import standing_row
+from navcore.errors import Fault, InputError
 
 if TYPE_CHECKING:
     from navcore.scenario import Scenario
@@ -25,9 +26,10 @@ def averaging_faults(scenario: Scenario) -> Iterator[Fault]:
                 "", f"alignment.motion.{i}.duration_s", motion.duration_s,
                 f"must be <= {-motion.t_s:g} (s): navigation starts at 0",
             )  # fmt: skip
-    for i, method in enumerate(scenario.method):
-        if method.damping != "averaging":
-            continue
+    averaging = [i for i, method in enumerate(scenario.method) if method.damping == "averaging"]
+    if averaging and scenario.motion.kind != "track":
+        yield from _start_faults(scenario)
+    for i in averaging:
         if scenario.run.fidelity == "channel":
             yield Fault(
                 "", f"method.{i}.damping", "averaging",
@@ -39,3 +41,15 @@ def averaging_faults(scenario: Scenario) -> Iterator[Fault]:
                 "", f"method.{i}.damping", "averaging",
                 "needs a simulated IMU: its forecast comes from a simulated alignment record (no imu.file)",
             )  # fmt: skip
+
+
+def _start_faults(scenario: Scenario) -> Iterator[Fault]:
+    """A vehicle under way at t = 0 (a recorded track tells when it is run)."""
+    try:
+        row = scenario.motion.truth(1, 1.0, scenario.site.site(), scenario.earth).values[0]
+    except InputError:
+        return  # told with the motion itself
+    try:
+        standing_row(row)
+    except InputError as error:
+        yield from error.faults

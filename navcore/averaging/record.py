@@ -128,7 +128,9 @@ def _errors(model: SensorModel, true: np.ndarray, seed: int) -> np.ndarray:
     if model.instability > 0.0:
         first = unit_noise(seed, f"{model.stream}.instability", 1, 3)
         before = unit_noise(seed, f"{model.stream}.alignment.instability", seconds, 3)
-        drift = gauss_markov(np.concatenate([first, before]), math.exp(-RECORD_STEP_S / model.tau_s))
+        unit = np.concatenate([first, before])
+        unit.flags.writeable = False  # as all drawn numbers: else numba compiles the kernel once more
+        drift = gauss_markov(unit, math.exp(-RECORD_STEP_S / model.tau_s))
         error = error + model.instability * RECORD_STEP_S * drift[:0:-1]
     if model.lsb.any():
         total = np.cumsum(true + error, axis=0)

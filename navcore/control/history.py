@@ -1,4 +1,4 @@
-"""What the law remembers: clock, low-pass of the input, and a ring with one row a call. Compiled."""
+"""What the law remembers: clock and a ring with one row a call. Compiled."""
 
 from __future__ import annotations
 
@@ -8,12 +8,8 @@ from navcore.compiled import inlined, kernel
 from navcore.control.layout import (
     CLOCK,
     DAMPED,
-    DAMPING,
     DIFFERENCE,
-    EXTERNAL,
     FRESH,
-    INPUT_MEAN,
-    INPUT_SHARE,
     LAST_HEADING,
     LAW_STEP,
     MAX_STATES,
@@ -24,10 +20,8 @@ from navcore.control.layout import (
     RING_HEAD,
     RING_INPUT,
     RING_X,
-    RING_XI,
     STARTED,
     TOTAL_HEADING,
-    TUNED_XI,
     VALID,
     X_E,
 )
@@ -63,15 +57,7 @@ def remember(p, s, ring, u_e, u_n, accel, heading, use):
     """Advance the clock and take this call's difference, input, state and motion into the history."""
     starting = s[STARTED] == 0.0
     s[CLOCK] = 0.0 if starting else s[CLOCK] + p[LAW_STEP]
-    valid = s[VALID] != 0.0
-    s[FRESH] = s[FRESH] + 1.0 if valid else 0.0
-    usable = valid or p[DAMPING] != EXTERNAL
-    if starting or (s[FRESH] == 1.0 and p[DAMPING] == EXTERNAL):
-        # After a gap the old mean says nothing about the new difference.
-        s[INPUT_MEAN], s[INPUT_MEAN + 1] = u_e, u_n
-    elif usable:
-        s[INPUT_MEAN] += p[INPUT_SHARE] * (u_e - s[INPUT_MEAN])
-        s[INPUT_MEAN + 1] += p[INPUT_SHARE] * (u_n - s[INPUT_MEAN + 1])
+    s[FRESH] = s[FRESH] + 1.0 if s[VALID] != 0.0 else 0.0
     turned = 0.0 if starting else heading - s[LAST_HEADING]
     s[LAST_HEADING] = heading
     s[TOTAL_HEADING] += turned - 2.0 * math.pi * math.floor(turned / (2.0 * math.pi) + 0.5)
@@ -86,7 +72,7 @@ def remember(p, s, ring, u_e, u_n, accel, heading, use):
     ring[head, RING_AUXILIARY] = (
         s[TOTAL_HEADING] if use == USE_HEADING else accel if use == USE_ACCELERATION else 0.0
     )
-    ring[head, RING_XI], ring[head, RING_DAMPED] = s[TUNED_XI], s[DAMPED]
+    ring[head, RING_DAMPED] = s[DAMPED]
 
 
 @inlined

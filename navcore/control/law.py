@@ -33,7 +33,6 @@ from navcore.control.layout import (
     FREE,
     FREEZES,
     HISTORY,
-    INPUT_SHARE,
     INTERNAL,
     LAW_STEP,
     MAX_STATES,
@@ -44,6 +43,8 @@ from navcore.control.layout import (
     NETWORK_D,
     NETWORK_STEADY,
     NOMINAL_XI,
+    OFFSET,
+    OFFSET_DECAY,
     OMEGA_S,
     ORDER,
     PARAMETERS,
@@ -90,8 +91,8 @@ __all__ = ["Law", "law_step", "network_in_force", "prepare_law", "realisation_of
 THRESHOLD = Threshold.code
 _DAMPING_CODES = {"free": FREE, "internal": INTERNAL, "external": EXTERNAL}
 _REALISATION_CODES = {"network": NETWORK, "feedback": FEEDBACK, "as_printed": AS_PRINTED}
-_INPUT_LOWPASS_S = 100.0
-"""Time constant of the mean input by which a re-tuned network knows what stands."""
+_OFFSET_FADES_S = 100.0
+"""Time constant with which the correction passes to that of a re-tuned network."""
 
 
 @inlined
@@ -169,7 +170,11 @@ def _full_step(p, s, ring, v_e, v_n, accel, heading):
             s[CORRECTION + 1] = 0.0
         return s[CORRECTION], s[CORRECTION + 1], 0.0, 0.0
     s[ENGAGED] = 1.0
-    return _correct(p, s, v_e, v_n, u_e, u_n, p[FEEDBACK_K1] + s[FEEDBACK_GAIN])
+    c_e, c_n, a_e, a_n = _correct(p, s, v_e, v_n, u_e, u_n, p[FEEDBACK_K1] + s[FEEDBACK_GAIN])
+    s[CORRECTION], s[CORRECTION + 1] = c_e + s[OFFSET], c_n + s[OFFSET + 1]
+    s[OFFSET] *= p[OFFSET_DECAY]
+    s[OFFSET + 1] *= p[OFFSET_DECAY]
+    return s[CORRECTION], s[CORRECTION + 1], a_e, a_n
 
 
 @dataclass(frozen=True)
@@ -219,7 +224,7 @@ def prepare_law(
         Network, policy and switching do not go together.
     """
     omega_s = network.omega_s
-    faults = list(combination_faults(damping, parameters, policy, switching, omega_s, law_step_s))
+    faults = list(combination_faults(damping, parameters, policy, switching, law_step_s))
     if faults:
         raise InputError(faults)
     running = network_in_force(damping, parameters, policy)
@@ -246,7 +251,7 @@ def _fill_settings(
     p[LAW_STEP], p[REMEMBERS] = law_step_s, policy.remembers
     p[HISTORY], p[FREEZES] = policy.keeps_time or switching.keeps_time, switching.freezes
     p[PLAIN] = isinstance(policy, Constant | Threshold) and isinstance(switching, Hard)
-    p[INPUT_SHARE] = -math.expm1(-law_step_s / _INPUT_LOWPASS_S)
+    p[OFFSET_DECAY] = math.exp(-law_step_s / _OFFSET_FADES_S)
     _fill(p, POLICY_PARAMETERS, policy.packed(law_step_s))
     _fill(p, SWITCHING_PARAMETERS, switching.packed(law_step_s))
 

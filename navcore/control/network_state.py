@@ -12,6 +12,7 @@ from navcore.control.layout import (
     NETWORK_C,
     NETWORK_D,
     NETWORK_STEADY,
+    OFFSET,
     ORDER,
     X_E,
     X_N,
@@ -26,9 +27,19 @@ def clear_network(p, s, u_e, u_n):
     constant speed would look like an acceleration.
     """
     steady = 1.0 if p[DAMPING] == INTERNAL else 0.0
+    s[OFFSET], s[OFFSET + 1] = 0.0, 0.0
     for i in range(int(p[ORDER])):
         s[X_E + i] = steady * s[NETWORK_STEADY + i] * u_e
         s[X_N + i] = steady * s[NETWORK_STEADY + i] * u_n
+
+
+@inlined
+def rest(p, s, u_e, u_n):
+    """Put the network into the state at which the inputs u_E, u_N (m/s) leave it at rest."""
+    s[OFFSET], s[OFFSET + 1] = 0.0, 0.0
+    for i in range(int(p[ORDER])):
+        s[X_E + i] = s[NETWORK_STEADY + i] * u_e
+        s[X_N + i] = s[NETWORK_STEADY + i] * u_n
 
 
 @inlined

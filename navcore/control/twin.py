@@ -32,7 +32,7 @@ class _Form:
     B: np.ndarray
     C: np.ndarray
     D: float
-    continuous: tuple[np.ndarray, np.ndarray] | None = None
+    continuous: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
     @property
     def steady(self) -> np.ndarray:
@@ -42,26 +42,23 @@ class _Form:
 def _bilinear(A: np.ndarray, B: np.ndarray, C: np.ndarray, D: float, a: float) -> _Form:
     eye = np.eye(len(B))
     inverse = np.linalg.inv(eye - a * A)
-    return _Form((eye + a * A) @ inverse, 2.0 * a * inverse @ B, C @ inverse, D + a * C @ inverse @ B, (A, B))
+    return _Form(
+        (eye + a * A) @ inverse, 2.0 * a * inverse @ B, C @ inverse, D + a * C @ inverse @ B, (A, B, C)
+    )
 
 
-def _observer(parameters: NetworkParameters, omega_s: float, a: float) -> _Form:
-    """Q = 1 - H in observer form: the first state is the output."""
+def _controller(parameters: NetworkParameters, omega_s: float, a: float) -> _Form:
+    """Q = 1 - H with the low-passed input and its scaled derivatives as states."""
     network = parameters.transfer(omega_s)
     n = network.order
     A = np.diag(np.ones(n - 1), 1)
-    A[:, 0] = -network.den_p[1:]
-    return _bilinear(A, (network.den_p - network.num_p)[1:], np.eye(n)[0], 0.0, a)
-
-
-def _outputs(form: _Form, mean: float) -> tuple[np.ndarray, np.ndarray]:
-    """Matrix and offset that give output and derivatives from the state, for a constant input."""
-    assert form.continuous is not None
-    A, B = form.continuous
-    n = len(B)
-    powers = [np.linalg.matrix_power(A, i) for i in range(n)]
-    offset = [sum((powers[j] @ B)[0] for j in range(i)) * mean for i in range(n)]
-    return np.array([power[0] for power in powers]), np.array(offset)
+    A[-1] = -network.den_p[:0:-1]
+    last = network.den_p[-1]
+    scale = last ** (np.arange(n) / n) / last  # z^(i) = scale_i X_(i+1)
+    return _bilinear(
+        A * scale[None, :] / scale[:, None], np.eye(n)[-1] / scale,
+        (network.den_p - network.num_p)[:0:-1] * scale, 0.0, a,
+    )  # fmt: skip
 
 
 class TwinLaw:
@@ -105,15 +102,15 @@ class TwinLaw:
         self.damped = self.engaged = False
         self.decision, self.count, self.fresh = True, 0, 0
         self.xi = self.measure = self.engaged_at = self.stepped_at = 0.0
-        self.mean = self.low = self.correction = np.zeros(2)
-        self.memory: tuple[np.ndarray, np.ndarray, float] = (self.states, np.zeros(2), 0.0)
+        self.offset = self.low = self.correction = np.zeros(2)
+        self.memory: tuple[np.ndarray, np.ndarray] = (self.states, np.zeros(2))
 
     def _form(self, xi: float) -> _Form:
         if self.policy.id == "schedule":
             return self._gains(*getattr(self.policy, "from"))
         if self.tunes:
             self.tuned = xi
-            return _observer(self.network.with_damping(xi), self.omega_s, self.a)
+            return _controller(self.network.with_damping(xi), self.omega_s, self.a)
         if self.realisation != "network" and isinstance(self.network, CompassNetwork):
             return self._gains(*self.network.gains(self.omega_s))
         d = discretise(self.network.transfer(self.omega_s), self.step_s)
@@ -132,14 +129,13 @@ class TwinLaw:
         """Return (c_E, c_N), (a_E, a_N) for the held difference, V_c (m/s), |acceleration| and heading."""
         u = difference if self.external else -v_c
         self.fresh = self.fresh + 1 if valid else 0
-        self._take_mean(u, valid)
         if self.rows:
             turned = (heading - self.rows[-1]["heading"] + math.pi) % (2.0 * math.pi) - math.pi
             total = self.rows[-1]["total"] + turned
         else:
             total = 0.0
         self.rows.append(
-            {"d": difference, "u": u, "x": self.states.copy(), "xi": self.tuned, "damped": self.damped,
+            {"d": difference, "u": u, "x": self.states.copy(), "damped": self.damped,
              "accel": accel, "heading": heading, "total": total}
         )  # fmt: skip
         wanted = getattr(self, f"_policy_{self.policy.id}")(difference, valid)
@@ -161,8 +157,9 @@ class TwinLaw:
         c = self._feed(u)
         if self.realisation == "as_printed":
             c = c - (v_c + u)
-        self.correction = c
-        return c, self.k1 * u
+        self.correction = c + self.offset
+        self.offset = self.offset * math.exp(-self.step_s / 100.0)
+        return self.correction, self.k1 * u
 
     @property
     def now(self) -> float:
@@ -172,18 +169,13 @@ class TwinLaw:
     def _calls(self, seconds: float) -> int:
         return max(1, round(seconds / self.step_s))
 
-    def _take_mean(self, u: Vector, valid: bool) -> None:
-        if not self.rows or (self.external and self.fresh == 1):
-            self.mean = u
-        elif valid or not self.external:
-            self.mean = self.mean + (1.0 - math.exp(-self.step_s / 100.0)) * (u - self.mean)
-
     def _feed(self, u: Vector) -> Vector:
         c = self.states @ self.form.C + self.form.D * u
         self.states = self.states @ self.form.A.T + np.outer(u, self.form.B)
         return c
 
     def _clear(self, u: Vector) -> None:
+        self.offset = np.zeros(2)
         self.states = np.zeros_like(self.states) if self.external else np.outer(u, self.form.steady)
 
     # policies
@@ -254,28 +246,25 @@ class TwinLaw:
     def _at_sample(self, u: Vector) -> np.ndarray:
         """Continuous states at the sample, (2, n)."""
         assert self.form.continuous is not None
-        A, B = self.form.continuous
+        A, B, _ = self.form.continuous
         return np.linalg.solve(np.eye(len(B)) - self.a * A, (self.states + self.a * np.outer(u, B)).T).T
 
     def _discrete(self, form: _Form, v: np.ndarray, u: Vector) -> np.ndarray:
         assert form.continuous is not None
-        A, B = form.continuous
+        A, B, _ = form.continuous
         return v - self.a * (v @ A.T + np.outer(u, B))
 
-    def _retune(self, xi: float, u: Vector, mean: Vector, smooth: bool) -> None:
+    def _retune(self, xi: float, u: Vector) -> None:
         if xi == self.tuned:
             return
         v, old, new = self._at_sample(u), self.form, self._form(xi)
-        if smooth:
-            for channel in range(2):
-                before, offset = _outputs(old, mean[channel])
-                after, new_offset = _outputs(new, mean[channel])
-                v[channel] = np.linalg.solve(after, before @ v[channel] + offset - new_offset)
+        assert old.continuous is not None and new.continuous is not None
+        self.offset = self.offset + v @ (old.continuous[2] - new.continuous[2])
         self.form, self.states = new, self._discrete(new, v, u)
 
     def _follow_target(self, u: Vector) -> None:
         if self.tunes:
-            self._retune(self.target, u, self.mean, not (self.external and self.fresh == 1))
+            self._retune(self.target, u)
 
     def _set(self, damped: bool, xi: float = 0.0) -> None:
         self.damped, self.xi = damped, xi
@@ -300,13 +289,14 @@ class TwinLaw:
         left = self.switching.duration_s - 1.0 - (self.now - self.engaged_at)
         left = 0.0 if abs(left) < 1e-6 else left
         xi = self.target * math.exp(-max(left, 0.0))
-        if not self.damped:
-            self.form = self._form(xi)
-            self._clear(u)
-        elif left > 1e-6 - self.step_s:
-            self._retune(xi, u, u, self.switching.form == "as_printed")
+        if left > 1e-6 - self.step_s:
+            self._retune(xi, u)
         else:
             self._follow_target(u)
+        if not self.damped:
+            self._clear(u)
+        if left >= 0.0 and self.switching.form == "as_printed":
+            self.states, self.offset = np.outer(u, self.form.steady), np.zeros(2)
         return self._set(True, xi)
 
     def _switch_step(self, wanted: bool, u: Vector, valid: bool) -> None:
@@ -326,7 +316,7 @@ class TwinLaw:
         self.stepped_at = self.now
         if xi < 1e-9:
             return self._set(False)
-        self._retune(xi, u, self.mean, True)
+        self._retune(xi, u)
         return self._set(True, xi)
 
     def _switch_bumpless(self, wanted: bool, u: Vector, valid: bool) -> None:
@@ -335,14 +325,15 @@ class TwinLaw:
             if self.damped and len(self.rows) >= age + n and self.rows[-1 - age]["damped"]:
                 row = self.rows[-1 - age]
                 window = self.rows[len(self.rows) - age - n : len(self.rows) - age]
-                self.memory = (row["x"], np.mean([r["u"] for r in window], axis=0), row["xi"])
+                self.memory = (row["x"], np.mean([r["u"] for r in window], axis=0))
             return self._set(False)
         if not self.damped:
             if (self.fresh if self.external else len(self.rows)) < n:
                 return None
-            x0, m0, xi0 = self.memory
+            x0, m0 = self.memory
             if self.tunes:
-                self.form = self._form(xi0 or self.target)
+                self.form = self._form(self.target)
+            self.offset = np.zeros(2)
             change = np.mean([row["u"] for row in self.rows[-n:]], axis=0) - m0
             self.states = x0 + np.outer(change, self.form.steady)
         self._follow_target(u)

@@ -57,7 +57,8 @@ def simulated_errors(
         error = error + event_velocity(reference.event, time_s)
     return ReferenceErrors(
         time_s=time_s,
-        error=np.ascontiguousarray(np.broadcast_to(error, (time_s.size, 2))),
+        # A copy: one that may not be written to would make numba compile the kernels a second time.
+        error=np.array(np.broadcast_to(error, (time_s.size, 2)), order="C"),
         valid=in_service(reference.outage, time_s),
         body_frame=reference.frame == "body",
         hold_s=hold_time(interval),

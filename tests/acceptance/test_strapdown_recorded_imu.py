@@ -12,7 +12,9 @@ from navcore.mechanization.strapdown.attitude import angles_of
 from navcore.motion.base import COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL
 from navcore.network.compass import CompassNetwork
 from navcore.network.undamped import UndampedNetwork
+from navcore.scenario import Scenario
 from navcore.sensors.recorded_imu import check_rest, read_imu
+from navcore.simulation import simulate
 from navcore.units import DEG
 from tests.strapdown import law, reference
 
@@ -57,3 +59,30 @@ def test_damping_with_zero_velocity_holds_what_runs_away_free(record, aligned):
         worst[damping] = np.abs(run.recorder.rows[:, 3:5]).max()
     assert worst["free"] < 1.0
     assert worst["external"] < 0.3 * worst["free"]
+
+
+def test_the_same_as_a_scenario(shared_data):
+    """``imu.file``: 570 s left out, aligned until 950 s, then navigated with V_r = 0."""
+    run = simulate(
+        Scenario.parse(
+            {
+                "run": {"fidelity": "strapdown", "duration_h": 0.24},
+                "imu": {"file": str(shared_data / "imu" / "lasergyro.imu"), "begin_s": 570.0},
+                "alignment": {"kind": "compass", "duration_s": 380.0},
+                "reference": {"kind": "log"},
+                "method": [
+                    {"name": "free"},
+                    {
+                        "name": "compass",
+                        "damping": "external",
+                        "network": {"id": "compass", "sigma": 0.0088, "xi": 0.7},
+                    },
+                ],
+            }
+        )
+    )
+    assert run.truth[0, HEADING] / DEG == pytest.approx(90.7, abs=0.3)
+    assert run.truth[0, [LAT, LON]] / DEG == pytest.approx([34.246048, 108.909664], abs=1e-6)
+    free, compass = (method.errors["dve_mps"]["max_abs"] for method in run.methods)
+    assert free < 1.0 and compass < 0.3 * free
+    assert any("gives its place" in text for text in run.warnings)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from app import edits
-from app.page import PAGE_STATE
+from app.page import PAGE_STATE, Page
 from tests.attack.wire import Visitor, decode, visit
 
 if TYPE_CHECKING:
@@ -75,9 +75,14 @@ def test_figures_out_of_sight_are_not_sent_until_their_tab_comes(dashboard: Serv
         visitor.wait_for(lambda message: message["type"] == "GuiPlotlyMessage", 10.0)
 
 
+def _pages(served: Dashboard, session_id: str) -> list[Page]:
+    """Open pages of a session: one is listed once it is built, just after its first run is sent."""
+    return [page for page in list(served._pages.values()) if page.session.id == session_id]
+
+
 def _ids(dashboard: Served, session_id: str) -> list[str]:
-    pages = [page for page in dashboard[1]._pages.values() if page.session.id == session_id]
-    return [page._state._impl.uuid for page in pages]
+    eventually(lambda: bool(_pages(dashboard[1], session_id)))
+    return [page._state._impl.uuid for page in _pages(dashboard[1], session_id)]
 
 
 def test_a_flood_of_slider_moves_becomes_a_few_runs_and_the_last_wins(dashboard: Served) -> None:
@@ -121,15 +126,16 @@ def test_a_strange_report_of_the_page_does_no_harm(dashboard: Served, text: str)
     server, served = dashboard
     with visit(server.port, "strange-reports") as visitor:
         ready(visitor, text)
-        page = next(page for page in served._pages.values() if page.session.id == "strange-reports")
-        assert 640 <= page._window[0] <= 7680
+        eventually(lambda: bool(_pages(served, "strange-reports")))
+        assert 640 <= _pages(served, "strange-reports")[0]._window[0] <= 7680
 
 
 def test_writing_to_a_visitor_who_has_just_gone_is_no_fault(dashboard: Served) -> None:
     server, served = dashboard
     with visit(server.port, "gone-in-a-moment") as visitor:
         ready(visitor)
-        page = next(page for page in served._pages.values() if page.session.id == "gone-in-a-moment")
+        eventually(lambda: bool(_pages(served, "gone-in-a-moment")))
+        page = _pages(served, "gone-in-a-moment")[0]
         session = page.session
     eventually(lambda: page._closed)
     # The test run turns every warning into an error.

@@ -75,7 +75,9 @@ def test_stable_means_no_pole_on_the_right(block):
         assert rightmost <= 1e-8
         assert loop.damping_ratio >= 0.0
     else:
-        assert rightmost >= -1e-8
+        # two poles that no run can tell from zero are a double integrator
+        at_zero = np.abs(loop.poles) <= 1e-9 * np.max(np.abs(loop.poles))
+        assert rightmost >= -1e-8 or np.count_nonzero(at_zero) > 1
         assert loop.settling_s is None
         assert any("unstable" in warning for warning in loop.warnings)
     assert loop.damping_ratio <= 1.0 + 1e-12

@@ -26,7 +26,7 @@ def run_or_refuse(data: dict[str, Any]) -> Any:
 
 
 @given(data=raw_scenarios(duration_h=DURATION_H))
-@settings(max_examples=60, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
+@settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
 def test_any_scenario_ends_in_numbers_or_words(data):
     run = run_or_refuse(data)
     assume(run is not None)
@@ -50,7 +50,7 @@ def test_any_scenario_ends_in_numbers_or_words(data):
 
 
 @given(data=raw_scenarios(duration_h=DURATION_H))
-@settings(max_examples=20, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
+@settings(max_examples=15, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
 def test_a_method_runs_the_same_alone(data):
     """Methods share truth, sensors and log: which others run beside it cannot change one (house.md)."""
     assume(len(data["method"]) > 1)

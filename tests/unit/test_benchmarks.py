@@ -42,6 +42,8 @@ def test_a_missed_goal_is_told_by_the_exit_code(capsys, monkeypatch, slow: float
     assert line.endswith("(>= 7)")
 
 
+@pytest.mark.slow
+@pytest.mark.timeout(600)  # its kernel is compiled anew each time
 @pytest.mark.skipif(
     importlib.util.find_spec("pyins") is None, reason="python-ins is installed by make benchmarks"
 )

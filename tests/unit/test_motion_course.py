@@ -34,7 +34,7 @@ def _reference(motion: LegsMotion, site: Site, end: float, earth: Earth) -> Any:
     from scipy.integrate import solve_ivp
 
     def rate(t: float, position: np.ndarray, leg: np.ndarray) -> list[float]:
-        start, speed, faster, speed_time, heading, turned, turn_time = leg
+        start, speed, faster, speed_time, heading, turned, turn_time = leg[:7]
         for_speed = min((t - start) / speed_time, 1.0) if speed_time else 1.0
         for_turn = min((t - start) / turn_time, 1.0) if turn_time else 1.0
         v = speed + faster * (for_speed - math.sin(2 * math.pi * for_speed) / (2 * math.pi))

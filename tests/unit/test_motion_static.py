@@ -10,7 +10,7 @@ import pytest
 from pydantic import TypeAdapter, ValidationError
 
 from navcore.earth import WGS84
-from navcore.motion import MOTIONS, Motion, StaticMotion
+from navcore.motion import MOTIONS, Motion, ProfileMotion, StaticMotion, WavesMotion
 from navcore.motion.base import HEADING, HEADING_RATE, HEIGHT, LAT, LON, PITCH, ROLL, VE, Site
 
 SITE = Site(math.radians(32.06), math.radians(118.8), 12.0)
@@ -46,7 +46,7 @@ def test_the_registry_holds_the_union() -> None:
 
 
 def test_every_default_is_a_motion() -> None:
-    for kind in ("static", "swing", "legs"):
+    for kind in ("static", "swing", "legs", "profile", "waves"):
         motion = TypeAdapter(Motion).validate_python({"kind": kind})
         assert type(motion) is MOTIONS[kind]
         assert np.isfinite(motion.truth(3, 0.5, SITE, WGS84).values).all()
@@ -54,12 +54,14 @@ def test_every_default_is_a_motion() -> None:
 
 def test_every_number_carries_its_range_unit_label_and_help() -> None:
     from navcore.motion.legs import Leg
+    from navcore.motion.profile import Point
     from navcore.motion.swing import Oscillation
     from navcore.parameters import allowed_range, extra_of
 
-    for model in (StaticMotion, Oscillation, Leg):
+    words = {"kind", "shape", "bow", "point", "spectrum"}
+    for model in (StaticMotion, Oscillation, Leg, ProfileMotion, Point, WavesMotion):
         for name, info in model.model_fields.items():
-            if name == "kind":
+            if name in words or name == "velocity_mps":
                 continue
             extra = extra_of(info)
             assert extra["unit"], name

@@ -203,10 +203,10 @@ def test_only_a_long_strapdown_run_waits_for_the_user(work: tuple[Session, Watch
     made.change(strapdown(7.0), page)
     assert made.wait_idle(5.0)
     assert (made.run.scenario, page.names()[-1]) == (strapdown(6.0), "waits")
-    assert made.outdated
+    assert made.outdated and made.waits
     made.redo_run()
     assert made.wait_idle(5.0)
-    assert (made.run.scenario, made.outdated) == (strapdown(7.0), False)
+    assert (made.run.scenario, made.outdated, made.waits) == (strapdown(7.0), False, False)
 
 
 def test_another_scenario_drops_the_verification_and_the_last_page_stops_it(

@@ -140,6 +140,15 @@ def test_events_come_and_go(scenario: Scenario) -> None:
     assert edits.without_block(scenario, path) == scenario
 
 
+def test_a_method_that_averages_is_named_after_its_variant() -> None:
+    made = Scenario.parse({"method": [{"damping": "free"}]})
+    averaged = edits.with_value(made, ("method", 0, "damping"), "averaging")
+    assert averaged.method[0].name == "averaging (schuler)"
+    cascade = edits.with_value(averaged, ("method", 0, "averaging", "variant"), "cascade")
+    assert cascade.method[0].name == "averaging (cascade)"
+    assert edits.with_value(cascade, ("method", 0, "damping"), "free").method[0].name == "free"
+
+
 def test_leaving_the_strapdown_gives_up_what_only_it_can_do() -> None:
     data = {
         "run": {"fidelity": "strapdown", "vertical": "altimeter", "compensation": False},

@@ -35,6 +35,7 @@ LOWEST, HIGHEST = 0.04, 0.99
 QUADRATIC = (0.3076, -1.1452, 0.8101)
 """Sun 9 with its sign mended: coefficients of d^2, d, 1 with d in knots (physics.md section 4)."""
 _LEAST_ROWS, _MOST_ROWS = 2, 500
+_LEAST_SPACING_KN = 1e-3
 
 
 class TableRow(NamedTuple):
@@ -108,8 +109,9 @@ class Adaptive(PolicyParameters):
             raise refuse("table", len(self.table), f"must have {_LEAST_ROWS} to {_MOST_ROWS} rows")
         arguments = sorted(row.difference_kn for row in self.table)
         for first, second in zip(arguments, arguments[1:], strict=False):
-            if not first < second:
-                raise refuse("table", [list(row) for row in self.table], f"gives {first:g} kn twice")
+            if second - first < _LEAST_SPACING_KN:
+                near = f"must have rows {_LEAST_SPACING_KN:g} kn apart, not {first:g} and {second:g} kn"
+                raise refuse("table", [list(row) for row in self.table], near)
         return self
 
     def packed(self, law_step_s: float) -> list[float]:

@@ -19,19 +19,18 @@ from navcore.control.layout import (
     MAX_STATES,
     MEAN_MEMORY,
     NETWORK_STEADY,
+    OFFSET,
     ORDER,
     RING_DAMPED,
     RING_FILL,
     RING_INPUT,
     RING_X,
-    RING_XI,
     SWITCHING_PARAMETERS,
     TUNING_PARAMETERS,
     X_E,
     X_MEMORY,
     X_N,
     XI,
-    XI_MEMORY,
     XI_TARGET,
 )
 from navcore.control.policy.base import calls
@@ -90,7 +89,6 @@ def _put_aside(p, s, ring):
         return
     for i in range(2 * MAX_STATES):
         s[X_MEMORY + i] = ring[row, RING_X + i]
-    s[XI_MEMORY] = ring[row, RING_XI]
     s[MEAN_MEMORY] = mean_of(s, ring, RING_INPUT, age, n)
     s[MEAN_MEMORY + 1] = mean_of(s, ring, RING_INPUT + 1, age, n)
 
@@ -102,7 +100,8 @@ def _restore(p, s, ring):
     change_e = mean_of(s, ring, RING_INPUT, 0, n) - s[MEAN_MEMORY]
     change_n = mean_of(s, ring, RING_INPUT + 1, 0, n) - s[MEAN_MEMORY + 1]
     if p[TUNING_PARAMETERS] != 0.0:
-        tune(p, s, s[XI_MEMORY] if s[XI_MEMORY] > 0.0 else s[XI_TARGET])
+        tune(p, s, s[XI_TARGET])
+    s[OFFSET], s[OFFSET + 1] = 0.0, 0.0
     for i in range(int(p[ORDER])):
         s[X_E + i] = s[X_MEMORY + i] + s[NETWORK_STEADY + i] * change_e
         s[X_N + i] = s[X_MEMORY + MAX_STATES + i] + s[NETWORK_STEADY + i] * change_n

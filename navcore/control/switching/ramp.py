@@ -16,9 +16,9 @@ from navcore.control.layout import (
     XI,
     XI_TARGET,
 )
-from navcore.control.network_state import clear_network
+from navcore.control.network_state import clear_network, rest
 from navcore.control.switching.base import SwitchingParameters
-from navcore.control.tuned_network import follow_target, retune, tune
+from navcore.control.tuned_network import follow_target, retune
 from navcore.parameters import choice, quantity
 
 
@@ -73,12 +73,12 @@ def _raise(p, s, wanted, u_e, u_n):
         xi = s[XI_TARGET]
     else:
         xi = s[XI_TARGET] * math.exp(-max(left, 0.0))
-        if engaging:
-            tune(p, s, xi)
-        else:
-            retune(p, s, xi, u_e, u_n, u_e, u_n, p[SWITCHING_PARAMETERS + 1] != 0.0)
+        retune(p, s, xi, u_e, u_n)
     if engaging:
         clear_network(p, s, u_e, u_n)
+    if left >= 0.0 and p[SWITCHING_PARAMETERS + 1] != 0.0:
+        # e^-49 ... e^-1 of a recursion on differences: what the input is when the ramp ends is at rest.
+        rest(p, s, u_e, u_n)
     s[DAMPED], s[XI] = 1.0, xi
 
 

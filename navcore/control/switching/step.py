@@ -11,7 +11,6 @@ from navcore.control.layout import (
     DAMPING,
     ENGAGED,
     EXTERNAL,
-    INPUT_MEAN,
     STEP_TIME,
     SWITCHING_PARAMETERS,
     TUNING_LOW,
@@ -89,7 +88,7 @@ def _move(p, s, wanted, u_e, u_n):
         s[DAMPED] = s[XI] = 0.0
         return
     xi = max(xi, p[TUNING_LOW])
-    retune(p, s, xi, u_e, u_n, s[INPUT_MEAN], s[INPUT_MEAN + 1], True)
+    retune(p, s, xi, u_e, u_n)
     s[XI] = xi
 
 

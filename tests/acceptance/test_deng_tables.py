@@ -1,0 +1,73 @@
+"""Deng 2019, tables 1, 2 and 4: what remains of the Schuler oscillation, and how far the errors scatter."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.papers.deng import (
+    DAMPED,
+    PRINTED,
+    SLOW,
+    TABLE_1,
+    TABLE_2,
+    errors,
+    improvement,
+    largest_tilt,
+    schuler_swing,
+)
+from app.papers.runs import Runs
+from navcore.scenario_file import load
+
+
+@pytest.fixture(scope="module")
+def runs() -> Runs:
+    return Runs()
+
+
+def test_the_setting_is_the_papers():
+    for name, attitude in (("deng-static", (6.0, 8.0, 75.0)), ("deng-swing", (8.0, 6.0, 75.0))):
+        scenario = load(name)
+        assert scenario.run.fidelity == "strapdown" and scenario.run.rate_hz == 200.0
+        assert scenario.run.duration_h == 1.5
+        motion = scenario.motion
+        assert (motion.pitch_deg, motion.roll_deg, motion.heading_deg) == attitude
+        assert scenario.imu.gyro_bias_dph == (0.02, 0.02, 0.02)
+        assert scenario.imu.gyro_arw_dpsh == 0.006
+        assert (scenario.reference.noise_mps, scenario.reference.rate_hz) == (0.2, 200.0)
+    swing = load("deng-swing").motion
+    assert [(a.amplitude_deg, a.frequency_hz) for a in (swing.roll, swing.pitch, swing.heading)] == [
+        (12.0, 0.125),
+        (10.0, 0.2),
+        (6.0, 0.15),
+    ]
+
+
+@pytest.mark.parametrize(("preset", "table"), [("deng-static", TABLE_1), ("deng-swing", TABLE_2)])
+def test_spread_of_level_attitude_and_velocity_is_the_papers_within_a_factor_of_two(runs, preset, table):
+    ours = np.std(errors(runs, preset, DAMPED), axis=0)
+    for row in (0, 1, 3, 4):
+        assert table[row][1] / 2.0 < ours[row] < table[row][1] * 2.0
+
+
+@pytest.mark.parametrize("preset", ["deng-static", "deng-swing"])
+def test_a_slower_loop_lets_less_of_the_logs_noise_through(runs, preset):
+    fast, slow = (np.std(errors(runs, preset, name), axis=0) for name in (DAMPED, SLOW))
+    # tilt per noise of the log grows with the bandwidth
+    assert np.all(slow[:2] < 0.2 * fast[:2])
+
+
+@pytest.mark.parametrize("preset", ["deng-static", "deng-swing", "deng-vehicle"])
+def test_the_schuler_oscillation_disappears(runs, preset):
+    assert schuler_swing(runs, preset, "free") > 0.3
+    assert schuler_swing(runs, preset, DAMPED) < 0.01 * schuler_swing(runs, preset, "free")
+
+
+def test_table_4_damping_improves_attitude_velocity_and_position(runs):
+    assert improvement(runs, 0) > 1.5
+    assert improvement(runs, 4) > 50.0
+    assert improvement(runs, 7) > 50.0
+
+
+def test_the_printed_form_has_transients_when_the_speed_changes(runs):
+    assert largest_tilt(runs, PRINTED) > 1.4 * largest_tilt(runs, SLOW)

@@ -1,0 +1,156 @@
+"""The reproduction report: verdicts, numbers as text, and that the same code writes the same files."""
+
+from __future__ import annotations
+
+import hashlib
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.papers.claim import Claim, Paper, about, at_least, at_most, number, order_of
+from app.papers.markdown import Contradiction, check, exhibit_text
+from app.papers.measure import interval, last_above
+from app.papers.runs import Runs, method, scenario_of
+from app.papers.write import papers, write_report
+from navcore.scenario_file import presets
+
+OWN = {"sikuliaq-like"}
+"""Presets that are of no paper."""
+CHEAP = ("liu-fig-3", "sun-table-1")
+"""Exhibits that need no run."""
+
+
+@pytest.fixture(scope="module")
+def every() -> tuple[Paper, ...]:
+    return papers()
+
+
+def claim(value: float, why: str = "", **more: object) -> Claim:
+    return Claim("x is two", "2", about(2.0, 0.1), lambda runs: value, why=why, **more)
+
+
+def test_a_number_within_the_range_agrees():
+    assert check(claim(2.1), Runs()).verdict == "agrees"
+    assert check(claim(2.3, why="it is not"), Runs()).verdict == "differs"
+
+
+def test_a_claim_that_differs_needs_a_reason_and_one_that_agrees_must_not_have_one():
+    with pytest.raises(Contradiction, match="2.3"):
+        check(claim(2.3), Runs())
+    with pytest.raises(Contradiction):
+        check(claim(2.1, why="stale"), Runs())
+
+
+def test_both_fidelities_must_agree():
+    both = Claim("x", "2", about(2.0, 0.1), lambda runs: 3.0 if runs.strapdown else 2.0, strapdown=True)
+    with pytest.raises(Contradiction):
+        check(both, Runs())
+
+
+def test_numbers_in_a_reason_are_computed():
+    made = check(claim(2.3, why="it is {x}", facts={"x": lambda runs: 2.34567}), Runs())
+    assert made.why == "it is 2.35"
+
+
+def test_ranges():
+    assert about(-2.0, 0.5) == (-3.0, -1.0)
+    assert at_least(1.0) == (1.0, np.inf) and at_most(1.0) == (-np.inf, 1.0)
+    assert order_of(6.0, 2.0) == (3.0, 12.0)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"), (1234.5, "1230"), (12.345, "12.3"), (-0.00012345, "-0.000123"), (1.2e-5, "1.20e-5"),
+        (1e7, "1.00e7"), (3e-9, "< 1e-6"), (9.996, "10.0"), (float("inf"), "infinite"), (float("nan"), "-"),
+    ],
+)  # fmt: skip
+def test_number_as_text(value, text):
+    assert number(value) == text
+
+
+def test_interval_is_students():
+    mean, half = interval([1.0, 2.0, 3.0])
+    assert mean == 2.0
+    assert half == pytest.approx(4.302653 / np.sqrt(3.0))
+
+
+def test_last_time_above_a_fraction_of_the_peak():
+    t = np.arange(10.0)
+    assert last_above(t, np.exp(-t), 0.02) == 3.0
+    assert last_above(t, 5.0 + np.exp(-t), 0.02, final=5.0) == 3.0
+
+
+def test_a_run_is_made_once_and_its_methods_found_by_the_beginning_of_their_names():
+    runs = Runs()
+    first = runs("zha-fast", "run.duration_h=0.1")
+    assert runs("zha-fast", "run.duration_h=0.1") is first
+    assert method(first, "fast").method.network.id == "compass"
+    with pytest.raises(KeyError):
+        method(first, "nothing")
+
+
+def test_a_preset_with_a_block_replaced():
+    assert scenario_of("zha-fast", imu={}).imu.gyro_bias_dph == (0.0, 0.0, 0.0)
+
+
+def test_every_exhibit_has_a_name_of_its_own_and_presets_that_exist(every):
+    exhibits = [exhibit for paper in every for exhibit in paper.exhibits]
+    assert len({exhibit.name for exhibit in exhibits}) == len(exhibits)
+    used = {name for exhibit in exhibits for name in exhibit.presets}
+    assert used <= set(presets())
+    assert set(presets()) - used == OWN
+
+
+def test_the_report_in_docs_holds_every_exhibit_and_claim(every, repo_root: Path):
+    text = (repo_root / "docs" / "papers.md").read_text("utf-8")
+    for exhibit in (exhibit for paper in every for exhibit in paper.exhibits):
+        assert f'<a id="{exhibit.name}"></a>' in text
+        if exhibit.draw is not None:
+            assert (repo_root / "docs" / "papers" / f"{exhibit.name}.svg").is_file()
+        for stated in exhibit.claims:
+            assert stated.says in text
+
+
+@pytest.mark.parametrize("name", CHEAP)
+def test_the_report_in_docs_is_what_the_code_writes_now(every, repo_root: Path, name):
+    text = (repo_root / "docs" / "papers.md").read_text("utf-8")
+    runs = Runs()
+    [exhibit] = [exhibit for paper in every for exhibit in paper.exhibits if exhibit.name == name]
+    checked = [check(stated, runs) for stated in exhibit.claims]
+    assert exhibit_text(exhibit, checked, [make(runs) for make in exhibit.tables]) in text
+
+
+def test_the_same_code_writes_the_same_files(tmp_path: Path):
+    """In processes with different hash seeds."""
+    written = []
+    for seed in ("1", "2"):
+        out = tmp_path / seed
+        command = [sys.executable, "-m", "app.papers", "--out", str(out), "--only", "sun-table"]
+        done = subprocess.run(
+            command, capture_output=True, text=True, env={**_environment(), "PYTHONHASHSEED": seed}
+        )
+        assert done.returncode == 0, done.stderr
+        picture = (out / "papers" / "sun-table-1.svg").read_bytes()
+        assert b"date" not in picture.lower()
+        written.append((done.stdout, hashlib.sha256(picture).hexdigest()))
+    assert written[0] == written[1]
+
+
+def test_nothing_is_written_when_a_claim_contradicts_its_reason(tmp_path: Path, every):
+    from dataclasses import replace
+
+    [exhibit] = [exhibit for paper in every for exhibit in paper.exhibits if exhibit.name == "sun-table-1"]
+    wrong = replace(exhibit, claims=(claim(5.0),), tables=(), draw=None)
+    faults = write_report([replace(every[0], exhibits=(wrong,))], tmp_path)
+    assert len(faults) == 1 and "x is two" in faults[0]
+    assert not (tmp_path / "papers.md").exists()
+
+
+def _environment() -> dict[str, str]:
+    import os
+
+    return dict(os.environ)
