@@ -15,7 +15,7 @@ endif
 
 KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
-.PHONY: help setup run test check format unit benchmarks papers guide lock clean REMAKE
+.PHONY: help setup run test check format unit paint benchmarks papers guide lock clean REMAKE
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'
@@ -25,6 +25,7 @@ help:
 	@echo 'make unit     the fast tests only'
 	@echo 'make benchmarks  time the strapdown engine beside python-ins, which it installs into .venv'
 	@echo 'make papers   run the presets of the five papers and write docs/papers.md with its pictures anew'
+	@echo 'make paint    time from a slider step to the last paint of it in Chromium'
 	@echo 'make format   lay the code out'
 	@echo 'make guide    write docs/scenario.md and the JSON Schema anew from the parameter models'
 	@echo 'make lock     resolve the locked requirements again (UPGRADE=--upgrade: to the newest versions)'
@@ -41,6 +42,9 @@ test: setup $(STAMPS)/test
 
 check: $(STAMPS)/test
 	@$(BIN)/python -m tests.stages lint
+
+paint: setup $(STAMPS)/test
+	@$(BIN)/python -m tests.browser.last_paint
 
 unit: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.stages unit

@@ -43,6 +43,7 @@ CHECKS = {
 STAGES = {
     "unit, acceptance, doctests": [
         *CODE,
+        "README.md",
         *(f"--ignore=tests/{own}" for own in ("attack", "browser", "docker")),
         "-n2",
         "-mnot browser and not attack",

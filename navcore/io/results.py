@@ -24,12 +24,15 @@ _FIELD = "--out"
 
 
 def require_replaceable(folder: str | os.PathLike[str]) -> None:
-    """Refuse a folder that a run must not replace: one that holds anything but an earlier run's files.
+    """Refuse a folder that a run must not replace: one that is not an earlier run's and holds other files.
+
+    A folder with a run's scenario and metrics is replaced with whatever files lie beside them, but not with
+    folders in it, and not where the user stands.
 
     Raises
     ------
     InputError
-        It is no folder, cannot be looked into, or holds files that no run writes; they are named.
+        It is no folder, cannot be looked into, or holds what no run writes; that is named.
     """
     folder = Path(folder)
     try:
@@ -37,7 +40,10 @@ def require_replaceable(folder: str | os.PathLike[str]) -> None:
             return
         if not folder.is_dir():
             raise _refused(folder, "exists and is not a folder")
-        foreign = sorted(e.name for e in os.scandir(folder) if e.name not in OUR_FILES or e.is_dir())
+        entries = list(os.scandir(folder))
+        files = {entry.name for entry in entries if entry.is_file()}
+        a_runs = files >= {SCENARIO_FILE, METRICS_FILE} and _exchangeable(folder.resolve())
+        foreign = sorted(e.name for e in entries if e.is_dir() or not (a_runs or e.name in OUR_FILES))
     except OSError as error:
         raise _cannot(folder, error) from None
     if foreign:

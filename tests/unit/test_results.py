@@ -76,6 +76,19 @@ def test_whatever_no_run_wrote_is_named(make, tmp_path):
     ] in said
 
 
+def test_an_earlier_run_is_replaced_with_all_files_beside_it(run, tmp_path, monkeypatch):
+    folder = tmp_path / "out"
+    write_results(run, folder, "csv")
+    (folder / "notes.txt").write_text("stale")
+    write_results(run, folder, "parquet")
+    assert names(folder) == ["metrics.json", "scenario.toml", "timeseries.parquet"]
+    (folder / "notes.txt").write_text("mine")
+    monkeypatch.chdir(folder)
+    with pytest.raises(InputError, match="notes.txt"):
+        write_results(run, ".")
+    assert (folder / "notes.txt").read_text() == "mine"
+
+
 def test_nothing_and_an_empty_folder_may_be_taken(tmp_path):
     require_replaceable(tmp_path / "missing")
     require_replaceable(tmp_path)
