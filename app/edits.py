@@ -227,8 +227,8 @@ def _forget_made_name(scenario: Scenario, data: Any, index: int) -> None:
     if re.sub(r" \d+$", "", method.name) not in made:
         return
     block = data["method"][index]
-    names = {"free": "free", "averaging": f"averaging ({block['averaging']['variant']})"}
-    block["name"] = _free_name(names.get(block["damping"], block["network"]["id"]), others)
+    names: dict[str, str] = {"free": "free", "averaging": f"averaging ({block['averaging']['variant']})"}
+    block["name"] = _free_name(names.get(block["damping"], str(block["network"]["id"])), others)
 
 
 def _free_name(name: str, taken: list[str]) -> str:

@@ -350,9 +350,7 @@ def runs_on_demand(scenario: Scenario) -> bool:
 def first_editable(scenario: Scenario) -> int:
     """Index of the first method with something to tune; 0 if there is none."""
     tunable = (
-        i
-        for i, m in enumerate(scenario.method)
-        if not m.undamped and len(type(m.network).model_fields) > 1
+        i for i, m in enumerate(scenario.method) if not m.undamped and len(type(m.network).model_fields) > 1
     )
     return next(tunable, 0)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from html import escape
 from typing import Any, Literal, get_args
 
@@ -22,6 +24,7 @@ FORMS: dict[Shown, tuple[str, ...]] = {
 }
 _COLORS = {"printed": "#D55E00", "corrected": "#0072B2"}
 _DASHES = {"printed": ("6px,4px", "2px,3px"), "corrected": ("solid", "dot", "dashdot")}
+_MOST_TICKS = 6
 _LEAVES = 12.0
 """A printed curve that many times as large as the corrected one leaves the plot, not to flatten the other."""
 _SECONDS = (Unit("s", 1.0), Unit("min", MINUTE), Unit("h", HOUR))
@@ -58,8 +61,9 @@ def comparison_plot(
     layout = style.layout(
         margin=margin, hovermode="x unified", showlegend=True, legend=style.legend(), meta={"aspect": aspect}
     )
-    layout["xaxis"] = _axis(comparison.x_axis, x_unit) | {"automargin": False}
-    layout["yaxis"] = _axis(comparison.y_axis, y_unit) | {"zeroline": not comparison.y_axis.log}
+    layout["xaxis"] = _axis(comparison.x_axis, x_unit, 1)
+    decades = _decades([curve.y for curve in curves])
+    layout["yaxis"] = _axis(comparison.y_axis, y_unit, decades) | {"zeroline": not comparison.y_axis.log}
     layout["yaxis"] |= {"zerolinecolor": style.REFERENCE, "zerolinewidth": 1, "nticks": 7}
     if not comparison.y_axis.log and high > low:
         pad = 0.06 * (high - low)
@@ -113,10 +117,20 @@ def _trace(curve: Curve, place: int, x: dict[str, str], unit: Unit) -> dict[str,
     }
 
 
-def _axis(axis: Axis, unit: Unit) -> dict[str, Any]:
+def _decades(values: Sequence[np.ndarray]) -> int:
+    """Decades between two ticks of a logarithmic axis, so that they stay apart."""
+    found = _span([np.where(v > 0.0, v, np.nan) for v in values])
+    spanned = 1.0 if found is None else math.log10(found[1] / found[0])
+    return max(1, math.ceil(spanned / _MOST_TICKS))
+
+
+def _axis(axis: Axis, unit: Unit, decades: int) -> dict[str, Any]:
     title = style.plain(axis.label) + (f" ({unit.name})" if unit.name else "")
     made = style.axis(title)
-    return made | ({"type": "log", "exponentformat": "power", "dtick": 1} if axis.log else {})
+    if not axis.log:
+        return made
+    small = {"size": style.FONT_SIZE - 2, "color": style.MUTED}
+    return made | {"type": "log", "exponentformat": "power", "dtick": decades, "tickfont": small}
 
 
 def _unit(axis: Axis | Number, peak: float) -> Unit:
@@ -156,18 +170,16 @@ def words_html(misprint: Misprint, comparison: Comparison) -> str:
 
 
 def _number_row(found: Number) -> str:
-    known = [abs(value) for value in (found.printed, found.corrected) if value is not None]
-    largest = max((value for value in known if np.isfinite(value)), default=0.0)
     cells = "".join(
-        f'<td style="padding:0 0 0 14px;text-align:right">{_number(found, value, largest)}</td>'
+        f'<td style="padding:0 0 0 14px;text-align:right">{_number(found, value)}</td>'
         for value in (found.printed, found.corrected)
     )
     return f'<tr><td style="color:{style.MUTED};white-space:normal">{escape(found.name)}</td>{cells}</tr>'
 
 
-def _number(found: Number, value: float | None, largest: float) -> str:
+def _number(found: Number, value: float | None) -> str:
     if value is None:
         return "none"
     # each in its own unit: 0.03 s beside 84 min reads better than 0.0005 min
-    unit = _unit(found, abs(value) if found.unit == "s" else largest)
+    unit = _unit(found, abs(value))
     return escape(f"{number(value / unit.si, 4)} {unit.name}".rstrip())

@@ -79,7 +79,7 @@ def switching_plots(run: Run) -> tuple[UplotFigure, ...]:
     measures = []
     for place, kind in enumerate(_kinds(methods)):
         mine = [pair for pair in pairs if pair[0].measure == kind]
-        measures.append(_measure_plot(f"measure{place}", kind, mine, time, unit_of_time))
+        measures.append(_measure_plot(place, kind, mine, time, unit_of_time))
     return (*measures, _state_plot(pairs, time, unit_of_time), _xi_plot(pairs, time, unit_of_time))
 
 
@@ -91,14 +91,14 @@ _Pairs = list[tuple[Switched, np.ndarray]]
 
 
 def _measure_plot(
-    key: str, measure: Measure, pairs: _Pairs, time: np.ndarray, unit_of_time: Unit
+    place: int, measure: Measure, pairs: _Pairs, time: np.ndarray, unit_of_time: Unit
 ) -> UplotFigure:
     limits = shared_limits([method for method, _ in pairs])
     return UplotFigure(
-        key=key,
+        key=f"measure{place}",
         quantity="measure",
         title=measure.label,
-        symbol=measure.label if len(measure.label) <= _LONGEST else "",
+        symbol=_symbol(place, measure),
         unit=Unit(measure.unit, measure.si),
         time_unit=unit_of_time,
         names=(*(m.run.method.name for m, _ in pairs), *(name for name, _, _ in limits)),
@@ -110,6 +110,11 @@ def _measure_plot(
             *(np.full(len(time), value) for _, value, _ in limits),
         ),
     )
+
+
+def _symbol(place: int, measure: Measure) -> str:
+    """Name on the axis of a low plot: a long one is a number there, which the legend explains."""
+    return measure.label if len(measure.label) <= _LONGEST else chr(ord("①") + place)
 
 
 def shared_limits(methods: Sequence[Switched]) -> list[tuple[str, float, str]]:
@@ -242,10 +247,10 @@ def _legend(run: Run) -> list[tuple[str, str]]:
     items = [
         (m.method.name, f"border-top:3px solid {style.method_color(i)}") for i, m in enumerate(run.methods)
     ]
-    for kind in _kinds(methods):
+    for place, kind in enumerate(_kinds(methods)):
         mine = [m for m in methods if m.measure == kind]
         if len(kind.label) > _LONGEST:
-            items.append((f"measure ({kind.unit}): {kind.label}", "display:none"))
+            items.append((f"{_symbol(place, kind)} {kind.label}", "display:none"))
         for name, value, color in shared_limits(mine):
             items.append((f"{name} = {number(value, 4)} {kind.unit}", f"border-top:2px dashed {color}"))
     return [*items, ("wanted state", f"border-top:2px dotted {style.INK}")]

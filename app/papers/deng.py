@@ -133,14 +133,17 @@ def _draw(preset: str, methods: tuple[str, ...]) -> Callable[[Runs, Figure], Non
         for i, name in enumerate(methods):
             values = errors(runs, preset, name)
             t = hours(method(runs(preset), name))
-            curve(axes[0], t, values[:, 0] * 60.0, name, i)
-            curve(axes[1], t, values[:, 4], name, i)
-            curve(axes[2], t, np.hypot(values[:, 6], values[:, 7]), name, i)
-        panel(axes[0], "Pitch", "time, h", "error, arcmin")
+            behind = {"zorder": 1.5, "alpha": 0.6} if name == DAMPED else {}
+            curve(axes[0], t, values[:, 0] * 60.0, name, i, **behind)
+            curve(axes[1], t, values[:, 4], name, i, **behind)
+            curve(axes[2], t, np.hypot(values[:, 6], values[:, 7]), name, i, **behind)
+        panel(axes[0], "Pitch", "time, h", "error, arcmin", legend=False)
         panel(axes[1], "Northern velocity", "time, h", "error, m/s", legend=False)
         panel(axes[2], "Position", "time, h", "error, m", legend=False)
         axes[1].set_yscale("symlog", linthresh=0.02)
         axes[2].set_yscale("symlog", linthresh=1.0)
+        handles, labels = axes[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=len(methods))
 
     return draw
 

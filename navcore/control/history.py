@@ -43,7 +43,7 @@ def samples(p, seconds):
     return max(1, int(math.floor(seconds / p[LAW_STEP] + 0.5)))
 
 
-@inlined
+@kernel
 def mean_of(s, ring, column, age, count):
     """Mean of a column over ``count`` rows, the newest of them written ``age`` calls ago."""
     total = 0.0
@@ -75,7 +75,7 @@ def remember(p, s, ring, u_e, u_n, accel, heading, use):
     ring[head, RING_DAMPED] = s[DAMPED]
 
 
-@inlined
+@kernel
 def slide(s, ring, place, column, age, count):
     """Keep in ``s[place]`` the sum of a column over ``count`` rows from ``age`` on; return it.
 

@@ -17,7 +17,9 @@ from navcore.compiled import inlined, kernel
 from navcore.control.combination import LOW_MARGIN, combination_faults, network_in_force, realisation_of
 from navcore.control.history import remember
 from navcore.control.layout import (
+    ACTION,
     AS_PRINTED,
+    CLEAR,
     CLOCK,
     CORRECTION,
     DAMPED,
@@ -35,6 +37,7 @@ from navcore.control.layout import (
     HISTORY,
     INTERNAL,
     LAW_STEP,
+    MASKED,
     MAX_STATES,
     NETWORK,
     NETWORK_A,
@@ -53,6 +56,8 @@ from navcore.control.layout import (
     POLICY_PARAMETERS,
     REALISATION,
     REMEMBERS,
+    REST,
+    RESTORE,
     RING_COLUMNS,
     SCHEDULED,
     STARTED,
@@ -64,6 +69,7 @@ from navcore.control.layout import (
     TABLE_COLUMNS,
     TABLE_ROWS,
     TAN_HALF,
+    TO_XI,
     TUNING_LOW,
     TUNING_PARAMETERS,
     VALID,
@@ -71,15 +77,16 @@ from navcore.control.layout import (
     XI,
     XI_TARGET,
 )
-from navcore.control.network_state import advance_network, clear_network
+from navcore.control.network_state import advance_network, clear_network, rest
 from navcore.control.policy import PolicyParameters, decide
 from navcore.control.policy.adaptive import Adaptive
 from navcore.control.policy.constant import Constant
 from navcore.control.policy.schedule import Schedule, follow_schedule
 from navcore.control.policy.threshold import Threshold, decide_threshold
 from navcore.control.switching import SwitchingParameters, switch
+from navcore.control.switching.bumpless import restore
 from navcore.control.switching.hard import Hard
-from navcore.control.tuned_network import tune
+from navcore.control.tuned_network import retune, tune
 from navcore.errors import InputError
 from navcore.filters import discretise
 from navcore.loop import analyse
@@ -139,6 +146,21 @@ def _correct(p, s, v_e, v_n, u_e, u_n, k1):
     return c_e, c_n, k1 * u_e, k1 * u_n
 
 
+@inlined
+def _carry_out(p, s, ring, u_e, u_n):
+    """Do to the network what the switching method asks for."""
+    if p[TUNING_PARAMETERS] != 0.0 and s[TO_XI] > 0.0:
+        retune(p, s, s[TO_XI], u_e, u_n)
+    if s[ACTION] == CLEAR or s[STARTED] == 0.0:
+        clear_network(p, s, u_e, u_n)
+    if s[ACTION] == REST:
+        rest(p, s, u_e, u_n)
+    elif s[ACTION] == RESTORE:
+        restore(p, s, ring)
+    elif s[ACTION] == MASKED:
+        advance_network(p, s, u_e, u_n)
+
+
 @kernel
 def _full_step(p, s, ring, v_e, v_n, accel, heading):
     """Every policy and switching method; arguments and result as of `law_step`."""
@@ -158,12 +180,9 @@ def _full_step(p, s, ring, v_e, v_n, accel, heading):
         s[SWITCH_TIME] = s[CLOCK]
     if p[SCHEDULED] != 0.0:
         follow_schedule(p, s, u_e, u_n)
-    if s[STARTED] == 0.0:
-        s[STARTED] = 1.0
-        if p[TUNING_PARAMETERS] != 0.0:
-            tune(p, s, s[XI_TARGET])
-        clear_network(p, s, u_e, u_n)
-    switch(p, s, ring, wanted, u_e, u_n)
+    switch(p, s, ring, wanted)
+    _carry_out(p, s, ring, u_e, u_n)
+    s[STARTED] = 1.0
     if s[DAMPED] == 0.0:
         if p[FREEZES] == 0.0:
             s[CORRECTION] = 0.0

@@ -37,6 +37,7 @@ TABLE_COLUMNS = 3
 PARAMETERS = 64
 
 FREE, INTERNAL, EXTERNAL = 0, 1, 2
+NOTHING, CLEAR, REST, RESTORE, MASKED = 0, 1, 2, 3, 4
 NETWORK, FEEDBACK, AS_PRINTED = 0, 1, 2
 
 # s: changes during a run, float64, shape (STATE,)
@@ -70,6 +71,8 @@ NETWORK_C = 52
 NETWORK_D = 56
 NETWORK_STEADY = 57  # state for a constant unit input
 TUNED_XI = 61  # damping coefficient of the coefficients in place
+TO_XI = 62  # what a switching method wants the network re-tuned to in this call; 0: as it is
+ACTION = 63  # and what then to do with its states
 X_E = 64
 X_N = 68
 X_MEMORY = 72  # E, N network states before the event (bumpless)

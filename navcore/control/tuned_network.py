@@ -35,7 +35,6 @@ from navcore.control.layout import (
     TUNING_PARAMETERS,
     X_E,
     X_N,
-    XI_TARGET,
 )
 from navcore.network.retuning import complementary_difference, pole2_difference, unity2_difference
 from navcore.network.tuning_codes import COMPLEMENTARY, POLE2
@@ -160,9 +159,3 @@ def retune(p, s, xi, u_e, u_n):
     s[OFFSET + 1] -= _product(n, s, OUTPUT_ROW, X_N)
     _to_discrete(n, a, s, X_E, u_e)
     _to_discrete(n, a, s, X_N, u_n)
-
-
-@kernel
-def follow_target(p, s, u_e, u_n):
-    """Re-tune to the target."""
-    retune(p, s, s[XI_TARGET], u_e, u_n)

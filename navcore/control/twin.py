@@ -43,7 +43,7 @@ def _bilinear(A: np.ndarray, B: np.ndarray, C: np.ndarray, D: float, a: float) -
     eye = np.eye(len(B))
     inverse = np.linalg.inv(eye - a * A)
     return _Form(
-        (eye + a * A) @ inverse, 2.0 * a * inverse @ B, C @ inverse, D + a * C @ inverse @ B, (A, B, C)
+        (eye + a * A) @ inverse, 2.0 * a * inverse @ B, C @ inverse, D + a * float(C @ inverse @ B), (A, B, C)
     )
 
 

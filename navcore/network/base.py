@@ -75,7 +75,8 @@ class LinearNetwork:
         """DC gain H(0); inf for a pole at zero."""
         if self.den_p[-1] == 0.0:
             return math.inf
-        return float(self.num_p[-1] / self.den_p[-1])
+        with np.errstate(over="ignore"):  # a pole next to zero
+            return float(self.num_p[-1] / self.den_p[-1])
 
     @property
     def h_infinity(self) -> float:

@@ -24,7 +24,7 @@ class Pole2Network(NetworkParameters):
     id: Literal["pole2"] = "pole2"
     xi: float = quantity(
         0.5,
-        gt=0.0,
+        ge=1e-6,
         le=5.0,
         slider=(0.02, 1.5),
         label="xi",

@@ -30,17 +30,15 @@ def test_the_setting_is_the_papers():
         scenario = load(name)
         assert scenario.run.fidelity == "strapdown" and scenario.run.rate_hz == 200.0
         assert scenario.run.duration_h == 1.5
-        motion = scenario.motion
-        assert (motion.pitch_deg, motion.roll_deg, motion.heading_deg) == attitude
+        motion = scenario.canonical()["motion"]
+        assert (motion["pitch_deg"], motion["roll_deg"], motion["heading_deg"]) == attitude
         assert scenario.imu.gyro_bias_dph == (0.02, 0.02, 0.02)
         assert scenario.imu.gyro_arw_dpsh == 0.006
         assert (scenario.reference.noise_mps, scenario.reference.rate_hz) == (0.2, 200.0)
-    swing = load("deng-swing").motion
-    assert [(a.amplitude_deg, a.frequency_hz) for a in (swing.roll, swing.pitch, swing.heading)] == [
-        (12.0, 0.125),
-        (10.0, 0.2),
-        (6.0, 0.15),
-    ]
+    swing = load("deng-swing").canonical()["motion"]
+    angles = [swing[name] for name in ("roll", "pitch", "heading")]
+    assert [angle["amplitude_deg"] for angle in angles] == [12.0, 10.0, 6.0]
+    assert [angle["frequency_hz"] for angle in angles] == [0.125, 0.2, 0.15]
 
 
 @pytest.mark.parametrize(("preset", "table"), [("deng-static", TABLE_1), ("deng-swing", TABLE_2)])

@@ -56,9 +56,11 @@ def test_what_is_claimed(runs, exhibit, expected):
 
 
 def test_the_schedule_is_the_papers():
-    scenario = load("zha-drive")
-    assert scenario.method[2].policy.duration_s == 60.0
-    assert scenario.imu.accel_bias_ug == (500.0, 500.0, 500.0)
+    scenario = load("zha-drive").canonical()
+    policy = scenario["method"][2]["policy"]
+    assert policy["from"] == [0.0264, 156.063, 0.904]
+    assert (policy["to"], policy["duration_s"]) == ([7.68e-3, 6.68, 7.68e-3], 60.0)
+    assert scenario["imu"]["accel_bias_ug"] == [500.0, 500.0, 500.0]
 
 
 def test_tables_1_and_2_order_of_the_methods(runs):

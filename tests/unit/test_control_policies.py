@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import inspect
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from navcore.control import switching as switchings
 from navcore.control.layout import COUNT, DAMPED, MEASURE, MONITORED, WANTED, XI
 from navcore.control.policy import POLICIES
 from navcore.control.policy.adaptive import SUN_TABLE, law_coefficient
+from navcore.control.policy.schedule import Schedule
 from navcore.control.policy.variation import Variation, membership
 from navcore.control.switching import SWITCHINGS
 from navcore.units import DEG, KNOT
@@ -25,16 +27,17 @@ HARD = {"id": "hard"}
 
 def dispatched(module, name: str) -> dict[int, str]:
     """Code -> function called, as the source of the compiled dispatch has it; -1 is the last resort."""
-    tree = ast.parse(inspect.getsource(getattr(module, name).py_func)).body[0]
+    tree: Any = ast.parse(inspect.getsource(getattr(module, name).py_func)).body[0]
     found: dict[int, str] = {}
 
-    def called(body: list[ast.stmt]) -> str:
-        return next(n.func.id for s in body for n in ast.walk(s) if isinstance(n, ast.Call))
+    def called(body: list[Any]) -> str:
+        return next(n.func.id for s in body for n in ast.walk(s) if isinstance(n, ast.Call))  # pyright: ignore[reportAttributeAccessIssue]
 
-    def look(body: list[ast.stmt]) -> None:
+    def look(body: list[Any]) -> None:
         for statement in body:
             if isinstance(statement, ast.If):
-                found[statement.test.comparators[0].value] = called(statement.body)
+                test: Any = statement.test
+                found[test.comparators[0].value] = called(statement.body)
                 look(statement.orelse)
             elif isinstance(statement, ast.Return | ast.Expr) and isinstance(statement.value, ast.Call):
                 found[-1] = called([statement])
@@ -60,7 +63,7 @@ def test_registry_and_dispatch_are_equal(module, name, registry):
 def test_what_is_monitored_is_named_with_its_unit_and_thresholds():
     assert MONITORED == (WANTED, DAMPED, XI, MEASURE)
     for id, kind in POLICIES.items():
-        block = kind()
+        block = kind.model_validate({"id": id})
         assert all(limit.unit == block.measure.unit for limit in block.limits()), id
         assert bool(block.limits()) == (id in ("threshold", "yaw_rate", "acceleration", "variation"))
     shown = {limit.name: limit.value for limit in Variation().limits()}
@@ -220,6 +223,6 @@ def test_schedules_correction_has_no_jump_within_a_passage():
 
 
 def test_schedule_warns_of_gains_on_the_way_that_are_unstable():
-    assert POLICIES["schedule"]().warnings() == ()
+    assert Schedule().warnings() == ()
     odd = POLICIES["schedule"].model_validate({"id": "schedule", "to": [7.68e-3, 1.0, 1.0]})
     assert "unstable" in odd.warnings()[0]

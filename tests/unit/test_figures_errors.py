@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from app.figures import style
-from app.figures.errors import GROUPS, error_plots, legend_html
+from app.figures.errors import GROUPS, Overlay, error_plots, legend_html
 from app.figures.uplot import UplotFigure, stack_heights
 from navcore.mechanization.recorder import NAMES
 from tests.unit.figures_runs import diverging, run_of, static_run
@@ -129,3 +129,27 @@ def test_stack_fills_the_height_and_leaves_room_for_the_time_labels() -> None:
     assert sum(heights) <= 400 and sum(heights) >= 396
     assert heights[2] > heights[0] == heights[1]
     assert min(stack_heights(100, 6)) >= 84
+
+
+def test_strapdown_is_drawn_dashed_over_the_methods() -> None:
+    run = static_run()
+    for old in (False, True):
+        plots = error_plots(run, Overlay(run, old))
+        plot = plots["phi_e"]
+        assert plot.names[3:] == tuple(f"{name}: full strapdown" for name in plot.names[:3])
+        assert [len(series.get("dash", ())) for series in plot.series[1:]] == [0, 0, 0, 2, 2, 2]
+        assert (plot.colors[3] == plot.colors[0]) != old
+        # the same bins: the same points
+        np.testing.assert_array_equal(plot.data[4], plot.data[1])
+        assert ("of an earlier scenario" in legend_html(run, Overlay(run, old))) == old
+    assert "strapdown" not in legend_html(run)
+
+
+def test_an_overlay_with_other_bins_keeps_its_peaks_and_ends_where_it_ends() -> None:
+    run, shorter = static_run(), run_of()
+    plot = error_plots(run, Overlay(shorter, False))["phi_e"]
+    curve = plot.data[4]
+    hours = plot.data[0]
+    assert np.isnan(curve[hours > 1.1]).all() and np.isfinite(curve[hours < 0.99]).all()
+    peak = shorter.methods[0].errors["phi_e_rad"]["max_abs"] / plot.unit.si
+    assert np.nanmax(np.abs(curve)) == pytest.approx(peak, rel=0.02)

@@ -7,10 +7,19 @@ import numpy as np
 import pytest
 
 from app.figures import style
-from app.figures.table import STATISTICS, metrics_html, metrics_markdown, metrics_rows
+from app.figures.table import (
+    STATISTICS,
+    difference_rows,
+    metrics_html,
+    metrics_markdown,
+    metrics_rows,
+    verdict,
+)
 from app.figures.units import angle_unit, length_unit, number, speed_unit, time_unit
 from app.figures.warnings import notices_for, severity, warnings_for
+from navcore.mechanization.recorder import NAMES
 from navcore.units import ARCMIN, ARCSEC, NAUTICAL_MILE
+from navcore.verification import Difference, Verification
 from tests.unit.figures_runs import THREE, UNSTABLE, diverging, run_of, static_run
 
 FACTORS = {"arcsec": ARCSEC, "arcmin": ARCMIN, "m/s": 1.0, "m": 1.0, "nmi": NAUTICAL_MILE}
@@ -113,3 +122,30 @@ def test_reason_of_an_early_end_comes_first_and_once() -> None:
 )
 def test_units_follow_the_size(unit, name: str) -> None:
     assert unit.name == name
+
+
+def verification() -> Verification:
+    run = static_run()
+    differences = tuple(
+        {name: Difference(ARCSEC * (1 + place), 0.01 * (1 + place)) for name in NAMES} for place in range(3)
+    )
+    return Verification(run, run, differences, ("the tilt is large",), True)
+
+
+def test_differences_stand_below_the_errors_and_are_marked_when_old() -> None:
+    made = verification()
+    rows = difference_rows(made)
+    assert len(rows) == 8
+    assert rows[0].cells == (("1 (1 %)",), ("2 (2 %)",), ("3 (3 %)",))
+    fresh, old = (metrics_html(static_run(), None, made, old=old) for old in (False, True))
+    assert "Full strapdown minus linear model" in fresh and "of an earlier scenario" not in fresh
+    assert "of an earlier scenario" in old and old.count("sb-old") == 8
+    assert "2 (2 %)" in metrics_html(static_run(), [1], made)
+    assert "3 (3 %)" not in metrics_html(static_run(), [1], made)
+
+
+def test_verdict_names_the_worst() -> None:
+    assert verdict(verification()) == "Largest difference: 3 % of the peak (velocity δVN, compass)."
+    nothing = replace(verification(), differences=({}, {}, {}))
+    assert "could not be compared" in verdict(nothing)
+    assert {row.cells for row in difference_rows(nothing)} == {(("not known",),) * 3}

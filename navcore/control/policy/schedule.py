@@ -39,16 +39,13 @@ def _gains(default: tuple[float, float, float], label: str, help: str) -> Any:
 
 
 # `from` cannot be written as a class attribute, but it is the name of the field (contract).
-_From = create_model(
-    "_From",
-    __base__=PolicyParameters,
-    **{
-        "from": (
-            tuple[_Gain, _Gain, _Gain],
-            _gains((0.0264, 156.063, 0.904), "from", "Gains at each start of the damping (Zha 2019, 4.2)."),
-        )
-    },  # pyright: ignore[reportArgumentType]
-)
+_FROM: dict[str, Any] = {
+    "from": (
+        tuple[_Gain, _Gain, _Gain],
+        _gains((0.0264, 156.063, 0.904), "from", "Gains at each start of the damping (Zha 2019, 4.2)."),
+    )
+}
+_From = create_model("_From", __base__=PolicyParameters, **_FROM)
 
 
 class Schedule(_From):

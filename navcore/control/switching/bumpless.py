@@ -12,6 +12,7 @@ from typing import ClassVar, Literal
 from navcore.compiled import inlined, kernel
 from navcore.control.history import mean_of, row_of_age
 from navcore.control.layout import (
+    ACTION,
     DAMPED,
     DAMPING,
     EXTERNAL,
@@ -21,12 +22,13 @@ from navcore.control.layout import (
     NETWORK_STEADY,
     OFFSET,
     ORDER,
+    RESTORE,
     RING_DAMPED,
     RING_FILL,
     RING_INPUT,
     RING_X,
     SWITCHING_PARAMETERS,
-    TUNING_PARAMETERS,
+    TO_XI,
     X_E,
     X_MEMORY,
     X_N,
@@ -35,7 +37,6 @@ from navcore.control.layout import (
 )
 from navcore.control.policy.base import calls
 from navcore.control.switching.base import SwitchingParameters
-from navcore.control.tuned_network import follow_target, tune
 from navcore.parameters import quantity
 
 
@@ -94,21 +95,20 @@ def _put_aside(p, s, ring):
 
 
 @kernel
-def _restore(p, s, ring):
+def restore(p, s, ring):
     """Put the state back, moved by the steady state for the change of the mean."""
     n = int(p[SWITCHING_PARAMETERS])
     change_e = mean_of(s, ring, RING_INPUT, 0, n) - s[MEAN_MEMORY]
     change_n = mean_of(s, ring, RING_INPUT + 1, 0, n) - s[MEAN_MEMORY + 1]
-    if p[TUNING_PARAMETERS] != 0.0:
-        tune(p, s, s[XI_TARGET])
     s[OFFSET], s[OFFSET + 1] = 0.0, 0.0
     for i in range(int(p[ORDER])):
         s[X_E + i] = s[X_MEMORY + i] + s[NETWORK_STEADY + i] * change_e
         s[X_N + i] = s[X_MEMORY + MAX_STATES + i] + s[NETWORK_STEADY + i] * change_n
 
 
-@kernel
-def _pass(p, s, ring, wanted, u_e, u_n):
+@inlined
+def switch_bumpless(p, s, ring, wanted):
+    """Leave with the state of before the event put aside; come back without a step."""
     if not wanted:
         if s[DAMPED] != 0.0:
             _put_aside(p, s, ring)
@@ -118,13 +118,6 @@ def _pass(p, s, ring, wanted, u_e, u_n):
         known = s[FRESH] if p[DAMPING] == EXTERNAL else s[RING_FILL]
         if known < p[SWITCHING_PARAMETERS]:
             return
-        _restore(p, s, ring)
-    if p[TUNING_PARAMETERS] != 0.0:
-        follow_target(p, s, u_e, u_n)
-    s[DAMPED], s[XI] = 1.0, s[XI_TARGET]
-
-
-@inlined
-def switch_bumpless(p, s, ring, wanted, u_e, u_n):
-    """Leave with the state of before the event put aside; come back without a step."""
-    _pass(p, s, ring, wanted, u_e, u_n)
+        s[ACTION] = RESTORE
+    s[DAMPED] = 1.0
+    s[XI] = s[TO_XI] = s[XI_TARGET]

@@ -5,10 +5,8 @@ from __future__ import annotations
 from typing import ClassVar, Literal
 
 from navcore.compiled import inlined
-from navcore.control.layout import DAMPED, DAMPING, EXTERNAL, TUNING_PARAMETERS, VALID, XI, XI_TARGET
-from navcore.control.network_state import advance_network
+from navcore.control.layout import ACTION, DAMPED, DAMPING, EXTERNAL, MASKED, TO_XI, VALID, XI, XI_TARGET
 from navcore.control.switching.base import SwitchingParameters
-from navcore.control.tuned_network import follow_target
 
 
 class Keep(SwitchingParameters):
@@ -22,11 +20,10 @@ class Keep(SwitchingParameters):
 
 
 @inlined
-def switch_keep(p, s, ring, wanted, u_e, u_n):
+def switch_keep(p, s, wanted):
     """Take the wanted state at once; while undamped feed the network all the same."""
-    if p[TUNING_PARAMETERS] != 0.0:
-        follow_target(p, s, u_e, u_n)
+    s[TO_XI] = s[XI_TARGET]
     if not wanted and (p[DAMPING] != EXTERNAL or s[VALID] != 0.0):
-        advance_network(p, s, u_e, u_n)
+        s[ACTION] = MASKED
     s[DAMPED] = 1.0 if wanted else 0.0
     s[XI] = s[XI_TARGET] if wanted else 0.0

@@ -5,20 +5,21 @@ from __future__ import annotations
 import math
 from typing import ClassVar, Literal
 
-from navcore.compiled import inlined, kernel
+from navcore.compiled import inlined
 from navcore.control.layout import (
+    ACTION,
+    CLEAR,
     CLOCK,
     DAMPED,
     ENGAGED,
-    LAW_STEP,
+    REST,
     SWITCH_TIME,
     SWITCHING_PARAMETERS,
+    TO_XI,
     XI,
     XI_TARGET,
 )
-from navcore.control.network_state import clear_network, rest
 from navcore.control.switching.base import SwitchingParameters
-from navcore.control.tuned_network import follow_target, retune
 from navcore.parameters import choice, quantity
 
 
@@ -57,32 +58,21 @@ class Ramp(SwitchingParameters):
         return [self.duration_s - 1.0, float(self.form == "as_printed")]
 
 
-@kernel
-def _raise(p, s, wanted, u_e, u_n):
+@inlined
+def switch_ramp(p, s, wanted):
+    """Raise the coefficient after re-engagement; undamped at once."""
     if not wanted:
         s[DAMPED] = s[XI] = 0.0
         return
-    engaging = s[DAMPED] == 0.0
-    if engaging and s[ENGAGED] == 0.0:
-        s[SWITCH_TIME] = -math.inf
-    # Rounded: a clock that adds up tenths of a second must not end the ramp a step late.
+    if s[DAMPED] == 0.0:
+        s[ACTION] = CLEAR
+        if s[ENGAGED] == 0.0:
+            s[SWITCH_TIME] = -math.inf
     left = p[SWITCHING_PARAMETERS] - (s[CLOCK] - s[SWITCH_TIME])
+    # Rounded: a clock that adds up tenths of a second must not end the ramp a step late.
     left = 0.0 if abs(left) < 1e-6 else left
-    if left <= 1e-6 - p[LAW_STEP]:
-        follow_target(p, s, u_e, u_n)
-        xi = s[XI_TARGET]
-    else:
-        xi = s[XI_TARGET] * math.exp(-max(left, 0.0))
-        retune(p, s, xi, u_e, u_n)
-    if engaging:
-        clear_network(p, s, u_e, u_n)
+    s[DAMPED], s[XI] = 1.0, s[XI_TARGET] * math.exp(-max(left, 0.0))
+    s[TO_XI] = s[XI]
     if left >= 0.0 and p[SWITCHING_PARAMETERS + 1] != 0.0:
-        # e^-49 ... e^-1 of a recursion on differences: what the input is when the ramp ends is at rest.
-        rest(p, s, u_e, u_n)
-    s[DAMPED], s[XI] = 1.0, xi
-
-
-@inlined
-def switch_ramp(p, s, ring, wanted, u_e, u_n):
-    """Raise the coefficient after re-engagement; undamped at once."""
-    _raise(p, s, wanted, u_e, u_n)
+        # What a recursion on differences has seen until now came with e^-49 ... e^-1.
+        s[ACTION] = REST

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from navcore.compiled import inlined, kernel
+from navcore.compiled import inlined
 from navcore.control.layout import (
+    ACTION,
+    CLEAR,
     CLOCK,
     DAMPED,
     DAMPING,
@@ -13,14 +15,13 @@ from navcore.control.layout import (
     EXTERNAL,
     STEP_TIME,
     SWITCHING_PARAMETERS,
+    TO_XI,
     TUNING_LOW,
     VALID,
     XI,
     XI_TARGET,
 )
-from navcore.control.network_state import clear_network
 from navcore.control.switching.base import SwitchingParameters
-from navcore.control.tuned_network import retune, tune
 from navcore.parameters import quantity
 
 _NOTHING = 1e-9
@@ -62,37 +63,25 @@ class Step(SwitchingParameters):
         return [self.size, self.every_s]
 
 
-@kernel
-def _engage(p, s, xi, u_e, u_n):
-    tune(p, s, xi)
-    clear_network(p, s, u_e, u_n)
-    s[DAMPED], s[XI], s[STEP_TIME] = 1.0, xi, s[CLOCK]
-
-
-@kernel
-def _move(p, s, wanted, u_e, u_n):
+@inlined
+def switch_step(p, s, wanted):
+    """Move the coefficient towards its target; undamped when it has come to nothing."""
     if p[DAMPING] == EXTERNAL and s[VALID] == 0.0:
         s[DAMPED] = s[XI] = 0.0
         return
     target, size = s[XI_TARGET] if wanted else 0.0, p[SWITCHING_PARAMETERS]
     if s[DAMPED] == 0.0:
-        if wanted:
-            start = target if s[ENGAGED] == 0.0 else min(size, target)
-            _engage(p, s, max(start, p[TUNING_LOW]), u_e, u_n)
-        return
-    if s[CLOCK] - s[STEP_TIME] < p[SWITCHING_PARAMETERS + 1] - 1e-6 or target == s[XI]:
-        return
-    xi = s[XI] + min(max(target - s[XI], -size), size)
+        if not wanted:
+            return
+        xi = target if s[ENGAGED] == 0.0 else min(size, target)
+        s[ACTION] = CLEAR
+    else:
+        if s[CLOCK] - s[STEP_TIME] < p[SWITCHING_PARAMETERS + 1] - 1e-6 or target == s[XI]:
+            return
+        xi = s[XI] + min(max(target - s[XI], -size), size)
     s[STEP_TIME] = s[CLOCK]
     if xi < _NOTHING or (xi < p[TUNING_LOW] and not wanted):
         s[DAMPED] = s[XI] = 0.0
         return
-    xi = max(xi, p[TUNING_LOW])
-    retune(p, s, xi, u_e, u_n)
-    s[XI] = xi
-
-
-@inlined
-def switch_step(p, s, ring, wanted, u_e, u_n):
-    """Move the coefficient towards its target; undamped when it has come to nothing."""
-    _move(p, s, wanted, u_e, u_n)
+    s[DAMPED], s[XI] = 1.0, max(xi, p[TUNING_LOW])
+    s[TO_XI] = s[XI]
