@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.papers.claim import Claim, Exhibit, Paper, Table, about, at_least, at_most, number
-from app.papers.liu_tables import EXHIBITS
+from app.papers.liu_bumpless import BUMPLESS
+from app.papers.liu_fig_7 import FIGURE_7
+from app.papers.liu_fig_11 import LONG
+from app.papers.liu_tables import TABLES
 from app.papers.measure import departure, hours
 from app.papers.picture import curve, panel
 from app.papers.runs import Runs
@@ -226,5 +229,5 @@ PAPER = Paper(
     "Liu 2021",
     "Liu, Wu, Hu, Zhang: *Design of variable damping INS for ships based on the variation of reference "
     "velocity error*, Journal of Sensors, 2021.",
-    (GAINS, OVERSHOOT, *EXHIBITS),
+    (GAINS, OVERSHOOT, FIGURE_7, LONG, TABLES, BUMPLESS),
 )

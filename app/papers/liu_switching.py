@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -15,9 +15,6 @@ from navcore.scenario import Scenario
 from navcore.sensors.reference import LogEvent
 from navcore.simulation import simulate
 from navcore.units import ARCSEC, HOUR
-
-if TYPE_CHECKING:
-    pass
 
 PRESET = "liu-switching"
 Quantity = Literal["position", "velocity", "tilt"]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from app.papers.liu_fig_7 import FIGURE_7
 from app.papers.liu_switching import fig_7, overshoot, switched
-from app.papers.liu_tables import FIGURE_7
 from app.papers.runs import Runs
 from tests.acceptance.papers import verdicts
 

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.stages import CODE, STAGES, Count, closing_line, read_counts
+from tests import stages
+from tests.stages import CODE, STAGES, Count, closing_line, read_counts, run_stage
 
 
 def report(folder: Path, tests: int, failures: int = 0, errors: int = 0, skipped: int = 0) -> Path:
@@ -51,6 +52,16 @@ def test_every_folder_of_tests_is_in_exactly_one_stage():
     left_out = [part.removeprefix("--ignore=") for part in first if part.startswith("--ignore=")]
     assert sorted(taken) == sorted(left_out)
     assert set(CODE) <= set(first)
+
+
+def test_a_stage_whose_files_are_gone_fails(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setitem(stages.STAGES, "lost", ["tests/no-such-folder"])
+    assert run_stage("lost").failed == 1
+
+
+def test_a_stage_of_a_file_runs_it(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setitem(stages.STAGES, "one file", ["tests/unit/test_chromium.py"])
+    assert run_stage("one file").failed == 0
 
 
 @pytest.fixture
