@@ -77,7 +77,7 @@ def read_state(text: str) -> tuple[tuple[int, int] | None, tuple[str, ...]]:
     >>> read_state("hello")
     (None, ())
     """
-    size, *tabs = text.split("|")
+    size, *tabs = text.strip().split("|")
     found = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})", size)
     if found is None:
         return None, ()

@@ -93,6 +93,7 @@ class Page:
             self._results = self._make_results()
             self._scene = SceneDrawer(self.client.scene)
             self._run_element = gui.add_html("", order=2)
+            self._heard = gui.add_html("", order=3)
             self.refresh()
         self.client.flush()
         self._built = True
@@ -241,6 +242,8 @@ class Page:
             self.header.show_run(run, number, outdated=session.outdated, frame_ms=frame_ms)
             self._run_element.content = content
         self.client.flush()
+        # A tab that came to the front meanwhile was not yet known to be stale.
+        self._show_stale()
 
     def _draw_track(self, run: Run) -> None:
         self._scene.draw(track(run, self.session.exaggeration), self.header.ship_time_s(run))
@@ -282,6 +285,8 @@ class Page:
             self._front = front
         self._reported.set()
         if self._built:
+            heard = escape(self._state.value.strip())
+            self._heard.content = f'<div id="sb-heard" hidden data-state="{heard}"></div>'
             self._arrange()
             self._show_stale()
             if MISPRINTS in self._front:

@@ -61,6 +61,8 @@ def opened(bench: Bench, made: Scenario) -> None:
         number = bench.session.run_number
         bench.session.change(made, None, origin=f"test {number}", selected=1)
     bench.wait_for_run(number)
+    # A newly opened scenario brings its own tab to the front.
+    bench.page.wait_for_function("o => document.documentElement.dataset.opened === o", arg=f"test {number}")
     bench.tab("Switching", "Method")
 
 
