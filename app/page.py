@@ -111,7 +111,7 @@ class Page:
             gui, actions.scenarios(), actions.choose_scenario, session.cancel_run, session.redo_run,
             self._move_ship, self._exaggerate,
         )  # fmt: skip
-        self.header.show_exaggeration(session.exaggeration)
+        self.header.show_exaggeration(session.display.exaggeration)
         self.verification = VerificationPanel(gui, actions.verify, session.verifier.cancel, order=13.5)
         group = gui.add_tab_group(order=20)
         tabs = {name: group.add_tab(name) for name in _EDIT_TABS}
@@ -130,7 +130,7 @@ class Page:
 
     def _make_results(self) -> ResultsPanel:
         return ResultsPanel(
-            self.gui, self._layout, self.session.transfer, self._choose_transfer, self._again_pictures
+            self.gui, self._layout, self.session.display.transfer, self._choose_transfer, self._again_pictures
         )
 
     def close(self) -> None:
@@ -143,16 +143,24 @@ class Page:
     # ------------------------------------------------------------ what the pictures are of
 
     def _choose_transfer(self, id: str) -> None:
-        with self.session.lock:
-            self.session.transfer = id
-        self._again_pictures()
+        self.session.show(self, transfer=id)
 
     def _exaggerate(self, factor: float | None) -> None:
-        with self.session.lock:
-            self.session.exaggeration = factor
-            if self.session.run is not None:
-                self._draw_track(self.session.run)
+        self.session.show(self, exaggeration=factor)
+
+    def display_changed(self, by: object) -> None:
+        """Draw the pictures in front and the map as the session's display says."""
+        del by
+        session = self.session
+        with session.lock, self.client.atomic():
+            if self._closed:
+                return
+            self.header.show_exaggeration(session.display.exaggeration)
+            self._results.show_transfer(session.display.transfer)
+            if session.run is not None:
+                self._draw_track(session.run)
         self.client.flush()
+        self._again_pictures()
 
     def _move_ship(self) -> None:
         with self.session.lock, self.client.atomic():
@@ -231,7 +239,7 @@ class Page:
         if run is None or self._closed:
             return
         wanted = PICTURED.intersection(self._front) or set(PICTURED)
-        pictures = self._results.make(run, number, session.transfer, wanted, self._verified(run))
+        pictures = self._results.make(run, number, session.display.transfer, wanted, self._verified(run))
         content = _run_element(run, number)
         with session.lock, self.client.atomic():
             self._stale = PICTURED - wanted
@@ -246,7 +254,7 @@ class Page:
         self._show_stale()
 
     def _draw_track(self, run: Run) -> None:
-        self._scene.draw(track(run, self.session.exaggeration), self.header.ship_time_s(run))
+        self._scene.draw(track(run, self.session.display.exaggeration), self.header.ship_time_s(run))
 
     def _verified(self, run: Run) -> Verified | None:
         return self.session.verifier.beside(run.scenario)
@@ -266,7 +274,7 @@ class Page:
             wanted = self._stale.intersection(self._front or PICTURED)
         if run is None or not wanted:
             return
-        pictures = self._results.make(run, number, self.session.transfer, wanted, self._verified(run))
+        pictures = self._results.make(run, number, self.session.display.transfer, wanted, self._verified(run))
         with self.session.lock, self.client.atomic():
             if self._closed or self.session.run is not run:
                 return

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
+from app.display import Display
 from app.uploads import Uploads
 from app.verifier import Verifier, Verify
 from app.worker import Watch, Worker
@@ -66,6 +67,10 @@ class View(Protocol):
         """Say that the changed scenario runs only when the user asks for it."""
         ...
 
+    def display_changed(self, by: object) -> None:
+        """Draw the pictures anew as ``session.display`` says; ``by`` is who changed it."""
+        ...
+
     def verification_changed(self) -> None:
         """Show how far the verification is, or what it gave."""
         ...
@@ -103,10 +108,8 @@ class Session:
         Counts the runs shown.
     outdated : bool
         The scenario has changed since ``run``.
-    transfer : str
-        Transfer shown in the Bode plot.
-    exaggeration : float or None
-        Of the errors in 3D; None: chosen to fit.
+    display : Display
+        What the pictures are shown with.
     verifier : Verifier
         Compares the scenario with the full strapdown when asked.
     """
@@ -128,8 +131,7 @@ class Session:
         self.run: Run | None = None
         self.run_number = 0
         self.outdated = True
-        self.transfer = "phi/dv_r"
-        self.exaggeration: float | None = None
+        self.display = Display()
         self.uploads = Uploads(folder)
         self._before: tuple[Scenario, str, int] = (scenario, origin, 0)
         self._views: list[View] = []
@@ -198,6 +200,22 @@ class Session:
             self.selected = min(max(index, 0), len(self.scenario.method) - 1)
             for view in list(self._views):
                 view.scenario_changed(by)
+
+    def show(self, by: object, **changes: object) -> None:
+        """Change how the pictures are shown; the single place where `display` changes.
+
+        Raises
+        ------
+        pydantic.ValidationError
+            A choice is not allowed.
+        """
+        with self.lock:
+            display = self.display.with_(**changes)
+            if display == self.display:
+                return
+            self.display = display
+            for view in list(self._views):
+                view.display_changed(by)
 
     @property
     def waits(self) -> bool:

@@ -137,6 +137,10 @@ class ResultsPanel:
         upper.set_width(layout.right_px)
         return panels
 
+    def show_transfer(self, transfer: str) -> None:
+        """Let the chooser show which transfer is drawn."""
+        self._transfer.value = TRANSFERS[transfer]
+
     def remove(self) -> None:
         """Take the panels off the page."""
         for panel in self._panels:

@@ -45,6 +45,9 @@ class Watcher:
     def run_failed(self, error: Exception) -> None:
         self.told.append(("failed", error))
 
+    def display_changed(self, by: object) -> None:
+        self.told.append(("display", by))
+
     def run_waits(self) -> None:
         self.told.append(("waits", None))
 
@@ -273,3 +276,14 @@ def test_a_new_visitor_sees_a_preset_with_something_to_tune() -> None:
     method = scenario.method[first_editable(scenario)]
     assert method.damping != "free"
     assert len(type(method.network).model_fields) > 1
+
+
+def test_a_change_of_the_display_is_told_once_and_runs_nothing(work: tuple[Session, Watcher]) -> None:
+    session, page = work
+    number = session.run_number
+    session.show(page, scale="log")
+    session.show(page, scale="log")
+    assert page.names().count("display") == 1
+    assert session.display.scale == "log"
+    session.wait_idle(5.0)
+    assert session.run_number == number
