@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 
 import pytest
 
@@ -123,3 +126,21 @@ def test_a_slider_is_answered_by_figures_of_a_running_server():
         assert server.rss_mb() > 50.0
     assert len(answers) == 3
     assert min(answers) > 1.0  # a run of 24 h and its figures cannot be there sooner
+
+
+def test_a_compiled_yardstick_is_found_again_in_the_cache(tmp_path):
+    file = tmp_path / "compiled_yardstick.py"
+    file.write_text(
+        "from numba import njit\n@njit(cache=True)\ndef half(x): return 0.5 * x\n"
+        "def quick(samples, repeats): return half(100.0)\n"
+    )
+    program = (
+        "from app.bench.strapdown import _yardstick; from numba import config;"
+        f"config.CACHE_DIR = {str(tmp_path / 'cache')!r}; print(_yardstick(10)())"
+    )
+    environment = os.environ | {YARDSTICK: str(file)}
+    for _ in range(2):
+        ended = subprocess.run(
+            [sys.executable, "-c", program], env=environment, capture_output=True, text=True
+        )
+        assert (ended.returncode, ended.stdout) == (0, "5e-07\n"), ended.stderr
