@@ -20,7 +20,6 @@ def test_a_preset_opens(bench: Bench, name: str) -> None:
     bench.tab("Errors")
     bench.page.wait_for_selector(".uplot canvas")
     bench.tab("Metrics")
-    table = bench.page.locator(".sb-table")
-    for method in run.methods:
-        assert method.method.name in table.inner_text()
+    table = "names => names.every(name => document.querySelector('.sb-table')?.innerText.includes(name))"
+    bench.page.wait_for_function(table, arg=[method.method.name for method in run.methods])
     assert bench.faults == []

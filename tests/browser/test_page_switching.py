@@ -32,6 +32,15 @@ POLICIES: list[tuple[str, tuple[str, ...]]] = [
 ]  # fmt: skip
 
 
+SWITCHINGS: list[tuple[str, tuple[str, ...]]] = [
+    ("hard", ()),
+    ("keep", ()),
+    ("ramp", ("ramp (s)",)),
+    ("step", ("step size", "every (s)")),
+    ("bumpless", ("bumpless mean (s)", "memory (s)")),
+]
+
+
 def scenario(policy: dict[str, Any], network: dict[str, Any]) -> Scenario:
     """Three hours with a turn, a change of speed and a step of the log; the second method has the policy."""
     data = load("sikuliaq-like").canonical()
@@ -112,6 +121,23 @@ def test_every_slider_of_a_policy_moves_the_view(bench: Bench, id: str, sliders:
         threshold = any(word in slider for word in ("threshold", "limit", " a ", " b ", " c "))
         if threshold:  # its line moves
             assert after[label][2:] != before[label][2:], slider
+    assert bench.faults == []
+
+
+def test_every_switching_method_and_its_sliders_move_the_curves(bench: Bench) -> None:
+    opened(bench, scenario({"id": "variation"}, UNITY))
+    shown = set()
+    for id, sliders in SWITCHINGS:
+        if id != "hard":
+            bench.choose_and_run("switching", id)
+        assert bench.session.scenario.method[1].switching.id == id
+        shown.add(bench.digest)
+        for slider in sliders:
+            old = bench.value(f"{slider}, exact")
+            bench.press(slider)
+            assert bench.value(f"{slider}, exact") > old
+            shown.add(bench.digest)
+    assert len(shown) == len(SWITCHINGS) + sum(len(sliders) for _, sliders in SWITCHINGS)
     assert bench.faults == []
 
 
