@@ -94,6 +94,7 @@ class Actions:
                 session.change(opened, None, origin=name[:60], selected=first_editable(opened))
                 return
             upload = session.uploads.add(name, content)
+            session.on_change()
             held = f"It holds: {', '.join(sorted(upload.quantities))}."
             self._run_on_files(f"{upload.path.name}: {upload.kind}", [held, *upload.warnings])
 
@@ -124,6 +125,7 @@ class Actions:
                 notices.tell(self._client, "The files were kept", [reason], "warning")
                 return
             uploads.clear()
+            self._session.on_change()
         self._refresh()
 
     def give_file(self, name: str) -> None:

@@ -6,14 +6,16 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
+from app.requirements import Requirements
+
 FIRST_TRANSFER = "phi/dv_r"
 
 
 def _known_transfer(id: str) -> str:
-    from app.figures.frequency import TRANSFERS
+    from app.figures.frequency import SHOWN
 
-    if id not in TRANSFERS:
-        raise ValueError(f"must be one of {', '.join(TRANSFERS)}")
+    if id not in SHOWN:
+        raise ValueError(f"must be one of {', '.join(SHOWN)}")
     return id
 
 
@@ -23,13 +25,29 @@ class Display(BaseModel):
     Attributes
     ----------
     transfer : str
-        Transfer shown in the Bode plot: a key of `app.figures.frequency.TRANSFERS`.
+        What the frequency side shows: a key of `app.figures.frequency.SHOWN`.
+    discrete : bool
+        The measured gain and phase of the running filters are drawn on H.
+    locus : str
+        Parameter of the selected method's network over which the root locus is drawn; "": none.
+    requirements : Requirements
+        What the designs have to meet.
     exaggeration : float or None
         Of the errors in 3D; None: chosen to fit.
     angle, length, speed, time : str
         Unit of the plots over time and of the tables; "auto": what fits the numbers.
     scale : str
         Axis of the errors over time.
+    envelope : str
+        Bands behind the error curves: over the seeds of 20 runs, or none.
+    spectrum : str
+        Quantity whose spectrum is shown: a key of `app.figures.errors.error_plots`.
+    baseline : int or None
+        Pin with which numbers are compared; None: the first one.
+    delta : str
+        Which number of each error is compared with the baseline's.
+    flipped : bool
+        The baseline is shown in the place of the present run.
     theme : str
         Of the whole page.
     """
@@ -37,12 +55,20 @@ class Display(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     transfer: Annotated[str, AfterValidator(_known_transfer)] = FIRST_TRANSFER
+    discrete: bool = False
+    locus: Annotated[str, Field(max_length=40)] = ""
+    requirements: Requirements = Requirements()
     exaggeration: Annotated[float | None, Field(gt=0.0, le=1e6)] = None
     angle: Literal["auto", "arcsec", "arcmin", "deg"] = "auto"
     length: Literal["auto", "m", "km", "nmi"] = "auto"
     speed: Literal["auto", "m/s", "kn"] = "auto"
     time: Literal["auto", "min", "h"] = "auto"
     scale: Literal["linear", "log"] = "linear"
+    envelope: Literal["none", "seeds"] = "none"
+    spectrum: Literal["phi_e", "phi_n", "phi_u", "dve", "dvn", "dlat", "dlon", "position"] = "dve"
+    baseline: Annotated[int | None, Field(ge=1)] = None
+    delta: Literal["rms", "max_abs", "final"] = "rms"
+    flipped: bool = False
     theme: Literal["light", "dark"] = "light"
 
     def with_(self, **changes: object) -> Display:

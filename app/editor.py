@@ -75,6 +75,14 @@ class Editor:
             control.follow(value)
             self._session.change(changed, self._by)
 
+    def put(self, control: Control, value: Any) -> None:
+        """Set a control's field to a value that the control does not hold yet; raises `InputError`."""
+        with self._session.lock:
+            if not self._closed and not control.removed:
+                self._trust(control)
+                changed = self._changed(control, value)
+                self._session.change(changed, None, name=f"reset {control.spec.label}")
+
     def close(self) -> None:
         """Let nothing follow any more."""
         with self._session.lock:

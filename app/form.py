@@ -236,6 +236,9 @@ def _label(name: str, info: FieldInfo, prefix: str, part: str = "") -> str:
 def _hint(info: FieldInfo, allowed: str) -> str:
     text = (info.description or "").strip()
     bounds = f"{allowed[0].upper()}{allowed[1:]}." if allowed else ""
+    # The elements of a vector may have units of their own, in their names.
+    if bounds and not extra_of(info).get("elements") and extra_of(info).get("unit") in (None, "", "1"):
+        bounds = f"{bounds.removesuffix('.').removesuffix(' (1)')} (no unit)."
     return " ".join(part for part in (text, bounds) if part)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,11 +27,14 @@ class State:
         Preset it came from.
     selected : int
         Method that the controls edited.
+    opened : Scenario
+        As it was opened, before all editing.
     """
 
     scenario: Scenario
     origin: str
     selected: int
+    opened: Scenario
 
 
 @dataclass(frozen=True)
@@ -58,6 +61,26 @@ class History:
         self._drag: tuple[tuple[str, ...], float] = ((), 0.0)
 
     @property
+    def steps(self) -> tuple[tuple[State, str], ...]:
+        """Every state, oldest first, and the name of the change that led to it."""
+        return tuple((step.state, step.name) for step in self._steps)
+
+    @property
+    def at(self) -> int:
+        """Index of the present one among `steps`."""
+        return self._at
+
+    @classmethod
+    def of(cls, steps: Sequence[tuple[State, str]], at: int) -> History:
+        """A history with these `steps` that stands `at` one of them; ValueError if there is none such."""
+        if not 0 <= at < len(steps):
+            raise ValueError(f"no step {at} among {len(steps)}")
+        made = cls(steps[0][0])
+        made._steps = [_Step(state, name) for state, name in steps]
+        made._at = at
+        return made
+
+    @property
     def state(self) -> State:
         """Where the user stands."""
         return self._steps[self._at].state
@@ -72,8 +95,16 @@ class History:
         """What redo would bring back, in words; None when there is nothing."""
         return self._steps[self._at + 1].name if self._at + 1 < len(self._steps) else None
 
-    def push(self, state: State) -> None:
-        """Note a change; what had been undone is forgotten. Nothing happens when nothing changed."""
+    def push(self, state: State, name: str = "") -> None:
+        """Note a change; what had been undone is forgotten. Nothing happens when nothing changed.
+
+        Parameters
+        ----------
+        state : State
+            After the change.
+        name : str
+            What was done, in words; else it is told from what changed.
+        """
         before = self.state
         if state == before:
             return
@@ -82,13 +113,13 @@ class History:
             self._replace(state)  # another method was selected: no step of its own
             return
         now, (dragged, last_s) = self._clock(), self._drag
-        self._drag = (fields, now)
+        self._drag = ((), 0.0) if name else (fields, now)
         del self._steps[self._at + 1 :]
-        if fields and fields == dragged and now - last_s < DRAG_S:
+        if not name and fields and fields == dragged and now - last_s < DRAG_S:
             start = self._steps[self._at - 1].state
             self._steps[self._at] = _Step(state, change_name(start, state))
             return
-        self._steps.append(_Step(state, change_name(before, state)))
+        self._steps.append(_Step(state, name or change_name(before, state)))
         del self._steps[: max(0, len(self._steps) - MOST_STEPS - 1)]
         self._at = len(self._steps) - 1
 
@@ -105,6 +136,27 @@ class History:
             return None
         self._at, self._drag = self._at + 1, ((), 0.0)
         return self.state
+
+    def take_back(self, to: State) -> None:
+        """Forget the present step, whose scenario was refused: the user stands at ``to`` again.
+
+        Parameters
+        ----------
+        to : State
+            The last one that was good; if no step has it (it was passed within a drag), the present step
+            ends there.
+        """
+        self._drag = ((), 0.0)
+        for at in (*range(self._at - 1, -1, -1), self._at + 1):
+            if at < len(self._steps) and self._steps[at].state == to:
+                # Undone into: later steps stay. Else the refused step goes, and what was never run with it.
+                del self._steps[at + 1 if at < self._at else self._at : self._at + 1]
+                self._at = min(at, self._at)
+                return
+        if self._at == 0:
+            self._replace(to)
+        else:
+            self._steps[self._at] = _Step(to, change_name(self._steps[self._at - 1].state, to))
 
     def _replace(self, state: State) -> None:
         self._steps[self._at] = _Step(state, self._steps[self._at].name)
@@ -135,7 +187,16 @@ def change_name(before: State, after: State) -> str:
         return f"change of {blocks.pop()}" if len(blocks) == 1 else f"change of {len(fields)} fields"
     (field,) = fields
     old, new = _flat(before.scenario.canonical()).get(field), _flat(after.scenario.canonical()).get(field)
-    return f"{field}: {_short(old)} → {_short(new)}"
+    return f"{_named(field, after.scenario)}: {_short(old)} → {_short(new)}"
+
+
+def _named(field: str, scenario: Scenario) -> str:
+    """A field as the page calls it: of a method by the method's name."""
+    block, _, rest = field.partition(".")
+    index, _, inner = rest.partition(".")
+    if block != "method" or not inner:
+        return field
+    return f"{inner.removeprefix('network.')} of {_short(scenario.method[int(index)].name)}"
 
 
 def _flat(value: Any, path: str = "") -> dict[str, Any]:

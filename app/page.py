@@ -16,21 +16,31 @@ from typing import TYPE_CHECKING
 
 from app import notices
 from app.actions import Actions, as_json
+from app.commands import Commands
 from app.editor import Editor
 from app.figures import style
-from app.figures.track import track
+from app.findings import Findings
 from app.http.viser_insides import leaving_is_no_fault
 from app.layout import layout_for, read_state
+from app.palette import Palette
+from app.panels.appearance import Appearance
 from app.panels.control import Control
+from app.panels.explain import ExplainPanel
 from app.panels.files import FilesPanel
 from app.panels.header import HeaderPanel
 from app.panels.inputs import LogPanel, RunPanel, SensorPanel
+from app.panels.lessons import COMMAND as LESSON
+from app.panels.lessons import LEARN, LessonPanel
 from app.panels.method import MethodPanel
-from app.panels.results import MISPRINTS, PICTURED, ResultsPanel
+from app.panels.reading import VIEW
+from app.panels.results import MISPRINTS, PICTURED, TABS, ResultsPanel
 from app.panels.verification import VerificationPanel
-from app.scene import SceneDrawer
+from app.panels.workbench import Placer, Tools
+from app.presenter import PresenterLock
+from app.reading import Figures, Reading
 from app.session import Session
-from app.verifier import Verified
+from app.shown import Shown, shown
+from app.stage import Stage
 from navcore.errors import InputError
 from navcore.measures import metrics
 from navcore.run import Run
@@ -41,8 +51,9 @@ if TYPE_CHECKING:
 PAGE_STATE = "page state"
 """Label of the control through which the page reports its size and front tabs (static/page.js)."""
 
+_STYLES = ("page", "commands", "learn")
 _SIZE_WAIT_S = 1.5
-_EDIT_TABS = ("Method", "Sensors", "Log", "Run", "Files")
+_EDIT_TABS = ("Method", "Sensors", "Log", "Run", "Files", VIEW, LEARN)
 
 
 class Page:
@@ -65,8 +76,11 @@ class Page:
         self._front: tuple[str, ...] = ()
         self._stale = set(PICTURED)
         self._shown_result = session.verifier.result
+        self._located = session.selected
         self._editor = Editor(client, session, self, self._controls, lambda: self.method.shown_network)
         self._actions = Actions(client, session, self._again)
+        self._placer = Placer(client, session)
+        self._tools = Tools(lambda **choices: session.show(None, **choices), self._placer.typed)
         self._build()
 
     # ------------------------------------------------------------ building
@@ -76,8 +90,10 @@ class Page:
         leaving_is_no_fault(self.client)
         self._state = gui.add_text(PAGE_STATE, "", order=1)
         self._state.on_update(lambda _: self._on_state())
-        css = (Path(__file__).parent / "static" / "page.css").read_text(encoding="utf-8")
-        css = css.replace("PAGE_STATE", self._state._impl.uuid)
+        static = Path(__file__).parent / "static"
+        css = "".join((static / f"{name}.css").read_text(encoding="utf-8") for name in _STYLES)
+        self.commands = Commands(gui, self._command_failed)
+        css = css.replace("PAGE_STATE", self._state._impl.uuid).replace("PAGE_COMMAND", self.commands.box_id)
         gui.add_html(f"<style>{css}{style.UPLOT_CSS}</style>", order=0)
         self.client.flush()
         if not self._reported.wait(_SIZE_WAIT_S):
@@ -91,15 +107,20 @@ class Page:
             gui.main_panel.set_width(self._layout.left_px)
             self._make_left()
             self._results = self._make_results()
-            self._scene = SceneDrawer(self.client.scene)
+            self.findings = Findings(self.client, session, self._method_tab, lambda: self._results)
+            self._stage = Stage(self.client, session, self.commands)
             self._run_element = gui.add_html("", order=2)
             self._heard = gui.add_html("", order=3)
+            self.palette.offer_tabs((*_EDIT_TABS, *TABS))
             self.refresh()
+            self.commands.register("place", self._placer.picked)
+            self.commands.show()
         self.client.flush()
         self._built = True
         self._arrange()
-        self._scene.point_camera(self.client.camera, self._layout.view_aspect)
+        self._stage.fit(self._layout.view_aspect)
         session.attach(self)
+        self.findings.begin()
         if session.run is not None:
             self.run_ended()
         if session.waits:
@@ -109,12 +130,13 @@ class Page:
         gui, session, actions, edit = self.gui, self.session, self._actions, self._editor.edit
         self.header = HeaderPanel(
             gui, actions.scenarios(), actions.choose_scenario, session.cancel_run, session.redo_run,
-            self._move_ship, self._exaggerate,
+            self._exaggerate,
         )  # fmt: skip
         self.header.show_exaggeration(session.display.exaggeration)
         self.verification = VerificationPanel(gui, actions.verify, session.verifier.cancel, order=13.5)
         group = gui.add_tab_group(order=20)
         tabs = {name: group.add_tab(name) for name in _EDIT_TABS}
+        self._method_tab = tabs["Method"]
         self.method = MethodPanel(gui, tabs["Method"], edit, actions.select, actions.arrange_methods)
         self.sensors = SensorPanel(gui, tabs["Sensors"], edit, self._again)
         self.log = LogPanel(gui, tabs["Log"], edit, self._again, actions.arrange_log)
@@ -122,23 +144,49 @@ class Page:
         self.files = FilesPanel(
             gui, tabs["Files"], actions.take_file, actions.use_files, actions.forget_files, actions.give_file
         )
+        free = frozenset({self._state._impl.uuid, self.commands.box_id})
+        lock = PresenterLock(self.client, session, self, self.commands, free)
+        self.palette = Palette(
+            self.client, session, self.commands, actions, self._editor, lock, self._controls
+        )
+        self.reading = Reading(self.client, session, self.commands, tabs[VIEW], self._figures)
+        self.appearance = Appearance(gui, session, self.commands, tabs[VIEW])
+        self.lessons = LessonPanel(gui, tabs[LEARN], session, edit)
+        self.commands.register(LESSON, self.lessons.command)
+        ExplainPanel(gui, session, self.commands, self._controls)
 
     def _controls(self) -> list[Control]:
-        panels = (self.method, self.sensors, self.log, self.run_panel)
+        panels = (self.method, self.sensors, self.log, self.run_panel, self.lessons)
         sections = [section for panel in panels for section in panel.sections.values()]
         return [control for section in sections for control in section.controls.values()]
 
     def _make_results(self) -> ResultsPanel:
         return ResultsPanel(
-            self.gui, self._layout, self.session.display.transfer, self._choose_transfer, self._again_pictures
-        )
+            self.gui, self._layout, self.session.display, self._tools, self._choose_transfer,
+            self._again_pictures, self.reading.comparing,
+        )  # fmt: skip
+
+    def _figures(self, found: Shown, tab: str) -> Figures:
+        """Figures of one tab, to be saved."""
+        pictures = self._results.make(found, {tab}, self.session.selected)
+        if tab in pictures.plotly:
+            return pictures.plotly[tab], []
+        return None, list(pictures.switching or pictures.curves.values())
 
     def close(self) -> None:
         """The browser has gone."""
         with self.session.lock:
             self._closed = True
         self._editor.close()
+        self.commands.close()
+        self._stage.close()
+        self.findings.close()
         self.session.detach(self)
+
+    def _command_failed(self, error: Exception) -> None:
+        fault = isinstance(error, InputError)
+        lines = notices.fault_lines(error) if fault else [f"{type(error).__name__}: {error}"]
+        notices.tell(self.client, "That did not work", lines)
 
     # ------------------------------------------------------------ what the pictures are of
 
@@ -155,18 +203,15 @@ class Page:
         with session.lock, self.client.atomic():
             if self._closed:
                 return
+            self.appearance.show(session.display)
             self.header.show_exaggeration(session.display.exaggeration)
-            self._results.show_transfer(session.display.transfer)
-            if session.run is not None:
-                self._draw_track(session.run)
+            self._results.follow(session.display, session.scenario.method[session.selected])
+            self.reading.show()
+            found = shown(session)
+            if found is not None:
+                self._stage.draw(found.run)
         self.client.flush()
         self._again_pictures()
-
-    def _move_ship(self) -> None:
-        with self.session.lock, self.client.atomic():
-            if self.session.run is not None:
-                self._scene.move_ship(self.header.ship_time_s(self.session.run))
-        self.client.flush()
 
     # ------------------------------------------------------------ what the session says
 
@@ -176,6 +221,12 @@ class Page:
             self._editor.moved = None
         with self.client.atomic():
             self.refresh()
+            self._stage.choose()
+        if self._located != self.session.selected:
+            # the root locus is that of the method in hand
+            self._located = self.session.selected
+            if self.session.display.locus:
+                self._again_pictures()
 
     def refresh(self) -> None:
         """Let every control show the session's scenario; the one in hand stays as it is."""
@@ -187,7 +238,11 @@ class Page:
         self.verification.show(session.verifier, scenario)
         for panel in (self.sensors, self.log, self.run_panel):
             panel.show(scenario, moved)
+        self._results.follow(session.display, scenario.method[index])
         self.files.show(session.uploads)
+        self.findings.show()
+        self.lessons.show(scenario, session.run, moved)
+        self.palette.show()
 
     def run_progressed(self, fraction: float, elapsed_s: float) -> None:
         """Mark the picture as old once a run takes its time."""
@@ -205,6 +260,13 @@ class Page:
         self.header.show_waiting(self.session.scenario, self.session.run_number)
         self.client.flush()
 
+    def presenter_changed(self) -> None:
+        """Another page drives now, or none."""
+        with self.session.lock, self.client.atomic():
+            if not self._closed:
+                self.palette.show_presenter()
+        self.client.flush()
+
     def verification_changed(self) -> None:
         """A verification has come further, or has ended."""
         session = self.session
@@ -217,6 +279,13 @@ class Page:
         self.client.flush()
         if fresh:
             self._again_pictures()
+
+    def envelope_progressed(self) -> None:
+        """The envelope of the error curves has come further, or cannot be made."""
+        with self.session.lock, self.client.atomic():
+            if not self._closed:
+                self.reading.panel.show_progress()
+        self.client.flush()
 
     def run_refused(self, error: InputError) -> None:
         """The scenario cannot run; the last good one is back."""
@@ -234,30 +303,26 @@ class Page:
     def run_ended(self) -> None:
         """Show the session's run: the figures of the tabs in front, the map, and last the run element."""
         began = time.perf_counter()
-        session = self.session
-        run, number = session.run, session.run_number
-        if run is None or self._closed:
+        session, found = self.session, shown(self.session)
+        if found is None or session.run is None or self._closed:
             return
+        run, number = session.run, found.number
         wanted = PICTURED.intersection(self._front) or set(PICTURED)
-        pictures = self._results.make(run, number, session.display.transfer, wanted, self._verified(run))
+        pictures = self._results.make(found, wanted, session.selected)
         content = _run_element(run, number)
         with session.lock, self.client.atomic():
             self._stale = PICTURED - wanted
             self._results.show(pictures)
-            self._draw_track(run)
+            self._stage.draw(found.run)
+            self.findings.show()
             self.method.show_warnings(run, session.scenario, session.selected)
+            self.lessons.show(session.scenario, run, self._editor.moved)
             frame_ms = 1e3 * (run.elapsed_s + time.perf_counter() - began)
             self.header.show_run(run, number, outdated=session.outdated, frame_ms=frame_ms)
             self._run_element.content = content
         self.client.flush()
         # A tab that came to the front meanwhile was not yet known to be stale.
         self._show_stale()
-
-    def _draw_track(self, run: Run) -> None:
-        self._scene.draw(track(run, self.session.display.exaggeration), self.header.ship_time_s(run))
-
-    def _verified(self, run: Run) -> Verified | None:
-        return self.session.verifier.beside(run.scenario)
 
     def _again(self) -> None:
         with self.session.lock, self.client.atomic():
@@ -269,14 +334,15 @@ class Page:
         self._show_stale()
 
     def _show_stale(self) -> None:
-        with self.session.lock:
-            run, number = self.session.run, self.session.run_number
+        session = self.session
+        with session.lock:
+            found = shown(session)
             wanted = self._stale.intersection(self._front or PICTURED)
-        if run is None or not wanted:
+        if found is None or not wanted:
             return
-        pictures = self._results.make(run, number, self.session.display.transfer, wanted, self._verified(run))
-        with self.session.lock, self.client.atomic():
-            if self._closed or self.session.run is not run:
+        pictures = self._results.make(found, wanted, session.selected)
+        with session.lock, self.client.atomic():
+            if self._closed or session.run_number != found.number:
                 return
             self._stale -= wanted
             self._results.show(pictures)
@@ -311,7 +377,7 @@ class Page:
             self._results.remove()
             self._results = self._make_results()
             self._front, self._stale = (), set(PICTURED)
-        self._scene.point_camera(self.client.camera, layout.view_aspect)
+        self._stage.fit(layout.view_aspect)
         self.client.flush()
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -11,7 +10,7 @@ import numpy as np
 from app.figures import style
 from app.figures.graticule import SceneLabel
 from app.figures.ship import ship_parts
-from app.figures.track import HALF_WIDTH, SHIP_LENGTH, TrackScene, segments
+from app.figures.track import HALF_WIDTH, SHIP_LENGTH, MethodTrack, Place, TrackScene, segments
 
 if TYPE_CHECKING:
     import viser
@@ -19,11 +18,10 @@ if TYPE_CHECKING:
 Anchor = Literal["top-center", "center-left"]
 
 _LINE = 0.05
-_GRID_LINE = 0.015
-_TILT = math.radians(66.0)
-"""Elevation of the camera above the map."""
-_ROOM = 1.1
-"""Scene units around the map for its labels."""
+_GRID_LINE = 0.02
+_FAINT = 0.6
+"""Width of what lies ahead of the ship."""
+_TIP_POINTS = 60
 _HEADING_LENGTH = 1.6
 _LABEL = 0.9
 _LEGEND_ROWS = 5
@@ -40,6 +38,11 @@ class SceneDrawer:
     ----------
     scene : viser.SceneApi
         Of the client.
+
+    Attributes
+    ----------
+    place : Place or None
+        Where the ships are.
     """
 
     def __init__(self, scene: viser.SceneApi) -> None:
@@ -47,6 +50,10 @@ class SceneDrawer:
         self._nodes: dict[str, Any] = {}
         self._labels: dict[str, tuple[SceneLabel, ...]] = {}
         self._drawn: TrackScene | None = None
+        self._selected = 0
+        self._past: dict[str, tuple[object, int]] = {}
+        self._ghost: tuple[int, int, int] | None = None
+        self.place: Place | None = None
         # Shadows and the environment map keep two cores busy under software rendering.
         scene.configure_default_lights(cast_shadow=False)
         scene.configure_environment_map(hdri=None)
@@ -54,35 +61,74 @@ class SceneDrawer:
         self._make_sea()
         self._make_ship()
 
-    def draw(self, track: TrackScene, time_s: float) -> None:
-        """Show a run's map, with the ship where it is at ``time_s``."""
-        self._lines("/map/grid", track.graticule.segments, style.rgb("#A9BACA"), _GRID_LINE)
+    def draw(self, track: TrackScene, time_s: float, selected: int = 0) -> None:
+        """Show a run's map, the ships where they are at ``time_s``; ``selected`` has a computed one."""
+        self._lines("/map/grid", track.graticule.segments, style.rgb("#FFFFFF"), _GRID_LINE)
         self._lines("/map/bar", track.bar + _BAR_SHIFT, style.rgb(style.INK), 2 * _GRID_LINE)
         caption = SceneLabel(track.caption, (0.0, -HALF_WIDTH - 2.3, 0.0))
         south = (replace(label, position=_shifted(label)) for label in track.labels[:1])
         self._texts("/map/labels", (*track.graticule.labels, *south, *track.labels[1:]))
         self._texts("/map/caption", (caption,), size=1.0)
         self._lines("/track/truth", track.truth_dashes(), style.rgb(style.TRUTH_COLOR), _LINE)
-        for index, method in enumerate(track.methods):
-            self._lines(f"/track/method{index}", segments(method.points), method.color, _LINE)
-        self._drop_beyond("/track/method", len(track.methods))
-        self._drawn = track
+        self._drawn, self._selected = track, min(selected, len(track.methods) - 1)
+        self._past.clear()
         self.move_ship(time_s)
+        self._drop_beyond("/track/method", len(track.methods))
 
     def move_ship(self, time_s: float) -> None:
-        """Put the ship, its heading and the error vectors where they are at a time."""
+        """Put ships, error vectors and trails where they are at a time."""
         track = self._drawn
         if track is None:
             return
-        index = track.index_at(time_s)
-        ship = self._nodes["/ship"]
-        ship.position, ship.wxyz = track.truth[index], track.wxyz[index]
-        vectors = track.error_vectors(index)
-        for number, (vector, method) in enumerate(zip(vectors, track.methods, strict=True)):
+        place = self.place = track.place(time_s)
+        ship, computed = self._nodes["/ship"], self._computed_ship(track.methods[self._selected].color)
+        ship.position, ship.wxyz = place.truth, place.wxyz
+        computed.position, computed.wxyz = place.computed[self._selected], place.wxyz
+        under_way = time_s < track.t_s[-1]
+        for number, (vector, method) in enumerate(zip(place.error_vectors(), track.methods, strict=True)):
+            self._whole(number, method, faint=under_way)
+            self._trail(number, method, place, shown=under_way)
             self._lines(f"/error/method{number}", vector[None], method.color, 0.6 * _LINE)
-            self._legend_row(number, len(track.methods), method.color, method.error_text(index))
-        for name in ("/error/method", "/legend/line", "/legend/text"):
+            self._legend_row(number, len(track.methods), method.color, method.error_text(place.index))
+        for name in ("/error/method", "/legend/line", "/legend/text", "/trail/past", "/trail/tip"):
             self._drop_beyond(name, len(track.methods))
+
+    def select(self, method: int) -> bool:
+        """Let another method have the computed ship; False when it has it already."""
+        if self._drawn is None or self.place is None:
+            return False
+        method = min(method, len(self._drawn.methods) - 1)
+        if method == self._selected:
+            return False
+        self._selected = method
+        computed = self._computed_ship(self._drawn.methods[method].color)
+        computed.position, computed.wxyz = self.place.computed[method], self.place.wxyz
+        return True
+
+    def _whole(self, number: int, method: MethodTrack, *, faint: bool) -> None:
+        """The whole computed track; pale while what lies ahead is not yet past."""
+        color = _paler(method.color) if faint else method.color
+        name = f"/track/method{number}"
+        if self._past.get(name) != (color, id(self._drawn)):
+            self._lines(name, segments(method.points), color, (_FAINT if faint else 1.0) * _LINE)
+            self._past[name] = color, id(self._drawn)
+
+    def _trail(self, number: int, method: MethodTrack, place: Place, *, shown: bool) -> None:
+        """The part of a track that is past: only its last few points are sent anew at each moment."""
+        past, tip = f"/trail/past{number}", f"/trail/tip{number}"
+        if not shown:
+            none = np.empty((0, 2, 3), dtype=np.float32)
+            self._lines(past, none, method.color, _LINE)
+            self._lines(tip, none, method.color, _LINE)
+            self._past.pop(past, None)
+            return
+        whole = place.index // _TIP_POINTS * _TIP_POINTS
+        if self._past.get(past) != (whole, id(self._drawn)):
+            self._lines(past, segments(method.points[: whole + 1]), method.color, _LINE)
+            self._past[past] = whole, id(self._drawn)
+        recent = method.points[whole : place.index + 1]
+        here = place.computed[number][None] if place.index < len(method.points) else recent[:0]
+        self._lines(tip, segments(np.concatenate([recent, here])), method.color, _LINE)
 
     def _legend_row(self, number: int, count: int, color: tuple[int, int, int], text: str) -> None:
         """A method's line, name and present error, south of the map; many stand in two columns."""
@@ -92,18 +138,6 @@ class SceneDrawer:
         line = np.array([[[x, y, 0.0], [x + 0.7, y, 0.0]]], dtype=np.float32)
         self._lines(f"/legend/line{number}", line, color, _LINE)
         self._text(f"/legend/text{number}", SceneLabel(text, (x + 0.9, y, 0.0)), anchor="center-left")
-
-    def point_camera(self, camera: viser.CameraHandle, aspect: float) -> None:
-        """Look at the whole map from the south; ``aspect`` is width / height of the view."""
-        half = math.tan(0.5 * camera.fov)
-        # The southern edge is nearest to the camera and looks largest.
-        nearer = HALF_WIDTH * math.cos(_TILT)
-        across = (HALF_WIDTH + _ROOM) / (half * aspect) + nearer
-        upright = (HALF_WIDTH * math.sin(_TILT) + _ROOM) / half + nearer
-        centre = np.array([0.0, -2.0, 0.0])
-        camera.up_direction = (0.0, 0.0, 1.0)
-        camera.position = centre + max(across, upright) * np.array([0.0, -math.cos(_TILT), math.sin(_TILT)])
-        camera.look_at = centre
 
     # ------------------------------------------------------------ nodes
 
@@ -115,7 +149,7 @@ class SceneDrawer:
             0.03,
         ]
         self._scene.add_mesh_simple(
-            "/map/sea", corners, np.array([[0, 1, 2], [0, 2, 3]]), color=style.rgb("#B9D9F5"), opacity=0.45,
+            "/map/sea", corners, np.array([[0, 1, 2], [0, 2, 3]]), color=style.rgb("#8FC3EE"),
             side="double", cast_shadow=False, receive_shadow=False,
         )  # fmt: skip
 
@@ -131,6 +165,20 @@ class SceneDrawer:
             "/ship/heading", ahead, style.rgb(style.TRUTH_COLOR), shaft_radius=0.025, head_radius=0.08,
             head_length=0.2,
         )  # fmt: skip
+
+    def _computed_ship(self, color: tuple[int, int, int]) -> Any:
+        """A translucent ship in a method's colour."""
+        if self._ghost != color:
+            self._ghost = color
+            if "/computed" in self._nodes:
+                self._nodes.pop("/computed").remove()
+            self._nodes["/computed"] = self._scene.add_frame("/computed", show_axes=False)
+            for part in ship_parts():
+                self._scene.add_mesh_simple(
+                    f"/computed/{part.name}", part.vertices, part.faces, color=color, scale=SHIP_LENGTH,
+                    opacity=0.38, flat_shading=True, cast_shadow=False, receive_shadow=False,
+                )  # fmt: skip
+        return self._nodes["/computed"]
 
     def _lines(self, name: str, points: np.ndarray, color: tuple[int, int, int], thickness: float) -> None:
         node = self._nodes.get(name)
@@ -164,6 +212,11 @@ class SceneDrawer:
         while (node := self._nodes.pop(f"{name}{count}", None)) is not None:
             node.remove()
             count += 1
+
+
+def _paler(color: tuple[int, int, int]) -> tuple[int, int, int]:
+    red, green, blue = (round(255 - 0.35 * (255 - part)) for part in color)
+    return red, green, blue
 
 
 def _shifted(label: SceneLabel) -> tuple[float, float, float]:

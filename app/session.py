@@ -1,31 +1,25 @@
-"""One visitor's work - scenario, uploads, last good run - kept by session id over reloads. No viser here."""
+"""One visitor's work: scenario, its history, uploads, last good run. No viser here."""
 
 from __future__ import annotations
 
-import atexit
 import logging
-import shutil
-import tempfile
 import threading
-from collections import OrderedDict
 from collections.abc import Callable
 from pathlib import Path
-from typing import Protocol
 
 from app.display import Display
+from app.envelopes import Envelopes
+from app.history import History, State
+from app.pins import Pins
+from app.searches import Searches
 from app.uploads import Uploads
 from app.verifier import Verifier, Verify
+from app.view import View
 from app.worker import Watch, Worker
 from navcore.errors import InputError
 from navcore.run import Run
 from navcore.scenario import Scenario
 from navcore.units import HOUR
-
-MOST_SESSIONS = 64
-"""Sessions kept without an open page; with one they are always kept."""
-MOST_IDLE_RUNS = 8
-"""Runs kept of sessions without an open page; the others are computed again on return."""
-FIRST_PRESET = "sikuliaq-like"
 
 MOST_SAMPLES = 2_500_000
 """IMU samples, all methods together, of a strapdown run that still follows every change: half a second."""
@@ -34,46 +28,6 @@ _REPORT_EVERY_S = 0.1
 _log = logging.getLogger("schuler.session")
 
 Simulate = Callable[[Scenario, Callable[[float], None], Callable[[], bool]], Run]
-
-
-class View(Protocol):
-    """An open page of a session. Called from the worker's thread or from that of another page."""
-
-    def scenario_changed(self, by: object) -> None:
-        """Show the session's scenario in all controls; ``by`` is who changed it."""
-        ...
-
-    def run_progressed(self, fraction: float, elapsed_s: float) -> None:
-        """Show that a run is under way and the picture is an old one."""
-        ...
-
-    def run_ended(self) -> None:
-        """Show the session's run."""
-        ...
-
-    def run_stopped(self) -> None:
-        """Say that the picture is still the old one because the user stopped the run."""
-        ...
-
-    def run_refused(self, error: InputError) -> None:
-        """Say why the scenario cannot run; the last good one is back."""
-        ...
-
-    def run_failed(self, error: Exception) -> None:
-        """Say that something of ours went wrong; the last good picture stays."""
-        ...
-
-    def run_waits(self) -> None:
-        """Say that the changed scenario runs only when the user asks for it."""
-        ...
-
-    def display_changed(self, by: object) -> None:
-        """Draw the pictures anew as ``session.display`` says; ``by`` is who changed it."""
-        ...
-
-    def verification_changed(self) -> None:
-        """Show how far the verification is, or what it gave."""
-        ...
 
 
 class Session:
@@ -100,8 +54,18 @@ class Session:
         As edited.
     origin : str
         Preset, or "uploaded".
+    opened : Scenario
+        As it was opened: what reset goes back to.
     selected : int
         Method that the controls edit.
+    history : History
+        Of scenario, origin and selected method.
+    on_change : callable
+        ``on_change()`` after every change that is to outlive the server.
+    share : callable
+        ``share()`` makes a copy for others and gives its id; OSError when there is no room.
+    presenter : View or None
+        The page that drives; the others watch.
     run : Run or None
         The last good one.
     run_number : int
@@ -112,6 +76,10 @@ class Session:
         What the pictures are shown with.
     verifier : Verifier
         Compares the scenario with the full strapdown when asked.
+    pins : Pins
+        Runs that were pinned.
+    envelopes : Envelopes
+        Bands of the error curves over many seeds.
     """
 
     def __init__(
@@ -127,18 +95,30 @@ class Session:
         self.lock = threading.RLock()
         self.scenario = scenario
         self.origin = origin
+        self.opened = scenario
         self.selected = first_editable(scenario)
+        self.history = History(self.state)
+        self.on_change: Callable[[], None] = lambda: None
+        self.share: Callable[[], str] = lambda: self.id
+        self.presenter: View | None = None
         self.run: Run | None = None
         self.run_number = 0
         self.outdated = True
         self.display = Display()
         self.uploads = Uploads(folder)
-        self._before: tuple[Scenario, str, int] = (scenario, origin, 0)
+        self._before = self.state
         self._views: list[View] = []
         self._simulate = simulate or _simulate
-        self._worker: Worker[Scenario] = Worker(self._work, f"session-{id[:8]}")
+        self._worker: Worker[State] = Worker(self._work, f"session-{id[:8]}")
         self.verifier = Verifier(
             lambda: self._tell(lambda view: view.verification_changed()), verify, f"verifier-{id[:8]}"
+        )
+        self.searches = Searches(id[:8])
+        self.pins = Pins(self._pins_changed, self._simulate)
+        self.envelopes = Envelopes(
+            self._simulate,
+            lambda: self._tell(lambda view: view.envelope_progressed()),
+            self._pictures_changed,
         )
 
     # ------------------------------------------------------------ pages
@@ -147,8 +127,10 @@ class Session:
         """Add an open page; a run is begun if there is none to show."""
         with self.lock:
             self._views.append(view)
+            if self.presenter is not None:
+                self._tell(lambda other: other.presenter_changed())
             if self.run is None:
-                self._worker.submit(self.scenario)
+                self._worker.submit(self.state)
 
     def detach(self, view: View) -> None:
         """Remove a closed page; without any page nothing runs on."""
@@ -157,6 +139,10 @@ class Session:
             if not self._views:
                 self._worker.cancel()
                 self.verifier.cancel()
+                self.envelopes.cancel()
+            if self.presenter is not None:
+                self.presenter = None if self.presenter is view else self.presenter
+                self._tell(lambda other: other.presenter_changed())
 
     @property
     def open_pages(self) -> int:
@@ -164,42 +150,106 @@ class Session:
         with self.lock:
             return len(self._views)
 
+    def present(self, view: View | None) -> bool:
+        """Let one page drive alone, or (None) all of them again; False while another page drives."""
+        with self.lock:
+            if view is not None and self.presenter not in (None, view):
+                return False
+            self.presenter = view
+            self._tell(lambda other: other.presenter_changed())
+            return True
+
     # ------------------------------------------------------------ changes
 
+    @property
+    def state(self) -> State:
+        """What undo brings back."""
+        return State(self.scenario, self.origin, self.selected, self.opened)
+
     def change(
-        self, scenario: Scenario, by: object, *, origin: str | None = None, selected: int | None = None
+        self,
+        scenario: Scenario,
+        by: object,
+        *,
+        origin: str | None = None,
+        selected: int | None = None,
+        name: str = "",
     ) -> bool:
         """Take over a checked scenario and run it; False when nothing changed.
 
-        The single place where the scenario changes. One that `runs_on_demand` is run when it is opened
-        (``origin``) and when the user asks for it, not with every move of a control.
+        The single place where the scenario changes; each change can be undone. One that `runs_on_demand` is
+        run when it is opened (``origin``) and when the user asks for it, not with every move of a control.
+        ``name`` says what was done where that is not "this field from here to there".
         """
         with self.lock:
             same = scenario == self.scenario and origin in (None, self.origin)
-            if selected is not None:
-                self.selected = selected
-            self.selected = min(self.selected, len(scenario.method) - 1)
+            at = self.selected if selected is None else selected
+            self.selected = min(at, len(scenario.method) - 1)
             if same:
                 return False
-            if origin not in (None, self.origin):
-                self.verifier.forget()
-            self.scenario, self.origin, self.outdated = scenario, origin or self.origin, True
-            self.verifier.follow(scenario)
-            for view in list(self._views):
-                view.scenario_changed(by)
-            if origin is None and runs_on_demand(scenario):
-                self._worker.cancel()
-                self._tell(lambda view: view.run_waits())
-            else:
-                self._worker.submit(scenario)
+            opened = self.opened if origin is None else scenario
+            state = State(scenario, origin or self.origin, self.selected, opened)
+            self.history.push(state, name)
+            self._go_to(state, by, opens=origin is not None)
             return True
+
+    def resume(self, history: History, display: Display) -> None:
+        """Take over what was kept of this session, before any page is open."""
+        with self.lock:
+            self.history, self.display = history, display
+            state = history.state
+            self.scenario, self.origin = state.scenario, state.origin
+            self.selected, self.opened = state.selected, state.opened
+            self._before = state
+
+    def undo(self) -> bool:
+        """Take the last change back; False when there is none."""
+        return self._walk(self.history.undo)
+
+    def redo(self) -> bool:
+        """Bring back what was undone last; False when nothing was."""
+        return self._walk(self.history.redo)
+
+    def reset(self, by: object) -> bool:
+        """Go back to the scenario as it was opened; False when it is that already."""
+        with self.lock:
+            return self.change(self.opened, by, name=f"reset to {self.origin}")
 
     def select(self, index: int, by: object) -> None:
         """Choose the method that the controls edit."""
         with self.lock:
             self.selected = min(max(index, 0), len(self.scenario.method) - 1)
+            self.history.push(self.state)
             for view in list(self._views):
                 view.scenario_changed(by)
+            self.on_change()
+
+    def _walk(self, step: Callable[[], State | None]) -> bool:
+        with self.lock:
+            origin, state = self.origin, step()
+            if state is not None:
+                self._go_to(state, None, opens=state.origin != origin)
+            return state is not None
+
+    def _go_to(self, state: State, by: object, *, opens: bool) -> None:
+        if state.origin != self.origin:
+            self.verifier.forget()
+        self._show_state(state, by)
+        if opens or not runs_on_demand(state.scenario):
+            self._worker.submit(state)
+            return
+        self._worker.cancel()
+        self.outdated = self.run is None or self.run.scenario != state.scenario
+        self._tell(lambda view: view.run_waits() if self.outdated else view.run_ended())
+
+    def _show_state(self, state: State, by: object) -> None:
+        self.scenario, self.origin, self.outdated = state.scenario, state.origin, True
+        self.selected, self.opened = state.selected, state.opened
+        self.verifier.follow(state.scenario)
+        self.searches.changed()
+        for view in list(self._views):
+            view.scenario_changed(by)
+        self.on_change()
 
     def show(self, by: object, **changes: object) -> None:
         """Change how the pictures are shown; the single place where `display` changes.
@@ -214,8 +264,18 @@ class Session:
             if display == self.display:
                 return
             self.display = display
+            if self.run is not None:
+                self.envelopes.follow(self.run.scenario, display.envelope == "seeds")
             for view in list(self._views):
                 view.display_changed(by)
+            self.on_change()
+
+    def _pins_changed(self) -> None:
+        self.on_change()
+        self._pictures_changed()
+
+    def _pictures_changed(self) -> None:
+        self._tell(lambda view: view.display_changed(None))
 
     @property
     def waits(self) -> bool:
@@ -225,17 +285,21 @@ class Session:
     def redo_run(self) -> None:
         """Run the scenario: after a stop, or when it runs on demand."""
         with self.lock:
-            self._worker.submit(self.scenario)
+            self._worker.submit(self.state)
 
     def cancel_run(self) -> None:
         """Stop the running run; the last good picture stays."""
         self._worker.cancel()
 
-    def close(self) -> None:
-        """End the workers and remove the uploaded files."""
+    def close(self, *, keep_files: bool = False) -> None:
+        """End the workers and remove the uploaded files, unless they are to be found again."""
         self._worker.stop()
         self.verifier.stop()
-        self.uploads.clear()
+        self.searches.stop()
+        self.pins.stop()
+        self.envelopes.stop()
+        if not keep_files:
+            self.uploads.clear()
 
     def wait_idle(self, timeout_s: float | None = None) -> bool:
         """Block until no run is under way; False after the timeout."""
@@ -243,8 +307,8 @@ class Session:
 
     # ------------------------------------------------------------ runs
 
-    def _work(self, scenario: Scenario, watch: Watch) -> None:
-        last_s = 0.0
+    def _work(self, state: State, watch: Watch) -> None:
+        scenario, last_s = state.scenario, 0.0
 
         def progress(fraction: float) -> None:
             nonlocal last_s
@@ -255,7 +319,7 @@ class Session:
         try:
             run = self._simulate(scenario, progress, watch.cancelled)
         except InputError as error:
-            self._refuse(scenario, error)
+            self._refuse(state, error)
             return
         except Exception as error:
             _log.exception("a run failed")
@@ -271,18 +335,18 @@ class Session:
         with self.lock:
             self.run, self.run_number = run, self.run_number + 1
             self.outdated = scenario != self.scenario
-            self._before = (scenario, self.origin, self.selected)
+            self._before = state
+            self.envelopes.follow(scenario, self.display.envelope == "seeds")
+        self.searches.ran(run)
         self._tell(lambda view: view.run_ended())
 
-    def _refuse(self, scenario: Scenario, error: InputError) -> None:
+    def _refuse(self, state: State, error: InputError) -> None:
         """Go back to the last scenario that ran, unless the user has gone on already."""
         with self.lock:
-            if scenario == self.scenario and self._before[0] != scenario:
-                self.scenario, self.origin, self.selected = self._before
+            if state.scenario == self.scenario and self._before.scenario != state.scenario:
+                self.history.take_back(self._before)
+                self._show_state(self._before, self)
                 self.outdated = self.run is None or self.run.scenario != self.scenario
-                self.verifier.follow(self.scenario)
-                for view in list(self._views):
-                    view.scenario_changed(self)
         self._tell(lambda view: view.run_refused(error))
 
     def _tell(self, message: Callable[[View], None]) -> None:
@@ -302,61 +366,6 @@ def _simulate(scenario: Scenario, progress: Callable[[float], None], cancelled: 
     return simulate(scenario, progress, cancelled)
 
 
-class Sessions:
-    """All sessions by id; without an open page the least recently used ones are dropped.
-
-    Parameters
-    ----------
-    first : callable, optional
-        Gives the scenario and the name to begin with.
-    """
-
-    def __init__(self, first: Callable[[], tuple[Scenario, str]] | None = None) -> None:
-        self._first = first or first_scenario
-        self._lock = threading.Lock()
-        self._by_id: OrderedDict[str, Session] = OrderedDict()
-        self._folder: Path | None = None
-        atexit.register(self.close)
-
-    def get(self, id: str) -> Session:
-        """Return the session with that id, new or as it was left."""
-        with self._lock:
-            session = self._by_id.get(id)
-            if session is None:
-                scenario, origin = self._first()
-                session = self._by_id[id] = Session(id, scenario, origin, self._upload_folder(id))
-            self._by_id.move_to_end(id)
-            self._trim(keep=session)
-            return session
-
-    def __len__(self) -> int:
-        return len(self._by_id)
-
-    def close(self) -> None:
-        """End all sessions and remove every uploaded file."""
-        with self._lock:
-            for session in self._by_id.values():
-                session.close()
-            self._by_id.clear()
-            if self._folder is not None:
-                shutil.rmtree(self._folder, ignore_errors=True)
-                self._folder = None
-
-    def _upload_folder(self, id: str) -> Path:
-        if self._folder is None:
-            self._folder = Path(tempfile.mkdtemp(prefix="schuler-uploads-"))
-        return self._folder / id
-
-    def _trim(self, keep: Session) -> None:
-        idle = [s for s in self._by_id.values() if s is not keep and s.open_pages == 0]
-        for session in idle[: max(0, len(idle) - MOST_SESSIONS)]:
-            del self._by_id[session.id]
-            session.close()
-        for session in idle[: max(0, len(idle) - MOST_IDLE_RUNS)]:
-            session.run = None
-            session.verifier.forget()
-
-
 def runs_on_demand(scenario: Scenario) -> bool:
     """Whether a run takes so long that it should not follow every move of a slider."""
     run = scenario.run
@@ -371,12 +380,3 @@ def first_editable(scenario: Scenario) -> int:
         i for i, m in enumerate(scenario.method) if not m.undamped and len(type(m.network).model_fields) > 1
     )
     return next(tunable, 0)
-
-
-def first_scenario() -> tuple[Scenario, str]:
-    """Preset that a new visitor sees."""
-    from navcore.scenario_file import load, presets
-
-    names = list(presets())
-    name = FIRST_PRESET if FIRST_PRESET in names else next(iter(names), "")
-    return (load(name), name) if name else (Scenario(), "")

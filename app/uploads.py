@@ -7,12 +7,15 @@ import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from navcore.errors import Fault, InputError
 from navcore.motion.track import TrackMotion
 from navcore.scenario import Scenario
 from navcore.units import DEG, HOUR
+
+if TYPE_CHECKING:
+    from navcore.io.check import FileReport
 
 MIB = 1 << 20
 LARGEST_FILE = 16 * MIB
@@ -101,10 +104,8 @@ class Uploads:
             fresh.unlink()
             raise InputError(Fault(name, f.field, f.value, f.allowed) for f in report.faults)
         fresh.replace(path)
-        held = (IMU,) if report.kind.startswith("recorded IMU") else report.details.get("quantities", ())
-        upload = Upload(path, report.kind, frozenset(held), report.text, report.warnings, report.details)
-        self.files[name] = upload
-        return upload
+        self.files[name] = _understood(path, report)
+        return self.files[name]
 
     def _refuse_excess(self, name: str, size: int) -> None:
         if size > LARGEST_FILE:
@@ -120,6 +121,20 @@ class Uploads:
                 Fault(name, "", None, f"all files together have more than {LARGEST_FOLDER / MIB:.0f} MiB")
             )
 
+    def reopen(self) -> None:
+        """Take over the files that lie in the folder, from before the server was started; others are left."""
+        from app.http.frames import safe_file_name
+        from navcore.io.check import check_file
+        from navcore.io.check_imu import IMU_CHECKER
+
+        found = sorted(self.folder.iterdir(), key=lambda path: path.stat().st_mtime)
+        for path in found[:MOST_FILES]:
+            if path.is_symlink() or not path.is_file() or safe_file_name(path.name) != path.name:
+                continue
+            report = check_file(path, [IMU_CHECKER])
+            if report.ok:
+                self.files[path.name] = _understood(path, report)
+
     def clear(self) -> None:
         """Remove all files and the folder."""
         self.files.clear()
@@ -128,6 +143,11 @@ class Uploads:
     def holding(self, *quantities: str) -> list[str]:
         """Paths of the files that hold any of these quantities, in the order in which they came."""
         return [str(u.path) for u in self.files.values() if u.quantities.intersection(quantities)]
+
+
+def _understood(path: Path, report: FileReport) -> Upload:
+    held = (IMU,) if report.kind.startswith("recorded IMU") else report.details.get("quantities", ())
+    return Upload(path, report.kind, frozenset(held), report.text, report.warnings, report.details)
 
 
 def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, list[str]]:
@@ -275,10 +295,16 @@ def opened_scenario(name: str, content: bytes, uploads: Uploads) -> Scenario:
 
 def with_plain_names(scenario: Scenario) -> Scenario:
     """For a download: files by their names alone, to be put beside the scenario."""
-    data: dict[str, Any] = scenario.canonical()
+    return Scenario.parse(plain_names(scenario.canonical()))
+
+
+def plain_names(data: dict[str, Any]) -> dict[str, Any]:
+    """A scenario's canonical data with its files by their names alone."""
+    data = dict(data)
     for block in _WITH_FILES:
         named = data.get(block, {}).get("file")
         if named:
             single = isinstance(named, str)
-            data[block]["file"] = Path(named).name if single else [Path(name).name for name in named]
-    return Scenario.parse(data)
+            plain = Path(named).name if single else [Path(name).name for name in named]
+            data[block] = data[block] | {"file": plain}
+    return data

@@ -59,6 +59,32 @@ class MethodTrack:
 
 
 @dataclass(frozen=True, eq=False)
+class Place:
+    """Where ship and computed ships are at a time.
+
+    Attributes
+    ----------
+    index : int
+        The last point of the lines not later than it.
+    truth : ndarray of float32, shape (3,)
+        The ship, scene units.
+    wxyz : ndarray, shape (4,)
+        Its attitude.
+    computed : ndarray of float32, shape (methods, 3)
+        Where each method takes it to be, error exaggerated; the last point of one that ended.
+    """
+
+    index: int
+    truth: np.ndarray
+    wxyz: np.ndarray
+    computed: np.ndarray
+
+    def error_vectors(self) -> np.ndarray:
+        """True position to computed one for every method, float32, shape (methods, 2, 3)."""
+        return np.stack([np.broadcast_to(self.truth, self.computed.shape), self.computed], axis=1)
+
+
+@dataclass(frozen=True, eq=False)
 class TrackScene:
     """Everything the 3D view shows; scene units east, north, up, origin at the middle of the map.
 
@@ -104,13 +130,21 @@ class TrackScene:
         """Index of the last point not later than ``t_s``, within the track."""
         return int(np.clip(np.searchsorted(self.t_s, t_s, side="right") - 1, 0, len(self.t_s) - 1))
 
-    def error_vectors(self, index: int) -> np.ndarray:
-        """True position to computed one for every method at a point, float32, shape (methods, 2, 3)."""
-        vectors = np.empty((len(self.methods), 2, 3), dtype=np.float32)
-        for row, method in enumerate(self.methods):
-            at = min(index, len(method.points) - 1)
-            vectors[row, 0], vectors[row, 1] = self.truth[at], method.points[at]
-        return vectors
+    def place(self, t_s: float) -> Place:
+        """Where everything is at a time, between the points of the lines too."""
+        index = self.index_at(t_s)
+        after = min(index + 1, len(self.t_s) - 1)
+        span = self.t_s[after] - self.t_s[index]
+        part = min(max((t_s - self.t_s[index]) / span, 0.0), 1.0) if span > 0.0 else 0.0
+        turned = self.wxyz[after] * math.copysign(1.0, self.wxyz[index] @ self.wxyz[after])
+        wxyz = (1.0 - part) * self.wxyz[index] + part * turned
+        computed = [_between(method.points, index, part) for method in self.methods]
+        return Place(
+            index=index,
+            truth=_between(self.truth, index, part),
+            wxyz=wxyz / np.linalg.norm(wxyz),
+            computed=np.array(computed, dtype=np.float32).reshape(-1, 3),
+        )
 
     def truth_dashes(self) -> np.ndarray:
         """Truth as dashes, float32, shape (n, 2, 3): what is true is dashed, what is computed is solid."""
@@ -183,6 +217,12 @@ def attitude_quaternions(pitch: np.ndarray, roll: np.ndarray, heading: np.ndarra
     ch, sh = np.cos(0.5 * heading), -np.sin(0.5 * heading)
     a, b, c, d = cp * cr, sp * cr, cp * sr, sp * sr
     return np.column_stack([ch * a - sh * d, ch * b - sh * c, ch * c + sh * b, ch * d + sh * a])
+
+
+def _between(points: np.ndarray, index: int, part: float) -> np.ndarray:
+    """Point of a line between two of its points; its last one where it ended before."""
+    before, after = min(index, len(points) - 1), min(index + 1, len(points) - 1)
+    return (1.0 - part) * points[before] + part * points[after]
 
 
 def _chosen(count: int) -> np.ndarray:

@@ -81,7 +81,7 @@ class TestMoving:
             np.linalg.norm(np.diff(scene.truth, axis=0), axis=1)
         )
         assert 0.4 < share < 0.6
-        vectors = scene.error_vectors(10)
+        vectors = scene.place(float(scene.t_s[10])).error_vectors()
         np.testing.assert_array_equal(vectors[:, 0], np.repeat(scene.truth[10:11], 3, axis=0))
         np.testing.assert_array_equal(vectors[1, 1], scene.methods[1].points[10])
         assert scene.methods[2].color == method_rgb(2)
@@ -91,6 +91,19 @@ class TestMoving:
         assert scene.index_at(-5.0) == 0
         assert scene.index_at(1e9) == len(scene.t_s) - 1
         assert scene.t_s[scene.index_at(7200.0)] <= 7200.0 < scene.t_s[scene.index_at(7200.0) + 1]
+
+    def test_between_two_points_the_ship_is_between_them(self) -> None:
+        scene = track(moving_run())
+        before, after = scene.t_s[20], scene.t_s[21]
+        place = scene.place(float(0.25 * before + 0.75 * after))
+        assert place.index == 20
+        np.testing.assert_allclose(
+            place.truth, 0.25 * scene.truth[20] + 0.75 * scene.truth[21], rtol=0, atol=1e-6
+        )
+        points = scene.methods[1].points
+        np.testing.assert_allclose(place.computed[1], 0.25 * points[20] + 0.75 * points[21], atol=1e-6)
+        assert np.linalg.norm(place.wxyz) == pytest.approx(1.0)
+        np.testing.assert_allclose(scene.place(-1.0).truth, scene.truth[0])
 
     def test_across_the_date_line(self) -> None:
         legs = {"kind": "legs", "leg": [{"duration_s": 7200.0, "speed_kn": 20.0, "heading_deg": 90.0}]}
@@ -105,7 +118,7 @@ class TestMoving:
         scene = track(diverging(moving_run(), 0, rows=1000))
         assert len(scene.methods[0].points) < len(scene.truth)
         assert scene.exaggeration >= whole.exaggeration
-        assert np.isfinite(scene.error_vectors(len(scene.t_s) - 1)).all()
+        assert np.isfinite(scene.place(float(scene.t_s[-1])).error_vectors()).all()
 
 
 class TestStatic:

@@ -10,8 +10,9 @@ from typing import Any
 
 import pytest
 
-from app import edits, session
-from app.session import Session, Sessions, first_editable, first_scenario, runs_on_demand
+from app import edits, sessions
+from app.session import Session, first_editable, runs_on_demand
+from app.sessions import Sessions, first_scenario
 from navcore.errors import Fault, InputError
 from navcore.scenario import Scenario
 
@@ -50,6 +51,9 @@ class Watcher:
 
     def run_waits(self) -> None:
         self.told.append(("waits", None))
+
+    def presenter_changed(self) -> None:
+        self.told.append(("presenter", None))
 
     def verification_changed(self) -> None:
         self.told.append(("verification", None))
@@ -232,41 +236,41 @@ def test_another_scenario_drops_the_verification_and_the_last_page_stops_it(
 
 
 def test_a_session_is_kept_over_a_reload(scenario: Scenario) -> None:
-    sessions = Sessions(lambda: (scenario, "preset"))
-    first = sessions.get("one-visitor")
+    visitors = Sessions(lambda: (scenario, "preset"))
+    first = visitors.get("one-visitor")
     first.change(edits.with_value(scenario, DURATION, 2.0), None)
-    assert sessions.get("one-visitor") is first
-    assert sessions.get("another-one").scenario == scenario
-    sessions.close()
+    assert visitors.get("one-visitor") is first
+    assert visitors.get("another-one").scenario == scenario
+    visitors.close()
 
 
 def test_only_a_bounded_number_of_sessions_without_a_page_is_kept(
     scenario: Scenario, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(session, "MOST_SESSIONS", 3)
-    monkeypatch.setattr(session, "MOST_IDLE_RUNS", 1)
-    sessions = Sessions(lambda: (scenario, "preset"))
-    watched = sessions.get("watched")
+    monkeypatch.setattr(sessions, "MOST_SESSIONS", 3)
+    monkeypatch.setattr(sessions, "MOST_IDLE_RUNS", 1)
+    visitors = Sessions(lambda: (scenario, "preset"))
+    watched = visitors.get("watched")
     watched._views.append(Watcher())
     for number in range(10):
-        sessions.get(f"visitor-{number}").run = answer(scenario)
-    assert len(sessions) == 5  # three idle ones, the present one, and the one with an open page
-    assert sessions.get("watched") is watched
-    assert sum(s.run is not None for s in sessions._by_id.values()) <= 3
-    sessions.close()
+        visitors.get(f"visitor-{number}").run = answer(scenario)
+    assert len(visitors) == 5  # three idle ones, the present one, and the one with an open page
+    assert visitors.get("watched") is watched
+    assert sum(s.run is not None for s in visitors._by_id.values()) <= 3
+    visitors.close()
 
 
 def test_uploads_go_with_their_session(scenario: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(session, "MOST_SESSIONS", 1)
-    sessions = Sessions(lambda: (scenario, "preset"))
-    old = sessions.get("old")
+    monkeypatch.setattr(sessions, "MOST_SESSIONS", 1)
+    visitors = Sessions(lambda: (scenario, "preset"))
+    old = visitors.get("old")
     old.uploads.folder.mkdir(parents=True)
     (old.uploads.folder / "log.txt").write_text("x")
     for number in range(3):
-        sessions.get(f"visitor-{number}")
+        visitors.get(f"visitor-{number}")
     assert not old.uploads.folder.exists()
-    root = sessions._folder
-    sessions.close()
+    root = visitors._folder
+    visitors.close()
     assert not root.exists()
 
 

@@ -1,0 +1,178 @@
+// What the page asks the server for: `schuler.command("name", "argument", ...)`, from any script of ours, from keys and
+// from elements with data-command="name argument". It is written, with a running number, into the control labelled
+// "page command", which the page's style hides (app/commands.py). viser sends at most one value in 50 ms, whichever
+// control it comes from: everything that the server has not heard is written again.
+(() => {
+  const LABEL = "page command";
+  const SPACING_MS = 60;
+  const REPEAT_MS = 250;
+  const setter = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set;
+  let count = 0;
+  let waiting = [];
+  let timer = 0;
+  let sent = 0;
+
+  function box() {
+    for (const label of document.getElementsByTagName("label")) {
+      if (label.textContent === LABEL) return label.closest(".mantine-Flex-root")?.querySelector("input") ?? null;
+    }
+    return null;
+  }
+
+  function send() {
+    timer = 0;
+    const heard = Number(document.getElementById("sb-told")?.dataset.count ?? 0);
+    waiting = waiting.filter(([number]) => number > heard);
+    if (waiting.length === 0) return;
+    timer = setTimeout(send, REPEAT_MS);
+    const input = box();
+    if (input === null) return;
+    const text = JSON.stringify(waiting.slice(0, 50));
+    setter.call(input, input.value === text ? `${text} ` : text);
+    input.dispatchEvent(new Event("input", { bubbles: true }));
+    sent = performance.now();
+  }
+
+  function ask(name, words, onlyLatest) {
+    if (onlyLatest) waiting = waiting.filter((other) => other[1] !== name);
+    waiting.push([++count, name, words.join(" ")]);
+    clearTimeout(timer);
+    timer = setTimeout(send, Math.max(0, sent + SPACING_MS - performance.now()));
+  }
+
+  window.schuler = {
+    // Every one of these is carried out, in order.
+    command: (name, ...words) => ask(name, words, false),
+    // Of these, for what changes continuously, one that is not yet sent gives way to the next of its name.
+    stream: (name, ...words) => ask(name, words, true),
+  };
+
+  addEventListener("click", (event) => {
+    const asked = event.target instanceof Element && event.target.closest("[data-command]");
+    if (!asked || asked.getAttribute("aria-disabled") === "true") return;
+    window.schuler.command(...asked.dataset.command.split(" "));
+  });
+
+  // ------------------------------------------------------------ keys
+
+  const TYPED = "input:not([type=checkbox]):not([type=radio]):not([type=button]), textarea, select, [contenteditable]";
+  let keys = {};
+  let read = "";
+
+  function command(event) {
+    const text = document.getElementById("sb-commands")?.dataset.keys ?? "{}";
+    if (text !== read) keys = JSON.parse((read = text));
+    const key = event.key === " " ? "space" : event.key.toLowerCase();
+    const control = event.ctrlKey || event.metaKey;
+    // What Shift makes of a key that is no letter is in the key already: "?".
+    const shift = event.shiftKey && (key.length > 1 || key.toUpperCase() !== key.toLowerCase());
+    return keys[`${control ? "ctrl+" : ""}${event.altKey ? "alt+" : ""}${shift ? "shift+" : ""}${key}`];
+  }
+
+  addEventListener("keydown", (event) => {
+    const target = event.target instanceof Element ? event.target : document.body;
+    if (event.defaultPrevented || target.closest(TYPED) || target.closest("[role=dialog], dialog")) return;
+    // These two keys press what has the focus.
+    if ([" ", "Enter"].includes(event.key) && target.closest("button, a, summary, [role=button], [role=tab]")) return;
+    const name = command(event);
+    if (name === undefined) return;
+    event.preventDefault();
+    if (!event.repeat || event.ctrlKey || event.metaKey) window.schuler.command(name);
+  });
+
+  // ------------------------------------------------------------ what the server asks the page for
+
+  // viser's tabs react to a pointer's whole way, or to a key; a click alone does nothing.
+  function openTab(name) {
+    const tab = [...document.querySelectorAll('[role="tab"]')].find((candidate) => candidate.textContent === name);
+    tab?.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true, cancelable: true }));
+    tab?.focus();
+  }
+
+  function press(name) {
+    const buttons = [...document.querySelectorAll("button")].filter((button) => button.textContent === name);
+    buttons[0]?.click();
+  }
+
+  function element(tag, text, attributes = {}) {
+    const made = Object.assign(document.createElement(tag), { textContent: text });
+    for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+    return made;
+  }
+
+  // The browser's own dialog: it holds the focus, and Escape closes it.
+  function dialog(title, ...content) {
+    document.querySelector("dialog.sb-dialog")?.remove();
+    const made = element("dialog", "", { class: "sb-dialog", "aria-label": title });
+    const close = element("button", "Close", { class: "sb-do" });
+    close.addEventListener("click", () => made.close());
+    made.append(element("h2", title), ...content, close);
+    made.addEventListener("close", () => made.remove());
+    document.body.append(made);
+    made.showModal();
+    return made;
+  }
+
+  function showKeys() {
+    const told = JSON.parse(document.getElementById("sb-commands")?.dataset.told ?? "[]");
+    const table = element("table", "");
+    for (const [key, title] of [["Ctrl+K", "All commands"], ...told]) {
+      const row = table.insertRow();
+      row.append(element("th", key, { scope: "row" }), element("td", title));
+    }
+    dialog("Keys", element("p", "They act while no text box has the focus. Esc closes what is open."), table);
+  }
+
+  function showLink(id) {
+    const link = new URL(`../${id}/`, location.origin + location.pathname).href;
+    const input = element("input", "", { readonly: "", value: link, "aria-label": "Link to this state" });
+    const copy = element("button", "Copy the link", { class: "sb-do" });
+    const done = element("span", "", { role: "status" });
+    copy.addEventListener("click", async () => {
+      input.select();
+      // Only a page that came over https, or from this computer, may write to the clipboard by itself.
+      if (navigator.clipboard) await navigator.clipboard.writeText(link);
+      else document.execCommand("copy");
+      done.textContent = " Copied.";
+    });
+    const told = "Whoever opens this link gets a copy of the present state, under an address of their own. What you " +
+      "or they change afterwards does not change what the link opens.";
+    const row = element("p", "");
+    row.append(copy, done);
+    dialog("Share this state", element("p", told), input, row);
+    input.select();
+  }
+
+  const ACTIONS = { tab: openTab, click: press, keys: showKeys, link: showLink };
+  let answered = 0;
+
+  setInterval(() => {
+    for (const [number, what, text] of JSON.parse(document.getElementById("sb-asked")?.dataset.asked ?? "[]")) {
+      if (number <= answered) continue;
+      answered = number;
+      ACTIONS[what]?.(text);
+    }
+  }, 100);
+
+  // ------------------------------------------------------------ the row of buttons
+
+  // Its HTML is replaced when what can be undone changes: the focus goes to the new button of the same name.
+  let focused = "";
+  addEventListener("focusin", (event) => {
+    const inside = event.target instanceof Element && event.target.closest(".sb-row [data-command]");
+    focused = inside ? inside.dataset.command : "";
+  });
+  addEventListener("focusout", (event) => {
+    if (focused !== "" && event.relatedTarget !== null) focused = "";
+  });
+  setInterval(() => {
+    if (focused === "" || document.activeElement !== document.body) return;
+    document.querySelector(`.sb-row [data-command="${CSS.escape(focused)}"]`)?.focus();
+  }, 100);
+
+  addEventListener("click", (event) => {
+    if (!(event.target instanceof Element) || !event.target.closest("[data-palette]")) return;
+    const pressed = { key: "k", code: "KeyK", ctrlKey: true, bubbles: true };
+    document.documentElement.dispatchEvent(new KeyboardEvent("keydown", pressed));
+  });
+})();
