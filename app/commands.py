@@ -155,7 +155,7 @@ class Commands:
         ----------
         what : str
             "tab": bring the tab of that name to the front; "link": show a link to another session; "keys":
-            list the keys; "click": press the button of that name.
+            list the keys; "upload": let the user choose a file.
         text : str
             What it is about.
         """

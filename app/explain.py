@@ -1,7 +1,7 @@
 """What a control does, in words, as an equation and with its source: one explanation a field.
 
-The words, unit and range are the field's own (`navcore.parameters.quantity`); the equation and its source come
-from ``assets/explain.toml``, by the field's place in the scenario.
+The words, unit and range are the field's own (`navcore.parameters.quantity`); the equation and its source
+come from ``assets/explain.toml``, by the field's place in the scenario.
 """
 
 from __future__ import annotations
@@ -56,14 +56,15 @@ def key_of(path: Path, scenario: Scenario) -> str:
     'imu.gyro_bias_dph'
     """
     names = [str(step) for step in path if not isinstance(step, int)]
-    if path[0] != "method" or len(path) < 4:
-        kind = getattr(scenario.motion, "kind", "") if path[0] == "motion" and path[-1] != "kind" else ""
-        return ".".join([names[0], kind, *names[1:]] if kind else names)
-    index, part = int(path[1]), names[1]
-    if names[-1] == "id" or part == "averaging":
-        return f"{part}.{names[-1]}"
-    block = getattr(scenario.method[index], part)
-    return ".".join([part, block.id, *names[2:]])
+    block, last = names[0], names[-1]
+    if block != "method" or len(path) < 4:
+        kind = scenario.motion.kind if block == "motion" and last != "kind" else ""
+        return ".".join([block, kind, *names[1:]] if kind else names)
+    part = names[1]
+    if last == "id" or part == "averaging":
+        return f"{part}.{last}"
+    chosen = getattr(scenario.method[int(path[1])], part)
+    return ".".join([part, chosen.id, *names[2:]])
 
 
 def explanation(key: str) -> Explanation | None:

@@ -1,20 +1,20 @@
 """Lessons: read from ``assets/lessons/*.md``, checked, and turned into what the page shows.
 
 A file begins with TOML between two lines ``+++``: ``title``, ``about`` (one sentence), and the scenario it
-plays in, as ``preset = "NAME"`` or as a table ``[scenario]``. Each ``## Heading`` begins a step: Markdown with
-``$...$`` and ``$$...$$`` (LaTeX), ``{{name}}`` for a number of the present run (`app.lesson_names`), and at most one
-each of two fenced blocks of TOML:
+plays in, as ``preset = "NAME"`` or as a table ``[scenario]``. Each ``## Heading`` begins a step: Markdown
+with ``$...$`` and ``$$...$$`` (LaTeX), ``{{name}}`` for a number of the present run (`app.lesson_names`), and
+at most one each of two fenced blocks of TOML:
 
 ``toml action``
     The button "Show me". ``set``: fields of the scenario as on the command line, each step beginning from the
-    lesson's scenario; ``tabs`` to bring to the front; ``display``: fields of `app.display.Display`; ``method``: number of the
-    method to edit; ``sliders``: fields that get a slider in the lesson.
+    lesson's scenario; ``tabs`` to bring to the front; ``display``: fields of `app.display.Display`;
+    ``method``: number of the method to edit; ``sliders``: fields that get a slider in the lesson.
 
 ``toml question``
-    ``ask``, ``why`` (shown once it is answered rightly), and either ``answer`` (a name) with its ``tolerance``
+    ``ask``, ``why`` (shown once it is answered rightly), and either ``answer`` (a name) and its ``tolerance``
     (relative), or ``choices``: tables with ``say`` and ``when``, a comparison of names and numbers
-    (``error.1.phi_n.max > 2 * error.0.phi_n.max``). The right choice is the one whose comparison holds for the
-    run: no answer is typed into a file.
+    (``error.1.phi_n.max > 2 * error.0.phi_n.max``). The right choice is the one whose comparison holds for
+    the run: no answer is typed into a file.
 """
 
 from __future__ import annotations

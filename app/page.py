@@ -80,7 +80,10 @@ class Page:
         self._editor = Editor(client, session, self, self._controls, lambda: self.method.shown_network)
         self._actions = Actions(client, session, self._again)
         self._placer = Placer(client, session)
-        self._tools = Tools(lambda **choices: session.show(None, **choices), self._placer.typed)
+        self._tools = Tools(
+            lambda **choices: session.show(None, **choices), self._placer.typed,
+            lambda: session.scenario.method[session.selected],
+        )  # fmt: skip
         self._build()
 
     # ------------------------------------------------------------ building

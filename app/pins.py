@@ -149,7 +149,9 @@ class Pins:
         if "note" in changes:
             changes["note"] = str(changes["note"]).strip()[:LONGEST_NOTE]
         if changes.get("color", next(iter(COLORS))) not in COLORS:
-            raise InputError([Fault("pins", "color", changes["color"], f"must be one of {', '.join(COLORS)}")])
+            raise InputError(
+                [Fault("pins", "color", changes["color"], f"must be one of {', '.join(COLORS)}")]
+            )
         with self._lock:
             before = self._pins
             self._pins = tuple(replace(pin, **changes) if pin.id == id else pin for pin in before)

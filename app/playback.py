@@ -12,7 +12,11 @@ from dataclasses import dataclass, replace
 SPEEDS = (60, 300, 600, 1800, 3600, 7200)
 """Seconds of the run in a second of the page."""
 TICK_S = 0.1
-"""Between two updates; what an update takes is added, so that a busy page gets fewer of them."""
+"""Between two updates; what an update takes is added."""
+SLOW_S = 0.6
+"""The same while the page is behind, or its user moves something: what is moved comes first."""
+MOST_AHEAD = 6
+"""Updates that may be under way to the page."""
 _log = logging.getLogger("schuler.playback")
 
 
@@ -68,6 +72,7 @@ class Playback:
         self._state = PlayState()
         self._thread: threading.Thread | None = None
         self._closed = False
+        self._ahead = 0
 
     @property
     def state(self) -> PlayState:
@@ -109,6 +114,11 @@ class Playback:
         """Begin anew at the end of the run, or stop there."""
         self._set(loop=loop)
 
+    def heard(self, behind: int) -> None:
+        """The page has shown all updates but the last ``behind``."""
+        with self._changed:
+            self._ahead = max(behind, 0)
+
     def close(self) -> None:
         """End the thread; it is not waited for."""
         with self._changed:
@@ -130,9 +140,12 @@ class Playback:
         while True:
             with self._changed:
                 self._changed.wait_for(lambda: self._closed or self._state.playing)
-            last = time.monotonic()
+            last, self._ahead = time.monotonic(), 0
             while True:
-                time.sleep(TICK_S)
+                with self._changed:
+                    pause_s = TICK_S if self._ahead < MOST_AHEAD else SLOW_S
+                    self._ahead += 1
+                time.sleep(pause_s)
                 with self._changed:
                     if self._closed:
                         return

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from app.page import Page
     from app.sessions import Sessions
 
-_SCRIPTS = ("page", "commands", "playback", "learn", "access", "pick", "cursor", "export")
+_SCRIPTS = ("marks", "page", "commands", "playback", "learn", "access", "pick", "cursor", "export")
 PAGE_SCRIPTS = [Path(__file__).parent / "static" / f"{name}.js" for name in _SCRIPTS]
 _log = logging.getLogger("schuler.serve")
 

@@ -336,9 +336,7 @@ def legend_html(
     if overlay is not None:
         old = " of an earlier scenario" if overlay.old else ""
         items.append(_legend_item(f"{STRAPDOWN}{old}", f"border-top:3px dashed {style.MUTED}"))
-    items += [
-        _legend_item(found.label, css_dash(found.dash, found.color)) for found in pinned_methods(pins)
-    ]
+    items += [_legend_item(found.label, css_dash(found.dash, found.color)) for found in pinned_methods(pins)]
     if envelope is not None:
         items.append(_legend_item(envelope.label, f"height:10px;background:{style.MUTED}55"))
     return (

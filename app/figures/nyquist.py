@@ -26,6 +26,7 @@ _RIGHT_EDGE = 0.3
 _UNIT_CIRCLE = 0.72
 """Half height of the Nyquist panel is the unit circle over this."""
 _PAPER = "rgba(255,255,255,0.85)"
+_LETTER_PX, _LINE_PX, _MOST_LINES = 6.6, 18, 9
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,8 @@ def nyquist(run: Run, aspect: float = 0.46, *, width_px: float = 940.0) -> Plotl
         data += _curves(method, i, x, level, phase, value)
         data += _marks(method, i, found, words[-1])
     re, im = _window(aspect, width_px, margin)
-    return figure(data, _layout(run, words, levels, (re, im), margin, aspect))
+    column_px = (width_px - margin["l"] - margin["r"]) * _COLUMN
+    return figure(data, _layout(run, words, levels, (re, im), margin, (aspect, column_px)))
 
 
 def margin_words(method: MethodRun, found: Margins | None) -> str:
@@ -194,7 +196,8 @@ def _window(
     width = (width_px - margin["l"] - margin["r"]) * _COLUMN
     half = max(1.0 / _UNIT_CIRCLE, 1.35 * height / width)
     wide = 2.0 * half * width / height
-    return (-(1.0 - _RIGHT_EDGE) * wide, _RIGHT_EDGE * wide), (-half, half)
+    right = max(_RIGHT_EDGE * wide, 1.08)
+    return (right - wide, right), (-half, half)
 
 
 def _layout(
@@ -203,9 +206,9 @@ def _layout(
     levels: list[np.ndarray],
     window: tuple[tuple[float, float], tuple[float, float]],
     margin: dict[str, int],
-    aspect: float,
+    shape: tuple[float, float],
 ) -> dict[str, Any]:
-    re, im = window
+    (re, im), (aspect, column_px) = window, shape
     decades = range(math.ceil(math.log10(LOW)), math.floor(math.log10(HIGH)) + 1)
     period = 2.0 * math.pi / run.scenario.omega_s
     top = min(max(float(np.max(level)) for level in levels), 60.0)
@@ -233,7 +236,7 @@ def _layout(
             "Im L", domain=[0.0, 1.0], anchor="x2", range=list(im), scaleanchor="x2", showgrid=False
         ),
     )
-    return made | {"shapes": _shapes(), "annotations": _notes(run, words)}
+    return made | {"shapes": _shapes(), "annotations": _notes(run, words, column_px)}
 
 
 def _shapes() -> list[dict[str, Any]]:
@@ -251,7 +254,7 @@ def _shapes() -> list[dict[str, Any]]:
     ]
 
 
-def _notes(run: Run, words: list[str]) -> list[dict[str, Any]]:
+def _notes(run: Run, words: list[str], column_px: float) -> list[dict[str, Any]]:
     title = {"size": style.TITLE_SIZE, "color": style.INK}
     titles = [
         style.text(
@@ -273,21 +276,33 @@ def _notes(run: Run, words: list[str]) -> list[dict[str, Any]]:
     critical = style.text(
         -1.0, 0.0, "✚", xref="x2", yref="y3", font={"size": 20, "color": style.DANGER}, yshift=0
     )
-    listed = [
-        style.text(
-            0.0,
-            0.0,
-            f"{style.plain(method.method.name)}: {content}",
-            xref="x2 domain",
-            yref="y3 domain",
-            xanchor="left",
-            yanchor="bottom",
-            xshift=4,
-            yshift=3 + 18 * (len(words) - 1 - row),
-            font={"size": style.FONT_SIZE, "color": style.method_color(row)},
-            bgcolor=_PAPER,
-            borderpad=0,
-        )
-        for row, (method, content) in enumerate(zip(run.methods, words, strict=True))
-    ]
-    return [*titles, critical, *listed]
+    return [*titles, critical, *_listed(run, words, column_px)]
+
+
+def _listed(run: Run, words: list[str], column_px: float) -> list[dict[str, Any]]:
+    """Margins of the methods in the foot of the Nyquist panel, the first one on top."""
+    notes: list[dict[str, Any]] = []
+    below = 0
+    for index in range(len(words) - 1, -1, -1):
+        lines = wrapped(f"{run.methods[index].method.name}: {words[index]}", int(column_px / _LETTER_PX))
+        if below + len(lines) > _MOST_LINES:
+            break
+        note = style.text(
+            0.0, 0.0, "<br>".join(style.plain(line) for line in lines), xref="x2 domain", yref="y3 domain",
+            xanchor="left", yanchor="bottom", align="left", xshift=4, yshift=3 + _LINE_PX * below,
+            font={"size": style.FONT_SIZE, "color": style.method_color(index)}, bgcolor=_PAPER, borderpad=0,
+        )  # fmt: skip
+        notes.append(note)
+        below += len(lines)
+    return notes
+
+
+def wrapped(text: str, most: int) -> list[str]:
+    """Lines of at most ``most`` letters, broken at commas."""
+    lines: list[str] = []
+    for part in text.split(", "):
+        if lines and len(lines[-1]) + len(part) + 2 <= most:
+            lines[-1] += f", {part}"
+        else:
+            lines.append(part)
+    return lines

@@ -136,7 +136,12 @@ def _draw(axis: Any, figure: UplotFigure) -> None:
         width = figure.widths[place] if place < len(figure.widths) else style.CURVE_WIDTH
         pattern = (0, tuple(0.75 * part for part in dash)) if dash else "-"
         axis.plot(
-            time, figure.data[1 + place], color=color, linewidth=0.75 * width, linestyle=pattern, label=_plain(name)
+            time,
+            figure.data[1 + place],
+            color=color,
+            linewidth=0.75 * width,
+            linestyle=pattern,
+            label=_plain(name),
         )
     if figure.decades is not None:
         axis.set_yscale("log")

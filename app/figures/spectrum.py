@@ -25,7 +25,12 @@ _MINUTES_BELOW_H = 6.0
 
 
 def spectrum(
-    run: Run, key: str = "dve", aspect: float = 0.46, *, display: Display | None = None, width_px: float = 940.0
+    run: Run,
+    key: str = "dve",
+    aspect: float = 0.46,
+    *,
+    display: Display | None = None,
+    width_px: float = 940.0,
 ) -> PlotlyFigure:
     """Amplitude spectrum of one quantity of `app.figures.errors.error_plots`.
 
@@ -58,7 +63,10 @@ def spectrum(
     names = [method.method.name for method in run.methods]
     periods = (max(shortest, 60.0) if math.isfinite(shortest) else 60.0, max(1.1 * span_s, 3600.0))
     return figure(
-        data, _layout(run, f"{plot.title}: amplitude", plot.unit, axis_unit, periods, peaks, names, aspect, width_px)
+        data,
+        _layout(
+            run, f"{plot.title}: amplitude", plot.unit, axis_unit, periods, peaks, names, aspect, width_px
+        ),
     )
 
 

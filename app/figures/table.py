@@ -233,9 +233,7 @@ def metrics_html(
             "same name; in the unit of the line, and as a part of the baseline's number</td></tr>"
         )
     if verification is not None:
-        compared = "".join(
-            _html_row(_part(row, shown), columns) for row in difference_rows(verification)
-        )
+        compared = "".join(_html_row(_part(row, shown), columns) for row in difference_rows(verification))
         faint = "opacity:.5" if old else ""
         title = "Full strapdown minus linear model: largest difference (part of the strapdown's peak)"
         title += "; of an earlier scenario" if old else ""

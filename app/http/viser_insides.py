@@ -228,9 +228,11 @@ def lock_controls(client: viser.ClientHandle, but: frozenset[str] | None) -> Non
     setattr(gui, _FREE, but)
     setattr(gui, _GREYED, greyed)
     for uuid, handle in list(gui._gui_input_handle_from_uuid.items()):
+        if isinstance(handle, viser.GuiButtonGroupHandle):  # viser cannot show it disabled
+            continue
         if but is None and uuid in greyed:
             handle.disabled = False
-        elif but is not None and uuid not in but and not handle.disabled:
+        elif but is not None and uuid not in but and not getattr(handle, "disabled", True):
             handle.disabled = True
             greyed.add(uuid)
     if but is None:

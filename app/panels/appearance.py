@@ -37,7 +37,7 @@ class Appearance:
         self._style = gui.add_html("", order=4)
         with tab:
             gui.add_html(notices.heading("Page"), order=30)
-            told = "Dark: for a dim room. Light: for a projector and for print. Key: D. Larger print: Ctrl and +."
+            told = "Dark: for a dim room. Light: for a projector and print. Key: D. Larger print: Ctrl and +."
             self._switch = gui.add_checkbox(DARK, False, hint=told, order=31)
         self._switch.on_update(lambda event: self._choose() if event.client is not None else None)
         commands.register("theme", self._flip, "Dark or light page", "D")

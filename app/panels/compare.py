@@ -123,13 +123,21 @@ class ComparePanel:
             gui.add_html('<div class="sb-compare"></div>', order=0)
             pin = gui.add_button(PIN, hint="Keep the present run as a baseline. Key: P.", order=1)
             flip = gui.add_button(
-                FLIP, hint="All plots show the baseline in the place of the present run, until flipped back. Key: B.", order=2
+                FLIP,
+                hint="All plots show the baseline in the place of the present run, until flipped back. Key: B.",
+                order=2,
             )
             self._baseline: Any = gui.add_dropdown(
-                BASELINE, (_FIRST,), order=3, hint="Baseline of the differences in the table, and of the flip."
+                BASELINE,
+                (_FIRST,),
+                order=3,
+                hint="Baseline of the differences in the table, and of the flip.",
             )
             self._delta: Any = gui.add_dropdown(
-                DELTA, tuple(_STATISTICS), order=4, hint="Number of each error that the table compares: rms, largest, last."
+                DELTA,
+                tuple(_STATISTICS),
+                order=4,
+                hint="Number of each error that the table compares: rms, largest, last.",
             )
             self._list = gui.add_html("", order=5)
             self._chosen: Any = gui.add_dropdown(CHOSEN, ("",), order=6, hint="Pin that is edited here.")
@@ -137,7 +145,9 @@ class ComparePanel:
             self._color: Any = gui.add_dropdown(COLOR, tuple(COLORS), order=8, hint="Of its curves.")
             self._shown = gui.add_checkbox(SHOWN, True, order=9, hint="Lay it over every plot.")
             self._note = gui.add_text(NOTE, "", order=10, hint="What there is to say of it.")
-            back = gui.add_button(BACK, order=11, hint="Its scenario becomes the present one; this can be undone.")
+            back = gui.add_button(
+                BACK, order=11, hint="Its scenario becomes the present one; this can be undone."
+            )
             remove = gui.add_button(REMOVE, order=12, color="orange", hint="Its curves go from every plot.")
         self._details = [self._chosen, self._name, self._color, self._shown, self._note, back, remove]
         pin.on_click(lambda _: comparing.pin())
@@ -164,7 +174,9 @@ class ComparePanel:
         pins, display = session.pins.all, session.display
         options = {_title(pin): pin.id for pin in pins}
         names = tuple(options) or ("",)
-        chosen = next((t for t, id in options.items() if id == self._options.get(self._chosen.value)), names[-1])
+        chosen = next(
+            (t for t, id in options.items() if id == self._options.get(self._chosen.value)), names[-1]
+        )
         newest = bool(options) and max(options.values()) > max(self._options.values(), default=0)
         self._options = options
         _offer(self._chosen, names, names[-1] if newest else chosen)
@@ -234,7 +246,8 @@ def _row_html(pin: Pin, is_baseline: bool) -> str:
         worst = "being computed"
     else:
         worst = ", ".join(
-            f"{method.method.name} {number(method.errors['position_m']['max_abs'], 4)}" for method in pin.run.methods
+            f"{method.method.name} {number(method.errors['position_m']['max_abs'], 4)}"
+            for method in pin.run.methods
         )
     cells = (
         f"{bar}<b>{escape(pin.name)}</b>{marks}",

@@ -15,9 +15,7 @@ if TYPE_CHECKING:
 
 COMMAND = "explain"
 """``explain ID``: the control with that id in the page."""
-_NONE_YET = (
-    "Point at a control, or put the focus on it, and press E or F1. Or press the ? that appears beside its name."
-)
+_NONE_YET = "Point at a control, or put the focus on it, and press E or F1, or press the ? beside its name."
 
 
 class ExplainPanel:

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 LEARN = "Learn"
 COMMAND = "lesson"
-"""Name of the command with which the panel's HTML asks: ``lesson open 2``, ``next``, ``back``, ``list``, ``show``,
-``answer TEXT``."""
+"""Command with which the panel's HTML asks: ``lesson open 2``, ``step 1``, ``next``, ``back``, ``list``,
+``show``, ``answer TEXT``."""
 _TRY = "try:"
 _UNREADABLE = "Type a number, such as 84.4."
 
@@ -51,7 +51,7 @@ class LessonPanel:
         self._lesson: int | None = None
         self._step = 0
         self._given: dict[tuple[int, int], str] = {}
-        self._runs: dict[Scenario, Run] = {}
+        self._run: Run | None = None
         self._asked = 0
         self._sliders_of: tuple[str, ...] = ()
         with tab:
@@ -84,9 +84,7 @@ class LessonPanel:
             self.show(self._session.scenario, self._session.run, None)
 
     def _go(self, lesson: int | None, step: int) -> None:
-        if lesson is not None and not (
-            lesson < len(lessons()) and 0 <= step < len(lessons()[lesson].steps)
-        ):
+        if lesson is not None and not (lesson < len(lessons()) and 0 <= step < len(lessons()[lesson].steps)):
             return
         self._lesson, self._step = lesson, step
 
@@ -104,7 +102,9 @@ class LessonPanel:
             session.show(None, **action.display)
         self._asked += 1
         tabs = escape("|".join(action.tabs))
-        self._front.content = f'<div id="sb-front" hidden data-count="{self._asked}" data-tabs="{tabs}"></div>'
+        self._front.content = (
+            f'<div id="sb-front" hidden data-count="{self._asked}" data-tabs="{tabs}"></div>'
+        )
 
     def _answer(self, given: str) -> None:
         if self._lesson is not None and given and len(given) < 40:
@@ -206,11 +206,11 @@ class LessonPanel:
         shown = self._session.run
         if shown is not None and shown.scenario == scenario:
             return shown
-        if scenario not in self._runs:
+        if self._run is None or self._run.scenario != scenario:
             from navcore.simulation import simulate
 
-            self._runs = {scenario: simulate(scenario)}
-        return self._runs[scenario]
+            self._run = simulate(scenario)
+        return self._run
 
     def _below_html(self, lesson: Lesson) -> str:
         last = self._step == len(lesson.steps) - 1
@@ -241,15 +241,16 @@ def spec_at(scenario: Scenario, dotted: str) -> list[FieldSpec]:
     path: Path = tuple(int(part) if part.isdigit() else part for part in dotted.split("."))
     place: Any = scenario
     for depth, part in enumerate(path):
-        if isinstance(place, BaseModel) and not isinstance(part, int):
-            found = form.fields(type(place), path[:depth], _TRY)
-            chosen = [spec for spec in found if spec.path == path]
+        model = type(place)
+        if issubclass(model, BaseModel):
+            chosen = [spec for spec in form.fields(model, path[:depth], _TRY) if spec.path == path]
             if chosen:
                 return chosen
         try:
             place = place[part] if isinstance(part, int) else getattr(place, part)
         except (AttributeError, IndexError, TypeError):
-            return []
+            break
+    return []
     return []
 
 
@@ -257,7 +258,9 @@ def right_answer(question: Question, run: Run) -> str:
     """An answer that counts as right, as it would be given."""
     from app.lesson_names import named
 
-    return str(right_choice(question, run)) if question.choices else f"{named(question.answer, run).value:.4g}"
+    return (
+        str(right_choice(question, run)) if question.choices else f"{named(question.answer, run).value:.4g}"
+    )
 
 
 def _list_html() -> str:
@@ -268,7 +271,8 @@ def _list_html() -> str:
     )
     return (
         '<section class="sb-lesson" aria-label="Lessons"><h2>Lessons</h2>'
-        "<p>Each takes five minutes and sets the page up as it goes. Your own scenario comes back with Undo.</p>"
+        "<p>Each takes five minutes and sets the page up as it goes. Your own scenario comes back with "
+        "Undo.</p>"
         f"<ol>{entries}</ol></section>"
     )
 

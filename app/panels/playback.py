@@ -46,14 +46,16 @@ class PlaybackPanel:
     ) -> None:
         gui.add_html(f"<style>{_CSS.read_text(encoding='utf-8')}</style>", order=0)
         self._now = gui.add_html("", order=3)
-        self._count = 0
+        self._playback, self._count = playback, 0
 
         def number(text: str, use: Callable[[float], None]) -> None:
             try:
                 use(float(text))
-            except ValueError:  # hostile or torn: nothing was asked for
+            except (ValueError, OverflowError):
                 return
 
+        # Hostile or torn arguments ask for nothing.
+        commands.register("shown", lambda text: number(text, self._heard), watcher=True)
         commands.register("play", lambda _: playback.toggle(), "Play or pause", "Space", watcher=True)
         commands.register("seek", lambda text: number(text, playback.seek), watcher=True)
         commands.register("speed", lambda text: number(text, playback.set_speed), watcher=True)
@@ -62,6 +64,9 @@ class PlaybackPanel:
             commands.register(
                 f"camera-{camera}", lambda _, camera=camera: look(camera), f"3D view: {camera}", watcher=True
             )
+
+    def _heard(self, count: float) -> None:
+        self._playback.heard(self._count - int(count))
 
     def show(self, state: PlayState, run: Run, selected: int, camera: str) -> None:
         """Show a time of a run."""

@@ -19,7 +19,10 @@ _CHOICES = {
     "lengths in": ("length", "Unit of position errors."),
     "velocities in": ("speed", "Unit of velocity errors."),
     "times in": ("time", "Unit of the time axis, and of the spectrum's periods."),
-    "error axis": ("scale", "log: magnitudes of the errors, on an axis of decades. Linear: with their signs."),
+    "error axis": (
+        "scale",
+        "log: magnitudes of the errors, on an axis of decades. Linear: with their signs.",
+    ),
 }
 ENVELOPE = "envelope"
 _ENVELOPES = {"none": "none", f"{SEEDS} seeds, 5 to 95 %": "seeds"}
@@ -74,7 +77,9 @@ class ReadingPanel:
                 FORMAT, FORMATS, order=22, hint="CSV: the plotted numbers in full. SVG, PNG: the picture."
             )
         self._envelope.on_update(
-            lambda event: session.show(None, envelope=_ENVELOPES[self._envelope.value]) if event.client else None
+            lambda event: (
+                session.show(None, envelope=_ENVELOPES[self._envelope.value]) if event.client else None
+            )
         )
         self._format.on_click(
             lambda event: export(self._plot.value, event.target.value) if event.client is not None else None
@@ -106,4 +111,7 @@ class ReadingPanel:
         fraction, words = self._session.envelopes.fraction, self._session.envelopes.words
         self._progress.visible = fraction is not None
         self._progress.value = round(100.0 * (fraction or 0.0), 1)
-        self._words.content, self._words.visible = notices.note([words] if words else [], "warning"), bool(words)
+        self._words.content, self._words.visible = (
+            notices.note([words] if words else [], "warning"),
+            bool(words),
+        )

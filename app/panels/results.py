@@ -206,7 +206,11 @@ class ResultsPanel:
                 both, display.transfer, below_chooser, width_px=width, discrete=display.discrete
             ),
             POLES: lambda: poles(
-                both, below_chooser, width_px=width, selected=selected, locus=display.locus,
+                both,
+                below_chooser,
+                width_px=width,
+                selected=selected,
+                locus=display.locus,
                 allowed=allowed_poles(asked),
             ),
             SPECTRUM: lambda: spectrum(
@@ -225,7 +229,11 @@ class ResultsPanel:
             run=run,
             plotly=plotly,
             curves=error_plots(
-                drawn, overlay, display=display, pins=pins, envelope=found.envelope,
+                drawn,
+                overlay,
+                display=display,
+                pins=pins,
+                envelope=found.envelope,
                 limits=error_limits(asked, run),
             )
             if wanted & {ERRORS, SWITCHING}

@@ -86,7 +86,7 @@ class TuningPanel:
             return
         self._network = method.network
         settings = self._settings()
-        values = {("tuning", name): getattr(settings, name) for name in _SHOWN}
+        values: dict[form.Path, Any] = {("tuning", name): getattr(settings, name) for name in _SHOWN}
         self._section.show(_specs(settings), values, None)
         fraction, result = tuner.fraction, tuner.result
         if fraction is not None:
@@ -120,7 +120,9 @@ class TuningPanel:
             TuningSettings.model_validate(data)
         except (ValidationError, InputError) as error:
             faults = (
-                error.faults if isinstance(error, InputError) else faults_from(error, TuningSettings, data)
+                error.faults
+                if isinstance(error, InputError)
+                else faults_from(error, TuningSettings, data, "")
             )
             control.refuse([notices.refusal(fault, f"{self._fields.get(name, '')}") for fault in faults])
             return

@@ -35,10 +35,13 @@ class Tools:
         ``show(**choices)`` of the display.
     place : callable
         ``place(damping_ratio, ratio)`` of the selected method's pair.
+    method : callable
+        Gives the method that the controls edit.
     """
 
     show: Callable[..., None]
     place: Callable[[float, float], None]
+    method: Callable[[], Method]
 
 
 class Placer:
@@ -103,10 +106,10 @@ class PoleTools:
 
     def __init__(self, gui: viser.GuiApi, tools: Tools, display: Display) -> None:
         self._tools = tools
-        self._fields: dict[str, str] = {_NONE: NO_LOCUS}
+        self._fields = _offered(tools.method())
         gui.add_html(ROW)
         self._locus: Any = gui.add_dropdown(
-            LOCUS, (_NONE,), initial_value=_NONE,
+            LOCUS, tuple(self._fields), initial_value=_chosen(self._fields, display),
             hint="Draws how the poles of the selected method move while one parameter of its network goes "
             "through the range of its slider; the crosses are at the present value.",
         )  # fmt: skip
@@ -127,18 +130,26 @@ class PoleTools:
         button.on_click(
             lambda event: tools.place(self._xi.value, self._ratio.value) if event.client else None
         )
-        del display
 
     def _choose(self) -> None:
         self._tools.show(locus=self._fields.get(self._locus.value, NO_LOCUS))
 
     def follow(self, display: Display, method: Method) -> None:
         """Offer the parameters of the selected method's network, and show which is chosen."""
-        fields = {} if method.undamped else locus_fields(method.network)
-        offered = {_NONE: NO_LOCUS} | {label: name for name, label in fields.items()}
+        offered = _offered(method)
         if offered != self._fields:
             self._fields = offered
             self._locus.options = tuple(offered)
-        chosen = next((label for label, name in offered.items() if name == display.locus), _NONE)
+        chosen = _chosen(offered, display)
         if self._locus.value != chosen:
             self._locus.value = chosen
+
+
+def _offered(method: Method) -> dict[str, str]:
+    """Choices of the locus: label -> field."""
+    fields = {} if method.undamped else locus_fields(method.network)
+    return {_NONE: NO_LOCUS} | {label: name for name, label in fields.items()}
+
+
+def _chosen(offered: dict[str, str], display: Display) -> str:
+    return next((label for label, name in offered.items() if name == display.locus), _NONE)

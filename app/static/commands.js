@@ -89,11 +89,6 @@
     tab?.focus();
   }
 
-  function press(name) {
-    const buttons = [...document.querySelectorAll("button")].filter((button) => button.textContent === name);
-    buttons[0]?.click();
-  }
-
   function element(tag, text, attributes = {}) {
     const made = Object.assign(document.createElement(tag), { textContent: text });
     for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
@@ -143,7 +138,13 @@
     input.select();
   }
 
-  const ACTIONS = { tab: openTab, click: press, keys: showKeys, link: showLink };
+  // The browser opens its file dialog because the user has just pressed a key or a button.
+  function upload() {
+    openTab("Files");
+    setTimeout(() => document.querySelector("input[type=file]")?.click(), 200);
+  }
+
+  const ACTIONS = { tab: openTab, upload, keys: showKeys, link: showLink };
   let answered = 0;
 
   setInterval(() => {

@@ -4,10 +4,14 @@
 (() => {
   const PERIOD_MS = 100;
   const AFTER_SCRUB_MS = 500;
+  const AFTER_INPUT_MS = 600;
+  const HEARD_MS = 250;
   const UNITS = { s: 1, min: 60, h: 3600, d: 86400 };
   let now = null;
   let shown = -1;
   let scrubbed = -1e9;
+  let moved = -1e9;
+  let heard = -1e9;
   let stage = null;
 
   const element = (html) => {
@@ -122,6 +126,19 @@
     stage.classList.toggle("sb-small", box.width < 480);
   }
 
+  // While the user moves something, nothing is said to the server: viser sends one value in 50 ms, whichever control it
+  // comes from, and the server slows the playback down when it hears nothing.
+  for (const kind of ["pointerdown", "pointermove", "keydown", "wheel"]) {
+    addEventListener(kind, (event) => (kind !== "pointermove" || event.buttons) && (moved = performance.now()), true);
+  }
+
+  function tellShown() {
+    const time = performance.now();
+    if (!now.playing || time - heard < HEARD_MS || time - moved < AFTER_INPUT_MS) return;
+    heard = time;
+    window.schuler.stream("shown", now.count);
+  }
+
   let turn = 0;
   setInterval(() => {
     const source = document.getElementById("sb-playback");
@@ -133,6 +150,7 @@
       shown = told.count;
       if (stage === null) build();
       update(source);
+      tellShown();
     } else if (++turn % 3 === 0 && now !== null) {
       if (performance.now() - scrubbed > AFTER_SCRUB_MS) mark(now.time); // a plot was zoomed or made anew
     }

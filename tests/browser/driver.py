@@ -75,9 +75,9 @@ class Bench:
         page.on("pageerror", lambda error: self.faults.append(str(error)))
         page.on("console", lambda m: self.faults.append(m.text) if m.type == "error" else None)
 
-    def open(self, path: str = "") -> Bench:
+    def open(self, path: str = "", query: str = "?fixedDpr=0.25") -> Bench:
         """Open the page (a new session without a path) and wait for its first run."""
-        self.page.goto(f"{self.url}{path}?fixedDpr=0.25")
+        self.page.goto(f"{self.url}{path}{query}")
         self.page.wait_for_selector("#sb-run[data-run]", state="attached")
         self.page.wait_for_selector(".uplot canvas, .js-plotly-plot .trace", state="attached")
         self.close_notices()

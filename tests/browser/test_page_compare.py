@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -10,6 +11,9 @@ from app import edits
 from app.pins import MOST_PINS
 from tests.browser.driver import Bench
 from tests.browser.test_page_layout import _CUT, SIZES, resize
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Locator
 
 pytestmark = pytest.mark.browser
 
@@ -28,7 +32,9 @@ def pinned(bench: Bench) -> Iterator[Bench]:
     bench.page.keyboard.press("Escape")
     bench.page.locator("#sb-status").click()
     bench.page.keyboard.press("p")
-    bench.page.wait_for_function(f"() => ({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('pin 1: ')))")
+    bench.page.wait_for_function(
+        f"() => ({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('pin 1: ')))"
+    )
     for _ in range(4):
         bench.press("zeta")
     bench.settle()
@@ -37,6 +43,12 @@ def pinned(bench: Bench) -> Iterator[Bench]:
         session.pins.remove(pin.id)
     session.pins._next = 1
     session.show(None, flipped=False, baseline=None, delta="rms")
+
+
+def text_box(bench: Bench, label: str) -> Locator:
+    """A text box: viser gives it no id."""
+    row = "xpath=ancestor::*[contains(@class, 'mantine-Flex-root')][1]//input"
+    return bench.page.locator(f'label:text-is("{label}")').locator(row)
 
 
 def names(bench: Bench) -> list[list[str]]:
@@ -92,7 +104,9 @@ def test_b_flips_between_the_present_run_and_the_pin(pinned: Bench) -> None:
     page.keyboard.press("b")
     page.wait_for_selector("#sb-flip", state="attached")
     assert "pin 1" in page.evaluate(_BANNER)
-    page.wait_for_function(f"() => !({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('pin 1: ')))")
+    page.wait_for_function(
+        f"() => !({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('pin 1: ')))"
+    )
     (pin,) = session.pins.all
     assert pin.run is not None
     peak = pin.run.methods[2].errors["position_m"]["max_abs"]
@@ -103,7 +117,9 @@ def test_b_flips_between_the_present_run_and_the_pin(pinned: Bench) -> None:
     assert page.evaluate(outlined) == "solid"
     page.keyboard.press("b")
     page.wait_for_selector("#sb-flip", state="detached")
-    page.wait_for_function(f"() => ({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('pin 1: ')))")
+    page.wait_for_function(
+        f"() => ({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('pin 1: ')))"
+    )
     assert page.evaluate(_BANNER) in ("none", "normal")
     assert pinned.curves() == before
 
@@ -111,8 +127,8 @@ def test_b_flips_between_the_present_run_and_the_pin(pinned: Bench) -> None:
 def test_a_pin_is_renamed_hidden_gone_back_to_and_removed(pinned: Bench) -> None:
     page, session = pinned.page, pinned.session
     pinned.tab("Compare")
-    pinned.box("pin name").fill('<b>"old"</b>')
-    pinned.box("pin note").fill("as delivered")
+    text_box(pinned, "pin name").fill('<b>"old"</b>')
+    text_box(pinned, "pin note").fill("as delivered")
     page.wait_for_function("() => document.querySelector('.sb-pins')?.innerText.includes('as delivered')")
     assert '<b>"old"</b>' in page.locator(".sb-pins").inner_text()
     pinned.tab("Errors")
@@ -187,7 +203,9 @@ def test_two_hundred_slider_steps_in_twenty_seconds_end_in_agreement(pinned: Ben
     assert session.run is not None and session.run.scenario == session.scenario
     zeta = edits.value_at(session.scenario, ZETA)
     assert pinned.value("zeta, exact") == pytest.approx(zeta)
-    assert float(pinned.slider("zeta").get_attribute("aria-valuenow") or "nan") == pytest.approx(zeta, abs=0.006)
+    assert float(pinned.slider("zeta").get_attribute("aria-valuenow") or "nan") == pytest.approx(
+        zeta, abs=0.006
+    )
     from app.page import _run_element
 
     assert f'data-digest="{pinned.digest}"' in _run_element(session.run, session.run_number)

@@ -16,7 +16,8 @@ SECTION = ".sb-lesson:not(.sb-question):not(.sb-below)"
 _IN_FRONT = """tabs => tabs.every(name => [...document.querySelectorAll('[role=tab]')]
   .some(tab => tab.textContent === name && tab.getAttribute('aria-selected') === 'true'))"""
 # Numbers of the text as they are shown, by their name.
-_LIVE = f"""() => [...document.querySelectorAll('{SECTION} .sb-live')].map(e => [e.dataset.name, e.textContent])"""
+_LIVE = f"""() => [...document.querySelectorAll('{SECTION} .sb-live')]
+  .map(e => [e.dataset.name, e.textContent])"""
 
 
 def press(bench: Bench, what: str) -> None:
@@ -87,8 +88,10 @@ def test_a_lesson_is_worked_through(bench: Bench, number: int) -> None:
     press(bench, f"open {number}")
     for index in range(len(lesson.steps)):
         work_through(bench, lesson, index)
-        assert bench.page.locator(".sb-dot[aria-current=step]").get_attribute("aria-label").startswith(
-            f"Step {index + 1} of {len(lesson.steps)}"
+        assert (
+            bench.page.locator(".sb-dot[aria-current=step]")
+            .get_attribute("aria-label")
+            .startswith(f"Step {index + 1} of {len(lesson.steps)}")
         )
         if index + 1 < len(lesson.steps):
             press(bench, "next")
@@ -133,7 +136,9 @@ def test_a_lesson_is_worked_by_keyboard_alone(bench: Bench) -> None:
     bench.page.wait_for_function(focused)
 
 
-@pytest.mark.parametrize("argument", ["open 99", "open -1", "step 77", "answer " + "9" * 3000, "nonsense", ""])
+@pytest.mark.parametrize(
+    "argument", ["open 99", "open -1", "step 77", "answer " + "9" * 3000, "nonsense", ""]
+)
 def test_what_no_lesson_knows_is_ignored(bench: Bench, argument: str) -> None:
     bench.tab("Learn")
     press(bench, "list")

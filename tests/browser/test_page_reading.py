@@ -13,7 +13,14 @@ pytestmark = pytest.mark.browser
 
 _CHART = """label => Object.values(window.__viserTestpoints.uplots).map(e => e.chart)
   .find(c => c.axes[1].label.startsWith(label))"""
-_DEFAULT = {"angle": "auto", "length": "auto", "speed": "auto", "time": "auto", "scale": "linear", "envelope": "none"}
+_DEFAULT = {
+    "angle": "auto",
+    "length": "auto",
+    "speed": "auto",
+    "time": "auto",
+    "scale": "linear",
+    "envelope": "none",
+}
 
 
 @pytest.fixture

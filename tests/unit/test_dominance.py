@@ -12,6 +12,7 @@ from app.panels.why import cause_text
 from navcore.averaging.lines import line_phases
 from navcore.dominance import HEADING, POSITION, TILT, swing, why
 from navcore.mechanization.recorder import PHI_E, PHI_N
+from navcore.run import Run
 from navcore.scenario import Scenario
 from navcore.scenario_file import load
 from navcore.simulation import simulate
@@ -23,7 +24,7 @@ def run_of(**blocks):
     return simulate(Scenario.parse(DAY | blocks))
 
 
-def made_of(values) -> object:
+def made_of(values) -> Run:
     """A run whose tilts are ``values(time, phases)``."""
     run = run_of()
     method = run.methods[0]

@@ -24,11 +24,24 @@ from navcore.sensors.reference import Reference
 
 def all_fields() -> Iterator[tuple[str, FieldSpec]]:
     """Every field that the page can show, with its name in ``assets/explain.toml``."""
-    plain = {"imu": Imu, "reference": Reference, "run": RunSettings, "site": SiteSettings,
-             "initial_error": InitialError, "alignment": Alignment, "method": Method, "averaging": Averaging}  # fmt: skip
+    plain = {
+        "imu": Imu,
+        "reference": Reference,
+        "run": RunSettings,
+        "site": SiteSettings,
+        "initial_error": InitialError,
+        "alignment": Alignment,
+        "method": Method,
+        "averaging": Averaging,
+    }
     plain |= {f"reference.{name}": model for name, model in _KINDS.items()}
     plain |= {"motion.swing.pitch": Oscillation}
-    for part, members in (("network", NETWORKS), ("policy", POLICIES), ("switching", SWITCHINGS), ("motion", MOTIONS)):
+    for part, members in (
+        ("network", NETWORKS),
+        ("policy", POLICIES),
+        ("switching", SWITCHINGS),
+        ("motion", MOTIONS),
+    ):
         plain |= {f"{part}.{id}": model for id, model in members.items()}
     for name, model in plain.items():
         for spec in form.fields(model, tuple(name.split("."))):
@@ -51,7 +64,13 @@ def test_every_control_is_explained_and_every_slider_with_unit_and_range(key: st
 
 
 def test_no_explanation_is_left_over() -> None:
-    keys = [key for key, _ in FIELDS] + ["network.id", "policy.id", "switching.id", "motion.kind", "reference.kind"]
+    keys = [key for key, _ in FIELDS] + [
+        "network.id",
+        "policy.id",
+        "switching.id",
+        "motion.kind",
+        "reference.kind",
+    ]
     used = set()
     for key in keys:
         fits = (pattern for pattern in explanations() if explanation(key) is explanations()[pattern])
@@ -88,4 +107,6 @@ def test_an_explanation_holds_words_equation_and_source() -> None:
     assert "Must be &gt;= 1e-05 and &lt;= 1 (1/s)" in html
     assert html.count("<math") == 1
     assert "Deng 2019, eq. 2; Zha 2019, eq. 12" in html
-    assert told_html("<b>", "<i>", Explanation(says="<u>")).count("<") == told_html("b", "i", Explanation(says="u")).count("<")
+    assert told_html("<b>", "<i>", Explanation(says="<u>")).count("<") == told_html(
+        "b", "i", Explanation(says="u")
+    ).count("<")

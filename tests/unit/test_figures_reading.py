@@ -196,7 +196,9 @@ def test_undamped_error_peaks_at_the_schuler_period() -> None:
     )  # fmt: skip
     periods, amplitude = amplitude_spectrum(run.methods[0], DV_E)
     near = (periods > 3600.0) & (periods < 7200.0)
-    assert periods[near][np.argmax(amplitude[near])] == pytest.approx(2.0 * np.pi / run.scenario.omega_s, rel=0.03)
+    assert periods[near][np.argmax(amplitude[near])] == pytest.approx(
+        2.0 * np.pi / run.scenario.omega_s, rel=0.03
+    )
     figure = spectrum(run, "dve")
     notes = " ".join(note["text"] for note in figure["layout"]["annotations"])
     assert "Schuler" in notes and "24 h" in notes

@@ -68,6 +68,10 @@ class TestNyquist:
         assert re.fullmatch(r"phase 4\d\.\d°, gain to ×9\.\d+, delay 6\.\d+ min", words[1])
         notes = [note["text"] for note in nyquist(run)["layout"]["annotations"]]
         assert all(any(word in note for note in notes) for word in words)
+        narrow = [note["text"] for note in nyquist(run, 1.0, width_px=560.0)["layout"]["annotations"]]
+        lines = [line for note in narrow for line in note.split("<br>")]
+        assert max(len(line) for line in lines if "phase" in line or "gain" in line) <= 36
+        assert all(any(part in line for line in lines) for word in words for part in word.split(", "))
 
     @pytest.mark.parametrize(("aspect", "width_px"), SIZES)
     def test_plane_has_equal_scales_and_shows_the_unit_circle(self, aspect: float, width_px: float) -> None:
@@ -77,7 +81,7 @@ class TestNyquist:
         height = aspect * width_px - margin["t"] - margin["b"]
         (left, right), (low, high) = layout["xaxis2"]["range"], layout["yaxis3"]["range"]
         assert (right - left) / width == pytest.approx((high - low) / height, rel=1e-6)
-        assert left < -1.2 and low < -1.05 and high > 1.05
+        assert left < -1.2 and right > 1.05 and low < -1.05 and high > 1.05
 
     def test_plotly_accepts_it_and_the_chooser_offers_it(self) -> None:
         import plotly.graph_objects as go

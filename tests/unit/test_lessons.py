@@ -128,8 +128,9 @@ def test_numbers_are_written_to_be_read(value: float, unit: str, text: str) -> N
 
 @pytest.mark.parametrize(
     "name",
-    ["", "schuler", "schuler.x", "error.9.phi_e.max", "error.0.phi_e.x", "error.-1.phi_e.max", "loop.0.__class__",
-     "setting.__class__.x", "setting.method.0.name", "setting.run.earth", "setting.method.7.x", "curve.0.phi_e.x"],
+    ["", "schuler", "schuler.x", "error.9.phi_e.max", "error.0.phi_e.x", "error.-1.phi_e.max",
+     "loop.0.__class__", "setting.__class__.x", "setting.method.0.name", "setting.run.earth",
+     "setting.method.7.x", "curve.0.phi_e.x"],
 )  # fmt: skip
 def test_what_is_no_name_is_refused(name: str) -> None:
     with pytest.raises(KeyError):

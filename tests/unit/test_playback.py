@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from app.playback import SPEEDS, Playback, PlayState
+from app.playback import MOST_AHEAD, SLOW_S, SPEEDS, TICK_S, Playback, PlayState
 
 
 def test_the_time_runs_with_its_speed_and_stops_at_the_end() -> None:
@@ -100,3 +100,25 @@ def test_a_fault_of_the_page_does_not_end_the_playback(caplog: pytest.LogCapture
     assert done.wait(10.0)
     playback.close()
     assert "could not be shown" in caplog.text
+
+
+def test_a_page_that_falls_behind_gets_fewer_updates(monkeypatch: pytest.MonkeyPatch) -> None:
+    paused: list[float] = []
+    enough = threading.Event()
+
+    def sleep(seconds: float) -> None:
+        paused.append(seconds)
+        if len(paused) == MOST_AHEAD + 3:
+            playback.heard(0)
+        if len(paused) >= MOST_AHEAD + 6:
+            enough.set()
+
+    playback = Playback(lambda state: None)
+    monkeypatch.setattr("app.playback.time.sleep", sleep)
+    playback.follow(1e9)
+    playback.toggle()
+    assert enough.wait(10.0)
+    playback.close()
+    assert paused[:MOST_AHEAD] == [TICK_S] * MOST_AHEAD
+    assert paused[MOST_AHEAD : MOST_AHEAD + 3] == [SLOW_S] * 3
+    assert paused[MOST_AHEAD + 3 : MOST_AHEAD + 6] == [TICK_S] * 3

@@ -15,7 +15,7 @@ from app.http.ids import is_shared, new_copy_id
 from app.session import Session
 from app.sessions import Sessions
 from app.store import open_store
-from navcore.scenario import Scenario
+from app.uploads import recorded_scenario
 from navcore.scenario_file import load
 
 ID = "visitor-of-the-tests-000"
@@ -40,6 +40,10 @@ def started(tmp_path: Path) -> Iterator[Callable[[], Sessions]]:
         running.pop().close()
 
 
+def xi_of(session: Session) -> Any:
+    return edits.value_at(session.scenario, XI)
+
+
 def worked_on(sessions: Sessions) -> Session:
     session = sessions.get(ID)
     session.select(2, None)
@@ -55,10 +59,10 @@ def test_a_session_comes_back_after_a_restart(started: Callable[[], Sessions]) -
     after = started().get(ID)
     assert after is not before
     assert after.state == before.state
-    assert after.scenario.method[2].network.xi == 0.5
+    assert xi_of(after) == 0.5
     assert (after.origin, after.selected, after.display) == ("zha-fast", 2, before.display)
     assert (after.history.undo_name, after.history.redo_name) == ("xi 0.5", "xi 0.6")
-    assert after.redo() and after.scenario.method[2].network.xi == 0.6
+    assert after.redo() and xi_of(after) == 0.6
     assert after.reset(None) and after.scenario == load("zha-fast")
 
 
@@ -84,10 +88,10 @@ def test_a_session_that_had_to_make_room_comes_back(
 def test_uploads_come_back_and_the_scenario_runs_on_them(started: Callable[[], Sessions]) -> None:
     session = started().get(ID)
     upload = session.uploads.add("log.csv", LOG)
-    data = session.scenario.canonical()
-    data["reference"] = {"kind": "file", "file": [str(upload.path)], "frame": "body"}
-    session.change(Scenario.parse(data), None, origin="uploaded")
-    kept = session.scenario
+    kept, _ = recorded_scenario(session.scenario, session.uploads)
+    session.change(kept, None, origin="uploaded")
+    assert session.wait_idle(30.0)
+    assert session.run.scenario == kept
     after = started().get(ID)
     assert list(after.uploads.files) == ["log.csv"]
     assert after.uploads.files["log.csv"].quantities == upload.quantities
@@ -198,7 +202,7 @@ def test_a_shared_state_is_a_frozen_copy(started: Callable[[], Sessions], stored
     second = sessions.get(new_copy_id(shared))
     assert second.scenario == frozen
     assert list(second.uploads.files) == ["log.csv"]
-    assert sessions.get(ID).scenario.method[2].network.xi == 0.9
+    assert xi_of(sessions.get(ID)) == 0.9
     if not stored:
         sessions.close()
 

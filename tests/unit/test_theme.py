@@ -68,7 +68,7 @@ def test_a_method_keeps_its_hue_in_the_dark(color: str) -> None:
     dark, _, _ = colorsys.rgb_to_hls(*theme.shown(color, "dark"))
     if saturation < 0.05:
         return
-    # The browser's hue-rotate keeps luminance rather than the HLS hue: 30 degrees are still the same colour's name.
+    # hue-rotate keeps luminance rather than the HLS hue: within 30 degrees a colour has the same name.
     assert min(abs(hue - dark), 1 - abs(hue - dark)) * 360 < 30
 
 
