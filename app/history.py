@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from navcore.scenario import Scenario
@@ -164,7 +165,7 @@ class History:
 
 def changed_fields(before: Scenario, after: Scenario) -> tuple[str, ...]:
     """Dotted paths of the fields that differ, e.g. ``method.0.network.xi``, sorted."""
-    old, new = _flat(before.canonical()), _flat(after.canonical())
+    old, new = _fields(before), _fields(after)
     return tuple(sorted(path for path in old.keys() | new.keys() if old.get(path) != new.get(path)))
 
 
@@ -186,7 +187,7 @@ def change_name(before: State, after: State) -> str:
         blocks = {field.rsplit(".", 1)[0] for field in fields}
         return f"change of {blocks.pop()}" if len(blocks) == 1 else f"change of {len(fields)} fields"
     (field,) = fields
-    old, new = _flat(before.scenario.canonical()).get(field), _flat(after.scenario.canonical()).get(field)
+    old, new = _fields(before.scenario).get(field), _fields(after.scenario).get(field)
     return f"{_named(field, after.scenario)}: {_short(old)} → {_short(new)}"
 
 
@@ -197,6 +198,11 @@ def _named(field: str, scenario: Scenario) -> str:
     if block != "method" or not inner:
         return field
     return f"{inner.removeprefix('network.')} of {_short(scenario.method[int(index)].name)}"
+
+
+@lru_cache(maxsize=8)  # a change is compared with the state before it, and with the opened one
+def _fields(scenario: Scenario) -> dict[str, Any]:
+    return _flat(scenario.canonical())
 
 
 def _flat(value: Any, path: str = "") -> dict[str, Any]:

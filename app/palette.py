@@ -104,8 +104,8 @@ class Palette:
         session, history = self._session, self._session.history
         self._resets.show(session.opened, session.scenario, self._controls())
         changed = len(changed_fields(session.opened, session.scenario))
-        self._toolbar.show(history, session.origin, changed, self._lock.drives)
-        control = self._editor.moved
+        self._toolbar.show(history, session.origin, changed, self._lock.drives, self._lock.watches)
+        control = None if self._lock.watches else self._editor.moved
         last = self._resets.of(control)
         found = None if control is None or last is None else (last[0], control.spec.label, last[1])
         self._toolbar.show_changed(session.origin, changed, found)

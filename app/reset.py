@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from app import edits
@@ -39,8 +40,13 @@ def opened_value(opened: Scenario, scenario: Scenario, spec: FieldSpec) -> Any:
     if not _alike(opened, scenario, path[:-1] if path[-1] not in ("id", "kind") else path[:-2]):
         return spec.default
     if len(path) == 4 and path[2] == "network" and path[-1] != "id":
-        return edits.network_values(opened, int(path[1])).get(str(path[3]), spec.default)
+        return _network_values(opened, int(path[1])).get(str(path[3]), spec.default)
     return edits.value_at(opened, path)
+
+
+@lru_cache(maxsize=8)
+def _network_values(opened: Scenario, index: int) -> Mapping[str, Any]:
+    return edits.network_values(opened, index)
 
 
 def _alike(opened: Any, scenario: Any, path: Path) -> bool:

@@ -111,7 +111,15 @@ def restyled(figure: PlotlyFigure, run: Run, pins: Sequence[Pinned]) -> PlotlyFi
             }  # fmt: skip
         if "marker" in trace:
             trace["marker"] = _restyled_marker(trace["marker"], pinned.color)
+    notes = figure["layout"].get("annotations")
+    if notes:  # notes that carry a method's place as their name are left out: there is room for its own only
+        figure["layout"]["annotations"] = [note for note in notes if not _is_pinned(note, first)]
     return figure
+
+
+def _is_pinned(note: dict[str, Any], first: int) -> bool:
+    name = str(note.get("name", ""))
+    return name.isdigit() and int(name) >= first
 
 
 def _restyled_marker(marker: dict[str, Any], color: str) -> dict[str, Any]:

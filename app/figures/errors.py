@@ -232,7 +232,7 @@ def _with_limit(plot: UplotFigure, limit: float) -> UplotFigure:
 
 
 def _logarithmic(plot: UplotFigure) -> UplotFigure:
-    """Magnitudes on an axis of whole decades that shows every curve's peak; what is smaller lies on its floor."""
+    """Magnitudes on an axis of decades that shows every curve's peak; what is smaller lies on its floor."""
     edges = plot.edges
     sizes = [np.abs(values) for values in plot.data[1:]]
     for upper, lower, _ in plot.bands:

@@ -26,7 +26,7 @@ _RIGHT_EDGE = 0.3
 _UNIT_CIRCLE = 0.72
 """Half height of the Nyquist panel is the unit circle over this."""
 _PAPER = "rgba(255,255,255,0.85)"
-_LETTER_PX, _LINE_PX, _MOST_LINES = 6.6, 18, 9
+_LETTER_PX, _LINE_PX, _MOST_LINES = 6.6, 18, 8
 
 
 @dataclass(frozen=True)
@@ -280,20 +280,21 @@ def _notes(run: Run, words: list[str], column_px: float) -> list[dict[str, Any]]
 
 
 def _listed(run: Run, words: list[str], column_px: float) -> list[dict[str, Any]]:
-    """Margins of the methods in the foot of the Nyquist panel, the first one on top."""
+    """Margins of the methods at the top of the Nyquist panel, where no damped loop runs; named by place."""
     notes: list[dict[str, Any]] = []
-    below = 0
-    for index in range(len(words) - 1, -1, -1):
-        lines = wrapped(f"{run.methods[index].method.name}: {words[index]}", int(column_px / _LETTER_PX))
-        if below + len(lines) > _MOST_LINES:
+    above = 0
+    for index, (method, content) in enumerate(zip(run.methods, words, strict=True)):
+        lines = wrapped(f"{method.method.name}: {content}", int(column_px / _LETTER_PX))
+        if above + len(lines) > _MOST_LINES:
             break
         note = style.text(
-            0.0, 0.0, "<br>".join(style.plain(line) for line in lines), xref="x2 domain", yref="y3 domain",
-            xanchor="left", yanchor="bottom", align="left", xshift=4, yshift=3 + _LINE_PX * below,
+            0.0, 1.0, "<br>".join(style.plain(line) for line in lines), xref="x2 domain", yref="y3 domain",
+            xanchor="left", yanchor="top", align="left", xshift=4, yshift=-3 - _LINE_PX * above,
             font={"size": style.FONT_SIZE, "color": style.method_color(index)}, bgcolor=_PAPER, borderpad=0,
+            name=str(index),
         )  # fmt: skip
         notes.append(note)
-        below += len(lines)
+        above += len(lines)
     return notes
 
 

@@ -40,11 +40,11 @@ class Packed(dict[str, str]):
 
     Attributes
     ----------
-    values : ndarray
+    full : ndarray
         As they were given.
     """
 
-    values: np.ndarray
+    full: np.ndarray
 
 
 def packed(values: np.ndarray) -> Packed:
@@ -54,14 +54,14 @@ def packed(values: np.ndarray) -> Packed:
     if not finite.all():
         single = np.where(finite, single, np.float32("nan"))
     made = Packed(dtype="f4", bdata=base64.b64encode(single.tobytes()).decode("ascii"))
-    made.values = np.asarray(values)
+    made.full = np.asarray(values)
     return made
 
 
 def values_of(value: Any) -> list[float | None]:
     """Numbers of a trace, packed or listed, in full."""
     if isinstance(value, Packed):
-        return [float(number) for number in value.values]
+        return [float(number) for number in value.full]
     return list(value)
 
 

@@ -287,6 +287,7 @@ def _far_zeros(zeros: list[np.ndarray], left: float) -> list[dict[str, Any]]:
             xshift=4,
             yshift=3 + 18 * row,
             font={"size": style.FONT_SIZE, "color": style.method_color(index)},
+            name=str(index),
             bgcolor=PAPER,
             borderpad=0,
         )

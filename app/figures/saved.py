@@ -100,7 +100,7 @@ def time_picture(figures: Sequence[UplotFigure], format: str, title: str) -> byt
     """
     import matplotlib
 
-    settings = {"font.size": 9, "svg.fonttype": "none", "svg.hashsalt": "schuler"}
+    settings: dict[Any, Any] = {"font.size": 9, "svg.fonttype": "none", "svg.hashsalt": "schuler"}
     with matplotlib.rc_context(settings):
         return _time_picture(figures, format, title)
 

@@ -96,10 +96,8 @@ def amplitude_spectrum(method: MethodRun, column: int) -> tuple[np.ndarray, np.n
     if count < _LEAST_ROWS or not np.isfinite(values).all():
         return np.empty(0), np.empty(0)
     window = np.hanning(count + 1)[:-1]
-    from scipy.fft import next_fast_len, rfft
-
-    length = next_fast_len(_PADDING * count, real=True)
-    amplitude = 2.0 * np.abs(rfft((values - values.mean()) * window, length)) / window.sum()
+    length = 2 ** math.ceil(math.log2(_PADDING * count))
+    amplitude = 2.0 * np.abs(np.fft.rfft((values - values.mean()) * window, length)) / window.sum()
     frequency = np.arange(len(amplitude)) / (length * (method.t_s[1] - method.t_s[0]))
     first = _PADDING  # below one period in the whole run there is only the window
     frequency, amplitude = frequency[first:], amplitude[first:]
@@ -130,7 +128,8 @@ def _trace(
         "name": name,
         "legendgroup": str(index),
         "line": {"color": style.method_color(index), "width": style.CURVE_WIDTH, "simplify": False},
-        "hovertemplate": f"<b>{name}</b><br>%{{x:.4g}} {x_unit.name}: %{{y:.4g}} {y_unit.name}<extra></extra>",
+        "hovertemplate": f"<b>{name}</b><br>%{{x:.4g}} {x_unit.name}: %{{y:.4g}} {y_unit.name}"
+        "<extra></extra>",
     }
 
 

@@ -220,7 +220,7 @@ def metrics_html(
         f"{escape(run.methods[i].method.name)}</th>"
         for i in shown
     )
-    headings = list(_HEADINGS)
+    headings: list[str] = list(_HEADINGS)
     if compares:
         headings.append(f"Δ {_HEADINGS[STATISTICS.index((display or Display()).delta)]}")
     below = "".join(f'<th style="{_NUMBER};{_MUTED}">{name}</th>' for name in headings) * len(shown)
@@ -229,8 +229,8 @@ def metrics_html(
     if compares and baseline is not None:
         body += (
             f'<tr style="{_LINE}"><td colspan="{2 + columns * len(shown)}" style="padding:6px 2px;{_MUTED}">'
-            f'Δ: this run minus <b style="color:{baseline.hex}">{escape(baseline.name)}</b>, the method of the '
-            "same name; in the unit of the line, and as a part of the baseline's number</td></tr>"
+            f'Δ: this run minus <b style="color:{baseline.hex}">{escape(baseline.name)}</b>, the method of '
+            "the same name; in the unit of the line, and as a part of the baseline's number</td></tr>"
         )
     if verification is not None:
         compared = "".join(_html_row(_part(row, shown), columns) for row in difference_rows(verification))

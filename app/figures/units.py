@@ -106,10 +106,9 @@ def scaled_unit(name: str, peak: float) -> Unit:
     unit = NAMED[name]
     if not math.isfinite(peak) or peak <= 0.0 or peak >= _LEAST * unit.si:
         return unit
-    for power, word in ((-3, "10⁻³"), (-6, "10⁻⁶"), (-9, "10⁻⁹")):
-        if peak >= _LEAST * unit.si * 10.0**power:
-            break
-    return Unit(f"{word} {unit.name}", unit.si * 10.0**power)
+    parts = ((1e-3, "10⁻³"), (1e-6, "10⁻⁶"), (1e-9, "10⁻⁹"))
+    part, word = next((found for found in parts if peak >= _LEAST * unit.si * found[0]), parts[-1])
+    return Unit(f"{word} {unit.name}", unit.si * part)
 
 
 def _chosen(table: tuple[tuple[float, Unit], ...], peak: float, otherwise: Unit) -> Unit:

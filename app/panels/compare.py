@@ -86,7 +86,8 @@ class Comparing:
         content = ""
         if flipped is not None:
             text = f"Showing the pin \u201c{flipped.name}\u201d, not the present run. Key B flips back."
-            content = f'<div id="sb-flip" role="status" hidden>{escape(text)}</div><style>{_frame(text, flipped.hex)}</style>'
+            said = f'<div id="sb-flip" role="status" hidden>{escape(text)}</div>'
+            content = f"{said}<style>{_frame(text, flipped.hex)}</style>"
         if self._mark.content != content:
             self._mark.content = content
 
@@ -124,7 +125,7 @@ class ComparePanel:
             pin = gui.add_button(PIN, hint="Keep the present run as a baseline. Key: P.", order=1)
             flip = gui.add_button(
                 FLIP,
-                hint="All plots show the baseline in the place of the present run, until flipped back. Key: B.",
+                hint="All plots show the baseline in the place of this run. Key: B.",
                 order=2,
             )
             self._baseline: Any = gui.add_dropdown(
@@ -233,14 +234,18 @@ def _list_html(pins: tuple[Pin, ...], baseline: Pin | None) -> str:
         for title in ("pin", "of", "largest position error (m)", "note")
     )
     return (
-        f'<div class="sb-pins" style="margin:4px 10px 8px;overflow-x:auto"><table style="border-collapse:collapse;width:100%;'
+        '<div class="sb-pins" style="margin:4px 10px 8px;overflow-x:auto">'
+        f'<table style="border-collapse:collapse;width:100%;'
         f'font-size:{style.FONT_SIZE}px;color:{style.INK}"><thead><tr>{head}</tr></thead>'
         f"<tbody>{''.join(_row_html(pin, pin is baseline) for pin in pins)}</tbody></table></div>"
     )
 
 
 def _row_html(pin: Pin, is_baseline: bool) -> str:
-    bar = f'<span style="display:inline-block;width:18px;border-top:3px dashed {pin.hex};margin-right:6px;vertical-align:middle"></span>'
+    bar = (
+        f'<span style="display:inline-block;width:18px;border-top:3px dashed {pin.hex};margin-right:6px;'
+        'vertical-align:middle"></span>'
+    )
     marks = (", baseline" if is_baseline else "") + ("" if pin.shown else ", hidden")
     if pin.run is None:
         worst = "being computed"
@@ -255,4 +260,5 @@ def _row_html(pin: Pin, is_baseline: bool) -> str:
         escape(worst),
         escape(pin.note),
     )
-    return f'<tr style="border-top:1px solid {style.GRID}">{"".join(f"<td style={chr(34)}{_CELL}{chr(34)}>{cell}</td>" for cell in cells)}</tr>'
+    line = "".join(f'<td style="{_CELL}">{cell}</td>' for cell in cells)
+    return f'<tr style="border-top:1px solid {style.GRID}">{line}</tr>'

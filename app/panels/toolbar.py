@@ -37,7 +37,7 @@ class Toolbar:
         self._changed = gui.add_html("", order=order + 0.1)
         self._banner = gui.add_html("", order=order + 0.2)
 
-    def show(self, history: History, origin: str, changed: int, presents: bool) -> None:
+    def show(self, history: History, origin: str, changed: int, presents: bool, watches: bool) -> None:
         """Show what each button would do now.
 
         Parameters
@@ -48,18 +48,18 @@ class Toolbar:
             To what reset goes back.
         changed : int
             Fields that differ from it.
-        presents : bool
-            This page is the one that drives.
+        presents, watches : bool
+            The page drives alone; it watches another one.
         """
         undo, redo = history.undo_name, history.redo_name
+        free = not watches
+        undoes, redoes = undo is not None and free, redo is not None and free
         buttons = [
-            _icon(UNDO, "Undo", "nothing to undo" if undo is None else undo, "Ctrl+Z", undo is not None),
-            _icon(
-                REDO, "Redo", "nothing to redo" if redo is None else redo, "Ctrl+Shift+Z", redo is not None
-            ),
-            _icon(RESET_ALL, "Reset all", f"back to {origin} as opened", "", changed > 0),
-            _button(SHARE, "Share", "A link that opens this state"),
-            _button(PRESENT, "Present", _PRESENTING if presents else _PRESENT, presents),
+            _icon(UNDO, "Undo", undo or "nothing to undo", "Ctrl+Z", undoes),
+            _icon(REDO, "Redo", redo or "nothing to redo", "Ctrl+Shift+Z", redoes),
+            _icon(RESET_ALL, "Reset all", f"back to {origin} as opened", "", changed > 0 and free),
+            _button(SHARE, "Share", "A link that opens this state", free),
+            _button(PRESENT, "Present", _PRESENTING if presents else _PRESENT, free, presents),
             _COMMANDS,
         ]
         content = f'<div class="sb-row" role="toolbar" aria-label="Commands">{"".join(buttons)}</div>'
@@ -78,22 +78,20 @@ class Toolbar:
         last : tuple of str or None
             Dotted path and label of the field in hand, and the value to which it goes back.
         """
-        if changed == 0:
-            text, button = f"As in {origin}", ""
-        else:
+        text, button = f"As in {origin}", ""
+        if changed:
             text = f"{changed} field{'s' * (changed != 1)} changed from {origin}"
-            button = ""
         if last is not None:
             name, label, value = last
             text = f"{label} was {value}"
             hint = f"Reset {label} to {value}"
-            button = _button(f"{RESET_FIELD} {name}", "Reset", hint)
+            button = _button(f"{RESET_FIELD} {name}", "Reset", hint, True)
         content = f'<div class="sb-changed"><span title="{escape(text)}">{escape(text)}</span>{button}</div>'
         if self._changed.content != content:
             self._changed.content = content
 
     def show_banner(self, text: str, drives: bool) -> None:
-        """Say over the 3D view who presents; nothing for an empty text."""
+        """Say who presents; nothing for an empty text."""
         mine = " sb-drives" if drives else ""
         content = f'<div class="sb-banner{mine}" role="status">{escape(text)}</div>' if text else ""
         if self._banner.content != content:
@@ -115,8 +113,9 @@ def _icon(command: str, label: str, what: str, key: str, able: bool) -> str:
     return f'<button class="sb-do" data-command="{command}" {named}>{shape}</button>'
 
 
-def _button(command: str, label: str, hint: str, pressed: bool | None = None) -> str:
-    state = "" if pressed is None else f' aria-pressed="{str(pressed).lower()}"'
+def _button(command: str, label: str, hint: str, able: bool, pressed: bool | None = None) -> str:
+    state = "" if able else ' aria-disabled="true"'
+    state += "" if pressed is None else f' aria-pressed="{str(pressed).lower()}"'
     return (
         f'<button class="sb-do" data-command="{escape(command)}" title="{escape(hint)}"{state}>'
         f"{escape(label)}</button>"

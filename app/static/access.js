@@ -86,6 +86,13 @@
     set(title, "aria-level", "1");
   }
 
+  // viser moves the camera by letters and arrows wherever they are pressed: on a control they are the control's.
+  const CONTROL = 'input, textarea, select, button, [role="slider"], [role="tab"], [contenteditable]';
+  document.documentElement.addEventListener("keydown", (event) => {
+    const moves = /^(Arrow(Left|Right|Up|Down)|Key[WASDQE])$/.test(event.code);
+    if (moves && event.target instanceof Element && event.target.closest(CONTROL)) event.stopPropagation();
+  });
+
   setInterval(() => {
     controls();
     plots();

@@ -69,7 +69,8 @@
     return keys[`${control ? "ctrl+" : ""}${event.altKey ? "alt+" : ""}${shift ? "shift+" : ""}${key}`];
   }
 
-  addEventListener("keydown", (event) => {
+  // Before viser's own listener, on the document, which moves the camera by letters and arrows.
+  document.documentElement.addEventListener("keydown", (event) => {
     const target = event.target instanceof Element ? event.target : document.body;
     if (event.defaultPrevented || target.closest(TYPED) || target.closest("[role=dialog], dialog")) return;
     // These two keys press what has the focus.
@@ -77,6 +78,7 @@
     const name = command(event);
     if (name === undefined) return;
     event.preventDefault();
+    event.stopPropagation();
     if (!event.repeat || event.ctrlKey || event.metaKey) window.schuler.command(name);
   });
 
@@ -104,6 +106,8 @@
     made.append(element("h2", title), ...content, close);
     made.addEventListener("close", () => made.remove());
     document.body.append(made);
+    // What the dark theme does to the page does not reach the browser's top layer.
+    made.style.filter = getComputedStyle(document.documentElement).filter;
     made.showModal();
     return made;
   }
@@ -146,9 +150,13 @@
 
   const ACTIONS = { tab: openTab, upload, keys: showKeys, link: showLink };
   let answered = 0;
+  let seen = "[]";
 
   setInterval(() => {
-    for (const [number, what, text] of JSON.parse(document.getElementById("sb-asked")?.dataset.asked ?? "[]")) {
+    const asked = document.getElementById("sb-asked")?.dataset.asked ?? "[]";
+    if (asked === seen) return;
+    seen = asked;
+    for (const [number, what, text] of JSON.parse(asked)) {
       if (number <= answered) continue;
       answered = number;
       ACTIONS[what]?.(text);

@@ -1,24 +1,36 @@
 """Time from a slider step to the browser's last paint of it: ``python -m tests.browser.last_paint [STEPS]``.
 
-24 h, three methods, 1920 x 1080, frequency and errors in view, in headless Chromium with software rendering.
-The clock starts at the key press in the page and stops two animation frames after the run's number and all
-its figures are there, so that what they changed has been painted.
+24 h, three methods, two pinned baselines, 1920 x 1080, frequency and errors in view, in headless Chromium with
+software rendering. The clock starts at the key press in the page and stops two animation frames after the run's
+number and all its figures are there, so that what they changed has been painted. Beside it, in the same page:
+the same figures built the plain way, as `plotly.graph_objects.Figure` of every output row, undecimated.
 """
 
 from __future__ import annotations
 
 import statistics
 import sys
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+from unittest import mock
 
 from playwright.sync_api import sync_playwright
 
+from app.figures.errors import QUANTITIES
+from app.panels.curves import OVERVIEW_KEYS
+from app.panels.results import ResultsPanel
 from app.serve import open_dashboard
+from navcore.mechanization.recorder import NAMES
 from tests.browser.driver import Bench
 from tests.chromium import FLAGS, find_chromium
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 SCENARIO = "liu-networks"
 SLIDER = "zeta"
 DURATION_H = 24
+PINS = 2
 
 _PAINTED = """after => new Promise(resolve => {
   let start = null;
@@ -36,41 +48,29 @@ _PAINTED = """after => new Promise(resolve => {
 })"""
 
 
-def times_ms(steps: int) -> list[float]:
-    """Time of each step, ms; the first three, which warm the page, are left out."""
-    server, dashboard = open_dashboard(port=0)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
-        page = browser.new_page(viewport={"width": 1920, "height": 1080})
-        bench = Bench(page, server.url, dashboard.sessions).open()
-        bench.reset(SCENARIO, selected=2)
-        bench.tab("Run")
-        if bench.value("duration (h), exact") != DURATION_H:
-            bench.type("duration (h), exact", str(DURATION_H))
-        bench.settle()
-        bench.tab("Method")
-        taken = []
-        for step in range(steps + 3):
-            bench.slider(SLIDER).focus()
-            waiting = f"window.paint = ({_PAINTED})({bench.run}); null"
-            page.evaluate(waiting)
-            page.keyboard.press("ArrowRight" if step % 2 else "ArrowLeft")
-            taken.append(page.evaluate("() => window.paint"))
-            bench.settle()
-        browser.close()
-    server.stop()
-    dashboard.close()
-    return taken[3:]
+class _Plain:
+    """Shows a run the plain way: one `go.Figure` for the frequency side, one for each error, all rows in it."""
 
+    def __init__(self) -> None:
+        self._handles: dict[str, Any] = {}
 
-def main(arguments: list[str]) -> int:
-    """Print median and 95th percentile."""
-    taken = sorted(times_ms(int(arguments[0]) if arguments else 30))
-    p95 = taken[max(0, round(0.95 * len(taken)) - 1)]
-    print(f"slider step to last paint, {len(taken)} steps, {DURATION_H} h, 3 methods, software rendering:")
-    print(f"median {statistics.median(taken):.0f} ms, 95th percentile {p95:.0f} ms")
-    return 0
+    def show(self, panel: ResultsPanel, pictures: Any) -> None:
+        import plotly.graph_objects as go
 
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+        run = pictures.run
+        figures = {"frequency": go.Figure(_as_lists(pictures.plotly["Frequency"]))}
+        for key in OVERVIEW_KEYS:
+            figure = go.Figure(layout={"meta": {"run": run_number(pictures)}, "title": QUANTITIES[key]})
+            column = _column(key)
+            for method in (*run.methods, *_pinned(panel)):
+                figure.add_trace(
+                    go.Scatter(x=method.t_s / 3600.0, y=method.rows[:, column], name=method.method.name)
+                )
+            figures[key] = figure
+        for key, figure in figures.items():
+            if key in self._handles:
+                self._handles[key].figure = figure
+            else:
+                tab = panel._tabs["Frequency" if key == "frequency" else "Errors"]
+                with tab:
+                    self._handles[key] = panel._gui.add_plotly(figure, aspect=0.4)

@@ -93,6 +93,24 @@ def test_the_focus_is_seen(light: Bench) -> None:
     assert len(seen) == 6
 
 
+def test_keys_on_a_control_do_not_move_the_camera(light: Bench) -> None:
+    """viser listens to arrows and letters on the whole document."""
+    reached = """() => {
+      window.reached = [];
+      document.addEventListener('keydown', event => window.reached.push(event.code), {once: false});
+    }"""
+    light.page.evaluate(reached)
+    slider = light.slider("zeta")
+    number = light.run
+    slider.press("ArrowRight")
+    light.wait_for_run(number)
+    light.page.get_by_role("tab", name="Method", exact=True).press("ArrowDown")
+    light.page.locator("body").press("d")
+    light.page.wait_for_selector("#sb-theme[data-theme=dark]", state="attached")
+    light.page.locator("body").press("ArrowUp")
+    assert light.page.evaluate("() => window.reached") == ["ArrowUp"]
+
+
 # ------------------------------------------------------------ light and dark
 
 

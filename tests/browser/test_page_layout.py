@@ -88,7 +88,7 @@ def test_every_tab_fits_its_panel(sized: Bench) -> None:
         if tab in ("Frequency", "Poles", "Step"):
             assert sized.plotly(), tab
             assert sized.page.evaluate(_TEXT_OUTSIDE) == [], tab
-    assert sized.page.locator(".sb-table").inner_text()
+    assert sized.page.locator(".sb-table").first.inner_text()
     assert "schema = 1" in sized.page.locator("pre").first.inner_text()
     assert sized.faults == []
 

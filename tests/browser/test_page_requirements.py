@@ -9,10 +9,9 @@ import pytest
 
 from app.requirements import Requirements, verdicts
 from tests.browser.driver import Bench
+from tests.browser.test_page_layout import SIZES, resize
 
 pytestmark = pytest.mark.browser
-
-SIZES = [(1920, 1080), (1366, 768), (1280, 720)]
 
 _CELLS = """() => [...document.querySelectorAll('.sb-verdicts [data-measure]')]
   .filter(e => e.offsetParent !== null)
@@ -143,13 +142,11 @@ def test_a_reload_keeps_the_requirements(asked: Bench) -> None:
 
 def test_boxes_and_table_fit_every_window(asked: Bench) -> None:
     try:
-        for width, height in SIZES[1:]:
-            asked.page.set_viewport_size({"width": width, "height": height})
-            asked.page.wait_for_timeout(900)  # the page is laid out anew
+        for size in reversed(SIZES):
+            resize(asked, size)
             asked.tab("Requirements")
             asked.page.wait_for_function(f"() => ({_CUT})().length > 0")
             for right, below in asked.page.evaluate(_CUT):
-                assert right <= 0 and below <= 0, (width, right, below)
+                assert right <= 0 and below <= 0, (size, right, below)
     finally:
-        asked.page.set_viewport_size({"width": 1920, "height": 1080})
-        asked.page.wait_for_timeout(900)
+        resize(asked, SIZES[0])

@@ -89,10 +89,10 @@ def _preset(bench: Bench, take: Film) -> None:
     _rest(bench.page)
     take.shoot(1500, "Schuler Bench: design and judge the damping of an inertial navigator")
     bench.box("scenario").click()
-    bench.page.get_by_role("option", name="zha-fast", exact=True).hover()
+    bench.page.get_by_role("option", name="zha-external", exact=True).hover()
     take.shoot(1200, "Choose a preset: the figures and tables of five papers")
     before = bench.run
-    bench.page.get_by_role("option", name="zha-fast", exact=True).click()
+    bench.page.get_by_role("option", name="zha-external", exact=True).click()
     bench.wait_for_run(before)
     bench.choose("method to edit", "fast (compass)")
     bench.tab("Errors")
@@ -101,11 +101,9 @@ def _preset(bench: Bench, take: Film) -> None:
 
 
 def _slider(bench: Bench, take: Film) -> None:
-    for step in range(6):
-        for _ in range(3):
-            bench.press("sigma (1/s)", "ArrowLeft")
-        _rest(bench.page, 250)
-        take.shoot(900 if step == 5 else 280, "Move a slider: loop, curves and track answer at once")
+    for step in range(5):
+        _slide(bench, "ArrowLeft")
+        take.shoot(1000 if step == 4 else 350, "Move a slider: loop, curves and track answer at once")
 
 
 def _pin(bench: Bench, take: Film) -> None:
@@ -113,10 +111,16 @@ def _pin(bench: Bench, take: Film) -> None:
     while not len(bench.session.pins):
         bench.page.wait_for_timeout(THROTTLE_MS)
     for step in range(4):
-        for _ in range(4):
-            bench.press("sigma (1/s)", "ArrowRight")
-        _rest(bench.page, 300)
-        take.shoot(1000 if step == 3 else 350, "Pin a run and compare: dashed is what you pinned")
+        _slide(bench, "ArrowRight")
+        take.shoot(1100 if step == 3 else 350, "Pin a run and compare: dashed is what you pinned")
+
+
+def _slide(bench: Bench, key: str) -> None:
+    """Move a slider a good way by keys, and let the last run of it be shown."""
+    for _ in range(9):
+        bench.slider("sigma (1/s)").press(key)
+    bench.settle()
+    _rest(bench.page, 300)
 
 
 def _poles(bench: Bench, take: Film) -> None:
@@ -131,7 +135,7 @@ def _verify(bench: Bench, take: Film) -> None:
     bench.page.get_by_role("button", name="Verify with full strapdown").click()
     bench.page.get_by_role("button", name="Stop verifying").wait_for()
     take.shoot(900, "Verify: the full nonlinear strapdown on the same noise")
-    bench.page.get_by_text("Verified.").first.wait_for(timeout=120_000)
+    bench.page.locator(".sb-note:visible", has_text="Verified.").wait_for(timeout=120_000)
     bench.close_notices()
     _rest(bench.page)
     take.shoot(1600)
@@ -158,7 +162,8 @@ def _lesson(bench: Bench, take: Film) -> None:
 
 
 def _rest(page: Page, wait_ms: int = 900) -> None:
-    """Let the 3D view and the plots come to rest before a picture is taken."""
+    """Let the 3D view and the plots come to rest before a picture is taken, and tooltips close."""
+    page.mouse.move(0.35 * WIDTH, 0.9 * HEIGHT)
     page.wait_for_timeout(wait_ms)
 
 

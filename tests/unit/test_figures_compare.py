@@ -60,6 +60,12 @@ def test_a_pin_is_drawn_over_the_plotly_figures(figure, pin: Pinned) -> None:
     for trace in others:
         style = trace.get("line") or trace["marker"]
         assert style["color"] == "#C2185B"
+    # how many settling times are named follows from the room that the legend leaves
+    counts = [
+        sum(not note["text"].endswith(" min") for note in made["layout"]["annotations"])
+        for made in (both, alone)
+    ]
+    assert counts[0] == counts[1]
     before = [t for t in alone["data"] if str(t.get("legendgroup", "")) in "012" and t.get("legendgroup")]
     assert [t.get("line", t.get("marker")) for t in mine] == [t.get("line", t.get("marker")) for t in before]
 

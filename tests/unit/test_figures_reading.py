@@ -245,7 +245,7 @@ def test_csv_of_a_plotly_figure_holds_more_than_its_float32() -> None:
     assert comments == ["# about"] and rows[0] == ["curve", "x axis", "y axis", "x", "y"]
     mine = [row for row in rows[1:] if row[0] == "classic2" and row[2].startswith("|H|")]
     trace = next(t for t in figure["data"] if t["name"] == "classic2" and t["yaxis"] == "y")
-    np.testing.assert_array_equal([float(row[4]) for row in mine], trace["y"].values)
+    np.testing.assert_array_equal([float(row[4]) for row in mine], trace["y"].full)
     assert any(float(row[4]) != float(np.float32(row[4])) for row in mine)
 
 

@@ -291,3 +291,11 @@ def test_a_change_of_the_display_is_told_once_and_runs_nothing(work: tuple[Sessi
     assert session.display.scale == "log"
     session.wait_idle(5.0)
     assert session.run_number == number
+
+
+def test_every_preset_says_what_it_shows_and_where_it_comes_from() -> None:
+    from navcore.scenario_file import load, presets
+
+    for name in presets():
+        opened = load(name)
+        assert opened.title and opened.source, name
