@@ -13,12 +13,13 @@ if TYPE_CHECKING:
     import viser
 
 MAP, FOLLOW, TOP, SIDE = CAMERAS = ("map", "follow", "top", "side")
-_TILT = {MAP: math.radians(66.0), TOP: math.radians(90.0), SIDE: math.radians(12.0)}
+_TILT = {MAP: math.radians(66.0), TOP: math.radians(90.0), SIDE: math.radians(22.0)}
 """Elevation of the camera above the map."""
 _ROOM = 1.1
 """Scene units around the map for its labels."""
-_SOUTH = {MAP: -2.0, TOP: -2.0, SIDE: -0.5}
-"""The middle of what is seen: the legend stands south of the map."""
+_MIDDLE = {MAP: -2.0, TOP: 0.2, SIDE: -1.5}
+"""North of the map's middle: the legend stands south of the map, the instruments above it."""
+_FARTHER = {MAP: 1.0, TOP: 1.1, SIDE: 1.0}
 _BEHIND, _ABOVE, _AHEAD = 4.2, 2.1, 0.8
 """Of the camera behind the ship, scene units."""
 
@@ -51,8 +52,8 @@ class Cameras:
         nearer = HALF_WIDTH * math.cos(tilt)
         across = (HALF_WIDTH + _ROOM) / (half * aspect) + nearer
         upright = (HALF_WIDTH * math.sin(tilt) + _ROOM) / half + nearer
-        centre = np.array([0.0, _SOUTH[name], 0.0])
-        away = max(across, upright) * np.array([0.0, -math.cos(tilt), math.sin(tilt)])
+        centre = np.array([0.0, _MIDDLE[name], 0.0])
+        away = _FARTHER[name] * max(across, upright) * np.array([0.0, -math.cos(tilt), math.sin(tilt)])
         self._point(centre + away, centre, (0.0, 1.0, 0.0) if name == TOP else (0.0, 0.0, 1.0))
 
     def follow(self, place: Place) -> None:

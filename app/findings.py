@@ -53,7 +53,11 @@ class Findings:
         session = self._session
         self._tuning.show(session.searches.tuner, session.scenario, session.selected)
         if session.run is not None:
-            self._results().show_why(why_html(session.searches.explainer, session.run))
+            results = self._results()
+            html = why_html(
+                session.searches.explainer, session.run, session.selected, folded=not results.layout.wide
+            )
+            results.show_why(html)
 
     def close(self) -> None:
         """The browser has gone."""

@@ -17,7 +17,7 @@ from navcore.parameters import extra_of
 from navcore.run import Run
 
 NO_LOCUS = ""
-_COUNT = 81
+_COUNT = 161
 _START, _END = "circle", "square"
 
 

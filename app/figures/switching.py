@@ -285,4 +285,4 @@ def _legend(run: Run) -> list[tuple[str, str]]:
         for name, value, color in shared_limits(mine):
             items.append((f"{name} = {number(value, 4)} {kind.unit}", f"border-top:2px dashed {color}"))
     items.append(("wanted state", f"border-top:2px dotted {style.INK}"))
-    return [*items, ("least ζ: damping ratio of the poles in force, 0: undamped", "display:none")]
+    return [*items, ("least ζ: of the poles in force", "display:none")]

@@ -24,7 +24,7 @@ _LEGEND_MARGIN_PX = 7
 _LEGEND_INDENT_PX = 90
 _TWO = '<div class="sb-two"></div>'
 _FIRST_ABOVE = "dve"
-_LEAST_PX = 72
+_LEAST_PX = 64
 
 
 class _Stack:

@@ -47,6 +47,8 @@ PICTURED = {*TABS, SWITCHING} - {MISPRINTS, COMPARE}
 """Tabs whose contents follow the run."""
 _METHOD_PX = {True: 215, False: 187}
 """Width of a method in the table of metrics: in the large print of a wide window, in the small one."""
+_ABOVE_PX = {STEP: 0, POLES: CHOOSER_PX + 10}
+"""Room for what stands above a plot; elsewhere a chooser."""
 _DELTA_PX = {True: 150, False: 125}
 _ROW_NAME_PX = 110
 
@@ -207,7 +209,7 @@ class ResultsPanel:
             ),
             POLES: lambda: poles(
                 both,
-                below_chooser,
+                self.layout.aspect(_ABOVE_PX[POLES]),
                 width_px=width,
                 selected=selected,
                 locus=display.locus,
@@ -273,7 +275,7 @@ class ResultsPanel:
         for tab, figure in pictures.plotly.items():
             plot = self._plots.get(tab)
             if plot is None:
-                aspect = self.layout.aspect(0 if tab == STEP else CHOOSER_PX)
+                aspect = self.layout.aspect(_ABOVE_PX.get(tab, CHOOSER_PX))
                 with self._tabs[tab]:
                     self._plots[tab] = self._gui.add_plotly(figure, aspect=aspect)  # pyright: ignore[reportArgumentType]
             else:

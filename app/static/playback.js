@@ -8,7 +8,7 @@
   const HEARD_MS = 250;
   const UNITS = { s: 1, min: 60, h: 3600, d: 86400 };
   let now = null;
-  let shown = -1;
+  let shown = "";
   let scrubbed = -1e9;
   let moved = -1e9;
   let heard = -1e9;
@@ -143,11 +143,9 @@
   setInterval(() => {
     const source = document.getElementById("sb-playback");
     if (source === null) return;
-    const text = source.dataset.now;
-    const told = JSON.parse(text);
-    if (told.count !== shown) {
-      now = told;
-      shown = told.count;
+    if (source.dataset.now !== shown) {
+      shown = source.dataset.now;
+      now = JSON.parse(shown);
       if (stage === null) build();
       update(source);
       tellShown();

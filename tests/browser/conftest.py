@@ -33,7 +33,7 @@ def bench(browser: Browser, dashboard: tuple[DashboardServer, Dashboard]) -> Ite
     """The page that most tests share; in its window frequency and errors are both in view."""
     context = browser.new_context(viewport={"width": 1920, "height": 1080}, accept_downloads=True)
     page = context.new_page()
-    page.set_default_timeout(30_000)
+    page.set_default_timeout(60_000)
     yield Bench(page, dashboard[0].url, dashboard[1].sessions).open()
     context.close()
 

@@ -107,7 +107,8 @@ def test_keys_on_a_control_do_not_move_the_camera(light: Bench) -> None:
     light.page.get_by_role("tab", name="Method", exact=True).press("ArrowDown")
     light.page.locator("body").press("d")
     light.page.wait_for_selector("#sb-theme[data-theme=dark]", state="attached")
-    light.page.locator("body").press("ArrowUp")
+    light.page.evaluate("() => document.activeElement.blur()")
+    light.page.keyboard.press("ArrowUp")
     assert light.page.evaluate("() => window.reached") == ["ArrowUp"]
 
 

@@ -87,7 +87,7 @@ def film(bench: Bench, take: Film) -> None:
 def _preset(bench: Bench, take: Film) -> None:
     bench.tab("Method", "Errors")
     _rest(bench.page)
-    take.shoot(1500, "Schuler Bench: design and judge the damping of an inertial navigator")
+    take.shoot(2000, "Schuler Bench: design and judge the damping of an inertial navigator")
     bench.box("scenario").click()
     bench.page.get_by_role("option", name="zha-external", exact=True).hover()
     take.shoot(1200, "Choose a preset: the figures and tables of five papers")
@@ -132,17 +132,21 @@ def _poles(bench: Bench, take: Film) -> None:
 
 def _verify(bench: Bench, take: Film) -> None:
     bench.tab("Errors")
-    bench.page.get_by_role("button", name="Verify with full strapdown").click()
-    bench.page.get_by_role("button", name="Stop verifying").wait_for()
-    take.shoot(900, "Verify: the full nonlinear strapdown on the same noise")
+    button = bench.page.get_by_role("button", name="Verify with full strapdown")
+    button.focus()
+    _rest(bench.page)
+    take.shoot(1100, "Verify: the full nonlinear strapdown on the same noise, dashed")
+    button.click()
     bench.page.locator(".sb-note:visible", has_text="Verified.").wait_for(timeout=120_000)
     bench.close_notices()
-    _rest(bench.page)
-    take.shoot(1600)
+    _rest(bench.page, 2000)
+    take.shoot(2000)
 
 
 def _lesson(bench: Bench, take: Film) -> None:
     page = bench.page
+    for pin in bench.session.pins.all:
+        bench.session.pins.remove(pin.id)
     bench.tab("Learn")
     page.locator("[data-command='lesson open 0']").click()
     page.locator(".sb-lesson h3").wait_for()

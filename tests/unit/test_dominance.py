@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.panels.why import cause_text
+from app.panels.why import cause_text, why_html
+from app.why import Explainer
 from navcore.averaging.lines import line_phases
 from navcore.dominance import HEADING, POSITION, TILT, swing, why
 from navcore.mechanization.recorder import PHI_E, PHI_N
@@ -130,3 +131,23 @@ def test_cancelled_it_is_not_complete() -> None:
     fractions: list[float] = []
     told = why(run, fractions.append, lambda: len(fractions) >= 1)
     assert not told.complete and fractions == [0.5]
+
+
+def test_the_line_is_marked_while_it_is_of_another_run_and_folds_where_there_is_no_room() -> None:
+    run, later = (
+        run_of(imu={"gyro_bias_dph": [0.0, 0.01, 0.0]}),
+        run_of(imu={"gyro_bias_dph": [0.0, 0.02, 0.0]}),
+    )
+    explainer = Explainer(lambda: None)
+    assert 'data-fits="0"' in why_html(explainer, run)
+    explainer.result, explainer._of = why(run), run
+    html = why_html(explainer, run)
+    assert 'data-fits="1"' in html and "sb-old" not in html and "from gyro bias" in html
+    folded = why_html(explainer, run, folded=True)
+    assert folded.startswith("<details") and "free: position error all from gyro bias" in folded
+    old = why_html(explainer, later)
+    assert 'data-fits="0"' in old and 'class="sb-old"' in old and "of an earlier run" in old
+    explainer.fraction = 0.25
+    assert "25 %" in why_html(explainer, later)
+    explainer.failed, explainer.result = True, None
+    assert "could not be found" in why_html(explainer, later)
