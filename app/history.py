@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 from navcore.scenario import Scenario
@@ -200,7 +199,6 @@ def _named(field: str, scenario: Scenario) -> str:
     return f"{inner.removeprefix('network.')} of {_short(scenario.method[int(index)].name)}"
 
 
-@lru_cache(maxsize=8)  # a change is compared with the state before it, and with the opened one
 def _fields(scenario: Scenario) -> dict[str, Any]:
     return _flat(scenario.canonical())
 

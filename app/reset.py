@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from app import edits
@@ -20,7 +19,12 @@ RESET_FIELD = "reset-field"
 _SAME = 1e-9
 
 
-def opened_value(opened: Scenario, scenario: Scenario, spec: FieldSpec) -> Any:
+def opened_value(
+    opened: Scenario,
+    scenario: Scenario,
+    spec: FieldSpec,
+    networks: dict[int, Mapping[str, Any]] | None = None,
+) -> Any:
     """Value to which a field goes back.
 
     Parameters
@@ -29,6 +33,8 @@ def opened_value(opened: Scenario, scenario: Scenario, spec: FieldSpec) -> Any:
         As it was opened and as it is now.
     spec : FieldSpec
         The field.
+    networks : dict, optional
+        Keeps the opened networks' values from one field to the next.
 
     Returns
     -------
@@ -40,13 +46,11 @@ def opened_value(opened: Scenario, scenario: Scenario, spec: FieldSpec) -> Any:
     if not _alike(opened, scenario, path[:-1] if path[-1] not in ("id", "kind") else path[:-2]):
         return spec.default
     if len(path) == 4 and path[2] == "network" and path[-1] != "id":
-        return _network_values(opened, int(path[1])).get(str(path[3]), spec.default)
+        known, index = {} if networks is None else networks, int(path[1])
+        if index not in known:
+            known[index] = edits.network_values(opened, index)
+        return known[index].get(str(path[3]), spec.default)
     return edits.value_at(opened, path)
-
-
-@lru_cache(maxsize=8)
-def _network_values(opened: Scenario, index: int) -> Mapping[str, Any]:
-    return edits.network_values(opened, index)
 
 
 def _alike(opened: Any, scenario: Any, path: Path) -> bool:
@@ -94,8 +98,9 @@ class Resets:
     def show(self, opened: Scenario, scenario: Scenario, controls: Iterable[Control]) -> None:
         """Offer a command for each control that shows another value than its field was opened with."""
         before, now = self._changed, dict[str, tuple["Control", Any]]()
+        networks: dict[int, Mapping[str, Any]] = {}
         for control in controls:
-            value = opened_value(opened, scenario, control.spec)
+            value = opened_value(opened, scenario, control.spec, networks)
             if value is not None and differs(_given(control), value):
                 now[name_of(control.spec.path)] = (control, value)
         self._changed = now
