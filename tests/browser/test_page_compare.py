@@ -27,7 +27,6 @@ _BANNER = "() => getComputedStyle(document.body, '::after').content"
 def pinned(bench: Bench) -> Iterator[Bench]:
     """The shared page with one pin of zeta 0.5 and the present run with another zeta."""
     bench.reset("liu-networks", selected=2)
-    bench.faults.clear()
     bench.tab("Frequency", "Errors", "Method")
     session = bench.session
     bench.page.keyboard.press("Escape")

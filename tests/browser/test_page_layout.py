@@ -45,11 +45,11 @@ def panels(width: int) -> int:
 
 
 @pytest.fixture(scope="module")
-def resized(bench: Bench) -> Iterator[Bench]:
+def resized(opened: Bench) -> Iterator[Bench]:
     """The shared page; its window has its old size afterwards."""
-    bench.reset("sikuliaq-like", selected=2)
-    yield bench
-    resize(bench, SIZES[0])
+    opened.reset("sikuliaq-like", selected=2)
+    yield opened
+    resize(opened, SIZES[0])
 
 
 @pytest.fixture(params=SIZES, ids=lambda size: f"{size[0]}x{size[1]}")

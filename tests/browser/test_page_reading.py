@@ -26,7 +26,6 @@ _DEFAULT = {
 @pytest.fixture
 def reading(bench: Bench) -> Iterator[Bench]:
     bench.reset("liu-networks", selected=2)
-    bench.faults.clear()
     bench.tab("Frequency", "Errors", "View")
     yield bench
     bench.session.show(None, **_DEFAULT)

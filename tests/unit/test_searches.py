@@ -71,7 +71,8 @@ def test_a_change_ends_the_search_at_once_and_the_old_result_stays(finder: Finde
     assert explainer.wait_idle(5.0)
     old = explainer.result
     finder.quick = False
-    finder.ended.clear(), finder.begun.clear()
+    finder.ended.clear()
+    finder.begun.clear()
     explainer.follow(second)
     assert finder.begun.wait(5.0)
     while (0.5, old) not in told:
