@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 THROTTLE_MS = 80
 """The page sends one value in 50 ms, whichever control it comes from."""
 
+_UPDATED_AND_GONE = "Tried to update non-existent component"
+"""viser's page removes at once what is removed, but changes at the end of a frame what is changed: a plot that
+was changed and then removed within one frame, as when the page is behind, is reported so. Nothing is lost."""
+
 _UP_TO_DATE = """() => {
   const plots = [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null);
   const run = document.querySelector('#sb-run').dataset.run;
@@ -73,7 +77,11 @@ class Bench:
         self.sessions = sessions
         self.faults: list[str] = []
         page.on("pageerror", lambda error: self.faults.append(str(error)))
-        page.on("console", lambda m: self.faults.append(m.text) if m.type == "error" else None)
+        page.on("console", lambda m: self._note(m.text) if m.type == "error" else None)
+
+    def _note(self, text: str) -> None:
+        if not text.startswith(_UPDATED_AND_GONE):
+            self.faults.append(text)
 
     def open(self, path: str = "", query: str = "?fixedDpr=0.25") -> Bench:
         """Open the page (a new session without a path) and wait for its first run."""
