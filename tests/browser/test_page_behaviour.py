@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -181,7 +182,16 @@ def test_numbers_are_those_of_the_command_line(fresh: Bench, tmp_path: Path, rep
     fresh.tab("Errors")
 
 
-def test_a_long_run_marks_the_old_picture_and_is_stopped(fresh: Bench, session: Session) -> None:
+def test_a_long_run_marks_the_old_picture_and_is_stopped(
+    fresh: Bench, session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real = session._simulate
+
+    def slowly(scenario: Any, progress: Any, cancelled: Any) -> Any:
+        # A fast machine would be done before the button is pressed.
+        return real(scenario, progress, lambda: time.sleep(0.1) or cancelled())
+
+    monkeypatch.setattr(session, "_simulate", slowly)
     fresh.tab("Run")
     fresh.type("output step (s)", "3600")
     number, digest = fresh.run, fresh.digest
@@ -195,6 +205,7 @@ def test_a_long_run_marks_the_old_picture_and_is_stopped(fresh: Bench, session: 
     fresh.page.get_by_role("button", name="Run again").wait_for()
     assert "Stopped" in fresh.status
     assert (fresh.run, fresh.digest) == (number, digest)
+    monkeypatch.undo()
     fresh.box("duration (h), exact").fill("4")
     fresh.wait_for_run(number)
     fresh.page.wait_for_function("() => document.querySelector('#sb-status').textContent.startsWith('Run')")
