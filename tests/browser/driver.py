@@ -18,8 +18,9 @@ THROTTLE_MS = 80
 """The page sends one value in 50 ms, whichever control it comes from."""
 
 _UPDATED_AND_GONE = "Tried to update non-existent component"
-"""viser's page removes at once what is removed, but changes what is changed at the end of a frame: a plot that
-was changed and then removed within one frame, when the page is behind, is reported so. Nothing is lost."""
+"""viser's page removes at once what is removed, but changes what is changed at the end of a frame: a plot
+that was changed and then removed within one frame, when the page is behind, is reported so. Nothing is
+lost."""
 
 _UP_TO_DATE = """() => {
   const plots = [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null);
