@@ -27,6 +27,11 @@ class Axis:
     log: bool = False
 
 
+TIME = Axis("time", "s")
+TILT = Axis("tilt / initial tilt")
+"""The axes that most comparisons share."""
+
+
 @dataclass(frozen=True, eq=False)
 class Curve:
     """One curve.

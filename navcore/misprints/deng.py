@@ -7,25 +7,23 @@ import math
 import numpy as np
 
 from navcore.earth import EARTH_RATE, SEMI_MAJOR_AXIS
-from navcore.loop import analyse, initial_tilt_response
 from navcore.mechanization.recorder import PHI_N, PHI_U
 from navcore.misprints.base import (
     OMEGA_S,
+    TIME,
     Axis,
     Comparison,
     Curve,
     Misprint,
     Number,
     as_network,
-    growth_time,
     run_scenario,
 )
+from navcore.misprints.two_loops import TwoLoops
 from navcore.network.compass import CompassNetwork, gains_from_sigma_xi
 from navcore.units import ARCSEC, DEG, DEG_PER_HOUR, HOUR, MICRO_G, MINUTE
 
 _SIGMA, _XI = 0.0088, 0.7
-_TIME = Axis("time", "s")
-_TILT = Axis("tilt / initial tilt")
 _COMPASS = CompassNetwork(sigma=_SIGMA, xi=_XI)
 
 
@@ -56,48 +54,29 @@ def _periods() -> Comparison:
 
 
 def _extra_s() -> Comparison:
-    t = np.arange(0.0, 901.0, 2.0)
     right = _COMPASS.transfer(OMEGA_S)
     # the s in the denominator is the velocity integrator, counted once more
-    printed = as_network([*right.num_p / OMEGA_S], [*right.den_p, 0.0])
-    loops = analyse(printed), analyse(right)
-    growth = growth_time(loops[0].poles)
-    assert growth is not None and loops[1].settling_s is not None
-    return Comparison(
-        x_axis=_TIME,
-        y_axis=_TILT,
-        x=t,
-        curves=(
-            Curve("with the extra s", "printed", initial_tilt_response(printed, t)),
-            Curve("((1+K2)s+K3)/(s+K1)", "corrected", initial_tilt_response(right, t)),
-        ),
-        numbers=(
-            Number("e-folding time", "s", growth, growth_time(loops[1].poles)),
-            Number("settling time (2 %)", "s", loops[0].settling_s, loops[1].settling_s),
-        ),
-        words=f"Taken as the network, the printed H makes the loop unstable: e-fold in {growth:.0f} s. "
-        f"Without the extra s it settles in {loops[1].settling_s / MINUTE:.1f} min.",
+    loops = TwoLoops(as_network([*right.num_p / OMEGA_S], [*right.den_p, 0.0]), right)
+    assert loops.corrected.settling_s is not None
+    return loops.compare(
+        np.arange(0.0, 901.0, 2.0),
+        ("with the extra s", "((1+K2)s+K3)/(s+K1)"),
+        (loops.growth, loops.settling),
+        f"Taken as the network, the printed H makes the loop unstable: e-fold in {loops.growth_s:.0f} s. "
+        f"Without the extra s it settles in {loops.corrected.settling_s / MINUTE:.1f} min.",
     )
 
 
 def _radius() -> Comparison:
-    t = np.arange(0.0, 10.01, 0.05)
     k1, k2, k3 = gains_from_sigma_xi(_SIGMA, _XI, OMEGA_S)
     printed = CompassNetwork(k1=k1, k2=k2, k3=k3 * SEMI_MAJOR_AXIS).transfer(OMEGA_S)
-    right = _COMPASS.transfer(OMEGA_S)
-    growth = growth_time(analyse(printed).poles)
-    assert growth is not None
-    return Comparison(
-        x_axis=_TIME,
-        y_axis=_TILT,
-        x=t,
-        curves=(
-            Curve("dp = K3 dv/s", "printed", initial_tilt_response(printed, t)),
-            Curve("dp = K3 dv/(R s)", "corrected", initial_tilt_response(right, t)),
-        ),
-        numbers=(Number("e-folding time", "s", growth, growth_time(analyse(right).poles)),),
-        words=f"A velocity added to an angular rate: the integral gain is {SEMI_MAJOR_AXIS:.1e} times too "
-        f"large and the loop grows e-fold every {growth:.2f} s.",
+    loops = TwoLoops(printed, _COMPASS.transfer(OMEGA_S))
+    return loops.compare(
+        np.arange(0.0, 10.01, 0.05),
+        ("dp = K3 dv/s", "dp = K3 dv/(R s)"),
+        (loops.growth,),
+        f"A velocity added to an angular rate: the integral gain is {SEMI_MAJOR_AXIS:.1e} times too "
+        f"large and the loop grows e-fold every {loops.growth_s:.2f} s.",
     )
 
 
@@ -128,7 +107,7 @@ def _transport_rate() -> Comparison:
     )
     peaks = float(np.nanmax(np.abs(printed))), float(np.nanmax(np.abs(corrected)))
     return Comparison(
-        x_axis=_TIME,
+        x_axis=TIME,
         y_axis=Axis("tilt phi_N", "rad"),
         x=t,
         curves=(
@@ -169,7 +148,7 @@ def _coriolis() -> Comparison:
     _, corrected = heading({})
     ends = float(printed[-1]), float(corrected[-1])
     return Comparison(
-        x_axis=_TIME,
+        x_axis=TIME,
         y_axis=Axis("heading error phi_U", "rad"),
         x=t,
         curves=(

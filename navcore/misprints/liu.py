@@ -4,25 +4,24 @@ from __future__ import annotations
 
 import numpy as np
 
-from navcore.loop import RADIUS, analyse, frequency_response, initial_tilt_response
+from navcore.loop import RADIUS, frequency_response
 from navcore.mechanization.recorder import DV_E
 from navcore.misprints.base import (
     OMEGA_S,
+    TIME,
     Axis,
     Comparison,
     Curve,
     Misprint,
     Number,
     as_network,
-    growth_time,
     run_scenario,
 )
 from navcore.misprints.direct_form import direct_form_error, direct_form_growth, state_space_error
+from navcore.misprints.two_loops import TwoLoops
 from navcore.network.complementary import ComplementaryNetwork
 from navcore.units import MINUTE
 
-_TIME = Axis("time", "s")
-_TILT = Axis("tilt / initial tilt")
 _ZETA = 0.7
 
 
@@ -32,25 +31,14 @@ def _power() -> Comparison:
     num, den = right.num_p.copy(), right.den_p.copy()
     num[1] *= OMEGA_S**2
     den[1] *= OMEGA_S**2
-    printed = as_network(num, den)
-    t = np.arange(0.0, 6 * 3600.0 + 1.0, 30.0)
-    loops = analyse(printed), analyse(right)
-    growth = growth_time(loops[0].poles)
-    assert growth is not None
-    return Comparison(
-        x_axis=_TIME,
-        y_axis=_TILT,
-        x=t,
-        curves=(
-            Curve("omega_s^3 s^3 (printed)", "printed", initial_tilt_response(printed, t)),
-            Curve("omega_s s^3", "corrected", initial_tilt_response(right, t)),
-        ),
-        numbers=(
-            Number("damping ratio", "", loops[0].damping_ratio, loops[1].damping_ratio),
-            Number("e-folding time", "s", growth, growth_time(loops[1].poles)),
-        ),
-        words=f"With the printed power the s^3 terms vanish and the loop grows e-fold in "
-        f"{growth / MINUTE:.0f} min; mended its least damping ratio is {loops[1].damping_ratio:.2f}.",
+    loops = TwoLoops(as_network(num, den), right)
+    return loops.compare(
+        np.arange(0.0, 6 * 3600.0 + 1.0, 30.0),
+        ("omega_s^3 s^3 (printed)", "omega_s s^3"),
+        (loops.damping, loops.growth),
+        f"With the printed power the s^3 terms vanish and the loop grows e-fold in "
+        f"{loops.growth_s / MINUTE:.0f} min; mended its least damping ratio is "
+        f"{loops.corrected.damping_ratio:.2f}.",
     )
 
 
@@ -104,7 +92,7 @@ def _terms() -> Comparison:
     printed, corrected = variation(difference, 20, 80, 21), variation(difference, 20, 80, 20)
     peaks = float(np.max(printed)), float(np.max(corrected))
     return Comparison(
-        x_axis=_TIME,
+        x_axis=TIME,
         y_axis=Axis("s of Liu 15", "m/s"),
         x=t,
         curves=(
@@ -176,7 +164,7 @@ def _figure_7() -> Comparison:
     _, kept = _after_ten_hours("keep", outage=outage)
     peaks = [float(np.max(np.abs(y))) for y in (quarter, half, switched, kept)]
     return Comparison(
-        x_axis=_TIME,
+        x_axis=TIME,
         y_axis=Axis("change of the east velocity error", "m/s"),
         x=t,
         curves=(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from navcore.control.policy.adaptive import HIGHEST, LOWEST, QUADRATIC, SUN_TABLE
-from navcore.loop import RADIUS, analyse, frequency_response, initial_tilt_response
+from navcore.loop import RADIUS, analyse, frequency_response
 from navcore.misprints.base import (
     OMEGA_S,
     Axis,
@@ -14,16 +14,14 @@ from navcore.misprints.base import (
     Misprint,
     Number,
     as_network,
-    growth_time,
 )
+from navcore.misprints.two_loops import TwoLoops
 from navcore.network.base import LinearNetwork
 from navcore.network.classic import Classic3Network
 from navcore.network.pole2 import Pole2Network
 from navcore.network.unity2 import Unity2Network
 from navcore.units import HOUR, KNOT, MINUTE
 
-_TIME = Axis("time", "s")
-_TILT = Axis("tilt / initial tilt")
 _DIFFERENCE = Axis("|V_c - V_r|", "m/s")
 _PRINTED = (QUADRATIC[0], -QUADRATIC[1], QUADRATIC[2])
 
@@ -89,51 +87,33 @@ def _mirrored(network: LinearNetwork) -> LinearNetwork:
 def _negative() -> Comparison:
     difference = 1.8
     asked, table = float(np.polyval(QUADRATIC, difference)), float(_table(difference))
-    network = _mirrored(Pole2Network(xi=-asked).transfer(OMEGA_S))
-    right = Unity2Network(zeta=table).transfer(OMEGA_S)
-    t = np.arange(0.0, 1801.0, 5.0)
-    growth = growth_time(analyse(network).poles)
-    assert growth is not None
-    low, high = (value / KNOT for value in negative_range())
-    return Comparison(
-        x_axis=_TIME,
-        y_axis=_TILT,
-        x=t,
-        curves=(
-            Curve(f"quadratic at 1.8 kn: xi = {asked:.3f}", "printed", initial_tilt_response(network, t)),
-            Curve(f"table at 1.8 kn: xi = {table:.2f}", "corrected", initial_tilt_response(right, t)),
-        ),
-        numbers=(
+    loops = TwoLoops(
+        _mirrored(Pole2Network(xi=-asked).transfer(OMEGA_S)), Unity2Network(zeta=table).transfer(OMEGA_S)
+    )
+    low, high = negative_range()
+    return loops.compare(
+        np.arange(0.0, 1801.0, 5.0),
+        (f"quadratic at 1.8 kn: xi = {asked:.3f}", f"table at 1.8 kn: xi = {table:.2f}"),
+        (
             Number("xi at 1.8 kn", "", asked, table),
-            Number("e-folding time", "s", growth, growth_time(analyse(right).poles)),
-            Number("negative from", "m/s", low * KNOT, None),
-            Number("negative to", "m/s", high * KNOT, None),
+            loops.growth,
+            Number("negative from", "m/s", low, None),
+            Number("negative to", "m/s", high, None),
         ),
-        words=f"Even with its sign mended the quadratic is negative between {low:.2f} and {high:.2f} kn: "
-        f"negative damping, e-fold in {growth / MINUTE:.1f} min at 1.8 kn.",
+        f"Even with its sign mended the quadratic is negative between {low / KNOT:.2f} and {high / KNOT:.2f} "
+        f"kn: negative damping, e-fold in {loops.growth_s / MINUTE:.1f} min at 1.8 kn.",
     )
 
 
 def _sigma() -> Comparison:
     right = Pole2Network(xi=0.5).transfer(OMEGA_S)
-    printed = _mirrored(right)
-    t = np.arange(0.0, 901.0, 2.0)
-    growth = growth_time(analyse(printed).poles)
-    assert growth is not None
-    return Comparison(
-        x_axis=_TIME,
-        y_axis=_TILT,
-        x=t,
-        curves=(
-            Curve("sigma = + xi omega_n (printed)", "printed", initial_tilt_response(printed, t)),
-            Curve("sigma = - xi omega_n", "corrected", initial_tilt_response(right, t)),
-        ),
-        numbers=(
-            Number("damping ratio", "", analyse(printed).damping_ratio, analyse(right).damping_ratio),
-            Number("e-folding time", "s", growth, growth_time(analyse(right).poles)),
-        ),
-        words=f"With the positive sigma of Sun 16 all four poles of Sun 14 and 15 lie on the right: e-fold "
-        f"in {growth:.0f} s.",
+    loops = TwoLoops(_mirrored(right), right)
+    return loops.compare(
+        np.arange(0.0, 901.0, 2.0),
+        ("sigma = + xi omega_n (printed)", "sigma = - xi omega_n"),
+        (loops.damping, loops.growth),
+        f"With the positive sigma of Sun 16 all four poles of Sun 14 and 15 lie on the right: e-fold "
+        f"in {loops.growth_s:.0f} s.",
     )
 
 
@@ -175,28 +155,17 @@ def _residue() -> Comparison:
 
 def _small_xi() -> Comparison:
     xi = 0.08
-    printed = Pole2Network(xi=xi, variant="as_printed").transfer(OMEGA_S)
-    right = Pole2Network(xi=xi).transfer(OMEGA_S)
-    t = np.arange(0.0, 86401.0, 120.0)
-    loops = analyse(printed), analyse(right)
-    growth = growth_time(loops[0].poles)
+    loops = TwoLoops(
+        Pole2Network(xi=xi, variant="as_printed").transfer(OMEGA_S), Pole2Network(xi=xi).transfer(OMEGA_S)
+    )
     entries = sum(real_damping(value)[0] < 0.0 for _, value in SUN_TABLE)
-    assert growth is not None
-    return Comparison(
-        x_axis=_TIME,
-        y_axis=_TILT,
-        x=t,
-        curves=(
-            Curve("xi = 0.08 as printed", "printed", initial_tilt_response(printed, t)),
-            Curve("xi = 0.08 exact", "corrected", initial_tilt_response(right, t)),
-        ),
-        numbers=(
-            Number("damping ratio", "", loops[0].damping_ratio, loops[1].damping_ratio),
-            Number("e-folding time", "s", growth, growth_time(loops[1].poles)),
-        ),
-        words=f"At xi = 0.08, an entry of Sun's own table, the loop as printed grows e-fold in "
-        f"{growth / HOUR:.0f} h (damping {loops[0].damping_ratio:.3f}); so it does for {entries} of the "
-        f"{len(SUN_TABLE)} entries.",
+    return loops.compare(
+        np.arange(0.0, 86401.0, 120.0),
+        ("xi = 0.08 as printed", "xi = 0.08 exact"),
+        (loops.damping, loops.growth),
+        f"At xi = 0.08, an entry of Sun's own table, the loop as printed grows e-fold in "
+        f"{loops.growth_s / HOUR:.0f} h (damping {loops.printed.damping_ratio:.3f}); so it does for "
+        f"{entries} of the {len(SUN_TABLE)} entries.",
     )
 
 

@@ -7,12 +7,10 @@ import math
 import numpy as np
 
 from navcore.loop import analyse, initial_tilt_response
-from navcore.misprints.base import OMEGA_S, Axis, Comparison, Curve, Misprint, Number
+from navcore.misprints.base import OMEGA_S, TILT, TIME, Comparison, Curve, Misprint, Number
 from navcore.network.compass import CompassNetwork, gains_from_sigma_xi
 from navcore.units import MINUTE
 
-_TIME = Axis("time", "s")
-_TILT = Axis("tilt / initial tilt")
 _SIGMA, _XI = 0.0088, 0.7
 PRINTED_K2 = 156.063
 """Zha 4.1, for sigma = 0.0088, xi = 0.7."""
@@ -37,8 +35,8 @@ def _gain() -> Comparison:
     slowest = {form: 5.25 / -float(np.max(found.poles.real)) for form, found in loop.items()}
     settled = {form: _last_above(t, values, _PERCENT_OF_INITIAL) for form, values in y.items()}
     return Comparison(
-        x_axis=_TIME,
-        y_axis=_TILT,
+        x_axis=TIME,
+        y_axis=TILT,
         x=t,
         curves=(
             Curve(f"K2 = {PRINTED_K2:g} (printed)", "printed", y["printed"]),
@@ -68,8 +66,8 @@ def _design() -> Comparison:
     }
     left = {form: math.exp(-sigma * duration) for form, sigma in sigmas.items()}
     return Comparison(
-        x_axis=_TIME,
-        y_axis=_TILT,
+        x_axis=TIME,
+        y_axis=TILT,
         x=t,
         curves=(
             Curve("sigma t = 525 (printed)", "printed", y["printed"]),

@@ -12,6 +12,7 @@ from navcore.mechanization.error_model import system_matrix
 from navcore.mechanization.recorder import DV_E
 from navcore.misprints.base import (
     OMEGA_S,
+    TIME,
     Axis,
     Comparison,
     Curve,
@@ -23,7 +24,6 @@ from navcore.misprints.base import (
 from navcore.units import ARCMIN, ARCSEC, DEG, DEG_PER_HOUR, MINUTE
 
 _LAT = 45.7796 * DEG
-_TIME = Axis("time", "s")
 # Zhao 5.1.1: dV_E, dV_N, dL, dlambda, phi_E, phi_N, phi_U
 _INITIAL = np.array([0.1, 0.1, 2.0 * ARCSEC, 2.0 * ARCSEC, 0.6 * ARCMIN, 0.6 * ARCMIN, 7.0 * ARCMIN])
 _DRIFT = 0.01 * DEG_PER_HOUR
@@ -57,7 +57,7 @@ def _signs() -> Comparison:
     growth = growth_time(np.linalg.eigvals(printed_matrix()))
     assert growth is not None
     return Comparison(
-        x_axis=_TIME,
+        x_axis=TIME,
         y_axis=Axis("east velocity error", "m/s"),
         x=step * np.arange(count),
         curves=(
@@ -95,7 +95,7 @@ def _tilt_coefficient() -> Comparison:
     model = _states(_matrix(), start, np.zeros(7), step, count)[:, 4]
     printed, corrected, tilt = _tilt(t, True), _tilt(t, False), float(_INITIAL[4])
     return Comparison(
-        x_axis=_TIME,
+        x_axis=TIME,
         y_axis=Axis("tilt phi_E", "rad"),
         x=t,
         curves=(
@@ -133,7 +133,7 @@ def _latitude_coefficients() -> Comparison:
     printed, corrected = _latitude(t, True), _latitude(t, False)
     metres = SEMI_MAJOR_AXIS
     return Comparison(
-        x_axis=_TIME,
+        x_axis=TIME,
         y_axis=Axis("latitude error", "rad"),
         x=t,
         curves=(
@@ -172,7 +172,7 @@ def _unit() -> Comparison:
     _, corrected = _walk(50.0)
     rms = [float(np.sqrt(np.mean(y * y))) for y in (printed, corrected)]
     return Comparison(
-        x_axis=_TIME,
+        x_axis=TIME,
         y_axis=Axis("east velocity error", "m/s"),
         x=t,
         curves=(
