@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     import viser
 
     from app.http.server import DashboardServer
-    from app.page import Page
-    from app.sessions import Sessions
+    from app.page.page import Page
+    from app.session.sessions import Sessions
 
 _SCRIPTS = ("marks", "page", "commands", "playback", "learn", "access", "pick", "cursor", "export")
 PAGE_SCRIPTS = [Path(__file__).parent / "static" / f"{name}.js" for name in _SCRIPTS]
@@ -22,7 +22,7 @@ _log = logging.getLogger("schuler.serve")
 
 
 class Dashboard:
-    """Gives every browser that opens the page its `app.page.Page`.
+    """Gives every browser that opens the page its `app.page.page.Page`.
 
     Parameters
     ----------
@@ -38,8 +38,8 @@ class Dashboard:
     @cached_property
     def sessions(self) -> Sessions:
         """All sessions; made with the first page."""
-        from app.sessions import Sessions
-        from app.store import open_store
+        from app.session.sessions import Sessions
+        from app.session.store import open_store
 
         return Sessions(store=None if self._state is None else open_store(self._state))
 
@@ -51,8 +51,8 @@ class Dashboard:
 
     def _warm_up(self) -> None:
         try:
-            import app.page  # noqa: F401
-            from app.sessions import first_scenario
+            import app.page.page  # noqa: F401
+            from app.session.sessions import first_scenario
             from navcore.simulation import simulate
 
             simulate(first_scenario()[0])
@@ -61,7 +61,7 @@ class Dashboard:
 
     def on_connect(self, client: viser.ClientHandle, session_id: str) -> None:
         """Build the page of a browser."""
-        from app.page import Page
+        from app.page.page import Page
 
         with self._lock:
             sessions = self.sessions
@@ -145,7 +145,7 @@ def serve(
     InputError
         The address cannot be served.
     """
-    from app.store import default_folder
+    from app.session.store import default_folder
 
     state = default_folder()
     server, dashboard = open_dashboard(host, port, token=token, allow_origins=allow_origins, state=state)

@@ -9,7 +9,6 @@ from html import escape
 
 import numpy as np
 
-from app.display import Display
 from app.figures import style
 from app.figures.compare import PIN_WIDTH, Pinned, pinned_methods
 from app.figures.envelope import Envelope
@@ -23,6 +22,7 @@ from app.figures.units import (
     time_unit,
 )
 from app.figures.uplot import LABEL_SIZE, Y_SIZE, Dash, UplotFigure
+from app.session.display import Display
 from navcore.mechanization.recorder import (
     D_LAT,
     D_LON,

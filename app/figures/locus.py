@@ -46,7 +46,7 @@ def locus_of(run: Run, index: int, field: str) -> Locus | None:
 
 def _giving(run: Run, index: int, field: str) -> NetworkParameters:
     """The network given by that parameter: sigma and xi become the gains when one of them is to move."""
-    from app.edits import network_values, with_value
+    from app.editing.edits import network_values, with_value
 
     path = ("method", index, "network", field)
     parameters = run.scenario.method[index].network
@@ -130,7 +130,7 @@ def locus_traces(run: Run, index: int, field: str, suffix: str) -> list[dict[str
 
 def locus_note(run: Run, index: int, field: str) -> str:
     """Say what moves along the branches, from which end to which, and where it is; empty without a locus."""
-    from app.edits import network_values
+    from app.editing.edits import network_values
 
     found = locus_of(run, index, field)
     if found is None:

@@ -9,7 +9,7 @@ from app.figures import style
 from app.figures.pole_grid import Allowed
 from app.figures.step import StepLimits
 from app.figures.units import number
-from app.requirements import Requirements, Verdict, fastest_rate, sign_of, verdicts
+from app.session.requirements import Requirements, Verdict, fastest_rate, sign_of, verdicts
 from navcore.parameters import extra_of
 from navcore.run import Run
 from navcore.units import ARCSEC, MINUTE

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from app.display import Display
 from app.figures import style
 from app.figures.errors import error_plots
 from app.figures.frequency import natural_frequencies
 from app.figures.plotly_data import PlotlyFigure, figure, packed
 from app.figures.units import HOURS, MINUTES, Unit, duration
+from app.session.display import Display
 from navcore.mechanization.recorder import NAMES
 from navcore.run import MethodRun, Run
 

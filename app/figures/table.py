@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from html import escape
 from typing import TYPE_CHECKING
 
-from app.display import Display
 from app.figures import style
 from app.figures.compare import Pinned, deltas
 from app.figures.units import (
@@ -22,6 +21,7 @@ from app.figures.units import (
     duration,
     number,
 )
+from app.session.display import Display
 from navcore.run import MethodRun, Run
 
 if TYPE_CHECKING:

@@ -9,13 +9,18 @@ import numpy as np
 
 from app.figures import style
 from app.figures.graticule import Graticule, LocalMap, SceneLabel, graticule, round_down, round_up, scale_bar
+from app.figures.polyline import dashes, needed, segments
 from app.figures.units import length_unit, number
 from navcore.mechanization.recorder import D_LAT, D_LON
 from navcore.motion.base import HEADING, LAT, LON, PITCH, ROLL
 from navcore.run import MethodRun, Run
 
 MAX_POINTS = 1000
-"""Points of a line: a 24 h track at this density is smooth on any screen."""
+"""Points of a track: at this density the ship moves smoothly along 24 h."""
+LINE_WIDTH = 0.05
+"""Scene units."""
+_UNSEEN = 0.2 * LINE_WIDTH
+"""A line may leave out points that would move it by less, scene units."""
 HALF_WIDTH = 5.0
 """Half width of the map in scene units."""
 SHIP_LENGTH = 1.4
@@ -44,12 +49,22 @@ class MethodTrack:
         Computed track, error exaggerated, scene units; shorter than the truth when the method ended early.
     error_m : ndarray, shape (k, 2)
         True size of the error at these points, east and north, m.
+    line : ndarray of int, shape (n,)
+        Indices of the points that drawing the line needs.
     """
 
     name: str
     color: tuple[int, int, int]
     points: np.ndarray
     error_m: np.ndarray
+    line: np.ndarray
+
+    def drawn(self, before: int | None = None) -> np.ndarray:
+        """Segments of the line, float32, shape (n, 2, 3): all, or as far as the point ``before``."""
+        if before is None:
+            return segments(self.points[self.line])
+        last = min(before, len(self.points) - 1)
+        return segments(self.points[[*self.line[self.line < last], last]])
 
     def error_text(self, index: int) -> str:
         """Name and error at a point, e.g. ``free 3.21 km``."""
@@ -148,14 +163,7 @@ class TrackScene:
 
     def truth_dashes(self) -> np.ndarray:
         """Truth as dashes, float32, shape (n, 2, 3): what is true is dashed, what is computed is solid."""
-        pairs = segments(self.truth)
-        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(pairs[:, 1] - pairs[:, 0], axis=1))])
-        return pairs[np.floor(along[:-1] / _DASH).astype(int) % 2 == 0]
-
-
-def segments(points: np.ndarray) -> np.ndarray:
-    """Polyline, shape (k, 3), as the pairs of points that viser's line segments take, shape (k - 1, 2, 3)."""
-    return np.stack([points[:-1], points[1:]], axis=1)
+        return dashes(self.truth[needed(self.truth, _UNSEEN)], _DASH)
 
 
 def track(run: Run, exaggeration: float | None = None) -> TrackScene:
@@ -191,9 +199,10 @@ def track(run: Run, exaggeration: float | None = None) -> TrackScene:
     )
     bar, bar_label = scale_bar(metres, HALF_WIDTH)
     north = SceneLabel("▲ N", (-HALF_WIDTH, HALF_WIDTH + 0.45, 0.0))
+    lines = [_scene(computed, middle, metres, _LIFT) for computed in computed_m]
     tracks = tuple(
-        MethodTrack(m.method.name, style.method_rgb(i), _scene(computed, middle, metres, _LIFT), error)
-        for i, (m, computed, error) in enumerate(zip(run.methods, computed_m, errors, strict=True))
+        MethodTrack(m.method.name, style.method_rgb(i), points, error, needed(points, _UNSEEN))
+        for i, (m, points, error) in enumerate(zip(run.methods, lines, errors, strict=True))
     )
     return TrackScene(
         t_s=t_s,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app import notices, theme
-from app.commands import Commands
-from app.display import Display
-from app.session import Session
+from app.page import notices, theme
+from app.page.commands import Commands
+from app.session.display import Display
+from app.session.session import Session
 
 if TYPE_CHECKING:
     import viser

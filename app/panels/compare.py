@@ -7,17 +7,17 @@ from collections.abc import Callable
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from app import notices
 from app.figures import style
 from app.figures.units import number
-from app.pins import COLORS, MOST_PINS, Pin
-from app.session import Session, first_editable
+from app.page import notices
+from app.session.pins import COLORS, MOST_PINS, Pin
+from app.session.session import Session, first_editable
 from navcore.errors import InputError
 
 if TYPE_CHECKING:
     import viser
 
-    from app.commands import Commands
+    from app.page.commands import Commands
 
 COMPARE = "Compare"
 PIN, FLIP = "Pin this run", "Flip to the baseline"

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from app import form, notices
-from app.form import FieldSpec
+from app.editing import form
+from app.editing.form import FieldSpec
+from app.page import notices
 
 if TYPE_CHECKING:
     import viser

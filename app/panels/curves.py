@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from app.background.verifier import Verified
 from app.figures import style
 from app.figures.errors import GROUPS, Overlay
 from app.figures.switching import legend_names, switching_legend
 from app.figures.uplot import UplotFigure, stack_heights
-from app.layout import CHOOSER_PX, Layout
-from app.verifier import Verified
+from app.page.layout import CHOOSER_PX, Layout
 from navcore.run import Run
 
 if TYPE_CHECKING:

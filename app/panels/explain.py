@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
-from app.commands import Commands
-from app.explain import explain_html, told_html
+from app.learn.explain import explain_html, told_html
+from app.page.commands import Commands
 from app.panels.control import Control
-from app.session import Session
+from app.session.session import Session
 
 if TYPE_CHECKING:
     import viser

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from app import notices
 from app.figures import style
 from app.figures.units import duration
+from app.page import notices
 from navcore.run import Run
 from navcore.scenario import Scenario
 from navcore.units import HOUR

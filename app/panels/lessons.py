@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
 
-from app import edits, form
-from app.form import FieldSpec, Path
-from app.lessons import Action, Lesson, Question, is_right, lessons, right_choice, to_html
+from app.editing import edits, form
+from app.editing.form import FieldSpec, Path
+from app.learn.lessons import Action, Lesson, Question, is_right, lessons, right_choice, to_html
 from app.panels.control import Control, Edit
 from app.panels.section import Section
-from app.session import Session
+from app.session.session import Session
 from navcore.run import Run
 from navcore.scenario import Scenario
 
@@ -256,7 +256,7 @@ def spec_at(scenario: Scenario, dotted: str) -> list[FieldSpec]:
 
 def right_answer(question: Question, run: Run) -> str:
     """An answer that counts as right, as it would be given."""
-    from app.lesson_names import named
+    from app.learn.names import named
 
     return (
         str(right_choice(question, run)) if question.choices else f"{named(question.answer, run).value:.4g}"

@@ -12,16 +12,16 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cameras import CAMERAS
 from app.figures.moment import moment, readout_html
 from app.figures.pendulum import caption_of, pendulum, pendulum_svg
-from app.playback import SPEEDS, Playback, PlayState
+from app.scene.cameras import CAMERAS
+from app.scene.playback import SPEEDS, Playback, PlayState
 from navcore.run import Run
 
 if TYPE_CHECKING:
     import viser
 
-    from app.commands import Commands
+    from app.page.commands import Commands
 
 _CSS = Path(__file__).parent.parent / "static" / "playback.css"
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, get_args
 
-from app import notices
-from app.display import Display
-from app.envelopes import SEEDS
-from app.session import Session
+from app.background.envelopes import SEEDS
+from app.page import notices
+from app.session.display import Display
+from app.session.session import Session
 
 if TYPE_CHECKING:
     import viser

@@ -5,11 +5,11 @@ from __future__ import annotations
 import threading
 from typing import TYPE_CHECKING
 
-from app import notices
-from app.display import Display
-from app.layout import Layout
+from app.page import notices
+from app.page.layout import Layout
 from app.panels.workbench import Tools
-from app.requirements import Requirements, label_of, read_limit
+from app.session.display import Display
+from app.session.requirements import Requirements, label_of, read_limit
 from navcore.errors import InputError
 from navcore.parameters import allowed_range
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from app import notices
-from app.display import Display
+from app.background.verifier import Verified
 from app.figures import style
 from app.figures.compare import restyled, together
 from app.figures.errors import QUANTITIES, error_plots, legend_html, legend_names
@@ -22,15 +21,16 @@ from app.figures.switching import switched_methods, switching_plots
 from app.figures.table import metrics_html, verdict
 from app.figures.uplot import UplotFigure
 from app.figures.warnings import notices_for, severity, warnings_for
-from app.layout import CHOOSER_PX, Layout
+from app.page import notices
+from app.page.layout import CHOOSER_PX, Layout
 from app.panels.compare import COMPARE, ComparePanel, Comparing
 from app.panels.curves import ErrorCurves, SwitchingView, curves_of
 from app.panels.laboratory import Laboratory
 from app.panels.requirements import REQUIREMENTS, RequirementsPanel
 from app.panels.workbench import FrequencyTools, PoleTools, Tools
-from app.requirements import error_limits
-from app.shown import Shown
-from app.verifier import Verified
+from app.session.display import Display
+from app.session.requirements import error_limits
+from app.session.shown import Shown
 from navcore.run import Run
 from navcore.scenario import Method
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
-from app.reset import RESET_FIELD
+from app.editing.reset import RESET_FIELD
 
 if TYPE_CHECKING:
     import viser
 
-    from app.history import History
+    from app.session.history import History
 
 UNDO, REDO, RESET_ALL, SHARE, PRESENT = "undo", "redo", "reset-all", "share", "present"
 """Names of the commands behind the buttons."""

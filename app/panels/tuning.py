@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
-from app import form, notices
+from app.background.tuner import Tuner
+from app.editing import form
+from app.editing.form import FieldSpec
 from app.figures import style
 from app.figures.tuned import table_html
-from app.form import FieldSpec
+from app.page import notices
 from app.panels.control import Control
 from app.panels.section import Section
-from app.tuner import Tuner
 from navcore.errors import InputError
 from navcore.faults import faults_from
 from navcore.scenario import Method, Scenario

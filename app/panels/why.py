@@ -11,7 +11,7 @@ from app.figures.units import duration
 from navcore.dominance import HEADING, POSITION, TILT
 
 if TYPE_CHECKING:
-    from app.why import Explainer
+    from app.background.why import Explainer
     from navcore.dominance import Cause, Why
     from navcore.run import Run
 

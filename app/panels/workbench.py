@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from app import notices
-from app.display import Display
+from app.editing.placing import pair_at, read_point, typed_pair, with_pair
 from app.figures.locus import NO_LOCUS, locus_fields
-from app.placing import pair_at, read_point, typed_pair, with_pair
-from app.session import Session
+from app.page import notices
+from app.session.display import Display
+from app.session.session import Session
 from navcore.errors import InputError
 from navcore.scenario import Method
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from app.http.server import DashboardServer
     from app.serve import Dashboard
-    from app.session import Session
+    from app.session.session import Session
 
 
 @pytest.fixture(scope="session")

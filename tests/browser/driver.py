@@ -11,8 +11,8 @@ from navcore.scenario_file import load
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
 
-    from app.session import Session
-    from app.sessions import Sessions
+    from app.session.session import Session
+    from app.session.sessions import Sessions
 
 THROTTLE_MS = 80
 """The page sends one value in 50 ms, whichever control it comes from."""

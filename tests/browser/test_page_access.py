@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app import theme
 from app.figures.style import INK, method_color
+from app.page import theme
 from app.panels.appearance import DARK
 from tests.browser.driver import THROTTLE_MS, Bench
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from app import edits
-from app import session as session_module
+from app.editing import edits
+from app.session import session as session_module
 from navcore.network.compass import gains_from_sigma_xi
 from navcore.scenario_file import load
 from tests.browser.driver import THROTTLE_MS, Bench
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from app.http.server import DashboardServer
     from app.serve import Dashboard
-    from app.session import Session
+    from app.session.session import Session
 
 pytestmark = pytest.mark.browser
 

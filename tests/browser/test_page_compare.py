@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from app import edits
-from app.pins import MOST_PINS
+from app.editing import edits
+from app.session.pins import MOST_PINS
 from tests.browser.driver import Bench
 from tests.browser.test_page_layout import _CUT, SIZES, resize
 
@@ -206,7 +206,7 @@ def test_two_hundred_slider_steps_in_twenty_seconds_end_in_agreement(pinned: Ben
     assert float(pinned.slider("zeta").get_attribute("aria-valuenow") or "nan") == pytest.approx(
         zeta, abs=0.006
     )
-    from app.page import _run_element
+    from app.page.page import _run_element
 
     assert f'data-digest="{pinned.digest}"' in _run_element(session.run, session.run_number)
     assert pinned.metrics["methods"][2]["errors"] == _metrics(session.run)

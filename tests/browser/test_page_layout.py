@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.layout import WIDE_FROM_PX, layout_for
+from app.page.layout import WIDE_FROM_PX, layout_for
 from app.panels.results import TABS
 from tests.browser.driver import Bench
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from app.lesson_names import named
-from app.lessons import Lesson, lessons, names_in
+from app.learn.lessons import Lesson, lessons, names_in
+from app.learn.names import named
 from app.panels.lessons import right_answer, spec_at
 from navcore.simulation import simulate
 from tests.browser.driver import THROTTLE_MS, Bench

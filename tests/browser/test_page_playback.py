@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from app.figures.track import track
-from app.playback import SPEEDS
+from app.scene.playback import SPEEDS
 from tests.browser.driver import Bench
 
 pytestmark = pytest.mark.browser

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from app.requirements import Requirements, verdicts
+from app.session.requirements import Requirements, verdicts
 from tests.browser.driver import Bench
 from tests.browser.test_page_layout import SIZES, resize
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from app.layout import layout_for
+from app.page.layout import layout_for
 from tests.browser.driver import Bench
 from tests.browser.test_page_layout import SIZES, resize
 from tests.browser.test_page_playback import command, now, wait_for

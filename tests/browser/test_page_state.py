@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from app import edits
+from app.editing import edits
 from navcore.scenario_file import load
 from tests.browser.driver import THROTTLE_MS, Bench
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from app.http.server import DashboardServer
     from app.serve import Dashboard
-    from app.session import Session
+    from app.session.session import Session
 
 pytestmark = pytest.mark.browser
 

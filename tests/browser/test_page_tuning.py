@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from app import edits
+from app.editing import edits
 from navcore.scenario import Scenario
 from navcore.scenario_file import load
 from tests.browser.driver import Bench

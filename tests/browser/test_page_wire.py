@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from app import edits
-from app.page import PAGE_STATE, Page
+from app.editing import edits
+from app.page.page import PAGE_STATE, Page
 from tests.attack.wire import Visitor, decode, visit
 
 if TYPE_CHECKING:

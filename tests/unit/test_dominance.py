@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.background.why import Explainer
 from app.panels.why import cause_text, why_html
-from app.why import Explainer
 from navcore.averaging.lines import line_phases
 from navcore.dominance import HEADING, POSITION, TILT, swing, why
 from navcore.mechanization.recorder import PHI_E, PHI_N

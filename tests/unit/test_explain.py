@@ -7,9 +7,17 @@ from collections.abc import Iterator
 
 import pytest
 
-from app import form
-from app.explain import Explanation, explain_html, explanation, explanations, formula_html, key_of, told_html
-from app.form import FieldSpec
+from app.editing import form
+from app.editing.form import FieldSpec
+from app.learn.explain import (
+    Explanation,
+    explain_html,
+    explanation,
+    explanations,
+    formula_html,
+    key_of,
+    told_html,
+)
 from app.panels.inputs import _KINDS
 from navcore.averaging.parameters import Averaging
 from navcore.control.policy import POLICIES

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from app.display import Display
 from app.figures.compare import deltas, pinned_methods, restyled, together
 from app.figures.errors import error_plots, legend_html
 from app.figures.frequency import bode
@@ -16,6 +15,7 @@ from app.figures.poles import poles
 from app.figures.spectrum import spectrum
 from app.figures.step import step
 from app.figures.table import metrics_html, metrics_rows
+from app.session.display import Display
 from navcore.run import Run
 from tests.unit.figures_runs import run_of, static_run
 

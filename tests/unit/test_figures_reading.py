@@ -11,8 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.display import Display
-from app.envelopes import SEEDS, Envelopes, with_seed
+from app.background.envelopes import SEEDS, Envelopes, with_seed
 from app.figures.envelope import Envelope, envelope
 from app.figures.errors import error_plots
 from app.figures.frequency import bode
@@ -20,6 +19,7 @@ from app.figures.plotly_data import packed, unpacked, values_of
 from app.figures.saved import plotly_csv, time_csv, time_picture
 from app.figures.spectrum import amplitude_spectrum, spectrum
 from app.figures.switching import switching_plots
+from app.session.display import Display
 from navcore.mechanization.recorder import DV_E
 from navcore.run import Run
 from navcore.scenario import Scenario

@@ -9,7 +9,7 @@ import pytest
 from app.figures.graticule import LocalMap, angle_text, graticule, round_down, round_up, scale_bar
 from app.figures.ship import ship_parts
 from app.figures.style import method_rgb
-from app.figures.track import HALF_WIDTH, attitude_quaternions, segments, track
+from app.figures.track import HALF_WIDTH, attitude_quaternions, track
 from navcore.earth import WGS84, attitude_matrix
 from navcore.mechanization.recorder import D_LAT, D_LON
 from navcore.motion.base import LAT, LON
@@ -75,7 +75,6 @@ class TestMoving:
 
     def test_lines_and_vectors_for_viser(self) -> None:
         scene = track(moving_run())
-        assert segments(scene.truth).shape == (len(scene.truth) - 1, 2, 3)
         dashes = scene.truth_dashes()
         share = np.sum(np.linalg.norm(dashes[:, 1] - dashes[:, 0], axis=1)) / np.sum(
             np.linalg.norm(np.diff(scene.truth, axis=0), axis=1)

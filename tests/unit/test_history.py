@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.history import MOST_STEPS, History, State, change_name
+from app.session.history import MOST_STEPS, History, State, change_name
 from navcore.scenario import Scenario
 from navcore.scenario_file import load
 

@@ -7,9 +7,7 @@ from functools import lru_cache
 
 import pytest
 
-from app.display import Display
-from app.lesson_names import Named, named
-from app.lessons import (
+from app.learn.lessons import (
     Lesson,
     Question,
     Step,
@@ -21,8 +19,10 @@ from app.lessons import (
     right_choice,
     to_html,
 )
+from app.learn.names import Named, named
 from app.panels.lessons import right_answer, spec_at
 from app.panels.results import SWITCHING, TABS
+from app.session.display import Display
 from navcore.errors import InputError
 from navcore.run import Run
 from navcore.scenario import Scenario

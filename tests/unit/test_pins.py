@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from app.pins import COLORS, LONGEST_NAME, MOST_PINS, MOST_ROWS, Pins, few_rows
+from app.session.pins import COLORS, LONGEST_NAME, MOST_PINS, MOST_ROWS, Pins, few_rows
 from navcore.errors import InputError
 from navcore.run import Run
 from navcore.scenario import Scenario

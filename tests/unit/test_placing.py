@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.placing import pair_at, read_point, typed_pair, with_pair
+from app.editing.placing import pair_at, read_point, typed_pair, with_pair
 from navcore.errors import InputError
 from navcore.loop import analyse
 from navcore.scenario import Scenario

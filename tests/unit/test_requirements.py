@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from app.display import Display
 from app.figures.requirements import allowed_poles, requirements_html, step_limits
-from app.requirements import (
+from app.session.display import Display
+from app.session.requirements import (
     MEASURES,
     Requirements,
     error_limits,

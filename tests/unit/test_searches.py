@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from app import why as why_module
-from app.searches import Searches
-from app.tuner import STOPPED, Tuner
-from app.why import Explainer
+from app.background import why as why_module
+from app.background.searches import Searches
+from app.background.tuner import STOPPED, Tuner
+from app.background.why import Explainer
 from navcore.errors import Fault, InputError
 from navcore.tuning import TuningSettings
 

@@ -10,9 +10,10 @@ from typing import Any
 
 import pytest
 
-from app import edits, sessions
-from app.session import Session, first_editable, runs_on_demand
-from app.sessions import Sessions, first_scenario
+from app.editing import edits
+from app.session import sessions
+from app.session.session import Session, first_editable, runs_on_demand
+from app.session.sessions import Sessions, first_scenario
 from navcore.errors import Fault, InputError
 from navcore.scenario import Scenario
 
@@ -147,7 +148,7 @@ def test_a_long_run_is_stopped_by_the_user(work: tuple[Session, Watcher]) -> Non
 def test_a_long_run_gives_way_to_a_new_change(
     work: tuple[Session, Watcher], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.worker.SUPERSEDE_AFTER_S", 0.0)
+    monkeypatch.setattr("app.background.worker.SUPERSEDE_AFTER_S", 0.0)
     made, page = work
     made.change(edits.with_value(made.scenario, DURATION, 5.0), page)
     made.change(edits.with_value(made.scenario, DURATION, 2.0), page)

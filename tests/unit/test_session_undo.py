@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from app import edits, form
-from app.form import FieldSpec
-from app.reset import opened_value
-from app.session import Session
+from app.editing import edits, form
+from app.editing.form import FieldSpec
+from app.editing.reset import opened_value
+from app.session.session import Session
 from navcore.errors import Fault, InputError
 from navcore.network import NETWORKS
 from navcore.scenario import Method, Scenario

@@ -10,12 +10,12 @@ from typing import Any
 
 import pytest
 
-from app import edits
+from app.editing import edits
 from app.http.ids import is_shared, new_copy_id
-from app.session import Session
-from app.sessions import Sessions
-from app.store import open_store
-from app.uploads import recorded_scenario
+from app.session.session import Session
+from app.session.sessions import Sessions
+from app.session.store import open_store
+from app.session.uploads import recorded_scenario
 from navcore.scenario_file import load
 
 ID = "visitor-of-the-tests-000"
@@ -75,7 +75,7 @@ def test_a_session_only_looked_at_is_not_kept(started: Callable[[], Sessions], t
 def test_a_session_that_had_to_make_room_comes_back(
     started: Callable[[], Sessions], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.sessions.MOST_SESSIONS", 1)
+    monkeypatch.setattr("app.session.sessions.MOST_SESSIONS", 1)
     sessions = started()
     state = worked_on(sessions).state
     assert sessions._store.flush()

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from app import store as store_module
-from app.store import Store, default_folder, open_store
+from app.session import store as store_module
+from app.session.store import Store, default_folder, open_store
 
 ID = "a" * 24
 

@@ -8,13 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from app import notices, theme
+import app
 from app.figures import style
 from app.figures.style import METHOD_COLORS
+from app.page import notices, theme
 
 WHITE = "#FFFFFF"
 BOTH = pytest.mark.parametrize("shown", ["light", "dark"])
-STATIC = Path(theme.__file__).parent / "static"
+STATIC = Path(app.__file__).parent / "static"
 
 
 def ratio(color: str, ground: str, shown: theme.Theme) -> float:

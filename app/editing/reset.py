@@ -7,12 +7,12 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from app import edits
+from app.editing import edits
 from navcore.scenario import Scenario
 
 if TYPE_CHECKING:
-    from app.commands import Commands
-    from app.form import FieldSpec, Path
+    from app.editing.form import FieldSpec, Path
+    from app.page.commands import Commands
     from app.panels.control import Control
 
 RESET_FIELD = "reset-field"

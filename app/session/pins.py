@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from app.worker import Watch, Worker
+from app.background.worker import Watch, Worker
 from navcore.errors import Fault, InputError
 from navcore.run import MethodRun, Run
 from navcore.scenario import Scenario

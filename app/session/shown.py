@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.display import Display
+from app.background.verifier import Verified
 from app.figures.envelope import Envelope
-from app.pins import Pin
-from app.verifier import Verified
+from app.session.display import Display
+from app.session.pins import Pin
 from navcore.run import Run
 
 if TYPE_CHECKING:
-    from app.session import Session
+    from app.session.session import Session
 
 
 @dataclass(frozen=True)

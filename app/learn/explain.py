@@ -12,8 +12,8 @@ from fnmatch import fnmatchcase
 from functools import lru_cache
 from html import escape
 
-from app.form import FieldSpec, Path
-from app.lessons import formula_html
+from app.editing.form import FieldSpec, Path
+from app.learn.lessons import formula_html
 from navcore.assets import asset_path
 from navcore.scenario import Scenario
 

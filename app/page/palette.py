@@ -6,18 +6,18 @@ from collections.abc import Callable, Iterable
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from app import notices
-from app.actions import Actions
-from app.commands import Commands
-from app.editor import Editor
-from app.history import changed_fields
+from app.editing.actions import Actions
+from app.editing.editor import Editor
+from app.editing.reset import Resets
+from app.page import notices
+from app.page.commands import Commands
+from app.page.presenter import PresenterLock
 from app.panels.control import Control
 from app.panels.files import METRICS, SCENARIO
 from app.panels.method import ADD, COPY, REMOVE
 from app.panels.toolbar import PRESENT, REDO, RESET_ALL, SHARE, UNDO, Toolbar
-from app.presenter import PresenterLock
-from app.reset import Resets
-from app.session import Session
+from app.session.history import changed_fields
+from app.session.session import Session
 from navcore.scenario_file import load, presets
 
 if TYPE_CHECKING:

@@ -6,21 +6,21 @@ from collections.abc import Callable
 from html import escape
 from typing import TYPE_CHECKING
 
-from app import notices
 from app.figures.errors import QUANTITIES
 from app.figures.plotly_data import PlotlyFigure
 from app.figures.saved import plotly_csv, time_csv, time_picture
 from app.figures.uplot import UplotFigure
+from app.page import notices
 from app.panels.compare import Comparing
 from app.panels.reading import ReadingPanel
-from app.session import Session
-from app.shown import Shown, shown
+from app.session.session import Session
+from app.session.shown import Shown, shown
 from navcore.scenario_file import scenario_hash
 
 if TYPE_CHECKING:
     import viser
 
-    from app.commands import Commands
+    from app.page.commands import Commands
 
 ERRORS, SWITCHING = "Errors", "Switching"
 _PICTURES = ("Frequency", "Poles", "Step", "Spectrum")

@@ -9,10 +9,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from app.display import Display
-from app.history import History, State
-from app.session import Session
-from app.uploads import plain_names, shared_files
+from app.session.display import Display
+from app.session.history import History, State
+from app.session.session import Session
+from app.session.uploads import plain_names, shared_files
 from navcore.errors import InputError
 from navcore.scenario import Scenario
 

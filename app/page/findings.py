@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from app import notices
+from app.page import notices
 from app.panels.results import ResultsPanel
 from app.panels.tuning import TuningPanel
 from app.panels.why import why_html
-from app.session import Session
+from app.session.session import Session
 from navcore.errors import InputError
 from navcore.tuning.settings import TuningSettings
 

@@ -2,12 +2,12 @@
 
 A file begins with TOML between two lines ``+++``: ``title``, ``about`` (one sentence), and the scenario it
 plays in, as ``preset = "NAME"`` or as a table ``[scenario]``. Each ``## Heading`` begins a step: Markdown
-with ``$...$`` and ``$$...$$`` (LaTeX), ``{{name}}`` for a number of the present run (`app.lesson_names`), and
+with ``$...$`` and ``$$...$$`` (LaTeX), ``{{name}}`` for a number of the present run (`app.learn.names`), and
 at most one each of two fenced blocks of TOML:
 
 ``toml action``
     The button "Show me". ``set``: fields of the scenario as on the command line, each step beginning from the
-    lesson's scenario; ``tabs`` to bring to the front; ``display``: fields of `app.display.Display`;
+    lesson's scenario; ``tabs`` to bring to the front; ``display``: fields of `app.session.display.Display`;
     ``method``: number of the method to edit; ``sliders``: fields that get a slider in the lesson.
 
 ``toml question``
@@ -30,7 +30,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from app.lesson_names import named
+from app.learn.names import named
 from navcore.assets import asset_path
 from navcore.errors import Fault, InputError
 from navcore.run import Run

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from app.requirements import Requirements
+from app.session.requirements import Requirements
 
 FIRST_TRANSFER = "phi/dv_r"
 

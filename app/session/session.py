@@ -7,15 +7,15 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 
-from app.display import Display
-from app.envelopes import Envelopes
-from app.history import History, State
-from app.pins import Pins
-from app.searches import Searches
-from app.uploads import Uploads
-from app.verifier import Verifier, Verify
-from app.view import View
-from app.worker import Watch, Worker
+from app.background.envelopes import Envelopes
+from app.background.searches import Searches
+from app.background.verifier import Verifier, Verify
+from app.background.worker import Watch, Worker
+from app.session.display import Display
+from app.session.history import History, State
+from app.session.pins import Pins
+from app.session.uploads import Uploads
+from app.session.view import View
 from navcore.errors import InputError
 from navcore.run import Run
 from navcore.scenario import Scenario

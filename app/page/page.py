@@ -14,15 +14,17 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app import notices
-from app.actions import Actions, as_json
-from app.commands import Commands
-from app.editor import Editor
+from app.editing.actions import Actions, as_json
+from app.editing.editor import Editor
 from app.figures import style
-from app.findings import Findings
 from app.http.viser_insides import leaving_is_no_fault
-from app.layout import layout_for, read_state
-from app.palette import Palette
+from app.page import notices
+from app.page.commands import Commands
+from app.page.findings import Findings
+from app.page.layout import layout_for, read_state
+from app.page.palette import Palette
+from app.page.presenter import PresenterLock
+from app.page.reading import Figures, Reading
 from app.panels.appearance import Appearance
 from app.panels.control import Control
 from app.panels.explain import ExplainPanel
@@ -36,11 +38,9 @@ from app.panels.reading import VIEW
 from app.panels.results import MISPRINTS, PICTURED, TABS, ResultsPanel
 from app.panels.verification import VerificationPanel
 from app.panels.workbench import Placer, Tools
-from app.presenter import PresenterLock
-from app.reading import Figures, Reading
-from app.session import Session
-from app.shown import Shown, shown
-from app.stage import Stage
+from app.scene.stage import Stage
+from app.session.session import Session
+from app.session.shown import Shown, shown
 from navcore.errors import InputError
 from navcore.measures import metrics
 from navcore.run import Run
@@ -57,7 +57,7 @@ _EDIT_TABS = ("Method", "Sensors", "Log", "Run", "Files", VIEW, LEARN)
 
 
 class Page:
-    """A browser page on a session: a view of it (`app.session.View`).
+    """A browser page on a session: a view of it (`app.session.session.View`).
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ class Page:
         leaving_is_no_fault(self.client)
         self._state = gui.add_text(PAGE_STATE, "", order=1)
         self._state.on_update(lambda _: self._on_state())
-        static = Path(__file__).parent / "static"
+        static = Path(__file__).parents[1] / "static"
         css = "".join((static / f"{name}.css").read_text(encoding="utf-8") for name in _STYLES)
         self.commands = Commands(gui, self._command_failed)
         css = css.replace("PAGE_STATE", self._state._impl.uuid).replace("PAGE_COMMAND", self.commands.box_id)

@@ -9,15 +9,15 @@ import numpy as np
 
 from app.figures import style
 from app.figures.graticule import SceneLabel
+from app.figures.polyline import segments
 from app.figures.ship import ship_parts
-from app.figures.track import HALF_WIDTH, SHIP_LENGTH, MethodTrack, Place, TrackScene, segments
+from app.figures.track import HALF_WIDTH, LINE_WIDTH, SHIP_LENGTH, MethodTrack, Place, TrackScene
 
 if TYPE_CHECKING:
     import viser
 
 Anchor = Literal["top-center", "center-left"]
 
-_LINE = 0.05
 _GRID_LINE = 0.02
 _FAINT = 0.6
 """Width of what lies ahead of the ship."""
@@ -69,7 +69,7 @@ class SceneDrawer:
         south = (replace(label, position=_shifted(label)) for label in track.labels[:1])
         self._texts("/map/labels", (*track.graticule.labels, *south, *track.labels[1:]))
         self._texts("/map/caption", (caption,), size=1.0)
-        self._lines("/track/truth", track.truth_dashes(), style.rgb(style.TRUTH_COLOR), _LINE)
+        self._lines("/track/truth", track.truth_dashes(), style.rgb(style.TRUTH_COLOR), LINE_WIDTH)
         self._drawn, self._selected = track, min(selected, len(track.methods) - 1)
         self._past.clear()
         self.move_ship(time_s)
@@ -88,7 +88,7 @@ class SceneDrawer:
         for number, (vector, method) in enumerate(zip(place.error_vectors(), track.methods, strict=True)):
             self._whole(number, method, faint=under_way)
             self._trail(number, method, place, shown=under_way)
-            self._lines(f"/error/method{number}", vector[None], method.color, 0.6 * _LINE)
+            self._lines(f"/error/method{number}", vector[None], method.color, 0.6 * LINE_WIDTH)
             self._legend_row(number, len(track.methods), method.color, method.error_text(place.index))
         for name in ("/error/method", "/legend/line", "/legend/text", "/trail/past", "/trail/tip"):
             self._drop_beyond(name, len(track.methods))
@@ -110,7 +110,7 @@ class SceneDrawer:
         color = _paler(method.color) if faint else method.color
         name = f"/track/method{number}"
         if self._past.get(name) != (color, id(self._drawn)):
-            self._lines(name, segments(method.points), color, (_FAINT if faint else 1.0) * _LINE)
+            self._lines(name, method.drawn(), color, (_FAINT if faint else 1.0) * LINE_WIDTH)
             self._past[name] = color, id(self._drawn)
 
     def _trail(self, number: int, method: MethodTrack, place: Place, *, shown: bool) -> None:
@@ -118,17 +118,17 @@ class SceneDrawer:
         past, tip = f"/trail/past{number}", f"/trail/tip{number}"
         if not shown:
             none = np.empty((0, 2, 3), dtype=np.float32)
-            self._lines(past, none, method.color, _LINE)
-            self._lines(tip, none, method.color, _LINE)
+            self._lines(past, none, method.color, LINE_WIDTH)
+            self._lines(tip, none, method.color, LINE_WIDTH)
             self._past.pop(past, None)
             return
         whole = place.index // _TIP_POINTS * _TIP_POINTS
         if self._past.get(past) != (whole, id(self._drawn)):
-            self._lines(past, segments(method.points[: whole + 1]), method.color, _LINE)
+            self._lines(past, method.drawn(whole), method.color, LINE_WIDTH)
             self._past[past] = whole, id(self._drawn)
         recent = method.points[whole : place.index + 1]
         here = place.computed[number][None] if place.index < len(method.points) else recent[:0]
-        self._lines(tip, segments(np.concatenate([recent, here])), method.color, _LINE)
+        self._lines(tip, segments(np.concatenate([recent, here])), method.color, LINE_WIDTH)
 
     def _legend_row(self, number: int, count: int, color: tuple[int, int, int], text: str) -> None:
         """A method's line, name and present error, south of the map; many stand in two columns."""
@@ -136,7 +136,7 @@ class SceneDrawer:
         x = -HALF_WIDTH + (HALF_WIDTH + 0.4) * (number // rows)
         y = -HALF_WIDTH - 3.3 - 0.75 * (number % rows)
         line = np.array([[[x, y, 0.0], [x + 0.7, y, 0.0]]], dtype=np.float32)
-        self._lines(f"/legend/line{number}", line, color, _LINE)
+        self._lines(f"/legend/line{number}", line, color, LINE_WIDTH)
         self._text(f"/legend/text{number}", SceneLabel(text, (x + 0.9, y, 0.0)), anchor="center-left")
 
     # ------------------------------------------------------------ nodes

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.cameras import Cameras
 from app.figures.track import track
 from app.panels.playback import PlaybackPanel
-from app.playback import Playback, PlayState
-from app.scene import SceneDrawer
-from app.session import Session
+from app.scene.cameras import Cameras
+from app.scene.drawer import SceneDrawer
+from app.scene.playback import Playback, PlayState
+from app.session.session import Session
 from navcore.run import Run
 
 if TYPE_CHECKING:
     import viser
 
-    from app.commands import Commands
+    from app.page.commands import Commands
 
 
 class Stage:

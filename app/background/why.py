@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from app.worker import Watch, Worker
+from app.background.worker import Watch, Worker
 from navcore.run import Run
 
 if TYPE_CHECKING:

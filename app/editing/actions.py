@@ -6,13 +6,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from app import edits, notices
+from app.editing import edits
+from app.page import notices
 from app.panels.files import SCENARIO
 from app.panels.header import UPLOADED
 from app.panels.inputs import ADD_EVENT, ADD_OUTAGE, REMOVE_EVENT
 from app.panels.method import ADD, COPY
-from app.session import Session, first_editable
-from app.uploads import opened_scenario, recorded_scenario, with_plain_names
+from app.session.session import Session, first_editable
+from app.session.uploads import opened_scenario, recorded_scenario, with_plain_names
 from navcore.errors import InputError
 from navcore.measures import metrics
 from navcore.scenario_file import load, presets, to_toml

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any, get_args
 
-from app.form import Path
+from app.editing.form import Path
 from navcore.averaging.parameters import Variant
 from navcore.motion import MOTIONS
 from navcore.network import LinearNetwork

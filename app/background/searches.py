@@ -6,8 +6,8 @@ import logging
 import threading
 from collections.abc import Callable
 
-from app.tuner import Tuner
-from app.why import Explainer
+from app.background.tuner import Tuner
+from app.background.why import Explainer
 from navcore.run import Run
 
 _log = logging.getLogger("schuler.searches")

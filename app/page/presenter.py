@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from app.http.viser_insides import lock_controls
-from app.session import Session
-from app.view import View
+from app.session.session import Session
+from app.session.view import View
 
 if TYPE_CHECKING:
     import viser
 
-    from app.commands import Commands
+    from app.page.commands import Commands
 
 
 class PresenterLock:

@@ -6,10 +6,11 @@ import threading
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from app import edits, notices
+from app.editing import edits
 from app.http.viser_insides import show_held_value
+from app.page import notices
 from app.panels.control import Control
-from app.session import Session
+from app.session.session import Session
 from navcore.errors import InputError
 from navcore.scenario import Scenario
 

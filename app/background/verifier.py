@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.worker import Watch, Worker
+from app.background.worker import Watch, Worker
 from navcore.errors import InputError
 from navcore.scenario import Scenario
 

@@ -8,9 +8,9 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from app.background.worker import Watch, Worker
 from app.figures.envelope import Envelope, envelope
-from app.pins import few_rows
-from app.worker import Watch, Worker
+from app.session.pins import few_rows
 from navcore.errors import InputError
 from navcore.run import Run
 from navcore.scenario import Scenario

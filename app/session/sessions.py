@@ -12,10 +12,10 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from app.document import Document, Unreadable, restore, to_document
 from app.http.ids import copied_from, new_shared_id
-from app.session import Session
-from app.store import Store
+from app.session.document import Document, Unreadable, restore, to_document
+from app.session.session import Session
+from app.session.store import Store
 from navcore.scenario import Scenario
 
 MOST_SESSIONS = 64
