@@ -10,8 +10,8 @@ from pathlib import Path
 
 NAMES = ("chromium", "chromium-browser", "google-chrome-stable", "google-chrome")
 
-# A test machine has no graphics card: the page is painted by the processor, without a detour over an OpenGL that
-# would be software too, and WebGL runs on SwiftShader. And no calls home.
+# A test machine has no graphics card: the page is painted by the processor, without a detour over an OpenGL
+# that would be software too, and WebGL runs on SwiftShader. And no calls home.
 FLAGS = (
     "--no-sandbox",
     "--disable-gpu",

@@ -6,11 +6,17 @@
   const LABEL = "page command";
   const SPACING_MS = 60;
   const REPEAT_MS = 250;
+  const AFTER_INPUT_MS = 300;
   const setter = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set;
   let count = 0;
   let waiting = [];
   let timer = 0;
   let sent = 0;
+  let moved = -Infinity;
+
+  for (const kind of ["pointerdown", "pointermove", "keydown", "wheel"]) {
+    addEventListener(kind, (event) => (kind !== "pointermove" || event.buttons) && (moved = performance.now()), true);
+  }
 
   function box() {
     for (const label of document.getElementsByTagName("label")) {
@@ -22,29 +28,33 @@
   function send() {
     timer = 0;
     const heard = Number(document.getElementById("sb-told")?.dataset.count ?? 0);
-    waiting = waiting.filter(([number]) => number > heard);
+    waiting = waiting.filter(({ asked }) => asked[0] > heard);
     if (waiting.length === 0) return;
     timer = setTimeout(send, REPEAT_MS);
     const input = box();
-    if (input === null) return;
-    const text = JSON.stringify(waiting.slice(0, 50));
+    const busy = performance.now() - moved < AFTER_INPUT_MS;
+    const ready = waiting.filter(({ gives }) => !(gives && busy));
+    if (input === null || ready.length === 0) return;
+    const text = JSON.stringify(ready.slice(0, 50).map(({ asked }) => asked));
     setter.call(input, input.value === text ? `${text} ` : text);
     input.dispatchEvent(new Event("input", { bubbles: true }));
     sent = performance.now();
   }
 
-  function ask(name, words, onlyLatest) {
-    if (onlyLatest) waiting = waiting.filter((other) => other[1] !== name);
-    waiting.push([++count, name, words.join(" ")]);
+  function ask(name, words, { onlyLatest = false, gives = false } = {}) {
+    if (onlyLatest) waiting = waiting.filter(({ asked }) => asked[1] !== name);
+    waiting.push({ asked: [++count, name, words.join(" ")], gives });
     clearTimeout(timer);
     timer = setTimeout(send, Math.max(0, sent + SPACING_MS - performance.now()));
   }
 
   window.schuler = {
     // Every one of these is carried out, in order.
-    command: (name, ...words) => ask(name, words, false),
+    command: (name, ...words) => ask(name, words),
     // Of these, for what changes continuously, one that is not yet sent gives way to the next of its name.
-    stream: (name, ...words) => ask(name, words, true),
+    stream: (name, ...words) => ask(name, words, { onlyLatest: true }),
+    // What the page says by itself: it waits too while the user moves something, whose value it would displace.
+    report: (name, ...words) => ask(name, words, { onlyLatest: true, gives: true }),
   };
 
   addEventListener("click", (event) => {

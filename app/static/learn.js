@@ -68,7 +68,7 @@
   }
 
   function explain(label) {
-    window.schuler.stream("explain", label?.htmlFor ?? "");
+    window.schuler.report("explain", label?.htmlFor ?? "");
   }
 
   // A "?" beside the label that the pointer is over; by key it is not needed.

@@ -4,13 +4,11 @@
 (() => {
   const PERIOD_MS = 100;
   const AFTER_SCRUB_MS = 500;
-  const AFTER_INPUT_MS = 600;
   const HEARD_MS = 250;
   const UNITS = { s: 1, min: 60, h: 3600, d: 86400 };
   let now = null;
   let shown = "";
   let scrubbed = -1e9;
-  let moved = -1e9;
   let heard = -1e9;
   let stage = null;
 
@@ -126,17 +124,12 @@
     stage.classList.toggle("sb-small", box.width < 480);
   }
 
-  // While the user moves something, nothing is said to the server: viser sends one value in 50 ms, whichever control it
-  // comes from, and the server slows the playback down when it hears nothing.
-  for (const kind of ["pointerdown", "pointermove", "keydown", "wheel"]) {
-    addEventListener(kind, (event) => (kind !== "pointermove" || event.buttons) && (moved = performance.now()), true);
-  }
-
+  // The server slows the playback down when it hears nothing, and it hears nothing while the user moves something.
   function tellShown() {
     const time = performance.now();
-    if (!now.playing || time - heard < HEARD_MS || time - moved < AFTER_INPUT_MS) return;
+    if (!now.playing || time - heard < HEARD_MS) return;
     heard = time;
-    window.schuler.stream("shown", now.count);
+    window.schuler.report("shown", now.count);
   }
 
   let turn = 0;
