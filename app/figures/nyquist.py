@@ -13,8 +13,7 @@ from app.figures import style
 from app.figures.effective import effective_network
 from app.figures.plotly_data import PlotlyFigure, figure, packed
 from app.figures.units import duration, number
-from navcore.loop.crossings import quick_margins
-from navcore.loop.margins import Margins
+from navcore.loop.margins import Margins, margins
 from navcore.network.base import LinearNetwork
 from navcore.run import MethodRun, Run
 
@@ -38,7 +37,7 @@ class _Loop:
 
 @lru_cache(maxsize=64)
 def _margins(loop: _Loop) -> Margins | None:
-    return quick_margins(loop.network)
+    return margins(loop.network)
 
 
 def margins_of(method: MethodRun) -> Margins | None:
