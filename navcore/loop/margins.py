@@ -1,4 +1,4 @@
-"""Margins of the open loop omega_s^2 H(s)/s^2, from the roots of its crossings: a millisecond, for sliders."""
+"""Margins of the open loop omega_s^2 H(s)/s^2 from the roots of its crossings: a millisecond, for sliders."""
 
 from __future__ import annotations
 
