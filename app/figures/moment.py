@@ -9,14 +9,26 @@ from html import escape
 import numpy as np
 
 from app.figures import style
-from app.figures.units import Unit, angle_unit, duration, length_unit, number, speed_unit
+from app.figures.units import (
+    AUTO,
+    KNOTS,
+    NAMED,
+    Unit,
+    angle_unit,
+    duration,
+    length_unit,
+    number,
+    speed_unit,
+    wanted_unit,
+)
+from app.session.display import Display
 from navcore.earth import attitude_matrix
 from navcore.mechanization.recorder import DV_E, DV_N, PHI_E, PHI_U, POSITION, QUANTITIES
 from navcore.motion.base import HEADING, PITCH, ROLL, VE, VN
 from navcore.run import MethodRun, Run
-from navcore.units import DEG, KNOT
+from navcore.units import DEG
 
-_KNOTS = Unit("kn", KNOT)
+_AS_IT_FITS = Display()
 _COMPUTED = (6, 7, 8)
 """Pitch, roll and heading among the columns of `MethodRun.navigation`."""
 
@@ -132,22 +144,29 @@ def _computed(
     return heading % math.tau, pitch, math.atan2(-c[2, 0], c[2, 2])
 
 
-def readout_html(shown: Moment, selected: int) -> str:
-    """True and computed attitude and speed of one method, and its errors, each with its unit."""
+def readout_html(shown: Moment, selected: int, display: Display = _AS_IT_FITS) -> str:
+    """True and computed attitude and speed of one method, and its errors, in the units that are asked for.
+
+    Attitude is in degrees and speed in knots unless speeds are asked for in another unit.
+    """
     method = shown.methods[min(selected, len(shown.methods) - 1)]
     true, made = shown.truth, method.pose
     turned = math.remainder(made.heading - true.heading, math.tau)
     faster = made.speed - true.speed
+    attitude = (
+        ("heading", true.heading, made.heading, turned),
+        ("pitch", true.pitch, made.pitch, made.pitch - true.pitch),
+        ("roll", true.roll, made.roll, made.roll - true.roll),
+    )
     rows = [
-        ("heading", _degrees(true.heading), _degrees(made.heading), _signed(turned, angle_unit(abs(turned)))),
-        *(
-            (name, _degrees(a), _degrees(b), _signed(b - a, angle_unit(abs(b - a))))
-            for name, a, b in (("pitch", true.pitch, made.pitch), ("roll", true.roll, made.roll))
-        ),
-        ("speed", _knots(true.speed), _knots(made.speed), _signed(faster, speed_unit(abs(faster)))),
+        (name, _degrees(a), _degrees(b), _signed(off, wanted_unit(display.angle, abs(off), angle_unit)))
+        for name, a, b, off in attitude
     ]
+    way = KNOTS if display.speed == AUTO else NAMED[display.speed]
+    slip = _signed(faster, wanted_unit(display.speed, abs(faster), speed_unit))
+    rows.append(("speed", _speed(true.speed, way), _speed(made.speed, way), slip))
     off = float(method.errors[POSITION])
-    rows.append(("position", "", "", _signed(off, length_unit(off)).lstrip("+")))
+    rows.append(("position", "", "", _signed(off, wanted_unit(display.length, off, length_unit)).lstrip("+")))
     cells = "".join(
         f"<tr><th scope='row'>{name}</th><td>{a}</td><td>{b}</td><td>{c}</td></tr>" for name, a, b, c in rows
     )
@@ -164,8 +183,8 @@ def _degrees(angle: float) -> str:
     return f"{round(angle / DEG, 2) + 0.0:.2f}°"
 
 
-def _knots(speed: float) -> str:
-    return f"{speed / _KNOTS.si:.2f} {_KNOTS.name}"
+def _speed(speed: float, unit: Unit) -> str:
+    return f"{speed / unit.si:.2f} {unit.name}"
 
 
 def _signed(value: float, unit: Unit) -> str:

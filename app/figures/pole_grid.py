@@ -137,7 +137,7 @@ def settling_labels(suffix: str, re: Interval, omega_s: float, width_px: float) 
         style.text(
             at,
             0.0,
-            f"{minutes:g} min",
+            f"{minutes:g} min" if minutes < 120.0 else f"{minutes / 60.0:g} h",
             xref=f"x{suffix}",
             yref=f"y{suffix} domain",
             xanchor="right",

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from app.figures import style
+from app.figures.compare import Pinned, pinned_methods
 from app.figures.graticule import Graticule, LocalMap, SceneLabel, graticule, round_down, round_up, scale_bar
 from app.figures.polyline import dashes, needed, segments
 from app.figures.units import length_unit, number
@@ -74,6 +76,25 @@ class MethodTrack:
 
 
 @dataclass(frozen=True, eq=False)
+class PinnedTrack:
+    """What a method of a pinned run would compute on the way of the present one.
+
+    Attributes
+    ----------
+    label : str
+        ``pin: method``.
+    color : (int, int, int)
+        The pin's.
+    segments : ndarray of float32, shape (n, 2, 3)
+        The line, its error exaggerated like all others, scene units.
+    """
+
+    label: str
+    color: tuple[int, int, int]
+    segments: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
 class Place:
     """Where ship and computed ships are at a time.
 
@@ -113,6 +134,8 @@ class TrackScene:
         Attitude of the ship: body to scene quaternion, w first.
     methods : tuple of MethodTrack
         Computed tracks in the scenario's order.
+    pinned : tuple of PinnedTrack
+        Those of pinned runs.
     exaggeration : float
         Factor by which the position errors are drawn larger.
     metres_per_unit : float
@@ -133,6 +156,7 @@ class TrackScene:
     truth: np.ndarray
     wxyz: np.ndarray
     methods: tuple[MethodTrack, ...]
+    pinned: tuple[PinnedTrack, ...]
     exaggeration: float
     metres_per_unit: float
     static: bool
@@ -166,7 +190,7 @@ class TrackScene:
         return dashes(self.truth[needed(self.truth, _UNSEEN)], _DASH)
 
 
-def track(run: Run, exaggeration: float | None = None) -> TrackScene:
+def track(run: Run, exaggeration: float | None = None, pins: Sequence[Pinned] = ()) -> TrackScene:
     """Map of the run.
 
     Parameters
@@ -175,7 +199,10 @@ def track(run: Run, exaggeration: float | None = None) -> TrackScene:
         Result.
     exaggeration : float, optional
         Factor on the position errors; chosen from 1, 2, 5, 10, ... so that they show when None.
+    pins : sequence of Pinned
+        Runs whose position errors are laid over it.
     """
+    pinned = pinned_methods(pins)
     chosen = _chosen(len(run.t_s))
     t_s, rows = run.t_s[chosen], run.truth[chosen]
     lat, lon = rows[:, LAT], np.unwrap(rows[:, LON])
@@ -185,11 +212,14 @@ def track(run: Run, exaggeration: float | None = None) -> TrackScene:
     true_m = np.column_stack([(lon - lon0) * per_lon, (lat - lat0) * meridian])
     half_m = float(np.max(np.abs(true_m), initial=0.0))
     static = half_m < _STATIC_M
-    peak = _peak(run)
-    errors = [_errors(method, chosen, peak) for method in run.methods]
+    peak = _peak([*run.methods, *(other.method for other in pinned)])
+    errors = [_errors(method, t_s, peak) for method in run.methods]
+    others = [_errors(other.method, t_s, peak) for other in pinned]
     factor = exaggeration or (1.0 if static else _exaggeration(half_m, peak))
-    computed_m = [true_m[: len(error)] + factor * error for error in errors]
-    middle, metres = _frame([true_m, *computed_m], static)
+    computed_m, pinned_m = (
+        [true_m[: len(error)] + factor * error for error in found] for found in (errors, others)
+    )
+    middle, metres = _frame([true_m, *computed_m, *pinned_m], static)
     area = LocalMap(
         lat0=float(lat0 + middle[1] / meridian),
         lon0=float(lon0 + middle[0] / per_lon),
@@ -209,6 +239,10 @@ def track(run: Run, exaggeration: float | None = None) -> TrackScene:
         truth=_scene(true_m, middle, metres, 2.0 * _LIFT),
         wxyz=attitude_quaternions(rows[:, PITCH], rows[:, ROLL], rows[:, HEADING]),
         methods=tracks,
+        pinned=tuple(
+            PinnedTrack(other.label, style.rgb(other.color), _thinned(_scene(points, middle, metres, _LIFT)))
+            for other, points in zip(pinned, pinned_m, strict=True)
+        ),
         exaggeration=factor,
         metres_per_unit=metres,
         static=static,
@@ -239,16 +273,18 @@ def _chosen(count: int) -> np.ndarray:
     return np.unique(np.linspace(0, max(count - 1, 0), min(count, MAX_POINTS)).round().astype(int))
 
 
-def _peak(run: Run) -> float:
+def _peak(methods: Sequence[MethodRun]) -> float:
     """Largest position error of the methods that did not diverge (else of all), m."""
-    good = [m for m in run.methods if m.status != "diverged"] or list(run.methods)
+    good = [m for m in methods if m.status != "diverged"] or methods
     return max((m.errors["position_m"]["max_abs"] for m in good), default=0.0)
 
 
-def _errors(method: MethodRun, chosen: np.ndarray, peak_m: float) -> np.ndarray:
-    """Position error east and north at the drawn rows, m, as far as the method came and stays on the map."""
-    rows = method.rows[chosen[chosen < len(method.rows)]]
-    error = rows[:, [D_LON, D_LAT]]
+def _errors(method: MethodRun, t_s: np.ndarray, peak_m: float) -> np.ndarray:
+    """Position error east and north at the drawn times, m, as far as the method came and stays on the map."""
+    if len(method.t_s) == 0:
+        return np.zeros((1, 2))
+    reached = t_s[t_s <= method.t_s[-1]]
+    error = np.column_stack([np.interp(reached, method.t_s, method.rows[:, at]) for at in (D_LON, D_LAT)])
     if method.status == "diverged" and peak_m > 0.0:
         beyond = np.flatnonzero(~(np.hypot(error[:, 0], error[:, 1]) <= _CUT * peak_m))
         error = error[: beyond[0]] if len(beyond) else error
@@ -277,6 +313,11 @@ def _scene(points_m: np.ndarray, middle: np.ndarray, metres_per_unit: float, lif
     made = np.full((len(points_m), 3), lift, dtype=np.float32)
     made[:, :2] = (points_m - middle) / metres_per_unit
     return made
+
+
+def _thinned(points: np.ndarray) -> np.ndarray:
+    """Segments of a line without the points that nobody could see."""
+    return segments(points[needed(points, _UNSEEN)])
 
 
 def _caption(factor: float, static: bool) -> str:

@@ -7,6 +7,7 @@ above 0.01; the bounds below leave a factor of two to spare.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from navcore.units import ARCMIN, ARCSEC, DEG, HOUR, KNOT, MINUTE, NAUTICAL_MILE
@@ -93,6 +94,11 @@ def time_unit(span_s: float, wanted: str = AUTO) -> Unit:
     if wanted != AUTO:
         return NAMED[wanted]
     return MINUTES if span_s < 3.0 * HOUR else HOURS
+
+
+def wanted_unit(name: str, peak: float, chosen: Callable[[float], Unit]) -> Unit:
+    """Unit that is asked for by name, legibly scaled; with ``AUTO`` what ``chosen`` gives for the peak."""
+    return chosen(peak) if name == AUTO else scaled_unit(name, peak)
 
 
 def scaled_unit(name: str, peak: float) -> Unit:

@@ -212,7 +212,7 @@ class Page:
             self.reading.show()
             found = shown(session)
             if found is not None:
-                self._stage.draw(found.run)
+                self._stage.draw(found)
         self.client.flush()
         self._again_pictures()
 
@@ -316,7 +316,7 @@ class Page:
         with session.lock, self.client.atomic():
             self._stale = PICTURED - wanted
             self._results.show(pictures)
-            self._stage.draw(found.run)
+            self._stage.draw(found)
             self.findings.show()
             self.method.show_warnings(run, session.scenario, session.selected)
             self.lessons.show(session.scenario, run, self._editor.moved)

@@ -16,6 +16,7 @@ from app.figures.moment import moment, readout_html
 from app.figures.pendulum import caption_of, pendulum, pendulum_svg
 from app.scene.cameras import CAMERAS
 from app.scene.playback import SPEEDS, Playback, PlayState
+from app.session.display import Display
 from navcore.run import Run
 
 if TYPE_CHECKING:
@@ -68,9 +69,10 @@ class PlaybackPanel:
     def _heard(self, count: float) -> None:
         self._playback.heard(self._count - int(count))
 
-    def show(self, state: PlayState, run: Run, selected: int, camera: str) -> None:
+    def show(self, state: PlayState, run: Run, selected: int, camera: str, display: Display) -> None:
         """Show a time of a run."""
         swung = pendulum(run, state.time_s)
+        readout = readout_html(moment(run, state.time_s), selected, display)
         self._count += 1
         told = {
             "count": self._count,
@@ -86,5 +88,5 @@ class PlaybackPanel:
         self._now.content = (
             f'<div id="sb-playback" hidden data-now="{escape(json.dumps(told))}">'
             f'<div data-part="pendulum">{pendulum_svg(swung)}<p>{escape(caption_of(swung))}</p></div>'
-            f'<div data-part="readout">{readout_html(moment(run, state.time_s), selected)}</div></div>'
+            f'<div data-part="readout">{readout}</div></div>'
         )

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 Anchor = Literal["top-center", "center-left"]
 
 _GRID_LINE = 0.02
+_PINNED_LINE = 0.5 * LINE_WIDTH
 _FAINT = 0.6
 """Width of what lies ahead of the ship."""
 _TIP_POINTS = 60
@@ -70,6 +71,9 @@ class SceneDrawer:
         self._texts("/map/labels", (*track.graticule.labels, *south, *track.labels[1:]))
         self._texts("/map/caption", (caption,), size=1.0)
         self._lines("/track/truth", track.truth_dashes(), style.rgb(style.TRUTH_COLOR), LINE_WIDTH)
+        for number, pinned in enumerate(track.pinned):
+            self._lines(f"/track/pinned{number}", pinned.segments, pinned.color, _PINNED_LINE)
+        self._drop_beyond("/track/pinned", len(track.pinned))
         self._drawn, self._selected = track, min(selected, len(track.methods) - 1)
         self._past.clear()
         self.move_ship(time_s)

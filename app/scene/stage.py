@@ -10,6 +10,7 @@ from app.scene.cameras import Cameras
 from app.scene.drawer import SceneDrawer
 from app.scene.playback import Playback, PlayState
 from app.session.session import Session
+from app.session.shown import Shown
 from navcore.run import Run
 
 if TYPE_CHECKING:
@@ -46,12 +47,12 @@ class Stage:
         self.playback = Playback(self._show)
         self._panel = PlaybackPanel(client.gui, commands, self.playback, self._look)
 
-    def draw(self, run: Run) -> None:
+    def draw(self, found: Shown) -> None:
         """Show a run at the time that was shown before; the caller holds the session's lock."""
-        self._run = run
+        self._run = run = found.run
         self.playback.follow(float(run.t_s[-1]) if len(run.t_s) else 0.0)
         session, state = self._session, self.playback.state
-        self._scene.draw(track(run, session.display.exaggeration), state.time_s, session.selected)
+        self._scene.draw(track(run, found.display.exaggeration, found.pins), state.time_s, session.selected)
         self._tell(state)
 
     def choose(self) -> None:
@@ -89,4 +90,5 @@ class Stage:
         if self._scene.place is not None:
             self._cameras.follow(self._scene.place)
         if self._run is not None:
-            self._panel.show(state, self._run, self._session.selected, self._cameras.chosen)
+            session = self._session
+            self._panel.show(state, self._run, session.selected, self._cameras.chosen, session.display)

@@ -64,7 +64,11 @@
     }
   }
 
+  // A small view has room for one of them.
   function reveal(button, shown) {
+    if (shown && stage.classList.contains("sb-small")) {
+      for (const other of stage.querySelectorAll("[data-shows]")) if (other !== button) reveal(other, false);
+    }
     button.setAttribute("aria-pressed", String(shown));
     find(button.dataset.shows).hidden = !shown;
   }
@@ -121,7 +125,11 @@
     stage.style.top = `${Math.round(box.top)}px`;
     stage.style.width = `${wanted[2]}px`;
     stage.style.height = `${Math.round(box.height)}px`;
-    stage.classList.toggle("sb-small", box.width < 480);
+    const small = box.width < 480;
+    if (small === stage.classList.contains("sb-small")) return;
+    stage.classList.toggle("sb-small", small);
+    const shown = stage.querySelectorAll('[data-shows][aria-pressed="true"]');
+    if (small && shown.length > 1) reveal(shown[0], true);
   }
 
   // The server slows the playback down when it hears nothing, and it hears nothing while the user moves something.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from app.editing import edits
+from app.figures.track import LINE_WIDTH
 from app.session.pins import MOST_PINS
 from tests.browser.driver import Bench
 from tests.browser.test_page_layout import _CUT, SIZES, resize
@@ -69,6 +70,10 @@ def test_a_pin_lies_over_every_view(pinned: Bench) -> None:
     assert len(data) == 1 + 2 * count
     assert data[1] == pytest.approx(data[1 + count]), "the free method is as it was"
     assert data[3] != pytest.approx(data[3 + count], rel=1e-3), label
+    lines = [pinned.line(f"/track/pinned{number}") or [] for number in range(count)]
+    free = pinned.line("/track/method0")
+    assert lines[0] == pytest.approx(free, abs=LINE_WIDTH), "on the map too"
+    assert lines[2] and lines[2] != pytest.approx(pinned.line("/track/method2"), abs=1e-3)
     for tab in ("Frequency", "Poles", "Step"):
         pinned.tab(tab)
         assert set(methods) <= {trace["name"] for trace in pinned.plotly()}, tab

@@ -54,6 +54,8 @@ def test_units_of_plots_and_table_follow_the_choice(reading: Bench) -> None:
     reading.tab("Metrics")
     row = reading.page.locator(".sb-table tr", has_text="velocity δVE").first
     row.get_by_text("kn", exact=True).wait_for()
+    instruments = reading.page.locator("#sb-stage .sb-readout tr")
+    instruments.filter(has_text="position").get_by_text("nmi").wait_for()
     assert reading.faults == []
 
 

@@ -103,6 +103,8 @@ def test_instruments_and_bar_fit_the_view(moving: Bench) -> None:
             pairs = [(a, b) for i, a in enumerate(names) for b in names[i + 1 :]]
             assert not [pair for pair in pairs if overlap(boxes[pair[0]], boxes[pair[1]])], size
             assert boxes[".sb-bar"][3] - boxes[".sb-bar"][1] < 110, size
+            both = moving.page.locator("#sb-stage [data-shows][aria-pressed=true]").count()
+            assert both == (2 if size == SIZES[0] else 1), "a small view has room for one instrument"
     finally:
         resize(moving, SIZES[0])
     assert now(moving)["span"] > 0.0

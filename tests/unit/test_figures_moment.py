@@ -11,6 +11,7 @@ import pytest
 
 from app.figures.moment import moment, readout_html, row_at
 from app.figures.pendulum import pendulum, pendulum_svg
+from app.session.display import Display
 from navcore.mechanization.recorder import PHI_E, PHI_N, PHI_U
 from navcore.motion.base import HEADING, VE, VN
 from navcore.units import ARCMIN, DEG
@@ -79,6 +80,10 @@ def test_the_readout_has_units_and_names_the_method() -> None:
     run = diverging(moving_run(), 0, rows=1000)
     html = readout_html(moment(run, float(run.t_s[-1])), 0)
     assert run.methods[0].method.name in html and "(ended)" in html
+    asked = Display(angle="deg", speed="m/s", length="nmi")
+    other = readout_html(moment(run, float(run.t_s[-1])), 0, asked)
+    assert re.search(r"speed</th><td>[\d.]+ m/s</td><td>[\d.]+ m/s</td><td>.* m/s</td>", other)
+    assert re.search(r"position</th>.* nmi</td></tr>", other) and "arc" not in other
     for row in ("heading", "pitch", "roll", "speed", "position"):
         cells = re.search(rf"{row}</th>(.*?)</tr>", html)[1]
         assert re.search(r"\d ?(°|arcsec|arcmin|deg|kn|m|km|nmi|m/s)<", cells), row

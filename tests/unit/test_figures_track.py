@@ -8,8 +8,9 @@ import pytest
 
 from app.figures.graticule import LocalMap, angle_text, graticule, round_down, round_up, scale_bar
 from app.figures.ship import ship_parts
-from app.figures.style import method_rgb
+from app.figures.style import method_rgb, rgb
 from app.figures.track import HALF_WIDTH, attitude_quaternions, track
+from app.session.pins import Pin
 from navcore.earth import WGS84, attitude_matrix
 from navcore.mechanization.recorder import D_LAT, D_LON
 from navcore.motion.base import LAT, LON
@@ -219,3 +220,25 @@ def _box_centre(part, corners: np.ndarray) -> np.ndarray:
         return middle
     boxes = part.vertices.reshape(-1, 8, 3).mean(axis=1)
     return boxes[part.faces[:, 0] // 8]
+
+
+class TestPinned:
+    def test_a_pinned_run_lies_where_its_errors_are_on_the_present_way(self) -> None:
+        run = moving_run()
+        pin = Pin(1, "before", "", "magenta", True, run.scenario, "", run)
+        scene, alone = track(run, exaggeration=2.0, pins=[pin]), track(run, exaggeration=2.0)
+        assert [other.label for other in scene.pinned] == [f"before: {m.method.name}" for m in run.methods]
+        for other, own in zip(scene.pinned, scene.methods, strict=True):
+            np.testing.assert_allclose(other.segments, own.drawn(), atol=1e-5)
+            assert other.color == rgb(pin.hex)
+        np.testing.assert_allclose(scene.methods[1].points, alone.methods[1].points, atol=1e-6)
+
+    def test_a_shorter_and_larger_one_fits_the_map_and_stays_on_it(self) -> None:
+        run = moving_run()
+        longer = replace(
+            run, methods=tuple(replace(m, rows=3.0 * m.rows[:50], t_s=m.t_s[:50]) for m in run.methods)
+        )
+        scene = track(run, exaggeration=20.0, pins=[Pin(1, "a", "", "black", True, run.scenario, "", longer)])
+        for other in scene.pinned:
+            assert np.max(np.abs(other.segments[..., :2])) <= HALF_WIDTH
+            assert np.linalg.norm(other.segments[-1, 1] - scene.methods[0].points[-1]) > 0.1
