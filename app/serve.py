@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from app.page.page import Page
     from app.session.sessions import Sessions
 
-_SCRIPTS = ("marks", "page", "commands", "playback", "learn", "access", "pick", "cursor", "export")
+_SCRIPTS = ("widgets", "marks", "page", "commands", "playback", "learn", "access", "pick", "cursor", "export")
 PAGE_SCRIPTS = [Path(__file__).parent / "static" / f"{name}.js" for name in _SCRIPTS]
 _log = logging.getLogger("schuler.serve")
 

@@ -117,6 +117,11 @@ class History:
         del self._steps[self._at + 1 :]
         if not name and fields and fields == dragged and now - last_s < DRAG_S:
             start = self._steps[self._at - 1].state
+            if start.scenario == state.scenario and start.origin == state.origin:
+                self._at -= 1  # dragged back to where it was
+                del self._steps[self._at + 1 :]
+                self._replace(state)
+                return
             self._steps[self._at] = _Step(state, change_name(start, state))
             return
         self._steps.append(_Step(state, name or change_name(before, state)))

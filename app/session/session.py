@@ -189,7 +189,7 @@ class Session:
                 return False
             opened = self.opened if origin is None else scenario
             state = State(scenario, origin or self.origin, self.selected, opened)
-            self.history.push(state, name)
+            self.history.push(state, name or ("" if origin is None else f"open {origin}"))
             self._go_to(state, by, opens=origin is not None)
             return True
 

@@ -7,7 +7,6 @@
   const SPACING_MS = 60;
   const REPEAT_MS = 250;
   const AFTER_INPUT_MS = 300;
-  const setter = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set;
   let count = 0;
   let waiting = [];
   let timer = 0;
@@ -18,26 +17,18 @@
     addEventListener(kind, (event) => (kind !== "pointermove" || event.buttons) && (moved = performance.now()), true);
   }
 
-  function box() {
-    for (const label of document.getElementsByTagName("label")) {
-      if (label.textContent === LABEL) return label.closest(".mantine-Flex-root")?.querySelector("input") ?? null;
-    }
-    return null;
-  }
-
   function send() {
     timer = 0;
     const heard = Number(document.getElementById("sb-told")?.dataset.count ?? 0);
     waiting = waiting.filter(({ asked }) => asked[0] > heard);
     if (waiting.length === 0) return;
     timer = setTimeout(send, REPEAT_MS);
-    const input = box();
+    const input = window.schuler.box(LABEL);
     const busy = performance.now() - moved < AFTER_INPUT_MS;
     const ready = waiting.filter(({ gives }) => !(gives && busy));
     if (input === null || ready.length === 0) return;
     const text = JSON.stringify(ready.slice(0, 50).map(({ asked }) => asked));
-    setter.call(input, input.value === text ? `${text} ` : text);
-    input.dispatchEvent(new Event("input", { bubbles: true }));
+    window.schuler.write(input, text);
     sent = performance.now();
   }
 
@@ -48,14 +39,14 @@
     timer = setTimeout(send, Math.max(0, sent + SPACING_MS - performance.now()));
   }
 
-  window.schuler = {
+  Object.assign(window.schuler, {
     // Every one of these is carried out, in order.
     command: (name, ...words) => ask(name, words),
     // Of these, for what changes continuously, one that is not yet sent gives way to the next of its name.
     stream: (name, ...words) => ask(name, words, { onlyLatest: true }),
     // What the page says by itself: it waits too while the user moves something, whose value it would displace.
     report: (name, ...words) => ask(name, words, { onlyLatest: true, gives: true }),
-  };
+  });
 
   addEventListener("click", (event) => {
     const asked = event.target instanceof Element && event.target.closest("[data-command]");
@@ -94,10 +85,9 @@
 
   // ------------------------------------------------------------ what the server asks the page for
 
-  // viser's tabs react to a pointer's whole way, or to a key; a click alone does nothing.
   function openTab(name) {
-    const tab = [...document.querySelectorAll('[role="tab"]')].find((candidate) => candidate.textContent === name);
-    tab?.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true, cancelable: true }));
+    const tab = window.schuler.tab(name);
+    window.schuler.open(tab);
     tab?.focus();
   }
 

@@ -45,7 +45,7 @@
   function tell(chart) {
     if (!chart.over.matches(":hover") || chart.cursor.left < 0 || playing()) return;
     const time = chart.posToVal(chart.cursor.left, "x") * (SECONDS[unit(chart.series[0].label)] ?? 1);
-    if (Number.isFinite(time)) window.schuler?.stream("seek", Math.max(time, 0).toFixed(1));
+    if (Number.isFinite(time)) window.schuler.stream("seek", Math.max(time, 0).toFixed(1));
   }
 
   function watch() {

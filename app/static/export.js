@@ -6,7 +6,7 @@
     const plots = [...document.querySelectorAll(".js-plotly-plot")];
     const plot = plots.find((each) => each._fullLayout?.meta?.view === wanted.view && each.offsetParent !== null);
     if (plot === undefined) {
-      window.schuler?.command("unsaved", wanted.view);
+      window.schuler.command("unsaved", wanted.view);
       return;
     }
     const box = plot.getBoundingClientRect();

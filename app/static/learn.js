@@ -34,18 +34,12 @@
     // The tab in which a newly chosen scenario opens comes first (page.js).
     const focus = document.getElementById("sb-focus")?.dataset.scenario;
     if (focus && document.documentElement.dataset.opened !== focus) return;
-    const tabs = [...document.querySelectorAll('[role="tab"]')];
-    const found = wanted.tabs.split("|").map((name) => tabs.find((tab) => tab.textContent === name));
+    const found = wanted.tabs.split("|").map(window.schuler.tab);
     // A tab may still have to come with the run.
     if (found.includes(undefined) && ++tries < 60) return;
     fronted = document.documentElement.dataset.fronted = wanted.count;
     tries = 0;
-    for (const tab of found) {
-      if (tab && tab.getAttribute("aria-selected") !== "true") {
-        tab.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true, cancelable: true }));
-        tab.dispatchEvent(new KeyboardEvent("keyup", { key: "Enter", bubbles: true }));
-      }
-    }
+    found.forEach(window.schuler.open);
   }
 
   setInterval(bringToFront, 150);

@@ -54,7 +54,7 @@
       const words = found.map((value) => value.toPrecision(6));
       waiting = setTimeout(() => {
         waiting = 0;
-        window.schuler?.command("place", ...words);
+        window.schuler.command("place", ...words);
       }, DOUBLE_MS);
     },
     true,

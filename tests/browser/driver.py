@@ -17,10 +17,12 @@ if TYPE_CHECKING:
 THROTTLE_MS = 80
 """The page sends one value in 50 ms, whichever control it comes from."""
 
-_UPDATED_AND_GONE = "Tried to update non-existent component"
-"""viser's page removes at once what is removed, but changes what is changed at the end of a frame: a plot
-that was changed and then removed within one frame, when the page is behind, is reported so. Nothing is
-lost."""
+_GONE = ("Tried to update non-existent component", "_redrawFromAutoMarginCount")
+"""What viser and plotly say of a plot that goes while it is drawn; nothing is lost.
+
+viser's page removes at once what is removed, but changes what is changed at the end of a frame: a plot that was
+changed and then removed within one frame, when the page is behind, is reported so. And plotly goes on laying
+out a plot in several steps, whether or not it is still there."""
 
 _UP_TO_DATE = """() => {
   const plots = [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null);
@@ -77,11 +79,11 @@ class Bench:
         self.url = url
         self.sessions = sessions
         self.faults: list[str] = []
-        page.on("pageerror", lambda error: self.faults.append(str(error)))
+        page.on("pageerror", lambda error: self._note(str(error)))
         page.on("console", lambda m: self._note(m.text) if m.type == "error" else None)
 
     def _note(self, text: str) -> None:
-        if not text.startswith(_UPDATED_AND_GONE):
+        if not any(gone in text for gone in _GONE):
             self.faults.append(text)
 
     def open(self, path: str = "", query: str = "?fixedDpr=0.25") -> Bench:

@@ -54,6 +54,21 @@ def test_a_drag_is_one_step():
     assert history.undo() is None
 
 
+def test_a_drag_that_ends_where_it_began_is_no_step():
+    clock = Clock()
+    history = History(FIRST, clock)
+    longer = changed(FIRST, "run.duration_h=9")
+    history.push(longer)
+    clock.now += 2.0
+    for seed in (8, 7):
+        history.push(changed(FIRST, "run.duration_h=9", f"run.seed={seed}"))
+        clock.now += 0.3
+    history.push(longer)
+    assert (history.undo_name, history.redo_name) == ("run.duration_h: 4 → 9", None)
+    assert history.undo() == FIRST
+    assert history.redo() == longer
+
+
 def test_selecting_another_method_is_no_step():
     history = History(FIRST, Clock())
     history.push(State(FIRST.scenario, FIRST.origin, 2, FIRST.opened))

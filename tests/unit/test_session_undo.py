@@ -165,3 +165,13 @@ def test_one_page_presents_at_a_time_and_its_leaving_frees_the_others(made: Sess
     made.present(one)
     made.attach(late)
     assert late.told == ["presenter_changed"]
+
+
+def test_opening_the_same_preset_again_is_a_step_of_its_own(made: Session) -> None:
+    opened = made.scenario
+    made.change(edits.with_value(opened, ("run", "duration_h"), 7.0), None)
+    made.change(opened, None, origin=made.origin)
+    assert made.history.undo_name == f"open {made.origin}"
+    made.change(edits.with_value(opened, ("run", "duration_h"), 7.0), None)  # at once, on the same field
+    assert made.undo()
+    assert made.scenario == opened
