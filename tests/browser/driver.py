@@ -20,9 +20,10 @@ THROTTLE_MS = 80
 _GONE = ("Tried to update non-existent component", "_redrawFromAutoMarginCount")
 """What viser and plotly say of a plot that goes while it is drawn; nothing is lost.
 
-viser's page removes at once what is removed, but changes what is changed at the end of a frame: a plot that was
-changed and then removed within one frame, when the page is behind, is reported so. And plotly goes on laying
-out a plot in several steps, whether or not it is still there."""
+viser's page removes at once what is removed, but changes what is changed at the end of a frame: a plot that
+was changed and then removed within one frame, when the page is behind, is reported so. And plotly goes on
+laying out a plot in several steps, whether or not it is still there.
+"""
 
 _UP_TO_DATE = """() => {
   const plots = [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null);
