@@ -21,7 +21,7 @@ from navcore.mechanization.recorder import PHI_E, PHI_N
 from navcore.run import MethodRun, Run
 from navcore.units import DEG
 
-WIDTH, HEIGHT = 296, 150
+WIDTH, HEIGHT = 296, 134
 _WIDEST = 30.0 * DEG
 """The largest tilt of a run is drawn about this large."""
 _FACTORS = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)

@@ -23,7 +23,7 @@ COLORS: dict[str, str] = {
     "brown": "#795548",
     "petrol": "#00697A",
     "violet": "#5E35B1",
-    "slate": "#607D8B",
+    "slate": "#546E7A",
     "moss": "#5B7F00",
     "rust": "#A63C00",
 }

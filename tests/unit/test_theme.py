@@ -12,6 +12,7 @@ import app
 from app.figures import style
 from app.figures.style import METHOD_COLORS
 from app.page import notices, theme
+from app.session.pins import COLORS
 
 WHITE = "#FFFFFF"
 BOTH = pytest.mark.parametrize("shown", ["light", "dark"])
@@ -20,6 +21,12 @@ STATIC = Path(app.__file__).parent / "static"
 
 def ratio(color: str, ground: str, shown: theme.Theme) -> float:
     return theme.contrast(theme.shown(color, shown), theme.shown(ground, shown))
+
+
+@BOTH
+@pytest.mark.parametrize("color", COLORS.values(), ids=COLORS)
+def test_the_banner_of_a_flipped_pin_is_readable(color: str, shown: theme.Theme) -> None:
+    assert ratio(WHITE, color, shown) >= theme.LEAST_TEXT
 
 
 @BOTH
