@@ -15,7 +15,7 @@ endif
 
 KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
-.PHONY: help setup run test check format unit paint accuracy benchmarks papers guide lock clean REMAKE
+.PHONY: help setup run test check format unit paint tour accuracy benchmarks papers guide lock clean REMAKE
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'
