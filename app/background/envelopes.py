@@ -101,18 +101,15 @@ class Envelopes:
         return self._worker.wait_idle(timeout_s)
 
     def _work(self, scenario: Scenario, watch: Watch) -> None:
-        def given_up() -> bool:
-            return watch.stop_asked.is_set() or watch.superseded()
-
         while watch.elapsed_s < self._still_s:
-            if given_up():
+            if watch.unwanted():
                 return
             time.sleep(_TICK_S)
         runs: list[Run] = []
         try:
             for number in range(1, SEEDS + 1):
-                run = self._simulate(with_seed(scenario, scenario.run.seed + number), _silent, given_up)
-                if given_up() or run.status == "stopped":
+                run = self._simulate(with_seed(scenario, scenario.run.seed + number), _silent, watch.unwanted)
+                if watch.unwanted() or run.status == "stopped":
                     return
                 runs.append(few_rows(run, 2))
                 with self._lock:

@@ -79,17 +79,14 @@ class Explainer:
         return self._worker.wait_idle(timeout_s)
 
     def _work(self, run: Run, watch: Watch) -> None:
-        def given_up() -> bool:
-            return watch.stop_asked.is_set() or watch.superseded()
-
         while watch.elapsed_s < STILL_S:
-            if watch.stop_asked.wait(0.05) or given_up():
+            if watch.stop_asked.wait(0.05) or watch.unwanted():
                 return
         last_s = STILL_S + _REPORT_AFTER_S - _REPORT_EVERY_S
 
         def progress(fraction: float) -> None:
             nonlocal last_s
-            if watch.elapsed_s - last_s >= _REPORT_EVERY_S and not given_up():
+            if watch.elapsed_s - last_s >= _REPORT_EVERY_S and not watch.unwanted():
                 last_s = watch.elapsed_s
                 with self._lock:
                     self.fraction = fraction
@@ -97,7 +94,7 @@ class Explainer:
 
         result = None
         try:
-            result = self._find(run, progress, given_up)
+            result = self._find(run, progress, watch.unwanted)
         except Exception:
             _log.exception("a run could not be explained")
         with self._lock:

@@ -40,6 +40,10 @@ class Watch:
         """Whether the result is no longer wanted."""
         return self._newer_waits()
 
+    def unwanted(self) -> bool:
+        """Whether to stop at once: asked by the user, or superseded."""
+        return self.stop_asked.is_set() or self.superseded()
+
     def cancelled(self) -> bool:
         """Whether to stop now: asked by the user, or superseded and not about to end."""
         return self.stop_asked.is_set() or (self.elapsed_s > SUPERSEDE_AFTER_S and self.superseded())

@@ -6,16 +6,10 @@
   const LABEL = "page command";
   const SPACING_MS = 60;
   const REPEAT_MS = 250;
-  const AFTER_INPUT_MS = 300;
   let count = 0;
   let waiting = [];
   let timer = 0;
   let sent = 0;
-  let moved = -Infinity;
-
-  for (const kind of ["pointerdown", "pointermove", "keydown", "wheel"]) {
-    addEventListener(kind, (event) => (kind !== "pointermove" || event.buttons) && (moved = performance.now()), true);
-  }
 
   function send() {
     timer = 0;
@@ -24,17 +18,19 @@
     if (waiting.length === 0) return;
     timer = setTimeout(send, REPEAT_MS);
     const input = window.schuler.box(LABEL);
-    const busy = performance.now() - moved < AFTER_INPUT_MS;
-    const ready = waiting.filter(({ gives }) => !(gives && busy));
-    if (input === null || ready.length === 0) return;
-    const text = JSON.stringify(ready.slice(0, 50).map(({ asked }) => asked));
+    // While the user moves something, only what is new and asked for is worth displacing a value of theirs.
+    const busy = window.schuler.busy();
+    const ready = waiting.filter(({ gives }) => !(gives && busy)).slice(0, 50);
+    if (input === null || ready.length === 0 || (busy && ready.every(({ told }) => told))) return;
+    const text = JSON.stringify(ready.map(({ asked }) => asked));
+    for (const one of ready) one.told = true;
     window.schuler.write(input, text);
     sent = performance.now();
   }
 
   function ask(name, words, { onlyLatest = false, gives = false } = {}) {
     if (onlyLatest) waiting = waiting.filter(({ asked }) => asked[1] !== name);
-    waiting.push({ asked: [++count, name, words.join(" ")], gives });
+    waiting.push({ asked: [++count, name, words.join(" ")], gives, told: false });
     clearTimeout(timer);
     timer = setTimeout(send, Math.max(0, sent + SPACING_MS - performance.now()));
   }

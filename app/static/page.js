@@ -42,7 +42,7 @@
   addEventListener("resize", () => soon(150));
   addEventListener("click", () => soon(), true);
   addEventListener("keyup", (event) => event.target instanceof Element && event.target.closest('[role="tab"]') && soon());
-  setInterval(report, 1000);
+  setInterval(() => window.schuler.busy() || report(), 1000);
   const started = setInterval(() => {
     if (window.schuler.box(LABEL) === null) return;
     clearInterval(started);

@@ -2,7 +2,17 @@
 (() => {
   const setter = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set;
 
+  const AFTER_INPUT_MS = 300;
+  let moved = -Infinity;
+
+  for (const kind of ["pointerdown", "pointermove", "keydown", "wheel"]) {
+    addEventListener(kind, (event) => (kind !== "pointermove" || event.buttons) && (moved = performance.now()), true);
+  }
+
   window.schuler = {
+    // Whether the user is just moving something: whatever we write then may displace their value.
+    busy: () => performance.now() - moved < AFTER_INPUT_MS,
+
     // The text box with this label, null while there is none.
     box(label) {
       for (const found of document.getElementsByTagName("label")) {

@@ -222,7 +222,7 @@ def test_another_scenario_drops_the_verification_and_the_last_page_stops_it(
 ) -> None:
     made, page = work
     monkeypatch.setattr(made.verifier, "result", answer(made.scenario))
-    monkeypatch.setattr(made.verifier, "scenario", made.scenario)
+    monkeypatch.setattr(made.verifier, "asked", made.scenario)
     assert made.verifier.beside(made.scenario) is not None
     made.change(edits.with_value(made.scenario, DURATION, 2.0), page)
     assert made.verifier.beside(made.scenario).old
