@@ -6,6 +6,8 @@ import json
 import re
 from typing import TYPE_CHECKING, Any
 
+from playwright.sync_api import TimeoutError as PlaywrightTimeout
+
 from navcore.scenario_file import load
 
 if TYPE_CHECKING:
@@ -182,9 +184,16 @@ class Bench:
 
     def wait_for_run(self, after: int) -> None:
         """Wait until a later run is shown."""
-        self.page.wait_for_function(
-            "n => Number(document.querySelector('#sb-run').dataset.run) > n", arg=after, timeout=20_000
-        )
+        later = "n => Number(document.querySelector('#sb-run').dataset.run) > n"
+        try:
+            self.page.wait_for_function(later, arg=after, timeout=20_000)
+        except PlaywrightTimeout:
+            focus = self.page.evaluate("() => document.activeElement.outerHTML.slice(0, 300)")
+            shown, made = self.run, self.session.run_number
+            raise AssertionError(
+                f"no run after {after}: shown {shown}, made {made}, {self.status!r}; focus {focus}; "
+                f"{self.faults}"
+            ) from None
 
     def reset(self, preset: str, selected: int = 0) -> None:
         """Let the visitor's session begin anew with a preset, without a click."""
