@@ -24,6 +24,9 @@ _PASSING_S = 0.25
 _BURST_OVER_S = 0.6
 """After this long without an event the server's values are shown again: the browser drops some while several
 controls move at once."""
+_HAND_OFF_S = 2.0
+"""The same for the widget that was moved last: a step that its user makes just then would be counted from the
+value that is shown again, and be lost."""
 
 
 class Editor:
@@ -132,17 +135,29 @@ class Editor:
         self.moved = control
         if self._quiet is not None:
             self._quiet.cancel()
-        self._quiet = _timer(_BURST_OVER_S, self._burst_over)
+        self._quiet = _timer(_BURST_OVER_S, self._burst_over, control)
         self._quiet.start()
 
-    def _burst_over(self) -> None:
+    def _burst_over(self, last: Control) -> None:
         with self._session.lock, self._client.atomic():
-            if self._closed:
-                return
+            if self._closed or self._quiet is not threading.current_thread():
+                return  # something has been moved again
             for control in self._controls():
-                for id in control.ids(but_box=control is self.moved):
-                    show_held_value(self._client._viser_server, self._client.client_id, id)
+                self._show_held(control.ids(but_moved=control is last))
+            self._quiet = _timer(_HAND_OFF_S - _BURST_OVER_S, self._hand_off, last)
+            self._quiet.start()
         self._client.flush()
+
+    def _hand_off(self, last: Control) -> None:
+        with self._session.lock, self._client.atomic():
+            if self._closed or last.removed or self._quiet is not threading.current_thread():
+                return
+            self._show_held(last.ids(but_box=True))
+        self._client.flush()
+
+    def _show_held(self, ids: Iterable[str]) -> None:
+        for id in ids:
+            show_held_value(self._client._viser_server, self._client.client_id, id)
 
 
 def _timer(delay_s: float, act: Callable[..., None], *arguments: Any) -> threading.Timer:
