@@ -15,7 +15,7 @@ endif
 
 KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
-.PHONY: help setup run test check format unit paint accuracy benchmarks papers guide lock clean REMAKE
+.PHONY: help setup run test check format unit paint tour accuracy benchmarks papers guide lock clean REMAKE
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'
@@ -27,6 +27,7 @@ help:
 	@echo 'make papers   run the presets of the five papers and write docs/papers.md with its pictures anew'
 	@echo 'make paint    time from a slider step to the last paint of it in Chromium'
 	@echo 'make accuracy  what the strapdown engine is accurate to, figure by figure'
+	@echo 'make tour     film the README pictures in Chromium: docs/tour.webp, docs/dashboard.png'
 	@echo 'make format   lay the code out'
 	@echo 'make guide    write docs/scenario.md and the JSON Schema anew from the parameter models'
 	@echo 'make lock     resolve the locked requirements again (UPGRADE=--upgrade: to the newest versions)'
@@ -46,6 +47,9 @@ check: $(STAMPS)/test
 
 paint: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.browser.last_paint
+
+tour: setup $(STAMPS)/test
+	@$(BIN)/python -m tests.browser.tour
 
 unit: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.stages unit

@@ -13,26 +13,35 @@ if TYPE_CHECKING:
     import viser
 
     from app.http.server import DashboardServer
-    from app.page import Page
-    from app.session import Sessions
+    from app.page.page import Page
+    from app.session.sessions import Sessions
 
-PAGE_SCRIPT = Path(__file__).parent / "static" / "page.js"
+_SCRIPTS = ("widgets", "marks", "page", "commands", "playback", "learn", "access", "pick", "cursor", "export")
+PAGE_SCRIPTS = [Path(__file__).parent / "static" / f"{name}.js" for name in _SCRIPTS]
 _log = logging.getLogger("schuler.serve")
 
 
 class Dashboard:
-    """Gives every browser that opens the page its `app.page.Page`."""
+    """Gives every browser that opens the page its `app.page.page.Page`.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    state : Path or None
+        Folder in which sessions outlive the server; None: they do not.
+    """
+
+    def __init__(self, state: Path | None = None) -> None:
+        self._state = state
         self._pages: dict[int, Page] = {}
         self._lock = threading.Lock()
 
     @cached_property
     def sessions(self) -> Sessions:
         """All sessions; made with the first page."""
-        from app.session import Sessions
+        from app.session.sessions import Sessions
+        from app.session.store import open_store
 
-        return Sessions()
+        return Sessions(store=None if self._state is None else open_store(self._state))
 
     def warm_up(self) -> threading.Thread:
         """Import what a page needs and load the compiled kernels, in the background."""
@@ -42,8 +51,8 @@ class Dashboard:
 
     def _warm_up(self) -> None:
         try:
-            import app.page  # noqa: F401
-            from app.session import first_scenario
+            import app.page.page  # noqa: F401
+            from app.session.sessions import first_scenario
             from navcore.simulation import simulate
 
             simulate(first_scenario()[0])
@@ -52,11 +61,11 @@ class Dashboard:
 
     def on_connect(self, client: viser.ClientHandle, session_id: str) -> None:
         """Build the page of a browser."""
-        from app.page import Page
+        from app.page.page import Page
 
         with self._lock:
-            session = self.sessions.get(session_id)
-        page = Page(client, session)
+            sessions = self.sessions
+        page = Page(client, sessions.get(session_id))
         with self._lock:
             self._pages[client.client_id] = page
 
@@ -69,8 +78,9 @@ class Dashboard:
             page.close()
 
     def close(self) -> None:
-        """End all sessions and remove what was uploaded."""
-        self.sessions.close()
+        """End all sessions and remove what was uploaded and is not kept."""
+        if "sessions" in self.__dict__:  # made with the first page
+            self.sessions.close()
 
 
 def open_dashboard(
@@ -79,8 +89,16 @@ def open_dashboard(
     *,
     token: str | None = None,
     allow_origins: Iterable[str] = (),
+    state: Path | None = None,
 ) -> tuple[DashboardServer, Dashboard]:
     """Start the dashboard and return at once.
+
+    Parameters
+    ----------
+    host, port, token, allow_origins
+        See `app.http.server.start`.
+    state
+        See `Dashboard`.
 
     Raises
     ------
@@ -89,7 +107,7 @@ def open_dashboard(
     """
     from app.http.server import start
 
-    dashboard = Dashboard()
+    dashboard = Dashboard(state)
     server = start(
         host,
         port,
@@ -97,7 +115,7 @@ def open_dashboard(
         allow_origins=allow_origins,
         on_connect=dashboard.on_connect,
         on_disconnect=dashboard.on_disconnect,
-        page_scripts=[PAGE_SCRIPT],
+        page_scripts=PAGE_SCRIPTS,
     )
     # No axes cross in the middle of the map; they belong to the server's scene.
     server.viser.scene.world_axes.visible = False
@@ -127,7 +145,10 @@ def serve(
     InputError
         The address cannot be served.
     """
-    server, dashboard = open_dashboard(host, port, token=token, allow_origins=allow_origins)
+    from app.session.store import default_folder
+
+    state = default_folder()
+    server, dashboard = open_dashboard(host, port, token=token, allow_origins=allow_origins, state=state)
     print(f"Schuler Bench: {server.url}  (Ctrl+C ends it)", flush=True)
     if open_browser:
         import webbrowser

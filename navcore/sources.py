@@ -75,19 +75,20 @@ class Apart:
     contributions: tuple[Contribution, ...]
     whole: np.ndarray
 
-    def shares(self, quantity: str) -> list[tuple[str, float]]:
-        """Share of each source in the mean square of a quantity, largest first; they need not add up to 1.
+    def shares(self, *quantities: str) -> list[tuple[str, float]]:
+        """Share of each source in the sum of the mean squares of all sources, largest first.
 
         Parameters
         ----------
-        quantity : str
-            One of `navcore.mechanization.recorder.NAMES`.
+        *quantities : str
+            Of `navcore.mechanization.recorder.NAMES`, in one unit: their mean squares are added.
         """
-        column = NAMES.index(quantity)
-        total = float(np.sum([c.rms[column] ** 2 for c in self.contributions]))
-        if total == 0.0:
+        columns = [NAMES.index(quantity) for quantity in quantities]
+        squares = [float(np.sum(c.rms[columns] ** 2)) for c in self.contributions]
+        total = sum(squares)
+        if not total > 0.0:
             return []
-        shares = [(c.source, float(c.rms[column] ** 2 / total)) for c in self.contributions]
+        shares = [(c.source, part / total) for c, part in zip(self.contributions, squares, strict=True)]
         return sorted(shares, key=lambda share: -share[1])
 
 
@@ -184,6 +185,8 @@ def apart(
             break
         runs.append((name, simulate(only(scenario, name), cancelled=cancelled)))
         progress((index + 1) / len(names))
+    if cancelled():  # the last one may have been stopped half-way
+        runs = runs[:-1]
     return tuple(
         Apart(
             method=method.method.name,

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import atexit
 import os
+import shutil
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -27,6 +30,9 @@ def pytest_configure() -> None:
     """Let all workers, and what a test starts with another HOME, use the kernels already compiled."""
     os.environ.setdefault("SCHULER_CACHE_DIR", str(cache_folder().parent))
     os.environ.setdefault("MPLBACKEND", "Agg")
+    # What a dashboard that a test starts keeps is not the user's.
+    os.environ["XDG_STATE_HOME"] = tempfile.mkdtemp(prefix="schuler-tests-")
+    atexit.register(shutil.rmtree, os.environ["XDG_STATE_HOME"], ignore_errors=True)
 
 
 @pytest.fixture(scope="session")

@@ -50,7 +50,7 @@ STAGES = {
     ],
     "container": ["tests/docker"],
     "attack": ["tests/attack"],
-    "browser": ["tests/browser"],
+    "browser": ["tests/browser", "-n2", "--dist=loadfile"],
 }
 
 

@@ -8,6 +8,7 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from types import TracebackType
@@ -50,8 +51,13 @@ class Server:
     def __enter__(self) -> Self:
         words = [sys.executable, "-m", "app", "serve", "--port", str(self.port)]
         began = time.perf_counter()
+        # What the timed visitor did is not kept among the user's sessions.
+        self._state = tempfile.TemporaryDirectory(prefix="schuler-bench-")
         self._process = subprocess.Popen(
-            words, env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL
+            words,
+            env=environment() | {"XDG_STATE_HOME": self._state.name},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
         )
         try:
             self._wait_for_page()
@@ -113,3 +119,4 @@ class Server:
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
+        self._state.cleanup()

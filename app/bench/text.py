@@ -27,6 +27,8 @@ _ROWS = {
     "strapdown_24h_100hz_mb": ("highest memory of that process", "MiB", "400"),
     "slider_to_frame_ms_p50": ("slider to last byte of the figures, 24 h, 3 methods: median", "ms", ""),
     "slider_to_frame_ms_p95": ("95th percentile", "ms", "100"),
+    "slider_all_views_ms_p50": ("the same, every view in front and 2 pinned runs: median", "ms", ""),
+    "slider_all_views_ms_p95": ("95th percentile", "ms", "100"),
     "startup_s": ("process start to page served", "s", "1.5"),
     "rss_mb": ("memory of the server after that", "MiB", ""),
 }

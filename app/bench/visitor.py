@@ -23,7 +23,7 @@ _CAMERA = {
     "up_direction": [0, 0, 1],
 }
 PAGE_STATE = "page state"
-"""Label of the control through which a browser reports its size and front tabs (app.page)."""
+"""Label of the control through which a browser reports its size and front tabs (app.page.page)."""
 
 
 class Visitor:

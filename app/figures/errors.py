@@ -3,14 +3,26 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
 
 import numpy as np
 
 from app.figures import style
-from app.figures.units import Unit, angle_unit, length_unit, speed_unit, time_unit
+from app.figures.compare import PIN_WIDTH, Pinned, pinned_methods
+from app.figures.envelope import Envelope
+from app.figures.units import (
+    AUTO,
+    Unit,
+    angle_unit,
+    length_unit,
+    scaled_unit,
+    speed_unit,
+    time_unit,
+)
 from app.figures.uplot import LABEL_SIZE, Y_SIZE, Dash, UplotFigure
+from app.session.display import Display
 from navcore.mechanization.recorder import (
     D_LAT,
     D_LON,
@@ -34,6 +46,10 @@ _FAINT = "66"
 
 _TILT, _HEADING, _SPEED, _LENGTH = "tilt", "heading", "speed", "length"
 _CHOOSERS = {_TILT: angle_unit, _HEADING: angle_unit, _SPEED: speed_unit, _LENGTH: length_unit}
+_LIMIT_DASH: Dash = (12, 5)
+_FEWEST_DECADES, _MOST_DECADES = 3, 8
+_BAND = "2E"
+"""Opacity of an envelope, as colours carry it."""
 
 # key -> column of the recorder, symbol on the axis, title, family that shares one unit
 _QUANTITIES: dict[str, tuple[int, str, str, str]] = {
@@ -46,6 +62,9 @@ _QUANTITIES: dict[str, tuple[int, str, str, str]] = {
     "dlon": (D_LON, "δLon", "Longitude error", _LENGTH),
     "position": (POSITION, "position", "Position error", _LENGTH),
 }
+
+QUANTITIES = {key: title for key, (_, _, title, _) in _QUANTITIES.items()}
+"""Titles of the plots of `error_plots` by key."""
 
 GROUPS: dict[str, tuple[str, ...]] = {
     "Overview": ("phi_e", "phi_n", "dve", "dvn", "position"),
@@ -72,7 +91,33 @@ class Overlay:
     old: bool
 
 
-def error_plots(run: Run, overlay: Overlay | None = None) -> dict[str, UplotFigure]:
+@dataclass(frozen=True)
+class _Line:
+    """One method's curves in all plots.
+
+    Attributes
+    ----------
+    own : bool
+        It is one of the run's own methods, whose times all curves share.
+    """
+
+    method: MethodRun
+    name: str
+    color: str
+    dash: Dash
+    width: float
+    own: bool
+
+
+def error_plots(
+    run: Run,
+    overlay: Overlay | None = None,
+    *,
+    display: Display | None = None,
+    pins: Sequence[Pinned] = (),
+    envelope: Envelope | None = None,
+    limits: Mapping[str, float] | None = None,
+) -> dict[str, UplotFigure]:
     """Error curves of all methods: phi_e, phi_n, phi_u, dve, dvn, dlat, dlon, position.
 
     Quantities of one family (the tilts, the velocities, the positions) share one unit, so that plots above
@@ -84,40 +129,126 @@ def error_plots(run: Run, overlay: Overlay | None = None) -> dict[str, UplotFigu
         Result.
     overlay : Overlay, optional
         The same methods as full strapdown, drawn dashed in the same colours.
+    display : Display, optional
+        Units, and whether the axis is logarithmic: then the magnitudes of the errors are drawn.
+    pins : sequence of Pinned
+        Runs to lay over: thinner, each in its colour, a dash for each method.
+    envelope : Envelope, optional
+        Filled bands behind the run's own curves.
+    limits : mapping, optional
+        Key -> largest allowed magnitude (SI), drawn as dashed lines.
     """
+    shown = display or Display()
     longest = _time_axis(run)
-    unit_of_time = time_unit(float(longest[-1]) if len(longest) else 0.0)
+    unit_of_time = time_unit(float(longest[-1]) if len(longest) else 0.0, shown.time)
     time = np.ascontiguousarray(longest / unit_of_time.si)
-    over = () if overlay is None else overlay.run.methods
-    both = [*run.methods, *over]
-    deciding = [m for m in both if m.status != "diverged"] or both
+    lines = _lines(run, overlay, pins)
+    deciding = [line.method for line in lines if line.method.status != "diverged"]
+    cut = len(deciding) < len(lines)
+    deciding = deciding or [line.method for line in lines]
     peaks = {key: _peak(deciding, column) for key, (column, *_) in _QUANTITIES.items()}
-    units = _units(peaks)
-    names = (*map(_legend_name, run.methods), *(f"{_legend_name(m)}: {STRAPDOWN}" for m in over))
-    faint = _FAINT if overlay is not None and overlay.old else ""
-    colors = tuple(style.method_color(i) for i in range(len(run.methods)))
-    colors += tuple(style.method_color(i) + faint for i in range(len(over)))
-    dashes: tuple[Dash, ...] = (*((),) * len(run.methods), *(_DASH,) * len(over))
-    cut = len(deciding) < len(both)
+    units = _units(peaks, shown)
+    count = len(run.methods)
     plots: dict[str, UplotFigure] = {}
     for key, (column, symbol, title, _) in _QUANTITIES.items():
-        limit = _CUT * peaks[key] if cut else math.inf
-        curves = [_curve(m, column, len(longest), units[key], limit) for m in run.methods]
-        curves += [_curve_on(longest, m, column, units[key], limit) for m in over]
-        plots[key] = UplotFigure(
+        unit, limit = units[key], _CUT * peaks[key] if cut else math.inf
+        curves = [
+            _curve(line.method, column, len(longest), unit, limit)
+            if line.own
+            else _curve_on(longest, line.method, column, unit, limit)
+            for line in lines
+        ]
+        made = UplotFigure(
             key=key,
             quantity=NAMES[column],
             title=title,
             symbol=symbol,
-            unit=units[key],
+            unit=unit,
             time_unit=unit_of_time,
-            names=names,
-            colors=colors,
+            names=tuple(line.name for line in lines),
+            colors=tuple(line.color for line in lines),
             data=(time, *curves),
-            dashes=dashes,
+            dashes=tuple(line.dash for line in lines),
+            widths=tuple(line.width for line in lines),
             floor=0.0 if key == "position" else None,
         )
+        if envelope is not None and len(envelope.t_s):
+            made = _with_band(made, envelope, column, longest, count)
+        if limits and key in limits:
+            made = _with_limit(made, limits[key])
+        plots[key] = _logarithmic(made) if shown.scale == "log" else made
     return plots
+
+
+def _lines(run: Run, overlay: Overlay | None, pins: Sequence[Pinned]) -> list[_Line]:
+    width = style.CURVE_WIDTH
+    lines = [
+        _Line(m, _legend_name(m), style.method_color(i), (), width, True) for i, m in enumerate(run.methods)
+    ]
+    if overlay is not None:
+        faint = _FAINT if overlay.old else ""
+        lines += [
+            _Line(m, f"{_legend_name(m)}: {STRAPDOWN}", style.method_color(i) + faint, _DASH, width, False)
+            for i, m in enumerate(overlay.run.methods)
+        ]
+    lines += [
+        _Line(found.method, found.label, found.color, found.dash, PIN_WIDTH, False)
+        for found in pinned_methods(pins)
+    ]
+    return lines
+
+
+def _with_band(
+    plot: UplotFigure, envelope: Envelope, column: int, time_s: np.ndarray, count: int
+) -> UplotFigure:
+    """Put the envelope's edges behind all curves, and a band between each pair."""
+    names, colors, edges, bands = list(plot.names), list(plot.colors), [], []
+    for index in range(min(count, len(envelope.low))):
+        for word, values in (("upper", envelope.high[index]), ("lower", envelope.low[index])):
+            edges.append(np.interp(time_s, envelope.t_s, values[:, column]) / plot.unit.si)
+            names.append(f"band, {word}: {plot.names[index]}")
+            colors.append("rgba(0,0,0,0)")
+        bands.append((len(names) - 2, len(names) - 1, style.method_color(index) + _BAND))
+    widths = (*plot.widths, *(0.0,) * len(edges))
+    data = (*plot.data, *edges)
+    return replace(
+        plot, names=tuple(names), colors=tuple(colors), widths=widths, data=data, bands=tuple(bands)
+    )
+
+
+def _with_limit(plot: UplotFigure, limit: float) -> UplotFigure:
+    """Add a line at the largest allowed value, and at its negative where that can be reached."""
+    signs = (1.0,) if plot.floor is not None else (1.0, -1.0)
+    count = len(plot.data[0])
+    places = len(plot.names) - len(plot.dashes)
+    return replace(
+        plot,
+        names=(*plot.names, *("limit" for _ in signs)),
+        colors=(*plot.colors, *(style.DANGER for _ in signs)),
+        dashes=(*plot.dashes, *((),) * places, *(_LIMIT_DASH for _ in signs)),
+        widths=(*plot.widths, *(1.0 for _ in signs)),
+        data=(*plot.data, *(np.full(count, sign * limit / plot.unit.si) for sign in signs)),
+    )
+
+
+def _logarithmic(plot: UplotFigure) -> UplotFigure:
+    """Magnitudes on an axis of decades that shows every curve's peak; what is smaller lies on its floor."""
+    edges = plot.edges
+    sizes = [np.abs(values) for values in plot.data[1:]]
+    for upper, lower, _ in plot.bands:
+        # between edges of both signs the magnitude comes down to zero
+        across = plot.data[1 + upper] * plot.data[1 + lower] < 0.0
+        sizes[upper], sizes[lower] = (
+            np.maximum(sizes[upper], sizes[lower]),
+            np.where(across, 0.0, np.minimum(sizes[upper], sizes[lower])),
+        )
+    peaks = [float(np.nanmax(size, initial=0.0)) for i, size in enumerate(sizes) if i not in edges]
+    peaks = [peak for peak in peaks if peak > 0.0] or [1.0]
+    last = math.ceil(math.log10(max(peaks)))
+    first = min(last - _FEWEST_DECADES, math.floor(math.log10(min(peaks))) - 1)
+    first = max(first, last - _MOST_DECADES)
+    data = (plot.data[0], *(np.maximum(size, 10.0**first) for size in sizes))
+    return replace(plot, symbol=f"|{plot.symbol}|", data=data, decades=(first, last), floor=None)
 
 
 def _time_axis(run: Run) -> np.ndarray:
@@ -133,13 +264,17 @@ def _peak(methods: list[MethodRun], column: int) -> float:
     return max((m.errors[NAMES[column]]["max_abs"] for m in methods), default=0.0)
 
 
-def _units(peaks: dict[str, float]) -> dict[str, Unit]:
-    """Unit of each quantity: its family's, or its own where that would leave it no digits."""
+def _units(peaks: dict[str, float], display: Display) -> dict[str, Unit]:
+    """Unit of each quantity: the wanted one, its family's, or its own where that would leave it no digits."""
+    wanted = {_TILT: display.angle, _HEADING: display.angle, _SPEED: display.speed, _LENGTH: display.length}
     of_family: dict[str, float] = {}
     for key, (_, _, _, family) in _QUANTITIES.items():
         of_family[family] = max(of_family.get(family, 0.0), peaks[key])
     units: dict[str, Unit] = {}
     for key, (_, _, _, family) in _QUANTITIES.items():
+        if wanted[family] != AUTO:
+            units[key] = scaled_unit(wanted[family], peaks[key])
+            continue
         choose = _CHOOSERS[family]
         shared = choose(of_family[family])
         units[key] = (
@@ -187,7 +322,12 @@ def _legend_name(method: MethodRun) -> str:
     return name if method.status == "ok" else f"{name} ({method.status})"
 
 
-def legend_html(run: Run, overlay: Overlay | None = None) -> str:
+def legend_html(
+    run: Run,
+    overlay: Overlay | None = None,
+    pins: Sequence[Pinned] = (),
+    envelope: Envelope | None = None,
+) -> str:
     """One legend for a stack of plots: a coloured bar and the name of every method."""
     items = [
         _legend_item(_legend_name(method), f"height:3px;background:{style.method_color(i)}")
@@ -196,10 +336,37 @@ def legend_html(run: Run, overlay: Overlay | None = None) -> str:
     if overlay is not None:
         old = " of an earlier scenario" if overlay.old else ""
         items.append(_legend_item(f"{STRAPDOWN}{old}", f"border-top:3px dashed {style.MUTED}"))
+    items += [_legend_item(found.label, css_dash(found.dash, found.color)) for found in pinned_methods(pins)]
+    if envelope is not None:
+        items.append(_legend_item(envelope.label, f"height:10px;background:{style.MUTED}55"))
     return (
         f'<div style="display:flex;flex-wrap:wrap;gap:2px 18px;padding:2px 8px 2px {Y_SIZE + LABEL_SIZE}px;'
         f'font-size:{style.FONT_SIZE}px;color:{style.INK}">{"".join(items)}</div>'
     )
+
+
+def legend_names(
+    run: Run,
+    overlay: Overlay | None = None,
+    pins: Sequence[Pinned] = (),
+    envelope: Envelope | None = None,
+) -> list[str]:
+    """Texts of `legend_html`, from which its height follows."""
+    names = [method.method.name for method in run.methods]
+    if overlay is not None:
+        names.append("full strapdown of an earlier scenario")
+    names += [found.label for found in pinned_methods(pins)]
+    return names if envelope is None else [*names, envelope.label]
+
+
+def css_dash(dash: Dash, color: str) -> str:
+    """Style of a short bar that shows a dash pattern."""
+    stops, at = [], 0
+    for place, length in enumerate(dash):
+        shade = color if place % 2 == 0 else "transparent"
+        stops.append(f"{shade} {at}px {at + length}px")
+        at += length
+    return f"height:2px;background:repeating-linear-gradient(90deg,{','.join(stops)})"
 
 
 def _legend_item(name: str, bar: str) -> str:

@@ -9,8 +9,12 @@ from typing import Any
 import numpy as np
 
 from app.figures import style
+from app.figures.discrete import law_step_s, measured_gain
 from app.figures.effective import effective_network, frequency, reacts
+from app.figures.nyquist import nyquist
 from app.figures.plotly_data import PlotlyFigure, figure, packed
+from app.figures.transfer_views import OPEN_LOOP as OPEN_LOOP
+from app.figures.transfer_views import SHOWN as SHOWN
 from app.figures.transfer_views import TRANSFERS as TRANSFERS
 from app.figures.transfer_views import VIEWS, TransferView
 from app.figures.units import duration
@@ -62,8 +66,32 @@ def natural_frequencies(run: Run) -> dict[str, float]:
     return found
 
 
+def frequency_view(
+    run: Run, shown: str, aspect: float = 0.46, *, width_px: float = 940.0, discrete: bool = False
+) -> PlotlyFigure:
+    """What the chooser of the frequency side asks for: `bode` with a transfer, or `nyquist`.
+
+    Parameters
+    ----------
+    run : Run
+        Result.
+    shown : str
+        Key of `SHOWN`.
+    aspect, width_px, discrete
+        See `bode`.
+    """
+    if shown == OPEN_LOOP:
+        return nyquist(run, aspect, width_px=width_px)
+    return bode(run, shown, aspect, width_px=width_px, discrete=discrete)
+
+
 def bode(
-    run: Run, transfer_id: str = "phi/dv_r", aspect: float = 0.46, *, width_px: float = 940.0
+    run: Run,
+    transfer_id: str = "phi/dv_r",
+    aspect: float = 0.46,
+    *,
+    width_px: float = 940.0,
+    discrete: bool = False,
 ) -> PlotlyFigure:
     """Bode plots of H and of one transfer for all methods.
 
@@ -73,6 +101,8 @@ def bode(
         Result; only its networks are used.
     transfer_id : str
         Key of `TRANSFERS`.
+    discrete : bool
+        Measure the filters that run, and draw what they do as dots on H.
     aspect : float
         Height / width of the figure.
     width_px : float
@@ -102,7 +132,41 @@ def bode(
         seen["y4"].append(angle)
         hover = "%{y:.2f} dB" if _in_decibel(view) else "%{y:.4g} " + view.unit
         data += _pair(method, i, x, (size, angle), "x2", ("y3", "y4"), hover)
+    if discrete:
+        data += [dots for i, method in enumerate(run.methods) for dots in _discrete_dots(run, method, i)]
     return figure(data, _layout(run, view, seen, silent, aspect, width_px))
+
+
+def _discrete_dots(run: Run, method: MethodRun, index: int) -> list[dict[str, Any]]:
+    """Gain and phase of the running filter; the phase is that turn of it which lies next to the curve."""
+    measured = measured_gain(method, law_step_s(run))
+    if measured is None:
+        return []
+    omega, gain = measured
+    grid = omega_grid(run.scenario.omega_s)
+    network = effective_network(method)
+    beside = np.interp(np.log(omega), np.log(grid), _phase(network.response(grid)))
+    angle = beside + np.rad2deg(np.angle(gain * np.exp(-1j * np.deg2rad(beside))))
+    name = style.plain(method.method.name)
+    common: dict[str, Any] = {
+        "type": "scatter",
+        "mode": "markers",
+        "x": packed(omega),
+        "xaxis": "x",
+        "name": f"{name} measured",
+        "legendgroup": str(index),
+        "showlegend": False,
+        "marker": {
+            "symbol": "circle",
+            "size": 8,
+            "color": "white",
+            "line": {"color": style.method_color(index), "width": 2},
+        },
+    }
+    return [
+        common | {"y": packed(_decibel(gain)), "yaxis": "y", "hovertemplate": "%{y:.3f} dB measured"},
+        common | {"y": packed(angle), "yaxis": "y2", "hovertemplate": "%{y:.2f}° measured"},
+    ]
 
 
 def _in_decibel(view: TransferView) -> bool:

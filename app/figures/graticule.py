@@ -16,6 +16,8 @@ _STEPS_ARCSEC = (
     1800.0, 3600.0, 7200.0, 18000.0, 36000.0, 72000.0, 162000.0,
 )  # fmt: skip
 _MOST_LINES = 7
+_MOST_BESIDE = 4
+"""Labels that fit beside each other in a small view: of more meridians every second has one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,8 +174,10 @@ def _assemble(
     segments[: len(x), :, 1] = (-half_width, half_width)
     segments[len(x) :, :, 0] = (-half_width, half_width)
     segments[len(x) :, :, 1] = y[:, None]
+    apart = max(1, -(-len(x) // _MOST_BESIDE))
     south = [
-        SceneLabel(text, (float(at), -half_width - 0.12, 0.0)) for text, at in zip(x_texts, x, strict=True)
+        SceneLabel(text, (float(at), -half_width - 0.12, 0.0))
+        for text, at in list(zip(x_texts, x, strict=True))[::apart]
     ]
     west = [
         SceneLabel(text, (-half_width - 0.12, float(at), 0.0)) for text, at in zip(y_texts, y, strict=True)

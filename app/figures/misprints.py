@@ -150,8 +150,9 @@ def words_html(misprint: Misprint, comparison: Comparison) -> str:
         ("right", misprint.right, _COLORS["corrected"]),
         ("so", comparison.words or misprint.consequence, style.INK),
     )
+    line = "border-bottom:2.5px solid "
     lines = "".join(
-        f'<div><b style="color:{color}">{name}:</b> {escape(text)}</div>'
+        f'<div><b style="{line}{color}">{name}:</b> {escape(text)}</div>'
         for name, text, color in told
         if text
     )
@@ -159,8 +160,8 @@ def words_html(misprint: Misprint, comparison: Comparison) -> str:
     cell = "padding:0 0 0 14px;text-align:right;font-weight:600"
     table = (
         f'<table style="border-collapse:collapse;white-space:nowrap;font-variant-numeric:tabular-nums">'
-        f'<tr><td></td><td style="{cell};color:{_COLORS["printed"]}">as printed</td>'
-        f'<td style="{cell};color:{_COLORS["corrected"]}">corrected</td></tr>{rows}</table>'
+        f'<tr><td></td><td style="{cell};{line}{_COLORS["printed"]}">as printed</td>'
+        f'<td style="{cell};{line}{_COLORS["corrected"]}">corrected</td></tr>{rows}</table>'
     )
     return (
         f'<div class="sb-misprint" style="display:flex;gap:6px 28px;margin:0 12px;color:{style.INK};'

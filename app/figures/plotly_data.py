@@ -35,13 +35,34 @@ def figure(data: list[dict[str, Any]], layout: dict[str, Any]) -> PlotlyFigure:
     return PlotlyFigure(data=data, layout=layout, config=CONFIG)
 
 
-def packed(values: np.ndarray) -> dict[str, str]:
+class Packed(dict[str, str]):
+    """A packed array, which remembers its numbers in full for who wants to save them.
+
+    Attributes
+    ----------
+    full : ndarray
+        As they were given.
+    """
+
+    full: np.ndarray
+
+
+def packed(values: np.ndarray) -> Packed:
     """Array as plotly.js takes it in binary: float32, base64. Infinite values become gaps."""
     single = np.asarray(values, dtype="<f4")
     finite = np.isfinite(single)
     if not finite.all():
         single = np.where(finite, single, np.float32("nan"))
-    return {"dtype": "f4", "bdata": base64.b64encode(single.tobytes()).decode("ascii")}
+    made = Packed(dtype="f4", bdata=base64.b64encode(single.tobytes()).decode("ascii"))
+    made.full = np.asarray(values)
+    return made
+
+
+def values_of(value: Any) -> list[float | None]:
+    """Numbers of a trace, packed or listed, in full."""
+    if isinstance(value, Packed):
+        return [float(number) for number in value.full]
+    return list(value)
 
 
 def unpacked(value: dict[str, str]) -> np.ndarray:

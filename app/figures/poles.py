@@ -3,14 +3,25 @@
 from __future__ import annotations
 
 import math
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from app.figures import style
 from app.figures.effective import closed_loop_poles, effective_network
+from app.figures.locus import NO_LOCUS, locus_note, locus_traces
 from app.figures.plotly_data import PlotlyFigure, figure, packed
+from app.figures.pole_grid import (
+    ANYWHERE,
+    DAMPING,
+    PAPER,
+    Allowed,
+    Interval,
+    damping_lines,
+    forbidden,
+    settling_labels,
+    settling_shapes,
+)
 from app.figures.units import duration
 from navcore.run import MethodRun, Run
 
@@ -19,20 +30,27 @@ ZOOM = 1.7
 _HEIGHTS = (4.0, 6.0, 10.0, 16.0, 25.0, 40.0, 60.0, 100.0, 160.0, 250.0, 400.0, 1e3, 1e4, 1e5)
 _RIGHT_SHARE = 0.14
 """Part of a panel's width that shows the right half plane."""
-_DAMPING = tuple(k / 10.0 for k in range(1, 10))
 _MARGIN = {"l": 58, "r": 16, "t": 32}
 _GAP = 0.09
+_PICKED = (("xaxis", "yaxis"), ("xaxis2", "yaxis2"))
+"""Panels of which static/pick.js takes a click as a wanted pole."""
 _KEYS = ("closed-loop pole", "zero of H")
-_PAPER = "rgba(255,255,255,0.85)"
-
-Interval = tuple[float, float]
 
 
-def poles(run: Run, aspect: float = 0.46, *, width_px: float = 940.0) -> PlotlyFigure:
+def poles(
+    run: Run,
+    aspect: float = 0.46,
+    *,
+    width_px: float = 940.0,
+    selected: int = 0,
+    locus: str = NO_LOCUS,
+    allowed: Allowed = ANYWHERE,
+) -> PlotlyFigure:
     """Closed-loop poles (x) and zeros of H (o) of every method, in units of omega_s.
 
-    Grey rays are lines of equal damping ratio 0.1 .. 0.9, grey arcs lines of equal natural frequency; the
-    imaginary axis is the stability boundary. A zero far beyond all poles is named at the left edge.
+    Grey rays are lines of equal damping ratio 0.1 .. 0.9, grey arcs lines of equal natural frequency, grey
+    upright dashes lines of equal settling time (e^(Re t) = 2 %); the imaginary axis is the stability
+    boundary. A zero far beyond all poles is named at the left edge.
 
     Parameters
     ----------
@@ -42,6 +60,12 @@ def poles(run: Run, aspect: float = 0.46, *, width_px: float = 940.0) -> PlotlyF
         Height / width of the figure.
     width_px : float
         Expected width on screen: both panels get equal scales on both axes there.
+    selected : int
+        Method whose locus is drawn.
+    locus : str
+        Parameter of its network over which the locus is drawn.
+    allowed : Allowed
+        What the requirements ask of the poles.
     """
     rows = style.legend_rows([m.method.name for m in run.methods] + list(_KEYS), width_px - 84.0)
     margin = _MARGIN | {"b": 48 + 22 * rows}
@@ -51,12 +75,18 @@ def poles(run: Run, aspect: float = 0.46, *, width_px: float = 940.0) -> PlotlyF
     panels = {"": _panel(full, shape), "2": _panel(ZOOM, shape)}
     data: list[dict[str, Any]] = []
     for suffix, (re, im) in panels.items():
-        data.append(_damping_lines(suffix, re, im))
+        data.append(damping_lines(suffix, re, im))
+        data += locus_traces(run, selected, locus, suffix)
         for i, (method, (roots, zeros)) in enumerate(zip(run.methods, marks, strict=True)):
             data += _method_marks(method, i, roots, zeros, suffix)
     data += _key_entries()
-    layout = _layout(panels, margin, aspect)
+    layout = _layout(panels, margin, aspect, locus_note(run, selected, locus))
     layout["annotations"] += _far_zeros([zeros for _, zeros in marks], panels[""][0][0])
+    width = 0.5 * (1.0 - _GAP) * (width_px - margin["l"] - margin["r"])
+    for suffix, (re, im) in panels.items():
+        layout["annotations"] += settling_labels(suffix, re, run.scenario.omega_s, width)
+        layout["shapes"] += settling_shapes(suffix, re, run.scenario.omega_s, width)
+        layout["shapes"] += forbidden(suffix, re, im, allowed, run.scenario.omega_s)
     return figure(data, layout)
 
 
@@ -89,46 +119,6 @@ def _panel(half_height: float, shape: float) -> tuple[Interval, Interval]:
     """Ranges of the real and imaginary axes."""
     width = 2.0 * half_height * shape
     return (-(1.0 - _RIGHT_SHARE) * width, _RIGHT_SHARE * width), (-half_height, half_height)
-
-
-def _damping_lines(suffix: str, re: Interval, im: Interval) -> dict[str, Any]:
-    x, y = _ray_points(re, im)
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "x": packed(x),
-        "y": packed(y),
-        "xaxis": f"x{suffix}",
-        "yaxis": f"y{suffix}",
-        "line": {"color": "#CBD5E0", "width": 1},
-        "hoverinfo": "skip",
-        "showlegend": False,
-    }
-
-
-@lru_cache(maxsize=32)
-def _ray_points(re: Interval, im: Interval) -> tuple[np.ndarray, np.ndarray]:
-    """Rays of equal damping ratio and arcs of equal natural frequency, parted by NaN."""
-    gap = [math.nan]
-    xs: list[np.ndarray | list[float]] = []
-    ys: list[np.ndarray | list[float]] = []
-    far = 3.0 * math.hypot(re[0], im[1])
-    for ratio in _DAMPING:
-        x, y = -ratio * far, math.sqrt(1.0 - ratio * ratio) * far
-        xs += [[x, 0.0, x], gap]
-        ys += [[y, 0.0, -y], gap]
-    angle = np.linspace(0.5 * math.pi, 1.5 * math.pi, 91)
-    for radius in _circles(im[1]):
-        xs += [radius * np.cos(angle), gap]
-        ys += [radius * np.sin(angle), gap]
-    return np.concatenate(xs), np.concatenate(ys)
-
-
-def _circles(half_height: float) -> list[float]:
-    """Radii of the frequency arcs: omega_s itself, and a few even ones over the panel."""
-    steps = (m * 10.0**k for k in range(-2, 8) for m in (1.0, 2.0, 5.0))
-    step = next(s for s in steps if 4.0 * s >= 1.5 * half_height)
-    return sorted({1.0, *(step * k for k in range(1, 9))})
 
 
 def _method_marks(
@@ -197,10 +187,12 @@ def _key_entries() -> list[dict[str, Any]]:
 
 
 def _layout(
-    panels: dict[str, tuple[Interval, Interval]], margin: dict[str, int], aspect: float
+    panels: dict[str, tuple[Interval, Interval]], margin: dict[str, int], aspect: float, locus: str
 ) -> dict[str, Any]:
-    made = style.layout(margin=margin, hovermode="closest", legend=style.legend(), meta={"aspect": aspect})
-    titles = {"": "All closed-loop poles", "2": "Near the Schuler frequency"}
+    made = style.layout(
+        margin=margin, hovermode="closest", legend=style.legend(), meta={"aspect": aspect, "pick": _PICKED}
+    )
+    titles = {"": "All closed-loop poles (┊ settling time)", "2": "Near the Schuler frequency"}
     half = 0.5 * (1.0 - _GAP)
     shapes: list[dict[str, Any]] = []
     notes: list[dict[str, Any]] = []
@@ -218,6 +210,10 @@ def _layout(
         )
         shapes += _boundary(suffix)
         notes += [style.panel_title(titles[suffix], suffix), *_panel_labels(suffix, re, im)]
+    if locus:
+        # in place of the title, in plain letters: those of a parameter's ends take more room
+        notes = [note for note in notes if titles["2"] not in note["text"]]
+        notes.append(style.panel_title(f'<span style="font-weight:400">{locus}</span>', "2"))
     return made | {"shapes": shapes, "annotations": notes}
 
 
@@ -251,12 +247,12 @@ def _panel_labels(suffix: str, re: Interval, im: Interval) -> list[dict[str, Any
             font=font | {"color": style.DANGER},
         )
     ]
-    for ratio in _DAMPING[::2]:
+    for ratio in DAMPING[::2]:
         x, y = _ray_end(ratio, re, im)
-        content = f"ζ = {ratio:.1f}" if ratio == _DAMPING[-1] else f"{ratio:.1f}"
-        where = {"xref": f"x{suffix}", "yref": f"y{suffix}", "bgcolor": _PAPER, "borderpad": 0}
+        content = f"ζ = {ratio:.1f}" if ratio == DAMPING[-1] else f"{ratio:.1f}"
+        where = {"xref": f"x{suffix}", "yref": f"y{suffix}", "bgcolor": PAPER, "borderpad": 0}
         # centred, the outermost label would hang over the edge
-        where |= {"xanchor": "left", "xshift": -14} if ratio == _DAMPING[-1] else {}
+        where |= {"xanchor": "left", "xshift": -14} if ratio == DAMPING[-1] else {}
         notes.append(style.text(x, y, content, font=font, **where))
     name = {"xref": f"x{suffix}", "yref": f"y{suffix}", "xanchor": "right", "yanchor": "top", "xshift": -3}
     if im[1] < 8.0:
@@ -291,7 +287,8 @@ def _far_zeros(zeros: list[np.ndarray], left: float) -> list[dict[str, Any]]:
             xshift=4,
             yshift=3 + 18 * row,
             font={"size": style.FONT_SIZE, "color": style.method_color(index)},
-            bgcolor=_PAPER,
+            name=str(index),
+            bgcolor=PAPER,
             borderpad=0,
         )
         for row, (index, value) in enumerate(beyond)

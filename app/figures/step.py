@@ -12,6 +12,7 @@ import numpy as np
 from app.figures import style
 from app.figures.effective import effective_network, network_step, reacts, response, time_grid
 from app.figures.plotly_data import PlotlyFigure, figure, packed
+from app.figures.pole_grid import FORBIDDEN
 from app.figures.units import Unit, angle_unit, speed_unit
 from navcore.loop.transfers import Source
 from navcore.run import MethodRun, Run
@@ -40,7 +41,31 @@ _LOG = _Disturbance("dv_r", 1.0, "a log step of 1 m/s")
 _GYRO = _Disturbance("eps", 0.01 * DEG_PER_HOUR, "a gyro step of 0.01 °/h")
 
 
-def step(run: Run, aspect: float = 0.46, *, width_px: float = 940.0) -> PlotlyFigure:
+@dataclass(frozen=True)
+class StepLimits:
+    """What the requirements ask of the responses; drawn by shading the rest.
+
+    Attributes
+    ----------
+    settling_s : float or None
+        After it the tilt stays within 2 %.
+    overshoot : float or None
+        Largest swing of the tilt to the other side, part of the initial tilt.
+    log_tilt : float or None
+        Largest tilt after a log step of 1 m/s, rad.
+    """
+
+    settling_s: float | None = None
+    overshoot: float | None = None
+    log_tilt: float | None = None
+
+
+NO_LIMITS = StepLimits()
+
+
+def step(
+    run: Run, aspect: float = 0.46, *, width_px: float = 940.0, limits: StepLimits = NO_LIMITS
+) -> PlotlyFigure:
     """Responses of every method: tilt to an initial tilt, H itself, velocity error and tilt to a log step.
 
     Where no method uses the log, the lower plots show the response to a gyro step instead.
@@ -53,6 +78,8 @@ def step(run: Run, aspect: float = 0.46, *, width_px: float = 940.0) -> PlotlyFi
         Height / width of the figure.
     width_px : float
         Expected width on screen, for room for the legend.
+    limits : StepLimits
+        Of the requirements.
     """
     loop_s, network_s = _loop_span(run), _network_span(run)
     cause = _LOG if any(reacts(m, "dv_r") for m in run.methods) else _GYRO
@@ -75,7 +102,9 @@ def step(run: Run, aspect: float = 0.46, *, width_px: float = 940.0) -> PlotlyFi
             data.append(_trace(method, i, suffix, span_s, curve, unit))
         ranges[suffix] = _range(_deciding(curves, stable), unit)
     data += [_settled_mark(m, i, tilt[i], loop_s) for i, m in enumerate(run.methods)]
-    return figure(data, _layout(run, cause, (loop_s, network_s), ranges, units, aspect, width_px))
+    layout = _layout(run, cause, (loop_s, network_s), ranges, units, aspect, width_px)
+    layout["shapes"] += _forbidden(limits, loop_s, units[1], cause)
+    return figure(data, layout)
 
 
 def _scaled(curves: Curves, size: float) -> Curves:
@@ -239,3 +268,33 @@ def _settled_band() -> dict[str, Any]:
         "line": {"width": 0},
         "fillcolor": "rgba(154,169,184,0.3)",
     }
+
+
+def _forbidden(limits: StepLimits, span_s: float, unit: Unit, cause: _Disturbance) -> list[dict[str, Any]]:
+    """Shade what the requirements rule out: beyond any height that a plot shows."""
+    far, span_min = 1e6, span_s / MINUTE
+    boxes: list[tuple[str, str, float, float, float]] = []
+    if limits.overshoot is not None:
+        boxes.append(("overshoot", "", 0.0, -far, -limits.overshoot))
+    if limits.settling_s is not None and limits.settling_s < span_s:
+        at = limits.settling_s / MINUTE
+        boxes += [("settling", "", at, _SETTLED, far), ("settling", "", at, -far, -_SETTLED)]
+    if limits.log_tilt is not None and cause is _LOG:
+        size = limits.log_tilt / unit.si
+        boxes += [("log tilt", "4", 0.0, size, far), ("log tilt", "4", 0.0, -far, -size)]
+    return [
+        {
+            "type": "rect",
+            "name": name,
+            "xref": f"x{suffix}",
+            "yref": f"y{suffix}",
+            "x0": start,
+            "x1": span_min,
+            "y0": low,
+            "y1": high,
+            "layer": "below",
+            "fillcolor": FORBIDDEN,
+            "line": {"color": style.DANGER, "width": 1.2, "dash": "dash"},
+        }
+        for name, suffix, start, low, high in boxes
+    ]

@@ -15,8 +15,8 @@ METHOD_COLORS = (
     "#D55E00",  # vermilion
     "#009E73",  # green
     "#AA4499",  # purple
-    "#C98A00",  # ochre: Okabe-Ito orange, darkened to read on white
-    "#3FA7DD",  # sky blue
+    "#C48500",  # ochre: Okabe-Ito orange, darkened to read on white
+    "#2F99D0",  # sky blue
     "#882255",  # wine
     "#7A7A18",  # olive
     "#332288",  # indigo

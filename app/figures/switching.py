@@ -1,4 +1,4 @@
-"""When each method damps: what its policy measures, the thresholds, wanted and actual state, and xi(t)."""
+"""When each method damps: its policy's measure and thresholds, wanted and actual state, xi(t), its margin."""
 
 from __future__ import annotations
 
@@ -9,15 +9,16 @@ from html import escape
 import numpy as np
 
 from app.figures import style
-from app.figures.units import Unit, number, time_unit
+from app.figures.units import AUTO, Unit, number, time_unit
 from app.figures.uplot import LABEL_SIZE, Y_SIZE, Dash, UplotFigure
 from navcore.control.policy.base import Limit, Measure
+from navcore.loop.in_force import damping_in_force
 from navcore.parameters import extra_of
 from navcore.run import MethodRun, Run
 
 MOST_POINTS = 2000
-STATE, XI = "state", "xi"
-_WANTED, _DAMPED, _XI, _MEASURE = range(4)
+STATE, XI, MARGIN = "state", "xi", "margin"
+_WANTED, _DAMPED, _XI, _MEASURE, _MARGIN = range(5)
 _LANE = 1.4
 """Height of one method's on and off above the next one's."""
 _WANTED_DASH: Dash = (3, 4)
@@ -60,27 +61,43 @@ def switched_methods(run: Run) -> tuple[Switched, ...]:
     )
 
 
-def switching_plots(run: Run) -> tuple[UplotFigure, ...]:
-    """One plot for each kind of measure, then the states, then xi, on one time axis; none for constant ones.
+def switching_plots(run: Run, wanted_time: str = AUTO) -> tuple[UplotFigure, ...]:
+    """One plot for each kind of measure, then the states, xi and the damping ratio of the loop in force.
+
+    They share one time axis; there is none while every method is constant.
 
     Parameters
     ----------
     run : Run
         Result; its output rows are drawn, thinned so that every peak stays.
+    wanted_time : str
+        Unit of the time axis by name.
     """
     methods = switched_methods(run)
     if not methods:
         return ()
-    unit_of_time = time_unit(float(run.t_s[-1]))
-    whole = np.hstack([_on_axis(method.run.law_series, len(run.t_s)) for method in methods])
+    unit_of_time = time_unit(float(run.t_s[-1]), wanted_time)
+    whole = np.hstack([_on_axis(_series(method.run), len(run.t_s)) for method in methods])
     time_s, thinned = thin(run.t_s, whole)
     time = np.ascontiguousarray(time_s / unit_of_time.si)
-    pairs = [(method, thinned[:, 4 * place : 4 * place + 4]) for place, method in enumerate(methods)]
+    width = whole.shape[1] // len(methods)
+    pairs = [(m, thinned[:, width * place : width * (place + 1)]) for place, m in enumerate(methods)]
     measures = []
     for place, kind in enumerate(_kinds(methods)):
         mine = [pair for pair in pairs if pair[0].measure == kind]
         measures.append(_measure_plot(place, kind, mine, time, unit_of_time))
-    return (*measures, _state_plot(pairs, time, unit_of_time), _xi_plot(pairs, time, unit_of_time))
+    return (
+        *measures,
+        _state_plot(pairs, time, unit_of_time),
+        _xi_plot(pairs, time, unit_of_time),
+        _margin_plot(pairs, time, unit_of_time),
+    )
+
+
+def _series(method: MethodRun) -> np.ndarray:
+    """Columns of the law, and the damping ratio of the loop in force."""
+    margin = damping_in_force(method.method, method.network, method.t_s, method.law_series)
+    return np.column_stack([method.law_series, np.nan_to_num(margin)])
 
 
 def _kinds(methods: Sequence[Switched]) -> list[Measure]:
@@ -181,6 +198,20 @@ def _xi_plot(pairs: _Pairs, time: np.ndarray, unit_of_time: Unit) -> UplotFigure
     )
 
 
+def _margin_plot(pairs: _Pairs, time: np.ndarray, unit_of_time: Unit) -> UplotFigure:
+    return UplotFigure(
+        key=MARGIN,
+        quantity=MARGIN,
+        title="Least damping ratio of the closed-loop poles in force",
+        symbol="least ζ",
+        unit=_NO_UNIT,
+        time_unit=unit_of_time,
+        names=tuple(m.run.method.name for m, _ in pairs),
+        colors=tuple(style.method_color(m.index) for m, _ in pairs),
+        data=(time, *(np.ascontiguousarray(values[:, _MARGIN]) for _, values in pairs)),
+    )
+
+
 def thin(time_s: np.ndarray, values: np.ndarray, most: int = MOST_POINTS) -> tuple[np.ndarray, np.ndarray]:
     """Take the smallest and the largest value of each bin, in the order in which they came.
 
@@ -253,4 +284,5 @@ def _legend(run: Run) -> list[tuple[str, str]]:
             items.append((f"{_symbol(place, kind)} {kind.label}", "display:none"))
         for name, value, color in shared_limits(mine):
             items.append((f"{name} = {number(value, 4)} {kind.unit}", f"border-top:2px dashed {color}"))
-    return [*items, ("wanted state", f"border-top:2px dotted {style.INK}")]
+    items.append(("wanted state", f"border-top:2px dotted {style.INK}"))
+    return [*items, ("least ζ: of the poles in force", "display:none")]

@@ -8,16 +8,20 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from app.figures import style
+from app.figures.compare import Pinned, deltas
 from app.figures.units import (
     ARCMINUTES,
     ARCSECONDS,
+    AUTO,
     METRES,
     METRES_PER_SECOND,
+    NAMED,
     NAUTICAL_MILES,
     Unit,
     duration,
     number,
 )
+from app.session.display import Display
 from navcore.run import MethodRun, Run
 
 if TYPE_CHECKING:
@@ -41,6 +45,9 @@ _QUANTITIES: tuple[tuple[str, str, Unit], ...] = (
 )
 
 
+_ANGLES, _SPEEDS = (ARCSECONDS, ARCMINUTES), (METRES_PER_SECOND,)
+
+
 @dataclass(frozen=True)
 class Row:
     """One line of the table.
@@ -53,16 +60,56 @@ class Row:
         Its unit; may be empty.
     cells : tuple of tuple of str
         For every method either one text or one for each of `STATISTICS`.
+    deltas : tuple of str
+        For every method what has changed against the baseline; empty without one.
     """
 
     label: str
     unit: str
     cells: tuple[tuple[str, ...], ...]
+    deltas: tuple[str, ...] = ()
 
 
-def metrics_rows(run: Run) -> tuple[Row, ...]:
-    """Lines of the table: the loop's figures, then the errors of each quantity."""
-    return (*_loop_rows(run), *(_error_row(run, *quantity) for quantity in _QUANTITIES))
+def metrics_rows(run: Run, display: Display | None = None, baseline: Pinned | None = None) -> tuple[Row, ...]:
+    """Lines of the table: the loop's figures, then the errors of each quantity.
+
+    Parameters
+    ----------
+    run : Run
+        Result.
+    display : Display, optional
+        Units, and which number is compared.
+    baseline : Pinned, optional
+        What it is compared with.
+    """
+    shown = display or Display()
+    loops = _loop_rows(run)
+    errors = [_error_row(run, *quantity) for quantity in _in_units(shown)]
+    if baseline is not None and baseline.run is not None:
+        loops = [replace(row, deltas=("",) * len(run.methods)) for row in loops]
+        errors = [
+            replace(row, deltas=_delta_texts(run, baseline.run, name, shown.delta, unit))
+            for row, (_, name, unit) in zip(errors, _in_units(shown), strict=True)
+        ]
+    return (*loops, *errors)
+
+
+def _in_units(display: Display) -> list[tuple[str, str, Unit]]:
+    """The quantities in the units that are wanted; lengths then have one line each."""
+    found: list[tuple[str, str, Unit]] = []
+    for label, name, unit in _QUANTITIES:
+        family = _ANGLES if unit in _ANGLES else _SPEEDS if unit in _SPEEDS else ()
+        wanted = display.angle if family == _ANGLES else display.speed if family else display.length
+        entry = (label, name, unit if wanted == AUTO else NAMED[wanted])
+        if entry not in found:
+            found.append(entry)
+    return found
+
+
+def _delta_texts(run: Run, baseline: Run, name: str, statistic: str, unit: Unit) -> tuple[str, ...]:
+    return tuple(
+        "not in it" if delta is None else delta.text(unit) for delta in deltas(run, baseline, name, statistic)
+    )
 
 
 def difference_rows(verification: Verification) -> tuple[Row, ...]:
@@ -145,6 +192,8 @@ def metrics_html(
     verification: Verification | None = None,
     *,
     old: bool = False,
+    display: Display | None = None,
+    baseline: Pinned | None = None,
 ) -> str:
     """Return the same table as HTML, with the methods' colours and aligned figures.
 
@@ -158,34 +207,51 @@ def metrics_html(
         Of the same methods: its differences are added below.
     old : bool
         It is of an earlier scenario: shown, and said, as such.
+    display : Display, optional
+        Units, and which number is compared.
+    baseline : Pinned, optional
+        Adds a column of differences to each method.
     """
     shown = range(len(run.methods)) if methods is None else methods
+    compares = baseline is not None and baseline.run is not None
+    columns = 4 if compares else 3
     head = "".join(
-        f'<th colspan="3" style="{_HEAD};border-bottom:3px solid {style.method_color(i)}">'
+        f'<th colspan="{columns}" style="{_HEAD};border-bottom:3px solid {style.method_color(i)}">'
         f"{escape(run.methods[i].method.name)}</th>"
         for i in shown
     )
-    below = "".join(f'<th style="{_NUMBER};{_MUTED}">{name}</th>' for name in _HEADINGS) * len(shown)
-    body = "".join(_html_row(_part(row, shown)) for row in metrics_rows(run))
+    headings: list[str] = list(_HEADINGS)
+    if compares:
+        headings.append(f"Δ {_HEADINGS[STATISTICS.index((display or Display()).delta)]}")
+    below = "".join(f'<th style="{_NUMBER};{_MUTED}">{name}</th>' for name in headings) * len(shown)
+    rows = metrics_rows(run, display, baseline)
+    body = "".join(_html_row(_part(row, shown)) for row in rows)
+    if compares and baseline is not None:
+        body += (
+            f'<tr style="{_LINE}"><td colspan="{2 + columns * len(shown)}" style="padding:6px 2px;{_MUTED}">'
+            f'Δ: this run minus <b style="color:{baseline.hex}">{escape(baseline.name)}</b>, the method of '
+            "the same name; in the unit of the line, and as a part of the baseline's number</td></tr>"
+        )
     if verification is not None:
-        compared = "".join(_html_row(_part(row, shown)) for row in difference_rows(verification))
+        compared = "".join(_html_row(_part(row, shown), columns) for row in difference_rows(verification))
         faint = "opacity:.5" if old else ""
         title = "Full strapdown minus linear model: largest difference (part of the strapdown's peak)"
         title += "; of an earlier scenario" if old else ""
         body += (
-            f'<tr class="sb-difference" style="{_LINE};{faint}"><td colspan="{2 + 3 * len(shown)}" '
+            f'<tr class="sb-difference" style="{_LINE};{faint}"><td colspan="{2 + columns * len(shown)}" '
             f'style="padding:8px 2px 2px;font-weight:600">{title}</td></tr>'
         )
         body += compared.replace("<tr ", '<tr class="sb-old" ') if old else compared
     return (
-        f'<div style="overflow-x:auto"><table style="{_TABLE}"><thead><tr><th></th><th></th>{head}</tr>'
-        f'<tr><th></th><th style="{_MUTED};text-align:left">unit</th>{below}</tr></thead>'
+        f'<div style="overflow-x:auto"><table style="{_TABLE}"><thead><tr><td></td><td></td>{head}</tr>'
+        f'<tr><td></td><th style="{_MUTED};text-align:left">unit</th>{below}</tr></thead>'
         f"<tbody>{body}</tbody></table></div>"
     )
 
 
 def _part(row: Row, methods: Sequence[int]) -> Row:
-    return replace(row, cells=tuple(row.cells[i] for i in methods))
+    deltas = tuple(row.deltas[i] for i in methods) if row.deltas else ()
+    return replace(row, cells=tuple(row.cells[i] for i in methods), deltas=deltas)
 
 
 _TABLE = (
@@ -195,16 +261,20 @@ _TABLE = (
 _HEAD = "text-align:center;padding:2px 8px;font-weight:600"
 _NUMBER = "text-align:right;padding:1px 8px;white-space:nowrap"
 _MUTED = f"color:{style.MUTED};font-weight:400"
+_DELTA = f"background:{style.SEA}"
 _LINE = f"border-top:1px solid {style.GRID}"
 
 
-def _html_row(row: Row) -> str:
-    cells = "".join(
-        f'<td colspan="3" style="text-align:center;padding:1px 8px">{escape(cell[0])}</td>'
-        if len(cell) == 1
-        else "".join(f'<td style="{_NUMBER}">{escape(value)}</td>' for value in cell)
-        for cell in row.cells
-    )
+def _html_row(row: Row, columns: int = 3) -> str:
+    cells = ""
+    for place, cell in enumerate(row.cells):
+        if len(cell) == 1:
+            span = columns + bool(row.deltas)
+            cells += f'<td colspan="{span}" style="text-align:center;padding:1px 8px">{escape(cell[0])}</td>'
+            continue
+        cells += "".join(f'<td style="{_NUMBER}">{escape(value)}</td>' for value in cell)
+        if row.deltas:
+            cells += f'<td class="sb-delta" style="{_NUMBER};{_DELTA}">{escape(row.deltas[place])}</td>'
     return (
         f'<tr style="{_LINE}"><td style="padding:1px 8px 1px 2px;white-space:nowrap">{escape(row.label)}</td>'
         f'<td style="{_MUTED};padding:1px 8px 1px 0">{escape(row.unit)}</td>{cells}</tr>'

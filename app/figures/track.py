@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from app.figures import style
+from app.figures.compare import Pinned, pinned_methods
 from app.figures.graticule import Graticule, LocalMap, SceneLabel, graticule, round_down, round_up, scale_bar
+from app.figures.polyline import dashes, needed, segments
 from app.figures.units import length_unit, number
 from navcore.mechanization.recorder import D_LAT, D_LON
 from navcore.motion.base import HEADING, LAT, LON, PITCH, ROLL
 from navcore.run import MethodRun, Run
 
 MAX_POINTS = 1000
-"""Points of a line: a 24 h track at this density is smooth on any screen."""
+"""Points of a track: at this density the ship moves smoothly along 24 h."""
+LINE_WIDTH = 0.05
+"""Scene units."""
+_UNSEEN = 0.2 * LINE_WIDTH
+"""A line may leave out points that would move it by less, scene units."""
 HALF_WIDTH = 5.0
 """Half width of the map in scene units."""
 SHIP_LENGTH = 1.4
@@ -44,18 +51,73 @@ class MethodTrack:
         Computed track, error exaggerated, scene units; shorter than the truth when the method ended early.
     error_m : ndarray, shape (k, 2)
         True size of the error at these points, east and north, m.
+    line : ndarray of int, shape (n,)
+        Indices of the points that drawing the line needs.
     """
 
     name: str
     color: tuple[int, int, int]
     points: np.ndarray
     error_m: np.ndarray
+    line: np.ndarray
+
+    def drawn(self, before: int | None = None) -> np.ndarray:
+        """Segments of the line, float32, shape (n, 2, 3): all, or as far as the point ``before``."""
+        if before is None:
+            return segments(self.points[self.line])
+        last = min(before, len(self.points) - 1)
+        return segments(self.points[[*self.line[self.line < last], last]])
 
     def error_text(self, index: int) -> str:
         """Name and error at a point, e.g. ``free 3.21 km``."""
         size = math.hypot(*self.error_m[min(index, len(self.error_m) - 1)])
         unit = length_unit(size)
         return f"{self.name} {number(float(f'{size / unit.si:.3g}'))} {unit.name}"
+
+
+@dataclass(frozen=True, eq=False)
+class PinnedTrack:
+    """What a method of a pinned run would compute on the way of the present one.
+
+    Attributes
+    ----------
+    label : str
+        ``pin: method``.
+    color : (int, int, int)
+        The pin's.
+    segments : ndarray of float32, shape (n, 2, 3)
+        The line, its error exaggerated like all others, scene units.
+    """
+
+    label: str
+    color: tuple[int, int, int]
+    segments: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """Where ship and computed ships are at a time.
+
+    Attributes
+    ----------
+    index : int
+        The last point of the lines not later than it.
+    truth : ndarray of float32, shape (3,)
+        The ship, scene units.
+    wxyz : ndarray, shape (4,)
+        Its attitude.
+    computed : ndarray of float32, shape (methods, 3)
+        Where each method takes it to be, error exaggerated; the last point of one that ended.
+    """
+
+    index: int
+    truth: np.ndarray
+    wxyz: np.ndarray
+    computed: np.ndarray
+
+    def error_vectors(self) -> np.ndarray:
+        """True position to computed one for every method, float32, shape (methods, 2, 3)."""
+        return np.stack([np.broadcast_to(self.truth, self.computed.shape), self.computed], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +134,8 @@ class TrackScene:
         Attitude of the ship: body to scene quaternion, w first.
     methods : tuple of MethodTrack
         Computed tracks in the scenario's order.
+    pinned : tuple of PinnedTrack
+        Those of pinned runs.
     exaggeration : float
         Factor by which the position errors are drawn larger.
     metres_per_unit : float
@@ -92,6 +156,7 @@ class TrackScene:
     truth: np.ndarray
     wxyz: np.ndarray
     methods: tuple[MethodTrack, ...]
+    pinned: tuple[PinnedTrack, ...]
     exaggeration: float
     metres_per_unit: float
     static: bool
@@ -104,27 +169,28 @@ class TrackScene:
         """Index of the last point not later than ``t_s``, within the track."""
         return int(np.clip(np.searchsorted(self.t_s, t_s, side="right") - 1, 0, len(self.t_s) - 1))
 
-    def error_vectors(self, index: int) -> np.ndarray:
-        """True position to computed one for every method at a point, float32, shape (methods, 2, 3)."""
-        vectors = np.empty((len(self.methods), 2, 3), dtype=np.float32)
-        for row, method in enumerate(self.methods):
-            at = min(index, len(method.points) - 1)
-            vectors[row, 0], vectors[row, 1] = self.truth[at], method.points[at]
-        return vectors
+    def place(self, t_s: float) -> Place:
+        """Where everything is at a time, between the points of the lines too."""
+        index = self.index_at(t_s)
+        after = min(index + 1, len(self.t_s) - 1)
+        span = self.t_s[after] - self.t_s[index]
+        part = min(max((t_s - self.t_s[index]) / span, 0.0), 1.0) if span > 0.0 else 0.0
+        turned = self.wxyz[after] * math.copysign(1.0, self.wxyz[index] @ self.wxyz[after])
+        wxyz = (1.0 - part) * self.wxyz[index] + part * turned
+        computed = [_between(method.points, index, part) for method in self.methods]
+        return Place(
+            index=index,
+            truth=_between(self.truth, index, part),
+            wxyz=wxyz / np.linalg.norm(wxyz),
+            computed=np.array(computed, dtype=np.float32).reshape(-1, 3),
+        )
 
     def truth_dashes(self) -> np.ndarray:
         """Truth as dashes, float32, shape (n, 2, 3): what is true is dashed, what is computed is solid."""
-        pairs = segments(self.truth)
-        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(pairs[:, 1] - pairs[:, 0], axis=1))])
-        return pairs[np.floor(along[:-1] / _DASH).astype(int) % 2 == 0]
+        return dashes(self.truth[needed(self.truth, _UNSEEN)], _DASH)
 
 
-def segments(points: np.ndarray) -> np.ndarray:
-    """Polyline, shape (k, 3), as the pairs of points that viser's line segments take, shape (k - 1, 2, 3)."""
-    return np.stack([points[:-1], points[1:]], axis=1)
-
-
-def track(run: Run, exaggeration: float | None = None) -> TrackScene:
+def track(run: Run, exaggeration: float | None = None, pins: Sequence[Pinned] = ()) -> TrackScene:
     """Map of the run.
 
     Parameters
@@ -133,7 +199,10 @@ def track(run: Run, exaggeration: float | None = None) -> TrackScene:
         Result.
     exaggeration : float, optional
         Factor on the position errors; chosen from 1, 2, 5, 10, ... so that they show when None.
+    pins : sequence of Pinned
+        Runs whose position errors are laid over it.
     """
+    pinned = pinned_methods(pins)
     chosen = _chosen(len(run.t_s))
     t_s, rows = run.t_s[chosen], run.truth[chosen]
     lat, lon = rows[:, LAT], np.unwrap(rows[:, LON])
@@ -143,11 +212,14 @@ def track(run: Run, exaggeration: float | None = None) -> TrackScene:
     true_m = np.column_stack([(lon - lon0) * per_lon, (lat - lat0) * meridian])
     half_m = float(np.max(np.abs(true_m), initial=0.0))
     static = half_m < _STATIC_M
-    peak = _peak(run)
-    errors = [_errors(method, chosen, peak) for method in run.methods]
+    peak = _peak([*run.methods, *(other.method for other in pinned)])
+    errors = [_errors(method, t_s, peak) for method in run.methods]
+    others = [_errors(other.method, t_s, peak) for other in pinned]
     factor = exaggeration or (1.0 if static else _exaggeration(half_m, peak))
-    computed_m = [true_m[: len(error)] + factor * error for error in errors]
-    middle, metres = _frame([true_m, *computed_m], static)
+    computed_m, pinned_m = (
+        [true_m[: len(error)] + factor * error for error in found] for found in (errors, others)
+    )
+    middle, metres = _frame([true_m, *computed_m, *pinned_m], static)
     area = LocalMap(
         lat0=float(lat0 + middle[1] / meridian),
         lon0=float(lon0 + middle[0] / per_lon),
@@ -157,15 +229,20 @@ def track(run: Run, exaggeration: float | None = None) -> TrackScene:
     )
     bar, bar_label = scale_bar(metres, HALF_WIDTH)
     north = SceneLabel("▲ N", (-HALF_WIDTH, HALF_WIDTH + 0.45, 0.0))
+    lines = [_scene(computed, middle, metres, _LIFT) for computed in computed_m]
     tracks = tuple(
-        MethodTrack(m.method.name, style.method_rgb(i), _scene(computed, middle, metres, _LIFT), error)
-        for i, (m, computed, error) in enumerate(zip(run.methods, computed_m, errors, strict=True))
+        MethodTrack(m.method.name, style.method_rgb(i), points, error, needed(points, _UNSEEN))
+        for i, (m, points, error) in enumerate(zip(run.methods, lines, errors, strict=True))
     )
     return TrackScene(
         t_s=t_s,
         truth=_scene(true_m, middle, metres, 2.0 * _LIFT),
         wxyz=attitude_quaternions(rows[:, PITCH], rows[:, ROLL], rows[:, HEADING]),
         methods=tracks,
+        pinned=tuple(
+            PinnedTrack(other.label, style.rgb(other.color), _thinned(_scene(points, middle, metres, _LIFT)))
+            for other, points in zip(pinned, pinned_m, strict=True)
+        ),
         exaggeration=factor,
         metres_per_unit=metres,
         static=static,
@@ -185,21 +262,29 @@ def attitude_quaternions(pitch: np.ndarray, roll: np.ndarray, heading: np.ndarra
     return np.column_stack([ch * a - sh * d, ch * b - sh * c, ch * c + sh * b, ch * d + sh * a])
 
 
+def _between(points: np.ndarray, index: int, part: float) -> np.ndarray:
+    """Point of a line between two of its points; its last one where it ended before."""
+    before, after = min(index, len(points) - 1), min(index + 1, len(points) - 1)
+    return (1.0 - part) * points[before] + part * points[after]
+
+
 def _chosen(count: int) -> np.ndarray:
     """Indices of the output rows that are drawn: evenly spread, first and last included."""
     return np.unique(np.linspace(0, max(count - 1, 0), min(count, MAX_POINTS)).round().astype(int))
 
 
-def _peak(run: Run) -> float:
+def _peak(methods: Sequence[MethodRun]) -> float:
     """Largest position error of the methods that did not diverge (else of all), m."""
-    good = [m for m in run.methods if m.status != "diverged"] or list(run.methods)
+    good = [m for m in methods if m.status != "diverged"] or methods
     return max((m.errors["position_m"]["max_abs"] for m in good), default=0.0)
 
 
-def _errors(method: MethodRun, chosen: np.ndarray, peak_m: float) -> np.ndarray:
-    """Position error east and north at the drawn rows, m, as far as the method came and stays on the map."""
-    rows = method.rows[chosen[chosen < len(method.rows)]]
-    error = rows[:, [D_LON, D_LAT]]
+def _errors(method: MethodRun, t_s: np.ndarray, peak_m: float) -> np.ndarray:
+    """Position error east and north at the drawn times, m, as far as the method came and stays on the map."""
+    if len(method.t_s) == 0:
+        return np.zeros((1, 2))
+    reached = t_s[t_s <= method.t_s[-1]]
+    error = np.column_stack([np.interp(reached, method.t_s, method.rows[:, at]) for at in (D_LON, D_LAT)])
     if method.status == "diverged" and peak_m > 0.0:
         beyond = np.flatnonzero(~(np.hypot(error[:, 0], error[:, 1]) <= _CUT * peak_m))
         error = error[: beyond[0]] if len(beyond) else error
@@ -228,6 +313,11 @@ def _scene(points_m: np.ndarray, middle: np.ndarray, metres_per_unit: float, lif
     made = np.full((len(points_m), 3), lift, dtype=np.float32)
     made[:, :2] = (points_m - middle) / metres_per_unit
     return made
+
+
+def _thinned(points: np.ndarray) -> np.ndarray:
+    """Segments of a line without the points that nobody could see."""
+    return segments(points[needed(points, _UNSEEN)])
 
 
 def _caption(factor: float, static: bool) -> str:

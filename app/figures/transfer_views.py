@@ -87,3 +87,6 @@ VIEWS: dict[str, TransferView] = {
 }
 TRANSFERS: dict[str, str] = {key: f"{view.title} {view.note}".rstrip() for key, view in VIEWS.items()}
 """Transfers that the Bode plot can show: id -> label."""
+OPEN_LOOP = "open loop"
+SHOWN: dict[str, str] = TRANSFERS | {OPEN_LOOP: "open loop: Nyquist plot and margins"}
+"""All that the chooser of the frequency side offers: id -> label."""

@@ -7,9 +7,10 @@ above 0.01; the bounds below leave a factor of two to spare.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
-from navcore.units import ARCMIN, ARCSEC, DEG, HOUR, MINUTE, NAUTICAL_MILE
+from navcore.units import ARCMIN, ARCSEC, DEG, HOUR, KNOT, MINUTE, NAUTICAL_MILE
 
 
 @dataclass(frozen=True)
@@ -34,8 +35,21 @@ DEGREES = Unit("deg", DEG)
 METRES_PER_SECOND = Unit("m/s", 1.0)
 METRES = Unit("m", 1.0)
 NAUTICAL_MILES = Unit("nmi", NAUTICAL_MILE)
+KILOMETRES = Unit("km", 1e3)
+KNOTS = Unit("kn", KNOT)
 MINUTES = Unit("min", MINUTE)
 HOURS = Unit("h", HOUR)
+AUTO = "auto"
+NAMED: dict[str, Unit] = {
+    unit.name: unit
+    for unit in (
+        ARCSECONDS, ARCMINUTES, DEGREES, METRES, KILOMETRES, NAUTICAL_MILES, METRES_PER_SECOND, KNOTS,
+        MINUTES, HOURS,
+    )
+}  # fmt: skip
+"""Units that a user can ask for, by name."""
+_LEAST = 0.02
+"""Peak below which three decimals say too little."""
 
 # Smallest peak (SI) from which each unit is used; the last whose bound is reached counts.
 _ANGLES = (
@@ -75,9 +89,32 @@ def length_unit(peak_m: float) -> Unit:
     return _chosen(_LENGTHS, peak_m, METRES)
 
 
-def time_unit(span_s: float) -> Unit:
-    """Minutes below 3 h, else hours."""
+def time_unit(span_s: float, wanted: str = AUTO) -> Unit:
+    """Minutes below 3 h, else hours; or the one that is wanted by name."""
+    if wanted != AUTO:
+        return NAMED[wanted]
     return MINUTES if span_s < 3.0 * HOUR else HOURS
+
+
+def wanted_unit(name: str, peak: float, chosen: Callable[[float], Unit]) -> Unit:
+    """Unit that is asked for by name, legibly scaled; with ``AUTO`` what ``chosen`` gives for the peak."""
+    return chosen(peak) if name == AUTO else scaled_unit(name, peak)
+
+
+def scaled_unit(name: str, peak: float) -> Unit:
+    """The named unit, or a thousandth, a millionth ... of it where the peak (SI) needs that to be legible.
+
+    Examples
+    --------
+    >>> scaled_unit("m", 3.0).name, scaled_unit("nmi", 3.0).name
+    ('m', '10⁻³ nmi')
+    """
+    unit = NAMED[name]
+    if not math.isfinite(peak) or peak <= 0.0 or peak >= _LEAST * unit.si:
+        return unit
+    parts = ((1e-3, "10⁻³"), (1e-6, "10⁻⁶"), (1e-9, "10⁻⁹"))
+    part, word = next((found for found in parts if peak >= _LEAST * unit.si * found[0]), parts[-1])
+    return Unit(f"{word} {unit.name}", unit.si * part)
 
 
 def _chosen(table: tuple[tuple[float, Unit], ...], peak: float, otherwise: Unit) -> Unit:

@@ -58,6 +58,12 @@ class UplotFigure:
         The y axis begins here, whatever is drawn.
     ticks : tuple of (float, str)
         Places and words on the y axis in the place of numbers.
+    widths : tuple of float
+        Width of each curve, px; one beyond its end has the width of all curves.
+    decades : tuple of int or None
+        The y axis is logarithmic, from and to these powers of ten.
+    bands : tuple of (int, int, str)
+        Filled areas: places of the upper and the lower curve in ``names``, colour. Their edges are not drawn.
     """
 
     key: str
@@ -72,16 +78,27 @@ class UplotFigure:
     dashes: tuple[Dash, ...] = ()
     floor: float | None = None
     ticks: tuple[tuple[float, str], ...] = ()
+    widths: tuple[float, ...] = ()
+    decades: tuple[int, int] | None = None
+    bands: tuple[tuple[int, int, str], ...] = ()
+
+    @property
+    def edges(self) -> frozenset[int]:
+        """Places of the curves that are only edges of bands."""
+        return frozenset(place for upper, lower, _ in self.bands for place in (upper, lower))
 
     @property
     def series(self) -> tuple[dict[str, Any], ...]:
         """Series for uPlot: the time, then the methods."""
         # lines rounded to whole pixels look like stairs
-        common = {"width": style.CURVE_WIDTH, "points": {"show": False}, "pxAlign": 0}
+        common = {"points": {"show": False}, "pxAlign": 0}
         dashes = (*self.dashes, *((),) * (len(self.names) - len(self.dashes)))
+        widths = [*self.widths, *(style.CURVE_WIDTH,) * (len(self.names) - len(self.widths))]
+        for place in self.edges:
+            widths[place] = 0.0
         lines = (
-            common | {"label": name, "stroke": color} | ({"dash": dash} if dash else {})
-            for name, color, dash in zip(self.names, self.colors, dashes, strict=True)
+            common | {"label": name, "stroke": color, "width": width} | ({"dash": dash} if dash else {})
+            for name, color, dash, width in zip(self.names, self.colors, dashes, widths, strict=True)
         )
         return ({"label": f"time ({self.time_unit.name})"}, *lines)
 
@@ -126,16 +143,31 @@ class UplotFigure:
             "size": Y_SIZE,
             "space": 16 if low else 26,
         }
-        if self.ticks:
-            y |= {
-                "splits": tuple(at for at, _ in self.ticks),
-                "values": tuple(word for _, word in self.ticks),
-            }
+        ticks = self.ticks or self._powers(low)
+        if ticks:
+            y |= {"splits": tuple(at for at, _ in ticks), "values": tuple(word for _, word in ticks)}
         return x, y
+
+    def _powers(self, low: bool) -> tuple[tuple[float, str], ...]:
+        """Powers of ten on a logarithmic axis; uPlot's own words for them have three decimals."""
+        if self.decades is None:
+            return ()
+        first, last = self.decades
+        step = max(1, -(-(last - first) // (4 if low else 6)))
+        return tuple(
+            (10.0**k, (f"{10.0**k:g}" if -3 <= k <= 4 else f"1e{k}") if (last - k) % step == 0 else "")
+            for k in range(first, last + 1)
+        )
 
     @property
     def scales(self) -> dict[str, Any]:
-        """Scales for uPlot: time as a plain number, and y padded."""
+        """Scales for uPlot: time as a plain number, and y padded, or logarithmic."""
+        if self.decades is not None:
+            first, last = self.decades
+            return {
+                "x": {"time": False},
+                "y": {"distr": 3, "log": 10, "range": (10.0**first, 10.0**last)},
+            }
         # soft bounds of mode 2 act only on flat data: zero everywhere shows +-0.1, not +-100
         low: dict[str, Any] = {"pad": 0.08, "soft": -0.1, "mode": 2}
         if self.floor is not None:
@@ -169,11 +201,16 @@ class UplotFigure:
         return {
             "data": self.data,
             "series": self.series,
+            "bands": tuple(
+                {"series": (upper + 1, lower + 1), "fill": color} for upper, lower, color in self.bands
+            )
+            or None,
             "scales": self.scales,
             "axes": self.axes(time_axis=time_axis, low=height is not None and height < _LOW_PX),
             "legend": {"show": legend, "live": True},
             "cursor": {
                 "sync": {"key": SYNC_KEY, "scales": ("x", None)},
+                "lock": True,
                 "drag": {"x": True, "y": False, "setScale": True},
                 "points": {"size": 7},
                 "focus": {"prox": 24},
@@ -187,7 +224,7 @@ class UplotFigure:
     def config_key(self) -> tuple[Any, ...]:
         """Compare equal while only the numbers changed: then sending ``data`` alone is enough."""
         shown = self.symbol, self.unit.name, self.time_unit.name, self.names, self.colors, self.dashes
-        return self.key, self.floor, self.ticks, *shown
+        return self.key, self.floor, self.ticks, self.widths, self.decades, self.bands, *shown
 
 
 def stack_heights(available_px: int, count: int, least_px: int = 84) -> tuple[int, ...]:

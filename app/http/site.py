@@ -7,7 +7,6 @@ import email.utils
 import html
 import json
 import re
-import secrets
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -20,17 +19,13 @@ from websockets.http11 import Request, Response
 from app.http.access import Access, Refusal, refuse_address, refuse_unknown
 from app.http.connection import Connection
 from app.http.headers import security_headers
+from app.http.ids import is_shared, new_copy_id, new_session_id
 from app.http.limits import Limits
 from app.http.page import File, Page
 
 _SESSION_PATH = re.compile(r"/s/([A-Za-z0-9_-]{8,64})(/?)")
 _FULL = "All places are taken; try again later."
 _FOR_EVER = "private, max-age=31536000, immutable"
-
-
-def new_session_id() -> str:
-    """Return a fresh session id: whoever knows it sees the visitor's work, so it is not to be guessed."""
-    return secrets.token_urlsafe(18)
 
 
 @dataclass
@@ -95,7 +90,7 @@ class Site:
 
     def _open(self, connection: Connection, path: str) -> Response | None:
         found = _SESSION_PATH.fullmatch(path)
-        if found is None:
+        if found is None or is_shared(found.group(1)):
             return _not_found()
         if self.visitors() >= self.limits.visitors:
             return _respond(HTTPStatus.SERVICE_UNAVAILABLE, _FULL, extra={"Retry-After": "30"})
@@ -106,6 +101,10 @@ class Site:
         if path == "/":
             return _redirect(_with_query(f"s/{new_session_id()}/", query))
         session = _SESSION_PATH.fullmatch(path)
+        if session is not None and is_shared(session.group(1)):
+            # A shared state is never worked on: whoever opens it gets a copy of their own.
+            copy = f"{new_copy_id(session.group(1))}/"
+            return _redirect(_with_query(f"../{copy}" if session.group(2) else copy, query))
         if session is not None and not session.group(2):
             return _redirect(_with_query(f"{session.group(1)}/", query))
         if session is not None:

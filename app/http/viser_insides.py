@@ -56,6 +56,9 @@ IGNORED_FRAMES = frozenset(
     {"ShareUrlRequest", "ShareUrlDisconnect", "GuiFormSubmitMessage", "GuiFormDirtyMessage"},
 )
 
+_FREE, _GREYED = "_schuler_free", "_schuler_greyed"
+"""Marks on a client's gui: ids that a locked page may still use, and those that the lock has disabled."""
+
 _one_start_at_a_time = threading.Lock()
 
 
@@ -201,11 +204,45 @@ def find_control(server: viser.ViserServer, client_id: int, uuid: str) -> Contro
     return Control(
         label=str(getattr(props, "label", "") or ""),
         value=state.value,
-        disabled=bool(getattr(props, "disabled", False)),
+        disabled=bool(getattr(props, "disabled", False)) or _is_locked(server, client_id, uuid),
         options=getattr(props, "options", None),
         bounds=bounds,
         takes_files=isinstance(handle, viser.GuiUploadButtonHandle),
     )
+
+
+def lock_controls(client: viser.ClientHandle, but: frozenset[str] | None) -> None:
+    """Let a page's user change nothing: controls are shown disabled, and what is sent for them is dropped.
+
+    viser knows no list of a page's controls.
+
+    Parameters
+    ----------
+    client : viser.ClientHandle
+        The page. Controls made later are locked too, but shown so only after another call.
+    but : frozenset of str or None
+        Ids of the controls that stay free; None frees all that this function has locked.
+    """
+    gui: Any = client.gui
+    greyed: set[str] = getattr(gui, _GREYED, set())
+    setattr(gui, _FREE, but)
+    setattr(gui, _GREYED, greyed)
+    for uuid, handle in list(gui._gui_input_handle_from_uuid.items()):
+        if isinstance(handle, viser.GuiButtonGroupHandle):  # viser cannot show it disabled
+            continue
+        if but is None and uuid in greyed:
+            handle.disabled = False
+        elif but is not None and uuid not in but and not getattr(handle, "disabled", True):
+            handle.disabled = True
+            greyed.add(uuid)
+    if but is None:
+        greyed.clear()
+
+
+def _is_locked(server: viser.ViserServer, client_id: int, uuid: str) -> bool:
+    client = server.get_clients().get(client_id)
+    free = None if client is None else getattr(client.gui, _FREE, None)
+    return free is not None and uuid not in free
 
 
 def show_held_value(server: viser.ViserServer, client_id: int, uuid: str) -> None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from app import form, notices
-from app.form import FieldSpec
+from app.editing import form
+from app.editing.form import FieldSpec
+from app.page import notices
 
 if TYPE_CHECKING:
     import viser
@@ -208,7 +209,8 @@ class Control:
             if widget is not None:
                 widget.handle.remove()
 
-    def ids(self, *, but_box: bool = False) -> list[str]:
-        """Ids of the widgets in viser; ``but_box`` leaves out the box that the user may be typing into."""
-        widgets = (self._slider, None if but_box and not self._slider_moved else self._box)
-        return [widget.handle._impl.uuid for widget in widgets if widget is not None]
+    def ids(self, *, but_box: bool = False, but_moved: bool = False) -> list[str]:
+        """Ids of the widgets in viser; without the box that is perhaps typed into, or the one moved last."""
+        slider = None if but_moved and self._slider_moved else self._slider
+        box = None if (but_box or but_moved) and not self._slider_moved else self._box
+        return [widget.handle._impl.uuid for widget in (slider, box) if widget is not None]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from app.background.verifier import Verified
 from app.figures import style
-from app.figures.errors import GROUPS, Overlay, legend_html
+from app.figures.errors import GROUPS, Overlay
 from app.figures.switching import legend_names, switching_legend
 from app.figures.uplot import UplotFigure, stack_heights
-from app.layout import CHOOSER_PX, Layout
-from app.verifier import Verified
+from app.page.layout import CHOOSER_PX, Layout
 from navcore.run import Run
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ _LEGEND_MARGIN_PX = 7
 _LEGEND_INDENT_PX = 90
 _TWO = '<div class="sb-two"></div>'
 _FIRST_ABOVE = "dve"
-_LEAST_PX = 72
+_LEAST_PX = 64
 
 
 class _Stack:
@@ -95,11 +95,8 @@ class ErrorCurves:
             self._legend = gui.add_html("", order=1)
         self._group.on_update(lambda event: choose() if event.client is not None else None)
 
-    def show(self, plots: dict[str, UplotFigure], run: Run, overlay: Overlay | None) -> None:
-        """Show the chosen ones of `error_plots`."""
-        names = [m.method.name for m in run.methods]
-        if overlay is not None:
-            names.append("full strapdown of an earlier scenario")
+    def show(self, plots: dict[str, UplotFigure], legend: str, names: list[str]) -> None:
+        """Show the chosen ones of `error_plots` below their legend, in which these names stand."""
         room = _room(self._layout, names)
         overview = self._group.value == OVERVIEW
         if overview:
@@ -108,7 +105,7 @@ class ErrorCurves:
         else:
             keys = GROUPS[self._group.value]
             heights = list(stack_heights(room, len(keys)))
-        self._legend.content = (_TWO if overview else "") + legend_html(run, overlay)
+        self._legend.content = (_TWO if overview else "") + legend
         self._stack.show([plots[key] for key in keys], heights, labelled=2 if overview else 1)
 
 

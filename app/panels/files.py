@@ -6,9 +6,9 @@ from collections.abc import Callable
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from app import notices
 from app.figures import style
-from app.uploads import LARGEST_FILE, MIB, Upload, Uploads
+from app.page import notices
+from app.session.uploads import LARGEST_FILE, MIB, Upload, Uploads
 
 if TYPE_CHECKING:
     import viser

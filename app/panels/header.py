@@ -1,4 +1,4 @@
-"""Above the tabs: the state of the run, progress and cancel, the scenario chooser, the time of the ship."""
+"""Above the tabs: the state of the run, progress and cancel, the scenario chooser."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Callable
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from app import notices
 from app.figures import style
 from app.figures.units import duration
+from app.page import notices
 from navcore.run import Run
 from navcore.scenario import Scenario
 from navcore.units import HOUR
@@ -20,7 +20,6 @@ UPLOADED = "uploaded"
 RUN_AGAIN, RUN_STRAPDOWN = "Run again", "Run the strapdown"
 FOCUS = {"errors": "Errors", "bode": "Frequency", "step": "Step"}
 """Tab in which a scenario opens, by its block ``view``."""
-SHIP_TIME = "time of the ship (%)"
 _AUTO = "fit"
 _FACTORS: tuple[str, ...] = (
     _AUTO,
@@ -54,8 +53,6 @@ class HeaderPanel:
         ``choose(name)``.
     stop, again : callable
         The user stops the run, or wants it after all.
-    move_ship : callable
-        ``move_ship()`` when the time of the ship has changed.
     exaggerate : callable
         ``exaggerate(factor or None)``.
     """
@@ -67,7 +64,6 @@ class HeaderPanel:
         choose: Callable[[str], None],
         stop: Callable[[], None],
         again: Callable[[], None],
-        move_ship: Callable[[], None],
         exaggerate: Callable[[float | None], None],
     ) -> None:
         self._state = gui.add_html("", order=10)
@@ -82,10 +78,6 @@ class HeaderPanel:
         )
         self._about = gui.add_html("", order=15)
         self._note = gui.add_html("", visible=False, order=16)
-        self._time = gui.add_slider(
-            SHIP_TIME, 0.0, 100.0, 1.0, 100.0, marks=((0.0, "start"), (100.0, "end")), order=17,
-            hint="Where the 3D view shows the ship and the errors, in parts of the run.",
-        )  # fmt: skip
         self._factor = gui.add_dropdown(
             "errors in 3D drawn (x)", _FACTORS, order=18,
             hint="Factor by which the 3D view enlarges the position errors; fit: chosen so that they show.",
@@ -93,16 +85,11 @@ class HeaderPanel:
         self._scenario.on_update(lambda event: _if_user(event, lambda: choose(self._scenario.value)))
         self._stop.on_click(lambda _: stop())
         self._again.on_click(lambda _: again())
-        self._time.on_update(lambda event: _if_user(event, move_ship))
         self._factor.on_update(lambda event: _if_user(event, lambda: exaggerate(self._chosen_factor)))
 
     @property
     def _chosen_factor(self) -> float | None:
         return None if self._factor.value == _AUTO else float(self._factor.value)
-
-    def ship_time_s(self, run: Run) -> float:
-        """Time at which the 3D view shows the ship, s."""
-        return float(run.t_s[-1]) * self._time.value / 100.0
 
     def show_scenario(self, scenario: Scenario, origin: str, options: tuple[str, ...]) -> None:
         """Show which scenario this is."""

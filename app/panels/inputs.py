@@ -6,8 +6,9 @@ from collections.abc import Callable
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from app import edits, form, notices
-from app.form import FieldSpec, Path
+from app.editing import edits, form
+from app.editing.form import FieldSpec, Path
+from app.page import notices
 from app.panels.control import Control, Edit
 from app.panels.section import Section
 from navcore.motion import MOTIONS

@@ -6,7 +6,7 @@ import threading
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, cast
 
-from app.layout import CHOOSER_PX, Layout
+from app.page.layout import CHOOSER_PX, Layout
 
 if TYPE_CHECKING:
     import viser

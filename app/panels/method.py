@@ -6,11 +6,12 @@ from collections.abc import Callable, Mapping
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from app import edits, form, notices
+from app.editing import edits, form
+from app.editing.form import FieldSpec, Path
 from app.figures import style
 from app.figures.units import duration, number
 from app.figures.warnings import severity, warnings_for
-from app.form import FieldSpec, Path
+from app.page import notices
 from app.panels.control import Control, Edit
 from app.panels.section import Section
 from navcore.control.policy import POLICIES

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
-from app.form import FieldSpec, Path
+from app.editing.form import FieldSpec, Path
 from app.panels.control import Control, Edit
 
 if TYPE_CHECKING:

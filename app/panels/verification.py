@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from app import notices
+from app.background.verifier import Verifier
 from app.figures.table import verdict
-from app.verifier import Verifier
+from app.page import notices
 from navcore.scenario import Scenario
 
 if TYPE_CHECKING:

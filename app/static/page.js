@@ -3,15 +3,7 @@
 // And brings the tab to the front in which a newly chosen scenario opens: viser's server cannot.
 (() => {
   const LABEL = "page state";
-  const setter = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set;
   let waiting = 0;
-
-  function box() {
-    for (const label of document.getElementsByTagName("label")) {
-      if (label.textContent === LABEL) return label.closest(".mantine-Flex-root")?.querySelector("input") ?? null;
-    }
-    return null;
-  }
 
   function state() {
     const front = [...document.querySelectorAll('[role="tab"][aria-selected="true"]')].map((tab) => tab.textContent);
@@ -21,13 +13,11 @@
   // What the server has heard is in #sb-heard: viser drops a value when several change at once.
   function report() {
     waiting = 0;
-    const input = box();
+    const input = window.schuler.box(LABEL);
     if (input === null) return;
     const text = state();
     if (document.getElementById("sb-heard")?.dataset.state === text) return;
-    // The same text again would be no change.
-    setter.call(input, input.value === text ? `${text} ` : text);
-    input.dispatchEvent(new Event("input", { bubbles: true }));
+    window.schuler.write(input, text);
   }
 
   // viser sends at most one value in 50 ms: a report made together with another change may be dropped.
@@ -41,12 +31,10 @@
   function openTab() {
     const wanted = document.getElementById("sb-focus")?.dataset ?? {};
     if (!wanted.scenario || wanted.scenario === opened) return;
-    const tabs = [...document.querySelectorAll('[role="tab"]')];
-    const tab = tabs.find((candidate) => candidate.textContent === wanted.tab);
+    const tab = window.schuler.tab(wanted.tab);
     if (tab === undefined) return;
     opened = document.documentElement.dataset.opened = wanted.scenario;
-    // viser's tabs react to a pointer's whole way, or to a key; a click alone does nothing.
-    tab.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true, cancelable: true }));
+    window.schuler.open(tab);
     soon();
   }
 
@@ -54,9 +42,9 @@
   addEventListener("resize", () => soon(150));
   addEventListener("click", () => soon(), true);
   addEventListener("keyup", (event) => event.target instanceof Element && event.target.closest('[role="tab"]') && soon());
-  setInterval(report, 1000);
+  setInterval(() => window.schuler.busy() || report(), 1000);
   const started = setInterval(() => {
-    if (box() === null) return;
+    if (window.schuler.box(LABEL) === null) return;
     clearInterval(started);
     report();
   }, 20);

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from navcore.loop.analysis import Loop, analyse
-from navcore.loop.margins import Margins, margins, to_control
+from navcore.loop.margins import Margins, margins
+from navcore.loop.python_control import to_control
 from navcore.loop.transfers import (
     OUTPUTS,
     RADIUS,

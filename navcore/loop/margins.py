@@ -1,19 +1,17 @@
-"""The same objects for python-control, and the margins it computes; imported only when asked, it is slow."""
+"""Margins of the open loop omega_s^2 H(s)/s^2 from the roots of its crossings: a millisecond, for sliders."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
 from navcore.loop.analysis import analyse
-from navcore.loop.transfers import Output, Source, TransferOptions, transfer
 from navcore.network.base import LinearNetwork
 
-if TYPE_CHECKING:
-    from control import TransferFunction
+_REAL = 1e-7
+"""Imaginary part, relative, up to which a root counts as real."""
 
 
 @dataclass(frozen=True)
@@ -39,65 +37,57 @@ class Margins:
     delay_s: float | None
 
 
-def to_control(
-    network: LinearNetwork,
-    source: Source | None = None,
-    output: Output = "phi",
-    *,
-    normalised: bool = False,
-    **options: Unpack[TransferOptions],
-) -> TransferFunction:
-    """Return H(s), or one transfer of the closed loop, as a python-control TransferFunction.
-
-    Parameters
-    ----------
-    network : LinearNetwork
-        H(s).
-    source, output
-        As for `navcore.loop.transfer`; source None gives H(s) itself.
-    normalised : bool
-        In p = s / omega_s (time in units of 1/omega_s): to be preferred for anything numerical.
-    **options
-        As for `navcore.loop.transfer`.
-    """
-    import control
-
-    if source is None:
-        num, den = network.num, network.den
-    else:
-        num, den = transfer(network, source, output, **options)
-    if normalised:
-        w = network.omega_s
-        top = len(den) - 1
-        num = num * w ** (np.arange(len(num) - 1, -1, -1) - float(top))
-        den = den * w ** (-np.arange(len(den), dtype=float))
-    return control.TransferFunction(num, den)
-
-
 def margins(network: LinearNetwork) -> Margins | None:
     """Margins of the loop omega_s^2 H/s^2; None where they mean nothing (undamped or unstable loop)."""
     loop = analyse(network)
     if not loop.stable or loop.settling_s is None:
         return None
-    import control
-
-    open_loop = control.TransferFunction(network.num_p, np.append(network.den_p, [0.0, 0.0]))
-    gains, phases, _, _, crossings, _ = control.stability_margins(open_loop, returnall=True)
-    gains = np.asarray(gains)[np.isfinite(gains)]
-    up, down = gains[gains > 1.0], gains[(gains > 0.0) & (gains < 1.0)]
-    phases, crossings = np.atleast_1d(phases), np.atleast_1d(crossings)
-    if len(phases) == 0:
+    gains = np.array([x * x / h for x, h in _phase_crossings(network) if h > 0.0])
+    up, down = gains[gains > 1.0], gains[gains < 1.0]
+    crossings = np.array(_gain_crossings(network))
+    if len(crossings) == 0:
         return Margins(_smallest(up), _largest(down), None, None, None)
+    # -L = H omega_s^2/omega^2 has the phase of H
+    phases = np.angle(network.response(crossings * network.omega_s))
     least = int(np.argmin(np.abs(phases)))
     # a delay turns the phase clockwise: only the way from each crossing down to -180 deg counts
-    lag = np.mod(np.deg2rad(phases), 2.0 * math.pi)
+    lag = np.mod(phases, 2.0 * math.pi)
     return Margins(
         gain_up=_smallest(up),
         gain_down=_largest(down),
-        phase_rad=float(np.deg2rad(phases[least])),
+        phase_rad=float(phases[least]),
         crossover_rad_s=float(crossings[least]) * network.omega_s,
         delay_s=float(np.min(lag / crossings)) / network.omega_s,
     )
+
+
+def _gain_crossings(network: LinearNetwork) -> list[float]:
+    """Frequencies over omega_s at which |L| = 1: |N|^2 = x^4 |D|^2, p = j x."""
+    n, d = network.num_p, network.den_p
+    size = np.polysub(np.polymul(n, _mirrored(n)), np.append(np.polymul(d, _mirrored(d)), np.zeros(4)))
+    return _on_axis(size)
+
+
+def _phase_crossings(network: LinearNetwork) -> list[tuple[float, float]]:
+    """Frequencies over omega_s at which H is real, and H there."""
+    n, d = network.num_p, network.den_p
+    turned = np.polymul(n, _mirrored(d))
+    odd = np.polysub(turned, _mirrored(turned))
+    crossings = _on_axis(odd[:-1])  # one factor p is omega = 0
+    return [(x, float(np.real(network.response(x * network.omega_s)))) for x in crossings]
+
+
+def _mirrored(polynomial: np.ndarray) -> np.ndarray:
+    """Coefficients of P(-p)."""
+    signs = (-1.0) ** np.arange(len(polynomial) - 1, -1, -1)
+    return polynomial * signs
+
+
+def _on_axis(even: np.ndarray) -> list[float]:
+    """Positive x with even(j x) = 0, for a polynomial in p^2."""
+    roots = np.roots(np.trim_zeros(even[::-1][::2][::-1], "f"))
+    real = np.real(roots[np.abs(np.imag(roots)) <= _REAL * np.abs(roots)])
+    return sorted(float(x) for x in np.sqrt(-real[real < 0.0]))
 
 
 def _smallest(values: np.ndarray) -> float | None:

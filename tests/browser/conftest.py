@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from app.http.server import DashboardServer
     from app.serve import Dashboard
-    from app.session import Session
+    from app.session.session import Session
 
 
 @pytest.fixture(scope="session")
@@ -28,14 +28,21 @@ def dashboard() -> Iterator[tuple[DashboardServer, Dashboard]]:
     dashboard.close()
 
 
-@pytest.fixture(scope="session")
-def bench(browser: Browser, dashboard: tuple[DashboardServer, Dashboard]) -> Iterator[Bench]:
-    """The page that most tests share; in its window frequency and errors are both in view."""
+@pytest.fixture(scope="module")
+def opened(browser: Browser, dashboard: tuple[DashboardServer, Dashboard]) -> Iterator[Bench]:
+    """Give the page that the tests of a file share; in its window frequency and errors are both in view."""
     context = browser.new_context(viewport={"width": 1920, "height": 1080}, accept_downloads=True)
     page = context.new_page()
-    page.set_default_timeout(30_000)
+    page.set_default_timeout(60_000)
     yield Bench(page, dashboard[0].url, dashboard[1].sessions).open()
     context.close()
+
+
+@pytest.fixture
+def bench(opened: Bench) -> Bench:
+    """Give the shared page without what earlier tests left in its console."""
+    opened.faults.clear()
+    return opened
 
 
 @pytest.fixture

@@ -6,15 +6,26 @@ import json
 import re
 from typing import TYPE_CHECKING, Any
 
+from playwright.sync_api import TimeoutError as PlaywrightTimeout
+
 from navcore.scenario_file import load
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
 
-    from app.session import Session, Sessions
+    from app.session.session import Session
+    from app.session.sessions import Sessions
 
 THROTTLE_MS = 80
 """The page sends one value in 50 ms, whichever control it comes from."""
+
+_GONE = ("Tried to update non-existent component", "_redrawFromAutoMarginCount")
+"""What viser and plotly say of a plot that goes while it is drawn; nothing is lost.
+
+viser's page removes at once what is removed, but changes what is changed at the end of a frame: a plot that
+was changed and then removed within one frame, when the page is behind, is reported so. And plotly goes on
+laying out a plot in several steps, whether or not it is still there.
+"""
 
 _UP_TO_DATE = """() => {
   const plots = [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null);
@@ -71,12 +82,16 @@ class Bench:
         self.url = url
         self.sessions = sessions
         self.faults: list[str] = []
-        page.on("pageerror", lambda error: self.faults.append(str(error)))
-        page.on("console", lambda m: self.faults.append(m.text) if m.type == "error" else None)
+        page.on("pageerror", lambda error: self._note(str(error)))
+        page.on("console", lambda m: self._note(m.text) if m.type == "error" else None)
 
-    def open(self, path: str = "") -> Bench:
+    def _note(self, text: str) -> None:
+        if not any(gone in text for gone in _GONE):
+            self.faults.append(text)
+
+    def open(self, path: str = "", query: str = "?fixedDpr=0.25") -> Bench:
         """Open the page (a new session without a path) and wait for its first run."""
-        self.page.goto(f"{self.url}{path}?fixedDpr=0.25")
+        self.page.goto(f"{self.url}{path}{query}")
         self.page.wait_for_selector("#sb-run[data-run]", state="attached")
         self.page.wait_for_selector(".uplot canvas, .js-plotly-plot .trace", state="attached")
         self.close_notices()
@@ -169,9 +184,16 @@ class Bench:
 
     def wait_for_run(self, after: int) -> None:
         """Wait until a later run is shown."""
-        self.page.wait_for_function(
-            "n => Number(document.querySelector('#sb-run').dataset.run) > n", arg=after, timeout=20_000
-        )
+        later = "n => Number(document.querySelector('#sb-run').dataset.run) > n"
+        try:
+            self.page.wait_for_function(later, arg=after, timeout=20_000)
+        except PlaywrightTimeout:
+            focus = self.page.evaluate("() => document.activeElement.outerHTML.slice(0, 300)")
+            shown, made = self.run, self.session.run_number
+            raise AssertionError(
+                f"no run after {after}: shown {shown}, made {made}, {self.status!r}; focus {focus}; "
+                f"{self.faults}"
+            ) from None
 
     def reset(self, preset: str, selected: int = 0) -> None:
         """Let the visitor's session begin anew with a preset, without a click."""

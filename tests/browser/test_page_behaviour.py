@@ -9,10 +9,12 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
 
-from app import edits
-from app import session as session_module
+from app.editing import edits
+from app.figures.track import HALF_WIDTH
+from app.session import session as session_module
 from navcore.network.compass import gains_from_sigma_xi
 from navcore.scenario_file import load
 from tests.browser.driver import THROTTLE_MS, Bench
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 
     from app.http.server import DashboardServer
     from app.serve import Dashboard
-    from app.session import Session
+    from app.session.session import Session
 
 pytestmark = pytest.mark.browser
 
@@ -264,7 +266,8 @@ def test_a_ships_recording_is_uploaded_and_run(fresh: Bench, session: Session, s
     assert session.run.t_s[-1] == 714.0
     statuses = [method["status"] for method in fresh.metrics["methods"]]
     assert statuses == ["ok"] * 3
-    assert len(fresh.line("/track/method0")) > 3000
+    drawn = np.reshape(fresh.line("/track/method0") or [], (-1, 3))
+    assert np.max(np.ptp(drawn, axis=0)) > HALF_WIDTH  # the recorded way fills the map
 
     # a wrong file: said with its faults, nothing lost
     before = session.scenario

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tests.browser.driver import Bench
+from tests.browser.driver import _LINE, Bench
 
 pytestmark = pytest.mark.browser
 
@@ -160,10 +160,10 @@ def test_transfer_is_chosen(damped: Bench) -> None:
 
 
 def test_ship_and_exaggeration_move_in_3d(damped: Bench) -> None:
-    ship = "() => JSON.stringify(window.__viserSceneTree.getState()['/ship'].position)"
-    at_end, number = damped.page.evaluate(ship), damped.run
-    damped.slider("time of the ship (%)").press("Home")
-    damped.page.wait_for_function(f"end => ({ship})() !== end", arg=at_end)
+    at_end, number = damped.line("/error/method0"), damped.run
+    damped.page.get_by_role("slider", name="time in the run").press("Home")
+    vector = f"({_LINE})('/error/method0')"
+    damped.page.wait_for_function(f"end => String({vector}) !== String(end)", arg=at_end)
     before = damped.line("/track/method0")
     damped.choose("errors in 3D drawn (x)", "50")
     damped.page.wait_for_timeout(300)

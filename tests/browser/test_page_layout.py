@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.layout import WIDE_FROM_PX, layout_for
+from app.page.layout import WIDE_FROM_PX, layout_for
 from app.panels.results import TABS
 from tests.browser.driver import Bench
 
@@ -45,11 +45,11 @@ def panels(width: int) -> int:
 
 
 @pytest.fixture(scope="module")
-def resized(bench: Bench) -> Iterator[Bench]:
+def resized(opened: Bench) -> Iterator[Bench]:
     """The shared page; its window has its old size afterwards."""
-    bench.reset("sikuliaq-like", selected=2)
-    yield bench
-    resize(bench, SIZES[0])
+    opened.reset("sikuliaq-like", selected=2)
+    yield opened
+    resize(opened, SIZES[0])
 
 
 @pytest.fixture(params=SIZES, ids=lambda size: f"{size[0]}x{size[1]}")
@@ -88,7 +88,7 @@ def test_every_tab_fits_its_panel(sized: Bench) -> None:
         if tab in ("Frequency", "Poles", "Step"):
             assert sized.plotly(), tab
             assert sized.page.evaluate(_TEXT_OUTSIDE) == [], tab
-    assert sized.page.locator(".sb-table").inner_text()
+    assert sized.page.locator(".sb-table").first.inner_text()
     assert "schema = 1" in sized.page.locator("pre").first.inner_text()
     assert sized.faults == []
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from app import edits
+from app.editing import edits
 from app.figures.switching import switching_plots
 from navcore.scenario import Scenario
 from navcore.scenario_file import load

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from app.verifier import STOPPED
+from app.background.verifier import STOPPED
 from navcore.scenario_file import load
 from tests.browser.driver import Bench
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from app import edits
-from app.page import PAGE_STATE, Page
+from app.editing import edits
+from app.page.page import PAGE_STATE, Page
 from tests.attack.wire import Visitor, decode, visit
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def test_a_visitor_without_our_script_gets_all_figures(dashboard: Served) -> Non
     with visit(server.port, "no-script-here") as visitor:
         visitor.wait_for(is_run, 60.0)
         kinds = [message["type"] for message in visitor.received]
-        assert kinds.count("GuiPlotlyMessage") == 3
+        assert kinds.count("GuiPlotlyMessage") == 4
         assert kinds.count("GuiUplotMessage") == 6
 
 

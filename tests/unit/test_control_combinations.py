@@ -24,7 +24,7 @@ from navcore.network import parse_network
 from navcore.network.pole2 import Pole2Network
 from navcore.scenario import Scenario
 from navcore.units import DEG, KNOT
-from tests.control import OMEGA_S, LawRun, sampled_radius
+from tests.law_run import OMEGA_S, LawRun, sampled_radius
 
 SITES = [WGS84.schuler_frequency(32.06 * DEG), WGS84.schuler_frequency(45.7796 * DEG)]
 BAND = "must be pole2 or unity2, in network or policy.network"

@@ -19,7 +19,7 @@ from navcore.control.policy.schedule import Schedule
 from navcore.control.policy.variation import Variation, membership
 from navcore.control.switching import SWITCHINGS
 from navcore.units import DEG, KNOT
-from tests.control import LawRun
+from tests.law_run import LawRun
 
 CLASSIC = {"id": "classic2"}
 HARD = {"id": "hard"}

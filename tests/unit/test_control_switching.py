@@ -27,7 +27,7 @@ from navcore.control.layout import (
 from navcore.control.tuned_network import retune, tune
 from navcore.filters import discretise
 from navcore.network import parse_network
-from tests.control import OMEGA_S, LawRun, sampled_radius
+from tests.law_run import OMEGA_S, LawRun, sampled_radius
 
 COMPLEMENTARY = {"id": "complementary", "zeta": 0.5}
 THRESHOLD = {"id": "threshold", "limit_mps": 1.0}

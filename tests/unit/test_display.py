@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from pydantic import ValidationError
 
-from app.display import Display
+from app.session.display import Display
 
 
 def test_a_choice_is_changed_in_a_copy():

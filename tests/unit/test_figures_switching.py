@@ -9,6 +9,7 @@ import pytest
 
 from app.figures import style
 from app.figures.switching import (
+    MARGIN,
     STATE,
     XI,
     legend_names,
@@ -58,7 +59,7 @@ def test_a_free_method_switches_nothing_whatever_its_policy() -> None:
 
 def test_one_plot_for_each_measure_then_states_and_xi() -> None:
     plots = switching_plots(switching_run())
-    assert [plot.key for plot in plots] == ["measure0", "measure1", "measure2", STATE, XI]
+    assert [plot.key for plot in plots] == ["measure0", "measure1", "measure2", STATE, XI, MARGIN]
     assert [plot.unit.name for plot in plots[:3]] == ["m/s", "m/s", "deg"]
     assert plots[1].names == ("varied", "alike", "a", "b", "c", "a")
     colors = plots[1].colors
@@ -93,6 +94,39 @@ def test_states_stand_in_lanes_the_first_method_on_top() -> None:
     assert 0.0 in state
 
 
+def test_margin_is_zero_while_undamped_and_the_networks_own_while_damped() -> None:
+    run = switching_run()
+    plot = next(plot for plot in switching_plots(run) if plot.key == MARGIN)
+    varied = run.methods[2]
+    damped = varied.law_series[:, 1] > 0.5
+    assert 0 < np.count_nonzero(damped) < len(damped)
+    np.testing.assert_array_equal(plot.data[2][~damped], 0.0)
+    np.testing.assert_allclose(plot.data[2][damped], varied.loop.damping_ratio, rtol=1e-9)
+    assert plot.colors[1] == style.method_color(2)
+
+
+def test_margin_of_an_adaptive_law_follows_its_coefficient() -> None:
+    """unity2's main pair has exactly the damping ratio zeta that the table gives, up to 0.7."""
+    run = run_of(reference=LOG, method=[method("adaptive", {"id": "adaptive"})])
+    xi = run.methods[0].law_series[:, 2]
+    plot = next(plot for plot in switching_plots(run) if plot.key == MARGIN)
+    assert np.ptp(xi) > 0.05
+    np.testing.assert_allclose(plot.data[1], xi, rtol=1e-3)
+
+
+def test_margin_of_a_schedule_passes_from_one_set_of_gains_to_the_other() -> None:
+    policy = {"id": "schedule", "from": [0.0264, 156.063, 0.904], "to": [7.68e-3, 6.68, 7.68e-3],
+              "duration_s": 1800.0}  # fmt: skip
+    compass = {"id": "compass", "sigma": 0.0088, "xi": 0.7}
+    run = run_of(reference=LOG, method=[method("zha", policy, compass)])
+    plot = next(plot for plot in switching_plots(run) if plot.key == MARGIN)
+    for place, gains in ((1, policy["from"]), (-1, policy["to"])):
+        k1, k2, k3 = gains
+        roots = np.roots([1.0, k1, run.scenario.omega_s**2 * (1.0 + k2), run.scenario.omega_s**2 * k3])
+        least = np.min(-roots.real / np.abs(roots))
+        assert plot.data[1][place] == pytest.approx(least, rel=5e-3)
+
+
 def test_legend_names_methods_thresholds_and_the_wish() -> None:
     run = switching_run()
     names = legend_names(run)
@@ -106,7 +140,7 @@ def test_every_policy_can_be_drawn() -> None:
     for id in set(POLICIES) - {"constant"}:
         run = run_of(reference=LOG, method=[method(id, {"id": id}, networks.get(id))])
         plots = switching_plots(run)
-        assert [plot.key for plot in plots][-2:] == [STATE, XI], id
+        assert [plot.key for plot in plots][-3:] == [STATE, XI, MARGIN], id
         for plot in plots:
             assert len({len(values) for values in plot.data}) == 1
             assert len(plot.series) == len(plot.data)

@@ -8,8 +8,9 @@ import pytest
 
 from app.figures.graticule import LocalMap, angle_text, graticule, round_down, round_up, scale_bar
 from app.figures.ship import ship_parts
-from app.figures.style import method_rgb
-from app.figures.track import HALF_WIDTH, attitude_quaternions, segments, track
+from app.figures.style import method_rgb, rgb
+from app.figures.track import HALF_WIDTH, attitude_quaternions, track
+from app.session.pins import Pin
 from navcore.earth import WGS84, attitude_matrix
 from navcore.mechanization.recorder import D_LAT, D_LON
 from navcore.motion.base import LAT, LON
@@ -75,13 +76,12 @@ class TestMoving:
 
     def test_lines_and_vectors_for_viser(self) -> None:
         scene = track(moving_run())
-        assert segments(scene.truth).shape == (len(scene.truth) - 1, 2, 3)
         dashes = scene.truth_dashes()
         share = np.sum(np.linalg.norm(dashes[:, 1] - dashes[:, 0], axis=1)) / np.sum(
             np.linalg.norm(np.diff(scene.truth, axis=0), axis=1)
         )
         assert 0.4 < share < 0.6
-        vectors = scene.error_vectors(10)
+        vectors = scene.place(float(scene.t_s[10])).error_vectors()
         np.testing.assert_array_equal(vectors[:, 0], np.repeat(scene.truth[10:11], 3, axis=0))
         np.testing.assert_array_equal(vectors[1, 1], scene.methods[1].points[10])
         assert scene.methods[2].color == method_rgb(2)
@@ -91,6 +91,19 @@ class TestMoving:
         assert scene.index_at(-5.0) == 0
         assert scene.index_at(1e9) == len(scene.t_s) - 1
         assert scene.t_s[scene.index_at(7200.0)] <= 7200.0 < scene.t_s[scene.index_at(7200.0) + 1]
+
+    def test_between_two_points_the_ship_is_between_them(self) -> None:
+        scene = track(moving_run())
+        before, after = scene.t_s[20], scene.t_s[21]
+        place = scene.place(float(0.25 * before + 0.75 * after))
+        assert place.index == 20
+        np.testing.assert_allclose(
+            place.truth, 0.25 * scene.truth[20] + 0.75 * scene.truth[21], rtol=0, atol=1e-6
+        )
+        points = scene.methods[1].points
+        np.testing.assert_allclose(place.computed[1], 0.25 * points[20] + 0.75 * points[21], atol=1e-6)
+        assert np.linalg.norm(place.wxyz) == pytest.approx(1.0)
+        np.testing.assert_allclose(scene.place(-1.0).truth, scene.truth[0])
 
     def test_across_the_date_line(self) -> None:
         legs = {"kind": "legs", "leg": [{"duration_s": 7200.0, "speed_kn": 20.0, "heading_deg": 90.0}]}
@@ -105,7 +118,7 @@ class TestMoving:
         scene = track(diverging(moving_run(), 0, rows=1000))
         assert len(scene.methods[0].points) < len(scene.truth)
         assert scene.exaggeration >= whole.exaggeration
-        assert np.isfinite(scene.error_vectors(len(scene.t_s) - 1)).all()
+        assert np.isfinite(scene.place(float(scene.t_s[-1])).error_vectors()).all()
 
 
 class TestStatic:
@@ -143,7 +156,13 @@ class TestGraticule:
         degrees, minutes = label.text.rstrip("′N").split("°")
         lat = (int(degrees) + int(minutes) / 60.0) * DEG
         assert label.position[1] * 1000.0 == pytest.approx((lat - area.lat0) * 6.36e6, abs=1.0)
-        assert made.segments.shape == (len(made.labels), 2, 3)
+        east = [item for item in made.labels if item.text.endswith("E")]
+        north = [item for item in made.labels if item.text.endswith("N")]
+        meridians = np.count_nonzero(made.segments[:, 0, 0] == made.segments[:, 1, 0])
+        assert len(north) == len(made.segments) - meridians
+        assert 2 <= len(east) <= 4 < meridians  # of so many every second one has room for its name
+        written = [item.position[0] for item in east]
+        assert np.all(np.isin(np.float32(written), made.segments[:, 0, 0]))
 
     @pytest.mark.parametrize(
         ("value", "step", "text"),
@@ -207,3 +226,25 @@ def _box_centre(part, corners: np.ndarray) -> np.ndarray:
         return middle
     boxes = part.vertices.reshape(-1, 8, 3).mean(axis=1)
     return boxes[part.faces[:, 0] // 8]
+
+
+class TestPinned:
+    def test_a_pinned_run_lies_where_its_errors_are_on_the_present_way(self) -> None:
+        run = moving_run()
+        pin = Pin(1, "before", "", "magenta", True, run.scenario, "", run)
+        scene, alone = track(run, exaggeration=2.0, pins=[pin]), track(run, exaggeration=2.0)
+        assert [other.label for other in scene.pinned] == [f"before: {m.method.name}" for m in run.methods]
+        for other, own in zip(scene.pinned, scene.methods, strict=True):
+            np.testing.assert_allclose(other.segments, own.drawn(), atol=1e-5)
+            assert other.color == rgb(pin.hex)
+        np.testing.assert_allclose(scene.methods[1].points, alone.methods[1].points, atol=1e-6)
+
+    def test_a_shorter_and_larger_one_fits_the_map_and_stays_on_it(self) -> None:
+        run = moving_run()
+        longer = replace(
+            run, methods=tuple(replace(m, rows=3.0 * m.rows[:50], t_s=m.t_s[:50]) for m in run.methods)
+        )
+        scene = track(run, exaggeration=20.0, pins=[Pin(1, "a", "", "black", True, run.scenario, "", longer)])
+        for other in scene.pinned:
+            assert np.max(np.abs(other.segments[..., :2])) <= HALF_WIDTH
+            assert np.linalg.norm(other.segments[-1, 1] - scene.methods[0].points[-1]) > 0.1

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
-from app import form
-from app.form import FieldSpec, Slider
+from app.editing import form
+from app.editing.form import FieldSpec, Slider
 from navcore.control.policy import POLICIES
 from navcore.control.switching import SWITCHINGS
 from navcore.motion import MOTIONS

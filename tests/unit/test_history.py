@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from app.history import MOST_STEPS, History, State, change_name
+import pytest
+
+from app.session.history import MOST_STEPS, History, State, change_name
 from navcore.scenario import Scenario
 from navcore.scenario_file import load
 
-FIRST = State(load("zha-fast"), "zha-fast", 0)
+FIRST = State(load("zha-fast"), "zha-fast", 0, load("zha-fast"))
 
 
 def changed(state: State, *overrides: str) -> State:
-    return State(load(state.origin, list(overrides)), state.origin, state.selected)
+    return State(load(state.origin, list(overrides)), state.origin, state.selected, state.opened)
 
 
 class Clock:
@@ -52,20 +54,94 @@ def test_a_drag_is_one_step():
     assert history.undo() is None
 
 
+def test_a_drag_that_ends_where_it_began_is_no_step():
+    clock = Clock()
+    history = History(FIRST, clock)
+    longer = changed(FIRST, "run.duration_h=9")
+    history.push(longer)
+    clock.now += 2.0
+    for seed in (8, 7):
+        history.push(changed(FIRST, "run.duration_h=9", f"run.seed={seed}"))
+        clock.now += 0.3
+    history.push(longer)
+    assert (history.undo_name, history.redo_name) == ("run.duration_h: 4 → 9", None)
+    assert history.undo() == FIRST
+    assert history.redo() == longer
+
+
 def test_selecting_another_method_is_no_step():
     history = History(FIRST, Clock())
-    history.push(State(FIRST.scenario, FIRST.origin, 2))
+    history.push(State(FIRST.scenario, FIRST.origin, 2, FIRST.opened))
     assert history.undo_name is None
     assert history.state.selected == 2
 
 
 def test_changes_are_named():
-    assert change_name(FIRST, State(load("sun-step"), "sun-step", 0)) == "open sun-step"
+    assert change_name(FIRST, State(load("sun-step"), "sun-step", 0, load("sun-step"))) == "open sun-step"
     without = Scenario.parse(FIRST.scenario.canonical() | {"method": [{"name": "free"}]})
-    assert change_name(FIRST, State(without, "zha-fast", 0)) == "remove a method"
+    assert change_name(FIRST, State(without, "zha-fast", 0, FIRST.opened)) == "remove a method"
     sets = ["imu.gyro_arw_dpsh=0.1", "imu.accel_vrw_ugpshz=3"]
     assert change_name(FIRST, changed(FIRST, *sets)) == "change of imu"
     assert change_name(FIRST, changed(FIRST, *sets, "run.seed=4")) == "change of 3 fields"
+
+
+def test_a_field_of_a_method_is_named_by_the_method():
+    state = changed(FIRST, "method.2.network.xi=0.5")
+    assert change_name(FIRST, state) == "xi of fast (compass): 0.7 → 0.5"
+
+
+def test_a_name_given_is_a_step_of_its_own():
+    history = History(FIRST, Clock())
+    history.push(changed(FIRST, "run.duration_h=8"))
+    history.push(changed(FIRST, "run.duration_h=4"), "reset duration")
+    assert history.undo_name == "reset duration"
+    assert history.undo() == changed(FIRST, "run.duration_h=8")
+
+
+def test_a_refused_change_takes_its_step_back():
+    clock = Clock()
+    history, good = History(FIRST, clock), changed(FIRST, "run.duration_h=8")
+    history.push(good)
+    clock.now += 5.0
+    history.push(changed(FIRST, "run.duration_h=9"))
+    clock.now += 5.0
+    history.push(changed(FIRST, "run.seed=7"))
+    history.take_back(good)  # neither was ever run
+    assert (history.state, history.redo_name) == (good, None)
+    assert history.undo() == FIRST
+
+
+def test_a_drag_that_ends_refused_ends_at_its_last_good_value():
+    history, good = History(FIRST, Clock()), changed(FIRST, "run.duration_h=6")
+    history.push(changed(FIRST, "run.duration_h=5"))
+    history.push(good)
+    history.push(changed(FIRST, "run.duration_h=700"))
+    history.take_back(good)
+    assert (history.state, history.undo_name) == (good, "run.duration_h: 4 → 6")
+    assert history.undo() == FIRST
+
+
+def test_undo_into_a_state_that_cannot_run_any_more_is_taken_back():
+    clock = Clock()
+    history = History(FIRST, clock)
+    steps = [changed(FIRST, f"run.duration_h={hours}") for hours in (5, 6)]
+    for state in steps:
+        clock.now += 5.0
+        history.push(state)
+    assert history.undo() == steps[0]
+    history.take_back(steps[1])
+    assert history.state == steps[1]
+    assert history.undo() == FIRST
+
+
+def test_a_history_is_rebuilt_from_its_steps():
+    history = History(FIRST, Clock())
+    history.push(changed(FIRST, "run.duration_h=8"))
+    history.undo()
+    again = History.of(history.steps, history.at)
+    assert (again.steps, again.redo_name) == (history.steps, "run.duration_h: 4 → 8")
+    with pytest.raises(ValueError, match="no step"):
+        History.of(history.steps, 2)
 
 
 def test_only_so_many_steps_are_kept():

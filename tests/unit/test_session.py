@@ -10,8 +10,10 @@ from typing import Any
 
 import pytest
 
-from app import edits, session
-from app.session import Session, Sessions, first_editable, first_scenario, runs_on_demand
+from app.editing import edits
+from app.session import sessions
+from app.session.session import Session, first_editable, runs_on_demand
+from app.session.sessions import Sessions, first_scenario
 from navcore.errors import Fault, InputError
 from navcore.scenario import Scenario
 
@@ -50,6 +52,9 @@ class Watcher:
 
     def run_waits(self) -> None:
         self.told.append(("waits", None))
+
+    def presenter_changed(self) -> None:
+        self.told.append(("presenter", None))
 
     def verification_changed(self) -> None:
         self.told.append(("verification", None))
@@ -143,7 +148,7 @@ def test_a_long_run_is_stopped_by_the_user(work: tuple[Session, Watcher]) -> Non
 def test_a_long_run_gives_way_to_a_new_change(
     work: tuple[Session, Watcher], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.worker.SUPERSEDE_AFTER_S", 0.0)
+    monkeypatch.setattr("app.background.worker.SUPERSEDE_AFTER_S", 0.0)
     made, page = work
     made.change(edits.with_value(made.scenario, DURATION, 5.0), page)
     made.change(edits.with_value(made.scenario, DURATION, 2.0), page)
@@ -217,7 +222,7 @@ def test_another_scenario_drops_the_verification_and_the_last_page_stops_it(
 ) -> None:
     made, page = work
     monkeypatch.setattr(made.verifier, "result", answer(made.scenario))
-    monkeypatch.setattr(made.verifier, "scenario", made.scenario)
+    monkeypatch.setattr(made.verifier, "asked", made.scenario)
     assert made.verifier.beside(made.scenario) is not None
     made.change(edits.with_value(made.scenario, DURATION, 2.0), page)
     assert made.verifier.beside(made.scenario).old
@@ -232,41 +237,41 @@ def test_another_scenario_drops_the_verification_and_the_last_page_stops_it(
 
 
 def test_a_session_is_kept_over_a_reload(scenario: Scenario) -> None:
-    sessions = Sessions(lambda: (scenario, "preset"))
-    first = sessions.get("one-visitor")
+    visitors = Sessions(lambda: (scenario, "preset"))
+    first = visitors.get("one-visitor")
     first.change(edits.with_value(scenario, DURATION, 2.0), None)
-    assert sessions.get("one-visitor") is first
-    assert sessions.get("another-one").scenario == scenario
-    sessions.close()
+    assert visitors.get("one-visitor") is first
+    assert visitors.get("another-one").scenario == scenario
+    visitors.close()
 
 
 def test_only_a_bounded_number_of_sessions_without_a_page_is_kept(
     scenario: Scenario, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(session, "MOST_SESSIONS", 3)
-    monkeypatch.setattr(session, "MOST_IDLE_RUNS", 1)
-    sessions = Sessions(lambda: (scenario, "preset"))
-    watched = sessions.get("watched")
+    monkeypatch.setattr(sessions, "MOST_SESSIONS", 3)
+    monkeypatch.setattr(sessions, "MOST_IDLE_RUNS", 1)
+    visitors = Sessions(lambda: (scenario, "preset"))
+    watched = visitors.get("watched")
     watched._views.append(Watcher())
     for number in range(10):
-        sessions.get(f"visitor-{number}").run = answer(scenario)
-    assert len(sessions) == 5  # three idle ones, the present one, and the one with an open page
-    assert sessions.get("watched") is watched
-    assert sum(s.run is not None for s in sessions._by_id.values()) <= 3
-    sessions.close()
+        visitors.get(f"visitor-{number}").run = answer(scenario)
+    assert len(visitors) == 5  # three idle ones, the present one, and the one with an open page
+    assert visitors.get("watched") is watched
+    assert sum(s.run is not None for s in visitors._by_id.values()) <= 3
+    visitors.close()
 
 
 def test_uploads_go_with_their_session(scenario: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(session, "MOST_SESSIONS", 1)
-    sessions = Sessions(lambda: (scenario, "preset"))
-    old = sessions.get("old")
+    monkeypatch.setattr(sessions, "MOST_SESSIONS", 1)
+    visitors = Sessions(lambda: (scenario, "preset"))
+    old = visitors.get("old")
     old.uploads.folder.mkdir(parents=True)
     (old.uploads.folder / "log.txt").write_text("x")
     for number in range(3):
-        sessions.get(f"visitor-{number}")
+        visitors.get(f"visitor-{number}")
     assert not old.uploads.folder.exists()
-    root = sessions._folder
-    sessions.close()
+    root = visitors._folder
+    visitors.close()
     assert not root.exists()
 
 
@@ -287,3 +292,11 @@ def test_a_change_of_the_display_is_told_once_and_runs_nothing(work: tuple[Sessi
     assert session.display.scale == "log"
     session.wait_idle(5.0)
     assert session.run_number == number
+
+
+def test_every_preset_says_what_it_shows_and_where_it_comes_from() -> None:
+    from navcore.scenario_file import load, presets
+
+    for name in presets():
+        opened = load(name)
+        assert opened.title and opened.source, name

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from app import edits
+from app.editing import edits
 from navcore.errors import InputError
 from navcore.network.compass import gains_from_sigma_xi
 from navcore.scenario import Scenario

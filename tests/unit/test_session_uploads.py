@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from app import uploads
-from app.uploads import (
+from app.session import uploads
+from app.session.uploads import (
     Uploads,
     opened_scenario,
     recorded_scenario,

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from app import edits
-from app.verifier import CHANGED, STOPPED, Verifier
+from app.background.verifier import CHANGED, STOPPED, Verifier
+from app.editing import edits
 from navcore.errors import Fault, InputError
 from navcore.scenario import Scenario
 

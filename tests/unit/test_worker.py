@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 import pytest
 
-from app import worker
-from app.worker import Watch, Worker
+from app.background import worker
+from app.background.worker import Watch, Worker
 
 
 def until(true: Callable[[], bool], seconds: float = 5.0) -> None:

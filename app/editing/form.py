@@ -1,0 +1,353 @@
+"""From a model's field to what a control needs: label, unit, range, slider, choices, help. No widgets here.
+
+Panels hold no lists of fields: they ask for the fields of a model and show what comes.
+"""
+
+from __future__ import annotations
+
+import math
+import types
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from navcore.parameters import allowed_range, element_of, extra_of
+
+Path = tuple[str | int, ...]
+Kind = Literal["number", "integer", "flag", "choice", "text", "roots", "numbers", "pairs"]
+
+_AXES = {2: ("E", "N"), 3: ("x", "y", "z")}
+_SLIDER_STEPS = 200
+_SIGNIFICANT = 3
+_LEFT_OUT = ("kind", "id", "file")
+"""Discriminators, and files: a visitor must name none of the server's."""
+
+
+@dataclass(frozen=True)
+class Slider:
+    """A slider's range; position is the value itself, or its common logarithm.
+
+    Attributes
+    ----------
+    low, high : float
+        Ends, in the field's unit.
+    log : bool
+        Equal ratios instead of equal differences.
+    whole : bool
+        Whole numbers only.
+    """
+
+    low: float
+    high: float
+    log: bool
+    whole: bool = False
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Lowest and highest position."""
+        return (math.log10(self.low), math.log10(self.high)) if self.log else (self.low, self.high)
+
+    @property
+    def step(self) -> float:
+        """Position change of one key press, about a two-hundredth of the range: 1, 2 or 5 times 10^n."""
+        low, high = self.ends
+        step = round_step((high - low) / _SLIDER_STEPS)
+        return max(step, 1.0) if self.whole and not self.log else step
+
+    def position(self, value: float) -> float:
+        """Nearest position to a value; values beyond the ends stand at the end."""
+        low, high = self.ends
+        if not self.log:
+            return min(max(float(value), low), high)
+        return low if value <= 0.0 else min(max(math.log10(value), low), high)
+
+    def value(self, position: float) -> float:
+        """Value at a position, to as many digits as a slider can mean.
+
+        Examples
+        --------
+        >>> Slider(1e-3, 1.0, True).value(-2.056)
+        0.00879
+        >>> Slider(0.0, 1.0, False).value(0.30000000000000004)
+        0.3
+        """
+        low, high = self.ends
+        if self.whole:
+            return int(min(max(round(10.0**position if self.log else position), self.low), self.high))
+        if self.log:
+            return min(max(significant(10.0**position, _SIGNIFICANT), self.low), self.high)
+        digits = max(0, 2 - math.floor(math.log10(self.step)))
+        return min(max(round(position, digits), low), high)
+
+
+@dataclass(frozen=True)
+class FieldSpec:
+    """What a control for one field (or one element of a vector field) needs.
+
+    Attributes
+    ----------
+    path : tuple
+        Where the value lies in the canonical scenario.
+    label : str
+        Name with unit, unique on the page.
+    hint : str
+        What it does, allowed range and source, for the tooltip.
+    kind : str
+        "number", "integer", "flag" (yes or no), "choice", "text", "roots" (zeros or poles as text), "numbers"
+        (coefficients) or "pairs" (rows of a table).
+    default : object
+        The model's default; None when a value may be left out.
+    choices : tuple of str
+        Allowed values of a "choice".
+    slider : Slider or None
+        Range of the slider.
+    """
+
+    path: Path
+    label: str
+    hint: str
+    kind: Kind
+    default: Any
+    choices: tuple[str, ...] = ()
+    slider: Slider | None = None
+
+
+def round_step(width: float) -> float:
+    """Largest of 1, 2, 5 times a power of ten that is at most ``width``.
+
+    Examples
+    --------
+    >>> round_step(0.0130), round_step(0.0051), round_step(7.0)
+    (0.01, 0.005, 5.0)
+    """
+    power = math.floor(math.log10(width))
+    mantissa = width / 10.0**power
+    factor = next(f for f in (5, 2, 1) if mantissa >= f - 1e-9)
+    return float(f"{factor}e{power}")
+
+
+def significant(value: float, digits: int) -> float:
+    """Round to significant digits.
+
+    Examples
+    --------
+    >>> significant(0.0087902, 3), significant(12345.6, 3), significant(0.0, 3)
+    (0.00879, 12300.0, 0.0)
+    """
+    return float(f"{value:.{digits - 1}e}") if math.isfinite(value) else value
+
+
+def fields(model: type[BaseModel], path: Path, prefix: str = "") -> list[FieldSpec]:
+    """Everything in a model that a control can show, in the model's order.
+
+    Nested models, lists of blocks and file names are left out: they have panels of their own.
+
+    Parameters
+    ----------
+    model : type
+        A parameter model.
+    path : tuple
+        Where the model's block lies in the scenario.
+    prefix : str
+        Put before each label, so that labels stay unique on the page.
+    """
+    found: list[FieldSpec] = []
+    for name, info in model.model_fields.items():
+        if name not in _LEFT_OUT:
+            found += _field(name, info, (*path, name), prefix)
+    return found
+
+
+def choice(model: type[BaseModel], name: str, path: Path, label: str = "") -> FieldSpec:
+    """The control of one field that offers choices, discriminators (``kind``, ``id``) included."""
+    info = model.model_fields[name]
+    offered = _literals(info.annotation)
+    return FieldSpec(
+        (*path, name), label or _label(name, info, ""), _hint(info, ""), "choice", info.default, offered
+    )
+
+
+def _field(name: str, info: FieldInfo, path: Path, prefix: str) -> list[FieldSpec]:
+    annotation = _without_none(info.annotation)
+    label = _label(name, info, prefix)
+    offered = _literals(annotation)
+    if offered:
+        return [FieldSpec(path, label, _hint(info, ""), "choice", info.default, offered)]
+    if annotation is bool:
+        return [FieldSpec(path, label, _hint(info, ""), "flag", info.default)]
+    if annotation in (int, float):
+        kind: Kind = "integer" if annotation is int else "number"
+        hint = _hint(info, allowed_range(info))
+        return [FieldSpec(path, label, hint, kind, info.default, slider=_slider(info))]
+    if annotation is str:
+        return [FieldSpec(path, label, _hint(info, ""), "text", info.default)]
+    return _sequence(info, annotation, path, prefix, label, name)
+
+
+def _sequence(
+    info: FieldInfo, annotation: Any, path: Path, prefix: str, label: str, name: str
+) -> list[FieldSpec]:
+    arguments = [a for a in get_args(_bare(annotation)) if a is not Ellipsis]
+    if get_origin(_bare(annotation)) is not tuple or not arguments:
+        return []
+    endless = Ellipsis in get_args(_bare(annotation))
+    if endless and get_origin(_bare(arguments[0])) is tuple:
+        return [FieldSpec(path, label, _hint(info, ""), "roots", info.default)]
+    if endless and _is_row(_bare(arguments[0])):
+        columns = ": ".join(_bare(arguments[0])._fields)
+        return [FieldSpec(path, label, f"{_hint(info, '')} Written as {columns}, ...", "pairs", info.default)]
+    if endless and _bare(arguments[0]) is float:
+        return [FieldSpec(path, label, _hint(info, ""), "numbers", info.default)]
+    if endless or any(_bare(argument) is not float for argument in arguments):
+        return []
+    names = extra_of(info).get("elements") or _AXES.get(
+        len(arguments), tuple(map(str, range(len(arguments))))
+    )
+    element = element_of(info)
+    hint = _hint(info, allowed_range(element) if element is not None else "")
+    return [
+        FieldSpec(
+            (*path, i),
+            _label(name, info, prefix, part),
+            hint,
+            "number",
+            info.default[i],
+            slider=_slider(info),
+        )
+        for i, part in enumerate(names)
+    ]
+
+
+def _is_row(annotation: Any) -> bool:
+    """Whether this is a named pair: a row of a table with two columns."""
+    return isinstance(annotation, type) and len(getattr(annotation, "_fields", ())) == 2
+
+
+def _label(name: str, info: FieldInfo, prefix: str, part: str = "") -> str:
+    extra = extra_of(info)
+    plain = name.removesuffix(f"_{extra.get('unit')}").replace("_", " ")
+    words = [prefix, extra.get("label") or plain, part]
+    unit = f"({extra['unit']})" if extra.get("unit") not in (None, "", "1") else ""
+    return " ".join(word for word in (*words, unit) if word)
+
+
+def _hint(info: FieldInfo, allowed: str) -> str:
+    text = (info.description or "").strip()
+    bounds = f"{allowed[0].upper()}{allowed[1:]}." if allowed else ""
+    # The elements of a vector may have units of their own, in their names.
+    if bounds and not extra_of(info).get("elements") and extra_of(info).get("unit") in (None, "", "1"):
+        bounds = f"{bounds.removesuffix('.').removesuffix(' (1)')} (no unit)."
+    return " ".join(part for part in (text, bounds) if part)
+
+
+def _slider(info: FieldInfo) -> Slider | None:
+    extra = extra_of(info)
+    ends = extra.get("slider")
+    if not ends:
+        return None
+    whole = _without_none(info.annotation) is int
+    return Slider(float(ends[0]), float(ends[1]), bool(extra.get("log")), whole)
+
+
+def _bare(annotation: Any) -> Any:
+    while get_origin(annotation) is Annotated:
+        annotation = get_args(annotation)[0]
+    return annotation
+
+
+def _without_none(annotation: Any) -> Any:
+    annotation = _bare(annotation)
+    if get_origin(annotation) in (Union, types.UnionType):
+        rest = [a for a in get_args(annotation) if a is not type(None)]
+        return _bare(rest[0]) if len(rest) == 1 else annotation
+    return annotation
+
+
+def _literals(annotation: Any) -> tuple[str, ...]:
+    annotation = _without_none(annotation)
+    return tuple(str(v) for v in get_args(annotation)) if get_origin(annotation) is Literal else ()
+
+
+def read_roots(text: str) -> list[Any]:
+    """Zeros or poles as typed: numbers, complex ones as ``-0.1+0.2j``, or ``[re, im]``; separated by commas.
+
+    Raises
+    ------
+    ValueError
+        A part is neither.
+
+    Examples
+    --------
+    >>> read_roots("-8.5e-4, -0.1+0.2j, -0.1-0.2j"), read_roots("[-1, 2], 3"), read_roots(" ")
+    ([-0.00085, [-0.1, 0.2], [-0.1, -0.2]], [[-1.0, 2.0], 3.0], [])
+    """
+    roots: list[Any] = []
+    for part in _parts(text):
+        if part.startswith("["):
+            re, im = (float(number) for number in part.removeprefix("[").removesuffix("]").split(","))
+            roots.append([re, im])
+            continue
+        root = complex(part.replace(" ", "").replace("i", "j"))
+        roots.append([root.real, root.imag] if root.imag else root.real)
+    return roots
+
+
+def read_numbers(text: str) -> list[float]:
+    """Coefficients as typed, separated by commas or blanks; raises ValueError."""
+    return [float(part) for part in text.replace(",", " ").split()]
+
+
+def write_roots(roots: Any) -> str:
+    """Inverse of `read_roots`.
+
+    Examples
+    --------
+    >>> write_roots([(-0.00085, 0.0), [-0.1, 0.2], complex(-0.1, -0.2), 3])
+    '-0.00085, -0.1+0.2j, -0.1-0.2j, 3'
+    """
+    return ", ".join(_root(root) for root in roots or ())
+
+
+def write_numbers(values: Any) -> str:
+    """Inverse of `read_numbers`."""
+    return ", ".join(f"{value:.9g}" for value in values or ())
+
+
+def read_pairs(text: str) -> list[list[float]]:
+    """Rows of a table as typed, ``0: 0.99, 0.5: 0.12``; raises ValueError.
+
+    Examples
+    --------
+    >>> read_pairs("0: 0.99, 0.5:0.12"), write_pairs([(0.0, 0.99), [0.5, 0.12]])
+    ([[0.0, 0.99], [0.5, 0.12]], '0: 0.99, 0.5: 0.12')
+    """
+    rows = [[float(number) for number in row.split(":")] for row in text.split(",") if row.strip()]
+    if any(len(row) != 2 for row in rows):
+        raise ValueError("a row is two numbers with a colon between them")
+    return rows
+
+
+def write_pairs(rows: Any) -> str:
+    """Inverse of `read_pairs`."""
+    return ", ".join(f"{first:.9g}: {second:.9g}" for first, second in rows or ())
+
+
+def _root(root: Any) -> str:
+    re, im = (root.real, root.imag) if not isinstance(root, list | tuple) else root
+    return f"{re:.9g}{im:+.9g}j" if im else f"{re:.9g}"
+
+
+def _parts(text: str) -> list[str]:
+    parts, depth, current = [], 0, ""
+    for letter in text.strip():
+        depth += (letter == "[") - (letter == "]")
+        if letter in ",;" and depth == 0:
+            parts.append(current.strip())
+            current = ""
+        else:
+            current += letter
+    if depth:
+        raise ValueError("a bracket is missing")
+    return [part for part in [*parts, current.strip()] if part]

@@ -1,0 +1,1 @@
+"""One open page: its widgets' arrangement, commands, notices, and what it is told."""

@@ -1,0 +1,76 @@
+"""What a visitor's pictures are shown with: everything that changes the view of a run, nothing of the run."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
+from app.session.requirements import Requirements
+
+FIRST_TRANSFER = "phi/dv_r"
+
+
+def _known_transfer(id: str) -> str:
+    from app.figures.frequency import SHOWN
+
+    if id not in SHOWN:
+        raise ValueError(f"must be one of {', '.join(SHOWN)}")
+    return id
+
+
+class Display(BaseModel):
+    """Choices of how a session's pictures look; saved with the session.
+
+    Attributes
+    ----------
+    transfer : str
+        What the frequency side shows: a key of `app.figures.frequency.SHOWN`.
+    discrete : bool
+        The measured gain and phase of the running filters are drawn on H.
+    locus : str
+        Parameter of the selected method's network over which the root locus is drawn; "": none.
+    requirements : Requirements
+        What the designs have to meet.
+    exaggeration : float or None
+        Of the errors in 3D; None: chosen to fit.
+    angle, length, speed, time : str
+        Unit of the plots over time and of the tables; "auto": what fits the numbers.
+    scale : str
+        Axis of the errors over time.
+    envelope : str
+        Bands behind the error curves: over the seeds of 20 runs, or none.
+    spectrum : str
+        Quantity whose spectrum is shown: a key of `app.figures.errors.error_plots`.
+    baseline : int or None
+        Pin with which numbers are compared; None: the first one.
+    delta : str
+        Which number of each error is compared with the baseline's.
+    flipped : bool
+        The baseline is shown in the place of the present run.
+    theme : str
+        Of the whole page.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    transfer: Annotated[str, AfterValidator(_known_transfer)] = FIRST_TRANSFER
+    discrete: bool = False
+    locus: Annotated[str, Field(max_length=40)] = ""
+    requirements: Requirements = Requirements()
+    exaggeration: Annotated[float | None, Field(gt=0.0, le=1e6)] = None
+    angle: Literal["auto", "arcsec", "arcmin", "deg"] = "auto"
+    length: Literal["auto", "m", "km", "nmi"] = "auto"
+    speed: Literal["auto", "m/s", "kn"] = "auto"
+    time: Literal["auto", "min", "h"] = "auto"
+    scale: Literal["linear", "log"] = "linear"
+    envelope: Literal["none", "seeds"] = "none"
+    spectrum: Literal["phi_e", "phi_n", "phi_u", "dve", "dvn", "dlat", "dlon", "position"] = "dve"
+    baseline: Annotated[int | None, Field(ge=1)] = None
+    delta: Literal["rms", "max_abs", "final"] = "rms"
+    flipped: bool = False
+    theme: Literal["light", "dark"] = "light"
+
+    def with_(self, **changes: object) -> Display:
+        """Give a checked copy with other choices; raises `pydantic.ValidationError`."""
+        return Display.model_validate(self.model_dump() | changes)

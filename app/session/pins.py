@@ -1,0 +1,265 @@
+"""Pinned runs of a session: baselines that every picture can be laid over, with name, colour and note."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from app.background.worker import Watch, Worker
+from navcore.errors import Fault, InputError
+from navcore.run import MethodRun, Run
+from navcore.scenario import Scenario
+
+MOST_PINS = 8
+LONGEST_NAME, LONGEST_NOTE = 40, 400
+COLORS: dict[str, str] = {
+    "black": "#1F2933",
+    "magenta": "#C2185B",
+    "brown": "#795548",
+    "petrol": "#00697A",
+    "violet": "#5E35B1",
+    "slate": "#546E7A",
+    "moss": "#5B7F00",
+    "rust": "#A63C00",
+}
+"""Colours of pins, in the order in which they are given out: none is one of the first methods'."""
+MOST_ROWS = 2000
+"""Output rows that a pinned run keeps: what a picture can show."""
+_log = logging.getLogger("schuler.pins")
+
+Simulate = Callable[[Scenario, Callable[[float], None], Callable[[], bool]], Run]
+
+
+@dataclass(frozen=True)
+class Pin:
+    """One pinned run.
+
+    Attributes
+    ----------
+    id : int
+        Names it within the session; never used again.
+    name, note : str
+        As the user calls it, and what they say of it.
+    color : str
+        Key of `COLORS`.
+    shown : bool
+        It is laid over the pictures.
+    scenario : Scenario
+        What was run.
+    origin : str
+        Preset it came from.
+    run : Run or None
+        The run, with few output rows; None until it has been computed again after a restart.
+    """
+
+    id: int
+    name: str
+    note: str
+    color: str
+    shown: bool
+    scenario: Scenario
+    origin: str
+    run: Run | None
+
+    @property
+    def hex(self) -> str:
+        """Colour, ``#RRGGBB``."""
+        return COLORS[self.color]
+
+
+class Pins:
+    """The pins of a session; every change is told.
+
+    Parameters
+    ----------
+    changed : callable
+        ``changed()`` after every change, from the thread that made it or from the one that computes.
+    simulate : callable
+        ``simulate(scenario, progress, cancelled)``, for pins that were read from a file.
+    """
+
+    def __init__(self, changed: Callable[[], None], simulate: Simulate) -> None:
+        self._changed, self._simulate = changed, simulate
+        self._lock = threading.Lock()
+        self._pins: tuple[Pin, ...] = ()
+        self._next = 1
+        self._worker: Worker[int] = Worker(self._compute, "pins")
+
+    # ------------------------------------------------------------ asking
+
+    def __len__(self) -> int:
+        return len(self._pins)
+
+    @property
+    def all(self) -> tuple[Pin, ...]:
+        """Every pin, oldest first."""
+        return self._pins
+
+    @property
+    def shown(self) -> tuple[Pin, ...]:
+        """Those that are laid over the pictures now."""
+        return tuple(pin for pin in self._pins if pin.shown and pin.run is not None)
+
+    def get(self, id: int | None) -> Pin | None:
+        """The pin of that id; None when there is none."""
+        return next((pin for pin in self._pins if pin.id == id), None)
+
+    def baseline(self, id: int | None) -> Pin | None:
+        """What numbers are compared with: the pin of that id, else the first; None when it has no run."""
+        pin = self.get(id) or next(iter(self._pins), None)
+        return None if pin is None or pin.run is None else pin
+
+    # ------------------------------------------------------------ changing
+
+    def add(self, run: Run, origin: str, name: str = "") -> Pin:
+        """Pin a run.
+
+        Raises
+        ------
+        InputError
+            There are `MOST_PINS` already.
+        """
+        with self._lock:
+            if len(self._pins) >= MOST_PINS:
+                allowed = f"at most {MOST_PINS}: remove one first"
+                raise InputError([Fault("pins", "", len(self._pins), allowed)])
+            id, self._next = self._next, self._next + 1
+            taken = {pin.color for pin in self._pins}
+            color = next((color for color in COLORS if color not in taken), next(iter(COLORS)))
+            pin = Pin(id, _short(name) or f"pin {id}", "", color, True, run.scenario, origin, few_rows(run))
+            self._pins = (*self._pins, pin)
+        self._changed()
+        return pin
+
+    def change(self, id: int, **changes: Any) -> None:
+        """Give a pin another name, note, colour, or show or hide it; unknown ids do nothing.
+
+        Raises
+        ------
+        InputError
+            The colour is not one of `COLORS`.
+        """
+        if "name" in changes:
+            changes["name"] = _short(changes["name"]) or f"pin {id}"
+        if "note" in changes:
+            changes["note"] = str(changes["note"]).strip()[:LONGEST_NOTE]
+        if changes.get("color", next(iter(COLORS))) not in COLORS:
+            raise InputError(
+                [Fault("pins", "color", changes["color"], f"must be one of {', '.join(COLORS)}")]
+            )
+        with self._lock:
+            before = self._pins
+            self._pins = tuple(replace(pin, **changes) if pin.id == id else pin for pin in before)
+            same = self._pins == before
+        if not same:
+            self._changed()
+
+    def remove(self, id: int) -> None:
+        """Take a pin away; unknown ids do nothing."""
+        with self._lock:
+            count = len(self._pins)
+            self._pins = tuple(pin for pin in self._pins if pin.id != id)
+            same = len(self._pins) == count
+        if not same:
+            self._changed()
+
+    def stop(self) -> None:
+        """End the thread."""
+        self._worker.stop()
+
+    def wait_idle(self, timeout_s: float | None = None) -> bool:
+        """Block until every pin has been computed; False after the timeout."""
+        return self._worker.wait_idle(timeout_s)
+
+    # ------------------------------------------------------------ kept in a file
+
+    def to_json(self) -> list[dict[str, Any]]:
+        """What a file keeps of the pins: everything but the runs, which are computed again."""
+        return [
+            {
+                "name": pin.name,
+                "note": pin.note,
+                "color": pin.color,
+                "shown": pin.shown,
+                "origin": pin.origin,
+                "scenario": pin.scenario.canonical(),
+            }
+            for pin in self._pins
+        ]
+
+    def from_json(self, kept: Any) -> None:
+        """Take over what `to_json` gave, in place of all pins; the runs are computed in the background.
+
+        Parameters
+        ----------
+        kept : object
+            As read from a file, which is not trusted.
+
+        Raises
+        ------
+        InputError, ValueError, TypeError, KeyError
+            It is not what `to_json` gives.
+        """
+        pins = tuple(_read(id, entry) for id, entry in enumerate(list(kept)[:MOST_PINS], start=1))
+        with self._lock:
+            self._pins, self._next = pins, len(pins) + 1
+        if pins:
+            self._worker.submit(0)
+
+    def _compute(self, _: int, watch: Watch) -> None:
+        for pin in self._pins:
+            if pin.run is not None or watch.cancelled():
+                continue
+            try:
+                run = self._simulate(pin.scenario, lambda _: None, watch.cancelled)
+            except InputError as error:
+                _log.warning("%s cannot be run again: %s", pin.name, error)
+                continue
+            if run.status != "stopped":
+                self.change(pin.id, run=few_rows(run))
+
+
+def _read(id: int, entry: Any) -> Pin:
+    if entry["color"] not in COLORS:
+        raise ValueError(f"no such colour: {entry['color']!r}")
+    return Pin(
+        id=id,
+        name=_short(entry["name"]) or f"pin {id}",
+        note=str(entry["note"])[:LONGEST_NOTE],
+        color=entry["color"],
+        shown=bool(entry["shown"]),
+        scenario=Scenario.parse(entry["scenario"]),
+        origin=str(entry["origin"])[:60],
+        run=None,
+    )
+
+
+def _short(name: object) -> str:
+    return " ".join(str(name).split())[:LONGEST_NAME]
+
+
+def few_rows(run: Run, most: int = MOST_ROWS) -> Run:
+    """The same run with at most about ``most`` output rows, first and last among them; curves stay whole."""
+    step = -(-len(run.t_s) // most)
+    if step <= 1:
+        return run
+    last = len(run.t_s) - 1
+    chosen = np.unique(np.append(np.arange(0, last + 1, step), last))
+    methods = tuple(_few_rows(method, chosen) for method in run.methods)
+    return replace(run, methods=methods, t_s=run.t_s[chosen], truth=run.truth[chosen])
+
+
+def _few_rows(method: MethodRun, chosen: np.ndarray) -> MethodRun:
+    mine = chosen[chosen < len(method.t_s)]
+    return replace(
+        method,
+        t_s=method.t_s[mine],
+        rows=method.rows[mine],
+        law_series=method.law_series[mine],
+        navigation=None if method.navigation is None else method.navigation[mine],
+    )

@@ -1,0 +1,382 @@
+"""One visitor's work: scenario, its history, uploads, last good run. No viser here."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+from app.background.envelopes import Envelopes
+from app.background.searches import Searches
+from app.background.verifier import Verifier, Verify
+from app.background.worker import Watch, Worker
+from app.session.display import Display
+from app.session.history import History, State
+from app.session.pins import Pins
+from app.session.uploads import Uploads
+from app.session.view import View
+from navcore.errors import InputError
+from navcore.run import Run
+from navcore.scenario import Scenario
+from navcore.units import HOUR
+
+MOST_SAMPLES = 2_500_000
+"""IMU samples, all methods together, of a strapdown run that still follows every change: half a second."""
+
+_REPORT_EVERY_S = 0.1
+_log = logging.getLogger("schuler.session")
+
+Simulate = Callable[[Scenario, Callable[[float], None], Callable[[], bool]], Run]
+
+
+class Session:
+    """State of one visitor.
+
+    Parameters
+    ----------
+    id : str
+        As in the page's address.
+    scenario : Scenario
+        To begin with.
+    origin : str
+        Name of the preset it came from.
+    folder : Path
+        For uploads; need not exist.
+    simulate : callable, optional
+        In place of `navcore.simulation.simulate`.
+    verify : callable, optional
+        In place of `navcore.verification.verify`.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        As edited.
+    origin : str
+        Preset, or "uploaded".
+    opened : Scenario
+        As it was opened: what reset goes back to.
+    selected : int
+        Method that the controls edit.
+    history : History
+        Of scenario, origin and selected method.
+    on_change : callable
+        ``on_change()`` after every change that is to outlive the server.
+    share : callable
+        ``share()`` makes a copy for others and gives its id; OSError when there is no room.
+    presenter : View or None
+        The page that drives; the others watch.
+    run : Run or None
+        The last good one.
+    run_number : int
+        Counts the runs shown.
+    outdated : bool
+        The scenario has changed since ``run``.
+    display : Display
+        What the pictures are shown with.
+    verifier : Verifier
+        Compares the scenario with the full strapdown when asked.
+    pins : Pins
+        Runs that were pinned.
+    envelopes : Envelopes
+        Bands of the error curves over many seeds.
+    """
+
+    def __init__(
+        self,
+        id: str,
+        scenario: Scenario,
+        origin: str,
+        folder: Path,
+        simulate: Simulate | None = None,
+        verify: Verify | None = None,
+    ) -> None:
+        self.id = id
+        self.lock = threading.RLock()
+        self.scenario = scenario
+        self.origin = origin
+        self.opened = scenario
+        self.selected = first_editable(scenario)
+        self.history = History(self.state)
+        self.on_change: Callable[[], None] = lambda: None
+        self.share: Callable[[], str] = lambda: self.id
+        self.presenter: View | None = None
+        self.run: Run | None = None
+        self.run_number = 0
+        self.outdated = True
+        self.display = Display()
+        self.uploads = Uploads(folder)
+        self._before = self.state
+        self._views: list[View] = []
+        self._simulate = simulate or _simulate
+        self._worker: Worker[State] = Worker(self._work, f"session-{id[:8]}")
+        self.verifier = Verifier(
+            lambda: self._tell(lambda view: view.verification_changed()), verify, f"verifier-{id[:8]}"
+        )
+        self.searches = Searches(id[:8])
+        self.pins = Pins(self._pins_changed, self._simulate)
+        self.envelopes = Envelopes(
+            self._simulate,
+            lambda: self._tell(lambda view: view.envelope_progressed()),
+            self._pictures_changed,
+        )
+
+    # ------------------------------------------------------------ pages
+
+    def attach(self, view: View) -> None:
+        """Add an open page; a run is begun if there is none to show."""
+        with self.lock:
+            self._views.append(view)
+            if self.presenter is not None:
+                self._tell(lambda other: other.presenter_changed())
+            if self.run is None:
+                self._worker.submit(self.state)
+
+    def detach(self, view: View) -> None:
+        """Remove a closed page; without any page nothing runs on."""
+        with self.lock:
+            self._views = [other for other in self._views if other is not view]
+            if not self._views:
+                self._worker.cancel()
+                self.verifier.cancel()
+                self.envelopes.cancel()
+            if self.presenter is not None:
+                self.presenter = None if self.presenter is view else self.presenter
+                self._tell(lambda other: other.presenter_changed())
+
+    @property
+    def open_pages(self) -> int:
+        """Number of open pages."""
+        with self.lock:
+            return len(self._views)
+
+    def present(self, view: View | None) -> bool:
+        """Let one page drive alone, or (None) all of them again; False while another page drives."""
+        with self.lock:
+            if view is not None and self.presenter not in (None, view):
+                return False
+            self.presenter = view
+            self._tell(lambda other: other.presenter_changed())
+            return True
+
+    # ------------------------------------------------------------ changes
+
+    @property
+    def state(self) -> State:
+        """What undo brings back."""
+        return State(self.scenario, self.origin, self.selected, self.opened)
+
+    def change(
+        self,
+        scenario: Scenario,
+        by: object,
+        *,
+        origin: str | None = None,
+        selected: int | None = None,
+        name: str = "",
+    ) -> bool:
+        """Take over a checked scenario and run it; False when nothing changed.
+
+        The single place where the scenario changes; each change can be undone. One that `runs_on_demand` is
+        run when it is opened (``origin``) and when the user asks for it, not with every move of a control.
+        ``name`` says what was done where that is not "this field from here to there".
+        """
+        with self.lock:
+            same = scenario == self.scenario and origin in (None, self.origin)
+            at = self.selected if selected is None else selected
+            self.selected = min(at, len(scenario.method) - 1)
+            if same:
+                return False
+            opened = self.opened if origin is None else scenario
+            state = State(scenario, origin or self.origin, self.selected, opened)
+            self.history.push(state, name or ("" if origin is None else f"open {origin}"))
+            self._go_to(state, by, opens=origin is not None)
+            return True
+
+    def resume(self, history: History, display: Display) -> None:
+        """Take over what was kept of this session, before any page is open."""
+        with self.lock:
+            self.history, self.display = history, display
+            state = history.state
+            self.scenario, self.origin = state.scenario, state.origin
+            self.selected, self.opened = state.selected, state.opened
+            self._before = state
+
+    def undo(self) -> bool:
+        """Take the last change back; False when there is none."""
+        return self._walk(self.history.undo)
+
+    def redo(self) -> bool:
+        """Bring back what was undone last; False when nothing was."""
+        return self._walk(self.history.redo)
+
+    def reset(self, by: object) -> bool:
+        """Go back to the scenario as it was opened; False when it is that already."""
+        with self.lock:
+            return self.change(self.opened, by, name=f"reset to {self.origin}")
+
+    def select(self, index: int, by: object) -> None:
+        """Choose the method that the controls edit."""
+        with self.lock:
+            self.selected = min(max(index, 0), len(self.scenario.method) - 1)
+            self.history.push(self.state)
+            for view in list(self._views):
+                view.scenario_changed(by)
+            self.on_change()
+
+    def _walk(self, step: Callable[[], State | None]) -> bool:
+        with self.lock:
+            origin, state = self.origin, step()
+            if state is not None:
+                self._go_to(state, None, opens=state.origin != origin)
+            return state is not None
+
+    def _go_to(self, state: State, by: object, *, opens: bool) -> None:
+        if state.origin != self.origin:
+            self.verifier.forget()
+        self._show_state(state, by)
+        if opens or not runs_on_demand(state.scenario):
+            self._worker.submit(state)
+            return
+        self._worker.cancel()
+        self.outdated = self.run is None or self.run.scenario != state.scenario
+        self._tell(lambda view: view.run_waits() if self.outdated else view.run_ended())
+
+    def _show_state(self, state: State, by: object) -> None:
+        self.scenario, self.origin, self.outdated = state.scenario, state.origin, True
+        self.selected, self.opened = state.selected, state.opened
+        self.verifier.follow(state.scenario)
+        self.searches.changed()
+        for view in list(self._views):
+            view.scenario_changed(by)
+        self.on_change()
+
+    def show(self, by: object, **changes: object) -> None:
+        """Change how the pictures are shown; the single place where `display` changes.
+
+        Raises
+        ------
+        pydantic.ValidationError
+            A choice is not allowed.
+        """
+        with self.lock:
+            display = self.display.with_(**changes)
+            if display == self.display:
+                return
+            self.display = display
+            if self.run is not None:
+                self.envelopes.follow(self.run.scenario, display.envelope == "seeds")
+            for view in list(self._views):
+                view.display_changed(by)
+            self.on_change()
+
+    def _pins_changed(self) -> None:
+        self.on_change()
+        self._pictures_changed()
+
+    def _pictures_changed(self) -> None:
+        self._tell(lambda view: view.display_changed(None))
+
+    @property
+    def waits(self) -> bool:
+        """Whether the scenario has changed and runs only when the user asks for it."""
+        return self.outdated and runs_on_demand(self.scenario) and not self._worker.busy
+
+    def redo_run(self) -> None:
+        """Run the scenario: after a stop, or when it runs on demand."""
+        with self.lock:
+            self._worker.submit(self.state)
+
+    def cancel_run(self) -> None:
+        """Stop the running run; the last good picture stays."""
+        self._worker.cancel()
+
+    def close(self, *, keep_files: bool = False) -> None:
+        """End the workers and remove the uploaded files, unless they are to be found again."""
+        self._worker.stop()
+        self.verifier.stop()
+        self.searches.stop()
+        self.pins.stop()
+        self.envelopes.stop()
+        if not keep_files:
+            self.uploads.clear()
+
+    def wait_idle(self, timeout_s: float | None = None) -> bool:
+        """Block until no run is under way; False after the timeout."""
+        return self._worker.wait_idle(timeout_s)
+
+    # ------------------------------------------------------------ runs
+
+    def _work(self, state: State, watch: Watch) -> None:
+        scenario, last_s = state.scenario, 0.0
+
+        def progress(fraction: float) -> None:
+            nonlocal last_s
+            if watch.elapsed_s - last_s >= _REPORT_EVERY_S:
+                last_s = watch.elapsed_s
+                self._tell(lambda view: view.run_progressed(fraction, last_s))
+
+        try:
+            run = self._simulate(scenario, progress, watch.cancelled)
+        except InputError as error:
+            self._refuse(state, error)
+            return
+        except Exception as error:
+            _log.exception("a run failed")
+            failure = error
+            self._tell(lambda view: view.run_failed(failure))
+            return
+        if run.status == "stopped":
+            if runs_on_demand(self.scenario) and scenario != self.scenario:
+                self._tell(lambda view: view.run_waits())
+            elif not watch.superseded():
+                self._tell(lambda view: view.run_stopped())
+            return
+        with self.lock:
+            self.run, self.run_number = run, self.run_number + 1
+            self.outdated = scenario != self.scenario
+            self._before = state
+            self.envelopes.follow(scenario, self.display.envelope == "seeds")
+        self.searches.ran(run)
+        self._tell(lambda view: view.run_ended())
+
+    def _refuse(self, state: State, error: InputError) -> None:
+        """Go back to the last scenario that ran, unless the user has gone on already."""
+        with self.lock:
+            if state.scenario == self.scenario and self._before.scenario != state.scenario:
+                self.history.take_back(self._before)
+                self._show_state(self._before, self)
+                self.outdated = self.run is None or self.run.scenario != self.scenario
+        self._tell(lambda view: view.run_refused(error))
+
+    def _tell(self, message: Callable[[View], None]) -> None:
+        with self.lock:
+            views = list(self._views)
+        for view in views:
+            try:
+                message(view)
+            except Exception as error:
+                _log.exception("a page could not be brought up to date")
+                view.run_failed(error)
+
+
+def _simulate(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Run:
+    from navcore.simulation import simulate
+
+    return simulate(scenario, progress, cancelled)
+
+
+def runs_on_demand(scenario: Scenario) -> bool:
+    """Whether a run takes so long that it should not follow every move of a slider."""
+    run = scenario.run
+    if run.fidelity != "strapdown":
+        return False
+    return run.duration_h * HOUR * run.rate_hz * len(scenario.method) > MOST_SAMPLES
+
+
+def first_editable(scenario: Scenario) -> int:
+    """Index of the first method with something to tune; 0 if there is none."""
+    tunable = (
+        i for i, m in enumerate(scenario.method) if not m.undamped and len(type(m.network).model_fields) > 1
+    )
+    return next(tunable, 0)

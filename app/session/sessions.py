@@ -1,0 +1,165 @@
+"""The sessions of all visitors, by id: kept over reloads, and over restarts as far as there is a `Store`."""
+
+from __future__ import annotations
+
+import atexit
+import logging
+import shutil
+import tempfile
+import threading
+from collections import OrderedDict
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+from app.http.ids import copied_from, new_shared_id
+from app.session.document import Document, Unreadable, restore, to_document
+from app.session.session import Session
+from app.session.store import Store
+from navcore.scenario import Scenario
+
+MOST_SESSIONS = 64
+"""Sessions held without an open page; with one they are always held."""
+MOST_IDLE_RUNS = 8
+"""Runs kept of sessions without an open page; the others are computed again on return."""
+MOST_SHARED = 64
+"""States that can be shared when there is no store to put them in."""
+FIRST_PRESET = "sikuliaq-like"
+_log = logging.getLogger("schuler.sessions")
+
+
+class Sessions:
+    """All sessions by id; without an open page the least recently used ones are dropped.
+
+    Parameters
+    ----------
+    first : callable, optional
+        Gives the scenario and the name to begin with.
+    store : Store, optional
+        Where they outlive the server; without one a dropped session begins anew.
+    """
+
+    def __init__(
+        self, first: Callable[[], tuple[Scenario, str]] | None = None, store: Store | None = None
+    ) -> None:
+        self._first, self._store = first or first_scenario, store
+        self._lock = threading.Lock()
+        self._by_id: OrderedDict[str, Session] = OrderedDict()
+        self._made: dict[str, threading.Lock] = {}
+        self._shared: OrderedDict[str, Document] = OrderedDict()
+        self._folder: Path | None = None
+        atexit.register(self.close)
+
+    def get(self, id: str) -> Session:
+        """Return the session with that id: as it was left, a copy of a shared state, or new."""
+        with self._lock:
+            session = self._held(id)
+            making = self._made.setdefault(id, threading.Lock())
+        # Reading files takes its time: other visitors need not wait.
+        with making:
+            with self._lock:
+                session = self._held(id)
+            made = self._make(id) if session is None else session
+            with self._lock:
+                self._made.pop(id, None)
+                self._by_id[id] = made
+                self._by_id.move_to_end(id)
+                self._trim(keep=made)
+                return made
+
+    def __len__(self) -> int:
+        return len(self._by_id)
+
+    def close(self) -> None:
+        """End all sessions; those in a store are written, the files of others removed."""
+        if self._store is not None:
+            self._store.close()
+        with self._lock:
+            for session in self._by_id.values():
+                session.close(keep_files=self._store is not None)
+            self._by_id.clear()
+            if self._folder is not None:
+                shutil.rmtree(self._folder, ignore_errors=True)
+                self._folder = None
+        atexit.unregister(self.close)
+
+    # ------------------------------------------------------------ beginning
+
+    def _held(self, id: str) -> Session | None:
+        return self._by_id.get(id)
+
+    def _make(self, id: str) -> Session:
+        scenario, origin = self._first()
+        session = Session(id, scenario, origin, self._files_folder(id))
+        document, source = self._kept(id), id
+        shared = copied_from(id)
+        if document is None and shared is not None:
+            document, source = self._kept(shared), shared
+        if document is not None:
+            self._fill(session, document, source)
+        session.on_change = partial(self._changed, session)
+        session.share = partial(self._share, session)
+        return session
+
+    def _kept(self, id: str) -> Document | None:
+        return self._shared.get(id) if self._store is None else self._store.read(id)
+
+    def _fill(self, session: Session, document: Document, source: str) -> None:
+        try:
+            if source != session.id:
+                _copy_files(self._files_folder(source), session.uploads.folder)
+            if session.uploads.folder.is_dir():
+                session.uploads.reopen()
+            restore(session, document)
+        except (*Unreadable, OSError) as error:
+            _log.warning("a kept session begins anew: %s: %.200s", type(error).__name__, error)
+
+    # ------------------------------------------------------------ keeping
+
+    def _changed(self, session: Session) -> None:
+        if self._store is not None:
+            self._store.soon(session.id, partial(to_document, session))
+
+    def _share(self, session: Session) -> str:
+        id = new_shared_id()
+        document = to_document(session, whole=False) | {"id": id}
+        _copy_files(session.uploads.folder, self._files_folder(id))
+        if self._store is not None:
+            self._store.write(id, document)
+            return id
+        with self._lock:
+            self._shared[id] = document
+            while len(self._shared) > MOST_SHARED:
+                old, _ = self._shared.popitem(last=False)
+                shutil.rmtree(self._files_folder(old), ignore_errors=True)
+        return id
+
+    def _files_folder(self, id: str) -> Path:
+        if self._store is not None:
+            return self._store.files_folder(id)
+        if self._folder is None:
+            self._folder = Path(tempfile.mkdtemp(prefix="schuler-uploads-"))
+        return self._folder / id
+
+    def _trim(self, keep: Session) -> None:
+        idle = [s for s in self._by_id.values() if s is not keep and s.open_pages == 0]
+        for session in idle[: max(0, len(idle) - MOST_SESSIONS)]:
+            del self._by_id[session.id]
+            session.close(keep_files=self._store is not None)
+        for session in idle[: max(0, len(idle) - MOST_IDLE_RUNS)]:
+            session.run = None
+            session.verifier.forget()
+
+
+def _copy_files(source: Path, target: Path) -> None:
+    if source.is_dir():
+        shutil.copytree(source, target, dirs_exist_ok=True, ignore=shutil.ignore_patterns(".*"))
+
+
+def first_scenario() -> tuple[Scenario, str]:
+    """Preset that a new visitor sees."""
+    from navcore.scenario_file import load, presets
+
+    names = list(presets())
+    name = FIRST_PRESET if FIRST_PRESET in names else next(iter(names), "")
+    return (load(name), name) if name else (Scenario(), "")

@@ -1,0 +1,72 @@
+"""What the pictures show: a session's run, or the pinned one while flipped, and what is laid over it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from app.background.verifier import Verified
+from app.figures.envelope import Envelope
+from app.session.display import Display
+from app.session.pins import Pin
+from navcore.run import Run
+
+if TYPE_CHECKING:
+    from app.session.session import Session
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Everything that the figures are made of.
+
+    Attributes
+    ----------
+    run : Run
+        Present run, or that of ``flipped``.
+    number : int
+        Of the present run.
+    display : Display
+        How it is shown.
+    pins : tuple of Pin
+        Laid over it.
+    baseline : Pin or None
+        What the table's numbers are compared with.
+    flipped : Pin or None
+        The pin that is shown in the place of the present run.
+    verified : Verified or None
+        Verification of the same methods.
+    envelope : Envelope or None
+        Over many seeds.
+    """
+
+    run: Run
+    number: int
+    display: Display
+    pins: tuple[Pin, ...] = ()
+    baseline: Pin | None = None
+    flipped: Pin | None = None
+    verified: Verified | None = None
+    envelope: Envelope | None = None
+
+
+def shown(session: Session) -> Shown | None:
+    """What a session's pictures show now; None before its first run."""
+    with session.lock:
+        run, number, display = session.run, session.run_number, session.display
+    if run is None:
+        return None
+    pins = session.pins.shown
+    baseline = session.pins.baseline(display.baseline)
+    if display.flipped and baseline is not None and baseline.run is not None:
+        others = tuple(pin for pin in pins if pin.id != baseline.id)
+        return Shown(baseline.run, number, display, others, flipped=baseline)
+    return Shown(
+        run,
+        number,
+        display,
+        pins,
+        baseline,
+        None,
+        session.verifier.beside(run.scenario),
+        session.envelopes.beside(run.scenario) if display.envelope == "seeds" else None,
+    )

@@ -1,0 +1,310 @@
+"""Files a visitor uploads: kept in a folder of the session, checked, made into scenarios that run on them."""
+
+from __future__ import annotations
+
+import math
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from navcore.errors import Fault, InputError
+from navcore.motion.track import TrackMotion
+from navcore.scenario import Scenario
+from navcore.units import DEG, HOUR
+
+if TYPE_CHECKING:
+    from navcore.io.check import FileReport
+
+MIB = 1 << 20
+LARGEST_FILE = 16 * MIB
+MOST_FILES = 12
+LARGEST_FOLDER = 64 * MIB
+
+_WITH_FILES = ("motion", "reference", "imu")
+"""Blocks of a scenario that may name files: a visitor's must name none of the server's."""
+IMU = "imu"
+_ALIGNED_S = 600.0
+_ALIGNED_PART = 0.5
+"""Of a short IMU record, that is at most spent on the alignment."""
+_SPEEDS = ("water", "ground", "velocity")
+
+
+@dataclass(frozen=True)
+class Upload:
+    """One understood file.
+
+    Attributes
+    ----------
+    path : Path
+        Where it is stored.
+    kind : str
+        What it was understood as.
+    quantities : frozenset of str
+        What it holds: position, heading, velocity, water, ground, attitude, or `IMU`.
+    text : tuple of str
+        What it holds, for reading.
+    warnings : tuple of str
+        What the user should know.
+    details : mapping
+        What the check found in it.
+    """
+
+    path: Path
+    kind: str
+    quantities: frozenset[str]
+    text: tuple[str, ...]
+    warnings: tuple[str, ...]
+    details: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass
+class Uploads:
+    """The files of one session, in a folder that is made when the first one comes.
+
+    Attributes
+    ----------
+    folder : Path
+        Where they are stored.
+    files : dict
+        By name.
+    """
+
+    folder: Path
+    files: dict[str, Upload] = field(default_factory=dict)
+
+    def add(self, name: str, content: bytes) -> Upload:
+        """Store and check a log, track, heading or IMU file.
+
+        Parameters
+        ----------
+        name : str
+            As the browser calls it; made safe.
+        content : bytes
+            The file.
+
+        Raises
+        ------
+        InputError
+            Too large, too many, or not understood (one fault for each thing wrong); nothing is kept then.
+        """
+        from app.http.frames import safe_file_name
+        from navcore.io.check import check_file
+        from navcore.io.check_imu import IMU_CHECKER
+
+        name = safe_file_name(name)
+        self._refuse_excess(name, len(content))
+        self.folder.mkdir(parents=True, exist_ok=True)
+        path = self.folder / name
+        fresh = path.with_name(f".{name}.new")
+        fresh.write_bytes(content)
+        report = check_file(fresh, [IMU_CHECKER])
+        if not report.ok:
+            fresh.unlink()
+            raise InputError(Fault(name, f.field, f.value, f.allowed) for f in report.faults)
+        fresh.replace(path)
+        self.files[name] = _understood(path, report)
+        return self.files[name]
+
+    def _refuse_excess(self, name: str, size: int) -> None:
+        if size > LARGEST_FILE:
+            allowed = f"has {size / MIB:.1f} MiB; at most {LARGEST_FILE / MIB:.0f} MiB are accepted"
+            raise InputError(Fault(name, "", None, allowed))
+        if name not in self.files and len(self.files) >= MOST_FILES:
+            raise InputError(
+                Fault(name, "", None, f"at most {MOST_FILES} files are kept; remove the others first")
+            )
+        kept = sum(upload.path.stat().st_size for other, upload in self.files.items() if other != name)
+        if kept + size > LARGEST_FOLDER:
+            raise InputError(
+                Fault(name, "", None, f"all files together have more than {LARGEST_FOLDER / MIB:.0f} MiB")
+            )
+
+    def reopen(self) -> None:
+        """Take over the files that lie in the folder, from before the server was started; others are left."""
+        from app.http.frames import safe_file_name
+        from navcore.io.check import check_file
+        from navcore.io.check_imu import IMU_CHECKER
+
+        found = sorted(self.folder.iterdir(), key=lambda path: path.stat().st_mtime)
+        for path in found[:MOST_FILES]:
+            if path.is_symlink() or not path.is_file() or safe_file_name(path.name) != path.name:
+                continue
+            report = check_file(path, [IMU_CHECKER])
+            if report.ok:
+                self.files[path.name] = _understood(path, report)
+
+    def clear(self) -> None:
+        """Remove all files and the folder."""
+        self.files.clear()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def holding(self, *quantities: str) -> list[str]:
+        """Paths of the files that hold any of these quantities, in the order in which they came."""
+        return [str(u.path) for u in self.files.values() if u.quantities.intersection(quantities)]
+
+
+def _understood(path: Path, report: FileReport) -> Upload:
+    held = (IMU,) if report.kind.startswith("recorded IMU") else report.details.get("quantities", ())
+    return Upload(path, report.kind, frozenset(held), report.text, report.warnings, report.details)
+
+
+def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, list[str]]:
+    """Let a scenario run on the uploaded recordings.
+
+    A log among them becomes the reference; positions and heading become the motion, and the site is set to
+    the track's start. The duration is set to the time that all of them share.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Its methods, sensors and initial errors are kept.
+    uploads : Uploads
+        At least one file.
+
+    Returns
+    -------
+    Scenario, and in words what was changed.
+
+    Raises
+    ------
+    InputError
+        The recordings share no time, or cannot be used.
+    """
+    from navcore.sensors.recorded import recorded_window
+
+    if uploads.holding(IMU):
+        return _on_recorded_imu(scenario, uploads)
+    data, notes = scenario.canonical(), []
+    speeds = uploads.holding(*_SPEEDS)
+    if uploads.holding("position") and uploads.holding("heading"):
+        data["motion"] = {"kind": "track", "file": uploads.holding("position", "heading", "attitude")}
+        notes.append("The ship follows the uploaded track and heading.")
+    elif uploads.holding("position", "heading"):
+        missing = "heading" if uploads.holding("position") else "track (positions)"
+        notes.append(f"The track is not used yet: a {missing} is missing. Upload it too.")
+    logs = [path for path in speeds if _is_log(uploads, path)] or speeds
+    if logs:
+        kept = {k: v for k, v in data["reference"].items() if k in ("event", "outage")}
+        data["reference"] = {"kind": "file", "file": logs, **kept, "frame": "body"}
+        notes.append(f"The reference is the uploaded log {', '.join(Path(path).name for path in logs)}.")
+    made = Scenario.parse(data)
+    window = recorded_window(made.motion, made.reference)
+    if window is None:
+        raise InputError(
+            Fault("", "upload", None, "holds neither a log nor a track with heading: nothing to run on")
+        )
+    step_s = made.run.step_s
+    span_s = math.floor(window.span_s / step_s) * step_s
+    data["run"] |= {
+        "duration_h": span_s / HOUR,
+        "output_step_s": min(made.run.output_step_s, max(step_s, 1.0)),
+    }
+    notes.append(f"The duration is the {span_s:g} s that all uploaded streams share.")
+    if isinstance(made.motion, TrackMotion):
+        start = made.motion.recorded_start(window.start_s)
+        data["site"] |= {"lat_deg": round(start.lat / DEG, 6), "lon_deg": round(start.lon / DEG, 6)}
+        notes.append(f"The site is the track's start, {start.lat / DEG:.4f} deg, {start.lon / DEG:.4f} deg.")
+    data["title"], data["source"] = "Uploaded recording", ", ".join(uploads.files)[:300]
+    return Scenario.parse(data), notes
+
+
+def _on_recorded_imu(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, list[str]]:
+    """Align and navigate on the newest uploaded IMU record, of a vehicle that stands."""
+    name, upload = next((n, u) for n, u in reversed(uploads.files.items()) if IMU in u.quantities)
+    data, details = scenario.canonical(), upload.details
+    place, span_s = details["place"], float(details["span_s"])
+    aligned_s = math.floor(min(_ALIGNED_S, _ALIGNED_PART * span_s))
+    data["imu"] = {"file": str(upload.path), "axes": "frd" if details["up_axis"] == "-z" else "rfu"}
+    data["motion"], data["reference"] = {"kind": "static"}, {"kind": "log"}
+    data["alignment"] = {"kind": "compass", "duration_s": float(aligned_s)}
+    data["run"] |= {
+        "fidelity": "strapdown",
+        "rate_hz": details["rate_hz"],
+        "duration_h": math.floor(span_s - aligned_s - 1.0) / HOUR,
+        "output_step_s": min(scenario.run.output_step_s, 1.0),
+    }
+    notes = [
+        f"Full strapdown on {name}: {aligned_s} s of alignment, then navigation, with a log that reads zero: "
+        "the vehicle is taken to stand."
+    ]
+    if place is not None:
+        data["site"] = place
+        notes.append(f"The site is that of the file, {place['lat_deg']:.4f} deg, {place['lon_deg']:.4f} deg.")
+    data["title"], data["source"] = "Recorded IMU", name[:300]
+    return Scenario.parse(data), notes
+
+
+def _is_log(uploads: Uploads, path: str) -> bool:
+    """A speed log proper, with speeds along the ship's axes; not a receiver's course and speed."""
+    held = uploads.files[Path(path).name].quantities
+    return bool(held & {"water", "ground"})
+
+
+def shared_files(scenario: Scenario, names: Mapping[str, Path]) -> Scenario:
+    """Let the file names of a scenario mean the uploaded files of the same name.
+
+    A visitor's scenario must not read other files of the server.
+
+    Raises
+    ------
+    InputError
+        A file is named that has not been uploaded.
+    """
+    data, faults = scenario.canonical(), []
+    for block in _WITH_FILES:
+        named = data.get(block, {}).get("file")
+        if not named:
+            continue
+        wanted = [named] if isinstance(named, str) else list(named)
+        plain = [Path(str(name).replace("\\", "/")).name for name in wanted]
+        missing = [name for name in plain if name not in names]
+        faults += [
+            Fault("", f"{block}.file", name, "upload this file first, then the scenario") for name in missing
+        ]
+        found = [str(names[name]) for name in plain if name in names]
+        data[block]["file"] = found[0] if isinstance(named, str) and found else found
+    if faults:
+        raise InputError(faults)
+    return Scenario.parse(data)
+
+
+def opened_scenario(name: str, content: bytes, uploads: Uploads) -> Scenario:
+    """Read an uploaded scenario file; the recordings it names must have been uploaded too.
+
+    Raises
+    ------
+    InputError
+        Not a scenario, or one fault for each thing wrong in it.
+    """
+    from navcore.scenario_file import parse_toml
+
+    if len(content) > MIB:
+        raise InputError(Fault(name, "", None, "is larger than 1 MiB: no scenario"))
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError:
+        raise InputError(Fault(name, "", None, "is not UTF-8 text: no scenario")) from None
+    scenario = Scenario.parse(parse_toml(text, name), name)
+    try:
+        return shared_files(scenario, {held: upload.path for held, upload in uploads.files.items()})
+    except InputError as error:
+        raise error.located(name) from None
+
+
+def with_plain_names(scenario: Scenario) -> Scenario:
+    """For a download: files by their names alone, to be put beside the scenario."""
+    return Scenario.parse(plain_names(scenario.canonical()))
+
+
+def plain_names(data: dict[str, Any]) -> dict[str, Any]:
+    """A scenario's canonical data with its files by their names alone."""
+    data = dict(data)
+    for block in _WITH_FILES:
+        named = data.get(block, {}).get("file")
+        if named:
+            single = isinstance(named, str)
+            plain = Path(named).name if single else [Path(name).name for name in named]
+            data[block] = data[block] | {"file": plain}
+    return data

@@ -1,0 +1,111 @@
+"""The 3D view: cameras, the computed ship of the method in hand, instruments clear of the bar."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from app.page.layout import layout_for
+from tests.browser.driver import Bench
+from tests.browser.test_page_layout import SIZES, resize
+from tests.browser.test_page_playback import command, now, wait_for
+
+pytestmark = pytest.mark.browser
+
+_COLOR = "() => window.__viserSceneTree.getState()['/computed/hull'].message.props.color"
+_BOXES = """() => Object.fromEntries(['.sb-pendulum', '.sb-readout', '.sb-bar', '.sb-shown'].map(name => {
+  const box = document.querySelector(`#sb-stage ${name}`).getBoundingClientRect();
+  return [name, [box.left, box.top, box.right, box.bottom]];
+}))"""
+_VIEW = """() => {
+  const box = document.querySelector('canvas[data-engine]').getBoundingClientRect();
+  return [box.left, box.top, box.right, box.bottom];
+}"""
+
+
+_PLACED = """left => {
+  const view = document.querySelector('canvas[data-engine]').getBoundingClientRect();
+  const stage = document.querySelector('#sb-stage').getBoundingClientRect();
+  return Math.abs(view.left - left) < 12 && Math.abs(view.left - stage.left) < 2
+    && Math.abs(view.width - stage.width) < 2 && Math.abs(view.height - stage.height) < 2;
+}"""
+
+
+@pytest.fixture
+def moving(bench: Bench) -> Bench:
+    bench.reset("sikuliaq-like", selected=2)
+    bench.tab("Method", "Errors")
+    return bench
+
+
+def test_cameras_look_from_elsewhere(moving: Bench) -> None:
+    page = moving.page
+    left, top, right, bottom = page.evaluate(_VIEW)
+    middle = {"x": (left + right) / 2 - 150, "y": (top + bottom) / 2 - 150, "width": 300, "height": 300}
+    seen: list[bytes] = []
+
+    def look(camera: str, time_s: float) -> None:
+        command(moving, f"camera-{camera}")
+        command(moving, "seek", time_s)
+        wait_for(moving, "n.camera === arg[0] && n.time === arg[1]", [camera, time_s])
+        page.wait_for_timeout(300)
+        seen.append(page.screenshot(clip=middle))  # pyright: ignore[reportArgumentType]
+
+    look("top", 6000)
+    look("side", 6000)
+    look("follow", 6000)
+    look("follow", 12000)  # the camera goes with the ship
+    assert len(set(seen)) == 4
+    page.get_by_role("button", name="view: map").click()
+    wait_for(moving, "n.camera === 'map'")
+    command(moving, "seek", 1e9)
+
+
+def test_the_computed_ship_is_that_of_the_method_in_hand(moving: Bench) -> None:
+    from app.figures import style
+
+    page, number = moving.page, moving.run
+    assert tuple(page.evaluate(_COLOR)) == style.method_rgb(2)
+    moving.choose("method to edit", "classic2")
+    page.wait_for_function(f"c => String(({_COLOR})()) === c", arg=",".join(map(str, style.method_rgb(1))))
+    page.locator("#sb-stage table").get_by_text("classic2").wait_for()
+    assert moving.run == number
+
+
+def test_a_pendulum_for_each_method(moving: Bench) -> None:
+    page = moving.page
+    page.wait_for_function("() => document.querySelectorAll('#sb-stage .sb-bob').length === 3")
+    caption = page.locator("#sb-stage .sb-pendulum p").inner_text()
+    assert "tilt x " in caption and "84.4 min" in caption
+    page.get_by_role("button", name="pendulum", exact=True).click()
+    page.locator("#sb-stage .sb-pendulum").wait_for(state="hidden")
+    page.get_by_role("button", name="pendulum", exact=True).click()
+    page.locator("#sb-stage .sb-pendulum").wait_for()
+
+
+def overlap(a: Any, b: Any) -> bool:
+    return a[0] < b[2] - 1 and b[0] < a[2] - 1 and a[1] < b[3] - 1 and b[1] < a[3] - 1
+
+
+def test_instruments_and_bar_fit_the_view(moving: Bench) -> None:
+    try:
+        for size in SIZES:
+            resize(moving, size)
+            moving.page.wait_for_function(_PLACED, arg=layout_for(*size).left_px, timeout=15_000)
+            view, boxes = moving.page.evaluate(_VIEW), moving.page.evaluate(_BOXES)
+            names = [name for name, box in boxes.items() if box[2] > box[0]]
+            assert ".sb-bar" in names and ".sb-pendulum" in names
+            for name in names:
+                box = boxes[name]
+                assert box[0] >= view[0] - 1 and box[2] <= view[2] + 1, (size, name, box, view)
+                assert box[1] >= view[1] - 1 and box[3] <= view[3] + 1, (size, name, box, view)
+            pairs = [(a, b) for i, a in enumerate(names) for b in names[i + 1 :]]
+            assert not [pair for pair in pairs if overlap(boxes[pair[0]], boxes[pair[1]])], size
+            assert boxes[".sb-bar"][3] - boxes[".sb-bar"][1] < 110, size
+            both = moving.page.locator("#sb-stage [data-shows][aria-pressed=true]").count()
+            assert both == (2 if size == SIZES[0] else 1), "a small view has room for one instrument"
+    finally:
+        resize(moving, SIZES[0])
+    assert now(moving)["span"] > 0.0
+    assert moving.faults == []

@@ -1,0 +1,131 @@
+"""A moment of a run: what is true, what a method computes, and the pendulum it swings like."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.figures.moment import moment, readout_html, row_at
+from app.figures.pendulum import pendulum, pendulum_svg
+from app.session.display import Display
+from navcore.mechanization.recorder import PHI_E, PHI_N, PHI_U
+from navcore.motion.base import HEADING, VE, VN
+from navcore.units import ARCMIN, DEG
+from tests.unit.figures_runs import diverging, moving_run, run_of, static_run
+
+
+def with_errors(phi: tuple[float, float, float], heading_deg: float = 90.0):
+    """A still run whose first method has these misalignments all the time."""
+    run = static_run()
+    rows = run.methods[0].rows.copy()
+    rows[:, [PHI_E, PHI_N, PHI_U]] = phi
+    truth = run.truth.copy()
+    truth[:, HEADING] = heading_deg * DEG
+    return replace(run, truth=truth, methods=(replace(run.methods[0], rows=rows), *run.methods[1:]))
+
+
+def test_rows_are_interpolated_and_held_at_the_ends() -> None:
+    t, rows = np.array([0.0, 10.0, 20.0]), np.array([[0.0], [1.0], [5.0]])
+    found = [row_at(t, rows, at)[0] for at in (-1.0, 0.0, 5.0, 15.0, 20.0, 99.0)]
+    assert found == pytest.approx([0.0, 0.0, 0.5, 3.0, 5.0, 5.0])
+    assert row_at(t[:1], rows[:1], 3.0)[0] == 0.0
+    assert row_at(t[:0], rows[:0], 3.0)[0] == 0.0
+
+
+def test_a_turn_about_the_vertical_is_a_heading_error() -> None:
+    shown = moment(with_errors((0.0, 0.0, 30.0 * ARCMIN)), 1000.0)
+    made = shown.methods[0].pose
+    # C~ = (I - [phi x]) C turns the computed axes by -phi: clockwise for a positive phi_U
+    assert math.remainder(made.heading - shown.truth.heading, math.tau) == pytest.approx(0.5 * DEG, rel=1e-4)
+    assert made.pitch == pytest.approx(0.0, abs=1e-9)
+
+
+def test_tilts_are_pitch_and_roll_as_the_ship_heads() -> None:
+    phi_e = 10.0 * ARCMIN
+    north, east = (
+        moment(with_errors((phi_e, 0.0, 0.0), heading), 0.0).methods[0].pose for heading in (0, 90)
+    )
+    assert north.pitch == pytest.approx(-phi_e, rel=1e-4)  # about east by -phi_E: the bow goes down
+    assert north.roll == pytest.approx(0.0, abs=1e-9)
+    assert abs(east.roll) == pytest.approx(phi_e, rel=1e-4)
+    assert east.pitch == pytest.approx(0.0, abs=1e-9)
+
+
+def test_truth_is_that_of_the_run() -> None:
+    run = moving_run()
+    at = len(run.t_s) // 3
+    shown = moment(run, float(run.t_s[at]))
+    assert shown.truth.speed == pytest.approx(math.hypot(run.truth[at, VE], run.truth[at, VN]))
+    assert math.cos(shown.truth.heading - run.truth[at, HEADING]) == pytest.approx(1.0)
+    np.testing.assert_allclose(shown.methods[1].errors, run.methods[1].rows[at, :8])
+
+
+def test_a_strapdown_run_shows_what_it_computes() -> None:
+    run = run_of(
+        run={"duration_h": 0.05, "fidelity": "strapdown", "rate_hz": 20.0, "output_step_s": 10.0},
+        method=[{"name": "free"}],
+    )
+    method = run.methods[0]
+    assert method.navigation is not None
+    shown = moment(run, float(run.t_s[-1]))
+    assert shown.methods[0].pose.pitch == method.navigation[-1, 6]
+    assert shown.methods[0].pose.heading == method.navigation[-1, 8] % math.tau
+
+
+def test_the_readout_has_units_and_names_the_method() -> None:
+    run = diverging(moving_run(), 0, rows=1000)
+    html = readout_html(moment(run, float(run.t_s[-1])), 0)
+    assert run.methods[0].method.name in html and "(ended)" in html
+    asked = Display(angle="deg", speed="m/s", length="nmi")
+    other = readout_html(moment(run, float(run.t_s[-1])), 0, asked)
+    assert re.search(r"speed</th><td>[\d.]+ m/s</td><td>[\d.]+ m/s</td><td>.* m/s</td>", other)
+    assert re.search(r"position</th>.* nmi</td></tr>", other) and "arc" not in other
+    for row in ("heading", "pitch", "roll", "speed", "position"):
+        cells = re.search(rf"{row}</th>(.*?)</tr>", html)[1]
+        assert re.search(r"\d ?(°|arcsec|arcmin|deg|kn|m|km|nmi|m/s)<", cells), row
+
+
+class TestPendulum:
+    def test_it_hangs_along_the_computed_vertical(self) -> None:
+        run = with_errors((3.0 * ARCMIN, 5.0 * ARCMIN, 0.0))
+        bob = pendulum(run, 5000.0).bobs[0]
+        assert (bob.east, bob.north) == pytest.approx((-5.0 * ARCMIN, 3.0 * ARCMIN))
+        np.testing.assert_allclose(bob.trail, [[bob.east, bob.north]] * len(bob.trail))
+
+    def test_all_methods_share_one_factor_and_the_period_is_schulers(self) -> None:
+        run = static_run()
+        shown = pendulum(run, float(run.t_s[-1]))
+        assert shown.period_s == pytest.approx(84.4 * 60.0, rel=0.005)
+        peak = max(m.errors[n]["max_abs"] for m in run.methods for n in ("phi_e_rad", "phi_n_rad"))
+        assert 10.0 * DEG < shown.factor * peak <= 30.0 * DEG
+        assert len(shown.bobs) == len(run.methods)
+
+    def test_the_trail_is_the_last_period_and_damping_shortens_it(self) -> None:
+        run = run_of(
+            run={"duration_h": 12.0},
+            initial_error={"attitude_arcmin": [0.0, 3.0, 0.0]},
+            method=[
+                {"name": "free"},
+                {"name": "damped", "damping": "internal", "network": {"id": "classic2"}},
+            ],
+        )
+        shown = pendulum(run, float(run.t_s[-1]))
+        # the Foucault rotation has turned the plane of the swing meanwhile
+        free, damped = (float(np.linalg.norm(np.ptp(bob.trail, axis=0))) for bob in shown.bobs)
+        assert free > 5.0 * ARCMIN  # from side to side within the trail
+        assert damped < 0.1 * free
+        assert (shown.bobs[0].undamped, shown.bobs[1].undamped) == (True, False)
+
+    def test_the_picture_stays_in_its_frame_and_says_what_it_is(self) -> None:
+        for run in (moving_run(), static_run(), diverging(moving_run(), 0, rows=1000)):
+            for at in (0.0, 1234.5, float(run.t_s[-1])):
+                svg = pendulum_svg(pendulum(run, at))
+                assert svg.count('class="sb-bob"') == len(run.methods)
+                assert 'aria-label="Schuler pendulum: platform tilt' in svg
+                assert "nan" not in svg and "inf" not in svg
+                for x, y in re.findall(r'cx="([-\d.]+)" cy="([-\d.]+)"', svg):
+                    assert -5 <= float(x) <= 301 and -5 <= float(y) <= 155

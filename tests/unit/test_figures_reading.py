@@ -1,0 +1,270 @@
+"""Units, logarithmic axes, envelopes, spectra and files of the plots."""
+
+from __future__ import annotations
+
+import csv
+import io
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.background.envelopes import SEEDS, Envelopes, with_seed
+from app.figures.envelope import Envelope, envelope
+from app.figures.errors import error_plots
+from app.figures.frequency import bode
+from app.figures.plotly_data import packed, unpacked, values_of
+from app.figures.saved import plotly_csv, time_csv, time_picture
+from app.figures.spectrum import amplitude_spectrum, spectrum
+from app.figures.switching import switching_plots
+from app.session.display import Display
+from navcore.mechanization.recorder import DV_E
+from navcore.run import Run
+from navcore.scenario import Scenario
+from tests.unit.figures_runs import THREE, diverging, run_of, scenario, static_run
+from tests.unit.test_figures_switching import switching_run
+
+# ---------------------------------------------------------------- units
+
+
+@pytest.mark.parametrize(
+    ("choice", "key", "unit"),
+    [
+        ({"angle": "arcsec"}, "phi_u", "arcsec"),
+        ({"angle": "arcmin"}, "phi_e", "arcmin"),
+        ({"length": "nmi"}, "position", "nmi"),
+        ({"speed": "kn"}, "dve", "kn"),
+    ],
+)
+def test_curves_are_drawn_in_the_wanted_unit(choice: dict[str, str], key: str, unit: str) -> None:
+    auto, wanted = error_plots(static_run())[key], error_plots(static_run(), display=Display(**choice))[key]
+    assert wanted.unit.name.endswith(unit)
+    np.testing.assert_allclose(wanted.data[1] * wanted.unit.si, auto.data[1] * auto.unit.si, rtol=1e-12)
+
+
+def test_a_unit_that_is_too_large_is_drawn_in_thousandths_of_it() -> None:
+    plot = error_plots(static_run(), display=Display(angle="deg"))["phi_e"]
+    assert plot.unit.name in ("10⁻³ deg", "deg") and np.nanmax(np.abs(plot.data[1])) >= 0.02
+
+
+def test_time_axis_in_the_wanted_unit() -> None:
+    plots = error_plots(static_run(), display=Display(time="min"))
+    assert plots["dve"].data[0][-1] == pytest.approx(360.0)
+    assert plots["dve"].axes()[0]["label"] == "time (min)"
+
+
+# ---------------------------------------------------------------- logarithmic axis
+
+
+def test_logarithmic_axis_shows_magnitudes_over_whole_decades() -> None:
+    linear, log = (error_plots(static_run(), display=Display(scale=s))["dve"] for s in ("linear", "log"))
+    first, last = log.decades or (0, 0)
+    peak = max(np.max(np.abs(values)) for values in linear.data[1:])
+    assert 10.0 ** (last - 1) < peak <= 10.0**last and last - first >= 3
+    np.testing.assert_allclose(log.data[2], np.maximum(np.abs(linear.data[2]), 10.0**first))
+    assert log.scales["y"]["range"] == (10.0**first, 10.0**last)
+    ticks = log.axes()[1]
+    assert len(ticks["splits"]) == last - first + 1 and ticks["label"].startswith("|")
+    assert log.config_key() != linear.config_key()
+
+
+def test_nothing_but_zeros_on_a_logarithmic_axis() -> None:
+    run = static_run()
+    zero = replace(run.methods[0].plot, values=0.0 * run.methods[0].plot.values)
+    errors = {name: dict.fromkeys(stats, 0.0) for name, stats in run.methods[0].errors.items()}
+    still = replace(run, methods=(replace(run.methods[0], plot=zero, errors=errors),))
+    for plot in error_plots(still, display=Display(scale="log")).values():
+        assert plot.decades is not None and np.isfinite(plot.data[1]).all()
+
+
+def test_limits_are_lines_at_both_signs() -> None:
+    plots = error_plots(static_run(), limits={"dve": 0.5, "position": 1852.0})
+    assert plots["dve"].names[-2:] == ("limit", "limit")
+    np.testing.assert_allclose(plots["dve"].data[-1] * plots["dve"].unit.si, -0.5)
+    assert plots["position"].names[-1] == "limit" and plots["position"].names.count("limit") == 1
+    assert "limit" not in plots["phi_e"].names
+
+
+# ---------------------------------------------------------------- envelope
+
+
+def seeds(count: int) -> list[Run]:
+    from navcore.simulation import simulate
+
+    one = scenario(run={"duration_h": 1.0}, method=[THREE[1]])
+    return [simulate(with_seed(one, seed)) for seed in range(1, count + 1)]
+
+
+@pytest.fixture(scope="module")
+def runs() -> list[Run]:
+    return seeds(SEEDS)
+
+
+def test_envelope_holds_most_of_the_runs(runs: list[Run]) -> None:
+    found = envelope(runs)
+    assert found.count == SEEDS and "5 to 95 %" in found.label and "20 seeds" in found.label
+    low, high = found.low[0][:, DV_E], found.high[0][:, DV_E]
+    inside = []
+    for run in runs:
+        pairs = run.methods[0].plot.values[: 2 * len(low), DV_E].reshape(-1, 2)
+        inside.append(np.mean((pairs.min(axis=1) >= low) & (pairs.max(axis=1) <= high)))
+    # one of twenty below each edge
+    assert 0.85 <= np.mean(inside) <= 0.95
+
+
+def test_envelope_is_a_band_behind_its_own_curve(runs: list[Run]) -> None:
+    found = envelope(runs[:5])
+    plot = error_plots(runs[0], envelope=found)["dve"]
+    assert plot.names[0] == "classic2" and len(plot.bands) == 1
+    upper, lower, color = plot.bands[0]
+    assert plot.edges == {upper, lower} and color.startswith(plot.colors[0])
+    assert np.all(plot.data[1 + upper] >= plot.data[1 + lower])
+    assert plot.series[1 + upper]["width"] == 0.0
+    assert plot.kwargs()["bands"] == ({"series": (upper + 1, lower + 1), "fill": color},)
+    log = error_plots(runs[0], envelope=found, display=Display(scale="log"))["dve"]
+    assert np.all(log.data[1 + upper] >= log.data[1 + lower])
+
+
+def test_bins_of_two_points_keep_their_extremes() -> None:
+    run = run_of(run={"duration_h": 3.0}, method=[{"name": "free"}])
+    plot = run.methods[0].plot
+    assert plot.t_s[0] > 0.0
+    found = envelope([run])
+    pairs = plot.values[: 2 * len(found.t_s), DV_E].reshape(-1, 2)
+    np.testing.assert_array_equal(found.low[0][:, DV_E], pairs.min(axis=1))
+    np.testing.assert_array_equal(found.high[0][:, DV_E], pairs.max(axis=1))
+
+
+class Watched:
+    """Envelopes over a quick stand-in for the simulation."""
+
+    def __init__(self, run: Run) -> None:
+        self.seeds: list[int] = []
+        self.told: list[str] = []
+        self.run = run
+        self.all = Envelopes(
+            self.simulate, lambda: self.told.append("further"), lambda: self.told.append("ended"), still_s=0.0
+        )
+
+    def simulate(self, of: Scenario, _: Callable[[float], None], cancelled: Callable[[], bool]) -> Run:
+        self.seeds.append(of.run.seed)
+        return self.run
+
+
+def test_envelope_is_made_over_other_seeds_and_belongs_to_one_scenario(runs: list[Run]) -> None:
+    watched = Watched(runs[0])
+    one = runs[0].scenario
+    watched.all.follow(one, True)
+    assert watched.all.wait_idle(20.0)
+    assert watched.seeds == [one.run.seed + number for number in range(1, SEEDS + 1)]
+    assert isinstance(watched.all.beside(one), Envelope) and watched.told[-1] == "ended"
+    assert watched.all.beside(with_seed(one, 99)) is None
+    watched.all.follow(one, True)
+    assert len(watched.seeds) == SEEDS, "made twice"
+    watched.all.follow(one, False)
+    assert watched.all.beside(one) is None and watched.all.fraction is None
+
+
+def test_strapdown_scenarios_are_told_that_they_have_none(runs: list[Run]) -> None:
+    watched = Watched(runs[0])
+    watched.all.follow(scenario(run={"duration_h": 1.0, "fidelity": "strapdown"}), True)
+    assert "strapdown" in watched.all.words and watched.seeds == []
+
+
+# ---------------------------------------------------------------- spectrum
+
+
+def test_a_sine_shows_as_a_peak_of_its_amplitude_at_its_period() -> None:
+    method = static_run().methods[0]
+    period = float(method.t_s[-1]) / 5.0
+    rows = method.rows.copy()
+    rows[:, DV_E] = 7.0 + 2.5 * np.sin(2.0 * np.pi * method.t_s / period + 0.4)
+    periods, amplitude = amplitude_spectrum(replace(method, rows=rows), DV_E)
+    place = int(np.argmax(amplitude))
+    assert amplitude[place] == pytest.approx(2.5, rel=0.01)
+    assert periods[place] == pytest.approx(period, rel=0.03)
+    assert np.all(np.diff(periods) < 0.0) and len(periods) <= 1300
+    assert amplitude[periods < 0.2 * period].max() < 0.01
+
+
+def test_undamped_error_peaks_at_the_schuler_period() -> None:
+    run = run_of(
+        run={"duration_h": 24.0}, reference={"kind": "none"}, method=[{"name": "free"}],
+        imu={"gyro_bias_dph": [0.0, 0.0, 0.0], "accel_bias_ug": [50.0, 50.0, 0.0]},
+    )  # fmt: skip
+    periods, amplitude = amplitude_spectrum(run.methods[0], DV_E)
+    near = (periods > 3600.0) & (periods < 7200.0)
+    assert periods[near][np.argmax(amplitude[near])] == pytest.approx(
+        2.0 * np.pi / run.scenario.omega_s, rel=0.03
+    )
+    figure = spectrum(run, "dve")
+    notes = " ".join(note["text"] for note in figure["layout"]["annotations"])
+    assert "Schuler" in notes and "24 h" in notes
+    assert figure["layout"]["xaxis"]["title"]["text"] == "period (h)"
+    minutes = spectrum(run, "dve", display=Display(time="min"))["layout"]["xaxis"]["title"]["text"]
+    assert minutes == "period (min)"
+    assert "m/s" in figure["layout"]["yaxis"]["title"]["text"]
+
+
+def test_spectrum_of_a_run_too_short_or_diverged_is_still_drawn() -> None:
+    assert spectrum(diverging(static_run(), 0, rows=10))["data"][0]["name"] == "classic2"
+    assert amplitude_spectrum(diverging(static_run(), 0, rows=4).methods[0], DV_E)[0].size == 0
+
+
+# ---------------------------------------------------------------- files
+
+
+def read_csv(content: bytes) -> tuple[list[str], list[list[str]]]:
+    lines = content.decode().splitlines()
+    rows = list(csv.reader(io.StringIO("\n".join(line for line in lines if not line.startswith("#")))))
+    return [line for line in lines if line.startswith("#")], rows
+
+
+def test_csv_of_a_time_plot_holds_the_plotted_numbers_in_full() -> None:
+    plot = error_plots(static_run())["dve"]
+    comments, rows = read_csv(time_csv([plot], ["scenario_sha256 abc"]))
+    assert comments[0] == "# scenario_sha256 abc"
+    assert rows[0] == ["time (h)", "free (m/s)", "classic2 (m/s)", "compass (m/s)"]
+    assert [float(row[2]) for row in rows[1:]] == plot.data[2].tolist()
+
+
+def test_csv_has_no_formulas_and_gaps_where_there_is_no_curve() -> None:
+    run = diverging(static_run(), 0, rows=800)
+    renamed = run.methods[1].method.model_copy(update={"name": "=1+1"})
+    named = replace(run, methods=(run.methods[0], replace(run.methods[1], method=renamed)))
+    _, rows = read_csv(time_csv([error_plots(named)["dve"]], []))
+    assert rows[0][2].startswith("'=1+1")
+    assert rows[-1][1] == "" and rows[-1][2] != ""
+
+
+def test_csv_of_a_plotly_figure_holds_more_than_its_float32() -> None:
+    figure = bode(static_run())
+    comments, rows = read_csv(plotly_csv(figure, ["about"]))
+    assert comments == ["# about"] and rows[0] == ["curve", "x axis", "y axis", "x", "y"]
+    mine = [row for row in rows[1:] if row[0] == "classic2" and row[2].startswith("|H|")]
+    trace = next(t for t in figure["data"] if t["name"] == "classic2" and t["yaxis"] == "y")
+    np.testing.assert_array_equal([float(row[4]) for row in mine], trace["y"].full)
+    assert any(float(row[4]) != float(np.float32(row[4])) for row in mine)
+
+
+def test_packed_numbers_are_remembered() -> None:
+    value = packed(np.array([0.1, 0.2]))
+    assert values_of(value) == [0.1, 0.2] and values_of([1.0, None]) == [1.0, None]
+    np.testing.assert_allclose(unpacked(value), [0.1, 0.2], rtol=1e-7)
+
+
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_time_plots_become_pictures(runs: list[Run], scale: str) -> None:
+    plots = error_plots(runs[0], envelope=envelope(runs[:3]), display=Display(scale=scale))
+    svg = time_picture([plots["dve"]], "svg", "a $title$ <x>")
+    text = "".join(ElementTree.fromstring(svg).itertext())
+    assert "classic2" in text and "time (min)" in text and "(m/s)" in text
+    png = time_picture([plots["dve"], plots["position"]], "png", "two")
+    assert png.startswith(b"\x89PNG")
+
+
+def test_switching_states_become_a_picture() -> None:
+    plots = switching_plots(switching_run(), "min")
+    assert time_picture(plots, "svg", "Switching").startswith(b"<?xml")

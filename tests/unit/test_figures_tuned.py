@@ -1,0 +1,21 @@
+"""The picture and rows of a table that Sun's double loop found."""
+
+from __future__ import annotations
+
+import re
+
+from app.figures.tuned import HEIGHT, WIDTH, table_html
+from navcore.tuning import TuningSettings, tune
+
+
+def test_every_row_is_a_dot_in_the_frame_and_stands_beside_suns() -> None:
+    found = tune(settings=TuningSettings(differences_kn=(0.0, 0.5, 3.0), smallest=0.2, step=0.4))
+    html = table_html(found, "#0072B2")
+    dots = re.findall(r'class="sb-found" cx="([\d.]+)" cy="([\d.]+)"', html)
+    assert len(dots) == 3
+    assert all(0 < float(x) < WIDTH and 0 < float(y) < HEIGHT for x, y in dots)
+    assert float(dots[0][0]) < float(dots[1][0]) < float(dots[2][0])
+    assert html.count("<tr><td>") == 3
+    for kn, xi, his in found.beside_sun():
+        assert f"<td>{kn:g}</td><td>{xi:.3g}</td><td>{his:.2g}</td>" in html
+    assert "velocity difference (kn)" in html

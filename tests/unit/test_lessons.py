@@ -1,0 +1,189 @@
+"""Every lesson is whole: its names, fields, tabs and answers exist and come from the engine."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import pytest
+
+from app.learn.lessons import (
+    Lesson,
+    Question,
+    Step,
+    holds,
+    is_right,
+    lessons,
+    names_in,
+    read_lesson,
+    right_choice,
+    to_html,
+)
+from app.learn.names import Named, named
+from app.panels.lessons import right_answer, spec_at
+from app.panels.results import SWITCHING, TABS
+from app.session.display import Display
+from navcore.errors import InputError
+from navcore.run import Run
+from navcore.scenario import Scenario
+from navcore.simulation import simulate
+
+LESSONS = lessons()
+STEPS = [(lesson, i) for lesson in LESSONS for i in range(len(lesson.steps))]
+step_ids = [f"{lesson.id}-{i + 1}" for lesson, i in STEPS]
+every_step = pytest.mark.parametrize(("lesson", "index"), STEPS, ids=step_ids)
+ASKING = [(lesson, i) for lesson, i in STEPS if lesson.steps[i].question is not None]
+
+ONE = """+++
+title = "A"
+about = "B"
+preset = "zha-fast"
++++
+## First
+Text with $x$ and {{schuler.period}}.
+"""
+
+
+@lru_cache(maxsize=64)
+def run_of(lesson: str, index: int) -> Run:
+    return simulate(next(other for other in LESSONS if other.id == lesson).scenario_of(index))
+
+
+def test_there_are_the_seven_lessons_with_questions_and_actions() -> None:
+    assert [lesson.id[0] for lesson in LESSONS] == list("1234567")
+    for lesson in LESSONS:
+        assert sum(step.question is not None for step in lesson.steps) >= 3, lesson.id
+        assert all(step.action is not None for step in lesson.steps), lesson.id
+        assert any("$$" in step.text for step in lesson.steps), lesson.id
+
+
+@every_step
+def test_what_a_step_asks_of_the_page_exists(lesson: Lesson, index: int) -> None:
+    action = lesson.steps[index].action
+    scenario = lesson.scenario_of(index)
+    assert set(action.tabs) <= {*TABS, SWITCHING}
+    Display().with_(**action.display)
+    assert action.method is None or action.method < len(scenario.method)
+    for path in action.sliders:
+        (spec,) = spec_at(scenario, path)
+        assert spec.slider is not None
+        assert spec.label.startswith("try:")
+
+
+@every_step
+def test_every_number_in_a_step_is_found_in_its_run(lesson: Lesson, index: int) -> None:
+    step, run = lesson.steps[index], run_of(lesson.id, index)
+    assert run.status == "ok"
+    why = step.question.why if step.question else ""
+    for name in names_in(step.text + why):
+        # The text of a step may stand beside the run of the step before: then it says "press Show me".
+        assert math.isfinite(named(name, run).value), name
+    assert "{{" not in to_html(step.text + why, run)
+
+
+@pytest.mark.parametrize(("lesson", "index"), ASKING, ids=[f"{le.id}-{i + 1}" for le, i in ASKING])
+def test_the_engine_gives_one_right_answer_and_refuses_others(lesson: Lesson, index: int) -> None:
+    question, run = lesson.steps[index].question, run_of(lesson.id, index)
+    right = right_answer(question, run)
+    assert is_right(question, right, run)
+    if question.choices:
+        assert len(question.choices) >= 2
+        others = [str(i) for i in range(len(question.choices)) if str(i) != right]
+    else:
+        value = float(right)
+        others = [f"{value * (1 + sign * 1.2 * question.tolerance):.6g}" for sign in (1, -1)]
+    assert not any(is_right(question, other, run) for other in others)
+
+
+def test_answers_follow_the_run_and_not_the_file() -> None:
+    question = LESSONS[0].steps[1].question
+    run = run_of(LESSONS[0].id, 1)
+    assert float(right_answer(question, run)) == pytest.approx(84.45, abs=0.05)
+    scenario = run.scenario.model_copy(update={"run": run.scenario.run.model_copy(update={"earth": "wgs84"})})
+    other = named("schuler.period", simulate(scenario)).value
+    assert other != pytest.approx(84.4525, abs=1e-3)
+
+
+def test_the_numbers_are_those_of_the_physics() -> None:
+    run = run_of(LESSONS[6].id, 0)
+    fast, slow = named("schuler.fast", run).value, named("schuler.slow", run).value
+    beat_h = 1.0 / (60.0 / fast - 60.0 / slow)
+    # The two lines are 2 Omega sin L apart: they beat with half the Foucault period.
+    assert beat_h == pytest.approx(named("foucault.quarter", run).value * 2.0, rel=1e-9)
+    assert named("averaging.left", run).value == pytest.approx(6.6, abs=0.05)
+    assert named("day.period", run).value == pytest.approx(23.934, abs=1e-3)
+    run = run_of(LESSONS[3].id, 1)
+    assert named("loop.1.h0", run).value == pytest.approx(0.648, abs=1e-3)
+    assert named("error.1.dvn.final", run).value == pytest.approx(-0.543 * 0.5, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [(84.4525, "min", "84.5 min"), (8.06, '"', '8.06"'), (0.00124, "rad/s", "0.00124 rad/s"),
+     (12345.0, "m", "12300 m"), (0.0000125, "m/s", "1.25e-05 m/s"), (math.inf, "min", "no number")],
+)  # fmt: skip
+def test_numbers_are_written_to_be_read(value: float, unit: str, text: str) -> None:
+    assert Named(value, unit).text == text
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["", "schuler", "schuler.x", "error.9.phi_e.max", "error.0.phi_e.x", "error.-1.phi_e.max",
+     "loop.0.__class__", "setting.__class__.x", "setting.method.0.name", "setting.run.earth",
+     "setting.method.7.x", "curve.0.phi_e.x"],
+)  # fmt: skip
+def test_what_is_no_name_is_refused(name: str) -> None:
+    with pytest.raises(KeyError):
+        named(name, run_of(LESSONS[0].id, 0))
+
+
+def test_a_comparison_reads_names_factors_and_numbers_only() -> None:
+    run = run_of(LESSONS[0].id, 0)
+    assert holds("schuler.period > 84", run)
+    assert holds("2 * schuler.half >= 0.999 * schuler.period", run)
+    assert not holds("schuler.period < 84", run)
+    for bad in ("", "1", "schuler.period", "a > b", "schuler.period == 84", "__import__('os') > 1"):
+        with pytest.raises(KeyError):
+            holds(bad, run)
+
+
+def test_two_right_choices_are_a_fault() -> None:
+    choices = [{"say": "a", "when": "1 > 0"}, {"say": "b", "when": "2 > 0"}]
+    question = Question(ask="?", why="", choices=choices)
+    with pytest.raises(KeyError, match="2 choices"):
+        right_choice(question, run_of(LESSONS[0].id, 0))
+
+
+def test_markdown_shows_formulas_and_numbers_and_no_foreign_html() -> None:
+    html = to_html("**b** $a_b*c_d$ {{schuler.period}} <script>x</script>", run_of(LESSONS[0].id, 0))
+    assert "<strong>b</strong>" in html
+    assert html.count("<math") == 1
+    assert "<em>" not in html
+    assert 'data-name="schuler.period">84.45 min<' in html
+    assert "<script" not in html
+    assert "press Show me" in to_html("{{schuler.period}}", None)
+    assert "press Show me" in to_html("{{error.5.dve.max}}", run_of(LESSONS[0].id, 0))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("+++\n", "", "must begin with TOML"),
+        ("## First", "First", "in steps"),
+        ('about = "B"', "about = ", "not valid TOML"),
+        ('about = "B"', "", "Field required"),
+        ("Text", "```toml action\ntabz = []\n```\nText", "not permitted"),
+        ("Text", "```toml action\ntabs = []\n```\n```toml action\ntabs = []\n```\nText", "once"),
+    ],
+)
+def test_a_file_that_is_no_lesson_is_refused_with_its_place(old: str, new: str, said: str) -> None:
+    with pytest.raises(InputError, match=said) as caught:
+        read_lesson("broken", ONE.replace(old, new, 1))
+    assert "broken" in str(caught.value)
+
+
+def test_a_lesson_may_play_in_a_preset() -> None:
+    lesson = read_lesson("one", ONE)
+    assert lesson.steps == (Step(title="First", text="Text with $x$ and {{schuler.period}}."),)
+    assert isinstance(lesson.scenario_of(0), Scenario)
+    assert lesson.scenario_of(0).method[1].name == "classic2"

@@ -1,0 +1,93 @@
+"""From a point of the pole map, or typed numbers, to a scenario with that pair; else why not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.editing.placing import pair_at, read_point, typed_pair, with_pair
+from navcore.errors import InputError
+from navcore.loop import analyse
+from navcore.scenario import Scenario
+from tests.unit.figures_runs import THREE, scenario
+
+NETWORKS = [{"id": "compass"}, {"id": "unity2"}, {"id": "pole2"}, {"id": "complementary"}]
+
+
+def with_network(network: dict, **more: object) -> Scenario:
+    method = {"name": "m", "damping": "external", "network": network} | more
+    return scenario(method=[*THREE, method])
+
+
+@pytest.mark.parametrize("network", NETWORKS[:2], ids=lambda n: n["id"])
+def test_a_picked_point_becomes_a_pole(network: dict) -> None:
+    point = -0.8 + 1.1j
+    placed = with_pair(with_network(network), 3, *pair_at(point))
+    assert placed.note == ""
+    made = placed.scenario
+    poles = analyse(made.method[3].network.transfer(made.omega_s)).poles / made.omega_s
+    assert np.abs(poles - point).min() < 1e-6
+    assert np.abs(poles - point.conjugate()).min() < 1e-6
+    assert made.method[:3] == with_network(network).method[:3]
+    assert "m: pair at ξ = 0.588, ω = 1.36 ω_s" in placed.words
+
+
+def test_below_the_real_axis_it_is_the_same_pair() -> None:
+    assert pair_at(-0.6 - 0.8j) == pair_at(-0.6 + 0.8j) == (pytest.approx(0.6), pytest.approx(1.0))
+
+
+@pytest.mark.parametrize("network", NETWORKS[2:], ids=lambda n: n["id"])
+def test_a_network_whose_pair_stays_at_omega_s_takes_the_damping_and_says_so(network: dict) -> None:
+    placed = with_pair(with_network(network), 3, 0.4, 2.0)
+    assert "always lies at omega_s" in placed.note
+    assert "ξ = 0.4, ω = 1 ω_s" in placed.words
+    assert analyse(placed.scenario.method[3].network.transfer(placed.scenario.omega_s)).damping_ratio == (
+        pytest.approx(0.4)
+    )
+
+
+@pytest.mark.parametrize(
+    ("index", "said"),
+    [
+        (0, "free runs without its network"),
+        (
+            1,
+            "no parameter that puts a pair at ξ = 0.5, ω = 1.2 ω_s; its least damped pair stays at ξ = 0.699",
+        ),
+    ],
+)
+def test_what_cannot_be_placed_says_why_and_where_the_pair_is(index: int, said: str) -> None:
+    with pytest.raises(InputError) as refused:
+        with_pair(scenario(), index, 0.5, 1.2)
+    assert said in str(refused.value)
+
+
+def test_out_of_the_parameters_range_is_said_with_the_range() -> None:
+    with pytest.raises(InputError) as refused:
+        with_pair(scenario(), 2, 0.5, 4e4)
+    assert "compass, sigma" in str(refused.value) and "<= 1 (1/s)" in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [("", "two numbers"), ("1", "two numbers"), ("a b", "two numbers"), ("nan 1", "within"),
+     ("0 0", "not at 0"), ("1e9 0", "within"), ("1 2 3", "two numbers"), ("-1 " + "9" * 400, "within")],
+)  # fmt: skip
+def test_hostile_points_are_refused(text: str, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        pair_at(read_point(text))
+
+
+def test_the_right_half_plane_is_refused_with_what_is_nearest() -> None:
+    with pytest.raises(InputError) as refused:
+        pair_at(read_point("0.5 1"))
+    assert "grows without bound" in str(refused.value) and "ξ = 0.01" in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "pair", [(0.0, 1.0), (1.5, 1.0), (float("nan"), 1.0), (0.5, 0.0), (0.5, float("inf"))]
+)
+def test_typed_numbers_are_checked(pair: tuple[float, float]) -> None:
+    with pytest.raises(InputError):
+        typed_pair(*pair)
+    assert typed_pair(0.5, 1.2) == (0.5, 1.2)

@@ -1,0 +1,151 @@
+"""Searches in the background: what dominates a run that stands still, and a damping table."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from app.background import why as why_module
+from app.background.searches import Searches
+from app.background.tuner import STOPPED, Tuner
+from app.background.why import Explainer
+from navcore.errors import Fault, InputError
+from navcore.tuning import TuningSettings
+
+
+class Finder:
+    """Stand-in for a long search that notes what it did."""
+
+    def __init__(self) -> None:
+        self.begun, self.ended = threading.Event(), threading.Event()
+        self.quick = True
+        self.asked: list[Any] = []
+
+    def __call__(self, run: Any, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Any:
+        self.asked.append(run)
+        if run == "fault":
+            raise ZeroDivisionError
+        self.begun.set()
+        while not self.quick and not cancelled():
+            progress(0.5)
+            threading.Event().wait(0.002)
+        self.ended.set()
+        return SimpleNamespace(complete=not cancelled(), of=run)
+
+
+@pytest.fixture
+def finder(monkeypatch: pytest.MonkeyPatch) -> Finder:
+    monkeypatch.setattr(why_module, "STILL_S", 0.1)
+    monkeypatch.setattr(why_module, "_REPORT_AFTER_S", 0.05)
+    return Finder()
+
+
+@pytest.fixture
+def made(finder: Finder) -> Iterator[tuple[Explainer, list[Any]]]:
+    told: list[Any] = []
+    explainer = Explainer(lambda: told.append((explainer.fraction, explainer.result)), finder)
+    yield explainer, told
+    explainer.cancel()
+    explainer.stop()
+
+
+def test_a_run_that_stands_still_is_explained_once(finder: Finder, made: Any) -> None:
+    explainer, told = made
+    first, second = object(), object()
+    explainer.follow(first)
+    explainer.follow(second)  # the first has not stood still
+    assert explainer.wait_idle(5.0)
+    assert finder.asked == [second]
+    assert explainer.fits(second) and not explainer.fits(first)
+    assert len(told) == 1
+
+
+def test_a_change_ends_the_search_at_once_and_the_old_result_stays(finder: Finder, made: Any) -> None:
+    explainer, told = made
+    first, second = object(), object()
+    explainer.follow(first)
+    assert explainer.wait_idle(5.0)
+    old = explainer.result
+    finder.quick = False
+    finder.ended.clear()
+    finder.begun.clear()
+    explainer.follow(second)
+    assert finder.begun.wait(5.0)
+    while (0.5, old) not in told:
+        threading.Event().wait(0.002)
+    explainer.cancel()
+    assert finder.ended.wait(5.0) and explainer.wait_idle(5.0)
+    assert explainer.result is old and explainer.fraction is None
+    assert explainer.fits(first)
+
+
+def test_a_fault_is_told_and_forgotten_with_the_next_run(finder: Finder, made: Any, caplog: Any) -> None:
+    explainer, _ = made
+    explainer.follow("fault")
+    assert explainer.wait_idle(5.0)
+    assert explainer.failed and "could not be explained" in caplog.text
+    explainer.follow("run")
+    assert not explainer.failed
+    assert explainer.wait_idle(5.0) and explainer.fits("run")
+
+
+def test_without_a_page_nothing_is_looked_for(finder: Finder) -> None:
+    searches = Searches("test")
+    searches.explainer._find = finder
+    run: Any = object()
+    searches.ran(run)
+    assert not searches.explainer._worker.busy
+    told: list[int] = []
+    watch = lambda: told.append(1)  # noqa: E731
+    searches.watch(watch, run)
+    assert searches.explainer.wait_idle(5.0)
+    assert told and searches.explainer.fits(run)
+    finder.quick = False
+    finder.begun.clear()
+    searches.ran(object())  # pyright: ignore[reportArgumentType]
+    assert finder.begun.wait(5.0)
+    searches.unwatch(watch)
+    assert searches.explainer.wait_idle(5.0)
+    searches.stop()
+
+
+# ------------------------------------------------------------ the table
+
+
+def tune(scenario: Any, settings: Any, progress: Any, cancelled: Any) -> Any:
+    if scenario == "refused":
+        raise InputError(Fault("", "imu.file", "a.csv", "must be empty"))
+    if scenario == "fault":
+        raise ZeroDivisionError("ours")
+    while scenario == "endless" and not cancelled():
+        progress(0.5)
+        threading.Event().wait(0.002)
+    return SimpleNamespace(status="stopped" if cancelled() else "ok", of=scenario)
+
+
+def test_a_table_is_found_stopped_refused_and_kept() -> None:
+    told: list[float | None] = []
+    tuner = Tuner(lambda: told.append(tuner.fraction), tune)  # pyright: ignore[reportArgumentType]
+    settings = TuningSettings()
+    tuner.start("one", settings)  # pyright: ignore[reportArgumentType]
+    assert tuner.wait_idle(5.0)
+    kept = tuner.result
+    assert kept is not None and tuner.scenario == "one" and told == [0.0, None]
+    tuner.start("endless", settings)  # pyright: ignore[reportArgumentType]
+    while 0.5 not in told:
+        threading.Event().wait(0.002)
+    tuner.cancel()
+    assert tuner.wait_idle(0.3)  # answered at once
+    assert tuner.words == (STOPPED,) and tuner.result is kept
+    tuner.start("refused", settings)  # pyright: ignore[reportArgumentType]
+    assert tuner.wait_idle(5.0)
+    assert "imu.file" in tuner.words[0] and tuner.fraction is None
+    tuner.start("fault", settings)  # pyright: ignore[reportArgumentType]
+    assert tuner.wait_idle(5.0)
+    assert "Something went wrong" in tuner.words[0]
+    assert tuner.result is kept
+    tuner.stop()

@@ -1,0 +1,86 @@
+"""Both themes read well: text against its ground 4.5 to 1, curves 3 to 1 (WCAG 2.2), hues kept."""
+
+from __future__ import annotations
+
+import colorsys
+import re
+from pathlib import Path
+
+import pytest
+
+import app
+from app.figures import style
+from app.figures.style import METHOD_COLORS
+from app.page import notices, theme
+from app.session.pins import COLORS
+
+WHITE = "#FFFFFF"
+BOTH = pytest.mark.parametrize("shown", ["light", "dark"])
+STATIC = Path(app.__file__).parent / "static"
+
+
+def ratio(color: str, ground: str, shown: theme.Theme) -> float:
+    return theme.contrast(theme.shown(color, shown), theme.shown(ground, shown))
+
+
+@BOTH
+@pytest.mark.parametrize("color", COLORS.values(), ids=COLORS)
+def test_the_banner_of_a_flipped_pin_is_readable(color: str, shown: theme.Theme) -> None:
+    assert ratio(WHITE, color, shown) >= theme.LEAST_TEXT
+
+
+@BOTH
+@pytest.mark.parametrize("color", METHOD_COLORS)
+def test_curves_stand_out(color: str, shown: theme.Theme) -> None:
+    assert ratio(color, WHITE, shown) >= theme.LEAST_CURVE
+
+
+@BOTH
+@pytest.mark.parametrize("color", [style.INK, style.MUTED, style.DANGER, style.TRUTH_COLOR])
+@pytest.mark.parametrize("ground", [WHITE, style.SEA])
+def test_text_is_readable(color: str, ground: str, shown: theme.Theme) -> None:
+    assert ratio(color, ground, shown) >= theme.LEAST_TEXT
+
+
+@BOTH
+@pytest.mark.parametrize("tone", sorted(notices._TONES))
+def test_notes_are_readable(tone: notices.Tone, shown: theme.Theme) -> None:
+    ink, ground = notices._TONES[tone]
+    assert ratio(ink, ground, shown) >= theme.LEAST_TEXT
+
+
+def rules() -> list[tuple[str, str, str]]:
+    """Selector, text and ground of every rule of ours that names a colour of text."""
+    found = []
+    for selector, body in re.findall(r"([^{}]+)\{([^{}]*)\}", (STATIC / "learn.css").read_text()):
+        ink = re.search(r"(?<![-\w])color: (#[0-9a-f]{3,6})\b", body)
+        ground = re.search(r"background: (#[0-9a-f]{3,6})\b", body)
+        if ink:
+            found.append((selector.strip(), full(ink.group(1)), full(ground.group(1)) if ground else WHITE))
+    return found
+
+
+def full(color: str) -> str:
+    return color if len(color) == 7 else "#" + "".join(2 * digit for digit in color[1:])
+
+
+@BOTH
+@pytest.mark.parametrize(("selector", "ink", "ground"), rules())
+def test_the_style_sheet_is_readable(selector: str, ink: str, ground: str, shown: theme.Theme) -> None:
+    assert ratio(ink, ground, shown) >= theme.LEAST_TEXT, selector
+
+
+@pytest.mark.parametrize("color", METHOD_COLORS)
+def test_a_method_keeps_its_hue_in_the_dark(color: str) -> None:
+    hue, _, saturation = colorsys.rgb_to_hls(*theme.shown(color, "light"))
+    dark, _, _ = colorsys.rgb_to_hls(*theme.shown(color, "dark"))
+    if saturation < 0.05:
+        return
+    # hue-rotate keeps luminance rather than the HLS hue: within 30 degrees a colour has the same name.
+    assert min(abs(hue - dark), 1 - abs(hue - dark)) * 360 < 30
+
+
+def test_light_and_dark_are_far_apart() -> None:
+    assert theme.css("light") == ""
+    assert theme.contrast(theme.shown(WHITE, "dark"), theme.shown(WHITE, "light")) > 15
+    assert theme.contrast(theme.shown("#000000", "dark"), theme.shown(WHITE, "dark")) > 14
