@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import threading
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -18,7 +17,6 @@ from navcore.scenario import Scenario
 SEEDS = 20
 STILL_S = 0.7
 """A scenario must stand still for so long before its envelope is begun."""
-_TICK_S = 0.05
 _log = logging.getLogger("schuler.envelopes")
 
 Simulate = Callable[[Scenario, Callable[[float], None], Callable[[], bool]], Run]
@@ -101,10 +99,8 @@ class Envelopes:
         return self._worker.wait_idle(timeout_s)
 
     def _work(self, scenario: Scenario, watch: Watch) -> None:
-        while watch.elapsed_s < self._still_s:
-            if watch.unwanted():
-                return
-            time.sleep(_TICK_S)
+        if not watch.stood_still(self._still_s):
+            return
         runs: list[Run] = []
         try:
             for number in range(1, SEEDS + 1):

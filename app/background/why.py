@@ -79,9 +79,8 @@ class Explainer:
         return self._worker.wait_idle(timeout_s)
 
     def _work(self, run: Run, watch: Watch) -> None:
-        while watch.elapsed_s < STILL_S:
-            if watch.stop_asked.wait(0.05) or watch.unwanted():
-                return
+        if not watch.stood_still(STILL_S):
+            return
         last_s = STILL_S + _REPORT_AFTER_S - _REPORT_EVERY_S
 
         def progress(fraction: float) -> None:

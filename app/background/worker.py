@@ -14,6 +14,7 @@ SUPERSEDE_AFTER_S = 0.3
 """A run younger than this is let end although a newer job waits: while a slider is dragged, jobs come faster
 than runs end, and cancelling each of them would show nothing until the drag ends."""
 
+_TICK_S = 0.05
 _log = logging.getLogger("schuler.worker")
 
 
@@ -43,6 +44,13 @@ class Watch:
     def unwanted(self) -> bool:
         """Whether to stop at once: asked by the user, or superseded."""
         return self.stop_asked.is_set() or self.superseded()
+
+    def stood_still(self, seconds: float) -> bool:
+        """Wait until the job is so old; False as soon as it is unwanted."""
+        while self.elapsed_s < seconds:
+            if self.stop_asked.wait(_TICK_S) or self.superseded():
+                return False
+        return True
 
     def cancelled(self) -> bool:
         """Whether to stop now: asked by the user, or superseded and not about to end."""

@@ -94,8 +94,12 @@ class Palette:
         """Let each of these tabs be brought to the front by a command."""
         for name in names:
             slug = "".join(letter for letter in name.lower() if letter.isalnum())
-            bring = lambda _, name=name: self._commands.ask_page("tab", name)  # noqa: E731
-            self._commands.register(f"tab-{slug}", bring, f"Show {name}", watcher=True)
+            self._commands.register(
+                f"tab-{slug}",
+                lambda _, name=name: self._commands.ask_page("tab", name),
+                f"Show {name}",
+                watcher=True,
+            )
 
     # ------------------------------------------------------------ showing
 
