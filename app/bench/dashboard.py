@@ -33,9 +33,15 @@ def measure_dashboard() -> dict[str, float]:
     return answers | {"startup_s": statistics.median(starts), "rss_mb": memory}
 
 
-def _percentiles(name: str, times_ms: list[float]) -> dict[str, float]:
+def median_and_p95(times_ms: list[float]) -> tuple[float, float]:
+    """Median and 95th percentile of at least two times."""
     hundredths = statistics.quantiles(times_ms, n=100, method="inclusive")
-    return {f"{name}_ms_p50": hundredths[49], f"{name}_ms_p95": hundredths[94]}
+    return hundredths[49], hundredths[94]
+
+
+def _percentiles(name: str, times_ms: list[float]) -> dict[str, float]:
+    median, p95 = median_and_p95(times_ms)
+    return {f"{name}_ms_p50": median, f"{name}_ms_p95": p95}
 
 
 def slider_to_frame_ms(port: int, window: str = _WINDOW, pins: int = 0, steps: int = STEPS) -> list[float]:

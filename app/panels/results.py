@@ -201,24 +201,23 @@ class ResultsPanel:
         """Make the figures of the wanted tabs; each plotly figure carries the run's number and its tab."""
         run, display, verified, pins = found.run, found.display, found.verified, found.pins
         both = together(run, pins)
-        below_chooser, full = self.layout.aspect(CHOOSER_PX), self.layout.aspect()
         width, asked = float(self.layout.plot_px), display.requirements
         makers: dict[str, Callable[[], PlotlyFigure]] = {
             FREQUENCY: lambda: frequency_view(
-                both, display.transfer, below_chooser, width_px=width, discrete=display.discrete
+                both, display.transfer, self._aspect(FREQUENCY), width_px=width, discrete=display.discrete
             ),
             POLES: lambda: poles(
                 both,
-                self.layout.aspect(_ABOVE_PX[POLES]),
+                self._aspect(POLES),
                 width_px=width,
                 selected=selected,
                 locus=display.locus,
                 allowed=allowed_poles(asked),
             ),
             SPECTRUM: lambda: spectrum(
-                both, display.spectrum, below_chooser, display=display, width_px=width
+                both, display.spectrum, self._aspect(SPECTRUM), display=display, width_px=width
             ),
-            STEP: lambda: step(both, full, width_px=width, limits=step_limits(asked)),
+            STEP: lambda: step(both, self._aspect(STEP), width_px=width, limits=step_limits(asked)),
         }
         from navcore.scenario_file import to_toml
 
@@ -250,6 +249,10 @@ class ResultsPanel:
             verified=verified,
         )
 
+    def _aspect(self, tab: str) -> float:
+        """Width over height of a tab's plot, below what stands above it."""
+        return self.layout.aspect(_ABOVE_PX.get(tab, CHOOSER_PX))
+
     def _make_table(self, found: Shown) -> str:
         """Metrics of all methods, in as many tables below each other as the width asks for."""
         run, verified, wide = found.run, found.verified, self.layout.wide
@@ -275,9 +278,8 @@ class ResultsPanel:
         for tab, figure in pictures.plotly.items():
             plot = self._plots.get(tab)
             if plot is None:
-                aspect = self.layout.aspect(_ABOVE_PX.get(tab, CHOOSER_PX))
                 with self._tabs[tab]:
-                    self._plots[tab] = self._gui.add_plotly(figure, aspect=aspect)  # pyright: ignore[reportArgumentType]
+                    self._plots[tab] = self._gui.add_plotly(figure, aspect=self._aspect(tab))  # pyright: ignore[reportArgumentType]
             else:
                 plot.figure = figure  # pyright: ignore[reportAttributeAccessIssue]
         self._place_switching(pictures.switches)

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 from playwright.sync_api import sync_playwright
 
+from app.bench.dashboard import median_and_p95
+from app.bench.process import free_port
 from app.editing import edits
 from app.serve import open_dashboard
 from navcore.simulation import simulate
@@ -107,10 +109,10 @@ def plain_times_ms(browser: Browser, scenario: Scenario, steps: int) -> list[flo
         return simulate(edits.with_value(scenario, _ZETA, zeta))
 
     pinned = [method for zeta in (0.4, 0.6)[:PINS] for method in run_at(zeta).methods]
-    plain = PlainPage(run_at, pinned, port=18_934)
+    plain = PlainPage(run_at, pinned, port=free_port())
     page = browser.new_page(viewport=_SIZE)
     page.set_default_timeout(120_000)
-    page.goto("http://127.0.0.1:18934/?fixedDpr=0.25")
+    page.goto(f"http://127.0.0.1:{plain.server.get_port()}/?fixedDpr=0.25")
     page.wait_for_function("() => document.querySelectorAll('.js-plotly-plot .trace').length > 0")
     page.wait_for_timeout(2000)
     taken = _steps(page, PLAIN_SLIDER, steps)
@@ -120,9 +122,8 @@ def plain_times_ms(browser: Browser, scenario: Scenario, steps: int) -> list[flo
 
 
 def _told(taken: list[float]) -> str:
-    ordered = sorted(taken)
-    p95 = ordered[max(0, round(0.95 * len(ordered)) - 1)]
-    return f"median {statistics.median(ordered):.0f} ms, 95th percentile {p95:.0f} ms"
+    median, p95 = median_and_p95(taken)
+    return f"median {median:.0f} ms, 95th percentile {p95:.0f} ms"
 
 
 def main(arguments: list[str]) -> int:
