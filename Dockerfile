@@ -1,9 +1,14 @@
 # Schuler Bench as a container:
 #
 #   docker build -t schuler-bench .
-#   docker run --read-only -e SCHULER_TOKEN=... -v schuler-data:/data -p 127.0.0.1:8080:8080 schuler-bench
+#   docker run --init --read-only -e SCHULER_TOKEN_FILE=/run/token -v $PWD/token:/run/token:ro \
+#     -v schuler-data:/data -p 127.0.0.1:8080:8080 schuler-bench
 #
-# The base is pinned by tag. Its digest was not at hand when this was written: add @sha256:... from your registry.
+# Published on another port or under another name, it is told so: -e SCHULER_ALLOW_ORIGIN=http://localhost:9000.
+# deploy/compose.yml puts a proxy with TLS before it.
+#
+# The base is pinned by tag. In production pin it by digest: `docker buildx imagetools inspect` tells it; write
+# @sha256:... behind both tags below.
 # tests/docker carries these steps out without a Docker engine.
 
 FROM python:3.11-slim-bookworm AS builder
@@ -25,7 +30,7 @@ RUN python -m pip wheel --no-deps --no-index --no-build-isolation --wheel-dir /w
 # Away from the sources: the cache is tied to the path of the installed modules.
 WORKDIR /opt/schuler
 ENV SCHULER_CACHE_DIR=/opt/schuler-kernels
-RUN mkdir -p /opt/schuler-kernels && /opt/schuler/bin/python -m navcore.compiled
+RUN mkdir -p /opt/schuler-kernels && /opt/schuler/bin/python -m navcore.warm
 
 
 FROM python:3.11-slim-bookworm

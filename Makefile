@@ -15,7 +15,7 @@ endif
 
 KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
-.PHONY: help setup run test check format unit paint tour accuracy benchmarks papers guide lock clean REMAKE
+.PHONY: help setup run test check docs format unit paint soak tour accuracy covariance consistency design benchmarks papers guide lock clean REMAKE
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'
@@ -23,13 +23,19 @@ help:
 	@echo 'make setup    .venv with the command .venv/bin/schuler, kernels compiled'
 	@echo 'make check    lint, format and types only'
 	@echo 'make unit     the fast tests only'
+	@echo 'make docs     build the site into build/docs: tutorial, theory, lessons, notebooks, API; a warning is an error'
 	@echo 'make benchmarks  time the strapdown engine beside python-ins, which it installs into .venv'
 	@echo 'make papers   run the presets of the five papers and write docs/papers.md with its pictures anew'
 	@echo 'make paint    time from a slider step to the last paint of it in Chromium'
+	@echo 'make soak     30 visitors for 30 minutes on one server: answers, losses, memory (CLIENTS=, MINUTES=)'
+	@echo 'make mutation  change the code of navcore at random, and see which changes no test notices'
 	@echo 'make accuracy  what the strapdown engine is accurate to, figure by figure'
+	@echo 'make covariance  the error budget beside 2,000 seeds; SEEDS=... for another number'
+	@echo 'make design   write docs/design.md with its table over the presets anew'
+	@echo 'make consistency  the covariance of the Kalman filter against 500 seeds (SEEDS=)'
 	@echo 'make tour     film the README pictures in Chromium: docs/tour.webp, docs/dashboard.png'
 	@echo 'make format   lay the code out'
-	@echo 'make guide    write docs/scenario.md and the JSON Schema anew from the parameter models'
+	@echo 'make guide    write docs/scenario.md, docs/networks.md and the JSON Schema anew from the parameter models'
 	@echo 'make lock     resolve the locked requirements again (UPGRADE=--upgrade: to the newest versions)'
 	@echo 'make clean    remove .venv and everything that was made'
 	@echo 'PYTHON=...    the Python to make .venv with (3.11 or newer)'
@@ -45,17 +51,39 @@ test: setup $(STAMPS)/test
 check: $(STAMPS)/test
 	@$(BIN)/python -m tests.stages lint
 
+# BEFORE=folder: a checkout of an earlier commit, measured beside this one.
 paint: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.browser.last_paint
+	@$(BIN)/python -m tests.browser.hand $(if $(BEFORE),--before $(BEFORE))
+
+# CLIENTS=30 MINUTES=30: so many visitors for so long.
+soak: setup $(STAMPS)/test
+	@$(BIN)/python -m tests.attack.soak --clients $(or $(CLIENTS),30) --minutes $(or $(MINUTES),30)
 
 tour: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.browser.tour
 
+# MUTANTS: how many a room.
+mutation: setup $(STAMPS)/test
+	@$(BIN)/python -m tests.mutation --sample $(or $(MUTANTS),20)
+
 unit: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.stages unit
 
+docs: setup $(STAMPS)/docs
+	@$(BIN)/python -m docs.site
+
 accuracy: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.acceptance.accuracy
+
+covariance: setup $(STAMPS)/test
+	@$(BIN)/python -m tests.acceptance.covariance $(SEEDS)
+
+design: setup
+	@$(BIN)/python -m app.design_table
+
+consistency: setup
+	@$(BIN)/python -m navcore.studies.filter_consistency --seeds $(or $(SEEDS),500)
 
 # YARDSTICK=FILE: a Python file whose quick(samples, repeats) gives the ns a sample of a reference.
 benchmarks: setup $(STAMPS)/benchmarks
@@ -90,19 +118,23 @@ $(STAMPS)/packages: requirements.lock requirements-build.lock $(STAMPS)/python
 	$(PIP) $(LOCKED) -r requirements.lock -r requirements-build.lock && \
 	echo "== installed in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@
 
-# The version is in navcore/__init__.py, the command in pyproject.toml.
-$(STAMPS)/project: pyproject.toml navcore/__init__.py $(STAMPS)/packages
+# The version is in navcore/foundation/version.py, the command in pyproject.toml.
+$(STAMPS)/project: pyproject.toml navcore/foundation/version.py $(STAMPS)/packages
 	@$(PIP) install --no-deps --no-build-isolation --no-index --editable . && touch $@
 
 $(STAMPS)/kernels: $(STAMPS)/project $(KERNEL_SOURCES)
 	@echo '== compiling the kernels'; start=`date +%s`; \
-	$(BIN)/python -m navcore.compiled && \
+	$(BIN)/python -m navcore.warm && \
 	echo "== compiled in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@
 
 $(STAMPS)/test: requirements-test.lock $(STAMPS)/project
 	@echo '== installing the locked packages of the tests'; start=`date +%s`; \
 	$(PIP) $(LOCKED) -r requirements-test.lock && \
 	echo "== installed in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@
+
+$(STAMPS)/docs: requirements-docs.lock $(STAMPS)/project
+	@echo '== installing the locked packages of the site'
+	@$(PIP) $(LOCKED) -r requirements-docs.lock && touch $@
 
 # What it needs itself is in requirements.lock.
 $(STAMPS)/benchmarks: requirements-benchmarks.lock $(STAMPS)/project
@@ -114,8 +146,9 @@ papers: setup
 	@$(BIN)/python -m app.papers
 
 guide: $(STAMPS)/project
-	@$(BIN)/python -m navcore.scenario_guide
-	@$(BIN)/python -m navcore.schema_file
+	@$(BIN)/python -m navcore.scenario.guide
+	@$(BIN)/python -m navcore.scenario.schema_file
+	@$(BIN)/python -m navcore.analysis.network_table
 
 # One resolution for every platform and Python, with hashes and without any address.
 UV_COMPILE = $(BIN)/python -m uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
@@ -127,6 +160,8 @@ lock: $(STAMPS)/python
 	@$(UV_COMPILE) --group build --constraints requirements.lock --output-file requirements-build.lock
 	@$(UV_COMPILE) --group test --constraints requirements.lock --constraints requirements-build.lock \
 	  --output-file requirements-test.lock
+	@$(UV_COMPILE) --group docs --constraints requirements.lock --constraints requirements-test.lock \
+	  --output-file requirements-docs.lock
 	@$(BIN)/python -c 'import tomllib; \
 	  print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["benchmarks"], sep="\n")' \
 	  | $(UV_COMPILE) --no-deps - --output-file requirements-benchmarks.lock

@@ -4,34 +4,57 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
+from urllib.parse import quote
+
+from app.logs import begin_logging
+from app.memory import GiveBack, bound_arenas
+from app.views import VIEWS, load, scripts
+from navcore.foundation import guarded
 
 if TYPE_CHECKING:
     import viser
 
-    from app.http.server import DashboardServer
-    from app.page.page import Page
+    from app.http.limits import Limits
+    from app.http.metrics import Metrics
+    from app.http.server import DashboardServer, Inner
     from app.session.sessions import Sessions
+    from app.shell.page import Page
 
-_SCRIPTS = ("widgets", "marks", "page", "commands", "playback", "learn", "access", "pick", "cursor", "export")
-PAGE_SCRIPTS = [Path(__file__).parent / "static" / f"{name}.js" for name in _SCRIPTS]
+_STATIC = Path(__file__).parent / "shell" / "static"
+_SCRIPTS = ("redraw", "widgets", "drawn", "marks", "page", "commands", "access", "cursor", "place", "lost")
 _log = logging.getLogger("schuler.serve")
+_READERS = (
+    "app.session.uploads",
+    "navcore.checks.file",
+    "navcore.checks.imu",
+    "navcore.io.csv",
+    "navcore.io.tables",
+    "navcore.scenario.file",
+    "pyarrow.parquet",
+    "pynmea2",
+    "scipy.io",
+)
+"""What reads uploaded files: imported once by the helper from which its child processes are forked."""
 
 
 class Dashboard:
-    """Gives every browser that opens the page its `app.page.page.Page`.
+    """Gives every browser that opens the page its `app.shell.page.Page`.
 
     Parameters
     ----------
     state : Path or None
         Folder in which sessions outlive the server; None: they do not.
+    views : sequence of str
+        Packages of the views, in the order of their tabs.
     """
 
-    def __init__(self, state: Path | None = None) -> None:
-        self._state = state
+    def __init__(self, state: Path | None = None, views: Sequence[str] = VIEWS) -> None:
+        self._state, self._views = state, views
+        self._memory = GiveBack()
         self._pages: dict[int, Page] = {}
         self._lock = threading.Lock()
 
@@ -41,7 +64,29 @@ class Dashboard:
         from app.session.sessions import Sessions
         from app.session.store import open_store
 
-        return Sessions(store=None if self._state is None else open_store(self._state))
+        store = None if self._state is None else open_store(self._state)
+        return Sessions(store=store, on_answer=lambda seconds: self.metrics.answers.observe(seconds))
+
+    @cached_property
+    def metrics(self) -> Metrics:
+        """What the server is doing, for ``/metrics``."""
+        from app.http.metrics import Metrics
+        from app.jobs.scheduler import scheduler
+
+        made = Metrics()
+        made.sources += [lambda: scheduler().figures(), self._figures]
+        return made
+
+    def _figures(self) -> dict[str, float]:
+        with self._lock:
+            pages, sessions = len(self._pages), self.__dict__.get("sessions")
+        return {"pages_built": float(pages)} | ({} if sessions is None else sessions.figures())
+
+    def knows(self, session_id: str) -> bool:
+        """Whether a session with that id is kept here."""
+        with self._lock:
+            sessions = self.sessions
+        return sessions.knows(session_id)
 
     def warm_up(self) -> threading.Thread:
         """Import what a page needs and load the compiled kernels, in the background."""
@@ -51,21 +96,23 @@ class Dashboard:
 
     def _warm_up(self) -> None:
         try:
-            import app.page.page  # noqa: F401
+            import app.shell.page  # noqa: F401
             from app.session.sessions import first_scenario
-            from navcore.simulation import simulate
+            from navcore.engine.simulation import simulate
 
+            load(self._views)
+            guarded.warm()
             simulate(first_scenario()[0])
         except Exception:
             _log.exception("warming up failed")
 
     def on_connect(self, client: viser.ClientHandle, session_id: str) -> None:
         """Build the page of a browser."""
-        from app.page.page import Page
+        from app.shell.page import Page
 
         with self._lock:
             sessions = self.sessions
-        page = Page(client, sessions.get(session_id))
+        page = Page(client, sessions.get(session_id), load(self._views))
         with self._lock:
             self._pages[client.client_id] = page
 
@@ -76,6 +123,7 @@ class Dashboard:
             page = self._pages.pop(client.client_id, None)
         if page is not None:
             page.close()
+        self._memory.soon()
 
     def close(self) -> None:
         """End all sessions and remove what was uploaded and is not kept."""
@@ -90,6 +138,9 @@ def open_dashboard(
     token: str | None = None,
     allow_origins: Iterable[str] = (),
     state: Path | None = None,
+    inner: Inner | None = None,
+    limits: Limits | None = None,
+    views: Sequence[str] = VIEWS,
 ) -> tuple[DashboardServer, Dashboard]:
     """Start the dashboard and return at once.
 
@@ -97,7 +148,9 @@ def open_dashboard(
     ----------
     host, port, token, allow_origins
         See `app.http.server.start`.
-    state
+    inner, limits
+        See `app.http.server.start`.
+    state, views
         See `Dashboard`.
 
     Raises
@@ -105,9 +158,13 @@ def open_dashboard(
     InputError
         See `app.http.server.start`.
     """
+    from app.bridge.server import SOCKET_SCRIPT
+    from app.http.ids import SessionIds
     from app.http.server import start
+    from app.session.keys import session_key
 
-    dashboard = Dashboard(state)
+    guarded.start(_READERS)
+    dashboard = Dashboard(state, views)
     server = start(
         host,
         port,
@@ -115,12 +172,21 @@ def open_dashboard(
         allow_origins=allow_origins,
         on_connect=dashboard.on_connect,
         on_disconnect=dashboard.on_disconnect,
-        page_scripts=PAGE_SCRIPTS,
+        page_scripts=[SOCKET_SCRIPT, *(_STATIC / f"{name}.js" for name in _SCRIPTS), *scripts(views)],
+        limits=limits,
+        inner=inner,
+        metrics=lambda: dashboard.metrics,
+        session_ids=SessionIds(session_key(state), dashboard.knows),
     )
     # No axes cross in the middle of the map; they belong to the server's scene.
     server.viser.scene.world_axes.visible = False
     dashboard.warm_up()
     return server, dashboard
+
+
+def link_with(url: str, token: str | None) -> str:
+    """Address that lets its reader in."""
+    return url if token is None else f"{url}?token={quote(token, safe='')}"
 
 
 def serve(
@@ -129,6 +195,7 @@ def serve(
     *,
     token: str | None = None,
     allow_origins: Iterable[str] = (),
+    show_token: bool = False,
     open_browser: bool = False,
 ) -> None:
     """Serve the dashboard until SIGINT or SIGTERM.
@@ -137,6 +204,8 @@ def serve(
     ----------
     host, port, token, allow_origins
         See `app.http.server.start`.
+    show_token : bool
+        Print the address with the token in it, once: it was generated, and nobody knows it yet.
     open_browser : bool
         Open the page in the user's browser.
 
@@ -147,13 +216,16 @@ def serve(
     """
     from app.session.store import default_folder
 
+    begin_logging()
+    bound_arenas()
     state = default_folder()
     server, dashboard = open_dashboard(host, port, token=token, allow_origins=allow_origins, state=state)
-    print(f"Schuler Bench: {server.url}  (Ctrl+C ends it)", flush=True)
+    link = link_with(server.url, token)
+    print(f"Schuler Bench: {link if show_token else server.url}  (Ctrl+C ends it)", flush=True)
     if open_browser:
         import webbrowser
 
-        address = server.url if token is None else f"{server.url}?token={token}"
+        address = link
         threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
     server.wait()
     dashboard.close()

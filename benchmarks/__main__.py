@@ -11,8 +11,8 @@ import sys
 from app.bench.rounds import Timed, median_ratio, timed_rounds
 from app.bench.strapdown import YARDSTICK, StaticRecord, measure_strapdown
 from benchmarks.python_ins import PythonIns
-from navcore.network.compass import CompassNetwork
-from navcore.network.undamped import UndampedNetwork
+from navcore.networks.compass import CompassNetwork
+from navcore.networks.undamped import UndampedNetwork
 
 HOUR_S = 3600
 LEAST = {"kernel_to_free": 7.0, "public_call_to_free": 40.0}

@@ -2,14 +2,13 @@
 
 The contract, stated once for the whole package:
 
-- **Frames.** Navigation frame n = east, north, up (ENU). Body frame b = right (starboard), forward, up.
-  Pitch about x (bow up positive), roll about y (starboard down positive), heading clockwise from true
-  north. ``C_b^n = Rz(-heading) Rx(pitch) Ry(roll)``.
-- **Errors.** Computed attitude ``C~ = (I - [phi x]) C`` with ``phi = [phi_E, phi_N, phi_U]``. Sensor errors
-are
-  measured minus true, velocity and position errors computed minus true.
+- **Frames.** The navigation frame n is east, north, up (ENU). The body frame b is right (starboard),
+  forward, up. Pitch about x (bow up positive), roll about y (starboard down positive), heading clockwise from
+  true north: ``C_b^n = Rz(-heading) Rx(pitch) Ry(roll)``.
+- **Errors.** The computed attitude is ``C~ = (I - [phi x]) C`` with ``phi = [phi_E, phi_N, phi_U]``. Sensor
+  errors are measured minus true; errors of velocity and position are computed minus true.
 - **Units.** SI and radians everywhere. Other units exist only at the edges (scenario fields, screens, files);
-  their factors live in `navcore.units`.
+  their factors are in `navcore.foundation.units`.
 - **Arrays.** Time is the first axis: a series of n vectors has shape (n, 3).
 - **Time.** t = 0 s is the start of navigation. A sensor sample is the mean over the interval that ends at its
   time.
@@ -18,6 +17,13 @@ are
 
 Data flows one way: scenario -> truth -> sensors (made once, shared by all methods) -> mechanization with the
 control law -> run -> metrics, figures, files.
+
+Examples
+--------
+>>> from navcore import load, simulate
+>>> run = simulate(load("zha-fast", ["run.duration_h=0.5"]))
+>>> [(m.method.name, m.status) for m in run.methods]
+[('free', 'ok'), ('classic2', 'ok'), ('fast (compass)', 'ok')]
 """
 
 from __future__ import annotations
@@ -25,45 +31,62 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from navcore.errors import Fault, InputError
-    from navcore.measures import metrics
-    from navcore.network import parse_network
-    from navcore.run import MethodRun, Run
-    from navcore.scenario import Scenario
-    from navcore.scenario_file import load, presets
-    from navcore.simulation import simulate
-    from navcore.verification import Verification, verify
+    from navcore.design.budget import Budget, budget
+    from navcore.design.pareto import Pareto, pareto
+    from navcore.design.tune import Tuned, tune
+    from navcore.engine.measures import metrics
+    from navcore.engine.run import MethodRun, Run
+    from navcore.engine.simulation import simulate
+    from navcore.engine.verification import Verification, verify
+    from navcore.foundation.errors import Fault, InputError
+    from navcore.foundation.version import __version__
+    from navcore.networks import parse_network
+    from navcore.scenario.file import load, presets
+    from navcore.scenario.model import Scenario
 
-__version__ = "0.1.0"
 
 __all__ = [
+    "Budget",
     "Fault",
     "InputError",
     "MethodRun",
+    "Pareto",
     "Run",
     "Scenario",
+    "Tuned",
     "Verification",
+    "__version__",
+    "budget",
     "load",
     "metrics",
+    "pareto",
     "parse_network",
     "presets",
     "simulate",
+    "tune",
     "verify",
 ]
 
 _HOME = {
-    "Fault": "errors",
-    "InputError": "errors",
-    "MethodRun": "run",
-    "Run": "run",
-    "Scenario": "scenario",
-    "load": "scenario_file",
-    "metrics": "measures",
-    "parse_network": "network",
-    "presets": "scenario_file",
-    "simulate": "simulation",
-    "Verification": "verification",
-    "verify": "verification",
+    "Budget": "design.budget",
+    "Pareto": "design.pareto",
+    "Tuned": "design.tune",
+    "budget": "design.budget",
+    "pareto": "design.pareto",
+    "tune": "design.tune",
+    "Fault": "foundation.errors",
+    "InputError": "foundation.errors",
+    "MethodRun": "engine.run",
+    "Run": "engine.run",
+    "Scenario": "scenario.model",
+    "Verification": "engine.verification",
+    "__version__": "foundation.version",
+    "load": "scenario.file",
+    "metrics": "engine.measures",
+    "parse_network": "networks",
+    "presets": "scenario.file",
+    "simulate": "engine.simulation",
+    "verify": "engine.verification",
 }
 
 

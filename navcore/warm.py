@@ -1,15 +1,20 @@
-"""Compile, or load from the cache, every kernel once, so that no user waits for it later."""
+"""Compile, or load from the cache, every kernel once, so that no user waits for it later.
+
+``python -m navcore.warm`` does so and says what is under way.
+"""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from navcore.scenario import Scenario
-from navcore.simulation import simulate
+from navcore.engine.simulation import simulate
+from navcore.foundation.kernel_cache import cache_folder, compiling, complete
+from navcore.scenario.model import Scenario
 
 _IMU: dict[str, Any] = {
     "gyro_bias_dph": [0.01, 0.01, 0.01],
@@ -39,13 +44,15 @@ _NETWORK = {"damping": "external", "network": {"id": "complementary"}}
 _POLICIES = [
     _NETWORK | {"name": policy, "policy": {"id": policy}, "switching": {"id": switching}}
     for policy, switching in (
-        ("threshold", "hard"), ("variation", "bumpless"), ("yaw_rate", "ramp"), ("acceleration", "keep"),
+        ("threshold", "hard"),
+        ("variation", "bumpless"),
+        ("yaw_rate", "ramp"),
+        ("acceleration", "keep"),
     )
-] + [
-    {"damping": "external", "network": {"id": "unity2"}, "policy": {"id": "adaptive"}},
-]  # fmt: skip
+] + [{"damping": "external", "network": {"id": "unity2"}, "policy": {"id": "adaptive"}}]
 _COMPASS = {"damping": "external", "network": {"id": "compass"}}
 _AVERAGING = {"damping": "averaging"}
+_KALMAN = {"damping": "kalman"}
 _RATE_HZ = 20.0
 
 
@@ -69,6 +76,8 @@ def warm(progress: Callable[[str], None] = lambda what: None) -> None:
         simulate(_scenario(strapdown, _MOTIONS[1], log_hz, [_COMPASS, _NETWORK], "compass"))
     for fidelity in ("error_model", "strapdown"):
         simulate(_scenario(strapdown | {"fidelity": fidelity}, _MOTIONS[0], 1.0, [_AVERAGING]))
+    for run in ({"duration_h": 0.02}, strapdown):
+        simulate(_scenario(run, _MOTIONS[2], 1.0, [_KALMAN]))
     progress("alignment with a recorded IMU")
     _warm_coarse_alignment()
     progress("many strapdown runs at once")
@@ -106,8 +115,8 @@ def _warm_track() -> None:
 
 
 def _warm_coarse_alignment() -> None:
-    from navcore.alignment import coarse_alignment
-    from navcore.earth import WGS84
+    from navcore.alignment.fine import coarse_alignment
+    from navcore.foundation.earth import WGS84
     from navcore.motion.base import Site
     from navcore.motion.static import StaticMotion
     from navcore.sensors.imu import Imu
@@ -119,15 +128,15 @@ def _warm_coarse_alignment() -> None:
 
 
 def _warm_batch() -> None:
-    from navcore.control.law import prepare_law
-    from navcore.control.policy.constant import Constant
-    from navcore.control.switching.hard import Hard
-    from navcore.earth import WGS84
+    from navcore.foundation.earth import WGS84
+    from navcore.law.law import prepare_law
+    from navcore.law.policy.constant import Constant
+    from navcore.law.switching.hard import Hard
     from navcore.mechanization.strapdown import Settings, start_from
     from navcore.mechanization.strapdown.batch import BatchRun
     from navcore.motion.base import Site
     from navcore.motion.static import StaticMotion
-    from navcore.network.undamped import UndampedNetwork
+    from navcore.networks.undamped import UndampedNetwork
 
     truth = StaticMotion().rows(1, 1.0, Site(0.5, 0.0, 0.0), WGS84)
     network = UndampedNetwork()
@@ -136,3 +145,28 @@ def _warm_batch() -> None:
     settings = Settings(_RATE_HZ, second, second, second, 1.0)
     batch = BatchRun([start_from(truth[0])], [law], np.zeros((1, 6)), settings, WGS84, truth)
     batch.advance(np.zeros((second, 6)))
+
+
+def compile_once(progress: Callable[[str], None] = lambda what: None) -> None:
+    """Compile every kernel into the cache unless that is done; while another process does it, wait.
+
+    Parameters
+    ----------
+    progress : callable
+        Told what comes next.
+    """
+    if not complete():
+        progress("to be compiled, or being compiled by another process")
+    with compiling() as needed:
+        if needed:
+            warm(progress)
+
+
+def main() -> None:
+    """Compile every kernel into the cache, saying what is under way."""
+    compile_once(lambda what: print(f"kernels: {what}", file=sys.stderr, flush=True))
+    print(f"kernels: ready in {cache_folder()}", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()

@@ -9,18 +9,18 @@ import numpy as np
 from navcore.averaging import Averaging
 from navcore.averaging.error_model import AveragedErrorModel, start_error_model
 from navcore.averaging.plan import Plan, prepare_averaging
-from navcore.control.law import Law, prepare_law
-from navcore.control.policy.constant import Constant
-from navcore.control.switching.hard import Hard
-from navcore.earth import SPHERE, Earth
+from navcore.engine.run import statistics
+from navcore.foundation.earth import SPHERE, Earth
+from navcore.foundation.units import ARCMIN, ARCSEC, DEG
+from navcore.law.law import Law, prepare_law
+from navcore.law.policy.constant import Constant
+from navcore.law.switching.hard import Hard
 from navcore.mechanization.trajectory import coefficients
 from navcore.motion.base import MotionParameters, Site
 from navcore.motion.static import StaticMotion
-from navcore.network.undamped import UndampedNetwork
-from navcore.run import statistics
+from navcore.networks.undamped import UndampedNetwork
 from navcore.sensors.base import SensorErrors
 from navcore.sensors.imu import Imu, imu_errors
-from navcore.units import ARCMIN, ARCSEC, DEG
 
 SITE = Site(45.7796 * DEG, 126.6773 * DEG, 0.0)
 INITIAL = np.array([0.1, 0.1, 2 * ARCSEC, 2 * ARCSEC, 0.6 * ARCMIN, 0.6 * ARCMIN, 7 * ARCMIN])
@@ -45,9 +45,12 @@ def truth_row(motion: MotionParameters | None = None, earth: Earth = SPHERE) -> 
 
 
 def made(
-    averaging: Averaging, motion: MotionParameters | None = None, earth: Earth = SPHERE,
-    imu: Imu | None = None, **rest: Any,
-) -> Plan:  # fmt: skip
+    averaging: Averaging,
+    motion: MotionParameters | None = None,
+    earth: Earth = SPHERE,
+    imu: Imu | None = None,
+    **rest: Any,
+) -> Plan:
     """Plan of a method after 600 s of alignment."""
     settings = {"imu": imu or Imu(), "duration_s": 600.0, "motions": (), "seed": 1, **rest}
     omega_s = earth.schuler_frequency(SITE.lat)
@@ -55,9 +58,14 @@ def made(
 
 
 def averaged(
-    plan: Plan, steps: int = DAY, motion: MotionParameters | None = None, earth: Earth = SPHERE,
-    imu: Imu | None = None, initial: np.ndarray = INITIAL, chunk: int = 50_000,
-) -> AveragedErrorModel:  # fmt: skip
+    plan: Plan,
+    steps: int = DAY,
+    motion: MotionParameters | None = None,
+    earth: Earth = SPHERE,
+    imu: Imu | None = None,
+    initial: np.ndarray = INITIAL,
+    chunk: int = 50_000,
+) -> AveragedErrorModel:
     """Run a method on the error model, 1 s steps, rows each minute."""
     truth = (motion or StaticMotion()).truth(2 * steps + 1, 0.5, SITE, earth)
     sensors = imu_errors(imu or Imu(), truth, steps, 1.0, earth, 1)

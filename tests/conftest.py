@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 import pytest
 from hypothesis import settings
 
-from navcore.compiled import cache_folder
+from navcore.foundation.kernel_cache import cache_folder
 from tests.chromium import FLAGS, find_chromium
+from tests.compile_time import Uncounted
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -30,6 +31,7 @@ def pytest_configure() -> None:
     """Let all workers, and what a test starts with another HOME, use the kernels already compiled."""
     os.environ.setdefault("SCHULER_CACHE_DIR", str(cache_folder().parent))
     os.environ.setdefault("MPLBACKEND", "Agg")
+    Uncounted().listen()
     # What a dashboard that a test starts keeps is not the user's.
     os.environ["XDG_STATE_HOME"] = tempfile.mkdtemp(prefix="schuler-tests-")
     atexit.register(shutil.rmtree, os.environ["XDG_STATE_HOME"], ignore_errors=True)

@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from navcore.control.law import law_step, prepare_law
-from navcore.control.layout import DIFFERENCE, VALID
-from navcore.control.policy import POLICIES
-from navcore.control.switching import SWITCHINGS
-from navcore.earth import SPHERE
-from navcore.filters import discretise
-from navcore.network import parse_network
-from navcore.network.base import NetworkParameters
+from navcore.foundation.earth import SPHERE
+from navcore.law.law import law_step, prepare_law
+from navcore.law.policy import POLICIES
+from navcore.law.records import Sensed
+from navcore.law.switching import SWITCHINGS
+from navcore.networks import parse_network
+from navcore.networks.base import NetworkParameters
+from navcore.networks.discrete import discretise
 
 OMEGA_S = SPHERE.schuler_frequency(0.0)
 
@@ -42,19 +42,25 @@ class LawRun:
         d_n: float = 0.0,
         valid: bool = True,
         v_c: tuple[float, float] = (0.0, 0.0),
-        accel: float = 0.0,
         heading: float = 0.0,
     ) -> np.ndarray:
         """One call: c_E, c_N, a_E, a_N."""
-        self.s[DIFFERENCE], self.s[DIFFERENCE + 1], self.s[VALID] = d_e, d_n, float(valid)
-        return np.array(law_step(self.law.p, self.s, self.law.ring, *v_c, accel, heading))
+        self.s["difference"], self.s["valid"] = (d_e, d_n), valid
+        return np.array(law_step(self.law, Sensed(*v_c, heading)))
 
-    def series(self, differences: Any, *places: int, **inputs: Any) -> np.ndarray:
-        """One call for each east difference; the state at ``places`` after each."""
+    def value(self, path: str) -> float:
+        """Number in the state: ``"xi"``, ``"policies.variation.count"``; of a pair, its east."""
+        found = self.s
+        for name in path.split("."):
+            found = found[name]
+        return float(np.ravel(found)[0])
+
+    def series(self, differences: Any, *places: str, **inputs: Any) -> np.ndarray:
+        """One call for each east difference; the numbers of the state at ``places`` after each."""
         rows = []
         for d in differences:
             self.step(float(d), **inputs)
-            rows.append([self.s[place] for place in places])
+            rows.append([self.value(place) for place in places])
         return np.array(rows)
 
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from navcore.earth import WGS84
+from navcore.foundation.earth import WGS84
+from navcore.foundation.units import DEG
 from navcore.motion import ProfileMotion, TrackMotion, WavesMotion
-from navcore.units import DEG
 
 ZHAO = ProfileMotion.model_validate(
     {
@@ -66,7 +66,11 @@ def circle_track(folder: Path) -> TrackMotion:
     }
     path = folder / "circle.csv"
     np.savetxt(
-        path, np.column_stack(list(columns.values())), fmt="%.12f", delimiter=",", header=",".join(columns),
+        path,
+        np.column_stack(list(columns.values())),
+        fmt="%.12f",
+        delimiter=",",
+        header=",".join(columns),
         comments="",
-    )  # fmt: skip
+    )
     return TrackMotion(file=str(path))

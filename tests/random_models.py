@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
-from navcore.errors import InputError
-from navcore.scenario import Method, Scenario
+from navcore.foundation.errors import InputError
+from navcore.scenario.model import Method, Scenario
 
 SKIPPED = ("file", "axes", "speed")
 """Fields that only mean something with a recorded file."""

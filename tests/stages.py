@@ -128,6 +128,8 @@ def main(arguments: list[str]) -> int:
         return 2
     counts = [run_check(name) for name in CHECKS] if wanted != "unit" else []
     if wanted != "lint":
+        # Compiled before the first test, and once for all its processes.
+        subprocess.run([sys.executable, "-m", "navcore.warm"], cwd=ROOT, check=True)
         stages = list(STAGES) if wanted == "all" else list(STAGES)[:1]
         counts += [run_stage(name) for name in stages]
     print(f"\n{setup_times()}\n{table(counts)}\n\n{closing_line(counts)}", flush=True)

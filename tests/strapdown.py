@@ -6,20 +6,20 @@ from typing import Any
 
 import numpy as np
 
-from navcore.control.law import Law, prepare_law
-from navcore.control.policy.constant import Constant
-from navcore.control.switching.hard import Hard
-from navcore.earth import WGS84
+from navcore.foundation.earth import WGS84
+from navcore.foundation.units import DEG
+from navcore.law.law import Law, prepare_law
+from navcore.law.policy.constant import Constant
+from navcore.law.switching.hard import Hard
 from navcore.mechanization.strapdown import Settings, StrapdownRun, start_from, start_run
 from navcore.mechanization.strapdown.run import VelocityReference
 from navcore.motion.base import MotionParameters, Site
 from navcore.motion.legs import Leg, LegsMotion
 from navcore.motion.swing import Oscillation, SwingMotion
-from navcore.network.base import NetworkParameters
-from navcore.network.undamped import UndampedNetwork
+from navcore.networks.base import NetworkParameters
+from navcore.networks.undamped import UndampedNetwork
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
-from navcore.units import DEG
 
 SITE = Site(32.06 * DEG, 118.8 * DEG, 0.0)
 
@@ -31,7 +31,7 @@ DENG_SWING = SwingMotion(
     roll=Oscillation(amplitude_deg=12.0, frequency_hz=0.125),
     heading=Oscillation(amplitude_deg=6.0, frequency_hz=0.15),
 )
-"""Three-axis swing of Deng 2022, 4.1."""
+"""Three-axis swing of Deng 2019, 4.1."""
 
 DRIVE = LegsMotion(
     heading_deg=30.0,

@@ -16,7 +16,8 @@ def bench(tell: Callable[[str], None] = lambda _: None) -> dict[str, float]:
     Returns
     -------
     dict
-        The keys of contract.md; ``error_model_24h_cold_ms``, ``run_24h_memory_mb``; of the full strapdown the
+        Keys of interface.md; ``error_model_24h_cold_ms``, ``run_24h_memory_mb``; ``budget_steady_7_ms``,
+        ``budget_24h_3_methods_ms`` (error budgets); of the full strapdown the
         law at the IMU's rate, the batch with noise at every sample, and a day (``strapdown_24h_100hz_s``,
         ``_mb``). With a yardstick (`app.bench.strapdown.YARDSTICK`) its time and the ratios to it. Medians of
         at least five repeats: ns, ms, s and MiB.
@@ -29,6 +30,7 @@ def bench(tell: Callable[[str], None] = lambda _: None) -> dict[str, float]:
         The dashboard does not start or does not answer.
     """
     from app.bench.dashboard import measure_dashboard
+    from app.bench.design import measure_design
     from app.bench.error_model import measure_error_model
     from app.bench.memory import measure_memory
     from app.bench.strapdown import measure_strapdown
@@ -42,5 +44,7 @@ def bench(tell: Callable[[str], None] = lambda _: None) -> dict[str, float]:
     numbers |= measure_strapdown()
     tell("strapdown, 24 h at 100 Hz")
     numbers |= measure_strapdown_day()
+    tell("error budget")
+    numbers |= measure_design()
     tell("dashboard")
     return numbers | measure_dashboard()

@@ -6,8 +6,8 @@ import statistics
 import time
 from typing import Any
 
-from navcore.scenario import Scenario
-from navcore.simulation import simulate
+from navcore.engine.simulation import simulate
+from navcore.scenario.model import Scenario
 
 REPEATS = 7
 _NETWORKS: tuple[dict[str, Any], ...] = (

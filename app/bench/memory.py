@@ -37,7 +37,7 @@ def peak_mb() -> float:
 
 def _above_start() -> float:
     from app.bench.error_model import day
-    from navcore.simulation import simulate
+    from navcore.engine.simulation import simulate
 
     simulate(day(seed=1, duration_h=0.1))
     start = peak_mb()

@@ -82,6 +82,14 @@ class Server:
         )
         return int(listed.stdout) * 1024.0 / _MIB
 
+    def cpu_s(self) -> float:
+        """Processor time the process has used, s; 0 where the system does not tell."""
+        status = Path(f"/proc/{self._process.pid}/stat")
+        if not status.exists():
+            return 0.0
+        fields = status.read_text().rpartition(") ")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
     def _wait_for_page(self, seconds: float = 30.0) -> None:
         until = time.monotonic() + seconds
         while time.monotonic() < until:

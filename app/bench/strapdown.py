@@ -11,22 +11,22 @@ from pathlib import Path
 import numpy as np
 
 from app.bench.rounds import Timed, median_ratio, seconds_of, timed_rounds
-from navcore.control.law import Law, prepare_law
-from navcore.control.policy.constant import Constant
-from navcore.control.switching.hard import Hard
-from navcore.earth import WGS84
+from navcore.foundation.earth import WGS84
+from navcore.foundation.units import DEG
+from navcore.law.law import Law, prepare_law
+from navcore.law.policy.constant import Constant
+from navcore.law.switching.hard import Hard
 from navcore.mechanization.strapdown import Settings, VelocityReference, start_from, start_run
 from navcore.mechanization.strapdown.batch import BatchNoise, BatchRun
 from navcore.motion.base import Site
 from navcore.motion.static import StaticMotion
 from navcore.motion.swing import Oscillation, SwingMotion
-from navcore.network.base import NetworkParameters
-from navcore.network.compass import CompassNetwork
-from navcore.network.complementary import ComplementaryNetwork
-from navcore.network.undamped import UndampedNetwork
+from navcore.networks.base import NetworkParameters
+from navcore.networks.compass import CompassNetwork
+from navcore.networks.complementary import ComplementaryNetwork
+from navcore.networks.undamped import UndampedNetwork
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
-from navcore.units import DEG
 
 ROUNDS = 7
 RATE_HZ = 200.0
@@ -36,10 +36,15 @@ SITE = Site(32.06 * DEG, 118.8 * DEG, 0.0)
 YARDSTICK = "SCHULER_YARDSTICK"
 """Environment variable: a Python file whose ``quick(samples, repeats)`` gives a reference's ns a sample."""
 _ALL_ERRORS = Imu(
-    gyro_bias_dph=(0.02, 0.02, 0.02), gyro_arw_dpsh=0.006, accel_bias_ug=(50.0, 50.0, 50.0),
-    accel_vrw_ugpshz=10.0, gyro_instability_dph=0.003, accel_instability_ug=10.0,
-    gyro_scale_ppm=(5.0, 5.0, 5.0), accel_scale_ppm=(10.0, 10.0, 10.0),
-)  # fmt: skip
+    gyro_bias_dph=(0.02, 0.02, 0.02),
+    gyro_arw_dpsh=0.006,
+    accel_bias_ug=(50.0, 50.0, 50.0),
+    accel_vrw_ugpshz=10.0,
+    gyro_instability_dph=0.003,
+    accel_instability_ug=10.0,
+    gyro_scale_ppm=(5.0, 5.0, 5.0),
+    accel_scale_ppm=(10.0, 10.0, 10.0),
+)
 
 
 class StaticRecord:

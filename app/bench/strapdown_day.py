@@ -9,8 +9,8 @@ import sys
 
 from app.bench.memory import peak_mb
 from app.bench.rounds import seconds_of
-from navcore.scenario import Scenario
-from navcore.simulation import simulate
+from navcore.engine.simulation import simulate
+from navcore.scenario.model import Scenario
 
 REPEATS = 5
 _SWING = {"amplitude_deg": 5.0, "frequency_hz": 0.125}

@@ -23,7 +23,7 @@ _CAMERA = {
     "up_direction": [0, 0, 1],
 }
 PAGE_STATE = "page state"
-"""Label of the control through which a browser reports its size and front tabs (app.page.page)."""
+"""Label of the control through which a browser reports its size and front tabs (app.shell.page)."""
 
 
 class Visitor:
@@ -45,6 +45,8 @@ class Visitor:
         """Newest control of each label, as the server described it."""
         self._held: dict[str, Any] = {}
         self.run_number = 0
+        self.text = ""
+        """Newest text with a scenario in it, from the tab Scenario."""
         self.arrived_s = 0.0
         """When the last byte of the newest run had come, by `time.perf_counter`."""
 
@@ -134,7 +136,9 @@ class Visitor:
                 self._held[message["uuid"]] = message.get("value")
             elif "value" in props:
                 self._held[message["uuid"]] = props["value"]
-            found = _RUN.search(str(props.get("content", ""))[:200])
+            if "[[method]]" in (content := str(props.get("content", ""))):
+                self.text = content
+            found = _RUN.search(content[:200])
             if found is not None and int(found[1]) > self.run_number:
                 self.run_number, self.arrived_s = int(found[1]), came
 

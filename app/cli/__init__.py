@@ -9,7 +9,7 @@ import sys
 from collections.abc import Sequence
 
 from app.cli.terminal import finish, prepare_streams, say
-from navcore.errors import InputError
+from navcore.foundation.errors import InputError
 
 DONE, WRONG_INPUT, STOPPED = 0, 2, 3
 

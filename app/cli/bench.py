@@ -22,7 +22,7 @@ class BenchCommand:
     def execute(self) -> int:
         """Measure and print; 3 when the dashboard does not answer."""
         from app.bench import bench
-        from app.bench.text import bench_text
+        from app.cli.bench_text import bench_text
 
         def tell(what: str) -> None:
             if on_terminal():

@@ -10,7 +10,7 @@ from tyro.conf import Positional, arg
 from app.cli.terminal import emit, emit_json, say
 
 if TYPE_CHECKING:
-    from navcore.io.check import FileReport
+    from navcore.checks.file import FileReport
 
 
 @dataclass(frozen=True)
@@ -45,10 +45,10 @@ def check(file: str) -> FileReport:
     from pathlib import Path
 
     from app.cli.check_scenario import SCENARIO_CHECKER, check_scenario
-    from navcore.errors import InputError
-    from navcore.io.check import FileReport, check_file
-    from navcore.io.check_imu import IMU_CHECKER
-    from navcore.scenario_file import presets
+    from navcore.checks.file import FileReport, check_file
+    from navcore.checks.imu import IMU_CHECKER
+    from navcore.foundation.errors import InputError
+    from navcore.scenario.file import presets
 
     if file in presets() and not Path(file).exists():
         try:

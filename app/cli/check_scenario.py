@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from navcore.environment import environment
-from navcore.errors import InputError
-from navcore.io.check import Checker, FileReport
-from navcore.loop import analyse
-from navcore.scenario import Method, Scenario
-from navcore.scenario_file import load, scenario_hash
+from navcore.checks.file import Checker, FileReport
+from navcore.engine.drivers.common import network_of, stability_of
+from navcore.engine.environment import Environment, environment
+from navcore.foundation.errors import InputError
+from navcore.scenario.file import load, scenario_hash
+from navcore.scenario.model import Method, Scenario
+from navcore.sensors.base import ReferenceErrors
+
+if TYPE_CHECKING:
+    from navcore.engine.strapdown_environment import StrapdownEnvironment
 
 
 def _recognises(path: Path, head: bytes) -> bool:
@@ -27,11 +31,12 @@ def check_scenario(source: str | Path) -> FileReport:
     """
     scenario = load(str(source))
     try:
-        warnings = list(_environment_warnings(scenario))
+        made = _environment(scenario)
     except InputError as error:
         raise error.located(str(source)) from None
+    warnings = list(made.warnings)
     for method in scenario.method:
-        warnings += [f"{method.name}: {text}" for text in _warnings(scenario, method)]
+        warnings += [f"{method.name}: {text}" for text in _warnings(scenario, method, made.reference)]
     return FileReport(
         str(source),
         f"scenario, schema {scenario.schema_version}",
@@ -44,19 +49,21 @@ def check_scenario(source: str | Path) -> FileReport:
 SCENARIO_CHECKER = Checker(_recognises, check_scenario)
 
 
-def _environment_warnings(scenario: Scenario) -> tuple[str, ...]:
+def _environment(scenario: Scenario) -> Environment | StrapdownEnvironment:
     if not scenario.strapdown:
-        return environment(scenario).warnings
-    from navcore.strapdown_environment import strapdown_environment
+        return environment(scenario)
+    from navcore.engine.strapdown_environment import strapdown_environment
 
-    return strapdown_environment(scenario).warnings
+    return strapdown_environment(scenario)
 
 
-def _warnings(scenario: Scenario, method: Method) -> list[str]:
+def _warnings(scenario: Scenario, method: Method, log: ReferenceErrors) -> list[str]:
     if method.undamped:
         return []
-    network = method.network.transfer(scenario.omega_s)
-    return list(dict.fromkeys((*network.warnings, *analyse(network).warnings)))
+    network = network_of(scenario, method)
+    law_step_s = scenario.sampling.law_step_s if scenario.strapdown else scenario.run.step_s
+    stability = stability_of(scenario, method, law_step_s, log, network)
+    return list(dict.fromkeys((*network.warnings, *stability.warnings)))
 
 
 def _details(scenario: Scenario) -> dict[str, Any]:
@@ -105,6 +112,8 @@ def _text(scenario: Scenario) -> list[str]:
     for m in scenario.method:
         if m.damping == "free":
             lines.append(f"  method {m.name}: free")
+        elif m.damping == "kalman":
+            lines.append(f"  method {m.name}: Kalman filter on the difference to the log")
         elif m.undamped:
             copies = f"{m.averaging.variant}, {'with' if m.averaging.earth else 'without'} the 24 h line"
             lines.append(f"  method {m.name}: averaging, {copies}")

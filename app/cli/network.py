@@ -1,7 +1,8 @@
-"""``schuler network``: one network's H(s) and its closed loop on the textbook sphere."""
+"""``schuler network``: one network's H(s), its closed loop and the whole system on the textbook sphere."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -13,25 +14,39 @@ from app.cli.terminal import emit, emit_json
 
 @dataclass(frozen=True)
 class NetworkCommand:
-    """Show a damping network: H(s), the poles of the closed loop, its damping and settling.
+    """Show a damping network: H(s), one channel's closed loop, and the whole system at a latitude.
 
     Attributes
     ----------
     network : str
         As in a scenario, e.g. 'id = "compass", sigma = 0.0088, xi = 0.7'.
+    lat : float
+        Latitude of the whole system, deg.
+    log_period_s : float
+        Time between two samples of the log, s: checks the sampled law with the log held as well; 0: no check.
+    law_step_s : float
+        Time between two calls of the damping law, s; counts with --log-period-s.
+    margins : bool
+        Show the margins of the open loop too: gain, phase and delay, and the disk margin.
     json : bool
         Print one JSON document.
     """
 
     network: Annotated[Positional[str], arg(metavar="NETWORK")]
+    lat: Annotated[float, arg(metavar="DEG")] = 45.0
+    log_period_s: Annotated[float, arg(metavar="S")] = 0.0
+    law_step_s: Annotated[float, arg(metavar="S")] = 1.0
+    margins: bool = False
     json: bool = False
 
     def execute(self) -> int:
         """Print the report; 0, also for an unstable loop, which it says."""
-        from navcore.network import parse_network
-        from navcore.network.report import network_report
+        from navcore.analysis.report import network_report
+        from navcore.networks import parse_network
 
-        report = network_report(parse_network(self.network))
+        parameters = parse_network(self.network)
+        log_period_s = self.log_period_s or None
+        report = network_report(parameters, self.lat, log_period_s, self.law_step_s, self.margins)
         if self.json:
             emit_json(report)
         else:
@@ -60,12 +75,62 @@ def network_text(report: dict[str, Any]) -> list[str]:
     lines = [f"{report['id']} on the sphere, omega_s = {omega_s:.6g} rad/s", "", *columns(rows), ""]
     for key, title in (("zeros", "zeros"), ("poles", "poles"), ("closed_loop_poles", "closed loop")):
         lines += columns([[title, "rad/s", "/ omega_s"], *_roots(report[key], omega_s)]) + [""]
-    lines += columns(facts)
+    lines += [*columns(facts), "", *_whole_system(report)]
+    if "margins" in report:
+        lines += ["", *_margins(report["margins"])]
     return lines + ([""] if report["warnings"] else []) + [f"warning: {text}" for text in report["warnings"]]
 
 
+def _whole_system(report: dict[str, Any]) -> list[str]:
+    """Both channels, heading and latitude at one latitude."""
+    from navcore.analysis.whole_system import duration
+
+    growth = report["earth_mode_growth_per_s"]
+    if growth == 0.0:
+        told = "neither grows nor decays"
+    else:
+        told = f"{'GROWS' if growth > 0.0 else 'decays'}, e-folding time {duration(1.0 / growth)}"
+    slope = report["h_slope_s"]
+    return [
+        f"whole system at latitude {report['lat_deg']:g} deg (--lat sets it)",
+        *columns(
+            [
+                ["H'(0)", number(slope), "" if slope is None else "s"],
+                ["stable", "yes" if report["whole_system_stable"] else "NO", ""],
+                ["24 h mode", told, ""],
+            ]
+        ),
+    ]
+
+
+def _margins(margins: dict[str, float | None] | None) -> list[str]:
+    """What may change of the open loop before the loop gets unstable."""
+    title = "margins of the open loop omega_s^2 H/s^2"
+    if margins is None:
+        return [title, "none: the loop is undamped or unstable"]
+
+    def shown(name: str, scale: float = 1.0) -> str:
+        value = margins[name]
+        return "no limit" if value is None else number(value * scale)
+
+    degrees = 180.0 / math.pi
+    return [
+        title,
+        *columns(
+            [
+                ["gain up", shown("gain_up"), "times"],
+                ["gain down", shown("gain_down"), "times"],
+                ["phase", shown("phase_rad", degrees), "deg"],
+                ["delay", shown("delay_s"), "s"],
+                ["disk margin: gain", shown("disk_gain"), "times"],
+                ["disk margin: phase", shown("disk_phase_rad", degrees), "deg"],
+            ]
+        ),
+    ]
+
+
 def _schuler_frequency() -> float:
-    from navcore.earth import SPHERE
+    from navcore.foundation.earth import SPHERE
 
     return SPHERE.schuler_frequency(0.0)
 

@@ -1,27 +1,42 @@
-"""From words to a command, by tyro; what it does not understand becomes one line."""
+"""From words to a command, by tyro; a command line that is not understood becomes one line."""
 
 from __future__ import annotations
 
-import contextlib
-import io
-import re
 import sys
 from collections.abc import Sequence
-from typing import Annotated, Protocol
+from dataclasses import fields
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Annotated, Any, Protocol, Union
 
 from app.cli.bench import BenchCommand
+from app.cli.budget import BudgetCommand
 from app.cli.check import CheckCommand
 from app.cli.network import NetworkCommand
+from app.cli.pareto import ParetoCommand
 from app.cli.presets import PresetsCommand
 from app.cli.run import RunCommand
 from app.cli.serve import ServeCommand
 from app.cli.terminal import emit, lost
-from navcore.errors import Fault, InputError
+from app.cli.tune import TuneCommand
+from navcore.foundation.errors import Fault, InputError
+
+if TYPE_CHECKING:
+    from tyro._arguments import ArgumentDefinition
+    from tyro._errors import ParseErrorEvent
 
 _DESCRIPTION = "Design and judge the damping of inertial navigation systems."
-_NO_INT = re.compile(r"Error parsing (\S+): invalid literal for int\(\) with base 10: (.*)")
-_COLOUR = re.compile(r"\x1b\[[0-9;]*m")
-_RULE = re.compile(r"[╰─-]{5,}╯?")
+_COMMANDS = {
+    "serve": ServeCommand,
+    "run": RunCommand,
+    "network": NetworkCommand,
+    "presets": PresetsCommand,
+    "check": CheckCommand,
+    "budget": BudgetCommand,
+    "tune": TuneCommand,
+    "pareto": ParetoCommand,
+    "bench": BenchCommand,
+}
+_NO_INT = "invalid literal for int() with base 10: "
 
 
 class Command(Protocol):
@@ -41,26 +56,19 @@ def parse(arguments: Sequence[str]) -> Command | None:
         The command line is not understood.
     """
     if list(arguments) == ["--version"]:
-        from navcore import __version__
+        from navcore.foundation.version import __version__
 
         emit(f"schuler {__version__}")
         return None
     import tyro
+    from tyro import _errors
     from tyro.conf import FlagCreatePairsOff, subcommand
 
-    commands = (
-        Annotated[ServeCommand, subcommand("serve")]
-        | Annotated[RunCommand, subcommand("run")]
-        | Annotated[NetworkCommand, subcommand("network")]
-        | Annotated[PresetsCommand, subcommand("presets")]
-        | Annotated[CheckCommand, subcommand("check")]
-        | Annotated[BenchCommand, subcommand("bench")]
-    )
-    complaint = io.StringIO()
+    commands: Any = Union[tuple(Annotated[command, subcommand(name)] for name, command in _COMMANDS.items())]  # noqa: UP007
     try:
-        with contextlib.redirect_stderr(complaint):
+        with _errors.on_parse_error(lambda event: _refuse(event, next(iter(arguments), ""))):
             return tyro.cli(
-                commands,  # pyright: ignore[reportArgumentType]
+                commands,
                 prog="schuler",
                 description=_DESCRIPTION,
                 args=list(arguments),
@@ -69,32 +77,50 @@ def parse(arguments: Sequence[str]) -> Command | None:
     except OSError as error:  # stdout does not take the help
         lost(sys.stdout, error)
         return None
-    except SystemExit as leaving:
-        if leaving.code in (0, None):
-            return None
-        raise InputError(Fault("schuler", "", None, one_line(complaint.getvalue()))) from None
+    except SystemExit:  # tyro has shown the help
+        return None
 
 
-def one_line(box: str) -> str:
-    r"""Say in one line what tyro draws as a box: its text up to the first rule, and the nearest option.
+def _refuse(event: ParseErrorEvent, command: str) -> None:
+    """Raise the `InputError` of a command line that tyro refuses, before tyro prints a word."""
+    raise InputError(Fault("schuler", "", None, _complaint(event, command)))
 
-    Examples
-    --------
-    >>> one_line("╭─ Bad ─╮\n│ no such  │\n│ thing    │\n│ ──────── │\n│ For more │\n╰──────────╯")
-    'no such thing'
-    """
-    sections: list[list[str]] = [[]]
-    for line in _COLOUR.sub("", box).strip().splitlines()[1:]:
-        text = line.strip("│ ")
-        if _RULE.fullmatch(text):
-            sections.append([])
-        elif text:
-            sections[-1].append(text)
-    sections = [section for section in sections if section] or [box.split()]
-    message = _NO_INT.sub(r"\1 = \2: must be a whole number", " ".join(sections[0]))
-    for section in sections[1:]:
-        if section[0] == "Perhaps you meant:" and len(section) > 1:
-            message += f"; perhaps {section[1]}"
-        elif section[0].startswith("Available subcommands:"):
-            message += f"; {' '.join(section).replace('Available subcommands', 'commands')}"
-    return message
+
+def _complaint(event: ParseErrorEvent, command: str) -> str:
+    """One line about a refused command line. Events of later versions of tyro get a general one."""
+    from tyro import _errors
+
+    if isinstance(event, _errors.MissingSubcommand) or command not in _COMMANDS:
+        unknown = "" if command in ("", *_COMMANDS) else f", not {command!r}"
+        return f"needs one of the commands {{{', '.join(_COMMANDS)}}}{unknown}"
+    match event:
+        case _errors.MissingArgs():
+            return f"{command} needs {', '.join(_name(missing.arg) for missing in event.missing_arguments)}"
+        case _errors.BadValue():
+            verb = "takes no" if event.reason == "fixed" else "needs a"
+            return f"{_name(event.argument)} {verb} value"
+        case _errors.InvalidChoice():
+            return f"{_name(event.argument)} = {event.value!r}: must be one of {', '.join(event.choices)}"
+        case _errors.UnrecognizedArgs():
+            options = [token for token in event.tokens if token.startswith("-")]
+            return "; ".join(_unknown(token, command) for token in options or event.tokens)
+        case _errors.InstantiationFailure():
+            name = command if event.argument is None else _name(event.argument)
+            value = event.message.removeprefix(_NO_INT)
+            return (
+                f"{name} = {value}: must be a whole number" if value != event.message else f"{name}: {value}"
+            )
+        case _:
+            return f"the command line is not understood: see schuler {command} --help"
+
+
+def _name(argument: ArgumentDefinition) -> str:
+    """How an argument is written on the command line."""
+    return str(argument.lowered.metavar) if argument.is_positional() else argument.lowered.name_or_flags[0]
+
+
+def _unknown(token: str, command: str) -> str:
+    """Say that a command does not know a word, with its nearest option if one is near."""
+    options = [f"--{field.name.replace('_', '-')}" for field in fields(_COMMANDS[command])]
+    near = get_close_matches(token, options, 1)
+    return f"{command} does not know {token}" + (f"; perhaps {near[0]}" if near else "")

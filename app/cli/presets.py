@@ -36,9 +36,9 @@ class PresetsCommand:
 
 def presets_document() -> dict[str, Any]:
     """Presets with title, source and fidelity; studies (none exist yet); path of the JSON Schema."""
-    from navcore.assets import asset_path
-    from navcore.scenario_file import load, presets
-    from navcore.schema_file import SCHEMA_FILE
+    from navcore.foundation.assets import asset_path
+    from navcore.scenario.file import load, presets
+    from navcore.scenario.schema_file import SCHEMA_FILE
 
     scenarios = {name: load(name) for name in presets()}
     listed = [

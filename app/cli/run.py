@@ -11,7 +11,7 @@ from tyro.conf import Positional, UseAppendAction, arg
 from app.cli.terminal import emit, emit_json, on_terminal, say
 
 if TYPE_CHECKING:
-    from navcore.run import Run
+    from navcore.engine.run import Run
 
 
 @dataclass(frozen=True)
@@ -43,9 +43,9 @@ class RunCommand:
 
     def execute(self) -> int:
         """Run, write, print; 0 when every method went through, else 3."""
-        from navcore.io.results import require_replaceable, write_results
-        from navcore.measures import metrics
-        from navcore.scenario_file import load
+        from navcore.engine.measures import metrics
+        from navcore.engine.results import require_replaceable, write_results
+        from navcore.scenario.file import load
 
         if self.out is not None:
             require_replaceable(self.out)
@@ -67,8 +67,8 @@ class RunCommand:
 def _simulate(scenario: object, show: bool) -> Run:
     from app.cli.progress import Bar
     from app.cli.stop import stop_on_signal
-    from navcore.scenario import Scenario
-    from navcore.simulation import simulate
+    from navcore.engine.simulation import simulate
+    from navcore.scenario.model import Scenario
 
     assert isinstance(scenario, Scenario)
     with stop_on_signal() as stopped, Bar(scenario.title or "running", show) as bar:

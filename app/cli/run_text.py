@@ -6,10 +6,11 @@ import math
 from typing import TYPE_CHECKING
 
 from app.cli.table import columns, number
-from navcore.units import ARCMIN, ARCSEC
+from navcore.analysis.whole_system import duration
+from navcore.foundation.units import ARCMIN, ARCSEC
 
 if TYPE_CHECKING:
-    from navcore.run import MethodRun, Run
+    from navcore.engine.run import LawInForce, MethodRun, Run
 
 _SHOWN = (
     ("phi_e_rad", "phi_E", "arcsec", ARCSEC),
@@ -20,6 +21,10 @@ _SHOWN = (
     ("position_m", "position", "m", 1.0),
 )
 _STATISTICS = (("rms", "RMS"), ("max_abs", "largest"), ("final", "at the end"))
+_LOOP_HEAD = (
+    ["loop", "damping", "H(0)", "settling", "24 h mode", "damped", "xi in", "status"],
+    ["", "ratio", "", "min", "e-folding", "%", "force", ""],
+)
 _EARTHS = {"wgs84": "WGS-84", "sphere": "sphere"}
 
 
@@ -33,9 +38,8 @@ def run_text(run: Run) -> list[str]:
         f"{settings.fidelity}, {settings.duration_h:g} h, {_EARTHS[settings.earth]}, {where}, "
         f"seed {settings.seed}; statistics over {run.computed_on}",
         "",
-        *columns([["loop", "damping", "H(0)", "settling", "status"], ["", "ratio", "", "min", ""]]
-                 + [_loop_row(method) for method in run.methods]),
-    ]  # fmt: skip
+        *columns([*_LOOP_HEAD, *(_loop_row(method) for method in run.methods)]),
+    ]
     for key, title in _STATISTICS:
         rows = [[title, *(s[1] for s in _SHOWN)], ["", *(s[2] for s in _SHOWN)]]
         rows += [[m.method.name, *(number(m.errors[s[0]][key] / s[3]) for s in _SHOWN)] for m in run.methods]
@@ -49,4 +53,24 @@ def _loop_row(run: MethodRun) -> list[str]:
     loop = run.loop
     settling = number(loop.settling_s / 60.0) if loop.settling_s is not None else "never"
     h0 = number(loop.h0) if math.isfinite(loop.h0) else "infinite"
-    return [run.method.name, number(loop.damping_ratio), h0, settling, run.status]
+    law = run.law_in_force
+    return [
+        run.method.name, number(loop.damping_ratio), h0, settling, _earth_mode(run),
+        number(100.0 * law.damped_share), _coefficient(law), run.status,
+    ]  # fmt: skip
+
+
+def _coefficient(law: LawInForce) -> str:
+    """Damping coefficient in force: one value, or the range."""
+    if law.xi_min is None or law.xi_max is None:
+        return "-"
+    low, high = number(law.xi_min, 3), number(law.xi_max, 3)
+    return low if low == high else f"{low} to {high}"
+
+
+def _earth_mode(run: MethodRun) -> str:
+    """How the 24 h mode of the whole system behaves: which way, and the e-folding time."""
+    growth = run.whole.earth_growth
+    if growth == 0.0:
+        return "stands"
+    return f"{'grows' if growth > 0.0 else 'decays'}, {duration(1.0 / growth)}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated
 
 from tyro.conf import UseAppendAction, arg
@@ -20,10 +21,18 @@ class ServeCommand:
     port : int
         0: any free one.
     token : str or None
-        What a visitor must know; compulsory beyond this machine. Better given as SCHULER_TOKEN: other users
-        can read a command line.
+        What a visitor must know; compulsory beyond this machine. Better given as SCHULER_TOKEN or in a file:
+        other users can read a command line.
+    token_file : Path or None
+        File whose first line is the token; also SCHULER_TOKEN_FILE.
+    generate_token : bool
+        Make a token, and print the link that carries it once; with --token-file it is written there.
     allow_origin : tuple of str
-        A further address under which the page may be opened, e.g. behind a reverse proxy.
+        A further address under which the page may be opened, e.g. behind a reverse proxy; also
+        SCHULER_ALLOW_ORIGIN, several with commas between them.
+    workers : int
+        Processes behind one door, for many visitors: about one a core. Sessions stay with their worker; one
+        that fails is started again.
     open : bool
         Open the page in the browser.
     """
@@ -31,14 +40,36 @@ class ServeCommand:
     host: Annotated[str, arg(metavar="HOST")] = "127.0.0.1"
     port: Annotated[int, arg(metavar="PORT")] = 8080
     token: Annotated[str | None, arg(metavar="T")] = None
+    token_file: Annotated[Path | None, arg(metavar="FILE")] = None
+    generate_token: bool = False
     allow_origin: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="URL")] = ()
+    workers: Annotated[int, arg(metavar="N")] = 1
     open: bool = False
 
     def execute(self) -> int:
         """Serve; 0 when asked to end."""
+        from app.http.token import find_token
         from app.serve import serve
+        from app.workers import serve_with_workers
 
-        token = os.environ.get("SCHULER_TOKEN") if self.token is None else self.token
-        origins = self.allow_origin
-        serve(self.host, self.port, token=token or None, allow_origins=origins, open_browser=self.open)
+        token = find_token(self.token, self.token_file, self.generate_token, os.environ)
+        named = os.environ.get("SCHULER_ALLOW_ORIGIN", "").replace(",", " ").split()
+        if self.workers != 1:
+            serve_with_workers(
+                self.host,
+                self.port,
+                self.workers,
+                token=token.value,
+                show_token=token.generated,
+                allow_origins=(*self.allow_origin, *named),
+            )
+            return 0
+        serve(
+            self.host,
+            self.port,
+            token=token.value,
+            show_token=token.generated,
+            allow_origins=(*self.allow_origin, *named),
+            open_browser=self.open,
+        )
         return 0

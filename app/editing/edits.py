@@ -2,25 +2,15 @@
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, get_args
 
 from app.editing.form import Path
 from navcore.averaging.parameters import Variant
 from navcore.motion import MOTIONS
-from navcore.network import LinearNetwork
-from navcore.network.compass import sigma_xi_from_gains
-from navcore.scenario import MAX_METHODS, Scenario
-
-ALTERNATIVES: dict[str, tuple[tuple[str, ...], ...]] = {
-    "compass": (("sigma", "xi"), ("k1", "k2", "k3")),
-    "unity2": (("zeta2",), ("alpha",)),
-    "custom": (("zeros", "poles", "gain"), ("num", "den")),
-}
-"""Parameters of a network that stand for each other: giving one group takes the others away."""
-
+from navcore.motion.static import AttitudeMotion
+from navcore.scenario.model import MAX_METHODS, Scenario
 
 _STRAPDOWN_ONLY: dict[str, tuple[str, ...]] = {
     "run": ("vertical", "compensation"),
@@ -62,16 +52,33 @@ def with_value(
     return Scenario.parse(data)
 
 
-def with_choice(scenario: Scenario, path: Path, chosen: str) -> Scenario:
+def with_choice(
+    scenario: Scenario, path: Path, chosen: str, earlier: Mapping[str, Any] | None = None
+) -> Scenario:
     """Choose another kind of block (network, policy, switching, motion): it starts with its own defaults.
 
-    What both kinds know by the same name is kept. Raises `InputError`.
+    Parameters
+    ----------
+    scenario : Scenario
+        Stays as it is.
+    path : tuple
+        Where the field lies that names the kind.
+    chosen : str
+        The kind. What both kinds know by the same name is kept.
+    earlier : mapping, optional
+        Fields that the block had when it was last of this kind, in place of the defaults: the legs of a
+        course that was left for another motion and is chosen again.
+
+    Raises
+    ------
+    InputError
+        The new scenario is wrong.
     """
     data = scenario.canonical()
     block = _at(data, path[:-1])
     kept = {name: value for name, value in block.items() if name in _shared_fields(path, chosen)}
     block.clear()
-    block.update({path[-1]: chosen} | kept)
+    block.update({**(earlier or {}), path[-1]: chosen, **kept})
     if path[0] == "method":
         _forget_made_name(scenario, data, int(path[1]))
     return Scenario.parse(data)
@@ -135,6 +142,11 @@ def value_at(scenario: Scenario, path: Path) -> Any:
     return place
 
 
+def values_at(scenario: Scenario, paths: Iterable[Path]) -> dict[Path, Any]:
+    """Values of some fields: path -> value."""
+    return {path: value_at(scenario, path) for path in paths}
+
+
 def files_of(scenario: Scenario) -> set[str]:
     """Paths of the recordings that the scenario runs on."""
     blocks = (scenario.motion, scenario.reference, scenario.imu)
@@ -147,45 +159,13 @@ def network_values(scenario: Scenario, index: int) -> dict[str, Any]:
 
     A parameter that has no value (sigma and xi of gains that no (sigma, xi) gives) is missing.
     """
-    parameters = scenario.method[index].network
-    names = type(parameters).model_fields
-    given = {name: value for name in names if (value := getattr(parameters, name)) is not None}
-    follow = _FOLLOWING.get(parameters.id)
-    return given if follow is None else follow(parameters, parameters.transfer(scenario.omega_s)) | given
-
-
-def _compass_follows(parameters: Any, network: LinearNetwork) -> dict[str, float]:
-    k1, k2, k3 = parameters.gains(network.omega_s)
-    found = sigma_xi_from_gains(k1, k2, k3, network.omega_s)
-    design = {} if found is None else {"sigma": found[0], "xi": found[1]}
-    return {"k1": k1, "k2": k2, "k3": k3} | design
-
-
-def _unity2_follows(parameters: Any, network: LinearNetwork) -> dict[str, float]:
-    # D(p) = p^2 + (2 zeta r + alpha) p + r^2 beta, the second pair is p^2 + alpha p + beta (physics.md 3.4).
-    alpha = float(network.den_p[1]) - 2.0 * parameters.zeta * parameters.r
-    beta = float(network.den_p[2]) / parameters.r**2
-    return {"alpha": alpha * network.omega_s, "zeta2": alpha / (2.0 * math.sqrt(beta))}
-
-
-def _custom_follows(parameters: Any, network: LinearNetwork) -> dict[str, Any]:
-    del parameters
-    roots = {"zeros": list(network.zeros), "poles": list(network.poles), "gain": network.gain}
-    return roots | {"num": network.num.tolist(), "den": network.den.tolist()}
-
-
-_FOLLOWING: dict[str, Callable[[Any, LinearNetwork], dict[str, Any]]] = {
-    "compass": _compass_follows,
-    "unity2": _unity2_follows,
-    "custom": _custom_follows,
-}
+    return scenario.method[index].network.values(scenario.omega_s)
 
 
 def _choose_alternative(scenario: Scenario, data: Any, path: Path, shown: Mapping[str, Any]) -> None:
     """Make the group of parameters that holds the field the one that is given."""
     index, name = int(path[1]), path[3]
-    block = data["method"][index]["network"]
-    groups = ALTERNATIVES.get(block["id"], ())
+    block, groups = data["method"][index]["network"], scenario.method[index].network.alternatives
     mine = next((group for group in groups if name in group), None)
     if mine is None:
         return
@@ -207,8 +187,7 @@ def _shared_fields(path: Path, chosen: str) -> set[str]:
     """Fields of another kind of block that mean the same: a motion's attitude. Network parameters do not."""
     if path[0] != "motion":
         return set()
-    scalar = {"pitch_deg", "roll_deg", "heading_deg"}
-    return {name for name in MOTIONS[chosen].model_fields if name in scalar}
+    return set(AttitudeMotion.model_fields) & set(MOTIONS[chosen].model_fields) - {"kind"}
 
 
 def _leave_strapdown(data: Any) -> None:
@@ -222,12 +201,13 @@ def _forget_made_name(scenario: Scenario, data: Any, index: int) -> None:
     """Let a name that was made from the network be made anew."""
     method = scenario.method[index]
     others = [m["name"] for i, m in enumerate(data["method"]) if i != index]
-    made = {method.model_copy(update={"name": ""}).label(), method.network.id, "free"}
+    made = {method.model_copy(update={"name": ""}).label(), method.network.id, "free", "kalman"}
     made |= {f"averaging ({variant})" for variant in get_args(Variant)}
     if re.sub(r" \d+$", "", method.name) not in made:
         return
     block = data["method"][index]
     names: dict[str, str] = {"free": "free", "averaging": f"averaging ({block['averaging']['variant']})"}
+    names["kalman"] = "kalman"
     block["name"] = _free_name(names.get(block["damping"], str(block["network"]["id"])), others)
 
 

@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from navcore.parameters import allowed_range, element_of, extra_of
+from navcore.foundation.parameters import allowed_range, element_of, extra_of
 
 Path = tuple[str | int, ...]
 Kind = Literal["number", "integer", "flag", "choice", "text", "roots", "numbers", "pairs"]

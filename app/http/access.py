@@ -9,7 +9,10 @@ from http import HTTPStatus
 from typing import Protocol
 
 from app.http.address import LOOPBACK_NAMES, authority
-from navcore.errors import Fault, InputError
+from navcore.foundation.errors import Fault, InputError
+
+SHORTEST_TOKEN = 8
+"""Characters of a token beyond this machine: guesses are throttled, see `app.http.throttle`."""
 
 
 class RequestHeaders(Protocol):
@@ -100,17 +103,19 @@ def access_rules(
     Raises
     ------
     InputError
-        The token is missing although others can reach the server, or is empty.
+        The token is missing although others can reach the server, is then too short, or is empty.
     """
     if token is not None and not token.strip():
         raise InputError([Fault("serve", "--token", token, "must not be empty")])
     if token is None and not loopback:
         how = (
             "others can reach this address, so a token is needed: add --token with a secret of your own, "
-            'made for example by python3 -c "import secrets; print(secrets.token_urlsafe())", '
-            "or use --host 127.0.0.1"
+            "--generate-token to have one made and printed, or use --host 127.0.0.1"
         )
         raise InputError([Fault("serve", "--host", host, how)])
+    if token is not None and not loopback and len(token.strip()) < SHORTEST_TOKEN:
+        allowed = f"must have at least {SHORTEST_TOKEN} characters where others can reach the server"
+        raise InputError([Fault("serve", "--token", "*" * len(token), allowed)])
     own = {authority(name, port) for name in (*LOOPBACK_NAMES, host)}
     return Access(
         hosts=frozenset(own | {origin.partition("://")[2] for origin in origins}),
@@ -133,7 +138,7 @@ def refuse_address(access: Access, headers: RequestHeaders) -> Refusal | None:
         return Refusal(
             HTTPStatus.MISDIRECTED_REQUEST,
             "This server is not known under that name. Open it under the address it printed, or start it "
-            "with --allow-origin and the address you use.",
+            "with --allow-origin (or SCHULER_ALLOW_ORIGIN) and the address you use, for example http://localhost:9000.",
         )
     origin = headers.get_all("Origin")
     if origin and (len(origin) != 1 or origin[0] not in access.origins):
@@ -158,6 +163,11 @@ def refuse_unknown(access: Access, headers: RequestHeaders) -> Refusal | None:
         return None
     how = "This bench needs its token: open its address with ?token=... at the end."
     return Refusal(HTTPStatus.UNAUTHORIZED, how)
+
+
+def offers_token(headers: RequestHeaders) -> bool:
+    """Whether the request shows a token itself, which a stranger may be guessing."""
+    return any(value[:7].lower() == "bearer " for value in headers.get_all("Authorization"))
 
 
 def _cookies(headers: RequestHeaders, name: str) -> list[str]:

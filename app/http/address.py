@@ -10,9 +10,11 @@ import socket
 from collections.abc import Iterable
 from urllib.parse import urlsplit
 
-from navcore.errors import Fault, InputError
+from navcore.foundation.errors import Fault, InputError
 
 LOOPBACK_NAMES = ("localhost", "127.0.0.1", "[::1]")
+FORWARDED = "x-schuler-address"
+"""Header by which the door of several workers tells where a request comes from; a stranger's is removed."""
 _DEFAULT_PORT = {"http": 80, "https": 443}
 _HOST = re.compile(r"[a-z0-9]([a-z0-9._-]*[a-z0-9])?|\[[0-9a-f:.]+\]")
 

@@ -11,11 +11,14 @@ import viser
 from websockets.asyncio.server import ServerConnection
 from websockets.frames import CloseCode
 
-from app.http import viser_insides
+from app.bridge import controls
 from app.http.frames import BadFrame, Gate
 from app.http.limits import Limits
+from app.http.places import Door, Places
 
 _NOTICE_EVERY_S = 1.0
+GAVE_UP_PLACE = "This page was idle and gave up its place."
+"""Reason with which an idle page is closed."""
 
 
 class Connection(ServerConnection):
@@ -27,31 +30,69 @@ class Connection(ServerConnection):
         As websockets makes its connections.
     limits : Limits
         Sizes and rates.
+    door : Door
+        Where it waits until it is an open page.
+    places : Places
+        Of the open pages.
+
+    Attributes
+    ----------
+    address : str
+        Where it comes from; of a reverse proxy, if there is one.
+    session_id : str
+        Of the page it belongs to.
+    active_s : float
+        When the page last sent something, monotonic.
+    asked : bool
+        A request has arrived.
     """
 
-    def __init__(self, *args: Any, limits: Limits, **keywords: Any) -> None:
+    def __init__(self, *args: Any, limits: Limits, door: Door, places: Places, **keywords: Any) -> None:
         super().__init__(*args, **keywords)
+        self.address = ""
         self.session_id = ""
+        self.active_s = time.monotonic()
+        self.asked = False
         self.gate: Gate | None = None
-        self._limits = limits
+        self._limits, self._door, self._places = limits, door, places
         self._dismissed = False
         self._window_start_s = 0.0
         self._frames_in_window = 0
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Register the connection; turn it away at once when there are too many."""
+        """Register the connection; another one may have to go."""
         super().connection_made(transport)
-        if len(self.server.handlers) > self._limits.sockets:
+        peer = transport.get_extra_info("peername")
+        self.address = str(peer[0]) if isinstance(peer, tuple) and peer else ""
+        self._door.enter(self)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Forget the connection."""
+        self._door.leave(self)
+        self._places.leave(self)
+        super().connection_lost(exc)
+
+    def turn_away(self) -> None:
+        """Close a connection that is still at the door, with a word if it can still be read."""
+        if self.transport.get_write_buffer_size() == 0 and not self.asked:
             body = b"Too many connections; try again later.\n"
             head = "HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\n"
             head += f"Content-Type: text/plain\r\nContent-Length: {len(body)}\r\n\r\n"
             self.transport.write(head.encode() + body)
             self.transport.close()
+        else:
+            self.transport.abort()
+
+    def give_up_place(self) -> None:
+        """Close the page: it has long been idle, and somebody else needs its place."""
+        self._dismissed = True
+        self._closing = asyncio.ensure_future(self.close(CloseCode.TRY_AGAIN_LATER, GAVE_UP_PLACE))
 
     async def recv(self, decode: bool | None = None) -> Any:
         """Return the next message that passes the gate."""
         while True:
             frame = await super().recv(decode)
+            self.active_s = time.monotonic()
             await self._pace()
             if self._dismissed:
                 continue
@@ -93,17 +134,21 @@ class Guest:
     client_id: int
     _last_notice_s: float = -_NOTICE_EVERY_S
 
-    def control(self, uuid: str) -> viser_insides.Control | None:
+    def control(self, uuid: str) -> controls.Control | None:
         """Return the control with that id, if the visitor has it."""
-        return viser_insides.find_control(self.server, self.client_id, uuid)
+        return controls.find_control(self.server, self.client_id, uuid)
 
     def restore(self, uuid: str) -> None:
         """Show the server's value of a control again."""
-        viser_insides.show_held_value(self.server, self.client_id, uuid)
+        controls.show_held_value(self.server, self.client_id, uuid)
 
     def end_upload(self, component: str, transfer: str, size: int) -> None:
         """Let the page's progress bar end."""
-        viser_insides.end_upload(self.server, self.client_id, component, transfer, size)
+        controls.end_upload(self.server, self.client_id, component, transfer, size)
+
+    def forget_upload(self, transfer: str) -> None:
+        """Drop what has come of an upload."""
+        controls.forget_upload(self.server, self.client_id, transfer)
 
     def tell(self, text: str) -> None:
         """Show a short notice, at most one a second."""

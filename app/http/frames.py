@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import time
 import unicodedata
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -17,9 +18,10 @@ from typing import Any, Protocol
 
 import msgspec
 
+from app.bridge.controls import Control
+from app.bridge.server import FRAME_TYPES, IGNORED_FRAMES
 from app.http.limits import MIB, Limits
 from app.http.values import shown, why_not
-from app.http.viser_insides import FRAME_TYPES, IGNORED_FRAMES, Control
 
 _LONGEST_FILE_NAME = 120
 
@@ -43,6 +45,10 @@ class Visitor(Protocol):
         """Let the page's progress bar end."""
         ...
 
+    def forget_upload(self, transfer: str) -> None:
+        """Drop what has come of an upload."""
+        ...
+
     def tell(self, text: str) -> None:
         """Show a short notice."""
         ...
@@ -54,7 +60,43 @@ class _Upload:
     size: int
     bytes_left: int
     part_count: int
+    came_s: float
     seen: set[int] = field(default_factory=set)
+
+
+@dataclass
+class Uploading:
+    """The unfinished uploads of all visitors: they wait in memory, so together they are bounded.
+
+    Attributes
+    ----------
+    limits : Limits
+        Sizes.
+    clock : callable
+        Seconds, monotonic.
+    """
+
+    limits: Limits
+    clock: Callable[[], float] = time.monotonic
+    _gates: list[Gate] = field(default_factory=list)
+
+    def has_room(self, size: int) -> bool:
+        """Whether an upload of this size may begin; those that have stalled are given up for it."""
+        if self._bytes() + size > self.limits.all_uploads_bytes:
+            for gate in list(self._gates):
+                gate.give_up_stalled(self.clock() - self.limits.upload_stall_s)
+        return self._bytes() + size <= self.limits.all_uploads_bytes
+
+    def _bytes(self) -> int:
+        return sum(gate.uploading_bytes for gate in self._gates)
+
+    def begin(self, gate: Gate) -> None:
+        """Count the uploads of a page."""
+        self._gates.append(gate)
+
+    def end(self, gate: Gate) -> None:
+        """Forget a page that has gone."""
+        self._gates = [other for other in self._gates if other is not gate]
 
 
 @dataclass
@@ -67,11 +109,39 @@ class Gate:
         Whose messages these are.
     limits : Limits
         Sizes.
+    others : Uploading, optional
+        Uploads of all visitors; of this one alone when it is left out.
     """
 
     visitor: Visitor
     limits: Limits
+    others: Uploading | None = None
     _uploads: dict[str, _Upload] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Let the uploads be counted among those of all visitors."""
+        if self.others is None:
+            self.others = Uploading(self.limits)
+        self.others.begin(self)
+
+    @property
+    def uploading_bytes(self) -> int:
+        """Size of the unfinished uploads."""
+        return sum(upload.size for upload in self._uploads.values())
+
+    def give_up_stalled(self, before_s: float) -> None:
+        """Give up the uploads of which nothing has come since."""
+        for transfer, upload in list(self._uploads.items()):
+            if upload.came_s < before_s:
+                del self._uploads[transfer]
+                self.visitor.forget_upload(transfer)
+                self.visitor.end_upload(upload.component, transfer, upload.size)
+
+    def close(self) -> None:
+        """The page has gone."""
+        self._uploads.clear()
+        if self.others is not None:
+            self.others.end(self)
 
     def judge(self, frame: bytes | str) -> bytes | None:
         """Return the message to pass on, or None to drop it.
@@ -133,16 +203,17 @@ class Gate:
             self.visitor.tell(f"{name} {refusal}.")
             return None
         if parts:
-            self._uploads[transfer] = _Upload(component, size, size, parts)
+            self._uploads[transfer] = _Upload(component, size, size, parts, time.monotonic())
         return msgspec.msgpack.encode({**fields, "type": "FileTransferStartUpload", "filename": name})
 
     def _why_not_upload(self, size: int) -> str | None:
         largest = self.limits.upload_bytes
         if size > largest:
             return f"has {size / MIB:.1f} MiB; at most {largest / MIB:.0f} MiB are accepted"
-        waiting = sum(upload.size for upload in self._uploads.values())
-        if len(self._uploads) >= self.limits.uploads_at_once or waiting + size > largest:
+        if len(self._uploads) >= self.limits.uploads_at_once or self.uploading_bytes + size > largest:
             return "must wait until the other uploads have ended"
+        if self.others is not None and not self.others.has_room(size):
+            return "must wait until the uploads of other visitors have ended"
         return None
 
     def _judge_part(self, frame: bytes, fields: dict[str, Any]) -> bytes | None:
@@ -151,6 +222,7 @@ class Gate:
             return None
         index, content = fields["part_index"], fields["content"]
         upload.bytes_left -= len(content)
+        upload.came_s = time.monotonic()
         # viser writes the file into whatever control the last part names.
         strange = fields["source_component_uuid"] != upload.component or index in upload.seen
         if strange or not 0 <= index < upload.part_count or not content or upload.bytes_left < 0:

@@ -10,15 +10,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from app.http.viser_insides import page_html
+from app.bridge.server import page_html
 
-FIRST_SCRIPT = Path(__file__).parent / "static" / "first.js"
+_STATIC = Path(__file__).parent / "static"
+FIRST_SCRIPTS = (_STATIC / "first.js", _STATIC / "plotly.js")
+"""Ours that every page has; the second loads plotly.js when it is needed."""
 _FAST = 5
 
 
 @dataclass(frozen=True)
 class File:
-    """Something to serve.
+    """A file that the server sends to browsers.
 
     Attributes
     ----------
@@ -67,27 +69,37 @@ def plotly_script() -> Path:
     return Path(found.origin).parent / "package_data" / "plotly.min.js"
 
 
-def build_page(scripts: Sequence[Path], title: str) -> Page:
+def build_page(scripts: Sequence[Path], later: Sequence[Path], title: str) -> Page:
     """Read and extend everything a browser loads.
 
-    The scripts stand before viser's own: its first plot may be drawn as soon as it runs, and needs plotly by
-    then. Their addresses are relative, so that a reverse proxy may add a prefix.
+    The scripts stand before viser's own. Their addresses are relative, so that a reverse proxy may add a
+    prefix.
 
     Parameters
     ----------
     scripts : sequence of pathlib.Path
         JavaScript files, run in this order before viser's page.
+    later : sequence of pathlib.Path
+        Those that the page fetches and a script of `scripts` runs when they are needed.
     title : str
         Of the browser tab; plain text without markup.
     """
-    files: dict[str, File] = {}
-    for path in scripts:
-        content = path.read_bytes()
-        name = f"{path.name.removesuffix('.js')}.{hashlib.sha256(content).hexdigest()[:12]}.js"
-        files[name] = File("text/javascript; charset=utf-8", content)
-    tags = "".join(f'<script src="../../static/{name}"></script>' for name in files)
+    first, others = _files(scripts), _files(later)
+    tags = "".join(f'<script src="../../static/{name}"></script>' for name in first)
+    tags += "".join(
+        f'<link rel="preload" as="script" data-later href="../../static/{name}">' for name in others
+    )
     before, found, after = page_html().partition("<title>Viser</title>")
     if not found:
         raise ValueError("viser's page has changed: no title to replace")
     html = f"{before}<title>{title}</title>{tags}{after}"
-    return Page(html=File("text/html; charset=utf-8", html.encode()), scripts=files)
+    return Page(html=File("text/html; charset=utf-8", html.encode()), scripts=first | others)
+
+
+def _files(paths: Sequence[Path]) -> dict[str, File]:
+    files: dict[str, File] = {}
+    for path in paths:
+        content = path.read_bytes()
+        name = f"{path.name.removesuffix('.js')}.{hashlib.sha256(content).hexdigest()[:12]}.js"
+        files[name] = File("text/javascript; charset=utf-8", content)
+    return files

@@ -23,13 +23,33 @@ if TYPE_CHECKING:
     import viser
 
     from app.http.connection import Connection
+    from app.http.ids import SessionIds
+    from app.http.metrics import Metrics
+    from app.http.places import Door, Places
     from app.http.site import Site
+    from app.http.throttle import Throttle
 
 SessionCallback = Callable[["viser.ClientHandle", str], None]
 
 _TITLE = "Schuler Bench"
 _EXIT_WITHIN_S = 3.0
 _log = logging.getLogger("schuler.http")
+
+
+@dataclass(frozen=True)
+class Inner:
+    """What stands behind a door that other processes share (`app.workers`).
+
+    Attributes
+    ----------
+    listener : socket.socket
+        Bound to this machine; the door connects to it.
+    loopback : bool
+        Only this machine can reach the door.
+    """
+
+    listener: socket.socket
+    loopback: bool
 
 
 @dataclass
@@ -106,6 +126,9 @@ def start(
     on_disconnect: SessionCallback,
     page_scripts: Sequence[Path] = (),
     limits: Limits | None = None,
+    session_ids: SessionIds | None = None,
+    metrics: Callable[[], Metrics] | None = None,
+    inner: Inner | None = None,
 ) -> DashboardServer:
     """Serve the dashboard.
 
@@ -127,6 +150,12 @@ def start(
         JavaScript files of ours, run in the page before viser's own.
     limits : Limits or None
         Bounds; None for the usual ones.
+    session_ids : SessionIds or None
+        Makes and recognises the ids of sessions; None for a key of this process.
+    metrics : callable or None
+        Makes the figures for ``/metrics`` when they are first asked for; None: there are none.
+    inner : Inner or None
+        Of a worker: where the door that listens at ``host`` and ``port`` passes requests on to.
 
     Raises
     ------
@@ -135,35 +164,45 @@ def start(
         version.
     """
     origins = parse_origins(allow_origins)
-    listener = listen(host, port)
+    listener = listen(host, port) if inner is None else inner.listener
     try:
-        bound_port = listener.getsockname()[1]
-        access = access_rules(host, bound_port, loopback=is_loopback(listener), token=token, origins=origins)
+        bound_port = listener.getsockname()[1] if inner is None else port
+        loopback = is_loopback(listener) if inner is None else inner.loopback
+        access = access_rules(host, bound_port, loopback=loopback, token=token, origins=origins)
         # Only now: what is refused above is refused without the half second that importing viser takes.
-        from app.http import viser_insides
-        from app.http.page import FIRST_SCRIPT, build_page, plotly_script
+        from app.bridge import server as bridge
+        from app.http.ids import SessionIds
+        from app.http.page import FIRST_SCRIPTS, build_page, plotly_script
+        from app.http.places import Door, Places
         from app.http.site import Site
-        from navcore import __version__
+        from app.http.throttle import Throttle
+        from navcore.foundation.version import __version__
 
-        viser_insides.require_pinned_version()
+        bridge.require_pinned_version()
         limits = limits or Limits()
-        connections: set[Connection] = set()
+        places = Places(limits)
         site = Site(
             access=access,
-            limits=limits,
+            ids=session_ids or SessionIds(),
+            places=places,
+            forwarded=inner is not None,
+            throttle=Throttle(limits.token_guesses, limits.token_refill_s),
             version=__version__,
-            script_hashes=viser_insides.PAGE_SCRIPT_HASHES,
-            load_page=lambda: build_page([FIRST_SCRIPT, plotly_script(), *page_scripts], _TITLE),
-            visitors=lambda: len(connections),
+            script_hashes=bridge.PAGE_SCRIPT_HASHES,
+            load_page=lambda: build_page([*FIRST_SCRIPTS, *page_scripts], [plotly_script()], _TITLE),
         )
-        serve = partial(_serve, listener=listener, site=site, limits=limits, connections=connections)
-        server = viser_insides.make_server(serve, _TITLE)
+        door = Door(limits)
+        serve = partial(_serve, listener=listener, site=site, limits=limits, door=door, places=places)
+        server = bridge.make_server(serve, _TITLE)
     except BaseException:
         listener.close()
         raise
+    if metrics is not None:
+        throttle, pool = site.throttle, bridge.pool_of(server)
+        site.metrics = _metrics_of(metrics, lambda: _figures(places, door, throttle, pool))
     callbacks = ThreadPoolExecutor(max_workers=8, thread_name_prefix="session")
     _follow_visits(server, limits, callbacks, on_connect, on_disconnect)
-    viser_insides.plotly_is_on_the_page(server)
+    bridge.plotly_is_on_the_page(server)
     server.gui.configure_theme(show_share_button=False)
     site.ready.set()
     shown = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
@@ -178,7 +217,8 @@ def _serve(
     listener: socket.socket,
     site: Site,
     limits: Limits,
-    connections: set[Connection],
+    door: Door,
+    places: Places,
     **keywords: Any,
 ) -> Any:
     """Stand in for websockets' ``serve`` in viser: its arguments, our socket, answers and checks."""
@@ -188,25 +228,50 @@ def _serve(
 
     del host, port
 
-    async def counted(connection: Any) -> None:
-        connections.add(connection)
+    async def placed(connection: Any) -> None:
+        door.leave(connection)
         try:
             await handler(connection)
         finally:
-            connections.discard(connection)
+            places.leave(connection)
 
     ours = {
         "process_request": site.process_request,
         "process_response": site.process_response,
         "server_header": None,
+        "open_timeout": limits.request_s,
         "max_size": limits.frame_bytes,
+        "max_queue": limits.frames_waiting,
         "ping_interval": limits.ping_s,
         "ping_timeout": limits.ping_s,
         "close_timeout": limits.close_s,
         "logger": _quiet_log(),
-        "create_connection": partial(Connection, limits=limits),
+        "create_connection": partial(Connection, limits=limits, door=door, places=places),
     }
-    return websockets.asyncio.server.serve(counted, sock=listener, **{**keywords, **ours})
+    return websockets.asyncio.server.serve(placed, sock=listener, **{**keywords, **ours})
+
+
+def _metrics_of(make: Callable[[], Metrics], own: Callable[[], dict[str, float]]) -> Callable[[], bytes]:
+    made: list[Metrics] = []
+
+    def text() -> bytes:
+        if not made:
+            made.append(make())
+            made[0].sources.append(own)
+        return made[0].text()
+
+    return text
+
+
+def _figures(places: Places, door: Door, throttle: Throttle, pool: Any) -> dict[str, float]:
+    return {
+        "open_pages": float(len(places)),
+        "connections_at_the_door": float(len(door)),
+        "places_given_up_total": float(places.given_up),
+        "connections_turned_away_total": float(door.turned_away),
+        "wrong_tokens_total": float(throttle.guesses),
+        "callbacks_dropped_total": float(pool.dropped),
+    }
 
 
 def _follow_visits(
@@ -216,22 +281,25 @@ def _follow_visits(
     on_connect: SessionCallback,
     on_disconnect: SessionCallback,
 ) -> None:
-    from app.http import viser_insides
+    from app.bridge import server as bridge
+    from app.bridge.mends import forget_callbacks
     from app.http.connection import Guest
-    from app.http.frames import Gate
+    from app.http.frames import Gate, Uploading
 
     visits: dict[int, _Visit] = {}
+    gates: dict[int, Gate] = {}
+    uploading = Uploading(limits)
 
     def opened(client_id: int, connection: Connection) -> None:
         visits[client_id] = _Visit(connection.session_id)
-        connection.gate = Gate(Guest(server, client_id), limits)
+        connection.gate = gates[client_id] = Gate(Guest(server, client_id), limits, uploading)
 
     # The page is shown once viser knows its camera; viser calls this in the event loop, before `closed`.
     @server.on_client_connect
     async def _(client: viser.ClientHandle) -> None:
         visit = visits.get(client.client_id)
         if visit is not None:
-            viser_insides.plotly_is_on_the_page(client)
+            bridge.plotly_is_on_the_page(client)
             visit.shown = callbacks.submit(_call, on_connect, client, visit.session_id)
 
     @server.on_client_disconnect
@@ -243,8 +311,10 @@ def _follow_visits(
 
     async def closed(client_id: int) -> None:
         visits.pop(client_id, None)
+        gates.pop(client_id).close()
+        forget_callbacks(server, client_id)
 
-    viser_insides.on_socket(server, opened, closed)
+    bridge.on_socket(server, opened, closed)
 
 
 def _call(callback: SessionCallback, client: viser.ClientHandle, session_id: str) -> None:

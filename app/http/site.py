@@ -6,6 +6,7 @@ import asyncio
 import email.utils
 import html
 import json
+import math
 import re
 import threading
 from collections.abc import Callable
@@ -16,15 +17,19 @@ from urllib.parse import parse_qsl, urlencode
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
-from app.http.access import Access, Refusal, refuse_address, refuse_unknown
+from app.http.access import Access, Refusal, offers_token, refuse_address, refuse_unknown
+from app.http.address import FORWARDED
 from app.http.connection import Connection
 from app.http.headers import security_headers
-from app.http.ids import is_shared, new_copy_id, new_session_id
-from app.http.limits import Limits
+from app.http.ids import SessionIds, is_shared
 from app.http.page import File, Page
+from app.http.places import Places
+from app.http.throttle import Throttle
 
 _SESSION_PATH = re.compile(r"/s/([A-Za-z0-9_-]{8,64})(/?)")
+_PLACE_PATH = re.compile(r"/s/([A-Za-z0-9_-]{8,64})/place")
 _FULL = "All places are taken; try again later."
+_METRICS = "text/plain; version=1.0.0; charset=utf-8"
 _FOR_EVER = "private, max-age=31536000, immutable"
 
 
@@ -36,33 +41,45 @@ class Site:
     ----------
     access : Access
         Who may come in.
-    limits : Limits
-        How many.
+    ids : SessionIds
+        Makes and recognises the ids of sessions.
+    places : Places
+        How many may come in.
+    throttle : Throttle
+        Of guesses of the token.
     version : str
         For ``/healthz``.
     script_hashes : tuple of str
         Of the page's inline scripts.
     load_page : callable
         Makes the page at the first request for it.
-    visitors : callable
-        Number of open websockets.
+    forwarded : bool
+        A door before this process tells where requests come from.
+    metrics : callable or None
+        Gives the figures for ``/metrics``; None: there are none.
     """
 
     access: Access
-    limits: Limits
+    ids: SessionIds
+    places: Places
+    throttle: Throttle
     version: str
     script_hashes: tuple[str, ...]
     load_page: Callable[[], Page]
-    visitors: Callable[[], int]
+    forwarded: bool = False
+    metrics: Callable[[], bytes] | None = None
     ready: threading.Event = field(default_factory=threading.Event)
     _page: Page | None = None
     _loading: asyncio.Lock = field(default_factory=asyncio.Lock)
 
     async def process_request(self, connection: Connection, request: Request) -> Response | None:
         """Answer a request; None accepts a websocket and notes its session."""
+        connection.asked = True
         while not self.ready.is_set():
             await asyncio.sleep(0.005)
         headers = request.headers
+        if self.forwarded:
+            connection.address = headers.get(FORWARDED, "")
         path, _, query = request.path.partition("?")
         refusal = refuse_address(self.access, headers)
         if refusal is not None:
@@ -72,11 +89,33 @@ class Site:
             return _respond(HTTPStatus.OK, health, "application/json")
         websocket = any("websocket" in value.lower() for value in headers.get_all("Upgrade"))
         if not websocket and "token" in dict(parse_qsl(query)) and self.access.token is not None:
-            return self._exchange_token(path, query, headers)
+            return self._guarded(connection, lambda: self._exchange_token(path, query, headers))
+        if offers_token(headers):
+            refused = self._guarded(connection, lambda: self._ask_token(headers))
+        else:
+            refused = self._ask_token(headers)
+        if refused is not None:
+            return refused
+        return (
+            self._open(connection, path) if websocket else await self._get(connection, path, query, headers)
+        )
+
+    def _guarded(self, connection: Connection, judge: Callable[[], Response | None]) -> Response | None:
+        """Judge a token, unless this address has guessed too often: then right and wrong ones wait alike."""
+        wait_s = self.throttle.wait_s(connection.address)
+        if wait_s > 0.0:
+            extra = {"Retry-After": str(math.ceil(wait_s))}
+            return _respond(
+                HTTPStatus.TOO_MANY_REQUESTS, "Too many wrong tokens; try again later.", extra=extra
+            )
+        answer = judge()
+        if answer is not None and answer.status_code == HTTPStatus.UNAUTHORIZED:
+            self.throttle.failed(connection.address)
+        return answer
+
+    def _ask_token(self, headers: Headers) -> Response | None:
         refusal = refuse_unknown(self.access, headers)
-        if refusal is not None:
-            return _refuse(refusal)
-        return self._open(connection, path) if websocket else await self._get(path, query, headers)
+        return None if refusal is None else _refuse(refusal)
 
     def process_response(self, connection: Connection, request: Request, response: Response) -> None:
         """Add the security headers to whatever is answered, the library's own refusals included."""
@@ -92,31 +131,46 @@ class Site:
         found = _SESSION_PATH.fullmatch(path)
         if found is None or is_shared(found.group(1)):
             return _not_found()
-        if self.visitors() >= self.limits.visitors:
-            return _respond(HTTPStatus.SERVICE_UNAVAILABLE, _FULL, extra={"Retry-After": "30"})
-        connection.session_id = found.group(1)
-        return None
+        # A page cannot be redirected here; one with an id that is not ours begins anew, under an id that is.
+        connection.session_id = found.group(1) if self.ids.accepts(found.group(1)) else self.ids.new()
+        return None if self.places.take(connection) else _full()
 
-    async def _get(self, path: str, query: str, headers: Headers) -> Response:
+    async def _get(self, connection: Connection, path: str, query: str, headers: Headers) -> Response:
         if path == "/":
-            return _redirect(_with_query(f"s/{new_session_id()}/", query))
+            return _redirect(_with_query(f"s/{self.ids.new()}/", query))
         session = _SESSION_PATH.fullmatch(path)
         if session is not None and is_shared(session.group(1)):
             # A shared state is never worked on: whoever opens it gets a copy of their own.
-            copy = f"{new_copy_id(session.group(1))}/"
+            copy = f"{self.ids.new_copy(session.group(1))}/"
             return _redirect(_with_query(f"../{copy}" if session.group(2) else copy, query))
+        if session is not None and not self.ids.accepts(session.group(1)):
+            own = f"{self.ids.new()}/"
+            return _redirect(_with_query(f"../{own}" if session.group(2) else own, query))
         if session is not None and not session.group(2):
             return _redirect(_with_query(f"{session.group(1)}/", query))
         if session is not None:
-            if self.visitors() >= self.limits.visitors:
-                return _respond(HTTPStatus.SERVICE_UNAVAILABLE, _FULL, extra={"Retry-After": "30"})
+            self.places.invite(session.group(1))
+            if not self.places.has_room(connection.address, session.group(1)):
+                return _full()
             page = await self._loaded()
             return await _serve(page.html, headers, "no-cache")
+        returning = _PLACE_PATH.fullmatch(path)
+        if returning is not None:
+            return self._come_back(returning.group(1))
+        if path == "/metrics" and self.metrics is not None:
+            return _respond(HTTPStatus.OK, await asyncio.to_thread(self.metrics), _METRICS)
         if path.startswith("/static/"):
             script = (await self._loaded()).scripts.get(path.removeprefix("/static/"))
             if script is not None:
                 return await _serve(script, headers, _FOR_EVER)
         return _not_found()
+
+    def _come_back(self, id: str) -> Response:
+        """Answer a page that a person has come back to after it was idle (static/place.js)."""
+        if not self.ids.accepts(id):
+            return _respond(HTTPStatus.GONE, "This session is not known here; open the page anew.")
+        self.places.invite(id)
+        return _respond(HTTPStatus.NO_CONTENT, "")
 
     async def _loaded(self) -> Page:
         async with self._loading:
@@ -158,6 +212,10 @@ def _refuse(refusal: Refusal) -> Response:
     return _respond(refusal.status, refusal.reason, extra=challenge)
 
 
+def _full() -> Response:
+    return _respond(HTTPStatus.SERVICE_UNAVAILABLE, _FULL, extra={"Retry-After": "30"})
+
+
 def _not_found() -> Response:
     return _respond(HTTPStatus.NOT_FOUND, "No such page.")
 
@@ -173,7 +231,7 @@ def _respond(
     extra: dict[str, str] | None = None,
 ) -> Response:
     content = body if isinstance(body, bytes) else body.encode()
-    if content_type.startswith("text/plain") and content:
+    if isinstance(body, str) and content_type.startswith("text/plain") and content:
         content += b"\n"
     headers = {
         "Date": email.utils.formatdate(usegmt=True),

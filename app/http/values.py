@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from app.http.viser_insides import Control
+    from app.bridge.controls import Control
 
 _LONGEST_SHOWN = 60
 

@@ -7,6 +7,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+
+from app.papers.estimate import Estimate
 from app.papers.runs import Runs
 
 if TYPE_CHECKING:
@@ -15,7 +18,13 @@ if TYPE_CHECKING:
 _SMALLEST = 1e-6
 """What is smaller is rounding in most places, and not the same on every processor."""
 
-Verdict = Literal["agrees", "differs"]
+Verdict = Literal["agrees", "differs", "undecided"]
+"""Agrees: our number, or its whole confidence interval, lies in the range. Differs: none of it does.
+Undecided: the interval reaches across an end of the range."""
+Kind = Literal["predicted", "fitted", "direction only"]
+"""Predicted: a number from the paper's settings alone. Fitted: a number that a setting of ours was fitted to.
+Direction only: the paper states a relation, or its setting is too incomplete for more than one."""
+KINDS: tuple[Kind, ...] = ("predicted", "fitted", "direction only")
 Span = tuple[float, float]
 
 
@@ -51,15 +60,19 @@ class Claim:
     printed : str
         Its number or relation as the paper gives it.
     agreed : tuple of float
-        Range of our number within which the two agree.
+        Range of our number within which the two agree; printed in the report.
     ours : callable
-        Our number from the runs, in ``unit``.
+        Our number from the runs, in ``unit``; an array holds one number for each seed, and the verdict then
+        goes by the 95 % confidence interval of their mean.
     unit : str
         Unit of both numbers.
+    kind : {"predicted", "fitted", "direction only"}
+        What the number is worth as evidence.
     strapdown : bool
         Whether the number is computed in the full strapdown as well; both must agree.
     why : str
-        Why it differs. Empty when it agrees: the report fails when this and the numbers contradict.
+        Why it differs. Empty when it agrees: the report fails when this and the numbers contradict. May
+        stand when the verdict is "undecided".
     note : str
         What should be known even when it agrees.
     facts : mapping of str to callable
@@ -71,18 +84,29 @@ class Claim:
     says: str
     printed: str
     agreed: Span
-    ours: Callable[[Runs], float]
+    ours: Callable[[Runs], float | np.ndarray]
     unit: str = ""
+    kind: Kind = "direction only"
     strapdown: bool = False
     why: str = ""
     note: str = ""
     facts: Mapping[str, Callable[[Runs], float]] = field(default_factory=dict)
     digits: int = 3
 
-    def verdict(self, *values: float) -> Verdict:
-        """Agreement of all values with the range."""
-        low, high = self.agreed
-        return "agrees" if all(low <= value <= high for value in values) else "differs"
+    def verdict(self, *found: Estimate) -> Verdict:
+        """Agreement of all estimates with the range."""
+        positions = [one.position(*self.agreed) for one in found]
+        if min(positions) < 0:
+            return "differs"
+        return "agrees" if min(positions) > 0 else "undecided"
+
+    @property
+    def allowed(self) -> str:
+        """The range that counts as agreement, as text."""
+        low, high = (number(value, self.digits) for value in self.agreed)
+        if math.isinf(self.agreed[0]):
+            return f"<= {high}"
+        return f">= {low}" if math.isinf(self.agreed[1]) else f"{low} to {high}"
 
 
 @dataclass(frozen=True)

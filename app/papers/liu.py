@@ -11,14 +11,15 @@ from app.papers.liu_bumpless import BUMPLESS
 from app.papers.liu_fig_7 import FIGURE_7
 from app.papers.liu_fig_11 import LONG
 from app.papers.liu_tables import TABLES
+from app.papers.liu_window import WINDOW
 from app.papers.measure import departure, hours
 from app.papers.picture import curve, panel
 from app.papers.runs import Runs
-from navcore.earth import SPHERE
-from navcore.loop import RADIUS, frequency_response
+from navcore.analysis import RADIUS, frequency_response
+from navcore.foundation.earth import SPHERE
+from navcore.foundation.units import HOUR
 from navcore.mechanization.recorder import DV_E
-from navcore.network import parse_network
-from navcore.units import HOUR
+from navcore.networks import parse_network
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -122,6 +123,7 @@ GAINS = Exhibit(
             at_least(39.5),
             lambda runs: slope(0.01, 0.1),
             "dB/dec",
+            kind="predicted",
         ),
         Claim(
             "and towards high frequency (10 to 100 omega_s)",
@@ -129,6 +131,7 @@ GAINS = Exhibit(
             at_least(39.5),
             lambda runs: -slope(10.0, 100.0),
             "dB/dec",
+            kind="predicted",
         ),
         Claim(
             "figure 5: the damping coefficient changes little: largest gain, zeta = 0.9 over zeta = 0.1",
@@ -194,6 +197,7 @@ OVERSHOOT = Exhibit(
             "the same",
             about(1.0, 0.02),
             lambda runs: overshoot(runs, 3) / overshoot(runs, 1),
+            kind="predicted",
             strapdown=True,
             digits=4,
         ),
@@ -202,6 +206,7 @@ OVERSHOOT = Exhibit(
             "smaller, in proportion",
             about(0.5, 0.02),
             lambda runs: overshoot(runs, 2) / overshoot(runs, 1),
+            kind="predicted",
             strapdown=True,
             digits=4,
         ),
@@ -210,6 +215,7 @@ OVERSHOOT = Exhibit(
             "larger, in proportion",
             about(1.5, 0.02),
             lambda runs: overshoot(runs, 4) / overshoot(runs, 1),
+            kind="predicted",
             strapdown=True,
             digits=4,
         ),
@@ -229,5 +235,5 @@ PAPER = Paper(
     "Liu 2021",
     "Liu, Wu, Hu, Zhang: *Design of variable damping INS for ships based on the variation of reference "
     "velocity error*, Journal of Sensors, 2021.",
-    (GAINS, OVERSHOOT, FIGURE_7, LONG, TABLES, BUMPLESS),
+    (GAINS, OVERSHOOT, FIGURE_7, LONG, TABLES, WINDOW, BUMPLESS),
 )

@@ -15,9 +15,9 @@ from app.papers.liu_switching import (
 )
 from app.papers.picture import curve, panel
 from app.papers.runs import Runs
+from navcore.engine.run import Run
+from navcore.foundation.units import HOUR
 from navcore.mechanization.recorder import DV_E
-from navcore.run import Run
-from navcore.units import HOUR
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -65,6 +65,7 @@ FIGURE_7 = Exhibit(
             "approximately equal",
             about(1.0, 0.2),
             lambda runs: overshoot(switched(runs, "hard")) / overshoot(fig_7(runs), 0),
+            kind="predicted",
             why="when the filter is cleared the standing 0.5 m/s arrives as a step of 0.5 m/s on "
             "re-engagement ({hard} m/s against {step} m/s). Kept running behind the switch it makes none.",
             facts={

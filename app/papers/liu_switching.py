@@ -9,12 +9,12 @@ import numpy as np
 
 from app.papers.measure import departure, rms
 from app.papers.runs import STRAPDOWN_HZ, Runs, method, scenario_of
-from navcore.mechanization.recorder import DV_E, DV_N, PHI_E, PHI_N, POSITION
-from navcore.run import Run
-from navcore.scenario import Scenario
+from navcore.engine.run import Run
+from navcore.engine.simulation import simulate
+from navcore.foundation.units import ARCSEC, HOUR
+from navcore.mechanization.recorder import D_LAT, D_LON, DV_E, DV_N, PHI_E, PHI_N, POSITION
+from navcore.scenario.model import Scenario
 from navcore.sensors.reference import LogEvent
-from navcore.simulation import simulate
-from navcore.units import ARCSEC, HOUR
 
 PRESET = "liu-switching"
 Quantity = Literal["position", "velocity", "tilt"]
@@ -30,8 +30,10 @@ METHODS = (
     "variation + ramp",
     "variation + Liu 19",
     "variation + bumpless",
+    "variation + bridge",
 )
-RAMP, NOVEL, BEST = "variation + ramp", "variation + Liu 19", "variation + bumpless"
+"""Methods of the preset, and `bridge` with the same network and policy."""
+HARD, RAMP, NOVEL, BEST, BRIDGE = METHODS[4:]
 
 # ---------------------------------------------------------------- the log's error of each case
 
@@ -67,26 +69,48 @@ def turns(scenario: Scenario) -> list[float]:
 
 def sea(seed: int) -> Scenario:
     """The preset with other episodes and noise."""
-    base = scenario_of(PRESET, [f"run.seed={seed}", "run.output_step_s=60"])
+    base = _base([f"run.seed={seed}", "run.output_step_s=60"])
     return _with_events(base, lasting(seed, turns(base)))
 
 
 def log_only(seed: int) -> Scenario:
     """The same episodes and noise of the log, perfect sensors, no standing error of the log."""
     overrides = [f"run.seed={seed}", "run.output_step_s=60", "reference.bias_mps=[0,0]"]
-    base = scenario_of(PRESET, overrides, imu={}, initial_error={})
+    base = _base(overrides, imu={}, initial_error={})
     return _with_events(base, lasting(seed, turns(base)))
+
+
+def episodes_at_sea(seed: int) -> Scenario:
+    """+1 m/s east for 300 s every 30 min with the preset's sensors, standing error and noise."""
+    base = _base([f"run.seed={seed}", "run.output_step_s=60"])
+    return _with_events(base, _passing(36.0))
 
 
 def episodes(seed: int, noise_mps: float = 0.1, days: float = 1.5, standing_mps: float = 0.0) -> Scenario:
     """+1 m/s for 300 s every 30 min, one channel, perfect sensors."""
     overrides = [
-        f"run.seed={seed}", f"run.duration_h={24.0 * days}", "run.output_step_s=60", "run.fidelity=channel",
-        f"reference.bias_mps=[{standing_mps},0]", f"reference.noise_mps={noise_mps}", "motion.kind=static",
-    ]  # fmt: skip
-    base = scenario_of(PRESET, overrides, imu={}, initial_error={})
-    starts = np.arange(1.0, 24.0 * days, 0.5)
-    return _with_events(base, [e for t in starts for e in _change(t, 1.0 / 12.0, (1.0, 0.0), 10.0)])
+        f"run.seed={seed}",
+        f"run.duration_h={24.0 * days}",
+        "run.output_step_s=60",
+        "run.fidelity=channel",
+        f"reference.bias_mps=[{standing_mps},0]",
+        f"reference.noise_mps={noise_mps}",
+        "motion.kind=static",
+    ]
+    return _with_events(_base(overrides, imu={}, initial_error={}), _passing(24.0 * days))
+
+
+def _passing(hours: float) -> Events:
+    """+1 m/s east for 300 s every 30 min."""
+    starts = np.arange(1.0, hours, 0.5)
+    return [e for t in starts for e in _change(t, 1.0 / 12.0, (1.0, 0.0), 10.0)]
+
+
+def _base(overrides: Iterable[str], **blocks: Any) -> Scenario:
+    """The preset with `METHODS`."""
+    methods = scenario_of(PRESET).canonical()["method"]
+    bridge = {**methods[-1], "name": METHODS[-1], "switching": {"id": "bridge"}}
+    return scenario_of(PRESET, overrides, method=[*methods, bridge], **blocks)
 
 
 def _with_events(scenario: Scenario, events: Events) -> Scenario:
@@ -95,7 +119,12 @@ def _with_events(scenario: Scenario, events: Events) -> Scenario:
     return scenario.model_copy(update={"reference": scenario.reference.model_copy(update={"event": made})})
 
 
-CASES: dict[str, Callable[[int], Scenario]] = {"sea": sea, "log only": log_only, "episodes": episodes}
+CASES: dict[str, Callable[[int], Scenario]] = {
+    "sea": sea,
+    "log only": log_only,
+    "episodes": episodes,
+    "episodes at sea": episodes_at_sea,
+}
 DAYS = 5
 
 # ---------------------------------------------------------------- errors over the seeds
@@ -138,10 +167,56 @@ def in_strapdown(scenario: Scenario) -> Scenario:
     return scenario.model_copy(update={"run": scenario.run.model_copy(update=update)})
 
 
+def of_method(runs: Runs, case: str, quantity: Quantity, name: str) -> np.ndarray:
+    """Error of one method with each of the seeds."""
+    return study(runs, case)[:, METHODS.index(name), QUANTITIES.index(quantity)]
+
+
+def ratios(runs: Runs, case: str, quantity: Quantity, ours: str, than: str) -> np.ndarray:
+    """One method's error over another's with each of the seeds."""
+    return of_method(runs, case, quantity, ours) / of_method(runs, case, quantity, than)
+
+
 def ratio(runs: Runs, case: str, quantity: Quantity, ours: str, than: str) -> float:
     """Geometric mean over the seeds of one method's error over another's."""
-    found = study(runs, case)[:, :, QUANTITIES.index(quantity)]
-    return float(np.exp(np.mean(np.log(found[:, METHODS.index(ours)] / found[:, METHODS.index(than)]))))
+    return float(np.exp(np.mean(np.log(ratios(runs, case, quantity, ours, than)))))
+
+
+def paired(run: Run, without: Run) -> np.ndarray:
+    """RMS of the difference of two runs in position (m), velocity (m/s), tilt (arcsec), (methods, 3)."""
+    return np.array(
+        [
+            [
+                rms(np.hypot(change[:, D_LAT], change[:, D_LON])),
+                rms(np.hypot(change[:, DV_E], change[:, DV_N])),
+                rms(np.hypot(change[:, PHI_E], change[:, PHI_N])) / ARCSEC,
+            ]
+            for change in (
+                one.rows - other.rows for one, other in zip(run.methods, without.methods, strict=True)
+            )
+        ]
+    )
+
+
+def added(runs: Runs, case: str) -> np.ndarray:
+    """What the changes of the log add with each method and seed, shape (seeds, methods, 3).
+
+    Each run is compared with the same run, noise and all, without any change of the log.
+    """
+
+    def make() -> np.ndarray:
+        found = []
+        for seed in SEEDS:
+            scenario = CASES[case](seed)
+            found.append(paired(simulate(scenario), simulate(_with_events(scenario, []))))
+        return np.array(found)
+
+    return runs.keep(("liu-switching", case, "added"), make)
+
+
+def added_by(runs: Runs, case: str, quantity: Quantity, name: str) -> np.ndarray:
+    """What the changes of the log add with one method, with each of the seeds."""
+    return added(runs, case)[:, METHODS.index(name), QUANTITIES.index(quantity)]
 
 
 def quiet_episodes(runs: Runs) -> np.ndarray:
@@ -164,9 +239,14 @@ def daily(runs: Runs, name: str) -> np.ndarray:
 # ---------------------------------------------------------------- figure 7
 
 FIG_7 = {
-    "run.duration_h": 20.0, "run.fidelity": "channel", "run.earth": "sphere", "run.output_step_s": 10.0,
-    "motion.kind": "static", "reference.noise_mps": 0.0, "reference.bias_mps": [0.5, 0.0],
-}  # fmt: skip
+    "run.duration_h": 20.0,
+    "run.fidelity": "channel",
+    "run.earth": "sphere",
+    "run.output_step_s": 10.0,
+    "motion.kind": "static",
+    "reference.noise_mps": 0.0,
+    "reference.bias_mps": [0.5, 0.0],
+}
 SWITCHED_S = 10.0 * HOUR
 STEPS_MPS = (0.25, 0.35, 0.45)
 

@@ -5,16 +5,27 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from app.papers.claim import Claim, Exhibit, Paper, Table, Verdict, number
+from app.papers.claim import KINDS, Claim, Exhibit, Paper, Table, Verdict, number
+from app.papers.estimate import Estimate, estimate
 from app.papers.runs import Runs
 
 HEAD = """\
 # What the papers say, and what comes out here
 
 Written by `make papers` from the presets; nothing here is typed by hand. For each figure and table of the
-papers: the claim, our number and whether they agree; where they differ, why. *Linear* is the error model (or
-the single channel) of the preset, *strapdown* the full nonlinear mechanization on the same setting, where
-both apply. Seeds and digits are fixed: the same code writes the same file.
+papers: the claim, our number, the range of numbers that counts as agreement, and the verdict; where the two
+differ, the reason. *Linear* is the error model (or the single channel) of the preset, *strapdown* the full
+nonlinear mechanization on the same setting, where both apply. Seeds and digits are fixed: the same code
+writes the same file.
+
+Where noise decides, our number is the mean over the stated number of seeds with its 95 % confidence interval
+(Student), and the verdict goes by the interval: *agrees* when all of it lies in the range, *differs* when
+none of it does, *undecided* when it reaches across an end of the range. Where both fidelities are given, both
+must agree, and one that differs is enough to differ.
+
+The kind of a claim says what its agreement is worth. *Predicted*: our number follows from the settings that
+the paper prints. *Fitted*: a setting that the paper does not print was chosen so that the number comes out.
+*Direction only*: the paper states a relation without a number, or prints too little of its setting for more.
 """
 
 
@@ -27,8 +38,8 @@ class Checked:
     """A claim with our numbers and the verdict."""
 
     claim: Claim
-    linear: float
-    strapdown: float | None
+    linear: Estimate
+    strapdown: Estimate | None
     verdict: Verdict
     why: str
     note: str
@@ -42,11 +53,11 @@ def check(claim: Claim, runs: Runs) -> Checked:
     Contradiction
         The verdict and ``claim.why`` contradict each other.
     """
-    linear = float(claim.ours(runs))
-    strapdown = float(claim.ours(runs.in_strapdown())) if claim.strapdown else None
+    linear = estimate(claim.ours(runs))
+    strapdown = estimate(claim.ours(runs.in_strapdown())) if claim.strapdown else None
     verdict = claim.verdict(linear, *(() if strapdown is None else (strapdown,)))
-    if (verdict == "differs") != bool(claim.why):
-        found = f"{linear!r}" if strapdown is None else f"{linear!r} / {strapdown!r}"
+    if verdict != "undecided" and (verdict == "differs") != bool(claim.why):
+        found = f"{linear}" if strapdown is None else f"{linear} / {strapdown}"
         raise Contradiction(f"{claim.says}: {found} {verdict} with {claim.agreed}, why = {claim.why!r}")
     facts = {name: number(fact(runs)) for name, fact in claim.facts.items()}
     return Checked(
@@ -64,13 +75,33 @@ def report(papers: Iterable[tuple[Paper, Sequence[tuple[Exhibit, str]]]]) -> str
 
 
 def summary(checked: Iterable[tuple[Paper, Exhibit, Sequence[Checked]]]) -> Table:
-    """One row an exhibit: how many claims agree and differ."""
-    rows = []
+    """One row an exhibit: how many claims of each kind agree, of how many; a last row with the sums."""
+    head = (
+        "paper",
+        "figure or table",
+        "preset",
+        *(f"{kind}: agree" for kind in KINDS),
+        "differ",
+        "undecided",
+    )
+    rows, everything = [], []
     for paper, exhibit, found in checked:
-        differ = sum(c.verdict == "differs" for c in found)
         link = f"[{exhibit.title}](#{exhibit.name})"
-        rows.append((paper.name, link, _presets(exhibit), str(len(found) - differ), str(differ)))
-    return Table("", ("paper", "figure or table", "preset", "agree", "differ"), tuple(rows))
+        rows.append((paper.name, link, _presets(exhibit), *_counts(found)))
+        everything += found
+    rows.append(("all", "", "", *_counts(everything)))
+    return Table("", head, tuple(rows))
+
+
+def _counts(found: Sequence[Checked]) -> tuple[str, ...]:
+    """For each kind "agreeing of all", empty where there is none; then how many differ or are open."""
+    texts = []
+    for kind in KINDS:
+        of_kind = [c for c in found if c.claim.kind == kind]
+        agree = sum(c.verdict == "agrees" for c in of_kind)
+        texts.append(f"{agree} of {len(of_kind)}" if of_kind else "")
+    others = (sum(c.verdict == verdict for c in found) for verdict in ("differs", "undecided"))
+    return (*texts, *(str(count) for count in others))
 
 
 def exhibit_text(exhibit: Exhibit, checked: Sequence[Checked], tables: Sequence[Table]) -> str:
@@ -81,7 +112,7 @@ def exhibit_text(exhibit: Exhibit, checked: Sequence[Checked], tables: Sequence[
     ]
     if checked:
         parts.append(table_text(_claims(checked)))
-        parts.append(_remarks(checked))
+        parts.append(_notes(checked))
     parts.extend(table_text(table) for table in tables)
     if exhibit.draw is not None:
         parts.append(f"![{exhibit.title}](papers/{exhibit.name}.svg)\n")
@@ -103,26 +134,34 @@ def _presets(exhibit: Exhibit) -> str:
 
 def _claims(checked: Sequence[Checked]) -> Table:
     both = any(c.strapdown is not None for c in checked)
-    head = ("", "the paper's claim", "paper", *(("linear", "strapdown") if both else ("ours",)), "")
+    ours_head = ("linear", "strapdown") if both else ("ours",)
+    head = ("", "the paper's claim", "paper", *ours_head, "agrees within", "kind", "verdict")
     rows = []
     for i, c in enumerate(checked, 1):
         ours = [_value(c.claim, c.linear)]
         if both:
             ours.append("" if c.strapdown is None else _value(c.claim, c.strapdown))
         verdict = c.verdict if c.verdict == "agrees" else f"**{c.verdict}**"
-        rows.append((str(i), c.claim.says, c.claim.printed, *ours, verdict))
+        rows.append((str(i), c.claim.says, c.claim.printed, *ours, c.claim.allowed, c.claim.kind, verdict))
     return Table("", head, tuple(rows))
 
 
-def _value(claim: Claim, value: float) -> str:
-    return f"{number(value, claim.digits)} {claim.unit}".strip()
+def _value(claim: Claim, found: Estimate) -> str:
+    text = number(found.value, claim.digits)
+    if found.seeds > 1:
+        text += f" +- {number(found.half, 2)}"
+    text = f"{text} {claim.unit}".strip()
+    return f"{text} ({found.seeds} seeds)" if found.seeds > 1 else text
 
 
-def _remarks(checked: Sequence[Checked]) -> str:
+_OPEN = {"undecided": "is undecided"}
+
+
+def _notes(checked: Sequence[Checked]) -> str:
     lines = []
     for i, c in enumerate(checked, 1):
         if c.why:
-            lines.append(f"- **{i} differs:** {c.why}")
+            lines.append(f"- **Claim {i} {_OPEN.get(c.verdict, c.verdict)}:** {c.why}")
         if c.note:
-            lines.append(f"- {i}: {c.note}")
+            lines.append(f"- Note on claim {i}: {c.note}")
     return "\n".join(lines) + "\n" if lines else ""

@@ -7,10 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.papers.claim import number
+from app.papers.estimate import interval
+from navcore.engine.run import MethodRun, Run
+from navcore.foundation.units import HOUR
 from navcore.mechanization.recorder import PHI_E, PHI_N, PHI_U
 from navcore.motion.base import HEADING, PITCH
-from navcore.run import MethodRun, Run
-from navcore.units import HOUR
 
 
 def hours(run: MethodRun) -> np.ndarray:
@@ -54,15 +55,6 @@ def spread(time_s: np.ndarray, values: np.ndarray, begin_s: float = 0.0) -> floa
 def rms(values: np.ndarray) -> float:
     """Root mean square."""
     return float(np.sqrt(np.mean(np.square(values))))
-
-
-def interval(samples: Sequence[float] | np.ndarray, confidence: float = 0.95) -> tuple[float, float]:
-    """Mean of independent samples and half the width of its confidence interval (Student)."""
-    from scipy.stats import t
-
-    x = np.asarray(samples, dtype=float)
-    half = t.ppf(0.5 + confidence / 2.0, x.size - 1) * np.std(x, ddof=1) / np.sqrt(x.size)
-    return float(np.mean(x)), float(half)
 
 
 def mean_and_interval(samples: Sequence[float] | np.ndarray, digits: int = 3) -> str:

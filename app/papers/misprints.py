@@ -1,13 +1,13 @@
-"""The printed errors that change a result, as printed and corrected (`navcore.misprints`), as a section."""
+"""Section of the printed errors that change a result, printed and corrected (`app.misprints`)."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from app.misprints import MISPRINTS, Comparison, Misprint
 from app.papers.claim import Exhibit, Paper, Table, number
 from app.papers.picture import panel
 from app.papers.runs import Runs
-from navcore.misprints import MISPRINTS, Comparison, Misprint
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from app.figures.style import GRID, INK, MUTED, REFERENCE, method_color
+from app.plots.style import GRID, INK, MUTED, REFERENCE, method_color
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable
 from typing import Any, TypeVar
 
-from navcore.run import MethodRun, Run
-from navcore.scenario import Scenario
-from navcore.scenario_file import apply_overrides, presets, read_toml
-from navcore.simulation import simulate
+from navcore.engine.run import MethodRun, Run
+from navcore.engine.simulation import simulate
+from navcore.scenario.file import apply_overrides, presets, read_toml
+from navcore.scenario.model import Scenario
 
 _Made = TypeVar("_Made")
 

@@ -12,12 +12,13 @@ from app.papers.picture import curve, panel
 from app.papers.runs import Runs, method
 from app.papers.sun_optimum import OPTIMUM
 from app.papers.sun_ship import SHIP
-from navcore.earth import SPHERE
-from navcore.loop import analyse, network_step_response
+from app.papers.sun_vehicle import VEHICLE
+from navcore.analysis import analyse, network_step_response
+from navcore.foundation.earth import SPHERE
+from navcore.foundation.units import ARCSEC, HOUR
 from navcore.mechanization.recorder import PHI_N
-from navcore.network import parse_network
-from navcore.network.base import LinearNetwork
-from navcore.units import ARCSEC, HOUR
+from navcore.networks import parse_network
+from navcore.networks.base import LinearNetwork
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -77,6 +78,7 @@ STEP = Exhibit(
             "0",
             at_most(0.01),
             lambda runs: float(np.max(np.abs(step() - sun_7()))),
+            kind="predicted",
             note="What is left is the rounding of Sun's coefficients.",
         ),
         Claim(
@@ -84,6 +86,7 @@ STEP = Exhibit(
             "approximately two-fold",
             about(2.0, 0.2),
             lambda runs: float(np.max(step()) - 1.0),
+            kind="predicted",
             why="the peak is {peak} at {time} s; it is the peak itself that is (more than) two-fold.",
             facts={"peak": lambda runs: float(np.max(step())), "time": lambda runs: float(np.argmax(step()))},
         ),
@@ -104,9 +107,17 @@ STEP = Exhibit(
 # ---------------------------------------------------------------- table 1 and the network of section 3.3
 
 TABLE_1 = (
-    (3.0, 0.04), (1.8, 0.05), (0.7, 0.08), (0.6, 0.10), (0.5, 0.12),
-    (0.4, 0.22), (0.3, 0.44), (0.2, 0.64), (0.1, 0.82), (0.0, 0.99),
-)  # fmt: skip
+    (3.0, 0.04),
+    (1.8, 0.05),
+    (0.7, 0.08),
+    (0.6, 0.10),
+    (0.5, 0.12),
+    (0.4, 0.22),
+    (0.3, 0.44),
+    (0.2, 0.64),
+    (0.1, 0.82),
+    (0.0, 0.99),
+)
 """Sun's table 1: velocity difference in knots, damping coefficient."""
 MENDED, PRINTED = (0.3076, -1.1452, 0.8101), (0.3076, 1.1452, 0.8101)
 """Sun 9 with its sign mended, and as printed."""
@@ -204,6 +215,7 @@ LAW = Exhibit(
             "+1.1452",
             about(1.1452, 0.01),
             lambda runs: float(fitted()[1]),
+            kind="predicted",
             digits=5,
             why="the sign: least squares gives {a}, {b}, {c}. As printed xi would be {three} at 3 kn.",
             facts={
@@ -218,6 +230,7 @@ LAW = Exhibit(
             "0.04 at least",
             at_least(0.04),
             lambda runs: float(np.min(parabola(np.linspace(0.0, 3.0, 3001)))),
+            kind="predicted",
             why="the parabola is negative between {low} and {high} kn: it asks for negative damping. The "
             "default here is monotone interpolation of table 1, within 0.04 .. 0.99.",
             facts={
@@ -230,6 +243,7 @@ LAW = Exhibit(
             "0.5",
             about(0.5, 0.02),
             lambda runs: pole2_damping(0.5, "as_printed"),
+            kind="predicted",
             why="B = -A w2/w1 makes H(0) = 1 but moves the pole pair. With the exact B (variant `exact`) the "
             "pair is where it should be and H(0) = {h0}; `unity2` has both.",
             facts={"h0": lambda runs: pole2(0.5, "exact").h0},
@@ -239,6 +253,7 @@ LAW = Exhibit(
             "0",
             at_most(0.0),
             _unstable,
+            kind="predicted",
             digits=1,
             why="the same B: with (18) as printed the loop is unstable for xi <= {limit}.",
             facts={"limit": _stability_limit},
@@ -252,5 +267,5 @@ PAPER = Paper(
     "Sun 2017",
     "Sun, Xu, Liu, Zhang, Li, Tong: *An adaptive damping network designed for strapdown fiber optic "
     "gyrocompass system for ships*, Sensors 17 (3), 494, 2017.",
-    (STEP, LAW, OPTIMUM, SHIP),
+    (STEP, LAW, OPTIMUM, SHIP, VEHICLE),
 )

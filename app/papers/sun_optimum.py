@@ -9,7 +9,7 @@ import numpy as np
 from app.papers.claim import Claim, Exhibit, Table, about, number
 from app.papers.picture import curve, panel
 from app.papers.runs import Runs
-from navcore.tuning import Tuning, TuningSettings, tune
+from navcore.studies.tuning import Tuning, TuningSettings, tune
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -71,6 +71,7 @@ OPTIMUM = Exhibit(
             "0.99",
             about(0.99, 0.1),
             lambda runs: at_no_difference(runs, "pole2 as printed"),
+            kind="predicted",
             why="with gyro drifts alone the least sum lies far lower, and it hardly depends on a constant "
             "difference when H(0) = 1: a constant error of the log is rejected whatever xi.",
         ),
@@ -79,6 +80,7 @@ OPTIMUM = Exhibit(
             "0.99",
             about(0.99, 0.1),
             lambda runs: at_no_difference(runs, "complementary, drifting error"),
+            kind="fitted",
             note="So table 1's shape, from near 1 down to near 0, is right for a log whose error *changes*.",
         ),
     ),

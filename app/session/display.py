@@ -12,7 +12,7 @@ FIRST_TRANSFER = "phi/dv_r"
 
 
 def _known_transfer(id: str) -> str:
-    from app.figures.frequency import SHOWN
+    from app.plots.transfer_views import SHOWN
 
     if id not in SHOWN:
         raise ValueError(f"must be one of {', '.join(SHOWN)}")
@@ -25,9 +25,11 @@ class Display(BaseModel):
     Attributes
     ----------
     transfer : str
-        What the frequency side shows: a key of `app.figures.frequency.SHOWN`.
+        What the frequency side shows: a key of `app.plots.transfer_views.SHOWN`.
     discrete : bool
         The measured gain and phase of the running filters are drawn on H.
+    poles : str
+        Whose poles the tab "Poles" shows: one level channel's, or the whole system's.
     locus : str
         Parameter of the selected method's network over which the root locus is drawn; "": none.
     requirements : Requirements
@@ -41,21 +43,31 @@ class Display(BaseModel):
     envelope : str
         Bands behind the error curves: over the seeds of 20 runs, or none.
     spectrum : str
-        Quantity whose spectrum is shown: a key of `app.figures.errors.error_plots`.
+        Quantity whose spectrum is shown: a key of `app.views.errors.figure.error_plots`.
     baseline : int or None
         Pin with which numbers are compared; None: the first one.
     delta : str
         Which number of each error is compared with the baseline's.
+    window : str
+        What the errors in the table and in the requirements are measured over: the whole run, what follows
+        the settling, or some hours.
+    window_from_h, window_to_h : float
+        Those hours; None: to the end.
     flipped : bool
         The baseline is shown in the place of the present run.
     theme : str
         Of the whole page.
+    budget : str
+        The error budget shown: of the steady state of one level channel, or of the whole run.
+    objective : str
+        What a method is tuned for: a name of `navcore.design.measures.MEASURES`.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     transfer: Annotated[str, AfterValidator(_known_transfer)] = FIRST_TRANSFER
     discrete: bool = False
+    poles: Literal["channel", "whole"] = "channel"
     locus: Annotated[str, Field(max_length=40)] = ""
     requirements: Requirements = Requirements()
     exaggeration: Annotated[float | None, Field(gt=0.0, le=1e6)] = None
@@ -68,8 +80,13 @@ class Display(BaseModel):
     spectrum: Literal["phi_e", "phi_n", "phi_u", "dve", "dvn", "dlat", "dlon", "position"] = "dve"
     baseline: Annotated[int | None, Field(ge=1)] = None
     delta: Literal["rms", "max_abs", "final"] = "rms"
+    window: Literal["whole", "settled", "hours"] = "whole"
+    window_from_h: Annotated[float, Field(ge=0.0, le=1e5)] = 0.0
+    window_to_h: Annotated[float | None, Field(ge=0.0, le=1e5)] = None
     flipped: bool = False
     theme: Literal["light", "dark"] = "light"
+    budget: Literal["steady", "run"] = "steady"
+    objective: Literal["tilt_rms", "velocity_rms", "position_rms", "heading_rms", "settling_s"] = "tilt_rms"
 
     def with_(self, **changes: object) -> Display:
         """Give a checked copy with other choices; raises `pydantic.ValidationError`."""

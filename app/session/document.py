@@ -13,8 +13,8 @@ from app.session.display import Display
 from app.session.history import History, State
 from app.session.session import Session
 from app.session.uploads import plain_names, shared_files
-from navcore.errors import InputError
-from navcore.scenario import Scenario
+from navcore.foundation.errors import InputError
+from navcore.scenario.model import Scenario
 
 SCHEMA = 1
 STEPS_BACK, STEPS_FORWARD = 50, 20

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from navcore.scenario import Scenario
+from navcore.scenario.model import Scenario
 
 MOST_STEPS = 200
 DRAG_S = 1.0

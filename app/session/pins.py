@@ -8,12 +8,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
-from app.background.worker import Watch, Worker
-from navcore.errors import Fault, InputError
-from navcore.run import MethodRun, Run
-from navcore.scenario import Scenario
+from app.jobs.load import spare_load
+from app.jobs.rows import few_rows
+from app.jobs.scheduler import Lane, Load
+from app.jobs.worker import Watch, Worker
+from navcore.engine.run import Run
+from navcore.foundation.errors import Fault, InputError
+from navcore.scenario.model import Scenario
 
 MOST_PINS = 8
 LONGEST_NAME, LONGEST_NOTE = 40, 400
@@ -28,8 +29,6 @@ COLORS: dict[str, str] = {
     "rust": "#A63C00",
 }
 """Colours of pins, in the order in which they are given out: none is one of the first methods'."""
-MOST_ROWS = 2000
-"""Output rows that a pinned run keeps: what a picture can show."""
 _log = logging.getLogger("schuler.pins")
 
 Simulate = Callable[[Scenario, Callable[[float], None], Callable[[], bool]], Run]
@@ -81,14 +80,16 @@ class Pins:
         ``changed()`` after every change, from the thread that made it or from the one that computes.
     simulate : callable
         ``simulate(scenario, progress, cancelled)``, for pins that were read from a file.
+    visitor : object, optional
+        Whose they are, for the turns.
     """
 
-    def __init__(self, changed: Callable[[], None], simulate: Simulate) -> None:
+    def __init__(self, changed: Callable[[], None], simulate: Simulate, visitor: object = None) -> None:
         self._changed, self._simulate = changed, simulate
         self._lock = threading.Lock()
         self._pins: tuple[Pin, ...] = ()
         self._next = 1
-        self._worker: Worker[int] = Worker(self._compute, "pins")
+        self._worker: Worker[int] = Worker(self._compute, visitor=visitor, load=lambda _: self._load())
 
     # ------------------------------------------------------------ asking
 
@@ -211,6 +212,11 @@ class Pins:
         if pins:
             self._worker.submit(0)
 
+    def _load(self) -> Load:
+        """One after the other is computed: the largest counts."""
+        loads = [spare_load(pin.scenario) for pin in self._pins if pin.run is None]
+        return max(loads, key=lambda load: load.bytes, default=Load(Lane.SPARE))
+
     def _compute(self, _: int, watch: Watch) -> None:
         for pin in self._pins:
             if pin.run is not None or watch.cancelled():
@@ -241,25 +247,3 @@ def _read(id: int, entry: Any) -> Pin:
 
 def _short(name: object) -> str:
     return " ".join(str(name).split())[:LONGEST_NAME]
-
-
-def few_rows(run: Run, most: int = MOST_ROWS) -> Run:
-    """The same run with at most about ``most`` output rows, first and last among them; curves stay whole."""
-    step = -(-len(run.t_s) // most)
-    if step <= 1:
-        return run
-    last = len(run.t_s) - 1
-    chosen = np.unique(np.append(np.arange(0, last + 1, step), last))
-    methods = tuple(_few_rows(method, chosen) for method in run.methods)
-    return replace(run, methods=methods, t_s=run.t_s[chosen], truth=run.truth[chosen])
-
-
-def _few_rows(method: MethodRun, chosen: np.ndarray) -> MethodRun:
-    mine = chosen[chosen < len(method.t_s)]
-    return replace(
-        method,
-        t_s=method.t_s[mine],
-        rows=method.rows[mine],
-        law_series=method.law_series[mine],
-        navigation=None if method.navigation is None else method.navigation[mine],
-    )

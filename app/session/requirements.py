@@ -11,13 +11,13 @@ from typing import Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
-from app.figures.effective import effective_network, reacts, response
-from navcore.errors import Fault, InputError
-from navcore.loop import Loop, analyse
-from navcore.network.base import LinearNetwork
-from navcore.parameters import allowed_range, extra_of, quantity
-from navcore.run import MethodRun, Run
-from navcore.units import ARCSEC, MINUTE
+from app.plots.effective import effective_network, reacts, response
+from navcore.analysis import Loop, analyse
+from navcore.engine.run import MethodRun, Run
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.parameters import allowed_range, extra_of, quantity
+from navcore.foundation.units import ARCSEC, MINUTE
+from navcore.networks.base import LinearNetwork
 
 POINTS = 1200
 """Of the responses whose peaks are measured."""
@@ -44,37 +44,63 @@ class Requirements(BaseModel):
     ----------
     settling_min, overshoot_percent, damping_ratio, h0_deviation, log_tilt_arcsec : float or None
         Of the linear loop.
-    position_rms_m, tilt_max_arcsec : float or None
+    tilt_max_arcsec, velocity_rms_mps, position_rms_m : float or None
         Of the run.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     settling_min: float | None = _limit(
-        "settling", "min", "<=",
-        "Last time at which the tilt after an initial tilt exceeds 2 % of it.", le=1e5,
-    )  # fmt: skip
+        "settling",
+        "min",
+        "<=",
+        "Last time at which the tilt after an initial tilt exceeds 2 % of it.",
+        le=1e5,
+    )
     overshoot_percent: float | None = _limit(
-        "overshoot", "%", "<=",
-        "Largest swing to the other side of the tilt after an initial tilt, as a part of that tilt.", le=1e3,
-    )  # fmt: skip
+        "overshoot",
+        "%",
+        "<=",
+        "Largest swing to the other side of the tilt after an initial tilt, as a part of that tilt.",
+        le=1e3,
+    )
     damping_ratio: float | None = _limit(
         "damping ratio", "", ">=", "Smallest damping ratio -Re/|p| of the closed-loop poles.", le=1.0
     )
     h0_deviation: float | None = _limit(
-        "|H(0) - 1|", "", "<=",
+        "|H(0) - 1|",
+        "",
+        "<=",
         "How far the network's gain for constant errors is from 1: beyond it the loop is not Schuler-tuned.",
         le=1e3,
-    )  # fmt: skip
+    )
     log_tilt_arcsec: float | None = _limit(
-        "tilt after log step", "arcsec", "<=",
-        "Largest tilt after a step of the log's error by 1 m/s; 0 for a method without log.", le=1e6,
-    )  # fmt: skip
+        "tilt after log step",
+        "arcsec",
+        "<=",
+        "Largest tilt after a step of the log's error by 1 m/s; 0 for a method without log.",
+        le=1e6,
+    )
     tilt_max_arcsec: float | None = _limit(
-        "largest tilt", "arcsec", "<=", "Largest of the two tilts in this run, over all steps.", le=1e6
+        "largest tilt",
+        "arcsec",
+        "<=",
+        "Largest of the two tilts in this run, over what the tab Metrics measures.",
+        le=1e6,
+    )
+    velocity_rms_mps: float | None = _limit(
+        "velocity RMS",
+        "m/s",
+        "<=",
+        "RMS of the horizontal velocity error of this run, over what the tab Metrics measures.",
+        le=1e4,
     )
     position_rms_m: float | None = _limit(
-        "position RMS", "m", "<=", "RMS of the horizontal position error of this run, over all steps.", le=1e8
+        "position RMS",
+        "m",
+        "<=",
+        "RMS of the horizontal position error of this run, over what the tab Metrics measures.",
+        le=1e8,
     )
 
     @property
@@ -171,6 +197,10 @@ def _largest_tilt(method: MethodRun) -> float:
     return _of_run(method, found / ARCSEC)
 
 
+def _velocity_rms(method: MethodRun) -> float:
+    return _of_run(method, math.hypot(*(method.errors[name]["rms"] for name in ("dve_mps", "dvn_mps"))))
+
+
 MEASURES: dict[str, Callable[[MethodRun], float]] = {
     "settling_min": _settling_min,
     "overshoot_percent": _overshoot_percent,
@@ -178,6 +208,7 @@ MEASURES: dict[str, Callable[[MethodRun], float]] = {
     "h0_deviation": lambda m: abs(effective_network(m).h0 - 1.0),
     "log_tilt_arcsec": _log_tilt_arcsec,
     "tilt_max_arcsec": _largest_tilt,
+    "velocity_rms_mps": _velocity_rms,
     "position_rms_m": lambda m: _of_run(m, m.errors["position_m"]["rms"]),
 }
 """What is measured of a method, in the unit of the limit; inf: it never gets there."""
@@ -220,7 +251,7 @@ def verdicts(run: Run, requirements: Requirements) -> tuple[Verdict, ...]:
 
 
 def error_limits(requirements: Requirements, run: Run) -> dict[str, float]:
-    """Limits to draw in the error plots, SI: key of `app.figures.errors.error_plots` -> value.
+    """Limits to draw in the error plots, SI: key of `app.views.errors.figure.error_plots` -> value.
 
     One that lies far above all curves is left out: it would press them flat.
     """

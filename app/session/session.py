@@ -4,25 +4,25 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Set
 from pathlib import Path
 
-from app.background.envelopes import Envelopes
-from app.background.searches import Searches
-from app.background.verifier import Verifier, Verify
-from app.background.worker import Watch, Worker
+from app.http.ids import log_name
+from app.jobs.envelopes import Envelopes
+from app.jobs.load import refuse_too_large, run_load, runs_on_demand
+from app.jobs.searches import Searches
+from app.jobs.verifier import Verifier, Verify
+from app.jobs.words import for_a_page
+from app.jobs.worker import Watch, Worker
 from app.session.display import Display
 from app.session.history import History, State
 from app.session.pins import Pins
 from app.session.uploads import Uploads
 from app.session.view import View
-from navcore.errors import InputError
-from navcore.run import Run
-from navcore.scenario import Scenario
-from navcore.units import HOUR
-
-MOST_SAMPLES = 2_500_000
-"""IMU samples, all methods together, of a strapdown run that still follows every change: half a second."""
+from navcore.engine.run import Run
+from navcore.foundation.errors import InputError
+from navcore.scenario.model import Scenario
 
 _REPORT_EVERY_S = 0.1
 _log = logging.getLogger("schuler.session")
@@ -44,9 +44,9 @@ class Session:
     folder : Path
         For uploads; need not exist.
     simulate : callable, optional
-        In place of `navcore.simulation.simulate`.
+        In place of `navcore.engine.simulation.simulate`.
     verify : callable, optional
-        In place of `navcore.verification.verify`.
+        In place of `navcore.engine.verification.verify`.
 
     Attributes
     ----------
@@ -60,6 +60,8 @@ class Session:
         Method that the controls edit.
     history : History
         Of scenario, origin and selected method.
+    on_answer : callable
+        ``on_answer(seconds)`` after every run that is shown: since it was asked for.
     on_change : callable
         ``on_change()`` after every change that is to outlive the server.
     share : callable
@@ -91,6 +93,7 @@ class Session:
         simulate: Simulate | None = None,
         verify: Verify | None = None,
     ) -> None:
+        name = log_name(id)
         self.id = id
         self.lock = threading.RLock()
         self.scenario = scenario
@@ -99,6 +102,7 @@ class Session:
         self.selected = first_editable(scenario)
         self.history = History(self.state)
         self.on_change: Callable[[], None] = lambda: None
+        self.on_answer: Callable[[float], None] = lambda _: None
         self.share: Callable[[], str] = lambda: self.id
         self.presenter: View | None = None
         self.run: Run | None = None
@@ -108,17 +112,18 @@ class Session:
         self.uploads = Uploads(folder)
         self._before = self.state
         self._views: list[View] = []
-        self._simulate = simulate or _simulate
-        self._worker: Worker[State] = Worker(self._work, f"session-{id[:8]}")
-        self.verifier = Verifier(
-            lambda: self._tell(lambda view: view.verification_changed()), verify, f"verifier-{id[:8]}"
+        self._simulate = simulate or self._simulate_again
+        self._worker: Worker[State] = Worker(
+            self._work, visitor=name, load=lambda state: run_load(state.scenario)
         )
-        self.searches = Searches(id[:8])
-        self.pins = Pins(self._pins_changed, self._simulate)
+        self.verifier = Verifier(lambda: self._tell(lambda view: view.verification_changed()), verify, name)
+        self.searches = Searches(name)
+        self.pins = Pins(self._pins_changed, self._simulate, name)
         self.envelopes = Envelopes(
             self._simulate,
             lambda: self._tell(lambda view: view.envelope_progressed()),
             self._pictures_changed,
+            visitor=name,
         )
 
     # ------------------------------------------------------------ pages
@@ -149,6 +154,12 @@ class Session:
         """Number of open pages."""
         with self.lock:
             return len(self._views)
+
+    def tell_front(self, view: View, front: Set[str]) -> None:
+        """Let the watchers follow the tabs that the presenting page brings to the front."""
+        with self.lock:
+            if self.presenter is view and front:
+                self._tell(lambda other: other.front_changed(front) if other is not view else None)
 
     def present(self, view: View | None) -> bool:
         """Let one page drive alone, or (None) all of them again; False while another page drives."""
@@ -301,6 +312,10 @@ class Session:
         if not keep_files:
             self.uploads.clear()
 
+    def not_kept(self, why: str) -> None:
+        """Tell the pages that the work cannot be kept at present."""
+        self._tell(lambda view: view.not_kept(why))
+
     def wait_idle(self, timeout_s: float | None = None) -> bool:
         """Block until no run is under way; False after the timeout."""
         return self._worker.wait_idle(timeout_s)
@@ -317,6 +332,7 @@ class Session:
                 self._tell(lambda view: view.run_progressed(fraction, last_s))
 
         try:
+            refuse_too_large(scenario)
             run = self._simulate(scenario, progress, watch.cancelled)
         except InputError as error:
             self._refuse(state, error)
@@ -339,6 +355,15 @@ class Session:
             self.envelopes.follow(scenario, self.display.envelope == "seeds")
         self.searches.ran(run)
         self._tell(lambda view: view.run_ended())
+        self.on_answer(time.monotonic() - watch.asked_s)
+
+    def _simulate_again(
+        self, scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]
+    ) -> Run:
+        """Run a scenario; what the run that is shown has computed already is taken from it."""
+        from navcore.engine.simulation import simulate
+
+        return simulate(scenario, progress, cancelled, self.run)
 
     def _refuse(self, state: State, error: InputError) -> None:
         """Go back to the last scenario that ran, unless the user has gone on already."""
@@ -347,7 +372,8 @@ class Session:
                 self.history.take_back(self._before)
                 self._show_state(self._before, self)
                 self.outdated = self.run is None or self.run.scenario != self.scenario
-        self._tell(lambda view: view.run_refused(error))
+        told = for_a_page(error)
+        self._tell(lambda view: view.run_refused(told))
 
     def _tell(self, message: Callable[[View], None]) -> None:
         with self.lock:
@@ -358,20 +384,6 @@ class Session:
             except Exception as error:
                 _log.exception("a page could not be brought up to date")
                 view.run_failed(error)
-
-
-def _simulate(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Run:
-    from navcore.simulation import simulate
-
-    return simulate(scenario, progress, cancelled)
-
-
-def runs_on_demand(scenario: Scenario) -> bool:
-    """Whether a run takes so long that it should not follow every move of a slider."""
-    run = scenario.run
-    if run.fidelity != "strapdown":
-        return False
-    return run.duration_h * HOUR * run.rate_hz * len(scenario.method) > MOST_SAMPLES
 
 
 def first_editable(scenario: Scenario) -> int:

@@ -13,10 +13,11 @@ from functools import partial
 from pathlib import Path
 
 from app.http.ids import copied_from, new_shared_id
+from app.session.content import link_files
 from app.session.document import Document, Unreadable, restore, to_document
 from app.session.session import Session
 from app.session.store import Store
-from navcore.scenario import Scenario
+from navcore.scenario.model import Scenario
 
 MOST_SESSIONS = 64
 """Sessions held without an open page; with one they are always held."""
@@ -37,12 +38,17 @@ class Sessions:
         Gives the scenario and the name to begin with.
     store : Store, optional
         Where they outlive the server; without one a dropped session begins anew.
+    on_answer : callable, optional
+        ``on_answer(seconds)`` after every run that is shown.
     """
 
     def __init__(
-        self, first: Callable[[], tuple[Scenario, str]] | None = None, store: Store | None = None
+        self,
+        first: Callable[[], tuple[Scenario, str]] | None = None,
+        store: Store | None = None,
+        on_answer: Callable[[float], None] = lambda _: None,
     ) -> None:
-        self._first, self._store = first or first_scenario, store
+        self._first, self._store, self._on_answer = first or first_scenario, store, on_answer
         self._lock = threading.Lock()
         self._by_id: OrderedDict[str, Session] = OrderedDict()
         self._made: dict[str, threading.Lock] = {}
@@ -66,6 +72,20 @@ class Sessions:
                 self._by_id.move_to_end(id)
                 self._trim(keep=made)
                 return made
+
+    def knows(self, id: str) -> bool:
+        """Whether there is a session with that id already, held or kept."""
+        with self._lock:
+            held = id in self._by_id or id in self._shared
+        return held or (self._store is not None and self._store.has(id))
+
+    def figures(self) -> dict[str, float]:
+        """What is held and kept, for ``/metrics``."""
+        with self._lock:
+            held = {"sessions_held": float(len(self._by_id))}
+        if self._store is not None:
+            held |= self._store.database.figures() | {"upload_bytes": float(self._store.contents.bytes())}
+        return held
 
     def __len__(self) -> int:
         return len(self._by_id)
@@ -97,6 +117,10 @@ class Sessions:
             document, source = self._kept(shared), shared
         if document is not None:
             self._fill(session, document, source)
+        if self._store is not None:
+            session.uploads.has_room = self._store.has_room
+            session.uploads.keep_once = self._store.contents.keep_once
+        session.on_answer = self._on_answer
         session.on_change = partial(self._changed, session)
         session.share = partial(self._share, session)
         return session
@@ -107,7 +131,7 @@ class Sessions:
     def _fill(self, session: Session, document: Document, source: str) -> None:
         try:
             if source != session.id:
-                _copy_files(self._files_folder(source), session.uploads.folder)
+                link_files(self._files_folder(source), session.uploads.folder)
             if session.uploads.folder.is_dir():
                 session.uploads.reopen()
             restore(session, document)
@@ -118,15 +142,15 @@ class Sessions:
 
     def _changed(self, session: Session) -> None:
         if self._store is not None:
-            self._store.soon(session.id, partial(to_document, session))
+            self._store.soon(session.id, partial(to_document, session), session.not_kept)
 
     def _share(self, session: Session) -> str:
         id = new_shared_id()
         document = to_document(session, whole=False) | {"id": id}
-        _copy_files(session.uploads.folder, self._files_folder(id))
         if self._store is not None:
-            self._store.write(id, document)
+            self._store.share(session.id, id, document)
             return id
+        link_files(session.uploads.folder, self._files_folder(id))
         with self._lock:
             self._shared[id] = document
             while len(self._shared) > MOST_SHARED:
@@ -151,14 +175,9 @@ class Sessions:
             session.verifier.forget()
 
 
-def _copy_files(source: Path, target: Path) -> None:
-    if source.is_dir():
-        shutil.copytree(source, target, dirs_exist_ok=True, ignore=shutil.ignore_patterns(".*"))
-
-
 def first_scenario() -> tuple[Scenario, str]:
     """Preset that a new visitor sees."""
-    from navcore.scenario_file import load, presets
+    from navcore.scenario.file import load, presets
 
     names = list(presets())
     name = FIRST_PRESET if FIRST_PRESET in names else next(iter(names), "")

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.background.verifier import Verified
-from app.figures.envelope import Envelope
+from app.jobs.verifier import Verified
+from app.plots.envelope import Envelope
 from app.session.display import Display
 from app.session.pins import Pin
-from navcore.run import Run
+from navcore.engine.run import Run
 
 if TYPE_CHECKING:
     from app.session.session import Session
@@ -37,6 +37,8 @@ class Shown:
         Verification of the same methods.
     envelope : Envelope or None
         Over many seeds.
+    selected : int
+        Method that the controls edit.
     """
 
     run: Run
@@ -47,19 +49,22 @@ class Shown:
     flipped: Pin | None = None
     verified: Verified | None = None
     envelope: Envelope | None = None
+    selected: int = 0
 
 
 def shown(session: Session) -> Shown | None:
     """What a session's pictures show now; None before its first run."""
     with session.lock:
-        run, number, display = session.run, session.run_number, session.display
+        run, number, display, selected = (
+            session.run, session.run_number, session.display, session.selected,
+        )  # fmt: skip
     if run is None:
         return None
     pins = session.pins.shown
     baseline = session.pins.baseline(display.baseline)
     if display.flipped and baseline is not None and baseline.run is not None:
         others = tuple(pin for pin in pins if pin.id != baseline.id)
-        return Shown(baseline.run, number, display, others, flipped=baseline)
+        return Shown(baseline.run, number, display, others, flipped=baseline, selected=selected)
     return Shown(
         run,
         number,
@@ -69,4 +74,5 @@ def shown(session: Session) -> Shown | None:
         None,
         session.verifier.beside(run.scenario),
         session.envelopes.beside(run.scenario) if display.envelope == "seeds" else None,
+        selected,
     )

@@ -1,9 +1,7 @@
-"""Documents of sessions on disk: a file each, in the user's own folder, written soon after a change."""
+"""Documents of sessions on disk, in the user's own folder, written soon after a change; uploads beside."""
 
 from __future__ import annotations
 
-import contextlib
-import json
 import logging
 import os
 import re
@@ -13,18 +11,27 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
-from app.http.ids import SHARED_PREFIX
+from app.http.ids import log_name
+from app.session.content import Contents, link_files
+from app.session.database import Database, old_documents, parsed
 
 WRITE_AFTER_S = 0.5
 """Between a change and the file: changes that follow each other are written once."""
-MOST_KEPT = 400
+MOST_KEPT = 2000
 OLDEST_S = 60 * 86_400.0
-"""Number and age of the files that are kept; of a link that was shared, ten times that age."""
-LARGEST_FILE = 16 << 20
-LARGEST_FOLDER = 2 << 30
+"""Number and age of the sessions that are kept; of a link that was shared, ten times that age."""
+MOST_LINKS = 100
+"""States that may be shared from one session."""
+LARGEST_DOCUMENT = 16 << 20
+LARGEST_UPLOADS = 2 << 30
+"""Bytes of the uploaded files of all sessions, each content counted once."""
+CLAIMED = "SCHULER_STATE_CLAIMED"
+"""Set in the environment of a worker whose door has claimed the folder."""
+_UPKEEP_EVERY_S = 600.0
 _ORPHAN_S = 86_400.0
 _ID = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _log = logging.getLogger("schuler.store")
@@ -51,10 +58,46 @@ def open_store(folder: Path) -> Store | None:
         folder.chmod(0o700)
         with tempfile.TemporaryFile(dir=folder):
             pass
+        return Store(folder, claim(folder, shared=bool(os.environ.get(CLAIMED))))
     except OSError as error:
         _log.warning("sessions are not kept over a restart: %s: %s", folder, error.strerror or error)
         return None
-    return Store(folder)
+
+
+def claim(folder: Path, *, shared: bool = False) -> IO[bytes]:
+    """Hold the folder for this server: with two on one folder, the last writer would win.
+
+    Parameters
+    ----------
+    folder : Path
+        Exists.
+    shared : bool
+        The door of this worker has claimed the folder already (`share_claim`).
+
+    Raises
+    ------
+    OSError
+        Another server holds it.
+    """
+    handle = os.open(folder / "lock", os.O_RDWR | os.O_CREAT | getattr(os, "O_NONBLOCK", 0), 0o600)
+    file = os.fdopen(handle, "r+b")
+    try:
+        import fcntl
+
+        fcntl.flock(handle, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+    except ImportError:  # not on this platform
+        return file
+    except OSError:
+        file.close()
+        raise OSError(None, "another server keeps its sessions there; set XDG_STATE_HOME") from None
+    return file
+
+
+def share_claim(claimed: IO[bytes]) -> None:
+    """Let the workers of this server use the folder that it has claimed, and still no other server."""
+    import fcntl
+
+    fcntl.flock(claimed, fcntl.LOCK_SH | fcntl.LOCK_NB)
 
 
 class Store:
@@ -64,14 +107,29 @@ class Store:
     ----------
     folder : Path
         Exists, can be written to, and is ours alone.
+    claim : file
+        Held open as long as the folder is used.
+
+    Raises
+    ------
+    OSError
+        The documents cannot be opened.
     """
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
+    def __init__(self, folder: Path, claim: IO[bytes]) -> None:
+        self.folder, self._claim = folder, claim
+        self.contents = Contents(folder / "content")
+        try:
+            self.database = Database(folder)
+            self._take_over_old()
+        except BaseException:
+            claim.close()
+            raise
         self._changed = threading.Condition()
-        self._due: dict[str, tuple[float, Callable[[], Any]]] = {}
+        self._due: dict[str, tuple[float, Callable[[], Any], Callable[[str], None]]] = {}
         self._writing = 0
         self._closed = self._complained = False
+        self._upkeep_s = 0.0
         self._thread = threading.Thread(target=self._loop, name="store", daemon=True)
         self._thread.start()
 
@@ -79,35 +137,54 @@ class Store:
 
     def read(self, id: str) -> dict[str, Any] | None:
         """Document of that id; None, with a line in the log if it is broken, when there is none."""
-        path = self._path(id)
         try:
-            if path.stat().st_size > LARGEST_FILE:
-                raise ValueError("is too large")
-            document = json.loads(path.read_bytes())
-            if not isinstance(document, dict) or document.get("id") != id:
-                raise ValueError("is of another session")
-            os.utime(path)
-        except FileNotFoundError:
-            return None
-        except (OSError, ValueError, RecursionError) as error:
-            _log.warning("a kept session cannot be read: %s: %.200s", path.name, error)
-            return None
-        return document
+            content = self.database.read(_checked(id))
+            return None if content is None else parsed(id, content)
+        except OSError as error:
+            _log.warning("session %s cannot be read: %.200s", log_name(id), error.strerror or error)
+        except (ValueError, RecursionError) as error:
+            if _ID.fullmatch(id) is None:
+                raise
+            _log.warning("session %s cannot be read: %.200s", log_name(id), error)
+        return None
+
+    def has(self, id: str) -> bool:
+        """Whether there is a document of that id."""
+        try:
+            return _ID.fullmatch(id) is not None and self.database.has(id)
+        except OSError:
+            return False
 
     def files_folder(self, id: str) -> Path:
         """Where the uploaded files of a session are kept; need not exist."""
         return self.folder / f"{_checked(id)}.files"
 
+    def has_room(self, size: int) -> bool:
+        """Whether a file of this size can still be kept."""
+        return self.contents.bytes() + size <= LARGEST_UPLOADS
+
     # ------------------------------------------------------------ writing
 
-    def soon(self, id: str, make: Callable[[], dict[str, Any]]) -> None:
-        """Let a document be made and written in a moment, in another thread; the first request counts."""
+    def soon(
+        self, id: str, make: Callable[[], dict[str, Any]], failed: Callable[[str], None] = lambda _: None
+    ) -> None:
+        """Let a document be made and written in a moment, in another thread; the first request counts.
+
+        Parameters
+        ----------
+        id : str
+            Of the session.
+        make : callable
+            Gives the document.
+        failed : callable
+            Told in words why it could not be written.
+        """
         with self._changed:
             if not self._closed and id not in self._due:
-                self._due[_checked(id)] = (time.monotonic() + WRITE_AFTER_S, make)
+                self._due[_checked(id)] = (time.monotonic() + WRITE_AFTER_S, make, failed)
                 self._changed.notify_all()
 
-    def write(self, id: str, document: dict[str, Any]) -> None:
+    def write(self, id: str, document: dict[str, Any], shared_by: str | None = None) -> None:
         """Write a document now: whole or not at all.
 
         Raises
@@ -118,47 +195,56 @@ class Store:
         import orjson
 
         content = orjson.dumps(document, option=orjson.OPT_NON_STR_KEYS)
-        handle, name = tempfile.mkstemp(prefix=".", suffix=".tmp", dir=self.folder)  # 0600
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(content)
-                file.flush()
-                os.fsync(file.fileno())
-            os.replace(name, self._path(id))
-        except BaseException:
-            with contextlib.suppress(OSError):
-                os.unlink(name)
-            raise
+        if len(content) > LARGEST_DOCUMENT:
+            raise OSError(None, f"the session takes more than {LARGEST_DOCUMENT >> 20} MiB")
+        self.database.write(_checked(id), content, shared_by)
+
+    def share(self, id: str, shared: str, document: dict[str, Any]) -> None:
+        """Keep a state of a session for others, with the session's files.
+
+        Raises
+        ------
+        OSError
+            There is no room, or the session has shared too many already.
+        """
+        if self.database.shared_by(id) >= MOST_LINKS:
+            raise OSError(None, f"at most {MOST_LINKS} links are made from one session")
+        link_files(self.files_folder(id), self.files_folder(shared))
+        self.write(shared, document, shared_by=id)
 
     def flush(self, timeout_s: float = 5.0) -> bool:
         """Write at once what waits; False if that takes longer."""
         with self._changed:
-            self._due = {id: (0.0, make) for id, (_, make) in self._due.items()}
+            self._due = {id: (0.0, make, failed) for id, (_, make, failed) in self._due.items()}
             self._changed.notify_all()
             return self._changed.wait_for(lambda: not self._due and not self._writing, timeout_s)
 
     def close(self) -> None:
-        """Write what waits and end the thread."""
+        """Write what waits, end the thread and let the folder go."""
         self.flush()
         with self._changed:
             self._closed = True
             self._changed.notify_all()
+        self._thread.join(1.0)
+        self.database.close()
+        self._claim.close()
 
     def _loop(self) -> None:
-        self.remove_old()
         while True:
+            if time.monotonic() >= self._upkeep_s:
+                self.remove_old()
+                self._upkeep_s = time.monotonic() + _UPKEEP_EVERY_S
             with self._changed:
-                while not self._closed and not self._ready():
-                    dues = [due for due, _ in self._due.values()]
-                    self._changed.wait(max(0.0, min(dues) - time.monotonic()) if dues else None)
+                while not self._closed and not self._ready() and time.monotonic() < self._upkeep_s:
+                    dues = [self._upkeep_s, *(due for due, *_ in self._due.values())]
+                    self._changed.wait(max(0.0, min(dues) - time.monotonic()))
                 if self._closed:
                     return
-                ready = self._ready()
-                makes = {id: self._due.pop(id)[1] for id in ready}
+                makes = {id: self._due.pop(id)[1:] for id in self._ready()}
                 self._writing += 1
             try:
-                for id, make in makes.items():
-                    self._try_to_write(id, make)
+                for id, (make, failed) in makes.items():
+                    self._try_to_write(id, make, failed)
             finally:
                 with self._changed:
                     self._writing -= 1
@@ -166,58 +252,62 @@ class Store:
 
     def _ready(self) -> list[str]:
         now = time.monotonic()
-        return [id for id, (due, _) in self._due.items() if due <= now]
+        return [id for id, (due, *_) in self._due.items() if due <= now]
 
-    def _try_to_write(self, id: str, make: Callable[[], dict[str, Any]]) -> None:
+    def _try_to_write(
+        self, id: str, make: Callable[[], dict[str, Any]], failed: Callable[[str], None]
+    ) -> None:
         try:
             self.write(id, make())
             self._complained = False
         except OSError as error:
+            words = str(error.strerror or error)
             if not self._complained:
-                _log.warning("sessions cannot be kept at present: %s", error.strerror or error)
+                _log.warning("sessions cannot be kept at present: %s", words)
             self._complained = True
+            failed(words)
         except Exception:  # the thread must outlive a document that cannot be made
             _log.exception("a session cannot be kept")
+            failed("an error of this program")
 
     # ------------------------------------------------------------ upkeep
 
+    def _take_over_old(self) -> None:
+        """Move the files of an earlier version into the database."""
+        found = old_documents(self.folder, LARGEST_DOCUMENT, parsed)
+        if found:
+            self.database.take_over(found)
+            for id, *_ in found:
+                (self.folder / f"{id}.json").unlink(missing_ok=True)
+            for files in self.folder.glob("*.files"):
+                for path in files.iterdir() if files.is_dir() else ():
+                    if path.is_file() and not path.is_symlink():
+                        self.contents.keep_once(path)
+            _log.warning("%d sessions were taken over from the files of an earlier version", len(found))
+
     def remove_old(self) -> None:
-        """Remove what is too old, then the oldest of what is too many or too much."""
-        now, kept_bytes = time.time(), 0
+        """Remove what is too old, then the oldest of too many sessions, and what nobody uses any more."""
+        now = time.time()
         try:
-            found = sorted(self.folder.glob("*.json"), key=lambda path: path.stat().st_mtime, reverse=True)
-            for number, path in enumerate(found):
-                age_s = now - path.stat().st_mtime
-                oldest_s = OLDEST_S * (10.0 if path.name.startswith(SHARED_PREFIX) else 1.0)
-                kept_bytes += path.stat().st_size + _size(self._files_of(path))
-                if age_s > oldest_s or number >= MOST_KEPT or kept_bytes > LARGEST_FOLDER:
-                    path.unlink(missing_ok=True)
-                    shutil.rmtree(self._files_of(path), ignore_errors=True)
+            for id in self.database.remove_old(now - OLDEST_S, now - 10.0 * OLDEST_S, MOST_KEPT):
+                shutil.rmtree(self.files_folder(id), ignore_errors=True)
             self._remove_orphans(now)
+            self.contents.remove_unused()
         except OSError as error:
             _log.warning("old sessions cannot be removed: %s", error.strerror or error)
 
     def _remove_orphans(self, now: float) -> None:
         for path in self.folder.iterdir():
-            if now - path.stat().st_mtime < _ORPHAN_S:
-                continue
-            if path.suffix == ".tmp" and path.name.startswith("."):
-                path.unlink(missing_ok=True)
-            elif path.suffix == ".files" and not path.with_suffix(".json").exists():
-                shutil.rmtree(path, ignore_errors=True)
-
-    def _files_of(self, path: Path) -> Path:
-        return path.with_suffix(".files")
-
-    def _path(self, id: str) -> Path:
-        return self.folder / f"{_checked(id)}.json"
+            with suppress(OSError):
+                if now - path.lstat().st_mtime < _ORPHAN_S:
+                    continue
+                if path.suffix == ".tmp" and path.name.startswith("."):
+                    path.unlink(missing_ok=True)
+                elif path.suffix == ".files" and not self.has(path.stem):
+                    shutil.rmtree(path, ignore_errors=True)
 
 
 def _checked(id: str) -> str:
     if _ID.fullmatch(id) is None:
         raise ValueError(f"{id!r} is no id of a session")
     return id
-
-
-def _size(folder: Path) -> int:
-    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) if folder.is_dir() else 0

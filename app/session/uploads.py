@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import math
 import shutil
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from navcore.errors import Fault, InputError
-from navcore.motion.track import TrackMotion
-from navcore.scenario import Scenario
-from navcore.units import DEG, HOUR
+from app.http.limits import MIB, Limits
+from navcore.foundation import guarded
+from navcore.foundation.assets import asset_path
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.units import DEG, HOUR
+from navcore.motion.base import LAT, LON
+from navcore.scenario.model import Scenario
 
 if TYPE_CHECKING:
-    from navcore.io.check import FileReport
+    from navcore.checks.file import FileReport
 
-MIB = 1 << 20
-LARGEST_FILE = 16 * MIB
+LARGEST_FILE = Limits().upload_bytes
+"""The server's limit of an upload: there is one."""
 MOST_FILES = 12
 LARGEST_FOLDER = 64 * MIB
 
@@ -69,10 +72,16 @@ class Uploads:
         Where they are stored.
     files : dict
         By name.
+    has_room : callable
+        ``has_room(size)``: whether the server can keep so many bytes more.
+    keep_once : callable
+        ``keep_once(path)`` lets a file share its content with equal ones.
     """
 
     folder: Path
     files: dict[str, Upload] = field(default_factory=dict)
+    has_room: Callable[[int], bool] = lambda _: True
+    keep_once: Callable[[Path], None] = lambda _: None
 
     def add(self, name: str, content: bytes) -> Upload:
         """Store and check a log, track, heading or IMU file.
@@ -90,8 +99,6 @@ class Uploads:
             Too large, too many, or not understood (one fault for each thing wrong); nothing is kept then.
         """
         from app.http.frames import safe_file_name
-        from navcore.io.check import check_file
-        from navcore.io.check_imu import IMU_CHECKER
 
         name = safe_file_name(name)
         self._refuse_excess(name, len(content))
@@ -99,10 +106,15 @@ class Uploads:
         path = self.folder / name
         fresh = path.with_name(f".{name}.new")
         fresh.write_bytes(content)
-        report = check_file(fresh, [IMU_CHECKER])
+        try:
+            report = guarded.call(name, check_recording, fresh)
+        except InputError:
+            fresh.unlink()
+            raise
         if not report.ok:
             fresh.unlink()
             raise InputError(Fault(name, f.field, f.value, f.allowed) for f in report.faults)
+        self.keep_once(fresh)
         fresh.replace(path)
         self.files[name] = _understood(path, report)
         return self.files[name]
@@ -110,6 +122,9 @@ class Uploads:
     def _refuse_excess(self, name: str, size: int) -> None:
         if size > LARGEST_FILE:
             allowed = f"has {size / MIB:.1f} MiB; at most {LARGEST_FILE / MIB:.0f} MiB are accepted"
+            raise InputError(Fault(name, "", None, allowed))
+        if not self.has_room(size):
+            allowed = "cannot be kept: the room of this server for uploaded files is used up"
             raise InputError(Fault(name, "", None, allowed))
         if name not in self.files and len(self.files) >= MOST_FILES:
             raise InputError(
@@ -124,14 +139,15 @@ class Uploads:
     def reopen(self) -> None:
         """Take over the files that lie in the folder, from before the server was started; others are left."""
         from app.http.frames import safe_file_name
-        from navcore.io.check import check_file
-        from navcore.io.check_imu import IMU_CHECKER
 
         found = sorted(self.folder.iterdir(), key=lambda path: path.stat().st_mtime)
         for path in found[:MOST_FILES]:
             if path.is_symlink() or not path.is_file() or safe_file_name(path.name) != path.name:
                 continue
-            report = check_file(path, [IMU_CHECKER])
+            try:
+                report = guarded.call(path.name, check_recording, path)
+            except InputError:
+                continue
             if report.ok:
                 self.files[path.name] = _understood(path, report)
 
@@ -143,6 +159,14 @@ class Uploads:
     def holding(self, *quantities: str) -> list[str]:
         """Paths of the files that hold any of these quantities, in the order in which they came."""
         return [str(u.path) for u in self.files.values() if u.quantities.intersection(quantities)]
+
+
+def check_recording(path: Path) -> FileReport:
+    """Say what a log, track, heading or IMU file holds."""
+    from navcore.checks.file import check_file
+    from navcore.checks.imu import IMU_CHECKER
+
+    return check_file(path, [IMU_CHECKER])
 
 
 def _understood(path: Path, report: FileReport) -> Upload:
@@ -202,10 +226,11 @@ def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, l
         "output_step_s": min(made.run.output_step_s, max(step_s, 1.0)),
     }
     notes.append(f"The duration is the {span_s:g} s that all uploaded streams share.")
-    if isinstance(made.motion, TrackMotion):
-        start = made.motion.recorded_start(window.start_s)
-        data["site"] |= {"lat_deg": round(start.lat / DEG, 6), "lon_deg": round(start.lon / DEG, 6)}
-        notes.append(f"The site is the track's start, {start.lat / DEG:.4f} deg, {start.lon / DEG:.4f} deg.")
+    if made.motion.recorded:
+        start = made.motion.truth(1, 1.0, made.site.site(), made.earth, window.start_s).values[0]
+        lat_deg, lon_deg = float(start[LAT]) / DEG, float(start[LON]) / DEG
+        data["site"] |= {"lat_deg": round(lat_deg, 6), "lon_deg": round(lon_deg, 6)}
+        notes.append(f"The site is the track's start, {lat_deg:.4f} deg, {lon_deg:.4f} deg.")
     data["title"], data["source"] = "Uploaded recording", ", ".join(uploads.files)[:300]
     return Scenario.parse(data), notes
 
@@ -245,7 +270,7 @@ def _is_log(uploads: Uploads, path: str) -> bool:
 def shared_files(scenario: Scenario, names: Mapping[str, Path]) -> Scenario:
     """Let the file names of a scenario mean the uploaded files of the same name.
 
-    A visitor's scenario must not read other files of the server.
+    A visitor's scenario must not read other files of the server than the recordings that come with it.
 
     Raises
     ------
@@ -253,6 +278,7 @@ def shared_files(scenario: Scenario, names: Mapping[str, Path]) -> Scenario:
         A file is named that has not been uploaded.
     """
     data, faults = scenario.canonical(), []
+    names = {path.name: path for path in asset_path("recordings").glob("*.csv")} | dict(names)
     for block in _WITH_FILES:
         named = data.get(block, {}).get("file")
         if not named:
@@ -278,19 +304,24 @@ def opened_scenario(name: str, content: bytes, uploads: Uploads) -> Scenario:
     InputError
         Not a scenario, or one fault for each thing wrong in it.
     """
-    from navcore.scenario_file import parse_toml
-
     if len(content) > MIB:
         raise InputError(Fault(name, "", None, "is larger than 1 MiB: no scenario"))
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError:
         raise InputError(Fault(name, "", None, "is not UTF-8 text: no scenario")) from None
-    scenario = Scenario.parse(parse_toml(text, name), name)
+    scenario = Scenario.parse(guarded.call(name, complete_scenario, text, name), name)
     try:
         return shared_files(scenario, {held: upload.path for held, upload in uploads.files.items()})
     except InputError as error:
         raise error.located(name) from None
+
+
+def complete_scenario(text: str, name: str) -> dict[str, Any]:
+    """Every field of a scenario given as TOML text; raises `InputError`."""
+    from navcore.scenario.file import parse_toml
+
+    return Scenario.parse(parse_toml(text, name), name).canonical()
 
 
 def with_plain_names(scenario: Scenario) -> Scenario:

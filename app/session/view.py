@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Set
 from typing import Protocol
 
-from navcore.errors import InputError
+from navcore.foundation.errors import InputError
 
 
 class View(Protocol):
@@ -34,6 +35,10 @@ class View(Protocol):
         """Say that something of ours went wrong; the last good picture stays."""
         ...
 
+    def not_kept(self, why: str) -> None:
+        """Say that the work is not kept over a restart at present."""
+        ...
+
     def run_waits(self) -> None:
         """Say that the changed scenario runs only when the user asks for it."""
         ...
@@ -44,6 +49,10 @@ class View(Protocol):
 
     def presenter_changed(self) -> None:
         """Another page drives now, or none, or the number of pages has changed."""
+        ...
+
+    def front_changed(self, front: Set[str]) -> None:
+        """Bring these tabs to the front: the page that presents has them there."""
         ...
 
     def verification_changed(self) -> None:

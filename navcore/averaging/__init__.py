@@ -1,6 +1,6 @@
 """Half-period averaging: oscillations cancelled by copies of the navigation that are half a period ahead.
 
-Zhao 2015; physics.md sections 5 and 9.4. ``damping = "averaging"`` runs several free navigations on the same
+Zhao 2015; theory.md sections 5 and 9.4. ``damping = "averaging"`` runs several free navigations on the same
 IMU. All start from the same state after alignment, but each copy first runs some time on a *forecast* of the
 IMU (the mean of the alignment record, with small motions of the base taken out), so that its oscillations
 arrive with the opposite sign. The output is a mean of copies. What it can do is change the state at t = 0:

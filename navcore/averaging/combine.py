@@ -7,10 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from navcore.averaging.copies import Copies
-from navcore.compiled import kernel
+from navcore.foundation.compiled import kernel
 from navcore.mechanization.recorder import (
-    CURSOR_BUFFER,
-    CURSOR_ROW,
     D_LAT,
     D_LON,
     DV_E,
@@ -31,16 +29,15 @@ SLOW = [PHI_U, D_LAT, D_LON]
 """Recorded quantities that the slow group gives."""
 
 
-def capture(recorder: Recorder, first: int, count: int) -> None:
-    """Make a copy's recorder keep each of ``count`` states from ``first`` on as a row."""
-    recorder.row_steps = np.arange(first, first + count)
-    recorder.rows = np.empty((count, ROW_COLUMNS))
-    recorder.cursor[CURSOR_ROW] = 0
+def capturing(recorder: Recorder, first: int, count: int) -> Recorder:
+    """Return a copy's recorder so that it keeps each of ``count`` states from ``first`` on as a row."""
+    recorder.cursor["row"] = 0
+    return recorder._replace(row_steps=np.arange(first, first + count), rows=np.empty((count, ROW_COLUMNS)))
 
 
 def captured(recorder: Recorder) -> np.ndarray:
-    """Rows kept since `capture`."""
-    return recorder.rows[: int(recorder.cursor[CURSOR_ROW])]
+    """Rows kept since `capturing`."""
+    return recorder.rows[: int(recorder.cursor["row"])]
 
 
 def averaged_rows(rows: Sequence[np.ndarray], copies: Copies) -> np.ndarray:
@@ -65,27 +62,22 @@ def averaged_rows(rows: Sequence[np.ndarray], copies: Copies) -> np.ndarray:
 
 
 @kernel
-def _gather(first, values, row_steps, rows, stats, bin_width, bin_low, bin_high, bin_order,
-            buffer, cursor):  # fmt: skip
-    last = first + values.shape[0] - 1
+def _gather(first, values, recorder):
+    cursor, last = recorder.cursor, first + values.shape[0] - 1
     for i in range(values.shape[0]):
-        k, place = first + i, cursor[CURSOR_BUFFER]
+        k, place = first + i, cursor.buffer
         for q in range(QUANTITIES):
-            buffer[q, place] = values[i, q]
-        cursor[CURSOR_BUFFER] = place + 1
-        row = cursor[CURSOR_ROW]
-        if row < row_steps.shape[0] and row_steps[row] == k:
+            recorder.buffer[q, place] = values[i, q]
+        cursor.buffer = place + 1
+        row = cursor.row
+        if row < recorder.row_steps.shape[0] and recorder.row_steps[row] == k:
             for q in range(values.shape[1]):
-                rows[row, q] = values[i, q]
-            cursor[CURSOR_ROW] = row + 1
-        if (k + 1) % bin_width == 0 or k == last:
-            flush(k, bin_width, buffer, stats, bin_low, bin_high, bin_order, cursor)
+                recorder.rows[row, q] = values[i, q]
+            cursor.row = row + 1
+        if (k + 1) % recorder.bin_width == 0 or k == last:
+            flush(k, recorder)
 
 
 def gather(recorder: Recorder, first: int, values: np.ndarray) -> None:
     """Record the states first, first + 1, ... whose averaged rows are ``values``."""
-    r = recorder
-    _gather(
-        first, np.ascontiguousarray(values), r.row_steps, r.rows, r.stats, r.bin_width, r.bin_low,
-        r.bin_high, r.bin_order, r.buffer, r.cursor,
-    )  # fmt: skip
+    _gather(first, np.ascontiguousarray(values), recorder)

@@ -1,7 +1,7 @@
 """Which copies of the navigation run, how far each is ahead, and which are averaged for which output.
 
 Zhao 2015, section 3: a copy that is half a period ahead carries the same oscillation with the opposite sign,
-so the mean of both has none. The Schuler line of the coupled system is split in two (physics.md sections 1
+so the mean of both has none. The Schuler line of the coupled system is split in two (theory.md sections 1
 and 5); a cascade of two half periods, four copies, takes both away.
 """
 
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from navcore.averaging.parameters import Averaging
-from navcore.earth import EARTH_RATE, Earth
+from navcore.foundation.earth import EARTH_RATE, Earth
 
 HALF_SIDEREAL_DAY = math.pi / EARTH_RATE
 """s."""
@@ -42,7 +42,7 @@ class Copies:
 def coupled_lines(east: Any, north: Any, up_rate: Any) -> tuple[Any, Any]:
     """Frequencies of the two level channels when the navigation frame turns about the vertical, faster first.
 
-    With one Schuler frequency sqrt(omega_s^2 + w^2) +- |w| (physics.md section 1). The two radii of the
+    With one Schuler frequency sqrt(omega_s^2 + w^2) +- |w| (theory.md section 1). The two radii of the
     ellipsoid give each channel its own; then the lines x are the roots of
     (omega_E^2 - x^2)(omega_N^2 - x^2) = (2 w x)^2.
 

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from navcore.averaging.combine import averaged_rows, capture, captured, gather
+from navcore.averaging.combine import averaged_rows, captured, capturing, gather
 from navcore.averaging.copies import Copies
 from navcore.averaging.forecast import Forecast
 from navcore.averaging.plan import Plan
 from navcore.averaging.record import standing_signals
-from navcore.control.law import Law
-from navcore.earth import Earth, attitude_matrix
+from navcore.foundation.earth import Earth, attitude_matrix
+from navcore.law.law import Law
 from navcore.mechanization.error_model import STATES, ErrorModelRun
 from navcore.mechanization.recorder import Recorder, make_recorder
 from navcore.mechanization.trajectory import Coefficients, coefficients
@@ -118,7 +118,8 @@ class AveragedErrorModel:
             self.position = self.runs[0].position
             return over
         for run in self.runs:
-            capture(run.recorder, self.position, min(steps, run.steps + 1 - self.position))
+            room = min(steps, run.steps + 1 - self.position)
+            run.recorder = capturing(run.recorder, self.position, room)
         over = any([run.advance(steps) for run in self.runs])
         rows = averaged_rows([captured(run.recorder) for run in self.runs], Copies((0.0, 0.0), (0,), (1,)))
         gather(self.recorder, self.position, rows)

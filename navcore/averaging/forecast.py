@@ -1,7 +1,7 @@
 """What the IMU will feel: the mean of the alignment record without small motions of the base (Zhao 18-27).
 
 The fit is of order 0: a line through 600 s of gyro noise extrapolates to degrees per hour after 12 h
-(physics.md section 5). Zhao's (26) shifts every segment onto the last one's mean, so that a fit of order 0
+(theory.md section 5). Zhao's (26) shifts every segment onto the last one's mean, so that a fit of order 0
 would be the last segment's mean alone; here each earlier segment is *turned* into the attitude of the next by
 the gyros themselves, so that all of them count.
 """
@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from navcore.errors import Fault, InputError
+from navcore.foundation.errors import Fault, InputError
 
 THRESHOLD_SIGMA = 5.0
-"""An increment further than this off the median belongs to a motion (physics.md section 5)."""
+"""An increment further than this off the median belongs to a motion (theory.md section 5)."""
 GUARD = 2
 """Increments on either side of a motion that are not used either."""
 FINEST_SIGMA = 1e-6
@@ -96,11 +96,13 @@ def forecast_from(increments: np.ndarray, step_s: float = 1.0) -> Forecast:
     if still < FEWEST_STILL:
         raise InputError(
             Fault(
-                "", "alignment.duration_s", None,
+                "",
+                "alignment.duration_s",
+                None,
                 f"the base stands still for {still * step_s:g} s of the alignment record: half-period "
                 f"averaging needs {FEWEST_STILL * step_s:g} s or more to forecast from",
             )
-        )  # fmt: skip
+        )
     means = [increments[first:last].mean(axis=0) for first, last in segments]
     total, weight = np.zeros(6), 0
     for i, (first, last) in enumerate(segments):

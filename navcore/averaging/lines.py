@@ -1,6 +1,6 @@
 """How much of an error swings with the Schuler, Foucault and 24 h periods: least squares on known lines.
 
-At rest the lines of the free model are omega_s' + Omega sin L, omega_s' - Omega sin L and Omega (physics.md
+At rest the lines of the free model are omega_s' + Omega sin L, omega_s' - Omega sin L and Omega (theory.md
 section 1): what is called the Foucault oscillation is the beat of the first two. A vehicle that travels
 changes them; the fit follows the phase along the true motion instead of a frequency.
 """
@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from navcore.averaging.copies import coupled_lines
-from navcore.earth import EARTH_RATE, Earth
-from navcore.mechanization.trajectory import F_U, INV_M, INV_N, SEC_LAT, V_E, W_U, coefficients
+from navcore.foundation.earth import EARTH_RATE, Earth
+from navcore.mechanization.trajectory import coefficients
 from navcore.motion.base import Truth
 
 LINES = ("schuler_plus_foucault", "schuler_minus_foucault", "earth")
@@ -60,10 +60,9 @@ def line_phases(time_s: np.ndarray, truth: np.ndarray, earth: Earth) -> np.ndarr
     ndarray, shape (m, 3)
     """
     c = coefficients(Truth(1.0, np.ascontiguousarray(truth)), earth, coupled=True).half
-    east, north = np.sqrt(c[:, F_U] * c[:, INV_N]), np.sqrt(c[:, F_U] * c[:, INV_M])
-    rates = np.column_stack(
-        [*coupled_lines(east, north, c[:, W_U]), EARTH_RATE + c[:, V_E] * c[:, INV_N] * c[:, SEC_LAT]]
-    )
+    east, north = np.sqrt(c["f_u"] * c["inv_n"]), np.sqrt(c["f_u"] * c["inv_m"])
+    about_axis = EARTH_RATE + c["v_e"] * c["inv_n"] * c["sec_lat"]
+    rates = np.column_stack([*coupled_lines(east, north, c["w_u"]), about_axis])
     rates = np.broadcast_to(rates, (len(time_s), len(LINES)))
     steps = 0.5 * (rates[1:] + rates[:-1]) * np.diff(time_s)[:, None]
     return np.concatenate([np.zeros((1, len(LINES))), np.cumsum(steps, axis=0)])

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from navcore.parameters import Parameters, bounded, choice, quantity, vector_quantity
+from navcore.foundation.parameters import Parameters, bounded, choice, quantity, vector_quantity
 
 Variant = Literal["schuler", "cascade"]
 _Turn = Annotated[float, bounded(unit="deg", ge=-5.0, le=5.0)]
@@ -16,10 +16,11 @@ class Averaging(Parameters):
     """Block ``averaging`` of a method with ``damping = "averaging"``: which solutions are averaged."""
 
     variant: Variant = choice(
-        "schuler", label="averaging",
+        "schuler",
+        label="averaging",
         help="schuler: one copy half a Schuler period ahead (Zhao 17); cascade: copies half a period of each "
         "of the two lines into which the Foucault term splits it.",
-    )  # fmt: skip
+    )
     earth: bool = Field(
         default=True,
         strict=True,
@@ -33,13 +34,21 @@ class AlignmentMotion(Parameters):
     """Small motion of the base while the record is taken from which the future is forecast (Zhao, fig. 3)."""
 
     t_s: float = quantity(
-        -400.0, unit="s", ge=-86400.0, lt=0.0, slider=(-600.0, -10.0), label="begins",
+        -400.0,
+        unit="s",
+        ge=-86400.0,
+        lt=0.0,
+        slider=(-600.0, -10.0),
+        label="begins",
         help="Start; navigation starts at 0, so the alignment lies at negative times.",
-    )  # fmt: skip
+    )
     duration_s: float = quantity(
         5.0, unit="s", ge=1.0, le=600.0, slider=(1.0, 60.0), label="lasts", help="Length of the motion."
     )
     turn_deg: tuple[_Turn, _Turn, _Turn] = vector_quantity(
-        (0.0, 0.0, 0.0), unit="deg", slider=(-1.0, 1.0), label="turns by",
+        (0.0, 0.0, 0.0),
+        unit="deg",
+        slider=(-1.0, 1.0),
+        label="turns by",
         help="About body x, y, z; it stays there. A base that turns back makes a second motion.",
-    )  # fmt: skip
+    )

@@ -11,10 +11,10 @@ from navcore.averaging.copies import Copies, copies_of
 from navcore.averaging.forecast import Forecast, forecast_from
 from navcore.averaging.parameters import AlignmentMotion, Averaging
 from navcore.averaging.record import RECORD_STEP_S, alignment_record, standing_row
-from navcore.earth import Earth
+from navcore.foundation.earth import Earth
+from navcore.foundation.units import DEG_PER_HOUR, HOUR
 from navcore.motion.base import HEIGHT, LAT
 from navcore.sensors.imu import Imu
-from navcore.units import DEG_PER_HOUR, HOUR
 
 
 @dataclass(frozen=True)

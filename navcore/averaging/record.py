@@ -8,16 +8,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from navcore.averaging.parameters import AlignmentMotion
-from navcore.earth import Earth, attitude_matrix
-from navcore.errors import Fault, InputError
+from navcore.foundation.earth import Earth, attitude_matrix
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.units import DEG
 from navcore.motion.base import AE, AU, COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL, VE, VU, Truth
 from navcore.motion.inertial import inertial_signals
 from navcore.sensors.imu import Imu, SensorModel
 from navcore.sensors.noise import gauss_markov, unit_noise
-from navcore.units import DEG
 
 RECORD_STEP_S = 1.0
-"""Interval of the record's increments (physics.md section 5), s."""
+"""Interval of the record's increments (theory.md section 5), s."""
 FASTEST_START_MPS = 0.01
 """A vehicle faster than this at t = 0 did not stand before."""
 
@@ -34,10 +34,12 @@ def standing_row(true_row: np.ndarray) -> np.ndarray:
     if speed > FASTEST_START_MPS:
         raise InputError(
             Fault(
-                "", "motion", f"{speed:.3g} m/s at t = 0",
+                "",
+                "motion",
+                f"{speed:.3g} m/s at t = 0",
                 "half-period averaging forecasts from an alignment at rest: the motion must start from rest",
             )
-        )  # fmt: skip
+        )
     row = np.zeros(COLUMNS)
     kept = [LAT, LON, HEIGHT, PITCH, ROLL, HEADING]
     row[kept] = true_row[kept]

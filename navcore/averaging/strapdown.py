@@ -9,15 +9,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from navcore.averaging.combine import averaged_rows, capture, captured, gather
+from navcore.averaging.combine import averaged_rows, captured, capturing, gather
 from navcore.averaging.copies import Copies
 from navcore.averaging.forecast import Forecast
 from navcore.averaging.plan import Plan
-from navcore.compiled import kernel
-from navcore.control.law import Law
-from navcore.earth import Earth
+from navcore.foundation.compiled import kernel
+from navcore.foundation.earth import Earth
+from navcore.law.law import Law
 from navcore.mechanization.recorder import PHI_E, PHI_U, Recorder, make_recorder
-from navcore.mechanization.strapdown import layout as at
+from navcore.mechanization.strapdown import records as at
 from navcore.mechanization.strapdown.attitude import angles_of, quaternion_of
 from navcore.mechanization.strapdown.run import Settings, Start, StrapdownRun, start_run
 
@@ -85,11 +85,11 @@ def state_of(run: StrapdownRun) -> Start:
     """Present navigation state of a run, from which another can start."""
     x = run.x
     return Start(
-        float(run.con[at.LAT0] + x[at.D_LAT]),
-        float(run.con[at.LON0] + x[at.D_LON]),
-        float(x[at.HEIGHT]),
-        x[at.V_E : at.V_U + 1].copy(),
-        x[at.Q0 : at.Q0 + 4] / np.linalg.norm(x[at.Q0 : at.Q0 + 4]),
+        float(run.con["lat0"] + x["d_lat"]),
+        float(run.con["lon0"] + x["d_lon"]),
+        float(x["height"]),
+        x["v"].copy(),
+        x["q"] / np.linalg.norm(x["q"]),
     )
 
 
@@ -106,7 +106,7 @@ class AveragedStrapdown:
     recorder : Recorder
         What is kept of the averages.
     navigation : ndarray, shape (rows, 11)
-        Averaged navigation solution at the output rows, columns `layout.NAVIGATION`.
+        Averaged navigation solution at the output rows, columns `records.NAVIGATION`.
     """
 
     copies: Copies
@@ -147,7 +147,7 @@ class AveragedStrapdown:
         first = -(-self.position // every)
         room = len(increments) // every + 2
         for run in self.runs:
-            capture(run.recorder, first, room)
+            run.recorder = capturing(run.recorder, first, room)
             run.navigation = np.empty((room, len(at.NAVIGATION)))
         over = list(self._pool.map(lambda run: run.advance(increments), self.runs))
         rows = [captured(run.recorder) for run in self.runs]

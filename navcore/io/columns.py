@@ -1,223 +1,257 @@
-"""Tables whose columns are named with their unit, to a `Recording`; a fault for each wrong cell or column."""
+"""Tables whose columns are known by name, to a `Recording`; a fault for each wrong cell or column."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from navcore.errors import Fault, InputError
+from navcore.foundation.errors import Fault, InputError
+from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns
 from navcore.io.series import Recording, Series, SourceReport, stream_report, tidy
-from navcore.units import DEG, KNOT
 
-TIME_COLUMNS = ("utc", "t_s")
-"""``utc``: ISO 8601; ``t_s``: seconds since the file's own zero. One of them is needed; ``utc`` wins."""
-_LIMITS: dict[str, tuple[float, float, float]] = {
-    "lat_deg": (-90.0, 90.0, DEG),
-    "lon_deg": (-180.0, 360.0, DEG),
-    "height_m": (-1e4, 1e5, 1.0),
-    "heading_deg": (-360.0, 360.0, DEG),
-    "pitch_deg": (-90.0, 90.0, DEG),
-    "roll_deg": (-180.0, 180.0, DEG),
-    "ve_mps": (-1e3, 1e3, 1.0),
-    "vn_mps": (-1e3, 1e3, 1.0),
-    "speed_mps": (-1e3, 1e3, 1.0),
-    "speed_kn": (-2e3, 2e3, KNOT),
-    "speed_starboard_mps": (-1e3, 1e3, 1.0),
-    "speed_starboard_kn": (-2e3, 2e3, KNOT),
-}
-QUANTITY_COLUMNS = tuple(_LIMITS)
-"""``speed_*`` is what a log measures along the ship's axis (forward), ``speed_starboard_*`` across it."""
-_TOGETHER = (("lat_deg", "lon_deg"), ("ve_mps", "vn_mps"), ("pitch_deg", "roll_deg"))
+MOST_COLUMNS = 1000
+MOST_CELLS = 6_000_000
+"""Cells of the columns that are used; more are refused before they are unpacked."""
+_TOGETHER = (("lat", "lon", "deg"), ("ve", "vn", "mps"), ("pitch", "roll", "deg"))
+_ACROSS = (("speed_starboard", "speed"), ("ground_starboard", "ground"))
+_OWN_NAMES = (
+    "lat_deg, lon_deg, height_m, heading_deg, pitch_deg, roll_deg, ve_mps, vn_mps, sog_kn with cog_deg, "
+    "speed_kn or speed_mps (through the water), speed_starboard_kn, ground_kn, ground_starboard_kn"
+)
 _MOST_FAULTS = 10
+_MOST_NAMED = 30
+_MISSING_NUMBERS = (-99.0, -999.0, -999.9, -9999.0, -99999.0, -8888.0, 999.9, 9999.0, 99999.0)
+"""Numbers that stand for no reading, where they are out of the column's range."""
 
 
-def known_columns(names: Sequence[str]) -> dict[str, int]:
-    """Index of each column that is used, by its name in lower case."""
-    lowered = [name.strip().lower() for name in names]
-    return {name: lowered.index(name) for name in (*TIME_COLUMNS, *QUANTITY_COLUMNS) if name in lowered}
-
-
-def require_columns(where: str, names: Sequence[str]) -> dict[str, int]:
-    """Index of each used column.
+def require_columns(where: str, names: Sequence[str]) -> dict[str, Column]:
+    """Columns that are used, by what they hold.
 
     Raises
     ------
     InputError
-        No time, no quantity, a column twice, or one of a pair missing.
+        No time, no quantity, a column twice, one of a pair missing, or too many columns. Names what was found
+        and what is needed.
     """
+    if len(names) > MOST_COLUMNS:
+        raise InputError(Fault(where, "", None, f"has more than {MOST_COLUMNS} columns: no log"))
     found = known_columns(names)
+    held = f"; columns found: {listed(names)}"
     faults: list[Fault] = []
-    if not any(name in found for name in TIME_COLUMNS):
-        faults.append(Fault(where, "", None, "missing column: utc (ISO 8601) or t_s (seconds)"))
-    if not any(name in found for name in QUANTITY_COLUMNS):
-        faults.append(
-            Fault(where, "", None, f"no column of a quantity; known: {', '.join(QUANTITY_COLUMNS)}")
-        )
-    for pair in _TOGETHER:
+    if not {UTC, UNIX, SECONDS} & found.keys() and not {DATE, CLOCK} <= found.keys():
+        faults.append(Fault(where, "", None, f"missing column: utc (ISO 8601) or t_s (seconds){held}"))
+    if not QUANTITIES.keys() & found.keys():
+        faults.append(Fault(where, "", None, f"no column of a quantity; known: {_OWN_NAMES}{held}"))
+    for first, second, unit in _TOGETHER:
         faults += [
-            Fault(where, "", None, f"missing column: {name} (its partner is there)")
-            for name, other in (pair, pair[::-1])
+            Fault(
+                where, "", None, f"missing column: {name}_{unit} (its partner {found[other].name} is there)"
+            )
+            for name, other in ((first, second), (second, first))
             if other in found and name not in found
         ]
-    if any(n.startswith("speed_starboard") for n in found) and not {"speed_mps", "speed_kn"} & found.keys():
-        faults.append(
-            Fault(where, "", None, "missing column: speed_mps or speed_kn (starboard speed is there)")
-        )
+    for across, along in _ACROSS:
+        if across in found and along not in found:
+            needed = f"{along}_mps or {along}_kn"
+            faults.append(Fault(where, "", None, f"missing column: {needed} (starboard speed is there)"))
     lowered = [name.strip().lower() for name in names]
-    faults += [Fault(where, "", name, "column given twice") for name in found if lowered.count(name) > 1]
+    faults += [
+        Fault(where, "", column.name.lower(), "column given twice")
+        for column in found.values()
+        if lowered.count(column.name.lower()) > 1
+    ]
     if faults:
         raise InputError(faults)
     return found
 
 
-def numbers(where: str, name: str, cells: Sequence[str], rows: Sequence[int]) -> np.ndarray:
-    """Cells of a numeric column as floats; raises `InputError` naming row and column of wrong ones."""
-    try:
-        return np.array(cells, dtype=float)
-    except ValueError:
-        raise InputError(_cell_faults(where, name, cells, rows)) from None
+def listed(names: Sequence[str]) -> str:
+    """Names for a message, the first of many."""
+    shown = ", ".join(name.strip()[:40] for name in names[:_MOST_NAMED])
+    return shown + (f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else "")
 
 
-def _cell_faults(where: str, name: str, cells: Sequence[str], rows: Sequence[int]) -> list[Fault]:
-    faults: list[Fault] = []
-    for row, cell in zip(rows, cells, strict=True):
-        try:
-            float(cell)
-        except ValueError:
-            hint = " (decimal comma?)" if "," in cell else ""
-            faults.append(Fault(f"{where}, row {row}", name, cell, f"is not a number{hint}"))
-    return _limited(where, faults)
-
-
-def _limited(where: str, faults: list[Fault]) -> list[Fault]:
+def limited(where: str, faults: list[Fault]) -> list[Fault]:
+    """The first ten faults of a kind, and how many more there are."""
     more = len(faults) - _MOST_FAULTS
     if more <= 0:
         return faults
     return [*faults[:_MOST_FAULTS], Fault(where, "", None, f"and {more} more faults of this kind")]
 
 
-def utc_seconds(where: str, cells: Sequence[str], rows: Sequence[int]) -> np.ndarray:
-    """ISO 8601 cells as UTC s since 1970 (no zone means UTC); raises `InputError` naming the row."""
-    from datetime import UTC, datetime
-
-    times = np.empty(len(cells))
-    faults: list[Fault] = []
-    for index, cell in enumerate(cells):
-        try:
-            moment = datetime.fromisoformat(cell.strip())
-        except ValueError:
-            faults.append(Fault(f"{where}, row {rows[index]}", "utc", cell, "is not an ISO 8601 time"))
-            continue
-        times[index] = (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp()
-    if faults:
-        raise InputError(_limited(where, faults))
-    return times
+def column_warnings(names: Sequence[str], found: Mapping[str, Column]) -> list[str]:
+    """Warn of columns that are not used, in case one is misspelt, and of units that were guessed."""
+    used = {column.index for column in found.values()}
+    unused = [name for index, name in enumerate(names) if index not in used and name.strip()]
+    words = [f"columns not used: {listed(unused)}"] if unused else []
+    guessed = [column for column in found.values() if not column.told]
+    words += [f"column {column.name} names no unit: taken as {column.unit}" for column in guessed]
+    if ("sog" in found) != ("cog" in found):
+        there = found.get("sog") or found["cog"]
+        words.append(f"column {there.name} not used: speed and course over ground serve only together")
+    return words
 
 
-def table_recording(
-    where: str,
-    kind: str,
-    columns: Mapping[str, np.ndarray],
-    rows: Sequence[int] | np.ndarray,
-    warnings: Sequence[str] = (),
-) -> Recording:
-    """Check the numbers of a table and sort them into quantities.
+@dataclass(frozen=True)
+class Table:
+    """Columns of numbers.
 
-    Parameters
+    Attributes
     ----------
     where, kind : str
         File name, and what it was read as.
-    columns : mapping of str to ndarray, shape (n,)
-        By column name, in the units of the names; ``utc`` in s since 1970.
-    rows : sequence of int, shape (n,)
+    columns : dict
+        Columns by what they hold.
+    time_s : ndarray, shape (n,)
+        UTC in s since 1970, or s since the file's own zero.
+    dated : bool
+        Which of the two.
+    clock : str
+        Name of the column of time.
+    values : dict
+        By what they hold, arrays of shape (n,), in the columns' units.
+    missing : dict
+        By what they hold, arrays of bool of shape (n,): empty cells; absent when there are none.
+    rows : sequence of int
         Row numbers for faults.
-    warnings : sequence of str
+    warnings : tuple of str
         Passed on.
+    """
+
+    where: str
+    kind: str
+    columns: dict[str, Column]
+    time_s: np.ndarray
+    dated: bool
+    clock: str
+    values: dict[str, np.ndarray]
+    missing: dict[str, np.ndarray]
+    rows: Sequence[int] | np.ndarray
+    warnings: tuple[str, ...] = ()
+
+
+def table_recording(table: Table) -> Recording:
+    """Check the numbers of a table and sort them into quantities; an empty cell is a missing sample.
 
     Raises
     ------
     InputError
-        A value is not finite or out of range; time is unordered or repeated.
+        A value is not finite or out of range; time is unordered or repeated; every cell of a table is empty.
     """
-    clock = next(name for name in TIME_COLUMNS if name in columns)
-    time_s = columns[clock]
-    faults = _range_faults(where, columns, rows) or _order_faults(where, clock, time_s, rows)
+    table = _without_placeholders(table)
+    faults = _range_faults(table) or _order_faults(table)
     if faults:
         raise InputError(faults)
 
-    def series(*names: str) -> Series | None:
-        if not all(name in columns for name in names):
+    def series(what: str, *stems: str, optional: int = 0) -> Series | None:
+        """Series of columns; the last ``optional`` ones may be absent (0 then)."""
+        needed = stems[: len(stems) - optional]
+        if not all(stem in table.values for stem in needed):
             return None
-        values = np.column_stack([columns[name] * _LIMITS[name][2] for name in names])
-        return tidy(time_s, values, where, "+".join(names), dated=clock == "utc")
+        size = table.time_s.size
+        whole = ~np.logical_or.reduce([table.missing.get(s, np.zeros(size, bool)) for s in stems])
+        values = np.column_stack(
+            [
+                table.values[s] * table.columns[s].factor if s in table.values else np.zeros(size)
+                for s in stems
+            ]
+        )
+        return tidy(table.time_s[whole], values[whole], table.where, what, dated=table.dated, tabled=True)
 
-    used = tuple(name for name in QUANTITY_COLUMNS if name in columns)
-    report = stream_report("rows", time_s.size, True, time_s)
-    return Recording(
-        position=_with_height(series("lat_deg", "lon_deg"), columns),
-        velocity=series("ve_mps", "vn_mps"),
-        water=_axes_speed(where, columns, time_s, clock == "utc"),
-        heading=series("heading_deg"),
-        attitude=series("pitch_deg", "roll_deg"),
-        sources=(
-            SourceReport(
-                where, f"{kind} with {', '.join(used)}", time_s.size, (report,), warnings=tuple(warnings)
-            ),
-        ),
-    )
+    quantities = {
+        "position": _with_height(series("lat_deg+lon_deg", "lat", "lon"), table),
+        "velocity": series("ve_mps+vn_mps", "ve", "vn") or _over_ground(series("sog+cog", "sog", "cog")),
+        "water": _axes(series("speed", "speed", "speed_starboard", optional=1)),
+        "ground": _axes(series("ground", "ground", "ground_starboard", optional=1)),
+        "heading": series("heading_deg", "heading"),
+        "attitude": series("pitch_deg+roll_deg", "pitch", "roll"),
+    }
+    if not any(quantities.values()):
+        raise InputError(Fault(table.where, "", None, "every cell of the columns that are used is empty"))
+    return Recording(**quantities, sources=(_account(table),))
 
 
-def _with_height(position: Series | None, columns: Mapping[str, np.ndarray]) -> Series | None:
+def _account(table: Table) -> SourceReport:
+    used = [table.columns[stem].name.lower() for stem in table.values]
+    empty = {table.columns[s].name: int(np.count_nonzero(gone)) for s, gone in table.missing.items()}
+    told = [f"{name} {count}" for name, count in empty.items() if count]
+    warnings = [f"empty cells, missing samples: {', '.join(told)}"] if told else []
+    report = stream_report("rows", table.time_s.size, True, table.time_s)
+    return SourceReport(
+        table.where, f"{table.kind} with {', '.join(used)}", table.time_s.size, (report,),
+        warnings=(*table.warnings, *warnings),
+    )  # fmt: skip
+
+
+def _with_height(position: Series | None, table: Table) -> Series | None:
     if position is None:
         return None
-    height = columns.get("height_m", np.full(position.time_s.size, np.nan))
+    height = np.full(position.time_s.size, np.nan)
+    if "height" in table.values:
+        known = np.where(table.missing.get("height", False), np.nan, table.values["height"])
+        height = known[np.searchsorted(table.time_s, position.time_s)]
     return replace(position, values=np.column_stack([position.values, height]))
 
 
-def _axes_speed(
-    where: str, columns: Mapping[str, np.ndarray], time_s: np.ndarray, dated: bool
-) -> Series | None:
-    forward = _in_mps(columns, "speed")
-    if forward is None:
+def _over_ground(polar: Series | None) -> Series | None:
+    """East and north velocity of speed and course over ground."""
+    if polar is None:
         return None
-    starboard = _in_mps(columns, "speed_starboard")
-    across = np.zeros_like(forward) if starboard is None else starboard
-    return tidy(time_s, np.column_stack([across, forward]), where, "speed", dated=dated)
+    speed, course = polar.values.T
+    return replace(polar, values=np.column_stack([speed * np.sin(course), speed * np.cos(course)]))
 
 
-def _in_mps(columns: Mapping[str, np.ndarray], stem: str) -> np.ndarray | None:
-    for unit, factor in (("mps", 1.0), ("kn", KNOT)):
-        if f"{stem}_{unit}" in columns:
-            return columns[f"{stem}_{unit}"] * factor
-    return None
+def _axes(forward_first: Series | None) -> Series | None:
+    """Starboard, forward of forward, starboard."""
+    return (
+        None if forward_first is None else replace(forward_first, values=forward_first.values[:, ::-1].copy())
+    )
 
 
-def _range_faults(
-    where: str, columns: Mapping[str, np.ndarray], rows: Sequence[int] | np.ndarray
-) -> list[Fault]:
+def _without_placeholders(table: Table) -> Table:
+    """Take as missing what stands for no reading: NaN among numbers, -999 and the like out of range."""
+    missing = dict(table.missing)
+    for stem, values in table.values.items():
+        low, high = table.columns[stem].limits
+        gone = np.isin(values, _MISSING_NUMBERS) & ~((values >= low) & (values <= high))
+        if not np.isnan(values).all():
+            gone |= np.isnan(values)
+        if gone.any():
+            missing[stem] = missing.get(stem, False) | gone
+    return replace(table, missing=missing)
+
+
+def _range_faults(table: Table) -> list[Fault]:
     faults: list[Fault] = []
-    for name, values in columns.items():
-        low, high = _LIMITS[name][:2] if name in _LIMITS else (-1e12, 1e12)
-        outside = np.flatnonzero(~((values >= low) & (values <= high)))
+    checked = {
+        table.columns[stem].name.lower(): (
+            values,
+            *table.columns[stem].limits,
+            table.missing.get(stem, False),
+        )
+        for stem, values in table.values.items()
+    }
+    checked[table.clock] = (table.time_s, -1e12, 1e12, False)
+    for name, (values, low, high, missing) in checked.items():
+        outside = np.flatnonzero(~((values >= low) & (values <= high)) & ~np.asarray(missing))
         column = [
             Fault(
-                f"{where}, row {rows[i]}",
-                name,
-                float(values[i]),
+                f"{table.where}, row {table.rows[i]}", name, float(values[i]),
                 f"must be a number from {low:g} to {high:g}",
             )
-            for i in outside[: _MOST_FAULTS + 1]
-        ]
-        faults += _limited(where, column)
+            for i in outside[:_MOST_FAULTS]
+        ]  # fmt: skip
+        if outside.size > _MOST_FAULTS:
+            more = f"and {outside.size - _MOST_FAULTS} more faults of this kind"
+            column.append(Fault(table.where, "", None, more))
+        faults += column
     return faults
 
 
-def _order_faults(
-    where: str, clock: str, time_s: np.ndarray, rows: Sequence[int] | np.ndarray
-) -> list[Fault]:
-    steps = np.diff(time_s)
+def _order_faults(table: Table) -> list[Fault]:
+    steps = np.diff(table.time_s)
     wrong = np.flatnonzero(steps <= 0.0)
     if wrong.size == 0:
         return []
@@ -228,6 +262,5 @@ def _order_faults(
         else f"runs backwards by {-steps[index]:g} s"
     )
     more = f" ({wrong.size} such rows)" if wrong.size > 1 else ""
-    return [
-        Fault(f"{where}, row {rows[index + 1]}", clock, None, f"time {what}{more}; put the rows in order")
-    ]
+    where = f"{table.where}, row {table.rows[index + 1]}"
+    return [Fault(where, table.clock, None, f"time {what}{more}; put the rows in order")]

@@ -1,4 +1,4 @@
-"""CSV tables: comma or semicolon, a header line, columns named with their unit (see `columns`).
+"""Text tables: comma, semicolon, tab, bar or spaces; a header line; columns known by name.
 
 The standard library's reader and numpy are enough, name the row of a bad cell, and start faster than pandas.
 """
@@ -7,28 +7,54 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from navcore.errors import Fault, InputError
-from navcore.io.columns import known_columns, numbers, require_columns, table_recording, utc_seconds
+import numpy as np
+
+from navcore.foundation.errors import Fault, InputError
+from navcore.io.cells import is_empty, numbers, times, unix_or_elapsed
+from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns
+from navcore.io.columns import (
+    MOST_CELLS,
+    MOST_COLUMNS,
+    Table,
+    column_warnings,
+    limited,
+    require_columns,
+    table_recording,
+)
 from navcore.io.series import Recording
-from navcore.io.source import read_text
+from navcore.io.source import counted, read_text
 
-_MOST_FAULTS = 10
+_COMMENTS = ("#", "%", "//")
+_SEPARATORS = ",;\t|"
+_HEAD_BYTES = 65536
+_HEAD_LINES = 60
+"""A header stands within so many lines; before it may stand what a logger says about the cruise."""
 
 
-def _header(text: str) -> str:
-    return next((line for line in text[:65536].splitlines() if line.strip() and not line.startswith("#")), "")
+@dataclass
+class _Rows:
+    """What is left of a table's text: the header, and the cells of the columns that are used."""
 
-
-def _delimiter(header: str) -> str:
-    return ";" if header.count(";") > header.count(",") else ","
+    header: list[str]
+    columns: dict[str, Column]
+    numbers: list[int] = field(default_factory=list)
+    cells: dict[str, list[str]] = field(default_factory=dict)
+    warnings: list[str] = field(default_factory=list)
 
 
 def looks_like_csv(text: str) -> bool:
-    """Whether the first line that is no comment names a known column."""
-    header = _header(text)
-    return bool(known_columns([cell.strip().strip('"') for cell in header.split(_delimiter(header))]))
+    """Whether a header names a known column, or the lines look like a table of numbers."""
+    head = _head(text)
+    separator, _, header = _layout(head)
+    if known_columns(header[:MOST_COLUMNS]):
+        return True
+    following = [_cells(line, separator) for line in head if not line.startswith(_COMMENTS)][1:6]
+    alike = [row for row in following if len(row) == len(header) and any(map(_is_number, row))]
+    return len(header) > 1 and len(alike) >= max(1, len(following) - 1)
 
 
 def read_csv(path: Path) -> Recording:
@@ -37,55 +63,197 @@ def read_csv(path: Path) -> Recording:
     Raises
     ------
     InputError
-        Missing columns, rows of another length, cells that are no finite number in range, time out of order.
+        Missing columns (names those found), rows of another length, cells that are no finite number in range,
+        time out of order, or more cells than are read.
     """
-    text = read_text(path)
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=_delimiter(_header(text)), strict=True)
-    header: list[str] | None = None
-    rows: list[int] = []
-    cells: list[list[str]] = []
-    faults: list[Fault] = []
+    content = read_text(path)
+    rows = _rows(path.name, content.text)
+    if not rows.numbers:
+        raise InputError(Fault(path.name, "", None, "a header but no rows"))
+    warnings = (*content.warnings(), *rows.warnings, *column_warnings(rows.header, rows.columns))
+    return table_recording(_table(path.name, rows, warnings))
+
+
+def _head(text: str) -> list[str]:
+    return [line for line in text[:_HEAD_BYTES].splitlines() if line.strip()][:_HEAD_LINES]
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    if separator == " ":
+        return line.split()
+    try:
+        return next(csv.reader([line], delimiter=separator), [])
+    except csv.Error:
+        return line.split(separator)
+
+
+def _separator(line: str) -> str:
+    best = max(_SEPARATORS, key=line.count)
+    return best if line.count(best) else " "
+
+
+def _layout(head: list[str]) -> tuple[str, str, list[str]]:
+    """Separator, header line and header cells.
+
+    The header is the first line that names a time and a quantity, be it a comment; else the first line that
+    is no comment.
+    """
+    plain = next((line for line in head if not line.startswith(_COMMENTS)), "")
+    for line in head:
+        bare = line.lstrip("#%/ ") if line.startswith(_COMMENTS) else line
+        separator = _separator(bare)
+        cells = _cells(bare, separator)
+        found = known_columns(cells[:MOST_COLUMNS])
+        if found.keys() & QUANTITIES.keys() and {UTC, UNIX, SECONDS, CLOCK} & found.keys():
+            return separator, line, cells
+    return _separator(plain), plain, _cells(plain, _separator(plain))
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
+
+
+def _rows(where: str, text: str) -> _Rows:
+    separator, header_line, header = _layout(_head(text))
+    rows = _Rows(header, require_columns(where, header))
+    _refuse_size(where, text, len(rows.columns))
+    width, faults = len(header), []
+    columns = list(rows.columns.values())
+    for number, row in _after_header(where, text, separator, header_line):
+        row = _fitted(row, width, separator, rows.columns)
+        if len(row) != width:
+            allowed = f"has {len(row)} cells, the header {width}"
+            faults.append(Fault(f"{where}, row {number}", "", None, allowed))
+            continue
+        if not rows.numbers and _is_units(row):
+            rows.columns = require_columns(where, [f"{n} ({u})" for n, u in zip(header, row, strict=True)])
+            columns = list(rows.columns.values())
+            continue
+        rows.numbers.append(number)
+        for column in columns:
+            rows.cells.setdefault(column.stem, []).append(row[column.index])
+    if len(faults) == 1 and rows.numbers and "cells" in faults[0].allowed and _is_last(text, faults[0]):
+        rows.warnings.append("the last row is cut off: left out")
+        faults = []
+    if faults:
+        raise InputError(limited(where, faults))
+    return rows
+
+
+def _refuse_size(where: str, text: str, columns: int) -> None:
+    lines = text.count("\n") + 1
+    if lines * columns > MOST_CELLS:
+        allowed = f"has {lines} rows of {columns} columns that are used; at most {MOST_CELLS} cells are read"
+        raise InputError(Fault(where, "", None, allowed))
+
+
+def _after_header(where: str, text: str, separator: str, header: str) -> Iterator[tuple[int, list[str]]]:
+    """Rows below the header with their line numbers; empty lines and comments are left out."""
+    begun = False
+    if separator == " ":
+        for number, line in enumerate(text.split("\n"), start=1):
+            if begun and line.strip() and not line.startswith(_COMMENTS):
+                yield number, line.split()
+            begun = begun or line == header
+        return
+    stream = io.StringIO(text, newline="")
+    skipped = 0
+    for line in stream:
+        skipped += 1
+        if line.rstrip("\n") == header:
+            break
+    reader = csv.reader(stream, delimiter=separator, strict=True)
     try:
         for row in reader:
-            if not any(cell.strip() for cell in row) or row[0].startswith("#"):
-                continue
-            if header is None:
-                header = row
-            elif len(row) != len(header):
-                allowed = f"has {len(row)} cells, the header {len(header)}"
-                faults.append(Fault(f"{path.name}, row {reader.line_num}", "", None, allowed))
-            else:
-                rows.append(reader.line_num)
-                cells.append(row)
+            if any(cell.strip() for cell in row) and not row[0].startswith(_COMMENTS):
+                yield skipped + reader.line_num, row
     except csv.Error as problem:
-        faults.append(Fault(f"{path.name}, row {reader.line_num}", "", None, f"not a CSV row ({problem})"))
-    if faults:
-        more = [Fault(path.name, "", None, f"and {len(faults) - _MOST_FAULTS} more such rows")]
-        raise InputError(faults[:_MOST_FAULTS] + (more if len(faults) > _MOST_FAULTS else []))
-    return _recording(path, header or [], rows, cells)
+        where = f"{where}, row {skipped + reader.line_num}"
+        raise InputError(Fault(where, "", None, f"not a CSV row ({problem})")) from None
 
 
-def _recording(path: Path, header: list[str], rows: list[int], cells: list[list[str]]) -> Recording:
-    found = require_columns(path.name, header)
-    if not rows:
-        raise InputError(Fault(path.name, "", None, "a header but no rows"))
-    columns = {}
+def _fitted(row: list[str], width: int, separator: str, columns: dict[str, Column]) -> list[str]:
+    """A row without empty cells too many; a date and a time parted by the separator are joined."""
+    if len(row) > width and not any(cell.strip() for cell in row[width:]):
+        return row[:width]
+    if separator == " " and len(row) == width + 1 and UTC in columns:
+        at = columns[UTC].index
+        return [*row[:at], f"{row[at]} {row[at + 1]}", *row[at + 2 :]]
+    return row
+
+
+def _is_units(row: list[str]) -> bool:
+    """Whether a row below the header gives units: no cell begins with a digit or a sign, not all empty."""
+    return (
+        any(cell.strip() for cell in row)
+        and not any(cell.strip()[:1] in "+-.0123456789" or is_empty(cell) or _is_number(cell) for cell in row)
+        and any(known_columns([f"lat ({cell})", f"sog ({cell})"]).get("sog", _NONE).told for cell in row)
+    )
+
+
+_NONE = Column(0, "", "sog", "", told=False)
+
+
+def _is_last(text: str, fault: Fault) -> bool:
+    return fault.where.endswith(f"row {len(text.rstrip().split(chr(10)))}")
+
+
+def _table(where: str, rows: _Rows, warnings: tuple[str, ...]) -> Table:
     faults: list[Fault] = []
-    for name, index in found.items():
-        column = [row[index] for row in cells]
+    values: dict[str, np.ndarray] = {}
+    missing: dict[str, np.ndarray] = {}
+    kept, untimed = _timed(rows)
+    timing = None
+    try:
+        timing = _timing(where, rows, kept)
+    except InputError as error:
+        faults += error.faults
+    numbered = [rows.numbers[i] for i in kept] if untimed else rows.numbers
+    for stem in (stem for stem in QUANTITIES if stem in rows.columns):
+        cells = [rows.cells[stem][i] for i in kept] if untimed else rows.cells[stem]
         try:
-            if name == "utc":
-                columns[name] = utc_seconds(path.name, column, rows)
-            elif not (name == "t_s" and "utc" in found):
-                columns[name] = numbers(path.name, name, column, rows)
+            values[stem], empty = numbers(where, rows.columns[stem].name.lower(), cells, numbered)
         except InputError as error:
             faults += error.faults
-    if faults:
+            continue
+        if empty.any():
+            missing[stem] = empty
+    if faults or timing is None:
         raise InputError(faults)
-    return table_recording(path.name, "CSV table", columns, rows, unused_columns(header, found))
+    time_s, dated, clock = timing
+    told = [f"{counted(untimed, 'row')} without a time left out"] if untimed else []
+    return Table(
+        where, "CSV table", rows.columns, time_s, dated, clock, values, missing, numbered, (*warnings, *told)
+    )
 
 
-def unused_columns(header: list[str], found: dict[str, int]) -> list[str]:
-    """Warn of columns that are not used, in case one is a misspelt name."""
-    unused = [name.strip() for index, name in enumerate(header) if index not in found.values()]
-    return [f"columns not used: {', '.join(unused)}"] if unused else []
+def _clock_column(columns: dict[str, Column]) -> Column:
+    return next(columns[stem] for stem in (CLOCK, UTC, UNIX, SECONDS) if stem in columns)
+
+
+def _timed(rows: _Rows) -> tuple[list[int], int]:
+    """Rows whose time is not empty, and how many are not."""
+    cells = rows.cells[_clock_column(rows.columns).stem]
+    kept = [index for index, cell in enumerate(cells) if not is_empty(cell)]
+    return kept, len(cells) - len(kept)
+
+
+def _timing(where: str, rows: _Rows, kept: list[int]) -> tuple[np.ndarray, bool, str]:
+    """Times, whether they are dated, and the name of their column."""
+    column = _clock_column(rows.columns)
+    numbered = [rows.numbers[i] for i in kept]
+    name = column.name.lower()
+    cells = [rows.cells[column.stem][i] for i in kept]
+    if column.stem == CLOCK and DATE in rows.columns:
+        dates = rows.cells[DATE]
+        cells = [f"{dates[i].strip()} {cell.strip()}" for i, cell in zip(kept, cells, strict=True)]
+    if column.stem in (UTC, CLOCK):
+        return (*times(where, name, cells, numbered), name)
+    time_s, empty = numbers(where, name, cells, numbered)
+    del empty
+    time_s, dated = unix_or_elapsed(time_s) if column.stem == UNIX else (time_s, False)
+    return time_s, dated, name

@@ -1,53 +1,40 @@
-"""NMEA 0183 logs: lines to sentences to a `Recording`, and every fault of a line counted.
+"""NMEA 0183 logs: sentences with their times, and the refusal of a file that cannot be trusted.
 
-A line is a sentence with or without an ISO 8601 UTC stamp before it. Time is, in this order: the sentence's
-own UTC (RMC, GGA; the stamp says which day), the line's stamp, the last time known. Only whole sentences with
-a right checksum are used; a file in which too many are wrong is refused rather than used in part.
+Only whole sentences with a right checksum are used; a file in which too many are wrong, or whose time runs
+backwards, is refused rather than used in part.
 """
 
 from __future__ import annotations
 
-import re
-from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from datetime import UTC, datetime
+from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
-from navcore.errors import Fault, InputError
-from navcore.io.nmea_sentences import DECODERS, Reading
-from navcore.io.source import read_text
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.units import HOUR
+from navcore.io.nmea_clock import Clock
+from navcore.io.nmea_lines import OTHER_KINDS, Tally, intact_lines
+from navcore.io.nmea_sentences import KINDS, Reading, decode, is_used
+from navcore.io.source import counted, read_text
 
 MOST_BAD_CHECKSUMS = 0.2
 """A file is refused when more than this share of its sentences (or of one kind used) has a wrong checksum."""
 JITTER_S = 0.2
 """A sentence may be this much older than the latest of its kind; more is called time running backwards."""
-_DAY = 86400.0
+MOST_LATE = 0.01
+"""A file is refused when the time of more than this share of its used sentences runs backwards."""
+MOST_SOURCES = 8
+"""Words beside the sentences are instruments' names when there are no more different ones."""
 _CLOCK_WARNING_S = 5.0
-_LINE = re.compile(
-    r"(?:(?P<stamp>\d{4}-\d\d-\d\d[T ]\d\d:\d\d:\d\d(?:[.,]\d+)?(?:Z|[+-]\d\d:?\d\d)?)[\s,;]+)?"
-    r"(?P<sentence>[$!](?P<address>[A-Z0-9]{3,10}),[^$!*]*(?:\*(?P<checksum>[0-9A-Fa-f]{2}))?)"
-)
-_SENTENCE_START = re.compile(r"[$!][A-Z]{2,9},")
-_RMC_TIME = re.compile(r"\$..RMC,(\d{6}(?:\.\d+)?),A,[^*\n]*?,(\d\d)(\d\d)(\d\d),")
+_MOST_NAMED = 12
+_LOGGED_DAY = "UNIXD"
 
 
-@dataclass
-class Tally:
-    """Running account of one file while its lines are read."""
+class Channel(NamedTuple):
+    """Sentences of one address from one instrument (empty when the lines name none)."""
 
-    lines: int = 0
-    intact: Counter[str] = field(default_factory=Counter)
-    bad: Counter[str] = field(default_factory=Counter)
-    unparsable: int = 0
-    without_checksum: int = 0
-    untimed: int = 0
-    jitter: int = 0
-    first_bad_line: int = 0
-    dated: bool = True
-    clock_offsets: list[float] = field(default_factory=list)
-    times: dict[str, list[float]] = field(default_factory=dict)
-    """Times of every intact sentence by address."""
+    source: str
+    address: str
 
 
 @dataclass(frozen=True)
@@ -57,18 +44,16 @@ class NmeaLog:
     Attributes
     ----------
     readings : dict
-        By sentence address (``GNRMC``): list of (UTC in s, reading).
+        By channel: list of (UTC in s, reading).
     tally : Tally
         Counts of lines and faults.
+    warnings : tuple of str
+        What was left out or looks odd.
     """
 
-    readings: dict[str, list[tuple[float, Reading]]]
+    readings: dict[Channel, list[tuple[float, Reading]]]
     tally: Tally
-
-
-def looks_like_nmea(text: str) -> bool:
-    """Whether something like a sentence, intact or not, is among the first lines."""
-    return _SENTENCE_START.search(text, 0, 8192) is not None
+    warnings: tuple[str, ...]
 
 
 def read_nmea(path: Path) -> NmeaLog:
@@ -79,147 +64,77 @@ def read_nmea(path: Path) -> NmeaLog:
     InputError
         Empty or binary file, no usable sentence, no time, time running backwards, too many wrong checksums.
     """
-    text = read_text(path)
+    content = read_text(path)
     tally = Tally()
-    readings: dict[str, list[tuple[float, Reading]]] = {}
-    clock = _Clock(text, tally)
-    latest: dict[str, float] = {}
-    for number, stamp, sentence, address in _intact_sentences(text, tally):
-        reading = _decode(sentence, address)
-        if reading is None and _is_used(address):
+    readings: dict[Channel, list[tuple[float, Reading]]] = {}
+    clock = Clock(content.text, path.name, tally)
+    latest: dict[Channel, float] = {}
+    for line in intact_lines(content.text, tally):
+        if line.address == _LOGGED_DAY:
+            clock.logged(line.sentence)
+        reading = decode(line.sentence, line.address)
+        if reading is None and is_used(line.address):
             tally.unparsable += 1
             continue
-        tally.intact[address] += 1
-        time_s = clock.time_of(stamp, reading)
+        name = tally.count(tally.intact, line.address)
+        time_s = clock.time_of(line.stamp, reading)
         if time_s is None:
             tally.untimed += reading is not None
             continue
-        _require_forward(path, number, address, time_s, latest, tally)
-        tally.times.setdefault(address, []).append(time_s)
-        if reading is not None:
-            readings.setdefault(address, []).append((time_s, reading))
+        channel = Channel(line.source, line.address)
+        if reading is None or reading.says_nothing:
+            tally.times.setdefault(name, []).append(time_s)
+        elif _in_order(line.number, channel, time_s, latest, tally):
+            tally.times.setdefault(name, []).append(time_s)
+            readings.setdefault(channel, []).append((time_s, reading))
     _refuse_unusable(path, tally, readings)
-    return NmeaLog(readings, tally)
+    warnings = (*content.warnings(), *_warnings(tally))
+    return NmeaLog(_of_instruments(readings), tally, warnings)
 
 
-def _intact_sentences(text: str, tally: Tally) -> Iterator[tuple[int, float | None, str, str]]:
-    """Yield (line number, UTC of the stamp, sentence, address) of intact lines; count the others."""
-    from pynmea2 import NMEASentence
-
-    for number, raw in enumerate(text.split("\n"), start=1):
-        line = raw.strip()
-        if not line or line.startswith("#"):
-            continue
-        tally.lines += 1
-        match = _LINE.fullmatch(line)
-        stamp = _stamp_seconds(match["stamp"]) if match is not None else None
-        if match is None or (match["stamp"] is not None and stamp is None):
-            tally.unparsable += 1
-            continue
-        sentence, address, checksum = match["sentence"], match["address"], match["checksum"]
-        if checksum is None:
-            tally.without_checksum += 1
-        elif NMEASentence.checksum(sentence[1:-3]) != int(checksum, 16):
-            tally.bad[address] += 1
-            tally.first_bad_line = tally.first_bad_line or number
-            continue
-        yield number, stamp, sentence, address
-
-
-def _is_used(address: str) -> bool:
-    return len(address) == 5 and address[0] != "P" and address[2:] in DECODERS
-
-
-def _decode(sentence: str, address: str) -> Reading | None:
-    """Reading of a sentence of a used kind; None for other kinds and for nonsense in its fields."""
-    if not _is_used(address):
-        return None
-    from pynmea2 import ParseError, parse
-
-    try:
-        return DECODERS[address[2:]](parse(sentence))
-    except (ParseError, ValueError, TypeError, ArithmeticError, AttributeError):
-        return None
-
-
-class _Clock:
-    """UTC of each line, from the stamps and from the sentences' own times."""
-
-    def __init__(self, text: str, tally: Tally) -> None:
-        self._tally = tally
-        self._now: float | None = None
-        first = _RMC_TIME.search(text)
-        self._date: float | None = None
-        if first is not None:
-            day, month, year = (int(part) for part in first.groups()[1:])
-            try:
-                self._date = datetime(_full_year(year), month, day, tzinfo=UTC).timestamp()
-            except ValueError:
-                self._date = None
-
-    def time_of(self, near: float | None, reading: Reading | None) -> float | None:
-        own = reading.time_of_day if reading is not None else None
-        if own is None:
-            if near is not None:
-                self._now = near
-            return self._now
-        if near is not None:
-            self._now = _nearest_day(own, near)
-            self._tally.clock_offsets.append(near - self._now)
-        else:
-            self._now = self._without_stamp(own, reading.day if reading is not None else None)
-        return self._now
-
-    def _without_stamp(self, own: float, day: float | None) -> float:
-        if day is not None:
-            return day + own
-        if self._now is not None:
-            return _nearest_day(own, self._now)
-        self._tally.dated = self._date is not None
-        return (self._date or 0.0) + own
-
-
-def _full_year(two_digits: int) -> int:
-    return two_digits + (1900 if two_digits >= 80 else 2000)
-
-
-def _nearest_day(time_of_day: float, near: float) -> float:
-    return time_of_day + _DAY * round((near - time_of_day) / _DAY)
-
-
-def _stamp_seconds(stamp: str | None) -> float | None:
-    if stamp is None:
-        return None
-    try:
-        moment = datetime.fromisoformat(stamp)
-    except ValueError:
-        return None
-    return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp()
-
-
-def _require_forward(
-    path: Path, number: int, address: str, time_s: float, latest: dict[str, float], tally: Tally
-) -> None:
-    before = latest.get(address)
+def _in_order(
+    number: int, channel: Channel, time_s: float, latest: dict[Channel, float], tally: Tally
+) -> bool:
+    before = latest.get(channel)
     if before is None or time_s >= before:
-        latest[address] = time_s
-        return
-    if before - time_s > JITTER_S + 1e-3:
-        back = f"time runs backwards by {before - time_s:.1f} s ({address})"
-        allowed = f"{back}: put the lines in order or split the file"
-        raise InputError(Fault(f"{path.name}, line {number}", "", None, allowed))
-    tally.jitter += 1
+        latest[channel] = time_s
+        return True
+    if before - time_s <= JITTER_S + 1e-3:
+        tally.jitter += 1
+        return True
+    tally.late += 1
+    if tally.first_late is None:
+        tally.first_late = (number, before - time_s, channel.address)
+    return False
 
 
-def _refuse_unusable(path: Path, tally: Tally, readings: dict[str, list[tuple[float, Reading]]]) -> None:
-    def refuse(allowed: str) -> InputError:
-        return InputError(Fault(path.name, "", None, allowed))
+def _of_instruments(
+    readings: dict[Channel, list[tuple[float, Reading]]],
+) -> dict[Channel, list[tuple[float, Reading]]]:
+    """Join what only the words beside the sentences keep apart, when these are no instruments' names."""
+    if len({channel.source for channel in readings}) <= MOST_SOURCES:
+        return readings
+    joined: dict[Channel, list[tuple[float, Reading]]] = {}
+    for channel, rows in readings.items():
+        joined.setdefault(Channel("", channel.address), []).extend(rows)
+    return joined
 
-    total, bad = sum(tally.intact.values()) + tally.bad.total(), tally.bad.total()
+
+def _refuse_unusable(path: Path, tally: Tally, readings: dict[Channel, list[tuple[float, Reading]]]) -> None:
+    def refuse(allowed: str, line: int = 0) -> InputError:
+        where = f"{path.name}, line {line}" if line else path.name
+        return InputError(Fault(where, "", None, allowed))
+
+    used = sum(len(rows) for rows in readings.values())
+    if tally.first_late is not None and tally.late > MOST_LATE * (used + tally.late):
+        line, seconds, address = tally.first_late
+        back = f"time runs backwards by {seconds:.1f} s ({address})"
+        raise refuse(f"{back}: put the lines in order or split the file", line)
+    total, bad = tally.intact.total() + tally.bad.total(), tally.bad.total()
     worst = [
         f"{address} {count} of {count + tally.intact[address]}"
         for address, count in tally.bad.items()
-        if _is_used(address) and count > MOST_BAD_CHECKSUMS * (count + tally.intact[address])
+        if is_used(address) and count > MOST_BAD_CHECKSUMS * (count + tally.intact[address])
     ]
     if bad > MOST_BAD_CHECKSUMS * total or worst:
         detail = f" ({', '.join(worst)})" if worst else ""
@@ -227,25 +142,27 @@ def _refuse_unusable(path: Path, tally: Tally, readings: dict[str, list[tuple[fl
             f"{bad} of {total} sentences have a wrong checksum{detail}, the first in line "
             f"{tally.first_bad_line}; at most {MOST_BAD_CHECKSUMS:.0%} are tolerated"
         )
-    if any(readings.values()):
+    if used:
         return
     if tally.untimed:
-        raise refuse("no time: neither UTC stamps before the sentences nor an RMC or GGA sentence")
-    kinds = ", ".join(sorted(DECODERS))
+        raise refuse("no time: neither a time beside the sentences nor one with its own (RMC, GGA, ZDA)")
     if not total:
-        raise refuse(f"not a log this reader knows: expected NMEA 0183 sentences ({kinds}) or a CSV table")
-    found = ", ".join(sorted(tally.intact)) or "none intact"
-    raise refuse(f"no usable sentence among {total} (found: {found}); expected {kinds}")
+        raise refuse(f"not a log this reader knows: expected NMEA 0183 sentences ({KINDS}) or a CSV table")
+    found = _named(sorted(tally.intact)) or "none intact"
+    raise refuse(f"no usable sentence among {total} (found: {found}); expected {KINDS}")
 
 
-def nmea_warnings(tally: Tally) -> list[str]:
-    """Plain words for what was left out or looks odd."""
+def _named(names: list[str]) -> str:
+    more = f" and {len(names) - _MOST_NAMED} more kinds" if len(names) > _MOST_NAMED else ""
+    return ", ".join(names[:_MOST_NAMED]) + more
+
+
+def _warnings(tally: Tally) -> list[str]:
+    """Say what was left out or looks odd."""
     words: list[str] = []
     if tally.bad:
-        words.append(
-            f"{tally.bad.total()} sentences with a wrong checksum left out "
-            f"(first: line {tally.first_bad_line})"
-        )
+        left_out = counted(tally.bad.total(), "sentence")
+        words.append(f"{left_out} with a wrong checksum left out (first: line {tally.first_bad_line})")
     if tally.unparsable:
         words.append(f"{tally.unparsable} lines that are no sentence or make no sense left out")
     if tally.without_checksum:
@@ -254,8 +171,21 @@ def nmea_warnings(tally: Tally) -> list[str]:
         words.append(f"{tally.untimed} sentences before the first known time left out")
     if tally.jitter:
         words.append(f"{tally.jitter} sentences up to {JITTER_S} s out of order, sorted")
+    if tally.first_late is not None:
+        words.append(
+            f"{counted(tally.late, 'sentence')} whose time runs backwards left out "
+            f"(first: line {tally.first_late[0]})"
+        )
+    if OTHER_KINDS in tally.intact:
+        words.append(f"{tally.intact[OTHER_KINDS]} sentences of many further kinds counted together")
     if not tally.dated:
         words.append("times of day without a date: it cannot be joined with a dated file")
+    if tally.local_time_s:
+        ahead = tally.local_time_s / HOUR
+        words.append(
+            f"the times beside the sentences are local time, {ahead:+g} h from UTC: corrected by the "
+            "sentences' own UTC"
+        )
     if tally.clock_offsets:
         offset = sorted(tally.clock_offsets)[len(tally.clock_offsets) // 2]
         if abs(offset) > _CLOCK_WARNING_S:

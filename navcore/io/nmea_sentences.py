@@ -1,4 +1,4 @@
-"""The NMEA 0183 sentences that are used, decoded to SI; fields by their names in pynmea2.
+"""The sentences that are used, decoded to SI: NMEA 0183 by pynmea2, and makers' own by their places.
 
 A decoder returns a `Reading` or raises ValueError when the fields make no sense; an instrument's own
 "invalid" gives a reading with ``valid`` False.
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
 
-from navcore.units import DEG, KNOT
+from navcore.foundation.units import DEG, KNOT
 
 _KMPH = 1.0 / 3.6
 _FASTEST = 1000.0
@@ -48,6 +48,12 @@ class Reading:
     ground: tuple[float, float, bool] | None = None
     heading: float | None = None
     valid: bool = True
+
+    @property
+    def says_nothing(self) -> bool:
+        """Whether it holds no more than a time."""
+        quantities = (self.position, self.velocity, self.water, self.ground, self.heading)
+        return self.valid and all(quantity is None for quantity in quantities)
 
 
 def _number(value: Any, low: float, high: float) -> float | None:
@@ -153,12 +159,109 @@ def _hdt(sentence: Any) -> Reading:
     return Reading(heading=heading)
 
 
-DECODERS: dict[str, Callable[[Any], Reading]] = {
+def _gll(sentence: Any) -> Reading:
+    if sentence.status != "A":
+        return Reading(valid=False)
+    return Reading(time_of_day=_seconds_of_day(sentence.timestamp), position=_place(sentence, math.nan))
+
+
+def _gns(sentence: Any) -> Reading:
+    if not set(sentence.mode_indicator or "N") - {"N"}:
+        return Reading(valid=False)
+    altitude = _number(sentence.altitude, -1e4, 1e5)
+    separation = _number(sentence.geo_sep, -200.0, 200.0)
+    height = math.nan if altitude is None else altitude + (separation or 0.0)
+    return Reading(time_of_day=_seconds_of_day(sentence.timestamp), position=_place(sentence, height))
+
+
+def _zda(sentence: Any) -> Reading:
+    midnight = datetime(int(sentence.year), int(sentence.month), int(sentence.day), tzinfo=UTC)
+    return Reading(time_of_day=_seconds_of_day(sentence.timestamp), day=midnight.timestamp())
+
+
+def _hdg(sentence: Any) -> Reading:
+    """Magnetic heading with its deviation and variation; without the variation it is no true heading."""
+    compass, variation = _heading(sentence.heading), _number(sentence.variation, 0.0, 180.0)
+    if compass is None or variation is None or sentence.var_dir not in ("E", "W"):
+        return Reading()
+    deviation = _number(sentence.deviation, 0.0, 180.0) or 0.0
+    east = variation * (1.0 if sentence.var_dir == "E" else -1.0)
+    east += deviation * (-1.0 if sentence.dev_dir == "W" else 1.0)
+    return Reading(heading=(compass + east * DEG) % (2.0 * math.pi))
+
+
+def _ths(fields: list[str]) -> Reading:
+    """True heading and status: ``THS,77.52,A`` (V: invalid)."""
+    if fields[1] == "V":
+        return Reading(valid=False)
+    return _needed_heading(fields[0])
+
+
+def _pashr(fields: list[str]) -> Reading:
+    """Attitude of Applanix and others: ``PASHR,hhmmss.sss,heading,T,roll,pitch,...``; others say nothing."""
+    time = fields[0]
+    if len(fields) < 5 or fields[2] != "T" or not time[:6].isdigit():
+        return Reading()
+    seconds = int(time[:2]) * 3600.0 + int(time[2:4]) * 60.0 + float(time[4:])
+    return Reading(time_of_day=seconds, heading=_heading(fields[1]))
+
+
+def _psxn(fields: list[str]) -> Reading:
+    """Attitude of a Seapath: ``PSXN,23,roll,pitch,heading,heave``; its other messages say nothing."""
+    return _needed_heading(fields[3]) if fields[0] == "23" else Reading()
+
+
+def _prdid(fields: list[str]) -> Reading:
+    """Attitude as RD Instruments has it: ``PRDID,pitch,roll,heading``."""
+    return _needed_heading(fields[2])
+
+
+def _needed_heading(value: str) -> Reading:
+    heading = _heading(value)
+    if heading is None:
+        raise ValueError("no heading")
+    return Reading(heading=heading)
+
+
+_BY_NAME: dict[str, Callable[[Any], Reading]] = {
     "GGA": _gga,
+    "GLL": _gll,
+    "GNS": _gns,
+    "HDG": _hdg,
     "HDT": _hdt,
     "RMC": _rmc,
     "VBW": _vbw,
     "VHW": _vhw,
     "VTG": _vtg,
+    "ZDA": _zda,
 }
-"""Decoder of each sentence kind used."""
+"""Decoders of kinds that pynmea2 names the fields of."""
+_BY_PLACE: dict[str, Callable[[list[str]], Reading]] = {"THS": _ths}
+"""Decoders of kinds that are read by the places of their fields."""
+_MAKERS: dict[str, Callable[[list[str]], Reading]] = {"PASHR": _pashr, "PRDID": _prdid, "PSXN": _psxn}
+"""Decoders of makers' own sentences, by the whole address."""
+KINDS = ", ".join((*sorted(_BY_NAME | _BY_PLACE), *_MAKERS))
+"""What a person is told can be read."""
+
+
+def is_used(address: str) -> bool:
+    """Whether sentences of this address are decoded."""
+    kind = address[2:]
+    standard = len(address) == 5 and address[0] != "P" and (kind in _BY_NAME or kind in _BY_PLACE)
+    return standard or address in _MAKERS
+
+
+def decode(sentence: str, address: str) -> Reading | None:
+    """Reading of a sentence of a used kind; None for other kinds and for nonsense in its fields."""
+    if not is_used(address):
+        return None
+    from pynmea2 import ParseError, parse
+
+    kind = address[2:]
+    try:
+        if address not in _MAKERS and kind in _BY_NAME:
+            return _BY_NAME[kind](parse(sentence))
+        fields = sentence.partition("*")[0].split(",")[1:]
+        return (_MAKERS.get(address) or _BY_PLACE[kind])(fields)
+    except (ParseError, ValueError, TypeError, ArithmeticError, AttributeError, LookupError):
+        return None

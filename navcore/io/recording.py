@@ -6,17 +6,19 @@ import math
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
-from navcore.errors import Fault, InputError
-from navcore.io.nmea import NmeaLog, looks_like_nmea, nmea_warnings, read_nmea
+from navcore.foundation import guarded
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.stage_cache import kept
+from navcore.foundation.units import HOUR
+from navcore.io.nmea import Channel, NmeaLog, read_nmea
+from navcore.io.nmea_lines import looks_like_nmea
 from navcore.io.nmea_sentences import Reading
 from navcore.io.series import Recording, Series, SourceReport, stream_report, tidy, utc_text
 from navcore.io.source import read_text, require_file
-from navcore.units import HOUR
 
 PathLike = str | os.PathLike[str]
 Rows = list[tuple[float, tuple[float, ...]]]
@@ -77,7 +79,12 @@ def load(paths: PathLike | Sequence[PathLike], where: str = "", field: str = "")
     faults: list[Fault] = []
     for key in file_keys(paths, where, field):
         try:
-            parts.append(_load_cached(key))
+            parts.append(
+                kept(
+                    ("recording", key),
+                    lambda path=Path(key[0]): guarded.call(path.name, read_recording, path),
+                )
+            )
         except InputError as error:
             faults += [replace(fault, field=fault.field or field) for fault in error.faults]
     if faults:
@@ -111,11 +118,6 @@ def file_keys(paths: PathLike | Sequence[PathLike], where: str = "", field: str 
     return tuple(keys)
 
 
-@lru_cache(maxsize=8)
-def _load_cached(key: FileKey) -> Recording:
-    return read_recording(Path(key[0]))
-
-
 def read_recording(path: Path) -> Recording:
     """Read one file by its content, without the cache; raises `InputError`."""
     from navcore.io import csv, tables
@@ -124,7 +126,7 @@ def read_recording(path: Path) -> Recording:
         head = stream.read(tables.SNIFFED_BYTES)
     if tables.looks_like_table(head):
         return tables.read_table(path)
-    text = read_text(path)
+    text = read_text(path).text
     if not looks_like_nmea(text) and csv.looks_like_csv(text):
         return csv.read_csv(path)
     return nmea_recording(path)
@@ -134,44 +136,56 @@ def nmea_recording(path: Path) -> Recording:
     """Read one NMEA 0183 log into a `Recording`; raises `InputError`."""
     log = read_nmea(path)
     tally = log.tally
+    used = {channel.address for channel in log.readings}
     streams = tuple(
-        stream_report(address, count, address in log.readings, tally.times.get(address, ()))
+        stream_report(address, count, address in used, tally.times.get(address, ()))
         for address, count in tally.intact.most_common()
     )
     invalid = sum(not _all_valid(reading) for rows in log.readings.values() for _, reading in rows)
-    warnings = nmea_warnings(tally) + (
-        [f"{invalid} readings flagged invalid by the instrument"] if invalid else []
-    )
+    flagged = [f"{invalid} readings flagged invalid by the instrument"] if invalid else []
+    found = {
+        "position": _positions(path, log),
+        "velocity": _series(path, log, *_pick(log, ("RMC", "VTG"), "velocity")),
+        "water": _along_axes(path, log, *_pick(log, ("VBW", "VHW"), "water")),
+        "ground": _along_axes(path, log, *_pick(log, ("VBW",), "ground")),
+        "heading": _series(path, log, *_pick(log, _HEADINGS, "heading")),
+    }
     source = SourceReport(
-        path.name, "NMEA 0183 log", tally.lines, streams, tally.bad.total(), tally.unparsable,
-        tally.without_checksum, invalid, tally.untimed, tally.jitter, tuple(warnings),
-    )  # fmt: skip
-    return Recording(
-        position=_positions(path, log),
-        velocity=_series(path, log, *_pick(log, ("RMC", "VTG"), "velocity")),
-        water=_along_axes(path, log, *_pick(log, ("VBW", "VHW"), "water")),
-        ground=_along_axes(path, log, *_pick(log, ("VBW",), "ground")),
-        heading=_series(path, log, *_pick(log, ("HDT", "VHW"), "heading")),
-        sources=(source,),
+        path.name,
+        "NMEA 0183 log",
+        tally.lines,
+        streams,
+        tally.bad.total(),
+        tally.unparsable,
+        tally.without_checksum,
+        invalid,
+        tally.untimed,
+        tally.jitter,
+        (*log.warnings, *flagged),
     )
+    return Recording(**found, sources=(source,))
+
+
+_HEADINGS = ("HDT", "THS", "PASHR", "PSXN", "PRDID", "VHW", "HDG")
+"""Kinds that give the heading, the better ones first."""
 
 
 def _all_valid(reading: Reading) -> bool:
     return reading.valid and all(axes is None or axes[2] for axes in (reading.water, reading.ground))
 
 
-def _rows(log: NmeaLog, address: str, quantity: str) -> Rows:
-    rows = ((time_s, getattr(reading, quantity)) for time_s, reading in log.readings.get(address, ()))
+def _rows(log: NmeaLog, channel: Channel, quantity: str) -> Rows:
+    rows = ((time_s, getattr(reading, quantity)) for time_s, reading in log.readings.get(channel, ()))
     return [(t, v if isinstance(v, tuple) else (v,)) for t, v in rows if v is not None]
 
 
 def _pick(log: NmeaLog, kinds: Iterable[str], quantity: str) -> tuple[str, Rows]:
-    """Address and rows of the first kind that has the quantity; of several talkers the one with most."""
+    """Address and rows of the first kind that has the quantity; of several instruments the one with most."""
     for kind in kinds:
-        found = {a: _rows(log, a, quantity) for a in log.readings if a[2:] == kind}
-        address = max(found, key=lambda a: len(found[a]), default=None)
-        if address is not None and found[address]:
-            return address, found[address]
+        found = {c: _rows(log, c, quantity) for c in log.readings if kind in (c.address[2:], c.address)}
+        channel = max(found, key=lambda c: len(found[c]), default=None)
+        if channel is not None and found[channel]:
+            return channel.address, found[channel]
     return "", []
 
 
@@ -191,17 +205,26 @@ def _along_axes(path: Path, log: NmeaLog, address: str, rows: Rows) -> Series | 
 
 
 def _positions(path: Path, log: NmeaLog) -> Series | None:
-    """Fixes of the talker that gives most, from GGA (it has the height) and, where GGA is silent, RMC."""
-    talkers: dict[str, Rows] = {}
-    for kind in ("GGA", "RMC"):
-        for address in log.readings:
-            if address[2:] == kind:
-                talkers.setdefault(address[:2], []).extend(_rows(log, address, "position"))
-    best = max(talkers, key=lambda talker: len(talkers[talker]), default=None)
-    if best is None or not talkers[best]:
+    """Fixes of the receiver that gives most.
+
+    From GGA or GNS, which have the height, and RMC where they are silent; from GLL only where no other is.
+    """
+    receivers: dict[Channel, dict[str, Rows]] = {}
+    for kind in ("GGA", "GNS", "RMC", "GLL"):
+        for channel in log.readings:
+            rows = _rows(log, channel, "position") if channel.address[2:] == kind else []
+            if rows:
+                talker = Channel(channel.source, channel.address[:2])
+                receivers.setdefault(talker, {})[kind] = rows
+    for kinds in receivers.values():
+        if len(kinds) > 1:
+            kinds.pop("GLL", None)
+    best = max(receivers, key=lambda talker: sum(map(len, receivers[talker].values())), default=None)
+    if best is None:
         return None
-    kinds = "+".join(kind for kind in ("GGA", "RMC") if _rows(log, best + kind, "position"))
-    return _series(path, log, best + kinds, talkers[best])
+    kinds = receivers[best]
+    rows = [row for kind in kinds.values() for row in kind]
+    return _series(path, log, best.address + "+".join(kinds), rows)
 
 
 def shared_window(series: Iterable[Series], field: str = "file") -> Window:

@@ -30,6 +30,8 @@ class Series:
         Name of the file, and the sentences or columns, that it came from.
     dated : bool
         False when the file gives times without a date, so that it cannot be joined with one that has dates.
+    tabled : bool
+        True for columns of a table; False for sentences, which are printed coarsely.
     """
 
     time_s: np.ndarray
@@ -38,6 +40,7 @@ class Series:
     file: str
     what: str
     dated: bool = True
+    tabled: bool = False
 
     def __post_init__(self) -> None:
         """Lock the arrays: a cached recording is shared by all who load it."""
@@ -84,6 +87,7 @@ def tidy(
     *,
     valid: np.ndarray | None = None,
     dated: bool = True,
+    tabled: bool = False,
 ) -> Series | None:
     """Sort by time and keep the first of several readings at one time (within 1 ms); None when empty."""
     if time_s.size == 0:
@@ -95,7 +99,7 @@ def tidy(
     first[1:] = np.diff(ordered) > 1e-3
     chosen = order[first]
     kept = np.where(flags[chosen, None], values[chosen], 0.0)
-    return Series(time_s[chosen], kept, flags[chosen], file, what, dated)
+    return Series(time_s[chosen], kept, flags[chosen], file, what, dated, tabled)
 
 
 @dataclass(frozen=True)

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
+from typing import NamedTuple
 
-from navcore.errors import Fault, InputError
+from navcore.foundation.errors import Fault, InputError
 
 LARGEST_FILE_BYTES = 64 * 1024 * 1024
 """Larger files are refused before they are read."""
 _MOST_ODD_BYTES = 0.01
+_FEW_ODD_BYTES = 8
+_NULS = re.compile(rb"\0{2,}")
 _ASCII_TEXT = bytes(range(0x20, 0x7F)) + b"\t\n\v\f\r"
 _HIGH_BYTES = bytes(range(0x80, 0x100))
 
@@ -47,25 +51,67 @@ def require_file(path: str | os.PathLike[str], where: str = "", field: str = "")
     return found
 
 
-def read_text(path: Path, field: str = "") -> str:
+class FileText(NamedTuple):
+    """Text of a file.
+
+    Attributes
+    ----------
+    text : str
+        Lines end with a line feed; those that held a NUL byte are empty.
+    damaged_lines : int
+        Count of the latter.
+    """
+
+    text: str
+    damaged_lines: int
+
+    def warnings(self) -> list[str]:
+        """Say that lines were left out."""
+        if not self.damaged_lines:
+            return []
+        return [f"{counted(self.damaged_lines, 'line')} with NUL bytes left out"]
+
+
+def counted(count: int, noun: str) -> str:
+    """``1 line``, ``2 lines``."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def read_text(path: Path, field: str = "") -> FileText:
     """Text of a file that is not binary; single odd bytes (line noise) become U+FFFD.
+
+    A run of NUL bytes counts as one: a logger that loses its power leaves them behind.
 
     Raises
     ------
     InputError
-        Binary content (NUL bytes, or more than 1 % of bytes that are not printable text).
+        Binary content (more than 1 % of bytes that are not printable text), or nothing but white space.
     """
-    raw = path.read_bytes()
-    if raw.startswith(b"\xef\xbb\xbf"):
-        raw = raw[3:]
+    raw = _unwrapped(path.read_bytes())
     text = _utf8(raw)
     odd = len(raw.translate(None, _ASCII_TEXT if text is None else _ASCII_TEXT + _HIGH_BYTES))
-    if b"\0" in raw or odd > _MOST_ODD_BYTES * len(raw):
+    if odd > max(_MOST_ODD_BYTES * len(raw), _FEW_ODD_BYTES):
         allowed = "binary content; expected a text file (NMEA 0183 or CSV)"
         raise InputError(Fault(path.name, field, None, allowed))
-    if not raw.strip():
+    if not raw.strip(b" \t\n\v\f\r\0"):
         raise InputError(Fault(path.name, field, None, "the file is empty"))
-    return text if text is not None else raw.decode("ascii", errors="replace")
+    text = text if text is not None else raw.decode("ascii", errors="replace")
+    text = text.replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n")
+    damaged = 0
+    if "\0" in text:
+        lines = text.split("\n")
+        damaged = sum("\0" in line for line in lines)
+        text = "\n".join("" if "\0" in line else line for line in lines)
+    return FileText(text, damaged)
+
+
+def _unwrapped(raw: bytes) -> bytes:
+    """Bytes of UTF-8 (or nearly so) without the mark of an encoding and without long runs of NUL bytes."""
+    if raw.startswith((b"\xff\xfe", b"\xfe\xff")) and len(raw) % 2 == 0 and raw.count(b"\0") > len(raw) // 4:
+        raw = raw.decode("utf-16", errors="replace").encode()
+    if raw.startswith(b"\xef\xbb\xbf"):
+        raw = raw[3:]
+    return _NULS.sub(b"\0", raw) if b"\0\0" in raw else raw
 
 
 def _utf8(raw: bytes) -> str | None:

@@ -1,21 +1,39 @@
-"""Parquet and MAT files with the same columns as a CSV table."""
+"""Parquet and MAT files with the same columns as a text table; what they would unpack to is bounded first.
+
+A few kilobytes of either may stand for gigabytes: types, rows and sizes are read from the file's own account
+before anything is unpacked. A file that lies in it is for the caller's limits (`navcore.io.guarded`).
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from navcore.errors import Fault, InputError
-from navcore.io.columns import known_columns, require_columns, table_recording, utc_seconds
-from navcore.io.csv import unused_columns
+from navcore.foundation.errors import Fault, InputError
+from navcore.io.cells import times, unix_or_elapsed
+from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column
+from navcore.io.columns import (
+    MOST_CELLS,
+    MOST_COLUMNS,
+    Table,
+    column_warnings,
+    require_columns,
+    table_recording,
+)
 from navcore.io.series import Recording
 
+if TYPE_CHECKING:
+    import pyarrow
+
 SNIFFED_BYTES = 512
-MOST_ROWS = 10_000_000
-"""Longer tables are refused before they are unpacked."""
+MOST_UNPACKED_BYTES = 256 * 2**20
+"""Of the columns that are used, by a Parquet file's own account."""
 _PARQUET = b"PAR1"
 _MAT = b"MATLAB 5.0 MAT-file"
+_MAT_NUMBERS = frozenset("double single int8 uint8 int16 uint16 int32 uint32 int64 uint64 logical".split())
+_LONGEST_TIME = 64
 
 
 def looks_like_table(head: bytes) -> bool:
@@ -29,60 +47,157 @@ def read_table(path: Path) -> Recording:
         parquet = stream.read(len(_PARQUET)) == _PARQUET
     kind = "Parquet table" if parquet else "MAT file"
     try:
-        names, raw = _read_parquet(path) if parquet else _read_mat(path)
+        names, columns, raw = _read_parquet(path) if parquet else _read_mat(path)
     except InputError:
         raise
+    except MemoryError:
+        raise InputError(
+            Fault(path.name, "", None, f"unpacks to more memory than a {kind} may take")
+        ) from None
     except Exception as problem:  # the libraries raise many kinds for a damaged file
-        message = str(problem).splitlines()[0] if str(problem) else type(problem).__name__
+        message = (str(problem).splitlines() or [type(problem).__name__])[0][:200]
         raise InputError(Fault(path.name, "", None, f"cannot be read as a {kind} ({message})")) from problem
-    found = require_columns(path.name, names)
-    size = {values.size for values in raw.values()}
-    if size == {0} or len(size) != 1:
-        allowed = "has no rows" if size == {0} else "the columns differ in length"
+    sizes = {values.size for values, _ in raw.values()}
+    if sizes == {0} or len(sizes) != 1:
+        allowed = "has no rows" if sizes == {0} else "the columns differ in length"
         raise InputError(Fault(path.name, "", None, allowed))
-    rows = np.arange(1, size.pop() + 1)
-    columns = {name: _numeric(path.name, name, raw[name], rows) for name in found}
-    if "utc" in columns:
-        columns.pop("t_s", None)
-    return table_recording(path.name, kind, columns, rows, unused_columns(names, found))
+    clock = next(columns[stem] for stem in (UTC, UNIX, SECONDS) if stem in columns)
+    rows = np.arange(1, sizes.pop() + 1)
+    time_s, dated = _timing(path.name, clock, raw[clock.stem][0], rows)
+    held = {stem: raw[stem] for stem in QUANTITIES if stem in raw}
+    values = {stem: _numeric(path.name, columns[stem], found) for stem, (found, _) in held.items()}
+    missing = {stem: gone for stem, (_, gone) in held.items() if gone.any()}
+    warnings = tuple(column_warnings(names, columns))
+    return table_recording(
+        Table(path.name, kind, columns, time_s, dated, clock.name.lower(), values, missing, rows, warnings)
+    )
 
 
-def _numeric(where: str, name: str, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    if name == "utc":
-        if np.issubdtype(values.dtype, np.datetime64):
-            seconds = values.astype("datetime64[us]").astype(np.int64) * 1e-6
-            return np.where(np.isnat(values), np.nan, seconds)
-        return utc_seconds(where, [str(value) for value in values], rows.tolist())
+Raw = tuple[np.ndarray, np.ndarray]
+"""Values of a column and which of them are missing."""
+
+
+def _needed(where: str, names: list[str]) -> dict[str, Column]:
+    """Columns that are used; of the columns of time one is enough."""
+    columns = require_columns(where, names)
+    if DATE in columns:
+        allowed = "date and time in two columns: join them in one column utc"
+        raise InputError(Fault(where, "", columns[DATE].name, allowed))
+    clock = next(stem for stem in (UTC, UNIX, SECONDS) if stem in columns)
+    return {stem: c for stem, c in columns.items() if stem in QUANTITIES or stem in (clock, CLOCK)}
+
+
+def _timing(where: str, clock: Column, found: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, bool]:
+    if np.issubdtype(found.dtype, np.datetime64):
+        seconds = found.astype("datetime64[us]").astype(np.int64) * 1e-6
+        return np.where(np.isnat(found), np.nan, seconds), True
+    if found.dtype.kind in "iufb":
+        numbers = found.astype(float)
+        return (numbers, False) if clock.stem == SECONDS else unix_or_elapsed(numbers)
+    distinct, places = np.unique(found.astype(str), return_inverse=True)
+    if distinct.size and distinct.dtype.itemsize > 4 * _LONGEST_TIME:
+        raise InputError(Fault(where, clock.name, None, f"holds texts of more than {_LONGEST_TIME} letters"))
+    if distinct.size == found.size:
+        return times(where, clock.name.lower(), [str(cell) for cell in found], rows.tolist())
+    seconds, dated = times(where, clock.name.lower(), distinct.tolist(), rows[: distinct.size].tolist())
+    return seconds[places], dated
+
+
+def _numeric(where: str, column: Column, values: np.ndarray) -> np.ndarray:
     try:
         return values.astype(float)
     except (TypeError, ValueError):
-        raise InputError(Fault(where, name, None, "must be a column of numbers")) from None
+        raise InputError(Fault(where, column.name.lower(), None, "must be a column of numbers")) from None
 
 
-def _read_parquet(path: Path) -> tuple[list[str], dict[str, np.ndarray]]:
+def _refuse_size(where: str, rows: int, columns: int, size: int = 0) -> None:
+    if columns and rows > MOST_CELLS // columns:
+        allowed = f"has {rows} rows of {columns} columns that are used; at most {MOST_CELLS} cells are read"
+        raise InputError(Fault(where, "", None, allowed))
+    if size > MOST_UNPACKED_BYTES:
+        allowed = f"unpacks to {size / 2**20:.0f} MiB; at most {MOST_UNPACKED_BYTES // 2**20} MiB are read"
+        raise InputError(Fault(where, "", None, allowed))
+
+
+def _read_parquet(path: Path) -> tuple[list[str], dict[str, Column], dict[str, Raw]]:
     import pyarrow.parquet as parquet
 
     with parquet.ParquetFile(path) as file:
-        _require_rows(path, file.metadata.num_rows)
-        names = file.schema_arrow.names
-        found = known_columns(names)
-        table = file.read(columns=[names[index] for index in found.values()])
-    columns = dict(zip(found, table.columns, strict=True))
-    return names, {name: column.to_pandas().to_numpy() for name, column in columns.items()}
+        _require_few(path.name, file.metadata.num_columns)
+        names, schema = file.schema_arrow.names, file.schema_arrow
+        columns = _needed(path.name, names)
+        for column in columns.values():
+            _require_plain(path.name, column, schema.field(column.index).type)
+        _refuse_size(path.name, file.metadata.num_rows, len(columns), _unpacked(file, columns))
+        texts = [c.name for c in columns.values() if not _is_number(schema.field(c.index).type)]
+    # A text that repeats is kept once: 0.8 MB of such a column may be gigabytes otherwise.
+    with parquet.ParquetFile(path, read_dictionary=texts) as file:
+        table = file.read(columns=[names[column.index] for column in columns.values()], use_threads=False)
+    return names, columns, dict(zip(columns, map(_values, table.columns), strict=True))
 
 
-def _read_mat(path: Path) -> tuple[list[str], dict[str, np.ndarray]]:
+def _require_few(where: str, columns: int) -> None:
+    if columns > MOST_COLUMNS:
+        raise InputError(
+            Fault(where, "", None, f"has {columns} columns; at most {MOST_COLUMNS} are read: no log")
+        )
+
+
+def _unpacked(file: Any, columns: dict[str, Column]) -> int:
+    """Bytes that the used columns unpack to, by the file's own account."""
+    metadata, wanted = file.metadata, {column.name for column in columns.values()}
+    groups = (metadata.row_group(index) for index in range(metadata.num_row_groups))
+    chunks = (group.column(index) for group in groups for index in range(group.num_columns))
+    return sum(chunk.total_uncompressed_size for chunk in chunks if chunk.path_in_schema in wanted)
+
+
+def _is_number(kind: pyarrow.DataType) -> bool:
+    import pyarrow.types as types
+
+    return (
+        types.is_floating(kind) or types.is_integer(kind) or types.is_boolean(kind) or types.is_decimal(kind)
+    )
+
+
+def _require_plain(where: str, column: Column, kind: pyarrow.DataType) -> None:
+    """Refuse lists, structs and texts where numbers belong, before they are read."""
+    import pyarrow.types as types
+
+    if _is_number(kind):
+        return
+    if column.stem in QUANTITIES:
+        raise InputError(Fault(where, column.name.lower(), None, "must be a column of numbers"))
+    text = types.is_string(kind) or types.is_large_string(kind) or types.is_dictionary(kind)
+    if not (text or types.is_timestamp(kind) or types.is_date(kind)):
+        raise InputError(Fault(where, column.name, None, "must be a column of times"))
+
+
+def _values(column: pyarrow.ChunkedArray) -> Raw:
+    import pyarrow.types as types
+
+    missing = column.is_null().to_numpy()
+    if types.is_dictionary(column.type):
+        joined = column.unify_dictionaries().combine_chunks()
+        chunk = joined.chunk(0) if hasattr(joined, "chunks") else joined
+        texts = np.array([str(text)[: _LONGEST_TIME + 1] for text in chunk.dictionary.to_pylist()] or [""])
+        return texts[chunk.indices.fill_null(0).to_numpy(zero_copy_only=False)], missing
+    if types.is_decimal(column.type):
+        column = column.cast("float64")
+    return np.asarray(column.to_numpy()), missing
+
+
+def _read_mat(path: Path) -> tuple[list[str], dict[str, Column], dict[str, Raw]]:
     from scipy.io import loadmat, whosmat
 
-    shapes = {name: shape for name, shape, _ in whosmat(str(path))}
-    names = list(shapes)
-    found = {name: names[index] for name, index in known_columns(names).items()}
-    for name in found.values():
-        _require_rows(path, int(np.prod(shapes[name])))
-    content = loadmat(str(path), variable_names=list(found.values()))
-    return names, {name: np.ravel(content[stored]) for name, stored in found.items()}
-
-
-def _require_rows(path: Path, count: int) -> None:
-    if count > MOST_ROWS:
-        raise InputError(Fault(path.name, "", count, f"at most {MOST_ROWS} rows are read"))
+    held = {name: (shape, kind) for name, shape, kind in whosmat(str(path))}
+    names = list(held)
+    columns = _needed(path.name, names)
+    for column in columns.values():
+        shape, kind = held[names[column.index]]
+        if kind not in _MAT_NUMBERS:
+            allowed = f"must be a column of numbers, is of class {kind}"
+            raise InputError(Fault(path.name, column.name.lower(), None, allowed))
+        _refuse_size(path.name, int(np.prod(shape, dtype=object)), len(columns))
+    content = loadmat(str(path), variable_names=[names[column.index] for column in columns.values()])
+    raw = {stem: np.ravel(content[names[column.index]]) for stem, column in columns.items()}
+    return names, columns, {stem: (values, np.zeros(values.size, bool)) for stem, values in raw.items()}

@@ -3,9 +3,9 @@
 Seven states x = [dV_E, dV_N, dL, dlambda, phi_E, phi_N, phi_U], integrated by RK4 at the run's step; sensor
 errors and the law's correction are held over a step. With the Schuler frequency at 1.24e-3 rad/s and a step
 of 1 s the RK4 error is below 1e-14 a step; what remains is the hold of the correction, half a step of delay,
-which belongs to the sampled law itself (contract: the *difference* of the last log epoch is held).
+which belongs to the sampled law itself (interface.md: the *difference* of the last log epoch is held).
 
-The equations are those of physics.md section 2 with transport and Coriolis terms and f x phi along the
+The equations are those of theory.md section 2 with transport and Coriolis terms and f x phi along the
 trajectory (Titterton & Weston ch. 12; Groves ch. 14); the vertical channel is locked.
 """
 
@@ -13,38 +13,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from navcore.compiled import inlined, kernel
-from navcore.control.law import Law, law_step
-from navcore.control.layout import DAMPED, DIFFERENCE, EPOCH_INDEX, MEASURE, VALID, WANTED, XI
-from navcore.mechanization.recorder import Recorder, flush, record
-from navcore.mechanization.trajectory import (
-    EARTH_N,
-    EARTH_U,
-    F_E,
-    F_N,
-    F_U,
-    INV_M,
-    INV_N,
-    LAW_ACCEL,
-    LAW_HEADING,
-    LAW_V_E,
-    LAW_V_N,
-    N_COS,
-    SEC_LAT,
-    TAN_LAT,
-    UP_LAT,
-    V_E,
-    V_N,
-    V_U,
-    W_E,
-    W_N,
-    W_U,
-    Coefficients,
-    M,
-)
+from navcore.foundation.compiled import inlined, kernel
+from navcore.law.law import Law, law_step
+from navcore.law.records import E, N, Sensed, Watched
+from navcore.mechanization.recorder import Errors, Recorder, flush, given_out, record
+from navcore.mechanization.trajectory import Coefficients
 from navcore.sensors.base import ReferenceErrors, SensorErrors
 
 STATES = 7
@@ -55,116 +32,159 @@ VELOCITY_LIMIT = 1e5
 """m/s."""
 
 
-@inlined
-def _rate(c, i, x0, x1, x2, x4, x5, x6, eps_e, eps_n, eps_u, nab_e, nab_n, c_e, c_n, a_e, a_n):
-    """Time derivative of the seven states with row i of the coefficients."""
-    up = x0 * c[i, TAN_LAT] * c[i, INV_N] + c[i, UP_LAT] * x2
-    coriolis_up = c[i, W_U] + c[i, EARTH_U]
-    d_up = 2.0 * c[i, EARTH_N] * x2 + up
-    d_north = -2.0 * c[i, EARTH_U] * x2 + x0 * c[i, INV_N]
-    r0 = (
-        c[i, F_N] * x6
-        - c[i, F_U] * x5
-        + coriolis_up * x1
-        + d_up * c[i, V_N]
-        - d_north * c[i, V_U]
-        + nab_e
-        + a_e
-    )
-    r1 = (
-        c[i, F_U] * x4
-        - c[i, F_E] * x6
-        - coriolis_up * x0
-        - d_up * c[i, V_E]
-        - x1 * c[i, INV_M] * c[i, V_U]
-        + nab_n
-        + a_n
-    )
-    r2 = x1 * c[i, INV_M]
-    r3 = (x0 + c[i, V_E] * c[i, TAN_LAT] * x2) * c[i, INV_N] * c[i, SEC_LAT]
-    r4 = c[i, W_U] * x5 - c[i, W_N] * x6 - (x1 + c_n) * c[i, INV_M] - eps_e
-    r5 = c[i, W_E] * x6 - c[i, W_U] * x4 + (x0 + c_e) * c[i, INV_N] - c[i, EARTH_U] * x2 - eps_n
-    r6 = c[i, W_N] * x4 - c[i, W_E] * x5 + up + c[i, EARTH_N] * x2 - eps_u
-    return r0, r1, r2, r3, r4, r5, r6
+class LogErrors(NamedTuple):
+    """Errors of the reference velocity, as `navcore.sensors.base.ReferenceErrors`."""
+
+    time_s: np.ndarray
+    error: np.ndarray
+    valid: np.ndarray
+    body_frame: bool
+    hold_s: float
+
+
+class Held(NamedTuple):
+    """What holds over a step: sensor errors (rad/s, m/s^2), and the law's c (m/s) and a (m/s^2)."""
+
+    eps_e: float
+    eps_n: float
+    eps_u: float
+    nabla_e: float
+    nabla_n: float
+    c_e: float
+    c_n: float
+    a_e: float
+    a_n: float
 
 
 @inlined
-def _read_log(t, x, v_e, v_n, epoch_s, epoch_error, epoch_valid, body_frame, hold_s, s):
+def _rate(c, x, held):
+    """Time derivative of the `Errors` x with the coefficients of one half step."""
+    up = x.dv_e * c.tan_lat * c.inv_n + c.up_lat * x.d_lat
+    coriolis_up = c.w_u + c.earth_u
+    d_up = 2.0 * c.earth_n * x.d_lat + up
+    d_north = -2.0 * c.earth_u * x.d_lat + x.dv_e * c.inv_n
+    return Errors(
+        c.f_n * x.phi_u
+        - c.f_u * x.phi_n
+        + coriolis_up * x.dv_n
+        + d_up * c.v_n
+        - d_north * c.v_u
+        + held.nabla_e
+        + held.a_e,
+        c.f_u * x.phi_e
+        - c.f_e * x.phi_u
+        - coriolis_up * x.dv_e
+        - d_up * c.v_e
+        - x.dv_n * c.inv_m * c.v_u
+        + held.nabla_n
+        + held.a_n,
+        x.dv_n * c.inv_m,
+        (x.dv_e + c.v_e * c.tan_lat * x.d_lat) * c.inv_n * c.sec_lat,
+        c.w_u * x.phi_n - c.w_n * x.phi_u - (x.dv_n + held.c_n) * c.inv_m - held.eps_e,
+        c.w_e * x.phi_u - c.w_u * x.phi_e + (x.dv_e + held.c_e) * c.inv_n - c.earth_u * x.d_lat - held.eps_n,
+        c.w_n * x.phi_e - c.w_e * x.phi_n + up + c.earth_n * x.d_lat - held.eps_u,
+    )
+
+
+@inlined
+def _moved(x, h, k):
+    """Return x + h k."""
+    return Errors(
+        x.dv_e + h * k.dv_e,
+        x.dv_n + h * k.dv_n,
+        x.d_lat + h * k.d_lat,
+        x.d_lon + h * k.d_lon,
+        x.phi_e + h * k.phi_e,
+        x.phi_n + h * k.phi_n,
+        x.phi_u + h * k.phi_u,
+    )
+
+
+@inlined
+def _mean(k, l, m, n):  # noqa: E741
+    """Return k + 2 (l + m) + n: six times the mean rate of the step."""
+    return Errors(
+        k.dv_e + 2.0 * (l.dv_e + m.dv_e) + n.dv_e,
+        k.dv_n + 2.0 * (l.dv_n + m.dv_n) + n.dv_n,
+        k.d_lat + 2.0 * (l.d_lat + m.d_lat) + n.d_lat,
+        k.d_lon + 2.0 * (l.d_lon + m.d_lon) + n.d_lon,
+        k.phi_e + 2.0 * (l.phi_e + m.phi_e) + n.phi_e,
+        k.phi_n + 2.0 * (l.phi_n + m.phi_n) + n.phi_n,
+        k.phi_u + 2.0 * (l.phi_u + m.phi_u) + n.phi_u,
+    )
+
+
+@inlined
+def runge_kutta(x, h, begin, middle, end, held):
+    """One step of the classical Runge-Kutta method from coefficients at its begin, middle and end."""
+    k = _rate(begin, x, held)
+    l = _rate(middle, _moved(x, 0.5 * h, k), held)  # noqa: E741
+    m = _rate(middle, _moved(x, 0.5 * h, l), held)
+    n = _rate(end, _moved(x, h, m), held)
+    return _moved(x, h / 6.0, _mean(k, l, m, n))
+
+
+@inlined
+def read_log(t, x, v_e, v_n, log, s):
     """Take the newest log epoch at or before t and hold its difference V_r - V_c (contract, log samples)."""
-    j = int(s[EPOCH_INDEX])
+    j = s.epoch
     fresh = False
-    while j + 1 < epoch_s.shape[0] and epoch_s[j + 1] <= t + 1e-9:
+    while j + 1 < log.time_s.shape[0] and log.time_s[j + 1] <= t + 1e-9:
         j += 1
         fresh = True
-    s[EPOCH_INDEX] = j
+    s.epoch = j
     if fresh:
-        d_e = epoch_error[j, 0] - x[0]
-        d_n = epoch_error[j, 1] - x[1]
-        if body_frame:
-            d_e += x[6] * v_n
-            d_n -= x[6] * v_e
-        s[DIFFERENCE] = d_e
-        s[DIFFERENCE + 1] = d_n
-    s[VALID] = 1.0 if j >= 0 and epoch_valid[j] and t - epoch_s[j] <= hold_s else 0.0
+        d_e = log.error[j, 0] - x.dv_e
+        d_n = log.error[j, 1] - x.dv_n
+        if log.body_frame:
+            d_e += x.phi_u * v_n
+            d_n -= x.phi_u * v_e
+        s.difference[E], s.difference[N] = d_e, d_n
+    s.valid = j >= 0 and log.valid[j] and t - log.time_s[j] <= log.hold_s
+
+
+@inlined
+def in_range(x):
+    """Whether the linear model still says something."""
+    level = abs(x.phi_e) < TILT_LIMIT and abs(x.phi_n) < TILT_LIMIT and abs(x.phi_u) < TILT_LIMIT
+    slow = abs(x.dv_e) < VELOCITY_LIMIT and abs(x.dv_n) < VELOCITY_LIMIT
+    return level and slow and math.isfinite(x.d_lat + x.d_lon)
 
 
 @kernel
-def _advance(
-    first, last, final, h, half, law_rows, gyro, accel,
-    epoch_s, epoch_error, epoch_valid, body_frame, hold_s,
-    p, s, ring, x, row_steps, rows, stats, bin_width, bin_low, bin_high, bin_order, buffer, cursor,
-):  # fmt: skip
+def _advance(first, last, final, h, half, law_input, gyro, accel, log, law, state, recorder):
+    """Integrate steps first..last of 0..final; ``state`` (7,), law and recorder go on from call to call."""
     half_stride = 1 if half.shape[0] > 1 else 0
-    law_stride = 1 if law_rows.shape[0] > 1 else 0
+    law_stride = 1 if law_input.shape[0] > 1 else 0
     gyro_stride = 1 if gyro.shape[0] > 1 else 0
     accel_stride = 1 if accel.shape[0] > 1 else 0
-    h2, h6 = 0.5 * h, h / 6.0
+    s = law.s
+    x = Errors(state[0], state[1], state[2], state[3], state[4], state[5], state[6])
+    reached, code = last, UNDER_WAY
     for k in range(first, last):
-        x0, x1, x2, x3, x4, x5, x6 = x[0], x[1], x[2], x[3], x[4], x[5], x[6]
-        if not (abs(x4) < TILT_LIMIT and abs(x5) < TILT_LIMIT and abs(x6) < TILT_LIMIT
-                and abs(x0) < VELOCITY_LIMIT and abs(x1) < VELOCITY_LIMIT
-                and math.isfinite(x2 + x3)):  # fmt: skip
-            flush(k - 1, bin_width, buffer, stats, bin_low, bin_high, bin_order, cursor)
-            return k, DIVERGED
+        if not in_range(x):
+            flush(k - 1, recorder)
+            reached, code = k, DIVERGED
+            break
         t = k * h
-        j = k * law_stride
-        v_e, v_n = law_rows[j, LAW_V_E], law_rows[j, LAW_V_N]
-        _read_log(t, x, v_e, v_n, epoch_s, epoch_error, epoch_valid, body_frame, hold_s, s)
-        c_e, c_n, a_e, a_n = law_step(
-            p, s, ring, v_e + x0, v_n + x1, law_rows[j, LAW_ACCEL], law_rows[j, LAW_HEADING]
-        )
-        i0 = 2 * k * half_stride
-        record(
-            k, x, half[i0, M], half[i0, N_COS], s[DAMPED], s[XI], s[WANTED], s[MEASURE],
-            row_steps, rows, buffer, cursor,
-        )  # fmt: skip
-        if (k + 1) % bin_width == 0 or k + 1 == last:
-            flush(k, bin_width, buffer, stats, bin_low, bin_high, bin_order, cursor)
+        told = law_input[k * law_stride]
+        read_log(t, x, told.v_e, told.v_n, log, s)
+        c = law_step(law, Sensed(told.v_e + x.dv_e, told.v_n + x.dv_n, told.heading))
+        begin = half[2 * k * half_stride]
+        watched = Watched(float(s.wanted), 1.0 if s.damped else 0.0, s.xi, s.measure)
+        record(k, given_out(x, s), begin.m, begin.n_cos, watched, recorder)
+        if (k + 1) % recorder.bin_width == 0 or k + 1 == last:
+            flush(k, recorder)
         if k == final:
-            return k, COMPLETE
+            reached, code = k, COMPLETE
+            break
         g, a = k * gyro_stride, k * accel_stride
-        eps_e, eps_n, eps_u, nab_e, nab_n = gyro[g, 0], gyro[g, 1], gyro[g, 2], accel[a, 0], accel[a, 1]
-        i1, i2 = i0 + half_stride, i0 + 2 * half_stride
-        k0, k1, k2, k3, k4, k5, k6 = _rate(
-            half, i0, x0, x1, x2, x4, x5, x6,
-            eps_e, eps_n, eps_u, nab_e, nab_n, c_e, c_n, a_e, a_n)  # fmt: skip
-        l0, l1, l2, l3, l4, l5, l6 = _rate(
-            half, i1, x0 + h2 * k0, x1 + h2 * k1, x2 + h2 * k2, x4 + h2 * k4, x5 + h2 * k5, x6 + h2 * k6,
-            eps_e, eps_n, eps_u, nab_e, nab_n, c_e, c_n, a_e, a_n)  # fmt: skip
-        m0, m1, m2, m3, m4, m5, m6 = _rate(
-            half, i1, x0 + h2 * l0, x1 + h2 * l1, x2 + h2 * l2, x4 + h2 * l4, x5 + h2 * l5, x6 + h2 * l6,
-            eps_e, eps_n, eps_u, nab_e, nab_n, c_e, c_n, a_e, a_n)  # fmt: skip
-        n0, n1, n2, n3, n4, n5, n6 = _rate(
-            half, i2, x0 + h * m0, x1 + h * m1, x2 + h * m2, x4 + h * m4, x5 + h * m5, x6 + h * m6,
-            eps_e, eps_n, eps_u, nab_e, nab_n, c_e, c_n, a_e, a_n)  # fmt: skip
-        x[0] = x0 + h6 * (k0 + 2.0 * (l0 + m0) + n0)
-        x[1] = x1 + h6 * (k1 + 2.0 * (l1 + m1) + n1)
-        x[2] = x2 + h6 * (k2 + 2.0 * (l2 + m2) + n2)
-        x[3] = x3 + h6 * (k3 + 2.0 * (l3 + m3) + n3)
-        x[4] = x4 + h6 * (k4 + 2.0 * (l4 + m4) + n4)
-        x[5] = x5 + h6 * (k5 + 2.0 * (l5 + m5) + n5)
-        x[6] = x6 + h6 * (k6 + 2.0 * (l6 + m6) + n6)
-    return last, UNDER_WAY
+        held = Held(gyro[g, 0], gyro[g, 1], gyro[g, 2], accel[a, 0], accel[a, 1], c.c_e, c.c_n, c.a_e, c.a_n)
+        middle, end = half[(2 * k + 1) * half_stride], half[(2 * k + 2) * half_stride]
+        x = runge_kutta(x, h, begin, middle, end, held)
+    state[0], state[1], state[2], state[3] = x.dv_e, x.dv_n, x.d_lat, x.d_lon
+    state[4], state[5], state[6] = x.phi_e, x.phi_n, x.phi_u
+    return reached, code
 
 
 @dataclass
@@ -195,13 +215,12 @@ class ErrorModelRun:
     def advance(self, steps: int) -> bool:
         """Integrate up to ``steps`` further steps; return True when the run is complete or has diverged."""
         last = min(self.position + steps, self.steps + 1)
-        c, r, log = self.coefficients, self.recorder, self.reference
+        c, log = self.coefficients, self.reference
         reached, code = _advance(
             self.position, last, self.steps, self.step_s, c.half, c.law,
             self.sensors.gyro, self.sensors.accel,
-            log.time_s, log.error, log.valid, log.body_frame, log.hold_s,
-            self.law.p, self.law.s, self.law.ring, self.x, r.row_steps, r.rows, r.stats,
-            r.bin_width, r.bin_low, r.bin_high, r.bin_order, r.buffer, r.cursor,
+            LogErrors(log.time_s, log.error, log.valid, log.body_frame, float(log.hold_s)),
+            self.law, self.x, self.recorder,
         )  # fmt: skip
         self.diverged = code == DIVERGED
         self.position = reached
@@ -209,7 +228,7 @@ class ErrorModelRun:
 
 
 def system_matrix(lat: float, radius: float, gravity: float, earth_rate: float) -> np.ndarray:
-    """System matrix of the undamped model at rest, shape (7, 7) (physics.md section 2).
+    """System matrix of the undamped model at rest, shape (7, 7) (theory.md section 2).
 
     Parameters
     ----------

@@ -7,11 +7,12 @@ are formed on the way, so that a peak of one second is neither lost in the metri
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from navcore.compiled import inlined
+from navcore.foundation.compiled import inlined
+from navcore.foundation.records import COUNT, new_record, record_type
 
 # Recorded quantities, in this order everywhere.
 PHI_E, PHI_N, PHI_U, DV_E, DV_N, D_LAT, D_LON, POSITION = range(8)
@@ -24,14 +25,17 @@ LAW_COLUMNS = (WANTED_COLUMN, DAMPED_COLUMN, XI_COLUMN, MEASURE_COLUMN)
 
 SUM, SUM_SQUARES, MAX_ABS, FINAL = range(4)
 STATISTICS = 4
-CURSOR_ROW, CURSOR_COUNT, CURSOR_BUFFER = 0, 1, 2
+CURSOR = record_type(
+    row=COUNT,  # rows written
+    count=COUNT,  # states counted
+    buffer=COUNT,  # states in the buffer
+)
 
 MAX_BINS = 1000
 
 
-@dataclass
-class Recorder:
-    """Arrays that a kernel fills.
+class Recorder(NamedTuple):
+    """What a kernel fills; given to it as a whole.
 
     Attributes
     ----------
@@ -49,8 +53,8 @@ class Recorder:
         1 where the maximum came after the minimum.
     buffer : ndarray, shape (8, bin_width)
         Quantities of the steps since the last flush.
-    cursor : ndarray of int, shape (3,)
-        Rows written; states counted; states in the buffer.
+    cursor : record
+        `CURSOR`: how far all this is filled.
     """
 
     row_steps: np.ndarray
@@ -61,7 +65,19 @@ class Recorder:
     bin_high: np.ndarray
     bin_order: np.ndarray
     buffer: np.ndarray
-    cursor: np.ndarray
+    cursor: np.void
+
+
+class Errors(NamedTuple):
+    """Error state of a navigation, SI: dV_E, dV_N, dL, dlambda, phi_E, phi_N, phi_U."""
+
+    dv_e: float
+    dv_n: float
+    d_lat: float
+    d_lon: float
+    phi_e: float
+    phi_n: float
+    phi_u: float
 
 
 def output_steps(steps: int, step_s: float, output_step_s: float) -> np.ndarray:
@@ -85,42 +101,54 @@ def make_recorder(steps: int, step_s: float, output_step_s: float) -> Recorder:
         bin_high=np.full((bins, QUANTITIES), -np.inf),
         bin_order=np.zeros((bins, QUANTITIES), np.int8),
         buffer=np.zeros((QUANTITIES, width)),
-        cursor=np.zeros(3, np.int64),
+        cursor=new_record(CURSOR),
     )
 
 
 @inlined
-def record(k, x, m, n_cos, damped, xi, wanted, measure, row_steps, rows, buffer, cursor):
-    """Take the error state x (order: dV_E, dV_N, dL, dlambda, phi) and the law's state of step k.
-
-    The law's values come as numbers: handed over as an array they cost a sixth of the integration.
-    """
-    d_lat, d_lon = m * x[2], n_cos * x[3]
-    position = math.sqrt(d_lat * d_lat + d_lon * d_lon)
-    i = cursor[CURSOR_BUFFER]
-    buffer[0, i], buffer[1, i], buffer[2, i], buffer[3, i], buffer[4, i] = x[4], x[5], x[6], x[0], x[1]
-    buffer[5, i], buffer[6, i], buffer[7, i] = d_lat, d_lon, position
-    cursor[CURSOR_BUFFER] = i + 1
-    j = cursor[CURSOR_ROW]
-    if j < row_steps.shape[0] and row_steps[j] == k:
-        for q in range(QUANTITIES):
-            rows[j, q] = buffer[q, i]
-        rows[j, DAMPED_COLUMN], rows[j, XI_COLUMN] = damped, xi
-        rows[j, WANTED_COLUMN], rows[j, MEASURE_COLUMN] = wanted, measure
-        cursor[CURSOR_ROW] = j + 1
+def given_out(x, s):
+    """Errors of what the system gives out: of the computed velocity less what the law takes off."""
+    dv_e, dv_n = x.dv_e - s.output[0], x.dv_n - s.output[1]
+    return Errors(dv_e, dv_n, x.d_lat, x.d_lon, x.phi_e, x.phi_n, x.phi_u)
 
 
 @inlined
-def flush(k, bin_width, buffer, stats, bin_low, bin_high, bin_order, cursor):
+def record(k, x, m, n_cos, watched, recorder):
+    """Take the `Errors` x and the law's `Watched` values of step k; m, n_cos turn angles into metres.
+
+    The law's values come as numbers: handed over as an array they cost a sixth of the integration.
+    """
+    buffer, cursor = recorder.buffer, recorder.cursor
+    d_lat, d_lon = m * x.d_lat, n_cos * x.d_lon
+    i = cursor.buffer
+    buffer[0, i], buffer[1, i], buffer[2, i], buffer[3, i], buffer[4, i] = (
+        x.phi_e, x.phi_n, x.phi_u, x.dv_e, x.dv_n,
+    )  # fmt: skip
+    buffer[5, i], buffer[6, i], buffer[7, i] = d_lat, d_lon, math.sqrt(d_lat * d_lat + d_lon * d_lon)
+    cursor.buffer = i + 1
+    j = cursor.row
+    if j < recorder.row_steps.shape[0] and recorder.row_steps[j] == k:
+        rows = recorder.rows
+        for q in range(QUANTITIES):
+            rows[j, q] = buffer[q, i]
+        rows[j, DAMPED_COLUMN], rows[j, XI_COLUMN] = watched.damped, watched.xi
+        rows[j, WANTED_COLUMN], rows[j, MEASURE_COLUMN] = watched.wanted, watched.measure
+        cursor.row = j + 1
+
+
+@inlined
+def flush(k, recorder):
     """Empty the buffer, whose last entry is step k, into the statistics and the bin of step k.
 
     One quantity at a time: with all eight in one pass every sum goes through memory, which took three times
     as long as the integration itself.
     """
-    b, count = k // bin_width, cursor[CURSOR_BUFFER]
+    b, count = k // recorder.bin_width, recorder.cursor.buffer
+    buffer, stats = recorder.buffer, recorder.stats
     for q in range(QUANTITIES):
         total, squares, largest = stats[q, SUM], stats[q, SUM_SQUARES], stats[q, MAX_ABS]
-        low, high, order = bin_low[b, q], bin_high[b, q], bin_order[b, q]
+        low, high = recorder.bin_low[b, q], recorder.bin_high[b, q]
+        order = recorder.bin_order[b, q]
         for i in range(count):
             value = buffer[q, i]
             total += value
@@ -133,6 +161,7 @@ def flush(k, bin_width, buffer, stats, bin_low, bin_high, bin_order, cursor):
         stats[q, SUM], stats[q, SUM_SQUARES], stats[q, MAX_ABS] = total, squares, largest
         if count > 0:
             stats[q, FINAL] = buffer[q, count - 1]
-        bin_low[b, q], bin_high[b, q], bin_order[b, q] = low, high, order
-    cursor[CURSOR_COUNT] += count
-    cursor[CURSOR_BUFFER] = 0
+        recorder.bin_low[b, q], recorder.bin_high[b, q] = low, high
+        recorder.bin_order[b, q] = order
+    recorder.cursor.count += count
+    recorder.cursor.buffer = 0

@@ -7,24 +7,30 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from navcore.compiled import inlined, kernel
-from navcore.earth import EARTH_RATE, Earth, meridian_radius, normal_gravity, prime_vertical_radius
+from navcore.foundation.compiled import inlined, kernel
+from navcore.foundation.earth import EARTH_RATE, Earth, meridian_radius, normal_gravity, prime_vertical_radius
+from navcore.foundation.records import REAL, record_type
 from navcore.motion.base import AE, AN, AU, HEADING, HEIGHT, LAT, VE, VN, VU, Truth
 
-# Columns of Coefficients.half, one row each half step.
-W_E, W_N, W_U = 0, 1, 2  # omega_in, rad/s
-F_E, F_N, F_U = 3, 4, 5  # specific force, m/s^2
-INV_M, INV_N = 6, 7  # 1/(M + h), 1/(N + h), 1/m
-TAN_LAT = 8
-EARTH_N, EARTH_U = 9, 10  # Earth rate, rad/s
-V_E, V_N, V_U = 11, 12, 13  # true velocity as it enters the Coriolis and transport terms, m/s
-UP_LAT = 14  # d(transport rate up)/d(latitude), rad/s per rad
-SEC_LAT = 15
-M, N_COS = 16, 17  # M and N cos L without height: what turns dL, dlambda into metres
-COLUMNS = 18
-
-# Columns of Coefficients.law, one row each step.
-LAW_V_E, LAW_V_N, LAW_ACCEL, LAW_HEADING = 0, 1, 2, 3
+HALF_STEP = record_type(
+    w_e=REAL, w_n=REAL, w_u=REAL,  # omega_in, rad/s
+    f_e=REAL, f_n=REAL, f_u=REAL,  # specific force, m/s^2
+    inv_m=REAL, inv_n=REAL,  # 1/(M + h), 1/(N + h), 1/m
+    tan_lat=REAL,
+    earth_n=REAL, earth_u=REAL,  # Earth rate, rad/s
+    v_e=REAL, v_n=REAL, v_u=REAL,  # true velocity as it enters the Coriolis and transport terms, m/s
+    up_lat=REAL,  # d(transport rate up)/d(latitude), rad/s per rad
+    sec_lat=REAL,
+    m=REAL, n_cos=REAL,  # M + h and (N + h) cos L: what turns dL, dlambda into metres
+)  # fmt: skip
+"""Coefficients at one half step."""
+COLUMNS = len(HALF_STEP.names or ())
+"""Numbers of a half step's coefficients."""
+LAW_INPUT = record_type(
+    v_e=REAL, v_n=REAL,  # true velocity, m/s
+    heading=REAL,  # rad
+)  # fmt: skip
+"""What the law is told of the true motion at one step."""
 
 
 @dataclass(frozen=True)
@@ -33,14 +39,24 @@ class Coefficients:
 
     Attributes
     ----------
-    half : ndarray, shape (2 n + 1, COLUMNS) or (1, COLUMNS)
+    half : ndarray of `HALF_STEP`, shape (2 n + 1,) or (1,)
         Coefficients each half step; one row when nothing changes.
-    law : ndarray, shape (n + 1, 4) or (1, 4)
-        True V_E, V_N (m/s), norm of the horizontal acceleration (m/s^2) and heading (rad) each step.
+    law : ndarray of `LAW_INPUT`, shape (n + 1,) or (1,)
+        What the law is told each step.
     """
 
     half: np.ndarray
     law: np.ndarray
+
+
+def table_of(half: np.ndarray) -> np.ndarray:
+    """View records of `HALF_STEP` as a table (n, COLUMNS), to reckon with whole rows."""
+    return half.view(float).reshape(-1, COLUMNS)
+
+
+def named(table: np.ndarray) -> np.ndarray:
+    """View a table (n, COLUMNS) as n records of `HALF_STEP` again."""
+    return np.ascontiguousarray(table).view(HALF_STEP)[:, 0]
 
 
 @inlined
@@ -64,16 +80,16 @@ def _fill(values, coupled, e2, g_equator, k, half):
         w_e, w_n, w_u = -v_n * inv_m, earth_n + v_e * inv_n, earth_u + transport_u
         # Coriolis: (2 omega_ie + omega_en) x V
         c_n, c_u = w_n + earth_n, w_u + earth_u
-        c[W_E], c[W_N], c[W_U] = w_e, w_n, w_u
-        c[F_E] = coupled * row[AE] + c_n * v_u - c_u * v_n
-        c[F_N] = coupled * row[AN] + c_u * v_e - w_e * v_u
-        c[F_U] = coupled * row[AU] + w_e * v_n - c_n * v_e + gravity
-        c[INV_M], c[INV_N], c[TAN_LAT] = inv_m, inv_n, coupled * tan_lat
-        c[EARTH_N], c[EARTH_U] = earth_n, earth_u
-        c[V_E], c[V_N], c[V_U] = v_e, v_n, v_u
-        c[UP_LAT] = v_e * inv_n / (cos_lat * cos_lat)
-        c[SEC_LAT] = 1.0 / cos_lat
-        c[M], c[N_COS] = m, n * cos_lat
+        c.w_e, c.w_n, c.w_u = w_e, w_n, w_u
+        c.f_e = coupled * row[AE] + c_n * v_u - c_u * v_n
+        c.f_n = coupled * row[AN] + c_u * v_e - w_e * v_u
+        c.f_u = coupled * row[AU] + w_e * v_n - c_n * v_e + gravity
+        c.inv_m, c.inv_n, c.tan_lat = inv_m, inv_n, coupled * tan_lat
+        c.earth_n, c.earth_u = earth_n, earth_u
+        c.v_e, c.v_n, c.v_u = v_e, v_n, v_u
+        c.up_lat = v_e * inv_n / (cos_lat * cos_lat)
+        c.sec_lat = 1.0 / cos_lat
+        c.m, c.n_cos = m + height, (n + height) * cos_lat
 
 
 def coefficients(truth_half: Truth, earth: Earth, coupled: bool) -> Coefficients:
@@ -89,10 +105,9 @@ def coefficients(truth_half: Truth, earth: Earth, coupled: bool) -> Coefficients
         False for the `channel` fidelity: no Earth rate, no transport and Coriolis terms, f = (0, 0, g).
     """
     values = truth_half.values
-    half = np.empty((values.shape[0], COLUMNS))
+    half = np.empty(values.shape[0], HALF_STEP)
     _fill(values, 1.0 if coupled else 0.0, earth.e2, earth.g_equator, earth.somigliana_k, half)
     steps = values[::2]
-    law = np.column_stack(
-        [steps[:, VE], steps[:, VN], np.hypot(steps[:, AE], steps[:, AN]), steps[:, HEADING]]
-    )
+    law = np.empty(len(steps), LAW_INPUT)
+    law["v_e"], law["v_n"], law["heading"] = steps[:, VE], steps[:, VN], steps[:, HEADING]
     return Coefficients(half, law)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, TypeAlias
 
-from pydantic import Field
-
+from navcore.foundation.registry import any_of, registry
 from navcore.motion.base import MotionParameters
 from navcore.motion.legs import LegsMotion
 from navcore.motion.profile import ProfileMotion
@@ -14,25 +13,29 @@ from navcore.motion.swing import SwingMotion
 from navcore.motion.track import TrackMotion
 from navcore.motion.waves import WavesMotion
 
-MOTIONS: dict[str, type[MotionParameters]] = {
-    "static": StaticMotion,
-    "swing": SwingMotion,
-    "legs": LegsMotion,
-    "profile": ProfileMotion,
-    "waves": WavesMotion,
-    "track": TrackMotion,
-}
-"""All motions by ``kind``."""
+MOTIONS = registry(
+    MotionParameters,
+    "kind",
+    "navcore.motion.static:StaticMotion",
+    "navcore.motion.swing:SwingMotion",
+    "navcore.motion.legs:LegsMotion",
+    "navcore.motion.profile:ProfileMotion",
+    "navcore.motion.waves:WavesMotion",
+    "navcore.motion.track:TrackMotion",
+)
+"""All motions by ``kind``, in the order in which the page offers them."""
 
-Motion = Annotated[
-    StaticMotion | SwingMotion | LegsMotion | ProfileMotion | WavesMotion | TrackMotion,
-    Field(discriminator="kind"),
-]
+if TYPE_CHECKING:
+    Motion: TypeAlias = MotionParameters
+else:
+    Motion = any_of(MOTIONS, "kind")
+    """Type of a field that holds any motion, told apart by ``kind``."""
 
 __all__ = [
     "MOTIONS",
     "LegsMotion",
     "Motion",
+    "MotionParameters",
     "ProfileMotion",
     "StaticMotion",
     "SwingMotion",

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from navcore.earth import Earth
-from navcore.parameters import Parameters
+from navcore.foundation.earth import Earth
+from navcore.foundation.registry import Entry
 
 if TYPE_CHECKING:
+    from navcore.io.recording import Recording
+    from navcore.io.series import Series
     from navcore.motion.kinematics import Kinematics
 
 # Columns of Truth.values.
@@ -56,14 +59,65 @@ class Truth:
         return self.values[:, index]
 
 
-class MotionParameters(Parameters, ABC):
-    """Base of the motion blocks of a scenario; subclasses narrow ``kind`` to a Literal."""
+@dataclass(frozen=True)
+class Streams:
+    """What a motion takes from a recording: positions, heading, and pitch and roll if recorded.
 
+    Attributes
+    ----------
+    recording : Recording
+        What the files hold, with the reader's warnings.
+    position, heading : Series
+    attitude : Series or None
+    """
+
+    recording: Recording
+    position: Series
+    heading: Series
+    attitude: Series | None
+
+    def series(self) -> list[Series]:
+        """All streams there are."""
+        return [s for s in (self.position, self.heading, self.attitude) if s is not None]
+
+
+class MotionParameters(Entry, ABC):
+    """Base of the motion blocks of a scenario; subclasses narrow ``kind`` to a Literal.
+
+    A motion says all that the other rooms ask of it: `truth` and `kinematics` give the same motion on a grid
+    and at any time, `before_start` what the vehicle does during an alignment, `frequencies` how fast it
+    moves. `navcore.motion.sampled.SampledMotion` answers all four from one function of time.
+
+    Attributes
+    ----------
+    recorded : bool
+        The motion is read from files: `streams` gives what they hold.
+    carries_recorded_imu : bool
+        The motion can stand beside a recorded IMU, whose own motion is not known.
+    """
+
+    recorded: ClassVar[bool] = False
+    carries_recorded_imu: ClassVar[bool] = False
     kind: Any  # a Literal in each subclass
 
     @abstractmethod
-    def truth(self, count: int, step_s: float, site: Site, earth: Earth) -> Truth:
+    def truth(
+        self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> Truth:
         """Return the true motion at ``count`` times 0, step_s, ...; shape (count, 15) or (1, 15).
+
+        Parameters
+        ----------
+        count : int
+            Number of times.
+        step_s : float
+            Their interval, s.
+        site : Site
+            Where the motion starts.
+        earth : Earth
+            WGS-84 or the sphere.
+        start_utc : float, optional
+            UTC (s) of t = 0 of a recorded motion; default: the first epoch that its streams share.
 
         Raises
         ------
@@ -84,7 +138,7 @@ class MotionParameters(Parameters, ABC):
         site, earth
             As of `truth`.
         start_utc : float, optional
-            UTC (s) of t = 0 of a recorded motion; default: the first epoch that its streams share.
+            As of `truth`.
 
         Raises
         ------
@@ -92,9 +146,38 @@ class MotionParameters(Parameters, ABC):
             The motion cannot be carried out.
         """
 
+    @abstractmethod
+    def before_start(self, true_row: np.ndarray, duration_s: float) -> MotionParameters:
+        """Return the motion during an alignment, which ends at t = 0: that of a vehicle that does not travel.
+
+        Parameters
+        ----------
+        true_row : ndarray, shape (15,)
+            True state at t = 0.
+        duration_s : float
+            Length of the alignment, s.
+        """
+
+    def frequencies(self) -> Iterator[tuple[str, float]]:
+        """Yield what moves, by the field that sets it, and its frequency (Hz): an IMU must sample it."""
+        yield from ()
+
+    def streams(self) -> Streams | None:
+        """Return what the motion takes from a recording; None for a motion that is not recorded.
+
+        Raises
+        ------
+        InputError
+            The recording cannot be read (field names relative to the motion block).
+        """
+        return None
+
+    def notices(self) -> Iterator[str]:
+        """Yield what the user should know about a recording and the settings that it leaves unused."""
+        yield from ()
+
     def rows(
         self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
     ) -> np.ndarray:
         """Rows of `truth` whatever the step: for one who looks at the motion without integrating over it."""
-        del start_utc
-        return self.truth(count, step_s, site, earth).values
+        return self.truth(count, step_s, site, earth, start_utc).values

@@ -14,8 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from navcore.compiled import inlined, kernel
-from navcore.earth import SEMI_MAJOR_AXIS, Earth, meridian_radius, prime_vertical_radius
+from navcore.foundation.compiled import inlined, kernel
+from navcore.foundation.earth import SEMI_MAJOR_AXIS, Earth, meridian_radius, prime_vertical_radius
+from navcore.foundation.trigonometry import sincos, sincos_cycles
+from navcore.foundation.units import DEG
 from navcore.motion.base import (
     AE,
     AN,
@@ -35,8 +37,6 @@ from navcore.motion.base import (
     VU,
     Site,
 )
-from navcore.trigonometry import sincos, sincos_cycles
-from navcore.units import DEG
 
 # Columns of a leg: its start, then start value, change and duration of the change, of speed and of heading;
 # how the rates of both go during their changes.

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from navcore.compiled import inlined, kernel
-from navcore.earth import EARTH_RATE, Earth, meridian_radius, normal_gravity, prime_vertical_radius
+from navcore.foundation.compiled import inlined, kernel
+from navcore.foundation.earth import EARTH_RATE, Earth, meridian_radius, normal_gravity, prime_vertical_radius
+from navcore.foundation.trigonometry import sincos
 from navcore.motion.base import (
     AE,
     AN,
@@ -27,17 +28,22 @@ from navcore.motion.base import (
     VU,
     Truth,
 )
-from navcore.trigonometry import sincos
 
 
 @inlined
 def attitude_elements(sp, cp, sr, cr, sh, ch):
     """Nine elements of C_b^n, row by row, from sines and cosines of pitch, roll and heading."""
     return (
-        ch * cr + sh * sp * sr, sh * cp, ch * sr - sh * sp * cr,
-        ch * sp * sr - sh * cr, ch * cp, -sh * sr - ch * sp * cr,
-        -cp * sr, sp, cp * cr,
-    )  # fmt: skip
+        ch * cr + sh * sp * sr,
+        sh * cp,
+        ch * sr - sh * sp * cr,
+        ch * sp * sr - sh * cr,
+        ch * cp,
+        -sh * sr - ch * sp * cr,
+        -cp * sr,
+        sp,
+        cp * cr,
+    )
 
 
 @inlined

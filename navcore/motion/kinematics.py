@@ -6,11 +6,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from navcore.compiled import inlined
+from navcore.foundation.compiled import inlined
 from navcore.motion.base import COLUMNS
 
-REST, SWING, COURSE, PROFILE, WAVES, TRACK = range(6)
-"""Kinds of motion that compiled loops tell apart."""
+REST, SWING, COURSE, PROFILE, WAVES, PIECES = range(6)
+"""How compiled loops are told a motion. PIECES, polynomials of time, serves any motion."""
+KINDS = (REST, SWING, COURSE, PROFILE, WAVES, PIECES)
 
 WIDTH = 72
 """Width of a row of the buffer that a motion is filled into, quantity by quantity: quantity j (a column of
@@ -27,14 +28,14 @@ class Kinematics:
     Attributes
     ----------
     kind : int
-        REST, SWING, COURSE, PROFILE, WAVES or TRACK.
+        REST, SWING, COURSE, PROFILE, WAVES or PIECES.
     rest : ndarray, shape (15,)
         Row of truth of what does not move.
     oscillations : ndarray, shape (m, c)
         SWING: one row an angle (`SwingMotion.packed`); WAVES: one row a component.
     legs : ndarray, shape (m, c)
-        Pieces of the motion in time, the first column when each begins (s): legs of a course, pieces of a
-        track.
+        Pieces of the motion in time, the first column when each begins (s): legs of a course, polynomials
+        (`navcore.motion.pieces`).
     nodes : ndarray, shape (k, 6)
         Position nodes of a course (`navcore.motion.course`).
     attitude : ndarray, shape (m, 6)
@@ -50,6 +51,8 @@ class Kinematics:
 
     def __post_init__(self) -> None:
         assert self.rest.shape == (COLUMNS,)
+        if self.kind not in KINDS:  # compiled loops would take it for a vehicle at rest
+            raise ValueError(f"no compiled loop knows motions of kind {self.kind}")
 
     def moved(self, seconds: float) -> Kinematics:
         """Return the same motion, t = 0 being ``seconds`` later on it (earlier when negative)."""

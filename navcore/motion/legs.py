@@ -9,14 +9,18 @@ from typing import Literal, NamedTuple
 import numpy as np
 from pydantic import Field, model_validator
 
-from navcore.earth import Earth
-from navcore.errors import Fault, InputError
+from navcore.foundation.earth import Earth
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.parameters import Parameters, quantity
+from navcore.foundation.units import DEG, KNOT
 from navcore.motion.base import Site, Truth
 from navcore.motion.course import (
     COURSE_CHANGE,
+    COURSE_TIME,
     RAISED_COSINE,
     SPEED,
     SPEED_CHANGE,
+    SPEED_TIME,
     Course,
     PoleReached,
     askable_before_start,
@@ -25,8 +29,6 @@ from navcore.motion.course import (
 )
 from navcore.motion.kinematics import COURSE, Kinematics
 from navcore.motion.static import AttitudeMotion
-from navcore.parameters import Parameters, quantity
-from navcore.units import DEG, KNOT
 
 DEFAULT_ACCELERATION = 0.1
 """Mean acceleration of a change of speed when none is given, m/s^2."""
@@ -41,33 +43,64 @@ class Leg(Parameters):
     """One leg of a `legs` motion; a field left out changes nothing."""
 
     duration_s: float = quantity(
-        3600.0, unit="s", gt=0.0, le=1e7, slider=(60.0, 36000.0), log=True, label="duration",
+        3600.0,
+        unit="s",
+        gt=0.0,
+        le=1e7,
+        slider=(60.0, 36000.0),
+        log=True,
+        label="duration",
         help="Length of the leg; a change must end within it.",
-    )  # fmt: skip
+    )
     speed_mps: float | None = quantity(
-        None, unit="m/s", ge=SLOWEST, le=FASTEST, slider=(0.0, 20.0), label="speed",
+        None,
+        unit="m/s",
+        ge=SLOWEST,
+        le=FASTEST,
+        slider=(0.0, 20.0),
+        label="speed",
         help="First leg: the initial speed. Later legs: the speed to reach, at accel_mps2 (mean), else at a "
         "mean of 0.1 m/s2. Negative is astern. Not together with speed_kn.",
-    )  # fmt: skip
+    )
     speed_kn: float | None = quantity(
-        None, unit="kn", ge=-97.0, le=970.0, slider=(0.0, 40.0), label="speed",
+        None,
+        unit="kn",
+        ge=-97.0,
+        le=970.0,
+        slider=(0.0, 40.0),
+        label="speed",
         help="The same in knots. Not together with speed_mps.",
-    )  # fmt: skip
+    )
     accel_mps2: float | None = quantity(
-        None, unit="m/s2", ge=-20.0, le=20.0, slider=(-0.5, 0.5), label="acceleration",
+        None,
+        unit="m/s2",
+        ge=-20.0,
+        le=20.0,
+        slider=(-0.5, 0.5),
+        label="acceleration",
         help="With a speed to reach: the size of the mean acceleration. Alone, or in the first leg: the mean "
         "acceleration over the whole leg. It rises and falls as a raised cosine, its peak is twice the mean.",
-    )  # fmt: skip
+    )
     turn_dps: float | None = quantity(
-        None, unit="deg/s", ge=-60.0, le=60.0, slider=(-3.0, 3.0), label="turn rate",
+        None,
+        unit="deg/s",
+        ge=-60.0,
+        le=60.0,
+        slider=(-3.0, 3.0),
+        label="turn rate",
         help="With a heading to reach: the mean turn rate, whose sign chooses the side. Alone, or in the "
         "first leg: the mean turn rate over the whole leg, starboard positive. Its peak is twice the mean.",
-    )  # fmt: skip
+    )
     heading_deg: float | None = quantity(
-        None, unit="deg", ge=-360.0, le=360.0, slider=(0.0, 360.0), label="heading",
+        None,
+        unit="deg",
+        ge=-360.0,
+        le=360.0,
+        slider=(0.0, 360.0),
+        label="heading",
         help="First leg: the initial heading, in place of that of the motion. Later legs: the heading to "
         "reach, at turn_dps (mean) if given, else by the shorter way at a mean of 1 deg/s.",
-    )  # fmt: skip
+    )
 
     @property
     def speed(self) -> float | None:
@@ -141,9 +174,11 @@ class LegsMotion(AttitudeMotion):
                 leg = self.leg[number]
                 field = "accel_mps2" if leg.speed is None or number == 0 else leg.speed_field
                 yield Fault(
-                    "", f"leg.{number}.{field}", getattr(leg, field),
+                    "",
+                    f"leg.{number}.{field}",
+                    getattr(leg, field),
                     f"leads to {speed:g} m/s: speeds must be >= {SLOWEST:g} and <= {FASTEST:g} (m/s)",
-                )  # fmt: skip
+                )
                 return
 
     def table(self) -> np.ndarray:
@@ -182,12 +217,16 @@ class LegsMotion(AttitudeMotion):
         except PoleReached as reached:
             raise InputError(
                 Fault(
-                    "", f"leg.{reached.leg}", None,
+                    "",
+                    f"leg.{reached.leg}",
+                    None,
                     f"passes 89.5 deg of latitude after {reached.time_s:.0f} s: must stay within +-89.5 deg",
                 )
-            ) from None  # fmt: skip
+            ) from None
 
-    def truth(self, count: int, step_s: float, site: Site, earth: Earth) -> Truth:
+    def truth(
+        self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> Truth:
         """Return the true motion at ``count`` times 0, step_s, ...; shape (count, 15), or (1, 15) at rest.
 
         The position is within 0.01 mm of an exact integration over 24 h, whatever the step. Heading and
@@ -214,6 +253,13 @@ class LegsMotion(AttitudeMotion):
         return Kinematics(
             COURSE, self.rest_row(site)[0], legs=askable_before_start(course.legs), nodes=course.nodes
         )
+
+    def frequencies(self) -> Iterator[tuple[str, float]]:
+        """Yield one over the shortest change of each leg."""
+        for number, row in enumerate(self.table()):
+            times = [time for time in (row[SPEED_TIME], row[COURSE_TIME]) if time > 0.0]
+            if times:
+                yield f"leg.{number}", 1.0 / min(times)
 
     def _resolved(self) -> Iterator[tuple[int, float, tuple[_Change, _Change]]]:
         """Number of each leg, the speed at its end, and its changes of speed and heading."""

@@ -1,14 +1,15 @@
-"""A recorded track as piecewise cubic polynomials of time: position, heading, pitch and roll, compiled.
+"""A motion as piecewise cubic polynomials of time: position, height and attitude, compiled.
 
-Every spline is re-expanded on the pieces that all of them share, so that one search serves five quantities.
+Every spline is re-expanded on the pieces that all of them share, so that one search serves six quantities.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from navcore.compiled import inlined, kernel
-from navcore.earth import SEMI_MAJOR_AXIS
+from navcore.foundation.compiled import inlined, kernel
+from navcore.foundation.earth import SEMI_MAJOR_AXIS
+from navcore.foundation.trigonometry import sincos
 from navcore.motion.base import (
     AE,
     AN,
@@ -29,11 +30,11 @@ from navcore.motion.base import (
 )
 from navcore.motion.course import leg_at
 from navcore.motion.kinematics import WIDTH, write_rows
-from navcore.trigonometry import sincos
 
 # Columns of a piece: its start, then four coefficients, constant term first, of each quantity (rad).
-START, PIECE_LAT, PIECE_LON, PIECE_HEADING, PIECE_PITCH, PIECE_ROLL = 0, 1, 5, 9, 13, 17
-PIECE_COLUMNS = 21
+START = 0
+PIECE_LAT, PIECE_LON, PIECE_HEADING, PIECE_PITCH, PIECE_ROLL, PIECE_HEIGHT = 1, 5, 9, 13, 17, 21
+PIECE_COLUMNS = 25
 
 
 def shared_pieces(
@@ -51,7 +52,7 @@ def shared_pieces(
 
     Returns
     -------
-    ndarray, shape (m, 21)
+    ndarray, shape (m, 25)
         The first piece also serves earlier times, the last one later times.
     """
     starts = np.unique(np.concatenate([breaks[:-1] for breaks, _ in splines.values()]))
@@ -86,10 +87,10 @@ def _rate_of_rate(x, pieces, i, j):
 
 
 @inlined
-def path_at(x, pieces, i, height, e2):
+def path_at(x, pieces, i, height, height_rate, e2):
     """Latitude, longitude (rad), V_E, V_N (m/s) and their derivatives (m/s^2) at x s into piece i.
 
-    Velocity and acceleration are the derivatives of the position on this Earth at constant height.
+    Velocity and acceleration are the derivatives of the position on this Earth.
     """
     lat, lon = _value(x, pieces, i, PIECE_LAT), _value(x, pieces, i, PIECE_LON)
     lat_rate, lon_rate = _rate(x, pieces, i, PIECE_LAT), _rate(x, pieces, i, PIECE_LON)
@@ -101,13 +102,15 @@ def path_at(x, pieces, i, height, e2):
     north_arm, east_arm = meridian + height, (prime_vertical + height) * cos_lat
     east_arm_rate = prime_vertical * stretch * cos_lat - (prime_vertical + height) * sin_lat * lat_rate
     a_n = _rate_of_rate(x, pieces, i, PIECE_LAT) * north_arm + 3.0 * lat_rate * meridian * stretch
+    a_n += lat_rate * height_rate
     a_e = _rate_of_rate(x, pieces, i, PIECE_LON) * east_arm + lon_rate * east_arm_rate
+    a_e += lon_rate * cos_lat * height_rate
     return lat, lon, lon_rate * east_arm, lat_rate * north_arm, a_e, a_n
 
 
 @kernel
-def fill_track(t0, dt, pieces, place, height, e2, columns, samples, w):
-    """Fill the buffer ``w`` (`navcore.motion.kinematics.WIDTH`) with a track from t0 on.
+def fill_pieces(t0, dt, pieces, place, e2, columns, samples, w):
+    """Fill the buffer ``w`` (`navcore.motion.kinematics.WIDTH`) with such a motion from t0 on.
 
     ``place[0]`` is the number of the piece reached, for the next call, which begins ``samples`` steps later.
     """
@@ -118,10 +121,12 @@ def fill_track(t0, dt, pieces, place, height, e2, columns, samples, w):
         if k == samples - 1:
             place[0] = i
         x = t - pieces[i, START]
-        lat, lon, v_e, v_n, a_e, a_n = path_at(x, pieces, i, height, e2)
+        height, v_u = _value(x, pieces, i, PIECE_HEIGHT), _rate(x, pieces, i, PIECE_HEIGHT)
+        lat, lon, v_e, v_n, a_e, a_n = path_at(x, pieces, i, height, v_u, e2)
         w[LAT * WIDTH + k], w[LON * WIDTH + k], w[HEIGHT * WIDTH + k] = lat, lon, height
-        w[VE * WIDTH + k], w[VN * WIDTH + k], w[VU * WIDTH + k] = v_e, v_n, 0.0
-        w[AE * WIDTH + k], w[AN * WIDTH + k], w[AU * WIDTH + k] = a_e, a_n, 0.0
+        w[VE * WIDTH + k], w[VN * WIDTH + k], w[VU * WIDTH + k] = v_e, v_n, v_u
+        w[AE * WIDTH + k], w[AN * WIDTH + k] = a_e, a_n
+        w[AU * WIDTH + k] = _rate_of_rate(x, pieces, i, PIECE_HEIGHT)
         w[HEADING * WIDTH + k] = _value(x, pieces, i, PIECE_HEADING)
         w[PITCH * WIDTH + k] = _value(x, pieces, i, PIECE_PITCH)
         w[ROLL * WIDTH + k] = _value(x, pieces, i, PIECE_ROLL)
@@ -131,28 +136,26 @@ def fill_track(t0, dt, pieces, place, height, e2, columns, samples, w):
 
 
 @kernel
-def _sample(pieces, step, height, e2, out):
+def _sample(pieces, step, e2, out):
     w, place = np.empty(COLUMNS * WIDTH), np.zeros(2, np.int64)
     for first in range(0, out.shape[0], WIDTH):
         rows = min(WIDTH, out.shape[0] - first)
-        fill_track(first * step, step, pieces, place, height, e2, rows, rows, w)
+        fill_pieces(first * step, step, pieces, place, e2, rows, rows, w)
         write_rows(first, rows, w, out)
 
 
-def sample_track(pieces: np.ndarray, count: int, step_s: float, height: float, e2: float) -> np.ndarray:
+def sample_pieces(pieces: np.ndarray, count: int, step_s: float, e2: float) -> np.ndarray:
     """Rows of truth at t = 0, step_s, ...; shape (count, 15).
 
     Parameters
     ----------
-    pieces : ndarray, shape (m, 21)
+    pieces : ndarray, shape (m, 25)
         From `shared_pieces`.
     count, step_s
         The times.
-    height : float
-        Height, m.
     e2 : float
         First eccentricity squared of the Earth.
     """
     out = np.empty((count, COLUMNS))
-    _sample(pieces, float(step_s), float(height), float(e2), out)
+    _sample(pieces, float(step_s), float(e2), out)
     return out

@@ -9,9 +9,12 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from pydantic import Field, model_validator
 
-from navcore.compiled import kernel
-from navcore.earth import Earth
-from navcore.errors import Fault, InputError
+from navcore.foundation.compiled import kernel
+from navcore.foundation.earth import Earth
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.parameters import Parameters, bounded, choice, quantity
+from navcore.foundation.trigonometry import sincos
+from navcore.foundation.units import DEG, KNOT
 from navcore.motion.base import (
     AE,
     AN,
@@ -51,9 +54,6 @@ from navcore.motion.course import (
 from navcore.motion.kinematics import PROFILE, WIDTH, Kinematics, write_rows
 from navcore.motion.legs import FASTEST, SLOWEST
 from navcore.motion.static import AttitudeMotion
-from navcore.parameters import Parameters, bounded, choice, quantity
-from navcore.trigonometry import sincos
-from navcore.units import DEG, KNOT
 
 _SHAPES = {"raised_cosine": RAISED_COSINE, "half_sine": HALF_SINE, "triangle": TRIANGLE}
 _Component = Annotated[float, bounded(unit="m/s", ge=-FASTEST, le=FASTEST)]
@@ -63,22 +63,36 @@ class Point(Parameters):
     """State of a `profile` at one time; a field left out is as at the point before."""
 
     t_s: float = quantity(
-        0.0, unit="s", ge=0.0, le=1e7, slider=(0.0, 86400.0), label="time",
+        0.0,
+        unit="s",
+        ge=0.0,
+        le=1e7,
+        slider=(0.0, 86400.0),
+        label="time",
         help="Time of the point; the first one is at 0, each later than the one before.",
-    )  # fmt: skip
+    )
     speed_mps: float | None = quantity(
-        None, unit="m/s", ge=SLOWEST, le=FASTEST, slider=(0.0, 20.0), label="speed",
+        None,
+        unit="m/s",
+        ge=SLOWEST,
+        le=FASTEST,
+        slider=(0.0, 20.0),
+        label="speed",
         help="Speed along the course, negative is astern; 0 at the first point if it names none. "
         "Not together with speed_kn.",
-    )  # fmt: skip
+    )
     speed_kn: float | None = quantity(
-        None, unit="kn", ge=-97.0, le=970.0, slider=(0.0, 40.0), label="speed",
-        help="The same in knots.",
-    )  # fmt: skip
+        None, unit="kn", ge=-97.0, le=970.0, slider=(0.0, 40.0), label="speed", help="The same in knots."
+    )
     course_deg: float | None = quantity(
-        None, unit="deg", ge=-360.0, le=360.0, slider=(0.0, 360.0), label="course",
+        None,
+        unit="deg",
+        ge=-360.0,
+        le=360.0,
+        slider=(0.0, 360.0),
+        label="course",
         help="Direction of the velocity, clockwise from true north; reached by the shorter way.",
-    )  # fmt: skip
+    )
     velocity_mps: tuple[_Component, _Component] | None = Field(
         default=None,
         description="Velocity E, N in place of speed and course. At rest the course stays, that of the first "
@@ -86,17 +100,32 @@ class Point(Parameters):
         json_schema_extra={"unit": "m/s", "elements": ["E", "N"], "label": "velocity"},
     )
     heading_deg: float | None = quantity(
-        None, unit="deg", ge=-360.0, le=360.0, slider=(0.0, 360.0), label="heading",
+        None,
+        unit="deg",
+        ge=-360.0,
+        le=360.0,
+        slider=(0.0, 360.0),
+        label="heading",
         help="Heading, reached by the shorter way; only when the bow does not follow the course.",
-    )  # fmt: skip
+    )
     pitch_deg: float | None = quantity(
-        None, unit="deg", ge=-89.0, le=89.0, slider=(-30.0, 30.0), label="pitch",
+        None,
+        unit="deg",
+        ge=-89.0,
+        le=89.0,
+        slider=(-30.0, 30.0),
+        label="pitch",
         help="Pitch, bow up positive.",
-    )  # fmt: skip
+    )
     roll_deg: float | None = quantity(
-        None, unit="deg", ge=-180.0, le=180.0, slider=(-30.0, 30.0), label="roll",
+        None,
+        unit="deg",
+        ge=-180.0,
+        le=180.0,
+        slider=(-30.0, 30.0),
+        label="roll",
         help="Roll, starboard down positive.",
-    )  # fmt: skip
+    )
 
     def contradictions(self) -> Iterator[tuple[str, object, str]]:
         """Fields given twice over: name, value, what is allowed."""
@@ -151,14 +180,16 @@ class ProfileMotion(AttitudeMotion):
 
     kind: Literal["profile"] = "profile"
     shape: Literal["raised_cosine", "half_sine", "triangle"] = choice(
-        "raised_cosine", label="acceleration",
+        "raised_cosine",
+        label="acceleration",
         help="How the rate of every change rises from 0 and falls to 0 between two points: raised_cosine, "
         "half_sine (values follow a cosine) or triangle.",
-    )  # fmt: skip
+    )
     bow: Literal["course", "heading"] = choice(
-        "course", label="bow",
+        "course",
+        label="bow",
         help="course: the bow points along the course; heading: where heading_deg says.",
-    )  # fmt: skip
+    )
     point: tuple[Point, ...] = Field(
         default=(Point(),),
         max_length=10_000,
@@ -200,7 +231,9 @@ class ProfileMotion(AttitudeMotion):
             )
         return np.array(legs), np.array(attitude)
 
-    def truth(self, count: int, step_s: float, site: Site, earth: Earth) -> Truth:
+    def truth(
+        self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> Truth:
         """Return the true motion at ``count`` times 0, step_s, ...; shape (count, 15), or (1, 15) at rest.
 
         The position is as exact as that of `legs`; heading and longitude are not wrapped.
@@ -230,15 +263,20 @@ class ProfileMotion(AttitudeMotion):
         except PoleReached as reached:
             raise InputError(
                 Fault(
-                    "", f"point.{reached.leg}", None,
+                    "",
+                    f"point.{reached.leg}",
+                    None,
                     f"the course from here passes 89.5 deg of latitude after {reached.time_s:.0f} s: "
                     "must stay within +-89.5 deg",
                 )
-            ) from None  # fmt: skip
+            ) from None
         return Kinematics(
-            PROFILE, self.rest_row(site)[0],
-            legs=askable_before_start(legs), nodes=course.nodes, attitude=attitude,
-        )  # fmt: skip
+            PROFILE,
+            self.rest_row(site)[0],
+            legs=askable_before_start(legs),
+            nodes=course.nodes,
+            attitude=attitude,
+        )
 
     def _states(self) -> Iterator[_State]:
         """State at each point: what it leaves out is as before."""

@@ -80,9 +80,11 @@ def make_seaway(
     inside = rng.uniform(size=count)
     frequency = (edges[:-1] + inside * np.diff(edges)) * 2.0 * math.pi / peak_period_s
     return Seaway(
-        amplitude, frequency, towards + spread * rng.standard_normal(count),
+        amplitude,
+        frequency,
+        towards + spread * rng.standard_normal(count),
         rng.uniform(0.0, 2.0 * math.pi, count),
-    )  # fmt: skip
+    )
 
 
 def encounter_frequency(sea: Seaway, speed: float, heading: float) -> np.ndarray:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Literal
+import math
+from typing import ClassVar, Literal
 
 import numpy as np
 
-from navcore.earth import Earth
+from navcore.foundation.earth import Earth
+from navcore.foundation.parameters import quantity
+from navcore.foundation.units import DEG
 from navcore.motion.base import COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL, MotionParameters, Site, Truth
 from navcore.motion.kinematics import REST, Kinematics
-from navcore.parameters import quantity
-from navcore.units import DEG
 
 
 class AttitudeMotion(MotionParameters):
@@ -35,9 +36,14 @@ class AttitudeMotion(MotionParameters):
         help="Roll, starboard down positive.",
     )
     heading_deg: float = quantity(
-        0.0, unit="deg", ge=-360.0, le=360.0, slider=(0.0, 360.0), label="heading",
+        0.0,
+        unit="deg",
+        ge=-360.0,
+        le=360.0,
+        slider=(0.0, 360.0),
+        label="heading",
         help="Heading, clockwise from true north.",
-    )  # fmt: skip
+    )
 
     def rest_row(self, site: Site) -> np.ndarray:
         """One row of truth at rest at the site with this attitude, shape (1, 15)."""
@@ -46,13 +52,20 @@ class AttitudeMotion(MotionParameters):
         row[0, [PITCH, ROLL, HEADING]] = self.pitch_deg * DEG, self.roll_deg * DEG, self.heading_deg * DEG
         return row
 
+    def before_start(self, true_row: np.ndarray, duration_s: float) -> MotionParameters:
+        """Return rest at the attitude of t = 0."""
+        return rest_at(true_row)
+
 
 class StaticMotion(AttitudeMotion):
     """The vehicle rests on the Earth at one place and one attitude."""
 
+    carries_recorded_imu: ClassVar[bool] = True
     kind: Literal["static"] = "static"
 
-    def truth(self, count: int, step_s: float, site: Site, earth: Earth) -> Truth:
+    def truth(
+        self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> Truth:
         """Return one row that stands for all times, shape (1, 15)."""
         return Truth(step_s, self.rest_row(site))
 
@@ -61,3 +74,12 @@ class StaticMotion(AttitudeMotion):
     ) -> Kinematics:
         """Return the row at rest."""
         return Kinematics(REST, self.rest_row(site)[0])
+
+
+def rest_at(true_row: np.ndarray) -> StaticMotion:
+    """Return the motion that rests at the attitude of a row of truth, shape (15,)."""
+    return StaticMotion(
+        pitch_deg=true_row[PITCH] / DEG,
+        roll_deg=math.remainder(true_row[ROLL] / DEG, 360.0),
+        heading_deg=math.fmod(true_row[HEADING] / DEG, 360.0),
+    )

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from navcore.compiled import inlined, kernel
-from navcore.earth import Earth
-from navcore.errors import Fault, InputError
-from navcore.motion.base import COLUMNS, HEADING, PITCH, PITCH_RATE, ROLL, Site, Truth
+from navcore.foundation.compiled import inlined, kernel
+from navcore.foundation.earth import Earth
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.parameters import Parameters, quantity
+from navcore.foundation.trigonometry import sincos_cycles
+from navcore.foundation.units import DEG
+from navcore.motion.base import COLUMNS, HEADING, PITCH, PITCH_RATE, ROLL, MotionParameters, Site, Truth
 from navcore.motion.kinematics import SWING, Kinematics
 from navcore.motion.static import AttitudeMotion
-from navcore.parameters import Parameters, quantity
-from navcore.trigonometry import sincos_cycles
-from navcore.units import DEG
 
 STEEPEST_PITCH_DEG = 89.0
 """Beyond, roll and heading rates lose their meaning."""
@@ -24,6 +25,7 @@ SAMPLES_A_PERIOD = 8.0
 """True states a period that Simpson's rule needs for the attitude and its squares (twice the frequency)."""
 _TWO_PI = 2.0 * math.pi
 _CHUNK = 256
+_AXES = ("pitch", "roll", "heading")
 
 
 class Oscillation(Parameters):
@@ -39,9 +41,14 @@ class Oscillation(Parameters):
         help="Largest departure from the mean.",
     )
     frequency_hz: float = quantity(
-        0.1, unit="Hz", ge=0.0, le=100.0, slider=(0.01, 0.25), label="frequency",
+        0.1,
+        unit="Hz",
+        ge=0.0,
+        le=100.0,
+        slider=(0.01, 0.25),
+        label="frequency",
         help="Swings a second; at most 1 / (4 x the step of the run): 0.25 Hz at 1 s.",
-    )  # fmt: skip
+    )
     phase_deg: float = quantity(
         0.0, unit="deg", ge=-360.0, le=360.0, slider=(-180.0, 180.0), label="phase", help="Phase at t = 0."
     )
@@ -53,7 +60,7 @@ class Oscillation(Parameters):
 
 
 class SwingMotion(AttitudeMotion):
-    """The vehicle swings about a mean attitude at one place (Deng 2022, 4.1: three-axis swing).
+    """The vehicle swings about a mean attitude at one place (Deng 2019, 4.1: three-axis swing).
 
     Each angle is ``mean + amplitude sin(2 pi frequency t + phase)``; the means are pitch_deg, roll_deg and
     heading_deg.
@@ -70,14 +77,18 @@ class SwingMotion(AttitudeMotion):
         if self.pitch.amplitude_deg > room + 1e-9:
             raise InputError(
                 Fault(
-                    "", "pitch.amplitude_deg", self.pitch.amplitude_deg,
+                    "",
+                    "pitch.amplitude_deg",
+                    self.pitch.amplitude_deg,
                     f"must be <= {room:g} (deg) about a mean pitch of {self.pitch_deg:g} deg: "
                     f"pitch stays within +-{STEEPEST_PITCH_DEG:g} deg",
                 )
-            )  # fmt: skip
+            )
         return self
 
-    def truth(self, count: int, step_s: float, site: Site, earth: Earth) -> Truth:
+    def truth(
+        self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> Truth:
         """Return the swing at times 0, step_s, ...; shape (count, 15), or (1, 15) when nothing moves.
 
         Raises
@@ -108,6 +119,23 @@ class SwingMotion(AttitudeMotion):
         """Return the place and the three oscillations."""
         return Kinematics(SWING, self.rest_row(site)[0], oscillations=self.packed())
 
+    def before_start(self, true_row: np.ndarray, duration_s: float) -> MotionParameters:
+        """Return the same swing, earlier: it ends in the phases of t = 0."""
+        del true_row
+        earlier = {}
+        for name in _AXES:
+            axis: Oscillation = getattr(self, name)
+            phase = math.fmod(axis.phase_deg - 360.0 * math.fmod(axis.frequency_hz * duration_s, 1.0), 360.0)
+            earlier[name] = axis.model_copy(update={"phase_deg": phase})
+        return self.model_copy(update=earlier)
+
+    def frequencies(self) -> Iterator[tuple[str, float]]:
+        """Yield the frequency of each angle that moves."""
+        for name in _AXES:
+            axis: Oscillation = getattr(self, name)
+            if axis.moving:
+                yield f"{name}.frequency_hz", axis.frequency_hz
+
     def packed(self) -> np.ndarray:
         """Mean and amplitude (rad), frequency (Hz), phase (cycles) of pitch, roll, heading; shape (3, 4)."""
         means = (self.pitch_deg, self.roll_deg, self.heading_deg)
@@ -123,13 +151,15 @@ class SwingMotion(AttitudeMotion):
         fastest = 1.0 / (SAMPLES_A_PERIOD * step_s)
         faults = [
             Fault(
-                "", f"{name}.frequency_hz", axis.frequency_hz,
+                "",
+                f"{name}.frequency_hz",
+                axis.frequency_hz,
                 f"must be <= {fastest:g} (Hz) with true states every {step_s:g} s (half a step of the run): "
                 f"{SAMPLES_A_PERIOD:g} a period are needed; or make run.step_s smaller",
             )
             for name, axis in (("pitch", self.pitch), ("roll", self.roll), ("heading", self.heading))
             if axis.moving and axis.frequency_hz > fastest * (1.0 + 1e-9)
-        ]  # fmt: skip
+        ]
         if faults:
             raise InputError(faults)
 

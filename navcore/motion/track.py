@@ -4,29 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
 
-from navcore.earth import WGS84, Earth
-from navcore.errors import Fault, InputError
-from navcore.io.recording import FileKey, Window, file_keys, load, require_cover, shared_window
-from navcore.io.series import Recording, Series, utc_text
-from navcore.motion.base import COLUMNS, HEIGHT, LAT, LON, MotionParameters, Site, Truth
-from navcore.motion.kinematics import TRACK, Kinematics
+from navcore.foundation.earth import WGS84, Earth
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.parameters import FileName, quantity
+from navcore.foundation.stage_cache import kept
+from navcore.foundation.units import DEG
+from navcore.io.recording import Window, file_keys, load, require_cover, shared_window
+from navcore.io.series import LONGEST_REACH_S, Recording, Series, utc_text
+from navcore.motion.base import COLUMNS, HEIGHT, MotionParameters, Site, Streams, Truth
+from navcore.motion.kinematics import PIECES, Kinematics
 from navcore.motion.pieces import (
     PIECE_HEADING,
+    PIECE_HEIGHT,
     PIECE_LAT,
     PIECE_LON,
     PIECE_PITCH,
     PIECE_ROLL,
-    sample_track,
+    sample_pieces,
     shared_pieces,
 )
-from navcore.parameters import FileName, quantity
-from navcore.units import DEG
+from navcore.motion.static import rest_at
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 FEWEST_FIXES = 5
 OUTLIER_M = 10.0
@@ -34,21 +39,12 @@ OUTLIER_M = 10.0
 OUTLIER_ACCELERATION = 5.0
 """... nor one that a vehicle within this acceleration (m/s^2) could have reached."""
 _MOST_FAULTS = 5
+LARGEST_VELOCITY_DIFFERENCE = 0.5
+"""Recorded velocities further (median, m/s) from the rate of the positions do not belong to them."""
+LONGEST_VELOCITY_GAP_S = 10.0
+"""Recorded velocities with longer gaps are not integrated, s."""
 Polynomials = tuple[np.ndarray, np.ndarray]
 """Breakpoints (n + 1,) and coefficients (4, n), highest power first."""
-
-
-@dataclass(frozen=True)
-class Streams:
-    """What a track needs of a recording: positions, heading, and pitch and roll if recorded."""
-
-    position: Series
-    heading: Series
-    attitude: Series | None
-
-    def series(self) -> list[Series]:
-        """All streams there are."""
-        return [s for s in (self.position, self.heading, self.attitude) if s is not None]
 
 
 class TrackMotion(MotionParameters):
@@ -56,10 +52,13 @@ class TrackMotion(MotionParameters):
 
     Positions (and heading, and pitch and roll when recorded) are smoothed by a cubic smoothing spline, which
     passes a motion of angular frequency w by 1 / (1 + (w smoothing_s)^4). Velocity and acceleration are the
-    derivatives of the smoothed position, so that the truth is consistent. The vehicle stays level at the
+    derivatives of the smoothed position, so that the truth is consistent; velocity columns of a table are
+    smoothed together with the positions. The vehicle stays level at the
     median recorded height (0 if none is recorded). t = 0 is the first epoch that all streams share.
     """
 
+    recorded: ClassVar[bool] = True
+    carries_recorded_imu: ClassVar[bool] = True
     kind: Literal["track"] = "track"
     file: FileName | tuple[FileName, ...] | None = Field(
         default=None,
@@ -69,17 +68,32 @@ class TrackMotion(MotionParameters):
         json_schema_extra={"label": "track files"},
     )
     pitch_deg: float = quantity(
-        0.0, unit="deg", ge=-80.0, le=80.0, slider=(-30.0, 30.0), label="pitch",
+        0.0,
+        unit="deg",
+        ge=-80.0,
+        le=80.0,
+        slider=(-30.0, 30.0),
+        label="pitch",
         help="Constant pitch, bow up positive; for recordings without pitch and roll.",
-    )  # fmt: skip
+    )
     roll_deg: float = quantity(
-        0.0, unit="deg", ge=-180.0, le=180.0, slider=(-30.0, 30.0), label="roll",
+        0.0,
+        unit="deg",
+        ge=-180.0,
+        le=180.0,
+        slider=(-30.0, 30.0),
+        label="roll",
         help="Constant roll, starboard down positive; for recordings without pitch and roll.",
-    )  # fmt: skip
+    )
     smoothing_s: float = quantity(
-        5.0, unit="s", ge=0.0, le=600.0, slider=(0.0, 60.0), label="smoothing",
+        5.0,
+        unit="s",
+        ge=0.0,
+        le=600.0,
+        slider=(0.0, 60.0),
+        label="smoothing",
         help="Time constant of the smoothing of positions and angles: periods above 2 pi times this pass.",
-    )  # fmt: skip
+    )
 
     def recording(self) -> Recording:
         """Read (or take from the cache) the files; raises `InputError` with field ``file``."""
@@ -89,32 +103,29 @@ class TrackMotion(MotionParameters):
         """Positions and angles of the recording; raises `InputError` if positions or heading are missing."""
         return _streams(self.recording(), self.file)
 
+    def notices(self) -> Iterator[str]:
+        """Yield the reader's warnings, gaps that the smoothing bridges, and fields without effect."""
+        streams = self.streams()
+        yield from streams.recording.warnings
+        for series in streams.series():
+            count, longest = series.gaps()
+            if count:
+                yield f"{series.source}: {count} gaps (longest {longest:.1f} s) bridged by the smoothing"
+        if streams.attitude is not None and (self.pitch_deg or self.roll_deg):
+            yield "motion.pitch_deg and roll_deg are not used: the recording holds pitch and roll"
+
     def window(self) -> Window:
         """Time that positions and heading share."""
         return shared_window(self.streams().series())
 
-    @property
-    def recorded_span_s(self) -> float:
-        """Length of the recorded track, s."""
-        return self.window().span_s
-
-    def recorded_start(self, start_utc: float | None = None) -> Site:
-        """Smoothed position at t = 0 (``start_utc``, else the start of the own window)."""
-        track = self._smoothed()
-        row = sample_track(self._pieces(track, start_utc), 1, 1.0, track.path.height, WGS84.e2)[0]
-        return Site(float(row[LAT]), float(row[LON]), track.path.height)
+    def before_start(self, true_row: np.ndarray, duration_s: float) -> MotionParameters:
+        """Return rest at the attitude of t = 0."""
+        return rest_at(true_row)
 
     def truth(
         self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
     ) -> Truth:
         """Return the smoothed track at ``count`` times; the site is not used.
-
-        Parameters
-        ----------
-        count, step_s, site, earth
-            As for every motion.
-        start_utc : float, optional
-            UTC (s) of t = 0 when another recording shares it; default: start of the own window.
 
         Raises
         ------
@@ -129,7 +140,7 @@ class TrackMotion(MotionParameters):
         """Rows of truth at 0, step_s, ...; shape (count, 15)."""
         del site
         track = self._covering((count - 1) * step_s, start_utc)
-        return sample_track(self._pieces(track, start_utc), count, step_s, track.path.height, earth.e2)
+        return sample_pieces(self._pieces(track, start_utc), count, step_s, earth.e2)
 
     def kinematics(
         self, end_s: float, site: Site, earth: Earth, start_utc: float | None = None
@@ -138,7 +149,7 @@ class TrackMotion(MotionParameters):
         del site, earth, end_s
         track, rest = self._smoothed(), np.zeros(COLUMNS)
         rest[HEIGHT] = track.path.height
-        return Kinematics(TRACK, rest, legs=self._pieces(track, start_utc))
+        return Kinematics(PIECES, rest, legs=self._pieces(track, start_utc))
 
     def _covering(self, span_s: float, start_utc: float | None) -> _Smoothed:
         track = self._smoothed()
@@ -151,17 +162,18 @@ class TrackMotion(MotionParameters):
         start = track.window.start_s if start_utc is None else start_utc
         lat, lon = track.path.columns(start)
         splines = {PIECE_LAT: lat, PIECE_LON: lon, PIECE_HEADING: track.heading.column(0, start)}
+        constants = {PIECE_HEIGHT: track.path.height}
         if track.attitude is None:
-            return shared_pieces(
-                splines, {PIECE_PITCH: self.pitch_deg * DEG, PIECE_ROLL: self.roll_deg * DEG}
-            )
-        splines[PIECE_PITCH] = track.attitude.column(0, start)
-        splines[PIECE_ROLL] = track.attitude.column(1, start)
-        return shared_pieces(splines, {})
+            constants |= {PIECE_PITCH: self.pitch_deg * DEG, PIECE_ROLL: self.roll_deg * DEG}
+        else:
+            splines[PIECE_PITCH] = track.attitude.column(0, start)
+            splines[PIECE_ROLL] = track.attitude.column(1, start)
+        return shared_pieces(splines, constants)
 
     def _smoothed(self) -> _Smoothed:
         files = (self.file,) if isinstance(self.file, str) else self.file or ()
-        return _smooth(files, file_keys(files, "", "file"), self.smoothing_s)
+        key = "smoothed track", file_keys(files, "", "file"), self.smoothing_s
+        return kept(key, lambda: _smooth(files, self.smoothing_s))
 
 
 @dataclass(frozen=True)
@@ -184,17 +196,15 @@ def _streams(recording: Recording, file: object) -> Streams:
             )
             if series is None
         )
-    return Streams(recording.position, recording.heading, recording.attitude)
+    return Streams(recording, recording.position, recording.heading, recording.attitude)
 
 
-@lru_cache(maxsize=4)
-def _smooth(files: tuple[str, ...], state: tuple[FileKey, ...], smoothing_s: float) -> _Smoothed:
-    """Fit the splines, once for one state of the files: 10 h at 1 Hz take most of a second."""
-    del state
+def _smooth(files: tuple[str, ...], smoothing_s: float) -> _Smoothed:
+    """Fit the splines: 10 h at 1 Hz take most of a second."""
     streams = _streams(load(files, field="file"), files)
     return _Smoothed(
         shared_window(streams.series()),
-        _Path(streams.position, smoothing_s),
+        _Path(streams.position, smoothing_s, streams.recording.velocity),
         _angles(streams.heading, smoothing_s),
         None if streams.attitude is None else _angles(streams.attitude, smoothing_s),
     )
@@ -207,7 +217,7 @@ def _angles(series: Series, smoothing_s: float) -> _Spline:
 class _Path:
     """Smoothed latitude and longitude as functions of UTC."""
 
-    def __init__(self, position: Series, smoothing_s: float) -> None:
+    def __init__(self, position: Series, smoothing_s: float, velocity: Series | None = None) -> None:
         if position.time_s.size < FEWEST_FIXES:
             found = f"only {position.time_s.size} positions ({position.source})"
             raise InputError(Fault("", "file", None, f"{found}; at least {FEWEST_FIXES} are needed"))
@@ -218,8 +228,48 @@ class _Path:
         metres = (np.column_stack([lat, lon]) - self._origin) * self._metres
         _refuse_outliers(position, metres)
         self._spline = _smoothed_columns(position.time_s, metres, smoothing_s)
+        if velocity is not None and velocity.tabled and smoothing_s > 0.0:
+            self._spline = self._with_velocity(position, metres, velocity, smoothing_s)
         heights = position.values[np.isfinite(position.values[:, 2]), 2]
         self.height = float(np.median(heights)) if heights.size else 0.0
+
+    def _with_velocity(
+        self, position: Series, metres: np.ndarray, velocity: Series, smoothing_s: float
+    ) -> _Spline:
+        """Spline of positions and recorded velocities together; that of the positions where these differ.
+
+        The smoothed velocity is integrated, and only the rest of the positions is smoothed. At the ends of
+        the record a spline of positions alone knows no acceleration: its velocity is off by about the
+        acceleration times the smoothing time, 0.1 m/s in a turn. (A receiver's own sentences are printed too
+        coarsely for this, and follow the roll of the antenna.)
+        """
+        times = position.time_s
+        reach = max(LONGEST_REACH_S, 2.0 * velocity.interval_s)
+        kept = velocity.valid
+        if np.count_nonzero(kept) < FEWEST_FIXES or velocity.dated != position.dated:
+            return self._spline
+        known = velocity.time_s[kept]
+        covers = known[0] <= times[0] + reach and known[-1] >= times[-1] - reach
+        if not covers or np.diff(known).max() > max(LONGEST_VELOCITY_GAP_S, 2.0 * smoothing_s):
+            return self._spline
+        smooth = _smoothed_columns(
+            known, self._in_metres(velocity.values[kept, :2], known, position), smoothing_s
+        )
+        moved, speed = smooth.integral(times), smooth.at(times)
+        rest = _smoothed_columns(times, metres - moved, smoothing_s)
+        differing = np.median(np.abs(speed - self._spline.rate(times)), axis=0).max()
+        if differing > LARGEST_VELOCITY_DIFFERENCE:
+            return self._spline
+        ends = (speed + rest.rate(times))[[0, -1]]
+        return _clamped(times, moved + rest.at(times), ends)
+
+    def _in_metres(self, velocity: np.ndarray, time_s: np.ndarray, position: Series) -> np.ndarray:
+        """Rates of the two coordinates of the path (north, east at the first fix) of velocities E, N."""
+        lat = np.interp(time_s, position.time_s, position.values[:, 0])
+        # M goes with w^-1.5, N with w^-0.5, w = 1 - e^2 sin^2 L.
+        w = (1.0 - WGS84.e2 * np.sin(lat) ** 2) / (1.0 - WGS84.e2 * np.sin(self._origin[0]) ** 2)
+        shorter = np.sqrt(w) * np.cos(self._origin[0]) / np.cos(lat)
+        return np.column_stack([velocity[:, 1] * w**1.5, velocity[:, 0] * shorter])
 
     def columns(self, start_s: float) -> Iterator[Polynomials]:
         """Latitude and longitude (rad) as functions of the time since ``start_s``."""
@@ -239,6 +289,34 @@ class _Spline:
     def column(self, j: int, start_s: float) -> Polynomials:
         """Breakpoints since ``start_s`` and coefficients of column j."""
         return self._breaks + (self._start_s - start_s), self._coefficients[:, :, j]
+
+    def _polynomials(self) -> PPoly:
+        from scipy.interpolate import PPoly
+
+        return PPoly(self._coefficients, self._breaks)
+
+    def at(self, time_s: np.ndarray) -> np.ndarray:
+        """Columns at UTC times, shape (m, k)."""
+        return self._polynomials()(time_s - self._start_s)
+
+    def rate(self, time_s: np.ndarray) -> np.ndarray:
+        """Derivatives of the columns at UTC times, shape (m, k)."""
+        return self._polynomials()(time_s - self._start_s, 1)
+
+    def integral(self, time_s: np.ndarray) -> np.ndarray:
+        """Integrals of the columns from the first of the UTC times, shape (m, k)."""
+        whole = self._polynomials().antiderivative()(time_s - self._start_s)
+        return whole - whole[0]
+
+
+def _clamped(time_s: np.ndarray, values: np.ndarray, ends: np.ndarray) -> _Spline:
+    """Spline through the values, with these derivatives at the first and last time."""
+    from scipy.interpolate import CubicSpline
+
+    elapsed = time_s - time_s[0]
+    derivatives: Any = ((1, ends[0]), (1, ends[1]))  # scipy types it as a text
+    spline = CubicSpline(elapsed, values, bc_type=derivatives)
+    return _Spline(time_s[0], elapsed, spline.c)
 
 
 def _smoothed_columns(time_s: np.ndarray, values: np.ndarray, smoothing_s: float) -> _Spline:
@@ -272,12 +350,14 @@ def _refuse_outliers(position: Series, metres: np.ndarray) -> None:
         return
     faults = [
         Fault(
-            "", "file", position.source,
+            "",
+            "file",
+            position.source,
             f"the position at {utc_text(float(position.time_s[i + 1]))} lies {distance[i]:.0f} m "
             "off its neighbours: leave it out",
         )
         for i in worst[:_MOST_FAULTS]
-    ]  # fmt: skip
+    ]
     if worst.size > _MOST_FAULTS:
         faults.append(
             Fault("", "file", position.source, f"and {worst.size - _MOST_FAULTS} more such positions")

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Literal
 
 import numpy as np
 from pydantic import model_validator
 
-from navcore.compiled import inlined, kernel
-from navcore.earth import Earth
-from navcore.errors import Fault, InputError
+from navcore.foundation.compiled import inlined, kernel
+from navcore.foundation.earth import Earth
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.parameters import choice, quantity
+from navcore.foundation.trigonometry import sincos_cycles
+from navcore.foundation.units import DEG
 from navcore.motion.base import (
     AU,
     COLUMNS,
@@ -26,6 +30,7 @@ from navcore.motion.base import (
     VE,
     VN,
     VU,
+    MotionParameters,
     Site,
     Truth,
 )
@@ -34,9 +39,6 @@ from navcore.motion.kinematics import FREQUENCY, PHASE, WAVES, WIDTH, Kinematics
 from navcore.motion.sea import Answer, fully_developed_peak_period, make_seaway, ship_motion
 from navcore.motion.static import AttitudeMotion
 from navcore.motion.swing import SAMPLES_A_PERIOD, STEEPEST_PITCH_DEG
-from navcore.parameters import choice, quantity
-from navcore.trigonometry import sincos_cycles
-from navcore.units import DEG
 
 # Columns of a component beside FREQUENCY and PHASE: angular frequency and its square, then real and imaginary
 # parts of the answers in pitch, roll, heading and height.
@@ -49,23 +51,38 @@ HEAVE = 3
 
 def _gain(default: float, what: str, unit: str = "deg/deg") -> float:
     return quantity(
-        default, unit=unit, ge=0.0, le=5.0, slider=(0.0, 2.0), label=f"{what} gain",
+        default,
+        unit=unit,
+        ge=0.0,
+        le=5.0,
+        slider=(0.0, 2.0),
+        label=f"{what} gain",
         help=f"{what} in long waves as a part of what excites it; 0 for none.",
-    )  # fmt: skip
+    )
 
 
 def _period(default: float, what: str) -> float:
     return quantity(
-        default, unit="s", ge=0.5, le=60.0, slider=(3.0, 30.0), label=f"{what} period",
+        default,
+        unit="s",
+        ge=0.5,
+        le=60.0,
+        slider=(3.0, 30.0),
+        label=f"{what} period",
         help=f"Natural period of the ship's {what}.",
-    )  # fmt: skip
+    )
 
 
 def _damping(default: float, what: str) -> float:
     return quantity(
-        default, unit="1", ge=0.02, le=2.0, slider=(0.02, 1.0), label=f"{what} damping",
+        default,
+        unit="1",
+        ge=0.02,
+        le=2.0,
+        slider=(0.02, 1.0),
+        label=f"{what} damping",
         help=f"Damping ratio of the ship's {what}.",
-    )  # fmt: skip
+    )
 
 
 class WavesMotion(AttitudeMotion):
@@ -82,38 +99,74 @@ class WavesMotion(AttitudeMotion):
 
     kind: Literal["waves"] = "waves"
     spectrum: Literal["bretschneider", "pierson_moskowitz"] = choice(
-        "bretschneider", label="spectrum",
+        "bretschneider",
+        label="spectrum",
         help="bretschneider: height and peak period are free; pierson_moskowitz: a fully developed sea, "
         "whose peak period follows from the height, 5.0 s x sqrt(height in m).",
-    )  # fmt: skip
+    )
     height_m: float = quantity(
-        2.5, unit="m", ge=0.0, le=20.0, slider=(0.0, 10.0), label="wave height",
+        2.5,
+        unit="m",
+        ge=0.0,
+        le=20.0,
+        slider=(0.0, 10.0),
+        label="wave height",
         help="Significant wave height, four times the standard deviation of the surface.",
-    )  # fmt: skip
+    )
     peak_period_s: float = quantity(
-        8.0, unit="s", ge=2.0, le=30.0, slider=(4.0, 20.0), label="peak period",
+        8.0,
+        unit="s",
+        ge=2.0,
+        le=30.0,
+        slider=(4.0, 20.0),
+        label="peak period",
         help="Period at the peak of the spectrum; bretschneider only.",
-    )  # fmt: skip
+    )
     direction_deg: float = quantity(
-        60.0, unit="deg", ge=-360.0, le=360.0, slider=(0.0, 360.0), label="waves from",
+        60.0,
+        unit="deg",
+        ge=-360.0,
+        le=360.0,
+        slider=(0.0, 360.0),
+        label="waves from",
         help="Direction the waves come from, clockwise from true north.",
-    )  # fmt: skip
+    )
     spread_deg: float = quantity(
-        15.0, unit="deg", ge=0.0, le=60.0, slider=(0.0, 45.0), label="spread",
+        15.0,
+        unit="deg",
+        ge=0.0,
+        le=60.0,
+        slider=(0.0, 45.0),
+        label="spread",
         help="Standard deviation of the components' directions; 0 for a long-crested sea.",
-    )  # fmt: skip
+    )
     components: int = quantity(
-        32, unit="1", ge=8, le=200, slider=(8, 100), label="components",
+        32,
+        unit="1",
+        ge=8,
+        le=200,
+        slider=(8, 100),
+        label="components",
         help="Number of sinusoids; their frequencies are irregular, so the motion does not repeat.",
-    )  # fmt: skip
+    )
     seed: int = quantity(
-        1, unit="1", ge=0, le=2**31 - 1, slider=(0, 100), label="sea",
+        1,
+        unit="1",
+        ge=0,
+        le=2**31 - 1,
+        slider=(0, 100),
+        label="sea",
         help="Seed of the seaway: another number, another sea of the same spectrum.",
-    )  # fmt: skip
+    )
     speed_mps: float = quantity(
-        0.0, unit="m/s", ge=0.0, le=50.0, slider=(0.0, 15.0), label="speed",
+        0.0,
+        unit="m/s",
+        ge=0.0,
+        le=50.0,
+        slider=(0.0, 15.0),
+        label="speed",
         help="Speed along the mean heading; it changes the frequency at which the waves are met.",
-    )  # fmt: skip
+    )
     pitch_gain: float = _gain(0.7, "pitch")
     pitch_period_s: float = _period(6.0, "pitch")
     pitch_damping: float = _damping(0.4, "pitch")
@@ -134,11 +187,13 @@ class WavesMotion(AttitudeMotion):
         if swing > room:
             raise InputError(
                 Fault(
-                    "", "height_m", self.height_m,
+                    "",
+                    "height_m",
+                    self.height_m,
                     f"pitch could reach {swing:.0f} deg about a mean of {self.pitch_deg:g} deg: must stay "
                     f"within +-{STEEPEST_PITCH_DEG:g} deg; make height_m or pitch_gain smaller",
                 )
-            )  # fmt: skip
+            )
         return self
 
     @property
@@ -151,9 +206,13 @@ class WavesMotion(AttitudeMotion):
     def packed(self) -> np.ndarray:
         """Components of the ship's motion, shape (n, 12), columns OMEGA ... IMAGINARY + 3; SI, Hz, cycles."""
         sea = make_seaway(
-            self.height_m, self.modal_period_s, (self.direction_deg + 180.0) * DEG, self.spread_deg * DEG,
-            self.components, np.random.default_rng(self.seed),
-        )  # fmt: skip
+            self.height_m,
+            self.modal_period_s,
+            (self.direction_deg + 180.0) * DEG,
+            self.spread_deg * DEG,
+            self.components,
+            np.random.default_rng(self.seed),
+        )
         pitch, roll, heading, heave = (
             Answer(*(getattr(self, f"{name}_{field}") for field in ("gain", "period_s", "damping")))
             for name in _ANSWERS
@@ -168,7 +227,9 @@ class WavesMotion(AttitudeMotion):
         packed[:, IMAGINARY : IMAGINARY + 4] = np.imag(complex_answers)
         return packed
 
-    def truth(self, count: int, step_s: float, site: Site, earth: Earth) -> Truth:
+    def truth(
+        self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
+    ) -> Truth:
         """Return the true motion at ``count`` times 0, step_s, ...; shape (count, 15), or (1, 15) at rest.
 
         Raises
@@ -205,12 +266,23 @@ class WavesMotion(AttitudeMotion):
         except PoleReached as reached:
             raise InputError(
                 Fault(
-                    "", "speed_mps", self.speed_mps,
+                    "",
+                    "speed_mps",
+                    self.speed_mps,
                     f"the course passes 89.5 deg of latitude after {reached.time_s:.0f} s: "
                     "must stay within +-89.5 deg",
                 )
-            ) from None  # fmt: skip
+            ) from None
         return Kinematics(WAVES, rest, oscillations=self.packed(), nodes=nodes)
+
+    def before_start(self, true_row: np.ndarray, duration_s: float) -> MotionParameters:
+        """Return the ship stopped in the same sea."""
+        return self.model_copy(update={"speed_mps": 0.0})
+
+    def frequencies(self) -> Iterator[tuple[str, float]]:
+        """Yield the frequency of the shortest wave met."""
+        if self.height_m > 0.0:
+            yield "peak_period_s", float(self.packed()[:, FREQUENCY].max())
 
     def _answers(self, which: int) -> tuple[np.ndarray, np.ndarray]:
         packed = self.packed()
@@ -229,12 +301,14 @@ class WavesMotion(AttitudeMotion):
             name = [answer for answer, moves in zip(_ANSWERS, moving, strict=True) if moves][shortest]
             raise InputError(
                 Fault(
-                    "", "peak_period_s", self.modal_period_s,
+                    "",
+                    "peak_period_s",
+                    self.modal_period_s,
                     f"the mean period of {name} at this course and speed is {periods[shortest]:.1f} s: must "
                     f"be >= {SAMPLES_A_PERIOD * step_s:g} s with true states every {step_s:g} s (half a step "
                     "of the run); or make run.step_s smaller",
                 )
-            )  # fmt: skip
+            )
 
 
 @inlined

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from navcore.earth import WGS84
-from navcore.errors import Fault, InputError
+from navcore.foundation.earth import WGS84
+from navcore.foundation.errors import Fault, InputError
 from navcore.motion.base import Site, Truth
 from navcore.motion.track import TrackMotion
 from navcore.sensors.recorded import log_recording, log_series, recorded_window

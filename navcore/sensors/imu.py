@@ -10,9 +10,10 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from navcore.earth import Earth
+from navcore.foundation.earth import Earth
+from navcore.foundation.parameters import FileName, Parameters, bounded, choice, quantity, vector_quantity
+from navcore.foundation.units import ARCSEC, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G, PPM
 from navcore.motion.base import Truth
-from navcore.parameters import FileName, Parameters, bounded, choice, quantity, vector_quantity
 from navcore.sensors.base import SensorErrors
 from navcore.sensors.imu_kernels import (
     add_quantisation,
@@ -23,7 +24,6 @@ from navcore.sensors.imu_kernels import (
     turn_errors,
 )
 from navcore.sensors.noise import gauss_markov, unit_noise
-from navcore.units import ARCSEC, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G, PPM
 
 _ZERO3 = (0.0, 0.0, 0.0)
 _ZERO6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -103,34 +103,68 @@ class Imu(Parameters):
         _ZERO3, unit="deg/h", slider=(-0.1, 0.1), label="gyro bias", help="Constant error of each gyro."
     )
     gyro_arw_dpsh: float = quantity(
-        0.0, unit="deg/sqrt(h)", ge=0.0, le=100.0, slider=(0.0, 0.05), label="angular random walk",
+        0.0,
+        unit="deg/sqrt(h)",
+        ge=0.0,
+        le=100.0,
+        slider=(0.0, 0.05),
+        label="angular random walk",
         help="White noise of the gyros: standard deviation of the integrated angle after one hour.",
-    )  # fmt: skip
+    )
     accel_bias_ug: tuple[_AccelBias, _AccelBias, _AccelBias] = vector_quantity(
-        _ZERO3, unit="ug", slider=(-200.0, 200.0), label="accelerometer bias",
+        _ZERO3,
+        unit="ug",
+        slider=(-200.0, 200.0),
+        label="accelerometer bias",
         help="Constant error of each accelerometer; 1 ug = 9.80665e-6 m/s2.",
-    )  # fmt: skip
+    )
     accel_vrw_ugpshz: float = quantity(
-        0.0, unit="ug/sqrt(Hz)", ge=0.0, le=1e6, slider=(0.0, 100.0), label="velocity random walk",
+        0.0,
+        unit="ug/sqrt(Hz)",
+        ge=0.0,
+        le=1e6,
+        slider=(0.0, 100.0),
+        label="velocity random walk",
         help="White noise of the accelerometers: the mean over T s has the standard deviation VRW/sqrt(T).",
-    )  # fmt: skip
+    )
     gyro_instability_dph: float = quantity(
-        0.0, unit="deg/h", ge=0.0, le=1e4, slider=(0.0, 0.05), label="gyro instability",
+        0.0,
+        unit="deg/h",
+        ge=0.0,
+        le=1e4,
+        slider=(0.0, 0.05),
+        label="gyro instability",
         help="Standard deviation of a first-order Gauss-Markov drift, stationary from the start.",
-    )  # fmt: skip
+    )
     gyro_tau_s: float = quantity(
-        3600.0, unit="s", ge=1.0, le=1e7, slider=(10.0, 86400.0), log=True, label="gyro correlation time",
+        3600.0,
+        unit="s",
+        ge=1.0,
+        le=1e7,
+        slider=(10.0, 86400.0),
+        log=True,
+        label="gyro correlation time",
         help="Correlation time of the gyros' Gauss-Markov drift.",
-    )  # fmt: skip
+    )
     accel_instability_ug: float = quantity(
-        0.0, unit="ug", ge=0.0, le=1e5, slider=(0.0, 100.0), label="accelerometer instability",
+        0.0,
+        unit="ug",
+        ge=0.0,
+        le=1e5,
+        slider=(0.0, 100.0),
+        label="accelerometer instability",
         help="Standard deviation of a first-order Gauss-Markov drift, stationary from the start.",
-    )  # fmt: skip
+    )
     accel_tau_s: float = quantity(
-        3600.0, unit="s", ge=1.0, le=1e7, slider=(10.0, 86400.0), log=True,
+        3600.0,
+        unit="s",
+        ge=1.0,
+        le=1e7,
+        slider=(10.0, 86400.0),
+        log=True,
         label="accelerometer correlation time",
         help="Correlation time of the accelerometers' Gauss-Markov drift.",
-    )  # fmt: skip
+    )
     gyro_scale_ppm: tuple[_Scale, _Scale, _Scale] = vector_quantity(
         _ZERO3,
         unit="ppm",
@@ -139,28 +173,60 @@ class Imu(Parameters):
         help="Scale factor error of each gyro.",
     )
     accel_scale_ppm: tuple[_Scale, _Scale, _Scale] = vector_quantity(
-        _ZERO3, unit="ppm", slider=(-200.0, 200.0), label="accelerometer scale factor",
+        _ZERO3,
+        unit="ppm",
+        slider=(-200.0, 200.0),
+        label="accelerometer scale factor",
         help="Scale factor error of each accelerometer.",
-    )  # fmt: skip
+    )
     gyro_misalignment_arcsec: tuple[
         _Misalignment, _Misalignment, _Misalignment, _Misalignment, _Misalignment, _Misalignment
     ] = vector_quantity(
-        _ZERO6, unit="arcsec", elements=_PAIRS, slider=(-60.0, 60.0), label="gyro misalignment",
+        _ZERO6,
+        unit="arcsec",
+        elements=_PAIRS,
+        slider=(-60.0, 60.0),
+        label="gyro misalignment",
         help=_MISALIGNMENT_HELP,
-    )  # fmt: skip
+    )
     accel_misalignment_arcsec: tuple[
         _Misalignment, _Misalignment, _Misalignment, _Misalignment, _Misalignment, _Misalignment
     ] = vector_quantity(
-        _ZERO6, unit="arcsec", elements=_PAIRS, slider=(-60.0, 60.0), label="accelerometer misalignment",
+        _ZERO6,
+        unit="arcsec",
+        elements=_PAIRS,
+        slider=(-60.0, 60.0),
+        label="accelerometer misalignment",
         help=_MISALIGNMENT_HELP,
-    )  # fmt: skip
+    )
     gyro_lsb: tuple[_GyroLsb, _GyroLsb, _GyroLsb] = vector_quantity(
         _ZERO3, unit="rad", label="gyro count", help="Angle of one count of each gyro; 0 for no quantisation."
     )
     accel_lsb: tuple[_AccelLsb, _AccelLsb, _AccelLsb] = vector_quantity(
-        _ZERO3, unit="m/s", label="accelerometer count",
+        _ZERO3,
+        unit="m/s",
+        label="accelerometer count",
         help="Velocity of one count of each accelerometer; 0 for no quantisation.",
-    )  # fmt: skip
+    )
+    gyro_bias_std_dph: float | None = quantity(
+        None,
+        unit="deg/h",
+        ge=0.0,
+        le=1e5,
+        slider=(0.0, 0.1),
+        label="gyro bias, standard deviation",
+        help="Standard deviation of each gyro's bias in the error budget and the tuning, which know the bias "
+        "by its size only. Not given: the size of each gyro_bias_dph counts as its standard deviation.",
+    )
+    accel_bias_std_ug: float | None = quantity(
+        None,
+        unit="ug",
+        ge=0.0,
+        le=1e6,
+        slider=(0.0, 200.0),
+        label="accelerometer bias, standard deviation",
+        help="The same for the accelerometers. Not given: the size of each accel_bias_ug.",
+    )
     file: FileName | None = Field(
         default=None,
         description="Recorded IMU in place of the simulated one (strapdown): PSINS text, or CSV with t_s and "
@@ -174,7 +240,7 @@ class Imu(Parameters):
     )
     begin_s: float = quantity(
         0.0, unit="s", ge=0.0, le=1e7, label="skip", help="Time of the recorded IMU that is left out before."
-    )  # fmt: skip
+    )
 
     def gyro(self) -> SensorModel:
         """Error model of the gyros in SI."""

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from navcore.compiled import inlined, kernel
+from navcore.foundation.compiled import inlined, kernel
+from navcore.foundation.trigonometry import sincos
 from navcore.motion.base import HEADING, PITCH, ROLL
 from navcore.motion.inertial import inertial_row
-from navcore.trigonometry import sincos
 
 _CHUNK = 128
 

@@ -13,7 +13,7 @@ from collections import OrderedDict
 
 import numpy as np
 
-from navcore.compiled import kernel
+from navcore.foundation.compiled import kernel
 
 CACHE_BYTES = 32 * 1024 * 1024
 """Memory for drawn numbers: 24 h at 1 s take 1 MB a three-axis sensor."""

@@ -7,16 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from navcore.errors import Fault, InputError
+from navcore.foundation.errors import Fault, InputError
+from navcore.io.plausible import speed_warnings
 from navcore.io.recording import Window, load, require_cover, shared_window
 from navcore.io.series import Recording, Series
-from navcore.motion.base import Truth
-from navcore.motion.track import TrackMotion
+from navcore.motion.base import MotionParameters, Truth
 from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.reference import Reference, event_velocity, in_service
 from navcore.sensors.simulated_log import hold_time
 from navcore.sensors.true_state import horizontal_state, to_navigation
 
+SCHULER_PERIOD_S = 84.4 * 60.0
 _RECORDED_FIELDS = {"kind", "frame", "event", "outage", "file", "speed"}
 
 
@@ -58,13 +59,13 @@ def _streams(reference: Reference) -> list[Series]:
     return [s for s in (series, turned_by) if s is not None]
 
 
-def recorded_window(motion: object, reference: Reference) -> Window | None:
+def recorded_window(motion: MotionParameters, reference: Reference) -> Window | None:
     """Time that everything recorded in a scenario shares; its start is t = 0 for the track and for the log.
 
     Parameters
     ----------
     motion : MotionParameters
-        Only a `TrackMotion` is recorded.
+        Any motion; few are recorded.
     reference : Reference
         Only ``kind = "file"`` is recorded.
 
@@ -78,11 +79,12 @@ def recorded_window(motion: object, reference: Reference) -> Window | None:
         A file is missing or wrong, or the recordings share no time (field names begin with the block).
     """
     streams: list[Series] = []
-    if isinstance(motion, TrackMotion):
-        try:
-            streams += motion.streams().series()
-        except InputError as error:
-            raise error.located("", "motion.") from None
+    try:
+        recorded = motion.streams()
+    except InputError as error:
+        raise error.located("", "motion.") from None
+    if recorded is not None:
+        streams += recorded.series()
     if reference.kind == "file":
         try:
             streams += _streams(reference)
@@ -149,7 +151,7 @@ def heading_at(heading: Series, time_s: np.ndarray) -> np.ndarray:
     return np.interp(time_s, heading.time_s, np.unwrap(heading.values[:, 0]))
 
 
-def recording_notices(motion: object, reference: Reference) -> tuple[str, ...]:
+def recording_notices(motion: MotionParameters, reference: Reference) -> tuple[str, ...]:
     """What the user should know about the recordings of a scenario, and about settings they leave unused.
 
     Raises
@@ -158,26 +160,16 @@ def recording_notices(motion: object, reference: Reference) -> tuple[str, ...]:
         As `recorded_window`.
     """
     recorded_window(motion, reference)
-    track = motion if isinstance(motion, TrackMotion) else None
-    notices = list(_track_notices(track)) if track else []
-    notices += (
-        _log_notices(track, reference) if reference.kind == "file" else _unused(reference, {"file": None})
-    )
+    notices = list(motion.notices())
+    if reference.kind == "file":
+        notices += _log_notices(motion, reference)
+    else:
+        notices += _unused(reference, {"file": None})
     return tuple(dict.fromkeys(notices))
 
 
-def _track_notices(track: TrackMotion) -> Iterator[str]:
-    streams = track.streams()
-    yield from track.recording().warnings
-    for series in streams.series():
-        count, longest = series.gaps()
-        if count:
-            yield f"{series.source}: {count} gaps (longest {longest:.1f} s) bridged by the smoothing"
-    if streams.attitude is not None and (track.pitch_deg or track.roll_deg):
-        yield "motion.pitch_deg and roll_deg are not used: the recording holds pitch and roll"
-
-
-def _log_notices(track: TrackMotion | None, reference: Reference) -> Iterator[str]:
+def _log_notices(moving: MotionParameters, reference: Reference) -> Iterator[str]:
+    track = moving.streams()
     recording = log_recording(reference)
     series, along_axes = log_series(reference, recording)
     yield from recording.warnings
@@ -186,8 +178,13 @@ def _log_notices(track: TrackMotion | None, reference: Reference) -> Iterator[st
     if not along_axes and reference.frame == "body":
         yield f'{series.source} gives east and north: reference.frame = "body" has no effect'
     if track is None:
-        yield "a recorded log without a recorded track: it errs by all its difference from the motion"
-    elif not along_axes and series.file == track.streams().position.file:
+        yield (
+            "a recorded log without a recorded track: the ship follows the simulated motion "
+            f"({moving.kind}), and the log errs by all its difference from it"
+        )
+    else:
+        yield from speed_warnings(Recording(track.position, track.recording.velocity, recording.water))
+    if track is not None and not along_axes and series.file == track.position.file:
         yield f"{series.source}: the log comes from the same receiver as the track, its errors cancel in part"
     count, longest = series.gaps()
     if count:
@@ -197,6 +194,27 @@ def _log_notices(track: TrackMotion | None, reference: Reference) -> Iterator[st
         name: field.default for name, field in Reference.model_fields.items() if name not in _RECORDED_FIELDS
     }
     yield from _unused(reference, defaults)
+
+
+def short_run_notices(motion: MotionParameters, recorded: bool, duration_s: float) -> list[str]:
+    """Say so when a run on recordings is too short to tell anything about damping.
+
+    Parameters
+    ----------
+    motion : MotionParameters
+        May be recorded.
+    recorded : bool
+        Whether the log or the IMU is recorded.
+    duration_s : float
+        Length of the run, s.
+    """
+    if duration_s >= SCHULER_PERIOD_S or not (recorded or motion.streams() is not None):
+        return []
+    return [
+        f"the run of {duration_s / 60.0:.1f} min is {duration_s / SCHULER_PERIOD_S:.2g} of a Schuler period "
+        f"({SCHULER_PERIOD_S / 60.0:.1f} min): it shows little more than the initial errors, and conclusions "
+        "about damping need a longer recording"
+    ]
 
 
 def _unused(reference: Reference, defaults: dict[str, Any]) -> list[str]:

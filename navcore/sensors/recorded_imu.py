@@ -14,8 +14,8 @@ from typing import Literal
 
 import numpy as np
 
-from navcore.errors import Fault, InputError
-from navcore.units import ARCSEC, DEG
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.units import ARCSEC, DEG
 
 Axes = Literal["rfu", "frd"]
 _PSINS_GRAVITY = 9.780327
@@ -131,19 +131,23 @@ def check_rest(record: ImuRecord, gravity: float, first_s: float = 0.0, last_s: 
     if abs(size - gravity) > _LARGEST_FORCE_ERROR * gravity:
         raise InputError(
             Fault(
-                record.source, "imu.file", None,
+                record.source,
+                "imu.file",
+                None,
                 f"the mean specific force is {size:.4g} m/s2, gravity here is {gravity:.5g}: wrong units "
                 "or scale, or not at rest",
             )
-        )  # fmt: skip
+        )
     if math.acos(min(1.0, max(-1.0, force[2] / size))) > _LARGEST_TILT:
         raise InputError(
             Fault(
-                record.source, "imu.file", None,
+                record.source,
+                "imu.file",
+                None,
                 f"the {upward_axis(force)} axis looks like up, but z must point up (x right, y forward): "
                 f"mean specific force {force[0]:.3f}, {force[1]:.3f}, {force[2]:.3f} m/s2",
             )
-        )  # fmt: skip
+        )
 
 
 def _psins(text: str, source: str) -> ImuRecord:

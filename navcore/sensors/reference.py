@@ -8,10 +8,10 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from navcore.foundation.parameters import FileName, Parameters, bounded, quantity, vector_quantity
+from navcore.foundation.units import HOUR
 from navcore.motion.base import Truth
-from navcore.parameters import FileName, Parameters, bounded, quantity, vector_quantity
 from navcore.sensors.base import ReferenceErrors
-from navcore.units import HOUR
 
 _Speed = Annotated[float, bounded(unit="m/s", ge=-50.0, le=50.0)]
 _Acceleration = Annotated[float, bounded(unit="m/s2", ge=-50.0, le=50.0)]
@@ -34,13 +34,22 @@ class LogEvent(Parameters):
         help="Length of the event.",
     )
     accel_mps2: tuple[_Acceleration, _Acceleration] = vector_quantity(
-        (0.0, 0.0), unit="m/s2", elements=("E", "N"), slider=(-0.1, 0.1), label="acceleration of dV_r",
+        (0.0, 0.0),
+        unit="m/s2",
+        elements=("E", "N"),
+        slider=(-0.1, 0.1),
+        label="acceleration of dV_r",
         help="East, north (Liu 2021, fig. 4). Its integral stays after the event; events add up.",
-    )  # fmt: skip
+    )
     sine_hz: float = quantity(
-        0.0, unit="Hz", ge=0.0, le=10.0, slider=(0.0, 0.1), label="frequency",
+        0.0,
+        unit="Hz",
+        ge=0.0,
+        le=10.0,
+        slider=(0.0, 0.1),
+        label="frequency",
         help="0: constant acceleration; else the acceleration is a sin(2 pi f (t - t_h)).",
-    )  # fmt: skip
+    )
 
 
 class Outage(Parameters):
@@ -82,50 +91,114 @@ class Reference(Parameters):
         json_schema_extra={"label": "frame"},
     )
     bias_mps: tuple[_Speed, _Speed] = vector_quantity(
-        (0.0, 0.0), unit="m/s", elements=("E / starboard", "N / forward"), slider=(-2.0, 2.0), label="bias",
+        (0.0, 0.0),
+        unit="m/s",
+        elements=("E / starboard", "N / forward"),
+        slider=(-2.0, 2.0),
+        label="bias",
         help="Constant error: east, north; with frame = body starboard, forward.",
-    )  # fmt: skip
+    )
+    bias_std_mps: float | None = quantity(
+        None,
+        unit="m/s",
+        ge=0.0,
+        le=50.0,
+        slider=(0.0, 2.0),
+        label="bias, standard deviation",
+        help="Standard deviation of the bias on each axis, in the error budget and the tuning. Not given: "
+        "the size of each bias_mps.",
+    )
     noise_mps: float = quantity(
-        0.0, unit="m/s", ge=0.0, le=50.0, slider=(0.0, 1.0), label="noise",
+        0.0,
+        unit="m/s",
+        ge=0.0,
+        le=50.0,
+        slider=(0.0, 1.0),
+        label="noise",
         help="Standard deviation of one sample, on each axis. At rates above one sample a step the samples "
         "of a step are averaged.",
-    )  # fmt: skip
+    )
     rate_hz: float = quantity(
-        1.0, unit="Hz", ge=0.001, le=1000.0, slider=(0.1, 10.0), log=True, label="rate",
+        1.0,
+        unit="Hz",
+        ge=0.001,
+        le=1000.0,
+        slider=(0.1, 10.0),
+        log=True,
+        label="rate",
         help="Samples a second.",
-    )  # fmt: skip
+    )
     drift_mps: float = quantity(
-        0.0, unit="m/s", ge=0.0, le=50.0, slider=(0.0, 1.0), label="drift",
+        0.0,
+        unit="m/s",
+        ge=0.0,
+        le=50.0,
+        slider=(0.0, 1.0),
+        label="drift",
         help="Standard deviation of a slow error, on each axis (first-order Gauss-Markov).",
-    )  # fmt: skip
+    )
     drift_tau_s: float = quantity(
-        600.0, unit="s", gt=0.0, le=1e7, slider=(10.0, 36000.0), log=True, label="drift time",
+        600.0,
+        unit="s",
+        gt=0.0,
+        le=1e7,
+        slider=(10.0, 36000.0),
+        log=True,
+        label="drift time",
         help="Correlation time of the drift.",
-    )  # fmt: skip
+    )
     scale_ppm: float = quantity(
-        0.0, unit="ppm", ge=-500000.0, le=500000.0, slider=(-20000.0, 20000.0), label="scale error",
+        0.0,
+        unit="ppm",
+        ge=-500000.0,
+        le=500000.0,
+        slider=(-20000.0, 20000.0),
+        label="scale error",
         help="Relative error of the measured velocity.",
-    )  # fmt: skip
+    )
     delay_s: float = quantity(
-        0.0, unit="s", ge=0.0, le=3600.0, slider=(0.0, 60.0), label="delay",
+        0.0,
+        unit="s",
+        ge=0.0,
+        le=3600.0,
+        slider=(0.0, 60.0),
+        label="delay",
         help="The sample at t is the velocity at t - delay (before t = 0: that at t = 0).",
-    )  # fmt: skip
+    )
     lsb_mps: float = quantity(
-        0.0, unit="m/s", ge=0.0, le=10.0, slider=(0.0, 0.2), label="resolution",
+        0.0,
+        unit="m/s",
+        ge=0.0,
+        le=10.0,
+        slider=(0.0, 0.2),
+        label="resolution",
         help="Readings are rounded to this.",
-    )  # fmt: skip
+    )
     current_mps: tuple[_Speed, _Speed] = vector_quantity(
-        (0.0, 0.0), unit="m/s", elements=("E", "N"), slider=(-2.0, 2.0), label="current",
+        (0.0, 0.0),
+        unit="m/s",
+        elements=("E", "N"),
+        slider=(-2.0, 2.0),
+        label="current",
         help="Velocity of the water over the ground, east, north; the log misses it: dV_r = -current.",
-    )  # fmt: skip
+    )
     tide_mps: tuple[_Speed, _Speed] = vector_quantity(
-        (0.0, 0.0), unit="m/s", elements=("E", "N"), slider=(-2.0, 2.0), label="tide",
+        (0.0, 0.0),
+        unit="m/s",
+        elements=("E", "N"),
+        slider=(-2.0, 2.0),
+        label="tide",
         help="Amplitude of the tidal stream, east, north: tide sin(2 pi t / period + phase) is added.",
-    )  # fmt: skip
+    )
     tide_period_h: float = quantity(
-        12.42, unit="h", ge=0.01, le=10000.0, slider=(1.0, 48.0), label="tide period",
+        12.42,
+        unit="h",
+        ge=0.01,
+        le=10000.0,
+        slider=(1.0, 48.0),
+        label="tide period",
         help="12.42 h: the principal lunar tide.",
-    )  # fmt: skip
+    )
     tide_phase_deg: float = quantity(
         0.0,
         unit="deg",

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from navcore.foundation.units import DEG, HOUR, PPM
 from navcore.motion.base import Truth
 from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.noise import gauss_markov, unit_noise
 from navcore.sensors.reference import Reference, event_velocity, in_service
 from navcore.sensors.true_state import horizontal_state, to_navigation, to_ship
-from navcore.units import DEG, HOUR, PPM
 
 SHORTEST_HOLD_S = 5.0
 """A sample stands for three intervals of the log, and at least this long."""

@@ -50,9 +50,10 @@ def _hermite(
     begin, end = values[left][:, columns], values[left + 1][:, columns]
     slope_begin, slope_end = values[left][:, derivatives] * step_s, values[left + 1][:, derivatives] * step_s
     rise = end - begin
-    return begin + u * (slope_begin + u * (3.0 * rise - 2.0 * slope_begin - slope_end + u * (
-        slope_begin + slope_end - 2.0 * rise
-    )))  # fmt: skip
+    return begin + u * (
+        slope_begin
+        + u * (3.0 * rise - 2.0 * slope_begin - slope_end + u * (slope_begin + slope_end - 2.0 * rise))
+    )
 
 
 def to_navigation(starboard_forward: np.ndarray, heading: np.ndarray) -> np.ndarray:

@@ -12,19 +12,19 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from navcore.alignment import CompassLoop, fine_alignment, steady_misalignment
-from navcore.earth import WGS84
+from navcore.alignment.fine import CompassLoop, fine_alignment, steady_misalignment
+from navcore.engine.simulation import simulate
+from navcore.foundation.earth import WGS84
+from navcore.foundation.units import DEG, DEG_PER_HOUR, MICRO_G
 from navcore.mechanization.recorder import DV_E, DV_N, MAX_ABS, PHI_E, PHI_N
 from navcore.mechanization.strapdown.attitude import misalignment, quaternion_of
 from navcore.mechanization.strapdown.run import turned_by
 from navcore.motion.base import HEADING, PITCH, ROLL, MotionParameters
 from navcore.motion.static import StaticMotion
-from navcore.network.compass import CompassNetwork
-from navcore.scenario import Scenario
+from navcore.networks.compass import CompassNetwork
+from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
-from navcore.simulation import simulate
-from navcore.units import DEG, DEG_PER_HOUR, MICRO_G
 from tests.acceptance.test_strapdown_against_error_model import METHODS, VOYAGE, both
 from tests.acceptance.test_strapdown_motions import worst
 from tests.motions import MANOEUVRES, SEA, SUN, ZHAO, circle_track
@@ -75,16 +75,23 @@ def _three(found: np.ndarray) -> str:
 
 
 def reference_values() -> Iterator[Row]:
-    """Values of physics.md 9.5 and 9.6."""
+    """Values of theory.md 9.5 and 9.6."""
     v_e = navigate(StaticMotion(), 100.0, 3600.0, Imu(gyro_bias_dph=(0.0, 0.02, 0.0))).navigation[:, 3]
     for t, wanted in ((1800, "0.9951"), (2533, "1.2309"), (3600, "0.7646")):
         yield f"9.5, V_E at {t} s", f"{v_e[t]:.5f} m/s", f"{wanted} m/s"
     imu = Imu(gyro_bias_dph=(0.0, 0.02, 0.0), accel_bias_ug=(50.0, 50.0, 0.0))
     for law_step_s in (1.0, 0.01):
         run = navigate(
-            StaticMotion(), 100.0, 3600.0, imu, [0, 0, 0, 0, 0.1 * DEG, 0.1 * DEG, 0], "external",
-            CompassNetwork(sigma=0.0088, xi=0.7), reference((0, 0), 3600.0, law_step_s), law_step_s,
-        )  # fmt: skip
+            StaticMotion(),
+            100.0,
+            3600.0,
+            imu,
+            [0, 0, 0, 0, 0.1 * DEG, 0.1 * DEG, 0],
+            "external",
+            CompassNetwork(sigma=0.0088, xi=0.7),
+            reference((0, 0), 3600.0, law_step_s),
+            law_step_s,
+        )
         for name, column, wanted in (
             ("E", PHI_E, "-0.002868 deg, 541 s"),
             ("N", PHI_N, "0.002868 deg, 545 s"),

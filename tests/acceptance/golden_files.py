@@ -11,9 +11,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from navcore.measures import metrics
-from navcore.scenario_file import load, presets
-from navcore.simulation import simulate
+from navcore.engine.measures import metrics
+from navcore.engine.simulation import simulate
+from navcore.scenario.file import load, presets
 
 FOLDER = Path(__file__).resolve().parent / "golden"
 

@@ -1,15 +1,15 @@
-"""physics.md 9.1 and 9.2, and what its sections 3 and 8 say about printed parameter sets."""
+"""theory.md 9.1 and 9.2, and what its sections 3 and 8 say about printed parameter sets."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from navcore.earth import SPHERE
-from navcore.loop import analyse
-from navcore.network import parse_network
-from navcore.network.compass import CompassNetwork, sigma_xi_from_gains
-from navcore.network.report import network_report
+from navcore.analysis import analyse
+from navcore.analysis.report import network_report
+from navcore.foundation.earth import SPHERE
+from navcore.networks import parse_network
+from navcore.networks.compass import CompassNetwork, sigma_xi_from_gains
 
 OMEGA_S = SPHERE.schuler_frequency(0.0)
 
@@ -55,7 +55,7 @@ def test_9_2_printed_digits_are_recognised() -> None:
 
 
 def test_zha_4_1_gain_k2_is_not_that_of_sigma_and_xi() -> None:
-    """Zha 4.1 prints K2 = 156.063 where 202.52 belongs to sigma = 0.0088, xi = 0.7 (physics.md section 8)."""
+    """Zha 4.1 prints K2 = 156.063 where 202.52 belongs to sigma = 0.0088, xi = 0.7 (theory.md section 8)."""
     text = 'id = "compass", k1 = 0.0264, k2 = 156.063, k3 = 0.904'
     assert sigma_xi_from_gains(0.0264, 156.063, 0.904, OMEGA_S) is None
     report = network_report(parse_network(text))

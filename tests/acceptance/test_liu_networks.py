@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from navcore.loop import RADIUS, frequency_response
-from navcore.network import LinearNetwork
-from navcore.network.complementary import ComplementaryNetwork
-from navcore.scenario_file import load
-from navcore.simulation import simulate
+from navcore.analysis import RADIUS, frequency_response
+from navcore.engine.simulation import simulate
+from navcore.networks import LinearNetwork
+from navcore.networks.complementary import ComplementaryNetwork
+from navcore.scenario.file import load
 
 
 def gain(network: LinearNetwork, omega: np.ndarray) -> np.ndarray:

@@ -1,15 +1,15 @@
-"""Liu 2021, figure 4: the overshoot follows the change of the log's error (physics.md 9.3)."""
+"""Liu 2021, figure 4: the overshoot follows the change of the log's error (theory.md 9.3)."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from navcore.engine.run import MethodRun, Run
+from navcore.engine.simulation import simulate
+from navcore.foundation.units import HOUR
 from navcore.mechanization.recorder import DV_E, PHI_N
-from navcore.run import MethodRun, Run
-from navcore.scenario_file import load
-from navcore.simulation import simulate
-from navcore.units import HOUR
+from navcore.scenario.file import load
 
 CHANGE_MPS = (1.0, 0.5, 1.0, 1.5)
 PEAKS_MPS = (0.7269, 0.3636, 0.7271, 1.0907)

@@ -6,9 +6,23 @@ import numpy as np
 import pytest
 
 from app.papers import liu_switching
-from app.papers.liu_switching import BEST, METHODS, NOVEL, RAMP, daily, lasting, quiet_episodes, ratio, turns
+from app.papers.liu_switching import (
+    BEST,
+    BRIDGE,
+    HARD,
+    METHODS,
+    NOVEL,
+    RAMP,
+    added_by,
+    daily,
+    lasting,
+    of_method,
+    quiet_episodes,
+    ratio,
+    turns,
+)
 from app.papers.runs import Runs
-from navcore.scenario_file import load
+from navcore.scenario.file import load
 
 
 @pytest.fixture(scope="module")
@@ -19,7 +33,7 @@ def runs():
 
 
 def test_the_presets_methods_are_the_studys():
-    assert tuple(m.name for m in load("liu-switching").method) == METHODS
+    assert tuple(m.name for m in load("liu-switching").method) == METHODS[:-1]
 
 
 def test_episodes_return_to_where_they_began():
@@ -47,8 +61,8 @@ def test_bumpless_is_five_times_better_than_ramp_on_lasting_changes(runs):
     assert ratio(runs, "log only", "velocity", RAMP, BEST) >= 5.0
 
 
-def test_bumpless_is_the_best_of_the_damped_methods_at_sea(runs):
-    for other in METHODS[1:-1]:
+def test_bumpless_is_better_than_the_papers_methods_at_sea(runs):
+    for other in METHODS[1 : METHODS.index(BEST)]:
         for quantity in liu_switching.QUANTITIES:
             assert ratio(runs, "sea", quantity, BEST, other) < 1.0, (other, quantity)
 
@@ -56,6 +70,24 @@ def test_bumpless_is_the_best_of_the_damped_methods_at_sea(runs):
 def test_on_the_30_min_episodes_bumpless_is_no_worse_than_hard(runs):
     found = quiet_episodes(runs)
     assert np.all(found[METHODS.index(BEST)] <= found[METHODS.index("variation + hard")])
+
+
+@pytest.mark.parametrize(("ours", "least"), [(BEST, 5.0), (BRIDGE, 3.0)])
+def test_the_changes_of_the_log_add_several_times_less_than_with_ramp(runs, ours, least):
+    """Four seeds; over the report's twenty bridge comes to 6.6 +- 0.8 and bumpless to 21 +- 1.4."""
+    ramp, found = (added_by(runs, "sea", "velocity", name) for name in (RAMP, ours))
+    assert np.all(ramp / found > least)
+
+
+@pytest.mark.parametrize("case", ["sea", "episodes", "episodes at sea"])
+def test_bridge_is_never_worse_than_hard(runs, case):
+    bridge, hard = (of_method(runs, case, "velocity", name) for name in (BRIDGE, HARD))
+    assert np.all(bridge < hard)
+
+
+def test_constant_damping_is_worse_in_position_than_none_at_sea(runs):
+    constant, free = (of_method(runs, "sea", "position", name) for name in ("constant", "free"))
+    assert np.mean(constant - free) > 0.0
 
 
 def test_five_days_of_episodes_do_not_grow(runs):

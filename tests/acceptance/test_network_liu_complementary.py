@@ -1,4 +1,4 @@
-"""Liu 5, 6, 11 and figure 3: the complementary-filter network (physics.md 3.2)."""
+"""Liu 5, 6, 11 and figure 3: the complementary-filter network (theory.md 3.2)."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from navcore.earth import SPHERE
-from navcore.loop import RADIUS, analyse, frequency_response, transfer
-from navcore.network import parse_network
+from navcore.analysis import RADIUS, analyse, frequency_response, transfer
+from navcore.foundation.earth import SPHERE
+from navcore.networks import parse_network
 
 OMEGA_S = SPHERE.schuler_frequency(0.0)
 

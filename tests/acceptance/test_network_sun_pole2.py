@@ -1,15 +1,15 @@
-"""Sun 12-18 and Table 1: the two-pole network, exact and as printed (physics.md 3.3)."""
+"""Sun 12-18 and Table 1: the two-pole network, exact and as printed (theory.md 3.3)."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from navcore.earth import SPHERE
-from navcore.loop import analyse
-from navcore.loop.analysis import Loop
-from navcore.network import parse_network
-from navcore.network.base import LinearNetwork
+from navcore.analysis import analyse
+from navcore.analysis.loop import Loop
+from navcore.foundation.earth import SPHERE
+from navcore.networks import parse_network
+from navcore.networks.base import LinearNetwork
 
 OMEGA_S = SPHERE.schuler_frequency(0.0)
 SUN_TABLE_1 = [0.04, 0.05, 0.08, 0.10, 0.12, 0.22, 0.44, 0.64, 0.82, 0.99]
@@ -37,7 +37,7 @@ def test_exact_poles_are_where_they_were_asked(xi: float) -> None:
 
 @pytest.mark.parametrize("xi", SUN_TABLE_1)
 def test_partial_fractions_are_suns(xi: float) -> None:
-    """H = 1 + A/(s+w1) + B/(s+w2) with A, B, w1, w2 as physics.md 3.3 gives them."""
+    """H = 1 + A/(s+w1) + B/(s+w2) with A, B, w1, w2 as theory.md 3.3 gives them."""
     n1, n2 = 14.0, 5.0
     a, b = (n1 + n2 + 2) * xi * OMEGA_S, (n1 * n2 + 2 * (n1 + n2)) * (xi * OMEGA_S) ** 2
     c, d = (2 * n1 * n2 * xi**3 + (n1 + n2) * xi) * OMEGA_S, n1 * n2 * (xi * OMEGA_S) ** 2

@@ -1,13 +1,19 @@
-"""physics.md 3.4: exact damping and H(0) = 1 at once."""
+"""theory.md 3.4: exact damping and H(0) = 1 at once."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from navcore.earth import SPHERE
-from navcore.loop import analyse
-from navcore.network import parse_network
+from navcore.analysis import analyse, network_table
+from navcore.analysis.placement import place
+from navcore.analysis.whole_system import whole_system
+from navcore.foundation.earth import SPHERE
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import DEG
+from navcore.networks import parse_network
+from navcore.networks.retuning import unity2_difference
+from navcore.networks.tuning_codes import UNITY2
 
 OMEGA_S = SPHERE.schuler_frequency(0.0)
 
@@ -37,3 +43,69 @@ def test_least_damping_is_the_one_asked(zeta: float) -> None:
     assert loop.damping_ratio == pytest.approx(zeta, rel=1e-12)
     assert loop.warnings == ()
     assert loop.stable
+
+
+# ---------------------------------------------------------------- r < 1 (theory.md 10)
+
+BELOW = {"id": "unity2", "zeta": 0.5, "r": 0.8, "alpha": 0.36 * 0.7 / 0.8 * OMEGA_S}
+"""zeta 0.5, r 0.8, beta = 0.3 omega_s^2."""
+
+
+def test_below_omega_s_the_24_h_mode_decays() -> None:
+    """theory.md 10: zeta2 = 0.29, H'(0) = -2829 s, the mode decays in 0.99 d at 45 N."""
+    network = parse_network(BELOW).transfer(OMEGA_S)
+    loop = analyse(network)
+    assert network.h0 == 1.0
+    assert network.h_slope == pytest.approx(-2829.0, rel=1e-3)
+    assert loop.damping_ratio == pytest.approx(0.29, abs=0.005)
+    assert any("worse damped (0.288)" in text for text in network.warnings)
+    whole = whole_system(network, "external", 45.0 * DEG)
+    assert whole.e_folding_s / 86400.0 == pytest.approx(-0.99, abs=0.01)
+
+
+@pytest.mark.parametrize("r", [0.2, 0.5, 0.8, 0.99])
+@pytest.mark.parametrize("zeta2", [0.2, 0.7, 1.5])
+def test_below_omega_s_h0_is_one_and_the_slope_negative(r: float, zeta2: float) -> None:
+    network = parse_network({"id": "unity2", "zeta": 0.5, "r": r, "zeta2": zeta2}).transfer(OMEGA_S)
+    closed = np.polyadd(np.polymul([1.0, 0.0, 0.0], network.den_p), network.num_p)
+    delta = np.poly(np.asarray(network.closed_loop_p))
+    np.testing.assert_allclose(closed, np.real(delta), rtol=1e-9, atol=1e-12)
+    assert network.h0 == 1.0
+    assert network.h_slope < 0.0
+
+
+def test_no_second_pair_is_refused() -> None:
+    with pytest.raises(InputError, match="must be <= 0.99 or >= 1.01"):
+        parse_network('id = "unity2", r = 1.0')
+    with pytest.raises(InputError, match=r"alpha = 0.01: must be < 0.000\d+ \(rad/s\)"):
+        parse_network('id = "unity2", r = 0.8, alpha = 0.01').transfer(OMEGA_S)
+
+
+@pytest.mark.parametrize("more", [{"zeta2": 0.4}, {}, {"alpha": 0.36 * 0.7 / 0.8 * OMEGA_S}])
+def test_the_running_law_re_tunes_it_below_omega_s_too(more: dict[str, float]) -> None:
+    parameters = parse_network({"id": "unity2", "zeta": 0.5, "r": 0.8, **more})
+    network = parameters.transfer(OMEGA_S)
+    code, r, zeta2, alpha = parameters.tuning(OMEGA_S) or []
+    assert (code, r) == (UNITY2, 0.8)
+    a1, a2, b1, b2 = unity2_difference(0.5, r, zeta2, alpha)
+    np.testing.assert_allclose([1.0, a1, a2], network.den_p, rtol=1e-9)
+    np.testing.assert_allclose([b1, b2], (network.den_p - network.num_p)[1:], rtol=1e-9, atol=1e-12)
+    assert unity2_difference(0.99, r, zeta2, alpha)[1] > 0.0
+
+
+def test_a_pair_can_be_asked_not_to_let_the_24_h_mode_grow() -> None:
+    parameters = parse_network('id = "unity2", zeta2 = 0.3')
+    below = place(parameters, 0.5, 0.8 * OMEGA_S, OMEGA_S, earth_mode_decays=True)
+    assert below.parameters.transfer(OMEGA_S).h_slope < 0.0
+    with pytest.raises(InputError, match="lets the 24 h mode grow"):
+        place(parameters, 0.5, 1.2 * OMEGA_S, OMEGA_S, earth_mode_decays=True)
+    with pytest.raises(InputError, match="lets the 24 h mode grow"):
+        place(parse_network('id = "compass"'), 0.5, 1.2 * OMEGA_S, OMEGA_S, earth_mode_decays=True)
+    complementary = place(
+        parse_network('id = "complementary"'), 0.7, OMEGA_S, OMEGA_S, earth_mode_decays=True
+    )
+    assert complementary.parameters.damping_coefficient() == 0.7
+
+
+def test_the_page_of_networks_says_what_the_analysis_says() -> None:
+    assert network_table.PAGE.read_text("utf-8") == network_table.page(), "make guide"

@@ -12,7 +12,7 @@ import json
 import numpy as np
 import pytest
 
-from navcore.scenario_file import presets
+from navcore.scenario.file import presets
 from tests.acceptance.golden_files import FOLDER, present
 
 ROUNDING = {"rad": 1e-7, "mps": 1e-4, "m": 1.0}

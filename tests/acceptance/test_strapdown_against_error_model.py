@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from navcore.earth import WGS84
+from navcore.foundation.earth import WGS84
+from navcore.foundation.units import ARCSEC
 from navcore.mechanization.error_model import ErrorModelRun
 from navcore.mechanization.recorder import DV_E, PHI_U, make_recorder
 from navcore.mechanization.strapdown import Settings, start_from, start_run, velocity_reference
@@ -13,13 +14,12 @@ from navcore.mechanization.trajectory import coefficients
 from navcore.motion.base import Truth
 from navcore.motion.legs import Leg, LegsMotion
 from navcore.motion.static import StaticMotion
-from navcore.network.classic import Classic2Network
-from navcore.network.compass import CompassNetwork
-from navcore.network.undamped import UndampedNetwork
+from navcore.networks.classic import Classic2Network
+from navcore.networks.compass import CompassNetwork
+from navcore.networks.undamped import UndampedNetwork
 from navcore.sensors.base import ReferenceErrors, SensorErrors
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
-from navcore.units import ARCSEC
 from tests.strapdown import DENG_SWING, SITE, law
 
 HOURS, RATE = 6, 50.0
@@ -59,13 +59,23 @@ def both(motion, method) -> tuple[np.ndarray, np.ndarray]:
     truth = half if len(half) == 1 else np.ascontiguousarray(half[::2])
     times = np.arange(SECONDS + 1.0)
     rng = np.random.default_rng(11)
-    log = ReferenceErrors(times, np.array([0.1, -0.05]) + 0.05 * rng.normal(size=(SECONDS + 1, 2)),
-                          np.ones(SECONDS + 1, bool), False, 5.0)  # fmt: skip
+    log = ReferenceErrors(
+        times,
+        np.array([0.1, -0.05]) + 0.05 * rng.normal(size=(SECONDS + 1, 2)),
+        np.ones(SECONDS + 1, bool),
+        False,
+        5.0,
+    )
     settings = Settings(RATE, samples, int(RATE), int(RATE), 10.0)
     run = start_run(
-        start_from(truth[0], START), settings, WGS84, law(damping, network, 1.0), truth,
-        velocity_reference(log, Truth(1.0, truth)), sim.before(),
-    )  # fmt: skip
+        start_from(truth[0], START),
+        settings,
+        WGS84,
+        law(damping, network, 1.0),
+        truth,
+        velocity_reference(log, Truth(1.0, truth)),
+        sim.before(),
+    )
     sums = []
     for increments, errors in sim.chunks(with_sums=True):
         sums.append(errors.copy())
@@ -73,10 +83,15 @@ def both(motion, method) -> tuple[np.ndarray, np.ndarray]:
     errors = np.concatenate(sums)
     recorder = make_recorder(SECONDS, 1.0, 10.0)
     linear = ErrorModelRun(
-        1.0, SECONDS, coefficients(truth_half, WGS84, True),
-        SensorErrors(np.ascontiguousarray(errors[:, :3]), np.ascontiguousarray(errors[:, 3:])), log,
-        law(damping, network, 1.0), START.copy(), recorder,
-    )  # fmt: skip
+        1.0,
+        SECONDS,
+        coefficients(truth_half, WGS84, True),
+        SensorErrors(np.ascontiguousarray(errors[:, :3]), np.ascontiguousarray(errors[:, 3:])),
+        log,
+        law(damping, network, 1.0),
+        START.copy(),
+        recorder,
+    )
     linear.advance(SECONDS + 1)
     return run.recorder.rows, recorder.rows
 

@@ -1,4 +1,4 @@
-"""Perfect sensors on every motion return to the truth, and the error falls with the rate (physics.md 6).
+"""Perfect sensors on every motion return to the truth, and the error falls with the rate (theory.md 6).
 
 Largest errors over the run at 200 Hz (rad, m/s, m) as measured, and the order of the fall from 50 to 400 Hz:
 
@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.earth import EARTH_RATE
+from navcore.foundation.earth import EARTH_RATE
 from navcore.mechanization.recorder import DV_E, DV_N, MAX_ABS, PHI_E, PHI_N, PHI_U, POSITION
 from navcore.motion.base import HEIGHT, MotionParameters
 from navcore.motion.profile import ProfileMotion

@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from navcore.alignment import coarse_alignment, fine_alignment
-from navcore.earth import WGS84
+from navcore.alignment.fine import coarse_alignment, fine_alignment
+from navcore.engine.simulation import simulate
+from navcore.foundation.earth import WGS84
+from navcore.foundation.units import DEG
 from navcore.mechanization.strapdown import Settings, Start, start_run
 from navcore.mechanization.strapdown.attitude import angles_of
 from navcore.motion.base import COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL
-from navcore.network.compass import CompassNetwork
-from navcore.network.undamped import UndampedNetwork
-from navcore.scenario import Scenario
+from navcore.networks.compass import CompassNetwork
+from navcore.networks.undamped import UndampedNetwork
+from navcore.scenario.model import Scenario
 from navcore.sensors.recorded_imu import check_rest, read_imu
-from navcore.simulation import simulate
-from navcore.units import DEG
 from tests.strapdown import law, reference
 
 QUIET = slice(57_000, 95_000)
@@ -52,9 +52,14 @@ def test_damping_with_zero_velocity_holds_what_runs_away_free(record, aligned):
     worst = {}
     for damping, network in (("free", UndampedNetwork()), ("external", CompassNetwork(sigma=0.0088, xi=0.7))):
         run = start_run(
-            start, Settings(100.0, seconds * 100, 100, 100, 1.0), WGS84, law(damping, network, 1.0), truth,
-            reference((0, 0), seconds), record.increments[QUIET.stop - 1],
-        )  # fmt: skip
+            start,
+            Settings(100.0, seconds * 100, 100, 100, 1.0),
+            WGS84,
+            law(damping, network, 1.0),
+            truth,
+            reference((0, 0), seconds),
+            record.increments[QUIET.stop - 1],
+        )
         run.advance(rest)
         worst[damping] = np.abs(run.recorder.rows[:, 3:5]).max()
     assert worst["free"] < 1.0

@@ -1,15 +1,15 @@
-"""Full strapdown against an independent implementation (physics.md 9.5, 9.6), and with perfect sensors."""
+"""Full strapdown against an independent implementation (theory.md 9.5, 9.6), and with perfect sensors."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from navcore.foundation.units import DEG
 from navcore.mechanization.recorder import DV_E, DV_N, MAX_ABS, PHI_E, PHI_N, PHI_U, POSITION
 from navcore.motion.static import StaticMotion
-from navcore.network.compass import CompassNetwork
+from navcore.networks.compass import CompassNetwork
 from navcore.sensors.imu import Imu
-from navcore.units import DEG
 from tests.strapdown import DENG_SWING, DRIVE, navigate, reference
 
 VE_COLUMN = 3
@@ -27,9 +27,16 @@ def test_free_velocity_under_a_gyro_bias_9_5():
 def test_compass_settles_9_6(law_step_s):
     imu = Imu(gyro_bias_dph=(0.0, 0.02, 0.0), accel_bias_ug=(50.0, 50.0, 0.0))
     run = navigate(
-        StaticMotion(), 100.0, 3600.0, imu, [0, 0, 0, 0, 0.1 * DEG, 0.1 * DEG, 0], "external",
-        CompassNetwork(sigma=0.0088, xi=0.7), reference((0, 0), 3600.0, law_step_s), law_step_s,
-    )  # fmt: skip
+        StaticMotion(),
+        100.0,
+        3600.0,
+        imu,
+        [0, 0, 0, 0, 0.1 * DEG, 0.1 * DEG, 0],
+        "external",
+        CompassNetwork(sigma=0.0088, xi=0.7),
+        reference((0, 0), 3600.0, law_step_s),
+        law_step_s,
+    )
     for column, final, settled in ((PHI_E, -0.002868, 541), (PHI_N, 0.002868, 545)):
         phi = run.recorder.rows[:, column] / DEG
         assert phi[-1] == pytest.approx(final, abs=1e-3 * 0.1)

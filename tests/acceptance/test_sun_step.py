@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from navcore.earth import SPHERE
-from navcore.loop import network_step_response
-from navcore.network import parse_network
+from navcore.analysis import network_step_response
+from navcore.foundation.earth import SPHERE
+from navcore.networks import parse_network
 
 OMEGA_S = SPHERE.schuler_frequency(0.0)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from navcore.tuning import Tuning, TuningSettings, tune
+from navcore.studies.tuning import Tuning, TuningSettings, tune
 
 STEP = 0.05
 """Coarser than Sun's 0.01, for time; the optima below are flat."""

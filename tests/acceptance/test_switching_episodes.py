@@ -1,4 +1,4 @@
-"""physics.md section 4: what the switching methods make of passing and of lasting changes of the log."""
+"""theory.md section 4: what the switching methods make of passing and of lasting changes of the log."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.control.law import prepare_law
-from navcore.control.policy.variation import Variation
-from navcore.control.switching import SWITCHINGS
-from navcore.earth import SPHERE
+from navcore.engine.run import Run
+from navcore.engine.simulation import simulate
+from navcore.foundation.earth import SPHERE
+from navcore.law.law import prepare_law
+from navcore.law.policy.variation import Variation
+from navcore.law.switching import SWITCHINGS
 from navcore.mechanization.error_model import ErrorModelRun
 from navcore.mechanization.recorder import DV_N, make_recorder
 from navcore.mechanization.trajectory import coefficients
 from navcore.motion.base import COLUMNS, Truth
-from navcore.network.complementary import ComplementaryNetwork
-from navcore.run import Run
-from navcore.scenario import Scenario
+from navcore.networks.complementary import ComplementaryNetwork
+from navcore.scenario.model import Scenario
 from navcore.sensors.base import ReferenceErrors, SensorErrors
-from navcore.simulation import simulate
 
 DAY = 86_400
 BLOCKS: dict[str, dict[str, Any]] = {
@@ -43,11 +43,15 @@ def daily_rms(switching: dict[str, Any], days: int = 5) -> np.ndarray:
     block = SWITCHINGS[switching["id"]].model_validate(switching)
     none = SensorErrors(np.zeros((1, 3)), np.zeros((1, 3)))
     run = ErrorModelRun(
-        1.0, steps, coefficients(Truth(0.5, np.zeros((1, COLUMNS))), SPHERE, False), none,
+        1.0,
+        steps,
+        coefficients(Truth(0.5, np.zeros((1, COLUMNS))), SPHERE, False),
+        none,
         ReferenceErrors(t, dv_r, np.ones(steps + 1, bool), False, 5.0),
         prepare_law("external", network, network.transfer(omega_s), Variation(), block, 1.0),
-        np.array([0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0]), make_recorder(steps, 1.0, 60.0),
-    )  # fmt: skip
+        np.array([0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        make_recorder(steps, 1.0, 60.0),
+    )
     while not run.advance(100_000):
         pass
     v = run.recorder.rows[:-1, DV_N].reshape(days, -1)
@@ -73,7 +77,7 @@ def test_the_ramp_as_printed_throws_the_damping_away_each_time():
     assert 2.0 < rms[-1] < 5.0
 
 
-def eight_lasting_changes(seed: int) -> Run:
+def eight_lasting_changes(seed: int, blocks: dict[str, dict[str, Any]] = BLOCKS) -> Run:
     """36 h, one channel; dV_r = 0.5 m/s, eight times +-0.5..1.5 m/s for 0.5..2 h; log noise 0.1 m/s."""
     rng = np.random.default_rng(seed)
     events = []
@@ -89,7 +93,7 @@ def eight_lasting_changes(seed: int) -> Run:
             "policy": {"id": "variation"},
             "switching": block,
         }
-        for name, block in BLOCKS.items()
+        for name, block in blocks.items()
     ]
     return simulate(
         Scenario.parse(

@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from navcore.loop import analyse, initial_tilt_response, time_response
+from navcore.analysis import analyse, initial_tilt_response, time_response
+from navcore.engine.run import MethodRun, Run
+from navcore.engine.simulation import simulate
+from navcore.foundation.units import DEG_PER_HOUR
 from navcore.mechanization.recorder import PHI_E
-from navcore.network import parse_network
-from navcore.run import MethodRun, Run
-from navcore.scenario_file import load
-from navcore.simulation import simulate
-from navcore.units import DEG_PER_HOUR
+from navcore.networks import parse_network
+from navcore.scenario.file import load
 
 DRIFT = 0.01 * DEG_PER_HOUR
 
@@ -36,7 +36,7 @@ def test_the_setting_is_the_papers(run):
     assert run.scenario.imu.gyro_bias_dph == (0.01, 0.0, 0.0)
     assert run.scenario.run.duration_h == 4.0
     gains = run.scenario.method[2].network.gains(run.scenario.omega_s)
-    np.testing.assert_allclose(gains, (0.0264, 202.520, 0.904534), rtol=1e-5)  # physics.md 9.2
+    np.testing.assert_allclose(gains, (0.0264, 202.520, 0.904534), rtol=1e-5)  # theory.md 9.2
 
 
 def test_free_tilt_swings_with_the_drift_over_the_schuler_frequency(run, methods):
@@ -62,7 +62,7 @@ def test_fast_damping_is_done_in_ten_minutes_and_classic_takes_an_hour(methods):
 
 
 def test_to_half_a_percent_as_zha_counts_classic_takes_more_than_a_schuler_period(run, methods):
-    """From an initial tilt down to 0.5 % (sigma t = 5.25; physics.md section 8)."""
+    """From an initial tilt down to 0.5 % (sigma t = 5.25; theory.md section 8)."""
     period = 2.0 * math.pi / run.scenario.omega_s
     time = np.arange(0.0, 20000.0)
     response = {name: initial_tilt_response(methods[name].network, time) for name in ("classic2", "compass")}
@@ -71,7 +71,7 @@ def test_to_half_a_percent_as_zha_counts_classic_takes_more_than_a_schuler_perio
 
 
 def test_the_printed_k2_is_slower(run):
-    """physics.md section 8: K2 = 156.063 gives a damping of 0.52 and about 19 min."""
+    """theory.md section 8: K2 = 156.063 gives a damping of 0.52 and about 19 min."""
     parameters = parse_network('id = "compass", k1 = 0.0264, k2 = 156.063, k3 = 0.904')
     printed = parameters.transfer(run.scenario.omega_s)
     assert analyse(printed).damping_ratio == pytest.approx(0.52, abs=0.005)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from navcore.earth import SPHERE
-from navcore.loop import analyse, initial_tilt_response
-from navcore.network import parse_network
+from navcore.analysis import analyse, initial_tilt_response
+from navcore.foundation.earth import SPHERE
+from navcore.networks import parse_network
 
 OMEGA_S = SPHERE.schuler_frequency(0.0)
 
@@ -45,13 +45,13 @@ def test_xi_next_to_one_joins_the_limit() -> None:
 
 
 def test_zhas_design_example_is_settled_in_ten_minutes() -> None:
-    """sigma t = 5.25 leaves 0.5 % of the envelope (Zha prints 99.995 % and 525; physics.md section 8)."""
+    """sigma t = 5.25 leaves 0.5 % of the envelope (Zha prints 99.995 % and 525; theory.md section 8)."""
     network = parse_network('id = "compass", sigma = 0.0088, xi = 0.7').transfer(OMEGA_S)
     assert abs(initial_tilt_response(network, np.array([5.25 / 0.0088]))[0]) < 0.02
     settling = analyse(network).settling_s
     assert settling is not None
     assert settling < 600.0
-    # physics.md 9.6 finds 541 and 545 s with the full strapdown
+    # theory.md 9.6 finds 541 and 545 s with the full strapdown
     assert settling == pytest.approx(543.0, abs=3.0)
 
 

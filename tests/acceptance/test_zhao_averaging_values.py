@@ -1,4 +1,4 @@
-"""Zhao 2015, eq. 17 and physics.md 9.4: what averaging leaves of oscillations from initial errors, 24 h."""
+"""Zhao 2015, eq. 17 and theory.md 9.4: what averaging leaves of oscillations from initial errors, 24 h."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import pytest
 
 from navcore.averaging import Averaging
 from navcore.averaging.lines import line_amplitudes, line_phases
-from navcore.earth import SPHERE, WGS84
-from navcore.units import ARCSEC
+from navcore.foundation.earth import SPHERE, WGS84
+from navcore.foundation.units import ARCSEC
 from tests.averaging import DAY, averaged, made, peaks, truth_row
 
 
@@ -52,7 +52,7 @@ def test_eight_copies_leave_nothing_but_the_longitude_drift(earth):
 
 
 def test_a_fraction_of_the_schuler_oscillation_stays():
-    # physics.md 5: sin(pi Omega sin L / (2 omega_s)) = 6.6 % at 45.78 deg, of each of the two lines
+    # theory.md 5: sin(pi Omega sin L / (2 omega_s)) = 6.6 % at 45.78 deg, of each of the two lines
     time_s = np.arange(0, DAY + 1, 60.0)
     phases = line_phases(time_s, truth_row()[None, :], SPHERE)
     # no copies: the main navigation alone

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import pytest
 
-from navcore.mechanization.strapdown.layout import NAVIGATION
-from navcore.run import Run
+from navcore.engine.run import Run
+from navcore.mechanization.strapdown.records import NAVIGATION
 from tests.acceptance.zhao import LEVEL, SLOW, amplitudes, run_preset, schuler
 
 SLOWER = "run.rate_hz=20"

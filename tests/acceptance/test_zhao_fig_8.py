@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from navcore.averaging.lines import line_amplitudes, line_phases
+from navcore.engine.run import Run
+from navcore.foundation.units import ARCSEC, DEG
 from navcore.mechanization.recorder import D_LON
 from navcore.motion.base import HEADING, VE, VN
-from navcore.run import Run
-from navcore.units import ARCSEC, DEG
 from tests.acceptance.zhao import LEVEL, SLOW, amplitudes, run_preset, schuler
 
 
@@ -36,7 +36,7 @@ def test_the_vehicle_is_zhaos(run):
 
 @pytest.mark.parametrize("quantity", LEVEL)
 def test_schuler_oscillation_falls_to_the_foucault_remainder(lines, quantity):
-    # 6.6 % stays at 45.78 deg, physics.md section 5
+    # 6.6 % stays at 45.78 deg, theory.md section 5
     left = schuler(lines["Zhao"][quantity]) / schuler(lines["free"][quantity])
     assert left == pytest.approx(0.066, abs=0.003)
 

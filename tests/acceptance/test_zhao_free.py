@@ -1,14 +1,14 @@
-"""Zhao's initial errors on the free linear model, 24 h at rest, against physics.md 9.4."""
+"""Zhao's initial errors on the free linear model, 24 h at rest, against theory.md 9.4."""
 
 from __future__ import annotations
 
 import pytest
 
-from navcore.scenario import Scenario
-from navcore.simulation import simulate
-from navcore.units import ARCSEC
+from navcore.engine.simulation import simulate
+from navcore.foundation.units import ARCSEC
+from navcore.scenario.model import Scenario
 
-# physics.md section 7, zhao-initial: 2", 2", 0.1 m/s, 0.6', 0.6', 7'; section 9.4: sphere, 45.7796 N, 24 h
+# theory.md section 7, zhao-initial: 2", 2", 0.1 m/s, 0.6', 0.6', 7'; section 9.4: sphere, 45.7796 N, 24 h
 SCENARIO = Scenario.parse(
     {
         "run": {"duration_h": 24.0, "earth": "sphere"},

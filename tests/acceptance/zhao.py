@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from navcore.averaging.lines import line_amplitudes, line_phases
+from navcore.engine.run import Run
+from navcore.engine.simulation import simulate
+from navcore.foundation.units import ARCSEC
 from navcore.mechanization.recorder import NAMES, POSITION
-from navcore.run import Run
-from navcore.scenario_file import load
-from navcore.simulation import simulate
-from navcore.units import ARCSEC
+from navcore.scenario.file import load
 
 LEVEL = ("phi_e_rad", "phi_n_rad", "dve_mps", "dvn_mps")
 SLOW = ("phi_u_rad", "dlat_m")

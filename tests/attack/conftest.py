@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 import viser
 
+from app.http.ids import SessionIds
 from app.http.server import DashboardServer, start
 
 
@@ -69,6 +70,8 @@ class Recorder:
 @contextmanager
 def running(**options: Any) -> Iterator[Bench]:
     recorder = Recorder()
+    # The tests name their sessions themselves; test_ids.py attacks with the ids that servers accept.
+    options = {"session_ids": SessionIds(known=lambda _: True)} | options
     server = start(port=0, on_connect=recorder.connected, on_disconnect=recorder.disconnected, **options)
     try:
         yield Bench(server, recorder.handles, recorder.events)

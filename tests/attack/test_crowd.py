@@ -1,16 +1,17 @@
-"""serving.md 15: too many visitors, too many sockets, one that never reads, one that never stops sending."""
+"""serving 15: too many visitors, sockets, uploads, guesses; a page that never reads, one that floods."""
 
 from __future__ import annotations
 
 import socket
+import threading
 import time
 from contextlib import ExitStack
 
 import pytest
 
-from app.http.limits import Limits
-from tests.attack.conftest import eventually, running
-from tests.attack.wire import SESSION, ask, shake_hands, visit
+from app.http.limits import MIB, Limits
+from tests.attack.conftest import TOKEN, eventually, running
+from tests.attack.wire import SESSION, Visitor, ask, shake_hands, visit
 
 pytestmark = pytest.mark.attack
 
@@ -28,20 +29,132 @@ def test_visitors_beyond_the_limit_are_told() -> None:
         eventually(lambda: ask(bench.port, f"/s/{SESSION}/").status == 200)
 
 
-def test_two_hundred_silent_sockets_do_not_keep_others_out() -> None:
-    with running(limits=Limits(sockets=150)) as bench, ExitStack() as crowd:
+def test_silent_sockets_keep_nobody_out() -> None:
+    with running(limits=Limits(half_open=40)) as bench, ExitStack() as crowd:
         with visit(bench.port, "already-there") as visitor:
             visitor.control("last")
             silent = [
                 crowd.enter_context(socket.create_connection(("127.0.0.1", bench.port))) for _ in range(200)
             ]
-            told = [s for s in silent[150:] if s.recv(100).startswith(b"HTTP/1.1 503")]
-            assert len(told) == 50
+            # The oldest are told and closed; whoever asks for something gets it.
+            told = [s for s in silent[:160] if s.recv(100).startswith(b"HTTP/1.1 503")]
+            assert len(told) == 160
+            assert ask(bench.port, "/healthz").status == 200
+            assert shake_hands(bench.port).status == 101
             visitor.set(visitor.control("gain"), 0.9)
             eventually(lambda: bench.of("already-there")["gain"].value == 0.9)
-        for s in silent[:10]:
-            s.close()
-        eventually(lambda: shake_hands(bench.port).status == 101)
+
+
+def test_renewed_sockets_do_not_stop_health_and_page() -> None:
+    """260 sockets without a request, each opened anew as soon as it is closed."""
+    with running() as bench:
+        ended = threading.Event()
+
+        def renew() -> None:
+            held: list[socket.socket] = []
+            while not ended.is_set():
+                try:
+                    held.append(socket.create_connection(("127.0.0.1", bench.port), timeout=1))
+                except OSError:
+                    continue
+                if len(held) > 65:
+                    held.pop(0).close()
+            for one in held:
+                one.close()
+
+        attackers = [threading.Thread(target=renew) for _ in range(4)]
+        for one in attackers:
+            one.start()
+        try:
+            time.sleep(0.3)
+            for _ in range(10):
+                assert ask(bench.port, "/healthz").status == 200
+                assert ask(bench.port, "/").status == 302
+                assert shake_hands(bench.port).status == 101
+        finally:
+            ended.set()
+            for one in attackers:
+                one.join()
+
+
+def test_an_idle_page_gives_up_its_place_and_comes_back() -> None:
+    with running(limits=Limits(visitors=3, idle_s=0.2)) as bench, ExitStack() as crowd:
+        idle = [crowd.enter_context(visit(bench.port, f"idle-page-{number}")) for number in range(3)]
+        for page in idle:
+            page.control("last")
+        time.sleep(0.3)
+        # A page that connects by itself waits; one that a person has opened does not.
+        assert shake_hands(bench.port, "/s/not-invited-1").status == 503
+        assert ask(bench.port, "/s/newcomer-1/").status == 200
+        with visit(bench.port, "newcomer-1") as newcomer:
+            newcomer.control("last")
+            assert idle[0].closed_with() == 1013
+            assert shake_hands(bench.port, "/s/idle-page-0").status == 503
+            # The person is back at the page that was closed (static/place.js).
+            assert ask(bench.port, "/s/idle-page-0/place").status == 204
+            with visit(bench.port, "idle-page-0") as back:
+                back.control("last")
+                assert idle[1].closed_with() == 1013
+
+
+def test_a_page_that_is_used_keeps_its_place() -> None:
+    with running(limits=Limits(visitors=1, idle_s=30.0)) as bench, visit(bench.port, "in-use-1") as page:
+        page.control("last")
+        assert ask(bench.port, "/s/newcomer-2/").status == 503
+        assert shake_hands(bench.port, "/s/newcomer-2").status == 503
+        page.set(page.control("gain"), 0.9)
+        eventually(lambda: bench.of("in-use-1")["gain"].value == 0.9)
+
+
+def test_one_address_leaves_places_to_others() -> None:
+    with running(limits=Limits(visitors=10, pages_per_address=2)) as bench, ExitStack() as crowd:
+        for number in range(2):
+            crowd.enter_context(visit(bench.port, f"neighbour-{number}"))
+        assert shake_hands(bench.port).status == 503
+
+
+def test_unfinished_uploads_of_all_together_are_bounded_and_released() -> None:
+    limits = Limits(upload_bytes=MIB, all_uploads_bytes=3 * MIB, upload_stall_s=0.3)
+    with running(limits=limits) as bench, ExitStack() as crowd:
+        pages = [crowd.enter_context(visit(bench.port, f"uploader-{number}")) for number in range(4)]
+        for number, page in enumerate(pages[:3]):
+            announce(page, f"t{number}")
+        pages[2].wait_for(lambda m: m["type"] == "FileTransferPartAck")
+        announce(pages[3], "t3", wait=False)
+        assert "other visitors" in pages[3].notice()
+        time.sleep(0.4)
+        announce(pages[3], "t4")
+        states = [c.gui._current_file_upload_states for c in bench.server.viser.get_clients().values()]
+        assert sum(len(state) for state in states) == 1
+
+
+def announce(page: Visitor, transfer: str, wait: bool = True) -> None:
+    log = page.control("log")
+    common = {"source_component_uuid": log, "transfer_uuid": transfer}
+    page.send(
+        type="FileTransferStartUpload",
+        **common,
+        filename="x",
+        mime_type="",
+        part_count=2,
+        size_bytes=MIB,
+    )
+    if wait:
+        page.send(type="FileTransferPart", **common, part_index=0, content=b"x" * 1000)
+        page.wait_for(lambda m: m["type"] == "FileTransferPartAck" and m["transfer_uuid"] == transfer)
+
+
+def test_wrong_tokens_are_slowed_down() -> None:
+    with running(token=TOKEN, limits=Limits(token_guesses=5, token_refill_s=0.4)) as bench:
+        cookie = ask(bench.port, f"/?token={TOKEN}").headers["Set-Cookie"].partition(";")[0]
+        seen = [ask(bench.port, f"/?token=guess-{number}").status for number in range(8)]
+        assert seen == [401] * 5 + [429] * 3
+        # Neither is the right one told from a wrong one meanwhile, by whichever way it comes.
+        late = ask(bench.port, "/", {"Authorization": f"Bearer {TOKEN}"})
+        assert late.status == 429 and int(late.headers["Retry-After"]) >= 1
+        # Whoever is in already is not kept out by a neighbour who guesses.
+        assert ask(bench.port, "/", {"Cookie": cookie}).status == 302
+        eventually(lambda: ask(bench.port, f"/?token={TOKEN}").status == 302)
 
 
 def test_a_page_that_never_reads_is_dropped() -> None:

@@ -1,4 +1,4 @@
-"""serving.md 1-6, 12, 16, 19: who gets in, under which name, and what every answer carries."""
+"""serving 1-6, 12, 16, 19: who gets in, under which name, and what every answer carries."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import socket
 
 import pytest
 
-from navcore.errors import InputError
+from navcore.foundation.errors import InputError
 from tests.attack.conftest import TOKEN, Bench, eventually, running
 from tests.attack.wire import SESSION, ask, shake_hands, visit
 

@@ -1,4 +1,4 @@
-"""serving.md 6-9, 11, 13: messages no page sends, against a running server."""
+"""serving 6-9, 11, 13: messages no page sends, against a running server."""
 
 from __future__ import annotations
 
@@ -181,7 +181,7 @@ class TestUpload:
     def test_of_64_mib_is_refused_before_it_is_sent(self, bench: Bench) -> None:
         with visit(bench.port, "heavy-uploader") as visitor:
             self.announce(visitor, 64 * MIB, 128)
-            assert "at most 32 MiB" in visitor.notice()
+            assert "at most 16 MiB" in visitor.notice()
             done = visitor.wait_for(lambda m: m["type"] == "FileTransferPartAck")
             assert done["transferred_bytes"] == done["total_bytes"], "the page's progress bar ends"
             client = next(iter(bench.server.viser.get_clients().values()))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from app.bridge.controls import lock_controls
 from app.http.ids import copied_from, is_shared, new_shared_id
-from app.http.viser_insides import lock_controls
 from tests.attack.conftest import Bench, eventually
 from tests.attack.wire import SESSION, ask, shake_hands, visit
 

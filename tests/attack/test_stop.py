@@ -1,4 +1,4 @@
-"""serving.md 17, 18 and a quiet console: the server as a process of its own."""
+"""serving 17, 18 and a quiet console: the server as a process of its own."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def test_busy_port_is_refused_before_viser_is_imported() -> None:
         program = f"""
 import sys
 from app.http.server import start
-from navcore.errors import InputError
+from navcore.foundation.errors import InputError
 try:
     start(port={port}, on_connect=None, on_disconnect=None)
 except InputError as error:

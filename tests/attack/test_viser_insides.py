@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+import asyncio
 import base64
 import hashlib
 import inspect
 import re
+import threading
 import types
+from collections import deque
+from collections.abc import Callable
 
 import msgspec
+import numpy as np
 import pytest
 import viser
 import zstandard
 from viser import _messages, infra
 from viser.infra import _infra
+from viser.infra._async_message_buffer import AsyncMessageBuffer
 
-from app.http import viser_insides
-from app.http.page import build_page, plotly_script
-from navcore.errors import InputError
+from app.bridge import controls, mends, server
+from app.bridge.pool import FairPool
+from app.http.page import FIRST_SCRIPTS, build_page, plotly_script
+from navcore.foundation.errors import InputError
 from tests.attack.conftest import Bench, eventually
 from tests.attack.wire import visit
 
@@ -43,28 +50,48 @@ def digest(content: bytes) -> str:
 
 
 def test_pinned_version(monkeypatch: pytest.MonkeyPatch) -> None:
-    viser_insides.require_pinned_version()
+    server.require_pinned_version()
     monkeypatch.setattr(viser, "__version__", "1.1.2")
     with pytest.raises(InputError, match="must be 1.1.1"):
-        viser_insides.require_pinned_version()
+        server.require_pinned_version()
 
 
 def test_hashes_are_those_of_the_scripts_in_the_page() -> None:
-    page = viser_insides.page_html()
+    page = server.page_html()
     ((attributes, loader),) = re.findall(r"<script ([^>]*)>(.*?)</script>", page, re.DOTALL)
     data = dict(re.findall(r'data-(\w+)="([^"]*)"', attributes))
     whole = zstandard.ZstdDecompressor().decompress(unpack(data["p"]), max_output_size=1 << 25)
     style = int(data["ss"])
     program = whole[style : style + int(data["cs"])]
-    assert viser_insides.PAGE_SCRIPT_HASHES == (digest(loader.encode()), digest(program))
+    assert server.PAGE_SCRIPT_HASHES == (digest(loader.encode()), digest(program))
+    # What socket.js says to the worker that holds viser's websocket, and how it knows it.
+    assert b"type:`set_server`" in program and b"type:`send`" in program
+
+
+def test_numbers_of_a_plot_are_sent_once_in_single_precision(bench: Bench) -> None:
+    with visit(bench.port, "the-watcher") as visitor:
+        visitor.control("last")
+        (client,) = bench.server.viser.get_clients().values()
+        time = np.linspace(0.0, 1.0, 5)
+        plot = client.gui.add_uplot((time, time), ({}, {}))
+        visitor.wait_for(lambda message: message["type"] == "GuiUplotMessage")
+        controls.show_numbers(plot, (time, 2.0 * time))
+        sent = visitor.wait_for(lambda message: "data" in (message.get("updates") or {}))
+        assert [values["dtype"] for values in sent["updates"]["data"]] == ["<f4", "<f4"]
+        count = len(visitor.received)
+        controls.show_numbers(plot, (time, 2.0 * time))
+        client.gui.add_markdown("after it")
+        visitor.wait_for(lambda message: message["type"] == "GuiMarkdownMessage")
+        assert not any("data" in (message.get("updates") or {}) for message in visitor.received[count:])
 
 
 def test_page_has_one_title_and_our_scripts_come_first() -> None:
-    assert viser_insides.page_html().count("<title>Viser</title>") == 1
-    page = build_page([plotly_script()], "Bench")
+    assert server.page_html().count("<title>Viser</title>") == 1
+    page = build_page(FIRST_SCRIPTS, [plotly_script()], "Bench")
     html = page.html.plain.decode()
-    assert 0 < html.index("../../static/plotly") < html.index("data-p=")
-    (script,) = page.scripts.values()
+    assert 0 < html.index("../../static/first") < html.index("data-p=")
+    assert re.search(r'<link [^>]*data-later href="../../static/plotly.min[^"]*">', html)
+    *_, script = page.scripts.values()
     assert b"plotly.js v" in script.plain[:200]
 
 
@@ -76,7 +103,7 @@ def test_messages_a_browser_sends_are_all_known() -> None:
         # Messages named in a registration, or in the scene's table of owner-scoped ones.
         handled |= set(re.findall(r"register_handler\(\s*_messages\.(\w+)", source))
         handled |= set(re.findall(r"\(\s*_messages\.(\w+Message),\s*self\._handle", source))
-    known = viser_insides.FRAME_TYPES.keys() | viser_insides.IGNORED_FRAMES
+    known = server.FRAME_TYPES.keys() | server.IGNORED_FRAMES
     assert handled and handled <= known
     for name in known:
         assert issubclass(getattr(_messages, name), infra.Message)
@@ -96,7 +123,7 @@ def test_serve_is_called_once_and_as_expected() -> None:
 
 def test_replacement_is_undone_even_after_a_failure() -> None:
     original = vars(_infra)["websockets"]
-    with pytest.raises(RuntimeError), viser_insides._serve_replaced(lambda: None):
+    with pytest.raises(RuntimeError), server._serve_replaced(lambda: None):
         assert isinstance(vars(_infra)["websockets"], types.SimpleNamespace)
         raise RuntimeError
     assert vars(_infra)["websockets"] is original
@@ -129,11 +156,10 @@ def test_controls_are_found_with_all_that_is_judged(bench: Bench) -> None:
         ids = {label: visitor.control(label) for label in ("gain", "network", "frozen", "log", "last")}
         (client_id,) = bench.server.viser.get_clients()
         found = {
-            label: viser_insides.find_control(bench.server.viser, client_id, uuid)
-            for label, uuid in ids.items()
+            label: controls.find_control(bench.server.viser, client_id, uuid) for label, uuid in ids.items()
         }
-        assert viser_insides.find_control(bench.server.viser, client_id, "nobody's") is None
-        assert viser_insides.find_control(bench.server.viser, 10_000, ids["gain"]) is None
+        assert controls.find_control(bench.server.viser, client_id, "nobody's") is None
+        assert controls.find_control(bench.server.viser, 10_000, ids["gain"]) is None
     assert (found["gain"].label, found["gain"].value, found["gain"].bounds) == ("gain", 0.5, (0.0, 1.0))
     assert found["network"].options == ("compass", "pole2")
     assert found["frozen"].disabled and not found["gain"].disabled
@@ -144,9 +170,73 @@ def test_held_value_is_sent_even_when_nothing_changed(bench: Bench) -> None:
     with visit(bench.port, "restored") as visitor:
         uuid = visitor.control("gain")
         (client_id,) = bench.server.viser.get_clients()
-        viser_insides.show_held_value(bench.server.viser, client_id, uuid)
+        controls.show_held_value(bench.server.viser, client_id, uuid)
         sent = visitor.wait_for(lambda message: message["type"] == "GuiUpdateMessage")
         assert (sent["uuid"], sent["updates"]) == (uuid, {"value": 0.5})
+
+
+class _Interleaved(deque):
+    """Waiters of an event that is set by another thread just before the waiter is entered."""
+
+    def __init__(self, push: Callable[[], None]) -> None:
+        super().__init__()
+        self._push = push
+
+    def append(self, waiter: object) -> None:
+        thread = threading.Thread(target=self._push)
+        thread.start()
+        thread.join()
+        super().append(waiter)
+
+
+@pytest.mark.parametrize("mended", [False, True])
+def test_a_message_pushed_while_the_loop_begins_to_wait_is_sent(mended: bool) -> None:
+    """viser alone loses the wake-up in this order of events; should it no longer, `MendedBuffer` can go."""
+    kind = mends.MendedBuffer if mended else AsyncMessageBuffer
+
+    async def first_window() -> bool:
+        buffer = kind(asyncio.get_running_loop(), persistent_messages=False)
+        message = _messages.GuiUpdateMessage("u", {"value": 1})
+        buffer.message_event._waiters = _Interleaved(lambda: buffer.push(message))
+        windows = buffer.window_generator(0)
+        try:
+            return len(await asyncio.wait_for(anext(windows), 1.0)) == 1
+        except TimeoutError:
+            return False
+        finally:
+            await windows.aclose()
+
+    assert asyncio.run(first_window()) is mended
+
+
+def test_mended_queue_and_fair_pool_are_the_ones_in_use(bench: Bench) -> None:
+    with visit(bench.port, "mended-1") as visitor:
+        visitor.control("last")
+        (client,) = bench.server.viser.get_clients().values()
+        buffer = client._websock_connection.get_message_buffer()
+        assert isinstance(buffer, mends.MendedBuffer)
+        assert isinstance(buffer.message_event, mends._LoopEvent)
+        for api in (client.gui, client.scene, bench.server.viser.gui, bench.server.viser):
+            assert isinstance(api._thread_executor, FairPool)
+
+
+def test_slider_messages_that_wait_are_read_once(bench: Bench) -> None:
+    release, seen = threading.Event(), []
+    with visit(bench.port, "coalesced-1") as visitor:
+        uuid = visitor.control("gain")
+        gain = bench.of("coalesced-1")["gain"]
+
+        @gain.on_update
+        def _(event: viser.GuiEvent) -> None:
+            seen.append(event.target.value)
+            release.wait(5.0)
+
+        for number in range(30):
+            visitor.set(uuid, number / 100)
+        eventually(lambda: gain.value == 0.29)
+        release.set()
+        eventually(lambda: bool(seen) and seen[-1] == 0.29)
+        assert len(seen) <= 3
 
 
 def test_nothing_of_a_visitor_stays_behind(bench: Bench) -> None:

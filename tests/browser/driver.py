@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
-from navcore.scenario_file import load
+from navcore.scenario.file import load
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page

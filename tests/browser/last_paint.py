@@ -18,7 +18,7 @@ from app.bench.dashboard import median_and_p95
 from app.bench.process import free_port
 from app.editing import edits
 from app.serve import open_dashboard
-from navcore.simulation import simulate
+from navcore.engine.simulation import simulate
 from tests.browser.driver import THROTTLE_MS, Bench
 from tests.browser.plain_page import SLIDER as PLAIN_SLIDER
 from tests.browser.plain_page import PlainPage
@@ -27,8 +27,8 @@ from tests.chromium import FLAGS, find_chromium
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-    from navcore.run import Run
-    from navcore.scenario import Scenario
+    from navcore.engine.run import Run
+    from navcore.scenario.model import Scenario
 
 SCENARIO = "sikuliaq-like"
 SLIDER = "zeta"

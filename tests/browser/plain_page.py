@@ -10,10 +10,10 @@ import plotly.graph_objects as go
 import viser
 from plotly.subplots import make_subplots
 
-from app.figures.effective import effective_network, frequency
-from app.figures.frequency import omega_grid
+from app.plots.effective import effective_network, frequency
+from app.views.frequency.figure import omega_grid
+from navcore.engine.run import MethodRun, Run
 from navcore.mechanization.recorder import NAMES
-from navcore.run import MethodRun, Run
 
 SLIDER = "plain zeta"
 _ERRORS = ("phi_e_rad", "phi_n_rad", "phi_u_rad", "dve_mps", "dvn_mps", "position_m")

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.figures.style import INK, method_color
-from app.page import theme
-from app.panels.appearance import DARK
+from app.plots.style import INK, method_color
+from app.views.appearance import theme
+from app.views.appearance.dark import DARK
 from tests.browser.driver import THROTTLE_MS, Bench
 
 pytestmark = pytest.mark.browser
@@ -49,10 +49,16 @@ def violations(bench: Bench, axe: str) -> list[str]:
 
 @pytest.mark.parametrize(
     "tabs",
-    [("Method", "Frequency", "Errors"), ("Sensors", "Poles", "Metrics"), ("Learn", "Step", "Scenario"),
-     ("View", "Misprints", "Requirements"), ("Log", "Poles", "Compare"), ("Run", "Step", "Spectrum")],
+    [
+        ("Method", "Frequency", "Errors"),
+        ("Sensors", "Poles", "Metrics"),
+        ("Learn", "Step", "Scenario"),
+        ("View", "Misprints", "Requirements"),
+        ("Log", "Poles", "Compare"),
+        ("Run", "Step", "Spectrum"),
+    ],
     ids=lambda tabs: tabs[0],
-)  # fmt: skip
+)
 def test_axe_finds_nothing_wrong(light: Bench, axe: str, tabs: tuple[str, ...]) -> None:
     light.tab(*tabs)
     light.page.wait_for_timeout(900)  # names are given every 0.7 s

@@ -13,10 +13,9 @@ import numpy as np
 import pytest
 
 from app.editing import edits
-from app.figures.track import HALF_WIDTH
-from app.session import session as session_module
-from navcore.network.compass import gains_from_sigma_xi
-from navcore.scenario_file import load
+from app.views.scene.track import HALF_WIDTH
+from navcore.networks.compass import gains_from_sigma_xi
+from navcore.scenario.file import load
 from tests.browser.driver import THROTTLE_MS, Bench
 
 if TYPE_CHECKING:
@@ -57,7 +56,7 @@ def test_gains_are_linked_both_ways_with_sigma_and_xi(fresh: Bench, session: Ses
         fresh.type(f"{label}, exact", f"{value:.12g}")
     assert shown("sigma (1/s)", "xi") == pytest.approx([0.02, 0.9], rel=1e-8)
     assert note not in fresh.notes
-    # Zha's second set (physics.md 3.1)
+    # Zha's second set (theory.md 3.1)
     for label, text in zip(GAINS, ("0.00768", "6.68", "0.00768"), strict=True):
         fresh.type(f"{label}, exact", text)
     fresh.settle()
@@ -180,7 +179,8 @@ def test_numbers_are_those_of_the_command_line(fresh: Bench, tmp_path: Path, rep
     assert downloaded == expected
     fresh.tab("Metrics")
     rms = expected["methods"][0]["errors"]["phi_e_rad"]["rms"] * 180.0 / 3.141592653589793 * 3600.0
-    assert f"{rms:.5g}" in fresh.page.locator(".sb-table").inner_text()
+    # the tab is drawn once it is in front
+    fresh.page.locator(".sb-table").filter(has_text=f"{rms:.5g}").first.wait_for(timeout=10_000)
     fresh.tab("Errors")
 
 
@@ -222,12 +222,13 @@ def test_a_fault_of_ours_is_told_and_the_last_picture_stays(
     def broken(*_: Any) -> Any:
         raise RuntimeError("kernel on strike")
 
+    whole = session._simulate
     monkeypatch.setattr(session, "_simulate", broken)
     fresh.slider("xi").press("ArrowRight")
     assert "kernel on strike" in fresh.notice("Something went wrong")
     assert (fresh.run, fresh.digest) == (number, digest)
     assert fresh.plotly()
-    monkeypatch.setattr(session, "_simulate", session_module._simulate)
+    monkeypatch.setattr(session, "_simulate", whole)
     fresh.press("xi")
 
 
@@ -287,7 +288,7 @@ def test_a_ships_recording_is_uploaded_and_run(fresh: Bench, session: Session, s
 
 
 def test_a_scenario_file_is_opened(fresh: Bench, session: Session) -> None:
-    from navcore.scenario_file import to_toml
+    from navcore.scenario.file import to_toml
 
     fresh.tab("Files")
     number = fresh.run

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from app.editing import edits
-from app.figures.track import LINE_WIDTH
 from app.session.pins import MOST_PINS
+from app.views.scene.track import LINE_WIDTH
 from tests.browser.driver import Bench
 from tests.browser.test_page_layout import _CUT, SIZES, resize
 
@@ -213,7 +213,7 @@ def test_two_hundred_slider_steps_in_twenty_seconds_end_in_agreement(pinned: Ben
     assert float(pinned.slider("zeta").get_attribute("aria-valuenow") or "nan") == pytest.approx(
         zeta, abs=0.006
     )
-    from app.page.page import _run_element
+    from app.shell.page import _run_element
 
     assert f'data-digest="{pinned.digest}"' in _run_element(session.run, session.run_number)
     assert pinned.metrics["methods"][2]["errors"] == _metrics(session.run)
@@ -221,6 +221,6 @@ def test_two_hundred_slider_steps_in_twenty_seconds_end_in_agreement(pinned: Ben
 
 
 def _metrics(run) -> dict:
-    from navcore.measures import metrics
+    from navcore.engine.measures import metrics
 
     return metrics(run)["methods"][2]["errors"]

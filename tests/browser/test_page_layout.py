@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.page.layout import WIDE_FROM_PX, layout_for
-from app.panels.results import TABS
+from app.shell.layout import WIDE_FROM_PX, layout_for
+from app.views import load
 from tests.browser.driver import Bench
 
 pytestmark = pytest.mark.browser
@@ -76,7 +76,7 @@ def resize(bench: Bench, size: tuple[int, int]) -> None:
 
 
 def test_every_tab_fits_its_panel(sized: Bench) -> None:
-    for tab in TABS:
+    for tab in (kind.title for kind in load() if kind.place in ("upper", "lower") and kind.always):
         sized.tab(tab)
         if tab == "Misprints":  # computed only now; a plot that goes while it is drawn is plotly's fault
             sized.page.wait_for_function(_MISPRINT_DRAWN, timeout=20_000)

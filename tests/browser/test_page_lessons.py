@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from app.learn.lessons import Lesson, lessons, names_in
-from app.learn.names import named
-from app.panels.lessons import right_answer, spec_at
-from navcore.simulation import simulate
+from app.views.learn.lessons import MISSING, Lesson, lessons, names_in
+from app.views.learn.names import named
+from app.views.learn.view import right_answer, spec_at
+from navcore.engine.simulation import simulate
 from tests.browser.driver import THROTTLE_MS, Bench
+from tests.browser.test_page_layout import SIZES, resize
 
 pytestmark = pytest.mark.browser
 
@@ -79,7 +80,7 @@ def work_through(bench: Bench, lesson: Lesson, index: int) -> None:
     assert "press Show me" not in asked.inner_text()
 
 
-@pytest.mark.parametrize("number", range(7), ids=[lesson.id for lesson in lessons()])
+@pytest.mark.parametrize("number", range(len(lessons())), ids=[lesson.id for lesson in lessons()])
 def test_a_lesson_is_worked_through(bench: Bench, number: int) -> None:
     lesson = lessons()[number]
     bench.tab("Learn")
@@ -146,3 +147,32 @@ def test_what_no_lesson_knows_is_ignored(bench: Bench, argument: str) -> None:
     press(bench, "open 0")
     heading(bench, lessons()[0].steps[0].title)
     assert bench.faults == []
+
+
+def test_no_number_of_another_scenario_is_told_before_show_me(bench: Bench) -> None:
+    bench.reset("sikuliaq-like")
+    bench.tab("Learn")
+    press(bench, "list")
+    press(bench, "open 0")
+    heading(bench, lessons()[0].steps[0].title)
+    assert {text for _, text in bench.page.evaluate(_LIVE)} == {MISSING}
+    show_me(bench, lessons()[0], 0)
+    assert MISSING not in {text for _, text in bench.page.evaluate(_LIVE)}
+    bench.reset("sikuliaq-like")
+    bench.page.wait_for_function(
+        f"missing => ({_LIVE})().every(([_, text]) => text === missing)", arg=MISSING
+    )
+
+
+def test_in_one_panel_the_tab_that_a_step_speaks_of_is_in_front(bench: Bench) -> None:
+    resize(bench, (1280, 720))
+    try:
+        bench.tab("Learn", "Poles")
+        press(bench, "list")
+        press(bench, "open 1")
+        press(bench, "show")
+        bench.page.wait_for_function(_IN_FRONT, arg=["Errors"])
+        bench.page.wait_for_timeout(500)
+        assert bench.page.evaluate(_IN_FRONT, ["Errors"])
+    finally:
+        resize(bench, SIZES[0])

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from navcore.misprints import MISPRINTS
+from app.misprints import MISPRINTS
 from tests.browser.driver import Bench
 
 pytestmark = pytest.mark.browser

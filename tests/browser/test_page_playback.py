@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from app.figures.track import track
-from app.scene.playback import SPEEDS
+from app.views.scene.playback import SPEEDS
+from app.views.scene.track import track
 from tests.browser.driver import Bench
 
 pytestmark = pytest.mark.browser

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from navcore.scenario_file import load, presets
+from navcore.scenario.file import load, presets
 from tests.browser.driver import Bench
 
 

@@ -137,7 +137,7 @@ def test_a_plot_is_saved(reading: Bench, tmp_path: Path, plot: str, format: str,
     assert content.decode("latin-1").startswith(starts)
     assert len(content) > 2000
     if format == "CSV":
-        from navcore.scenario_file import scenario_hash
+        from navcore.scenario.file import scenario_hash
 
         assert scenario_hash(reading.session.scenario) in content.decode()
     assert reading.faults == []

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from app.session.requirements import Requirements, verdicts
+from app.session.window import window_of
 from tests.browser.driver import Bench
 from tests.browser.test_page_layout import SIZES, resize
 
@@ -84,9 +85,12 @@ def test_limits_give_verdicts_with_the_measured_values(asked: Bench) -> None:
 
 def test_limits_are_drawn_as_regions_and_lines(asked: Bench) -> None:
     for label, text in (
-        ("settling ≤ (min)", "90"), ("overshoot ≤ (%)", "30"), ("damping ratio ≥", "0.5"),
-        ("tilt after log step ≤ (arcsec)", "10"), ("largest tilt ≤ (arcsec)", "12"),
-    ):  # fmt: skip
+        ("settling ≤ (min)", "90"),
+        ("overshoot ≤ (%)", "30"),
+        ("damping ratio ≥", "0.5"),
+        ("tilt after log step ≤ (arcsec)", "10"),
+        ("largest tilt ≤ (arcsec)", "12"),
+    ):
         ask(asked, label, text)
     asked.tab("Poles")
     asked.plotly()
@@ -150,3 +154,25 @@ def test_boxes_and_table_fit_every_window(asked: Bench) -> None:
                 assert right <= 0 and below <= 0, (size, right, below)
     finally:
         resize(asked, SIZES[0])
+
+
+def test_errors_after_settling_are_measured_without_the_transient(asked: Bench) -> None:
+    asked.tab("Metrics")
+    asked.choose("errors over", "after settling")
+    note = asked.page.locator(".sb-note:visible").filter(has_text="the slowest damped method has settled")
+    note.first.wait_for()
+    asked.tab("Requirements")
+    note.first.wait_for()
+    window = window_of(asked.session.run, asked.session.display)
+    wanted = verdicts(window.run, asked.session.display.requirements)
+    (velocity,) = [one for one in wanted if one.name == "velocity_rms_mps"]
+    shown = asked.page.locator('[data-measure="velocity_rms_mps"]')
+    assert [float(v) for v in shown.evaluate_all("all => all.map(e => e.dataset.value)")] == pytest.approx(
+        velocity.measured
+    )
+    asked.tab("Metrics")
+    asked.choose("errors over", "chosen hours")
+    asked.page.get_by_label("measured from (h)").wait_for()
+    asked.choose("errors over", "the whole run")
+    note.first.wait_for(state="detached")
+    assert asked.faults == []

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from app.page.layout import layout_for
+from app.shell.layout import layout_for
 from tests.browser.driver import Bench
 from tests.browser.test_page_layout import SIZES, resize
 from tests.browser.test_page_playback import command, now, wait_for
@@ -63,7 +63,7 @@ def test_cameras_look_from_elsewhere(moving: Bench) -> None:
 
 
 def test_the_computed_ship_is_that_of_the_method_in_hand(moving: Bench) -> None:
-    from app.figures import style
+    from app.plots import style
 
     page, number = moving.page, moving.run
     assert tuple(page.evaluate(_COLOR)) == style.method_rgb(2)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from app.editing import edits
-from navcore.scenario_file import load
+from navcore.scenario.file import load
 from tests.browser.driver import THROTTLE_MS, Bench
 
 if TYPE_CHECKING:
@@ -159,7 +159,7 @@ def test_one_field_is_reset_and_all_of_them(fresh: Bench, session: Session) -> N
     fresh.settle()
     palette(fresh, "Reset sigma (1/s) to 0.0088")
     wait_for_value(fresh, "sigma (1/s), exact", 0.0088)
-    changed.get_by_text("As in zha-fast").wait_for()
+    changed.get_by_text("Unchanged since zha-fast was opened").wait_for()
     assert button(fresh, "Reset all").get_attribute("aria-disabled") == "true"
     fresh.type(XI, "0.4")
     fresh.choose_and_run("damping", "free")
@@ -284,6 +284,12 @@ def test_one_presents_and_the_others_watch(
     other.page.get_by_text("Another page presents: you watch").wait_for()
     fresh.page.get_by_text("You present: 1 watches").wait_for()
     assert other.box(XI).is_disabled()
+    fresh.tab("Poles", "Spectrum")
+    front = """names => names.every(name => [...document.querySelectorAll('[role=tab]')]
+      .some(tab => tab.textContent === name && tab.getAttribute('aria-selected') === 'true'))"""
+    other.page.wait_for_function(front, arg=["Spectrum"])
+    fresh.tab("Frequency", "Errors")
+    other.page.wait_for_function(front, arg=["Errors"])
     # what the presenter does is seen; what the watcher does is not even if the page lets it
     fresh.type(XI, "0.5")
     wait_for_value(other, XI, 0.5)
@@ -301,8 +307,7 @@ def test_one_presents_and_the_others_watch(
     )
     other.page.wait_for_timeout(10 * THROTTLE_MS)
     assert (session.scenario, session.display) == (before, shown)
-    other.tab("Run", "Method")  # looking about is free
-    # controls that are made while one watches are locked too
+    other.tab("Run", "Method")  # free; controls that are made while one watches are locked too
     fresh.choose_and_run("network", "classic3")
     other.page.wait_for_function(
         "() => [...document.querySelectorAll('label')].some(l => l.textContent === 'T1 (s), exact')"

@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from app.editing import edits
-from app.figures.switching import switching_plots
-from navcore.scenario import Scenario
-from navcore.scenario_file import load
+from app.views.switching.figure import switching_plots
+from navcore.scenario.file import load
+from navcore.scenario.model import Scenario
 from tests.browser.driver import Bench
 
 pytestmark = pytest.mark.browser
@@ -23,13 +23,17 @@ POLICIES: list[tuple[str, tuple[str, ...]]] = [
     (
         "variation",
         (
-            "mean n (s)", "window t0 (s)", "small up to a (m/s)", "medium at b (m/s)", "large from c (m/s)",
+            "mean n (s)",
+            "window t0 (s)",
+            "small up to a (m/s)",
+            "medium at b (m/s)",
+            "large from c (m/s)",
             "count",
         ),
     ),
     ("adaptive", ("low-pass (s)",)),
     ("schedule", ("passage (s)",)),
-]  # fmt: skip
+]
 
 
 SWITCHINGS: list[tuple[str, tuple[str, ...]]] = [

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from app.editing import edits
-from navcore.scenario import Scenario
-from navcore.scenario_file import load
+from navcore.scenario.file import load
+from navcore.scenario.model import Scenario
 from tests.browser.driver import Bench
 
 pytestmark = pytest.mark.browser

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from app.background.verifier import STOPPED
-from navcore.scenario_file import load
+from app.jobs.verifier import STOPPED
+from navcore.scenario.file import load
 from tests.browser.driver import Bench
 
 pytestmark = pytest.mark.browser
@@ -39,6 +39,9 @@ def test_the_strapdown_is_drawn_dashed_and_becomes_old(short: Bench) -> None:
     short.page.get_by_role("button", name=VERIFY).click()
     short.page.get_by_text("Verified. Largest difference").wait_for(timeout=120_000)
     assert short.run == number
+    # the run's own curves stay as they are; both models are drawn apart
+    assert not any(short.page.evaluate(_DASHED))
+    short.choose("curves", "Verification")
     short.page.wait_for_function(f"() => ({_DASHED})().some(lines => lines.length === 3)")
     assert not short.page.get_by_role("button", name=STOP).is_visible()
     short.tab("Metrics")

@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from app.editing import edits
-from app.learn.lessons import lessons
-from app.panels.lessons import right_answer
 from app.session.requirements import Requirements
-from navcore.simulation import simulate
+from app.views.learn.lessons import lessons
+from app.views.learn.view import right_answer
+from navcore.engine.simulation import simulate
 from tests.browser import test_page_lessons as learning
 from tests.browser import test_page_playback as playing
 from tests.browser.driver import Bench

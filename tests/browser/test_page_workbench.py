@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.figures.nyquist import margins_of
-from navcore.loop import analyse
-from navcore.scenario import Scenario
-from navcore.scenario_file import load
+from app.views.frequency.nyquist import margins_of
+from navcore.analysis import analyse
+from navcore.scenario.file import load
+from navcore.scenario.model import Scenario
 from tests.browser.driver import Bench
 from tests.browser.test_page_layout import SIZES, resize
 
@@ -125,7 +125,7 @@ def test_locus_over_each_parameter_of_the_network_in_hand(workbench: Bench) -> N
         assert np.nanmin(np.abs(points - pole)) < 0.1
     assert workbench.page.get_by_text("over zeta: ○ 0.02 … □ 1.5, ✕ 0.5").count() == 1
     workbench.choose("locus over", "r")
-    workbench.page.get_by_text("over r: ○ 1.05").wait_for()
+    workbench.page.get_by_text("over r: ○ 0.5").wait_for()
     # a network without parameters has no locus
     workbench.session.select(0, None)
     workbench.page.wait_for_function(_HAS_NO_TRACE, arg="placed locus")
@@ -225,4 +225,25 @@ def test_tools_stand_in_one_row_in_every_window(workbench: Bench) -> None:
                     assert apart < 8 and cut <= 0, (size, tab, rows)
     finally:
         resize(workbench, SIZES[0])
+    assert workbench.faults == []
+
+
+def test_the_whole_system_stands_beside_the_channel(workbench: Bench) -> None:
+    workbench.tab("Poles")
+    workbench.choose("poles of", "whole system")
+    growth = trace(workbench, "placed growth")
+    run = workbench.session.run
+    assert run is not None
+    whole = run.methods[1].whole
+    site = trace(workbench, "placed at the site")
+    assert site["y"][0] == pytest.approx(whole.earth_growth * 86400.0, rel=1e-6)
+    at = np.interp(abs(run.scenario.site.lat_deg), growth["x"], growth["y"])
+    assert at == pytest.approx(site["y"][0], rel=0.01)
+    mode = trace(workbench, "placed 24 h")
+    assert len(mode["x"]) == len(whole.named("24 h"))
+    workbench.tab("Method")
+    workbench.page.get_by_text("Whole system: 24 h mode").first.wait_for()
+    workbench.tab("Poles")
+    workbench.choose("poles of", "one channel")
+    workbench.page.wait_for_function(_HAS_NO_TRACE, arg="placed growth")
     assert workbench.faults == []

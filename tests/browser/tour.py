@@ -57,9 +57,15 @@ class Film:
         for quality in _QUALITIES:
             first, *others = self.frames
             first.save(
-                path, save_all=True, append_images=others, duration=self.lasts_ms, loop=0, quality=quality,
-                method=6, minimize_size=False,
-            )  # fmt: skip
+                path,
+                save_all=True,
+                append_images=others,
+                duration=self.lasts_ms,
+                loop=0,
+                quality=quality,
+                method=6,
+                minimize_size=False,
+            )
             if path.stat().st_size <= LARGEST_BYTES:
                 break
         return path.stat().st_size

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from navcore.run import MethodRun, PlotSeries, Run
-from navcore.scenario import Scenario
-from navcore.simulation import simulate
+from navcore.engine.run import MethodRun, PlotSeries, Run
+from navcore.engine.simulation import simulate
+from navcore.scenario.model import Scenario
 
 THREE = (
     {"name": "free"},

@@ -1,26 +1,26 @@
-"""Coarse and fine alignment (physics.md 6.1): residuals, steady state, noise, refusals."""
+"""Coarse and fine alignment (theory.md 6.1): residuals, steady state, noise, refusals."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from navcore.alignment import (
+from navcore.alignment.fine import (
     CompassLoop,
     azimuth_gains,
     coarse_alignment,
     fine_alignment,
     steady_misalignment,
 )
-from navcore.earth import WGS84
-from navcore.errors import InputError
+from navcore.foundation.earth import WGS84
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import DEG, DEG_PER_HOUR, MICRO_G
 from navcore.mechanization.strapdown.attitude import misalignment, quaternion_of
 from navcore.mechanization.strapdown.run import turned_by
 from navcore.motion.base import HEADING, PITCH, ROLL
 from navcore.motion.static import StaticMotion
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
-from navcore.units import DEG, DEG_PER_HOUR, MICRO_G
 from tests.strapdown import DENG_SWING, SITE
 
 TILTED = StaticMotion(pitch_deg=6.0, roll_deg=8.0, heading_deg=75.0)
@@ -105,3 +105,12 @@ def test_a_loop_too_fast_for_the_imu_is_refused():
         fine_alignment(
             np.zeros((10, 6)), 1.0, np.array([1.0, 0, 0, 0]), 0.5, 0.0, WGS84, CompassLoop(sigma=1.0)
         )
+
+
+@pytest.mark.parametrize("heading_deg", [0.0, 75.0, 200.0])
+def test_the_coarse_attitude_of_perfect_sensors_is_the_true_one(heading_deg):
+    """At rest, over 10 min: what is left is that a mean of gravity lies inside the cone on which it turns."""
+    motion = StaticMotion(pitch_deg=6.0, roll_deg=-8.0, heading_deg=heading_deg)
+    increments, _, last = _record(motion, Imu(), 600, 20.0)
+    found = coarse_alignment(increments, 20.0, SITE.lat)
+    np.testing.assert_allclose(misalignment(*found, *last), 0.0, atol=1e-5)

@@ -10,13 +10,13 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from navcore.earth import SPHERE
-from navcore.errors import InputError
-from navcore.filters import discretise
-from navcore.loop import analyse, initial_tilt_response
-from navcore.loop.analysis import closed_loop_polynomial
-from navcore.network import NETWORKS, LinearNetwork, NetworkParameters, parse_network
-from navcore.network.report import network_report
+from navcore.analysis import analyse, initial_tilt_response
+from navcore.analysis.loop import closed_loop_polynomial
+from navcore.analysis.report import network_report
+from navcore.foundation.earth import SPHERE
+from navcore.foundation.errors import InputError
+from navcore.networks import NETWORKS, LinearNetwork, NetworkParameters, parse_network
+from navcore.networks.discrete import discretise
 from tests.random_models import raw_blocks
 
 OMEGA_S = SPHERE.schuler_frequency(0.0)

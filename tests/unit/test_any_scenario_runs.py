@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from hypothesis import HealthCheck, assume, given, settings
 
-from navcore.errors import InputError
-from navcore.measures import metrics
-from navcore.scenario import Scenario
-from navcore.simulation import simulate
+from navcore.engine.measures import metrics
+from navcore.engine.simulation import simulate
+from navcore.foundation.errors import InputError
+from navcore.scenario.model import Scenario
 from tests.random_models import raw_scenarios
 
 DURATION_H = 0.1
@@ -52,7 +52,7 @@ def test_any_scenario_ends_in_numbers_or_words(data):
 @given(data=raw_scenarios(duration_h=DURATION_H))
 @settings(max_examples=15, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
 def test_a_method_runs_the_same_alone(data):
-    """Methods share truth, sensors and log: which others run beside it cannot change one (house.md)."""
+    """Methods share truth, sensors and log: which others run beside it cannot change one."""
     assume(len(data["method"]) > 1)
     run = run_or_refuse(data)
     assume(run is not None)

@@ -10,10 +10,10 @@ import pytest
 from navcore.averaging.combine import averaged_rows
 from navcore.averaging.copies import HALF_SIDEREAL_DAY, Copies, copies_of, split_schuler_lines
 from navcore.averaging.parameters import Averaging
-from navcore.earth import EARTH_RATE, SPHERE, WGS84
+from navcore.foundation.earth import EARTH_RATE, SPHERE, WGS84
+from navcore.foundation.units import DEG
 from navcore.mechanization.error_model import system_matrix
 from navcore.mechanization.recorder import D_LAT, D_LON, DV_E, PHI_U, POSITION, ROW_COLUMNS
-from navcore.units import DEG
 
 LAT = 45.78 * DEG
 OMEGA_S = SPHERE.schuler_frequency(LAT)

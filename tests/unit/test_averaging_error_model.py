@@ -8,12 +8,12 @@ import pytest
 from navcore.averaging import Averaging
 from navcore.averaging.combine import averaged_rows
 from navcore.averaging.error_model import forecast_errors, states_ahead
-from navcore.earth import SPHERE, WGS84
+from navcore.engine.run import plot_series, statistics
+from navcore.foundation.earth import SPHERE, WGS84
 from navcore.mechanization.error_model import ErrorModelRun
 from navcore.mechanization.recorder import make_recorder
 from navcore.mechanization.trajectory import coefficients
 from navcore.motion.legs import Leg, LegsMotion
-from navcore.run import plot_series, statistics
 from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.imu import Imu, imu_errors
 from tests.averaging import INITIAL, SITE, averaged, free_law, made
@@ -82,7 +82,7 @@ def test_chunks_do_not_change_the_result():
 
 def test_statistics_cover_every_step_of_both_groups():
     run = averaged(made(Averaging()), 3600)
-    assert run.recorder.cursor[1] == 3601
+    assert run.recorder.cursor["count"] == 3601
     rows = run.recorder.rows
     assert len(rows) == 61
     numbers = statistics(run.recorder)
@@ -96,4 +96,4 @@ def test_divergence_is_noticed(averaging):
     run = averaged(made(averaging), 3600, initial=np.array([5e4, 5e4, 0.0, 0.0, 0.5, 0.5, 0.9]))
     assert run.diverged
     assert run.position < 3600
-    assert np.isfinite(run.recorder.rows[: run.recorder.cursor[0]]).all()
+    assert np.isfinite(run.recorder.rows[: run.recorder.cursor["row"]]).all()

@@ -10,13 +10,13 @@ import pytest
 from navcore.averaging import AlignmentMotion, Averaging
 from navcore.averaging.forecast import base_motion, forecast_from, second_increments, still_segments
 from navcore.averaging.record import alignment_record, standing_row, standing_signals
-from navcore.earth import EARTH_RATE, WGS84
-from navcore.errors import InputError
+from navcore.foundation.earth import EARTH_RATE, WGS84
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import DEG, DEG_PER_HOUR, MICRO_G
 from navcore.motion.base import VE
 from navcore.motion.static import StaticMotion
 from navcore.sensors.imu import Imu
 from navcore.sensors.noise import unit_noise
-from navcore.units import DEG, DEG_PER_HOUR, MICRO_G
 from tests.averaging import SITE, made, truth_row
 
 TILTED = StaticMotion(pitch_deg=3.0, roll_deg=-2.0, heading_deg=70.0)
@@ -82,7 +82,7 @@ def test_motions_leave_the_forecast_as_it_was(imu):
 
 
 def test_forecast_noise_is_that_of_the_mean():
-    # physics.md 5: 0.012 deg/h for 0.005 deg/sqrt(h) and 600 s
+    # theory.md 5: 0.012 deg/h for 0.005 deg/sqrt(h) and 600 s
     noise = Imu(gyro_arw_dpsh=0.005)
     signals = standing_signals(STANDING, WGS84)[:3]
     errors = [forecast_from(record(noise, seed=seed)).gyro - signals for seed in range(60)]
@@ -134,3 +134,18 @@ def test_second_increments_end_with_the_record():
     assert seconds.shape == (2, 6)
     assert seconds[1, 0] == np.arange(150, 250).sum()
     assert math.isclose(seconds[0, 5], np.arange(50, 150).sum())
+
+
+def test_a_base_that_moves_at_the_end_is_forecast_in_the_attitude_in_which_it_ends():
+    """The record ends while the base turns: the means are turned by what came after the last still part."""
+    at_the_end = (AlignmentMotion(t_s=-4.0, duration_s=4.0, turn_deg=(0.4, -0.3, 0.5)),)
+    forecast = forecast_from(record(motions=at_the_end))
+    assert forecast.segments[-1][1] < 600
+    # the attitude of t = 0 is that of the scenario, so the forecast is what the sensors feel there
+    wanted = standing_signals(STANDING, WGS84)
+    np.testing.assert_allclose(forecast.accel, wanted[3:], atol=2e-4)
+    np.testing.assert_allclose(forecast.gyro, wanted[:3], atol=2e-9)
+    # without the turn it would be off by gravity times half a degree
+    still = record()[:590].mean(axis=0)
+    before = record(motions=at_the_end)[:590].mean(axis=0)
+    assert np.abs(before - still)[3:].max() > 0.05

@@ -7,7 +7,7 @@ import pytest
 
 from navcore.averaging.copies import split_schuler_lines
 from navcore.averaging.lines import LINES, line_amplitudes, line_phases
-from navcore.earth import EARTH_RATE, WGS84
+from navcore.foundation.earth import EARTH_RATE, WGS84
 from navcore.motion.base import VE
 from tests.averaging import SITE, truth_row
 

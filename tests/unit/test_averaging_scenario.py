@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.errors import InputError
-from navcore.mechanization.strapdown.layout import NAVIGATION
-from navcore.scenario import Scenario
-from navcore.simulation import simulate
+from navcore.engine.simulation import simulate
+from navcore.foundation.errors import InputError
+from navcore.mechanization.strapdown.records import NAVIGATION
+from navcore.scenario.model import Scenario
 
 METHODS = [
     {"damping": "averaging"},

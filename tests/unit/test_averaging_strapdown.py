@@ -10,13 +10,13 @@ import pytest
 
 from navcore.averaging import Averaging
 from navcore.averaging.strapdown import start_strapdown
-from navcore.earth import WGS84
+from navcore.foundation.earth import WGS84
+from navcore.foundation.units import ARCSEC, DEG
 from navcore.mechanization.strapdown import Settings, start_from
-from navcore.mechanization.strapdown.layout import NAVIGATION
+from navcore.mechanization.strapdown.records import NAVIGATION
 from navcore.motion.static import StaticMotion
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
-from navcore.units import ARCSEC, DEG
 from tests.averaging import INITIAL, SITE, averaged, free_law, made
 
 LEVEL_NORTH = StaticMotion()
@@ -65,7 +65,7 @@ def test_navigation_is_the_truth_and_the_averaged_errors():
         (solution["lon_rad"] - site.lon) * prime * math.cos(SITE.lat), rows[:, 6], atol=1e-6
     )
     np.testing.assert_allclose(solution["ve_mps"], rows[:, 3], atol=1e-12)
-    # level and north: dpitch = -phi_E, droll = -phi_N, dpsi = phi_U (physics.md section 2)
+    # level and north: dpitch = -phi_E, droll = -phi_N, dpsi = phi_U (theory.md section 2)
     np.testing.assert_allclose(solution["pitch_rad"], -rows[:, 0], atol=1e-2 * ARCSEC)
     np.testing.assert_allclose(solution["roll_rad"], -rows[:, 1], atol=2e-1 * ARCSEC)
     heading = np.remainder(solution["heading_rad"] + math.pi, 2 * math.pi) - math.pi
@@ -87,7 +87,7 @@ def test_chunks_do_not_change_the_result():
     whole, pieces = navigate(plan, 0.5, INITIAL), navigate(plan, 0.5, INITIAL, chunk=73)
     np.testing.assert_array_equal(whole.recorder.rows, pieces.recorder.rows)
     np.testing.assert_array_equal(whole.navigation, pieces.navigation)
-    assert whole.recorder.cursor[1] == pieces.recorder.cursor[1] == 1801
+    assert whole.recorder.cursor["count"] == pieces.recorder.cursor["count"] == 1801
 
 
 def test_a_copy_that_fails_stops_the_method():

@@ -12,7 +12,7 @@ import pytest
 import benchmarks.__main__ as command
 from app.bench.strapdown import StaticRecord
 from benchmarks.python_ins import PythonIns
-from navcore.network.undamped import UndampedNetwork
+from navcore.networks.undamped import UndampedNetwork
 
 RATIOS = {
     "kernel_to_free": 9.0,

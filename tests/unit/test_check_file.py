@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from navcore.io.check import Checker, FileReport, check_file
+from navcore.checks.file import Checker, FileReport, check_file
 from tests.nmea import sentence, ship_files, stamped, vbw, write
 
 
@@ -20,9 +20,15 @@ def test_a_log_is_described(tmp_path):
     data = json.loads(json.dumps(report.as_dict(), allow_nan=False))
     assert data["ok"] is True
     assert data["sentences"]["VDVBW"] == {
-        "count": 54, "used": True, "start_utc": "2024-02-28T23:58:00.6Z", "end_utc": "2024-02-28T23:58:58.9Z",
-        "span_s": 58.3, "rate_hz": 0.9091, "gaps": 0, "longest_gap_s": 0.0,
-    }  # fmt: skip
+        "count": 54,
+        "used": True,
+        "start_utc": "2024-02-28T23:58:00.6Z",
+        "end_utc": "2024-02-28T23:58:58.9Z",
+        "span_s": 58.3,
+        "rate_hz": 0.9091,
+        "gaps": 0,
+        "longest_gap_s": 0.0,
+    }
     assert data["checksum_faults"] == 0
     assert data["quantities"]["water"]["forward_kn"] == [11.0, 11.0]
     assert data["quantities"]["ground"]["starboard_kn"] == [0.0, 0.0]

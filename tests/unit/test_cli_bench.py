@@ -15,8 +15,8 @@ from app.bench.process import Server
 from app.bench.rounds import median_ratio, timed_rounds
 from app.bench.strapdown import YARDSTICK, measure_strapdown
 from app.bench.strapdown_day import strapdown_day
-from app.bench.text import bench_text
 from app.cli import main
+from app.cli.bench_text import bench_text
 
 NUMBERS = {
     "error_model_24h_ms_per_method": 12.34567,

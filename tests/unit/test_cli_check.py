@@ -7,7 +7,7 @@ import json
 import pytest
 
 from app.cli import main
-from navcore.scenario_file import load, scenario_hash
+from navcore.scenario.file import load, scenario_hash
 
 
 def test_a_scenario_is_described(tmp_path, capsys):

@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 from app.cli import main
-from app.cli.parse import one_line
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -24,10 +23,10 @@ def run(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> tuple[int, 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ([], "{serve, run, network, presets, check, bench}"),
-        (["simulate"], "simulate"),
-        (["run"], "SCENARIO"),
-        (["run", "zha-fast", "--fromat", "csv"], "--format"),
+        ([], "{serve, run, network, presets, check, budget, tune, pareto, bench}"),
+        (["simulate"], "bench}, not 'simulate'"),
+        (["run"], "run needs SCENARIO"),
+        (["run", "zha-fast", "--fromat", "csv"], "run does not know --fromat; perhaps --format"),
         (["run", "zha-fast", "--format", "xml"], "'xml'"),
         (["run", "zha-fast", "sun-step"], "sun-step"),
         (["run", "zha-fast", "--set"], "--set"),
@@ -108,16 +107,6 @@ def test_a_ctrl_c_outside_a_run_is_one_line(capsys, monkeypatch):
 
     monkeypatch.setattr(NetworkCommand, "execute", interrupted)
     assert run(["network", 'id = "classic2"'], capsys) == (3, "", ["stopped"])
-
-
-def test_a_wrapped_box_becomes_one_line():
-    box = "╭─ T ──────╮\n│ one two  │\n│ three    │\n│ ──────── │\n│ For more │\n╰──────────╯\n"
-    assert one_line(box) == "one two three"
-    plain = " T          \n ---------- \n  one two   \n  three     \n  ----------\n  For more  \n\n"
-    assert one_line(plain) == "one two three"
-    coloured = box.replace("│", "\x1b[31m│\x1b[0m").replace("one", "\x1b[0m\x1b[1mone")
-    assert one_line(coloured) == "one two three"
-    assert one_line("plain words") == "plain words"
 
 
 def command(*arguments: str, **keywords) -> subprocess.Popen[str]:

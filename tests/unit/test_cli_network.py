@@ -1,4 +1,4 @@
-"""``schuler network``: the numbers of physics.md 9.1, 9.2 and 3.3 from the command line."""
+"""``schuler network``: the numbers of theory.md 9.1, 9.2 and 3.3 from the command line."""
 
 from __future__ import annotations
 
@@ -12,9 +12,24 @@ from app.cli import main
 
 OMEGA_S = math.sqrt(9.80665 / 6378137.0)
 KEYS = [
-    "id", "num", "den", "zeros", "poles", "gain", "h0", "closed_loop_poles", "stable", "damping_ratio",
-    "natural_frequency_rad_s", "settling_s", "warnings",
-]  # fmt: skip
+    "id",
+    "num",
+    "den",
+    "zeros",
+    "poles",
+    "gain",
+    "h0",
+    "closed_loop_poles",
+    "stable",
+    "damping_ratio",
+    "natural_frequency_rad_s",
+    "settling_s",
+    "lat_deg",
+    "earth_mode_growth_per_s",
+    "h_slope_s",
+    "whole_system_stable",
+    "warnings",
+]
 
 
 def network(text: str, capsys: pytest.CaptureFixture[str]) -> dict:
@@ -28,10 +43,13 @@ def network(text: str, capsys: pytest.CaptureFixture[str]) -> dict:
     ("text", "poles", "damping"),
     [
         ('id = "classic2"', [-0.982 - 1.003j, -0.982 + 1.003j, -2.674, -9.879], 0.699),
-        ('id = "classic3"', [-1.3253, -0.5946 + 1.3823j, -0.5946 - 1.3823j, -7.618 + 1.290j, -7.618 - 1.290j],
-         0.395),
+        (
+            'id = "classic3"',
+            [-1.3253, -0.5946 + 1.3823j, -0.5946 - 1.3823j, -7.618 + 1.290j, -7.618 - 1.290j],
+            0.395,
+        ),
     ],
-)  # fmt: skip
+)
 def test_closed_loops_of_9_1(text, poles, damping, capsys):
     report = network(text, capsys)
     assert list(report) == KEYS
@@ -75,3 +93,13 @@ def test_people_get_units_and_warnings(capsys):
 def test_the_network_without_poles_has_none(capsys):
     assert main(["network", 'id = "none"']) == 0
     assert "none" in capsys.readouterr().out
+
+
+def test_margins_are_shown_when_asked(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["network", 'id = "complementary"', "--margins", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["margins"]
+    assert found["gain_up"] == pytest.approx(4.370, rel=1e-3)
+    assert math.degrees(found["phase_rad"]) == pytest.approx(18.58, rel=1e-3)
+    assert found["disk_gain"] == pytest.approx(1.391, rel=1e-3)
+    assert main(["network", 'id = "none"', "--margins"]) == 0
+    assert "none: the loop is undamped or unstable" in capsys.readouterr().out

@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 
 from app.cli import main
-from navcore.scenario_file import presets
-from navcore.schema_file import schema_text
+from navcore.scenario.file import presets
+from navcore.scenario.schema_file import schema_text
 
 
 def test_json_lists_every_preset_with_its_source(capsys):
@@ -34,7 +34,7 @@ def test_people_get_a_line_a_preset(capsys):
 def test_the_schema_file_is_up_to_date(capsys):
     assert main(["presets", "--json"]) == 0
     file = Path(json.loads(capsys.readouterr().out)["schema_file"])
-    assert file.read_text("utf-8") == schema_text(), "write it anew: python -m navcore.schema_file"
+    assert file.read_text("utf-8") == schema_text(), "write it anew: python -m navcore.scenario.schema_file"
 
 
 def test_the_schema_knows_the_fields_and_their_ranges():

@@ -12,16 +12,36 @@ import pytest
 
 from app.cli import main
 from app.cli.progress import Bar
-from navcore.measures import metrics
-from navcore.scenario_file import load
-from navcore.simulation import simulate
+from navcore.engine.measures import metrics
+from navcore.engine.simulation import simulate
+from navcore.scenario.file import load
 
 SHORT = ["--set", "run.duration_h=0.1"]
 COLUMNS = [
-    "method", "t_s", "phi_e_rad", "phi_n_rad", "phi_u_rad", "dve_mps", "dvn_mps", "dlat_m", "dlon_m",
-    "damped", "xi",
-]  # fmt: skip
+    "method",
+    "t_s",
+    "phi_e_rad",
+    "phi_n_rad",
+    "phi_u_rad",
+    "dve_mps",
+    "dvn_mps",
+    "dlat_m",
+    "dlon_m",
+    "damped",
+    "xi",
+]
 QUANTITIES = [*COLUMNS[2:9], "position_m"]
+
+LOOP_KEYS = [
+    "stable",
+    "poles",
+    "h0",
+    "damping_ratio",
+    "settling_s",
+    "earth_mode_growth_per_s",
+    "h_slope_s",
+    "whole_system_stable",
+]
 
 
 def run_json(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> tuple[int, dict]:
@@ -38,14 +58,21 @@ def test_json_is_one_document_with_the_contracts_keys(capsys):
     assert document["schema"] == 1
     assert len(document["scenario_sha256"]) == 64
     for method in document["methods"]:
-        assert list(method) == ["name", "status", "warnings", "loop", "errors"]
-        assert list(method["loop"]) == ["stable", "poles", "h0", "damping_ratio", "settling_s"]
+        assert list(method) == ["name", "status", "warnings", "loop", "law", "errors"]
+        assert list(method["loop"]) == LOOP_KEYS
         assert list(method["errors"]) == QUANTITIES
         assert all(list(e) == ["mean", "std", "rms", "max_abs", "final"] for e in method["errors"].values())
     free = document["methods"][0]
     assert free["loop"] | {"poles": []} == {
-        "stable": True, "poles": [], "h0": 1.0, "damping_ratio": 0.0, "settling_s": None,
-    }  # fmt: skip
+        "stable": True,
+        "poles": [],
+        "h0": 1.0,
+        "damping_ratio": 0.0,
+        "settling_s": None,
+        "earth_mode_growth_per_s": 0.0,
+        "h_slope_s": 0.0,
+        "whole_system_stable": True,
+    }
     assert "undamped" in free["warnings"]
 
 
@@ -118,7 +145,7 @@ def test_a_folder_of_an_earlier_run_is_replaced_as_a_whole(tmp_path, capsys):
 def test_a_folder_with_other_files_is_refused_before_anything_is_run(tmp_path, capsys, monkeypatch):
     (tmp_path / "thesis.tex").write_text("years of work")
     (tmp_path / "metrics.json").write_text("old")
-    monkeypatch.setattr("navcore.simulation.simulate", lambda *_: pytest.fail("was run"))
+    monkeypatch.setattr("navcore.engine.simulation.simulate", lambda *_: pytest.fail("was run"))
     assert main(["run", "zha-fast", "--out", str(tmp_path)]) == 2
     err = capsys.readouterr().err
     assert err.count("\n") == 1

@@ -10,7 +10,7 @@ import pytest
 
 from app.cli import main
 from app.cli.progress import Bar
-from navcore.mechanization.strapdown.layout import NAVIGATION
+from navcore.mechanization.strapdown.records import NAVIGATION
 
 STRAPDOWN = ["--set", "run.fidelity=strapdown", "--set", "run.duration_h=0.05"]
 

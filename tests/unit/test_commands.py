@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from app.page.commands import LONGEST_ARGUMENT, MOST_AT_ONCE, Commands, read_commands
+from app.shell.commands import LONGEST_ARGUMENT, MOST_AT_ONCE, Commands, read_commands
 
 
 class Gui:

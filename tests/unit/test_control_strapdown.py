@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.run import Run
-from navcore.scenario import Scenario
-from navcore.simulation import simulate
+from navcore.engine.run import Run
+from navcore.engine.simulation import simulate
+from navcore.scenario.model import Scenario
 
 COMPLEMENTARY = {"id": "complementary"}
 METHODS: list[dict[str, Any]] = [

@@ -9,24 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from navcore.control.law import Law, law_step
-from navcore.control.layout import (
-    CORRECTION,
-    DAMPED,
-    NETWORK_A,
-    NETWORK_B,
-    NETWORK_C,
-    NETWORK_D,
-    NETWORK_STEADY,
-    OFFSET,
-    ORDER,
-    PLAIN,
-    X_E,
-    XI,
-)
-from navcore.control.tuned_network import retune, tune
-from navcore.filters import discretise
-from navcore.network import parse_network
+from navcore.law.law import Law, law_step
+from navcore.law.records import Sensed
+from navcore.law.tuned_network import retune, tune
+from navcore.networks import parse_network
+from navcore.networks.discrete import discretise
 from tests.law_run import OMEGA_S, LawRun, sampled_radius
 
 COMPLEMENTARY = {"id": "complementary", "zeta": 0.5}
@@ -44,12 +31,8 @@ TUNABLE = [
 
 def matrices(law: Law) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, np.ndarray]:
     """The discrete network in the state: dA, B, C, D, steady state."""
-    n, s = int(law.p[ORDER]), law.s
-    dA = s[NETWORK_A : NETWORK_A + 16].reshape(4, 4)[:n, :n]
-    return (
-        dA, s[NETWORK_B : NETWORK_B + n], s[NETWORK_C : NETWORK_C + n], float(s[NETWORK_D]),
-        s[NETWORK_STEADY : NETWORK_STEADY + n],
-    )  # fmt: skip
+    n, net = int(law.p["order"]), law.s["network"]
+    return net["dA"][:n, :n], net["B"][:n], net["C"][:n], float(net["D"]), net["steady"][:n]
 
 
 def response(dA: np.ndarray, B: np.ndarray, C: np.ndarray, D: float, omega: np.ndarray) -> np.ndarray:
@@ -82,21 +65,21 @@ def test_retuning_keeps_the_correction_and_what_is_at_rest(network, before, afte
     run = LawRun(network, {"id": "constant"}, {"id": "step"})
     p, s = run.law.p, run.s
     tune(p, s, before)
-    n = int(p[ORDER])
-    s[X_E : X_E + n] = np.random.default_rng(seed).normal(0.0, 1.0, n)
+    n = int(p["order"])
+    s["x"][0, :n] = np.random.default_rng(seed).normal(0.0, 1.0, n)
     _, _, C, D, _ = matrices(run.law)
-    c = C @ s[X_E : X_E + n] + D * u
-    size = np.abs(C) @ np.abs(s[X_E : X_E + n]) + abs(D * u)
+    c = C @ s["x"][0, :n] + D * u
+    size = np.abs(C) @ np.abs(s["x"][0, :n]) + abs(D * u)
     retune(p, s, after, u, u)
     _, _, C, D, _ = matrices(run.law)
-    assert abs(C @ s[X_E : X_E + n] + D * u + s[OFFSET] - c) <= 1e-11 * (size + 1.0)
+    assert abs(C @ s["x"][0, :n] + D * u + s["offset"][0] - c) <= 1e-11 * (size + 1.0)
     tune(p, s, before)
-    s[OFFSET] = 0.0
-    s[X_E : X_E + n] = matrices(run.law)[4] * u
+    s["offset"][0] = 0.0
+    s["x"][0, :n] = matrices(run.law)[4] * u
     retune(p, s, after, u, u)
-    assert s[X_E : X_E + n] == pytest.approx(matrices(run.law)[4] * u, abs=1e-12)
+    assert s["x"][0, :n] == pytest.approx(matrices(run.law)[4] * u, abs=1e-12)
     h0 = run.network.with_damping(after).transfer(OMEGA_S).h0
-    assert abs(matrices(run.law)[2] @ s[X_E : X_E + n] + matrices(run.law)[3] * u - (1.0 - h0) * u) < 1e-10
+    assert abs(matrices(run.law)[2] @ s["x"][0, :n] + matrices(run.law)[3] * u - (1.0 - h0) * u) < 1e-10
 
 
 @given(st.lists(st.tuples(st.sampled_from(TUNABLE[2:]), st.floats(0.04, 0.99)), min_size=2, max_size=40))
@@ -111,8 +94,8 @@ def test_no_retuning_however_fast_excites_a_two_pole_network(steps):
         retune(p, s, xi, u, u)
         for _ in range(20):
             dA, B, _, _, _ = matrices(run.law)
-            s[X_E : X_E + 2] += dA @ s[X_E : X_E + 2] + B * u
-            now = float((s[X_E] - u) ** 2 + s[X_E + 1] ** 2)
+            s["x"][0, :2] += dA @ s["x"][0, :2] + B * u
+            now = float((s["x"][0, 0] - u) ** 2 + s["x"][0, 1] ** 2)
             assert now <= energy * (1.0 + 1e-3) + 1e-12
             energy = min(energy, max(now, 1e-12)) if now < energy else energy
 
@@ -123,16 +106,16 @@ def test_a_retuned_correction_fades_into_the_new_networks_in_100_s():
     before = run.step(0.0)[0]
     jump = run.step(1.0)[0]
     assert before == 0.0 and abs(jump) < 0.5, "the correction has not jumped with xi and the log"
-    offset = run.s[OFFSET]
+    offset = run.value("offset")
     run.series([1.0] * 100)
-    assert run.s[OFFSET] == pytest.approx(offset * math.exp(-1.0), rel=1e-9)
+    assert run.value("offset") == pytest.approx(offset * math.exp(-1.0), rel=1e-9)
 
 
 def test_hard_clears_and_corrects_nothing_while_undamped():
     run = LawRun(COMPLEMENTARY, THRESHOLD, {"id": "hard"})
     run.series([0.5] * 200)
     assert run.step(0.5)[0] != 0.0
-    assert np.all(run.series([2.0] * 5, DAMPED, XI, CORRECTION) == 0.0)
+    assert np.all(run.series([2.0] * 5, "damped", "xi", "correction") == 0.0)
     fresh = LawRun(COMPLEMENTARY, THRESHOLD, {"id": "hard"})
     for _ in range(20):
         assert run.step(0.7)[0] == fresh.step(0.7)[0]
@@ -151,21 +134,21 @@ def test_keep_runs_on_masked():
 def test_keep_stands_still_without_a_log():
     run = LawRun(COMPLEMENTARY, THRESHOLD, {"id": "keep"})
     run.series([0.5] * 200)
-    before = run.s[X_E : X_E + 4].copy()
+    before = run.s["x"][0].copy()
     run.series([0.5] * 10, valid=False)
-    assert run.s[X_E : X_E + 4] == pytest.approx(before, abs=0.0)
+    assert run.s["x"][0] == pytest.approx(before, abs=0.0)
 
 
 def test_ramp_raises_the_coefficient_and_freezes_the_correction():
     """Liu's fig. 10: xi e^-49, xi e^-48, ... xi, each second, from the switch on; c_k stays undamped."""
     run = LawRun(COMPLEMENTARY, THRESHOLD, {"id": "ramp"})
-    assert np.all(run.series([0.5] * 300, XI) == 0.5), "the start is no switch"
-    frozen = run.s[CORRECTION]
+    assert np.all(run.series([0.5] * 300, "xi") == 0.5), "the start is no switch"
+    frozen = run.value("correction")
     assert frozen != 0.0
     for _ in range(200):
         assert run.step(2.0)[0] == frozen
-        assert run.s[XI] == 0.0
-    xi = run.series([0.5] * 60, XI)[:, 0]
+        assert run.value("xi") == 0.0
+    xi = run.series([0.5] * 60, "xi")[:, 0]
     expected = [0.5 * math.exp(-max(49 - m, 0)) for m in range(60)]
     assert xi == pytest.approx(expected, rel=1e-12)
     assert xi[0] == pytest.approx(0.5 * 5.2e-22, rel=0.01)
@@ -174,7 +157,7 @@ def test_ramp_raises_the_coefficient_and_freezes_the_correction():
 def test_a_second_event_within_the_ramp_begins_it_anew():
     run = LawRun(COMPLEMENTARY, THRESHOLD, {"id": "ramp", "duration_s": 10.0})
     run.series([0.5] * 3 + [2.0] * 3 + [0.5] * 5 + [2.0])
-    xi = run.series([0.5] * 12, XI)[:, 0]
+    xi = run.series([0.5] * 12, "xi")[:, 0]
     assert xi == pytest.approx([0.5 * math.exp(-max(9 - m, 0)) for m in range(12)], rel=1e-12)
 
 
@@ -203,7 +186,7 @@ def test_lius_recursion_never_sees_what_stands_during_the_ramp(form):
     again = np.where(np.arange(1500) < 300, 0.5, 0.8)
     run = LawRun(COMPLEMENTARY, THRESHOLD, {"id": "ramp", "form": form})
     run.series([0.0, 2.0])
-    got = run.series(again, CORRECTION)[:, 0]
+    got = run.series(again, "correction")[:, 0]
     zetas = 0.5 * np.exp(-np.clip(49.0 - np.arange(1500.0), 0.0, None))
     printed = liu_19(again, zetas)
     step = liu_19(np.where(np.arange(1500) < 300, 0.0, 0.3), np.full(1500, 0.5))
@@ -216,12 +199,12 @@ def test_lius_recursion_never_sees_what_stands_during_the_ramp(form):
 
 def test_step_moves_by_a_tenth_every_two_minutes():
     run = LawRun(COMPLEMENTARY, THRESHOLD, {"id": "step"})
-    seen = run.series([0.5] * 300, XI, DAMPED)
+    seen = run.series([0.5] * 300, "xi", "damped")
     assert np.all(seen == [0.5, 1.0]), "the start is no switch"
-    away = run.series([2.0] * 700, XI, DAMPED)
+    away = run.series([2.0] * 700, "xi", "damped")
     assert away[::120, 0] == pytest.approx([0.4, 0.3, 0.2, 0.1, 0.0, 0.0], abs=1e-12)
     assert away[119, 0] == pytest.approx(0.4) and away[479, 1] == 1.0 and away[480, 1] == 0.0
-    back = run.series([0.5] * 700, XI, DAMPED)
+    back = run.series([0.5] * 700, "xi", "damped")
     assert back[::120, 0] == pytest.approx([0.1, 0.2, 0.3, 0.4, 0.5, 0.5], abs=1e-12)
     assert np.all(back[:, 1] == 1.0)
 
@@ -229,14 +212,14 @@ def test_step_moves_by_a_tenth_every_two_minutes():
 def test_step_without_a_log_is_undamped_at_once():
     run = LawRun(COMPLEMENTARY, THRESHOLD, {"id": "step"})
     run.series([0.5] * 10)
-    assert run.series([0.5], XI, DAMPED, valid=False).tolist() == [[0.0, 0.0]]
-    assert run.series([0.5], XI, DAMPED).tolist() == [[0.1, 1.0]]
+    assert run.series([0.5], "xi", "damped", valid=False).tolist() == [[0.0, 0.0]]
+    assert run.series([0.5], "xi", "damped").tolist() == [[0.1, 1.0]]
 
 
 def test_step_follows_the_adaptive_law_by_a_tenth_at_a_time():
     run = LawRun({"id": "unity2"}, {"id": "adaptive", "lowpass_s": 1e-3}, {"id": "step"})
-    assert run.series([0.0], XI)[0, 0] == 0.99
-    xi = run.series([10.0] * 1500, XI)[:, 0]
+    assert run.series([0.0], "xi")[0, 0] == 0.99
+    xi = run.series([10.0] * 1500, "xi")[:, 0]
     steps = np.diff(np.concatenate([[0.99], xi]))
     assert steps.min() == pytest.approx(-0.1) and xi[-1] == 0.04
     moves = np.flatnonzero(steps)
@@ -255,7 +238,7 @@ def test_bumpless_restores_the_state_of_before_moved_by_the_change_of_the_mean()
         c = run.step(u)[0]
         states.append(x.copy())  # before this sample
         if k < 3:
-            assert c == 0.0 and run.s[DAMPED] == 0.0, "not yet n differences"
+            assert c == 0.0 and run.value("damped") == 0.0, "not yet n differences"
             continue
         if k == 3:
             x = d.steady_state(float(np.mean(quiet[:4])))
@@ -263,7 +246,7 @@ def test_bumpless_restores_the_state_of_before_moved_by_the_change_of_the_mean()
         c_expected = -d.C @ x + (1.0 - d.D) * u
         assert c == pytest.approx(c_expected, abs=1e-15)
         x = x + d.dA @ x + d.B * u
-    frozen = run.s[CORRECTION]
+    frozen = run.value("correction")
     event = [2.0, 1.9, 2.1]
     for u in event:
         assert run.step(u)[0] == frozen
@@ -273,7 +256,7 @@ def test_bumpless_restores_the_state_of_before_moved_by_the_change_of_the_mean()
     c = run.step(-0.5)[0]
     x = x0 + d.steady_state(1.0) * (m1 - m0)
     assert c == pytest.approx(-d.C @ x + (1.0 - d.D) * -0.5, abs=1e-14)
-    assert run.s[X_E : X_E + 4] == pytest.approx(x + d.dA @ x - 0.5 * d.B, abs=1e-13)
+    assert run.s["x"][0] == pytest.approx(x + d.dA @ x - 0.5 * d.B, abs=1e-13)
 
 
 def test_bumpless_keeps_what_it_put_aside_when_the_memory_reaches_into_an_event():
@@ -281,21 +264,20 @@ def test_bumpless_keeps_what_it_put_aside_when_the_memory_reaches_into_an_event(
     run = LawRun(COMPLEMENTARY, THRESHOLD, block)
     run.series([0.5] * 100)
     run.series([2.0] * 5)
-    one = run.s.copy()
+    one = run.s["switchings"]["bumpless"]["x"].copy()
     run.series([0.6] * 8)  # damped again, but 20 s before the next event lies the first
     run.series([2.0] * 5)
-    aside = slice(72, 80)
-    assert run.s[aside] == pytest.approx(one[aside], abs=0.0)
-    assert np.any(one[aside] != 0.0)
+    assert run.s["switchings"]["bumpless"]["x"] == pytest.approx(one, abs=0.0)
+    assert np.any(one != 0.0)
 
 
 def test_bumpless_waits_for_a_mean_after_a_gap():
     run = LawRun(COMPLEMENTARY, {"id": "constant"}, {"id": "bumpless", "n_s": 5.0, "memory_s": 10.0})
     run.series([0.5] * 50)
-    assert not run.series([0.5] * 5, DAMPED, valid=False).any()
-    assert run.series([0.9] * 8, DAMPED)[:, 0].tolist() == [0, 0, 0, 0, 1, 1, 1, 1]
+    assert not run.series([0.5] * 5, "damped", valid=False).any()
+    assert run.series([0.9] * 8, "damped")[:, 0].tolist() == [0, 0, 0, 0, 1, 1, 1, 1]
     # 0.4 m/s have come for good: at rest with the new difference, as it was with the old one
-    c = run.series([0.9] * 2000, CORRECTION)[:, 0]
+    c = run.series([0.9] * 2000, "correction")[:, 0]
     assert np.abs(c).max() < 1e-9
 
 
@@ -306,13 +288,14 @@ def test_bumpless_waits_for_a_mean_after_a_gap():
 )
 def test_the_plain_step_gives_what_the_full_one_gives(policy, damping, network):
     runs = [LawRun(network, policy, {"id": "hard"}, damping) for _ in range(2)]
-    runs[1].law.p[PLAIN] = 0.0
+    runs[1].law.p["plain"] = False
     rng = np.random.default_rng(5)
     for k in range(400):
         d, v, valid = rng.normal(0.3, 0.2, 2), (5.0 + 0.01 * k, -2.0), not 200 <= k < 230
         results = [run.step(*d, valid=valid, v_c=v) for run in runs]
         assert np.array_equal(results[0], results[1])
-    assert np.array_equal(runs[0].s[:13], runs[1].s[:13])
+    for name in ("damped", "wanted", "xi", "measure", "correction", "difference", "valid", "x"):
+        assert np.array_equal(runs[0].s[name], runs[1].s[name]), name
 
 
 def test_sampled_radius_knows_a_stable_loop_from_an_unstable_one():
@@ -326,4 +309,4 @@ def test_sampled_radius_knows_a_stable_loop_from_an_unstable_one():
 
 def test_law_step_of_a_free_method_does_nothing():
     run = LawRun(COMPLEMENTARY, {"id": "variation"}, {"id": "bumpless"}, damping="free")
-    assert law_step(run.law.p, run.s, run.law.ring, 1.0, 2.0, 0.1, 0.2) == (0.0, 0.0, 0.0, 0.0)
+    assert law_step(run.law, Sensed(1.0, 2.0, 0.2)) == (0.0, 0.0, 0.0, 0.0)

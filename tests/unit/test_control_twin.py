@@ -7,20 +7,19 @@ import math
 import numpy as np
 import pytest
 
-from navcore.control.combination import combination_faults
-from navcore.control.law import prepare_law
-from navcore.control.layout import DAMPED, XI
-from navcore.control.policy import POLICIES
-from navcore.control.switching import SWITCHINGS
-from navcore.control.twin import TwinLaw
-from navcore.earth import WGS84
+from navcore.foundation.earth import WGS84
+from navcore.law.combination import combination_faults
+from navcore.law.law import prepare_law
+from navcore.law.policy import POLICIES
+from navcore.law.switching import SWITCHINGS
 from navcore.mechanization.error_model import ErrorModelRun
-from navcore.mechanization.error_model_twin import run_twin
 from navcore.mechanization.recorder import make_recorder
 from navcore.mechanization.trajectory import coefficients
 from navcore.motion.base import AE, AN, COLUMNS, HEADING, LAT, VE, VN, Truth
-from navcore.network import parse_network
+from navcore.networks import parse_network
 from navcore.sensors.base import ReferenceErrors, SensorErrors
+from tests.error_model_twin import run_twin
+from tests.law_twin import TwinLaw
 
 STEPS = 1000
 LAT0 = math.radians(45.7796)
@@ -31,7 +30,11 @@ POLICY = {
     "variation": {"n_s": 10.0, "t0_s": 40.0, "count": 10},
     "adaptive": {"lowpass_s": 20.0},
 }
-SWITCHING = {"step": {"every_s": 30.0, "size": 0.2}, "bumpless": {"memory_s": 60.0, "n_s": 10.0}}
+SWITCHING = {
+    "step": {"every_s": 30.0, "size": 0.2},
+    "bumpless": {"memory_s": 60.0, "n_s": 10.0},
+    "bridge": {"memory_s": 60.0},
+}
 NETWORK = {"adaptive": {"id": "none"}, "schedule": {"id": "compass"}}
 
 
@@ -41,8 +44,9 @@ def truth() -> np.ndarray:
     rows = np.zeros((len(t), COLUMNS))
     event = (t > 300.0) & (t < 500.0)
     rows[:, LAT] = LAT0 + 1e-6 * t
-    rows[:, VE], rows[:, VN] = 8.0 + np.sin(0.01 * t), -4.0 * np.cos(0.005 * t)
     rows[:, AE], rows[:, AN] = np.where(event, 0.05, 0.001), 0.002 * np.cos(0.02 * t)
+    rows[:, VE] = 8.0 + 0.001 * t + 0.049 * np.clip(t - 300.0, 0.0, 200.0)
+    rows[:, VN] = -4.0 + 0.1 * np.sin(0.02 * t)
     rows[:, HEADING] = (6.0 + np.where(event, 0.01 * (t - 300.0), 0.0) + 2.0 * (t >= 500.0)) % (2.0 * math.pi)
     return rows
 
@@ -89,12 +93,12 @@ def test_kernel_equals_twin_sample_by_sample(damping, policy_id, switching_id):
     while run.position < STEPS:
         run.advance(1)
         states.append(run.x.copy())
-        damped.append(law.s[[DAMPED, XI]])
+        damped.append([float(law.s["damped"]), float(law.s["xi"])])
     twin_law = TwinLaw(damping, network, policy, switching, OMEGA_S, 1.0)
     twin = run_twin(truth(), eps, nabla, dv_r, valid, x0, twin_law, WGS84, 1.0)
     assert np.all(np.abs(np.array(states) - twin) <= 1e-10 * np.abs(twin).max(axis=0))
-    assert law.s[DAMPED] == float(twin_law.damped)
-    assert law.s[XI] == pytest.approx(twin_law.xi, rel=1e-9)
+    assert law.s["damped"] == float(twin_law.damped)
+    assert law.s["xi"] == pytest.approx(twin_law.xi, rel=1e-9)
     changes = np.count_nonzero(np.diff(np.array(damped)[:, 0]))
     moved = len(np.unique(np.array(damped)[:, 1]))
     assert changes >= 2 or moved >= 3 or damping == "internal", "nothing has happened"

@@ -8,15 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.background.why import Explainer
-from app.panels.why import cause_text, why_html
+from app.jobs.why import Explainer
+from app.views.metrics.why import cause_text, why_html
 from navcore.averaging.lines import line_phases
-from navcore.dominance import HEADING, POSITION, TILT, swing, why
+from navcore.engine.run import Run
+from navcore.engine.simulation import simulate
 from navcore.mechanization.recorder import PHI_E, PHI_N
-from navcore.run import Run
-from navcore.scenario import Scenario
-from navcore.scenario_file import load
-from navcore.simulation import simulate
+from navcore.scenario.file import load
+from navcore.scenario.model import Scenario
+from navcore.studies.dominance import HEADING, POSITION, TILT, swing, why
 
 DAY = {"run": {"duration_h": 30.0, "step_s": 10.0, "output_step_s": 60.0}}
 

@@ -7,15 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from navcore.control.law import Law, prepare_law
-from navcore.control.policy import PolicyParameters
-from navcore.control.policy.constant import Constant
-from navcore.control.policy.threshold import Threshold
-from navcore.control.switching.hard import Hard
-from navcore.control.twin import TwinLaw
-from navcore.earth import EARTH_RATE, SPHERE, WGS84, Earth
+from navcore.foundation.earth import EARTH_RATE, SPHERE, WGS84, Earth
+from navcore.law.law import Law, prepare_law
+from navcore.law.policy import PolicyParameters
+from navcore.law.policy.constant import Constant
+from navcore.law.policy.threshold import Threshold
+from navcore.law.switching.hard import Hard
 from navcore.mechanization.error_model import ErrorModelRun, system_matrix
-from navcore.mechanization.error_model_twin import run_twin
 from navcore.mechanization.recorder import make_recorder
 from navcore.mechanization.trajectory import coefficients
 from navcore.motion.base import (
@@ -30,12 +28,14 @@ from navcore.motion.base import (
     VU,
     Truth,
 )  # fmt: skip
-from navcore.network.base import NetworkParameters
-from navcore.network.classic import Classic2Network
-from navcore.network.compass import CompassNetwork
-from navcore.network.complementary import ComplementaryNetwork
-from navcore.network.undamped import UndampedNetwork
+from navcore.networks.base import NetworkParameters
+from navcore.networks.classic import Classic2Network
+from navcore.networks.compass import CompassNetwork
+from navcore.networks.complementary import ComplementaryNetwork
+from navcore.networks.undamped import UndampedNetwork
 from navcore.sensors.base import ReferenceErrors, SensorErrors
+from tests.error_model_twin import run_twin
+from tests.law_twin import TwinLaw
 
 LAT0 = math.radians(45.7796)
 STEPS = 900
@@ -154,7 +154,7 @@ def test_kernel_moves_like_its_system_matrix():
 @pytest.mark.parametrize(("sigma", "xi"), [(0.0088, 0.7), (0.004, 1.0), (0.003, 1.4)])
 def test_channel_compass_follows_the_loops_tilt_response(sigma, xi):
     """Velocity feedback, network form and Zha's transient are one: phi(t)/phi0 to 0.1 % of phi0."""
-    from navcore.loop import initial_tilt_response
+    from navcore.analysis import initial_tilt_response
 
     step_s, steps = 0.05, 12000
     omega_s = SPHERE.schuler_frequency(0.0)
@@ -177,7 +177,7 @@ def test_channel_compass_follows_the_loops_tilt_response(sigma, xi):
 
 
 def test_feedback_pulls_the_velocity_onto_the_log_and_the_network_form_does_not():
-    """Standing dV_r: feedback gives dV -> dV_r; a network with H(0) = 1 rejects it (physics.md 3.1)."""
+    """Standing dV_r: feedback gives dV -> dV_r; a network with H(0) = 1 rejects it (theory.md 3.1)."""
     steps = 40000
     truth = np.zeros((1, COLUMNS))
     omega_s = SPHERE.schuler_frequency(0.0)

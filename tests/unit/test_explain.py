@@ -9,7 +9,7 @@ import pytest
 
 from app.editing import form
 from app.editing.form import FieldSpec
-from app.learn.explain import (
+from app.views.explain.text import (
     Explanation,
     explain_html,
     explanation,
@@ -18,14 +18,14 @@ from app.learn.explain import (
     key_of,
     told_html,
 )
-from app.panels.inputs import _KINDS
+from app.views.log.view import _KINDS
 from navcore.averaging.parameters import Averaging
-from navcore.control.policy import POLICIES
-from navcore.control.switching import SWITCHINGS
+from navcore.law.policy import POLICIES
+from navcore.law.switching import SWITCHINGS
 from navcore.motion import MOTIONS
 from navcore.motion.swing import Oscillation
-from navcore.network import NETWORKS
-from navcore.scenario import Alignment, InitialError, Method, RunSettings, Scenario, SiteSettings
+from navcore.networks import NETWORKS
+from navcore.scenario.model import Alignment, InitialError, Method, RunSettings, Scenario, SiteSettings
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import Reference
 
@@ -95,9 +95,12 @@ def test_equations_are_mathml() -> None:
 
 def test_a_field_is_named_by_the_kind_of_its_block() -> None:
     scenario = Scenario.parse(
-        {"method": [{"damping": "external", "network": {"id": "compass"}, "policy": {"id": "variation"}}],
-         "reference": {"kind": "log"}, "motion": {"kind": "swing"}}
-    )  # fmt: skip
+        {
+            "method": [{"damping": "external", "network": {"id": "compass"}, "policy": {"id": "variation"}}],
+            "reference": {"kind": "log"},
+            "motion": {"kind": "swing"},
+        }
+    )
     assert key_of(("method", 0, "network", "xi"), scenario) == "network.compass.xi"
     assert key_of(("method", 0, "network", "id"), scenario) == "network.id"
     assert key_of(("method", 0, "policy", "a"), scenario) == "policy.variation.a"
@@ -108,8 +111,9 @@ def test_a_field_is_named_by_the_kind_of_its_block() -> None:
 
 
 def test_an_explanation_holds_words_equation_and_source() -> None:
-    scenario = Scenario.parse({"method": [{"damping": "external", "network": {"id": "compass"}}],
-                               "reference": {"kind": "log"}})  # fmt: skip
+    scenario = Scenario.parse(
+        {"method": [{"damping": "external", "network": {"id": "compass"}}], "reference": {"kind": "log"}}
+    )
     specs = {spec.path[-1]: spec for spec in form.fields(NETWORKS["compass"], ("method", 0, "network"))}
     html = explain_html(specs["sigma"], scenario)
     assert "Must be &gt;= 1e-05 and &lt;= 1 (1/s)" in html

@@ -7,16 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from app.figures.compare import deltas, pinned_methods, restyled, together
-from app.figures.errors import error_plots, legend_html
-from app.figures.frequency import bode
-from app.figures.plotly_data import unpacked
-from app.figures.poles import poles
-from app.figures.spectrum import spectrum
-from app.figures.step import step
-from app.figures.table import metrics_html, metrics_rows
+from app.plots.pinned import deltas, pinned_methods, restyled, together
+from app.plots.plotly_data import unpacked
 from app.session.display import Display
-from navcore.run import Run
+from app.views.errors.figure import error_plots, legend_html
+from app.views.frequency.figure import bode
+from app.views.metrics.table import metrics_html, metrics_rows
+from app.views.poles.figure import poles
+from app.views.spectrum.figure import spectrum
+from app.views.step.figure import step
+from navcore.engine.run import Run
 from tests.unit.figures_runs import run_of, static_run
 
 

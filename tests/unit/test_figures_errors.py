@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.figures import style
-from app.figures.errors import GROUPS, Overlay, error_plots, legend_html
-from app.figures.uplot import UplotFigure, stack_heights
+from app.plots import style
+from app.plots.uplot import UplotFigure, stack_heights
+from app.views.errors.figure import GROUPS, Overlay, error_plots, legend_html
 from navcore.mechanization.recorder import NAMES
 from tests.unit.figures_runs import diverging, run_of, static_run
 

@@ -7,9 +7,9 @@ import json
 import numpy as np
 import pytest
 
-from app.figures.misprints import SHOWN, comparison_plot, words_html
-from app.figures.plotly_data import unpacked
-from navcore.misprints import MISPRINTS, Axis, Comparison, Curve, Misprint, Number
+from app.misprints import MISPRINTS, Axis, Comparison, Curve, Misprint, Number
+from app.plots.plotly_data import unpacked
+from app.views.misprints.figure import SHOWN, comparison_plot, words_html
 
 T = np.linspace(0.0, 7200.0, 50)
 TILT = Axis("tilt", "rad")

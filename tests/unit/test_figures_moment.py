@@ -9,12 +9,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.figures.moment import moment, readout_html, row_at
-from app.figures.pendulum import pendulum, pendulum_svg
 from app.session.display import Display
+from app.views.learn.lessons import lessons
+from app.views.scene.moment import moment, readout_html, row_at
+from app.views.scene.pendulum import pendulum, pendulum_svg, plane_ends
+from navcore.engine.simulation import simulate
+from navcore.foundation.units import ARCMIN, DEG
 from navcore.mechanization.recorder import PHI_E, PHI_N, PHI_U
 from navcore.motion.base import HEADING, VE, VN
-from navcore.units import ARCMIN, DEG
 from tests.unit.figures_runs import diverging, moving_run, run_of, static_run
 
 
@@ -129,3 +131,23 @@ class TestPendulum:
                 assert "nan" not in svg and "inf" not in svg
                 for x, y in re.findall(r'cx="([-\d.]+)" cy="([-\d.]+)"', svg):
                     assert -5 <= float(x) <= 301 and -5 <= float(y) <= 155
+
+    def test_it_swings_from_side_to_side_in_its_own_lesson(self) -> None:
+        lesson = next(one for one in lessons() if one.title == "The Schuler pendulum")
+        run = simulate(lesson.scenario_of(0))
+        period = math.tau / run.scenario.omega_s
+        tips = []
+        for at in (period, 1.5 * period):
+            shown = pendulum(run, at)
+            assert plane_ends(shown.plane) == ("S", "N")
+            svg = pendulum_svg(shown)
+            assert ">S</text>" in svg and ">W</text>" not in svg
+            tips.append(float(re.search(r'class="sb-bob" cx="([-\d.]+)"', svg)[1]))
+        assert tips[0] - tips[1] > 60.0  # px, from one end to the other within half a period
+
+    def test_the_side_view_lies_in_the_plane_of_the_largest_tilt(self) -> None:
+        for east, north, ends in ((5.0, 0.0, ("W", "E")), (0.0, 5.0, ("S", "N")), (4.0, 4.0, ("SW", "NE")),
+                                  (-4.0, -4.0, ("SW", "NE"))):  # fmt: skip
+            run = with_errors((north * ARCMIN, -east * ARCMIN, 0.0))
+            shown = pendulum(replace(run, methods=run.methods[:1]), 5000.0)
+            assert plane_ends(shown.plane) == ends

@@ -10,23 +10,22 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from app.figures import style
-from app.figures.frequency import (
+from app.plots import style
+from app.plots.plotly_data import PlotlyFigure, packed, unpacked
+from app.plots.transfer_views import TRANSFERS, VIEWS
+from app.views.frequency.figure import (
     OMEGA_MAX,
     OMEGA_MIN,
     bode,
-    default_transfer,
     natural_frequencies,
     omega_grid,
 )
-from app.figures.plotly_data import PlotlyFigure, packed, unpacked
-from app.figures.poles import poles
-from app.figures.step import step
-from app.figures.transfer_views import TRANSFERS, VIEWS
-from navcore.earth import EARTH_RATE
-from navcore.loop import frequency_response, initial_tilt_response
-from navcore.run import Run
-from navcore.units import ARCSEC
+from app.views.poles.figure import poles
+from app.views.step.figure import step
+from navcore.analysis import frequency_response, initial_tilt_response
+from navcore.engine.run import Run
+from navcore.foundation.earth import EARTH_RATE
+from navcore.foundation.units import ARCSEC
 from tests.unit.figures_runs import INTERNAL, THREE, UNSTABLE, run_of, static_run
 
 FIGURES: list[Callable[[Run], PlotlyFigure]] = [bode, poles, step]
@@ -81,8 +80,9 @@ def test_packed_arrays_come_back_and_infinity_is_a_gap() -> None:
 
 def test_figures_load_neither_viser_nor_plotly_nor_scipy() -> None:
     code = (
-        "import sys; import app.figures.frequency, app.figures.poles, app.figures.step, app.figures.errors;"
-        "import app.figures.track, app.figures.table, app.figures.ship, app.figures.warnings;"
+        "import sys; import app.views.frequency.figure, app.views.poles.figure, app.views.step.figure;"
+        "import app.views.errors.figure;"
+        "import app.views.scene.track, app.views.metrics.table, app.views.scene.ship, app.plots.warnings;"
         # numba itself loads the bare scipy package
         "slow = {'viser', 'plotly', 'control', 'matplotlib', 'scipy.linalg', 'scipy.signal'};"
         "bad = slow & set(sys.modules);"
@@ -137,10 +137,8 @@ class TestBode:
         for title in titles:
             assert 7.8 * len(re.sub("<[^>]*>", "", title)) <= 0.44 * (width_px - 84.0)
 
-    def test_without_a_log_the_default_is_another_transfer(self) -> None:
-        assert default_transfer(static_run()) == "phi/dv_r"
+    def test_without_a_log_the_plot_says_that_nothing_reacts(self) -> None:
         free = run_of(method=[{"name": "free"}], reference={"kind": "none"})
-        assert default_transfer(free) == "phi/eps"
         assert "no method reacts" in texts(bode(free, "phi/dv_r"))
 
     def test_free_method_ignores_its_network(self) -> None:

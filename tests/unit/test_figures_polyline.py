@@ -8,8 +8,8 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.figures.polyline import dashes, needed, segments
-from app.figures.track import LINE_WIDTH, track
+from app.views.scene.polyline import dashes, needed, segments
+from app.views.scene.track import LINE_WIDTH, track
 from tests.unit.figures_runs import moving_run
 
 

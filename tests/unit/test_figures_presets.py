@@ -7,15 +7,15 @@ from html import escape
 import numpy as np
 import pytest
 
-from app.figures.errors import error_plots
-from app.figures.frequency import bode
-from app.figures.poles import poles
-from app.figures.step import step
-from app.figures.switching import switched_methods, switching_plots
-from app.figures.table import metrics_html
-from app.figures.track import track
-from navcore.scenario_file import load, presets
-from navcore.simulation import simulate
+from app.views.errors.figure import error_plots
+from app.views.frequency.figure import bode
+from app.views.metrics.table import metrics_html
+from app.views.poles.figure import poles
+from app.views.scene.track import track
+from app.views.step.figure import step
+from app.views.switching.figure import switched_methods, switching_plots
+from navcore.engine.simulation import simulate
+from navcore.scenario.file import load, presets
 
 
 @pytest.mark.parametrize("name", presets())

@@ -11,18 +11,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.background.envelopes import SEEDS, Envelopes, with_seed
-from app.figures.envelope import Envelope, envelope
-from app.figures.errors import error_plots
-from app.figures.frequency import bode
-from app.figures.plotly_data import packed, unpacked, values_of
-from app.figures.saved import plotly_csv, time_csv, time_picture
-from app.figures.spectrum import amplitude_spectrum, spectrum
-from app.figures.switching import switching_plots
+from app.jobs.envelopes import SEEDS, Envelopes, with_seed
+from app.plots.envelope import Envelope, envelope
+from app.plots.plotly_data import packed, unpacked, values_of
+from app.plots.saved import plotly_csv, time_csv, time_picture
 from app.session.display import Display
+from app.views.errors.figure import error_plots
+from app.views.frequency.figure import bode
+from app.views.spectrum.figure import amplitude_spectrum, spectrum
+from app.views.switching.figure import switching_plots
+from navcore.engine.run import Run
 from navcore.mechanization.recorder import DV_E
-from navcore.run import Run
-from navcore.scenario import Scenario
+from navcore.scenario.model import Scenario
 from tests.unit.figures_runs import THREE, diverging, run_of, scenario, static_run
 from tests.unit.test_figures_switching import switching_run
 
@@ -91,7 +91,7 @@ def test_limits_are_lines_at_both_signs() -> None:
 
 
 def seeds(count: int) -> list[Run]:
-    from navcore.simulation import simulate
+    from navcore.engine.simulation import simulate
 
     one = scenario(run={"duration_h": 1.0}, method=[THREE[1]])
     return [simulate(with_seed(one, seed)) for seed in range(1, count + 1)]
@@ -191,9 +191,11 @@ def test_a_sine_shows_as_a_peak_of_its_amplitude_at_its_period() -> None:
 
 def test_undamped_error_peaks_at_the_schuler_period() -> None:
     run = run_of(
-        run={"duration_h": 24.0}, reference={"kind": "none"}, method=[{"name": "free"}],
+        run={"duration_h": 24.0},
+        reference={"kind": "none"},
+        method=[{"name": "free"}],
         imu={"gyro_bias_dph": [0.0, 0.0, 0.0], "accel_bias_ug": [50.0, 50.0, 0.0]},
-    )  # fmt: skip
+    )
     periods, amplitude = amplitude_spectrum(run.methods[0], DV_E)
     near = (periods > 3600.0) & (periods < 7200.0)
     assert periods[near][np.argmax(amplitude[near])] == pytest.approx(

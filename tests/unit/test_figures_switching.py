@@ -7,8 +7,8 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from app.figures import style
-from app.figures.switching import (
+from app.plots import style
+from app.views.switching.figure import (
     MARGIN,
     STATE,
     XI,
@@ -18,8 +18,8 @@ from app.figures.switching import (
     switching_plots,
     thin,
 )
-from navcore.control.policy import POLICIES
-from navcore.run import Run
+from navcore.engine.run import Run
+from navcore.law.policy import POLICIES
 from tests.unit.figures_runs import THREE, run_of, static_run
 
 EVENT = {"t_h": 0.3, "duration_s": 1.0, "accel_mps2": [0.8, 0.0]}
@@ -83,8 +83,10 @@ def test_states_stand_in_lanes_the_first_method_on_top() -> None:
     run = switching_run()
     plot = next(plot for plot in switching_plots(run) if plot.key == STATE)
     actual, wanted = plot.data[1:5], plot.data[5:9]
-    lows = [float(np.min(np.round(line, 3) - s.run.law_series[:, 1])) for line, s in
-            zip(actual, switched_methods(run), strict=True)]  # fmt: skip
+    lows = [
+        float(np.min(np.round(line, 3) - s.run.law_series[:, 1]))
+        for line, s in zip(actual, switched_methods(run), strict=True)
+    ]
     assert lows == pytest.approx([4.2, 2.8, 1.4, 0.0])
     for low, line, switched in zip(lows, wanted, switched_methods(run), strict=True):
         np.testing.assert_allclose(line - low, switched.run.law_series[:, 0], atol=1e-12)
@@ -115,8 +117,12 @@ def test_margin_of_an_adaptive_law_follows_its_coefficient() -> None:
 
 
 def test_margin_of_a_schedule_passes_from_one_set_of_gains_to_the_other() -> None:
-    policy = {"id": "schedule", "from": [0.0264, 156.063, 0.904], "to": [7.68e-3, 6.68, 7.68e-3],
-              "duration_s": 1800.0}  # fmt: skip
+    policy = {
+        "id": "schedule",
+        "from": [0.0264, 156.063, 0.904],
+        "to": [7.68e-3, 6.68, 7.68e-3],
+        "duration_s": 1800.0,
+    }
     compass = {"id": "compass", "sigma": 0.0088, "xi": 0.7}
     run = run_of(reference=LOG, method=[method("zha", policy, compass)])
     plot = next(plot for plot in switching_plots(run) if plot.key == MARGIN)

@@ -2,24 +2,26 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from html import escape
 
 import numpy as np
 import pytest
 
-from app.figures import style
-from app.figures.table import (
+from app.plots import style
+from app.plots.units import angle_unit, length_unit, number, speed_unit, time_unit
+from app.plots.warnings import notices_for, severity, warnings_for
+from app.views.metrics.table import (
     STATISTICS,
     difference_rows,
     metrics_html,
     metrics_markdown,
     metrics_rows,
+    system_html,
     verdict,
 )
-from app.figures.units import angle_unit, length_unit, number, speed_unit, time_unit
-from app.figures.warnings import notices_for, severity, warnings_for
+from navcore.engine.verification import Difference, Verification
+from navcore.foundation.units import ARCMIN, ARCSEC, NAUTICAL_MILE
 from navcore.mechanization.recorder import NAMES
-from navcore.units import ARCMIN, ARCSEC, NAUTICAL_MILE
-from navcore.verification import Difference, Verification
 from tests.unit.figures_runs import THREE, UNSTABLE, diverging, run_of, static_run
 
 FACTORS = {"arcsec": ARCSEC, "arcmin": ARCMIN, "m/s": 1.0, "m": 1.0, "nmi": NAUTICAL_MILE}
@@ -33,6 +35,7 @@ QUANTITIES = {
     "longitude": "dlon_m",
     "position": "position_m",
 }
+QUIET = {"name": "complementary", "damping": "external", "network": {"id": "complementary"}}
 
 
 def test_every_number_is_the_runs_to_five_digits() -> None:
@@ -77,6 +80,14 @@ def test_markdown_and_html_hold_the_same_texts() -> None:
     assert all(style.method_color(i) in html for i in range(3))
 
 
+def test_the_whole_system_has_a_line_a_method() -> None:
+    run = run_of(method=THREE)
+    html = system_html(run)
+    assert html.count("<tr") == 1 + len(run.methods) and "times the floor" in html
+    assert all(f">{escape(m.method.name)}</td>" in html for m in run.methods)
+    assert "<b>" not in system_html(run_of(method=[{"name": "<b>x</b>"}]))
+
+
 def test_names_are_no_markup() -> None:
     run = run_of(method=[{"name": "a|b<script>"}])
     assert "a\\|b\\<script\\>" in metrics_markdown(run)
@@ -84,12 +95,12 @@ def test_names_are_no_markup() -> None:
 
 
 def test_warnings_name_their_method_and_keep_their_words() -> None:
-    run = run_of(method=[*THREE, UNSTABLE])
+    run = run_of(method=[*THREE, UNSTABLE, QUIET])
     found = warnings_for(run)
-    assert 1 not in found
+    assert len(found[1]) == 1 and "24 h mode grows" in found[1][0]
     assert found[2] == list(run.methods[2].warnings) and "H(0)" in found[2][0]
     assert "unstable" in found[3][0]
-    assert (severity(run, 1), severity(run, 2), severity(run, 3)) == (None, "warning", "error")
+    assert (severity(run, 4), severity(run, 1), severity(run, 3)) == (None, "warning", "error")
 
 
 def test_reason_of_an_early_end_comes_first_and_once() -> None:

@@ -6,15 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.figures.graticule import LocalMap, angle_text, graticule, round_down, round_up, scale_bar
-from app.figures.ship import ship_parts
-from app.figures.style import method_rgb, rgb
-from app.figures.track import HALF_WIDTH, attitude_quaternions, track
+from app.plots.rounding import round_down, round_up
+from app.plots.style import method_rgb, rgb
 from app.session.pins import Pin
-from navcore.earth import WGS84, attitude_matrix
+from app.views.scene.graticule import LocalMap, angle_text, graticule, scale_bar
+from app.views.scene.ship import ship_parts
+from app.views.scene.track import HALF_WIDTH, attitude_quaternions, track
+from navcore.foundation.earth import WGS84, attitude_matrix
+from navcore.foundation.units import ARCSEC, DEG
 from navcore.mechanization.recorder import D_LAT, D_LON
 from navcore.motion.base import LAT, LON
-from navcore.units import ARCSEC, DEG
 from tests.unit.figures_runs import diverging, moving_run, run_of, static_run
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from app.figures.tuned import HEIGHT, WIDTH, table_html
-from navcore.tuning import TuningSettings, tune
+from app.views.method.tuned import HEIGHT, WIDTH, table_html
+from navcore.studies.tuning import TuningSettings, tune
 
 
 def test_every_row_is_a_dot_in_the_frame_and_stands_beside_suns() -> None:

@@ -9,17 +9,17 @@ import re
 import numpy as np
 import pytest
 
-from app.figures import style
-from app.figures.discrete import law_step_s, measured_gain
-from app.figures.frequency import OPEN_LOOP, SHOWN, bode, frequency_view
-from app.figures.locus import locus_fields, locus_of
-from app.figures.nyquist import margin_words, margins_of, nyquist
-from app.figures.plotly_data import PlotlyFigure, unpacked
-from app.figures.pole_grid import Allowed, settling_lines
-from app.figures.poles import poles
-from app.figures.step import StepLimits, step
-from navcore.filters import discretise
-from navcore.units import ARCSEC
+from app.plots import style
+from app.plots.plotly_data import PlotlyFigure, unpacked
+from app.views.frequency.discrete import law_step_s, measured_gain
+from app.views.frequency.figure import OPEN_LOOP, SHOWN, bode, frequency_view
+from app.views.frequency.nyquist import margin_words, margins_of, nyquist
+from app.views.poles.figure import poles
+from app.views.poles.grid import Allowed, settling_lines
+from app.views.poles.locus import locus_fields, locus_of
+from app.views.step.figure import StepLimits, step
+from navcore.foundation.units import ARCSEC
+from navcore.networks.discrete import discretise
 from tests.unit.figures_runs import INTERNAL, THREE, UNSTABLE, run_of, static_run
 
 SIZES = [(0.46, 940.0), (0.9, 640.0), (1.0, 560.0)]

@@ -1,4 +1,4 @@
-"""Networks in discrete time (physics.md 3.5): every network, every step from 1 s to 5 ms."""
+"""Networks in discrete time (theory.md 3.5): every network, every step from 1 s to 5 ms."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from navcore.errors import InputError
-from navcore.filters import DiscreteNetwork, discretise
-from navcore.network import NETWORKS, parse_network
-from navcore.network.base import LinearNetwork
+from navcore.foundation.errors import InputError
+from navcore.networks import NETWORKS, parse_network
+from navcore.networks.base import LinearNetwork
+from navcore.networks.discrete import DiscreteNetwork, discretise
 
 OMEGA_S = float(np.sqrt(9.80665 / 6378137.0))
 STEPS = [1.0, 0.5, 0.1, 0.05, 0.01, 0.005]

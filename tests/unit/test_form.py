@@ -12,18 +12,27 @@ from pydantic import BaseModel
 
 from app.editing import form
 from app.editing.form import FieldSpec, Slider
-from navcore.control.policy import POLICIES
-from navcore.control.switching import SWITCHINGS
+from navcore.law.policy import POLICIES
+from navcore.law.switching import SWITCHINGS
 from navcore.motion import MOTIONS
-from navcore.network import NETWORKS
-from navcore.scenario import InitialError, RunSettings, SiteSettings
+from navcore.networks import NETWORKS
+from navcore.scenario.model import InitialError, RunSettings, SiteSettings
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import LogEvent, Outage, Reference
 
 BLOCKS: list[type[BaseModel]] = [
-    Imu, Reference, LogEvent, Outage, RunSettings, SiteSettings, InitialError,
-    *NETWORKS.values(), *POLICIES.values(), *SWITCHINGS.values(), *MOTIONS.values(),
-]  # fmt: skip
+    Imu,
+    Reference,
+    LogEvent,
+    Outage,
+    RunSettings,
+    SiteSettings,
+    InitialError,
+    *NETWORKS.values(),
+    *POLICIES.values(),
+    *SWITCHINGS.values(),
+    *MOTIONS.values(),
+]
 
 
 def spec(model: type[BaseModel], label: str) -> FieldSpec:
@@ -86,8 +95,10 @@ def test_files_lists_and_nested_blocks_are_no_controls() -> None:
     paths = {field.path[-1] for field in form.fields(Reference, ("reference",))}
     assert not paths & {"file", "event", "outage"}
     assert {field.path[-1] for field in form.fields(MOTIONS["legs"], ("motion",))} == {
-        "pitch_deg", "roll_deg", "heading_deg",
-    }  # fmt: skip
+        "pitch_deg",
+        "roll_deg",
+        "heading_deg",
+    }
 
 
 def order(slider: Slider) -> tuple[bool, float, float]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from app.session.history import MOST_STEPS, History, State, change_name
-from navcore.scenario import Scenario
-from navcore.scenario_file import load
+from navcore.scenario.file import load
+from navcore.scenario.model import Scenario
 
 FIRST = State(load("zha-fast"), "zha-fast", 0, load("zha-fast"))
 

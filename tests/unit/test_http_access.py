@@ -6,7 +6,7 @@ import pytest
 from websockets.datastructures import Headers
 
 from app.http.access import Access, access_rules, refuse_address, refuse_unknown
-from navcore.errors import InputError
+from navcore.foundation.errors import InputError
 
 
 def rules(**changes: object) -> Access:
@@ -21,7 +21,9 @@ def rules(**changes: object) -> Access:
 
 
 def test_hosts_are_loopback_names_own_name_and_allowed_origins() -> None:
-    access = rules(host="bench", loopback=False, token="t", origins=frozenset({"https://nav.example.org"}))
+    access = rules(
+        host="bench", loopback=False, token="long-enough", origins=frozenset({"https://nav.example.org"})
+    )
     assert access.hosts == {"127.0.0.1:8080", "localhost:8080", "[::1]:8080", "bench:8080", "nav.example.org"}
     assert "https://nav.example.org" in access.origins and "http://bench:8080" in access.origins
 
@@ -48,7 +50,7 @@ def test_empty_token(token: str) -> None:
 def test_missing_origin_passes_only_on_loopback_or_with_a_token() -> None:
     headers = Headers(Host="127.0.0.1:8080")
     assert refuse_address(rules(), headers) is None
-    assert refuse_address(rules(loopback=False, token="t"), headers) is None
+    assert refuse_address(rules(loopback=False, token="long-enough"), headers) is None
     # No server starts like this; the rule holds all the same.
     open_to_all = Access(rules().hosts, rules().origins, loopback=False, token=None, cookie_name="c")
     assert refuse_address(open_to_all, headers).status == 403

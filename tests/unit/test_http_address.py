@@ -7,7 +7,7 @@ import socket
 import pytest
 
 from app.http.address import authority, is_loopback, listen, parse_origins
-from navcore.errors import InputError
+from navcore.foundation.errors import InputError
 
 
 def test_any_free_port() -> None:

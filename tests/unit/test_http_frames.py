@@ -11,9 +11,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from app.bridge.controls import Control
+from app.bridge.server import FRAME_TYPES
 from app.http.frames import BadFrame, Gate, safe_file_name
 from app.http.limits import MIB, Limits
-from app.http.viser_insides import FRAME_TYPES, Control
 from tests.attack.wire import CAMERA
 
 

@@ -6,8 +6,8 @@ import math
 
 import pytest
 
+from app.bridge.controls import Control
 from app.http.values import shown, why_not
-from app.http.viser_insides import Control
 
 
 def control(held: object, **changes: object) -> Control:

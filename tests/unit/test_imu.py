@@ -8,20 +8,23 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.earth import EARTH_RATE, WGS84, attitude_matrix
+from navcore.foundation.earth import EARTH_RATE, WGS84, attitude_matrix
+from navcore.foundation.units import ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
 from navcore.motion import LegsMotion, StaticMotion, SwingMotion
 from navcore.motion.base import MotionParameters, Site
 from navcore.sensors.base import SensorErrors
 from navcore.sensors.imu import Imu, imu_errors
-from navcore.units import ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
 
 SITE = Site(32.06 * DEG, 118.8 * DEG, 0.0)
 LEVEL = StaticMotion()
 SWING = SwingMotion(
-    pitch_deg=8.0, roll_deg=6.0, heading_deg=75.0,
-    pitch={"amplitude_deg": 10.0, "frequency_hz": 0.2}, roll={"amplitude_deg": 12.0, "frequency_hz": 0.125},
+    pitch_deg=8.0,
+    roll_deg=6.0,
+    heading_deg=75.0,
+    pitch={"amplitude_deg": 10.0, "frequency_hz": 0.2},
+    roll={"amplitude_deg": 12.0, "frequency_hz": 0.125},
     heading={"amplitude_deg": 6.0, "frequency_hz": 0.15},
-)  # fmt: skip
+)
 DAY = 86_400
 
 
@@ -116,9 +119,13 @@ def test_one_part_does_not_change_the_numbers_of_another() -> None:
     drift = _errors(count=500, gyro_instability_dph=0.01, accel_instability_ug=20.0)
     bias = _errors(count=500, gyro_bias_dph=(1.0, 2.0, 3.0))
     everything = _errors(
-        count=500, gyro_arw_dpsh=0.01, accel_vrw_ugpshz=10.0, gyro_instability_dph=0.01,
-        accel_instability_ug=20.0, gyro_bias_dph=(1.0, 2.0, 3.0),
-    )  # fmt: skip
+        count=500,
+        gyro_arw_dpsh=0.01,
+        accel_vrw_ugpshz=10.0,
+        gyro_instability_dph=0.01,
+        accel_instability_ug=20.0,
+        gyro_bias_dph=(1.0, 2.0, 3.0),
+    )
     assert everything.gyro == pytest.approx(gyro.gyro + drift.gyro + bias.gyro, abs=1e-20)
     assert everything.accel == pytest.approx(accel.accel + drift.accel, abs=1e-18)
 
@@ -165,9 +172,14 @@ def test_a_scale_factor_errs_by_its_part_of_a_turn() -> None:
 def test_the_level_body_ignores_attitude_and_earth_rate() -> None:
     motion = StaticMotion(pitch_deg=6.0, roll_deg=8.0, heading_deg=75.0)
     errors = _errors(
-        motion, 10, level=True, gyro_bias_dph=(0.0, 0.02, 0.0), accel_bias_ug=(50.0, 0.0, 0.0),
-        gyro_scale_ppm=(1000.0, 1000.0, 1000.0), accel_misalignment_arcsec=(0.0, 0.0, 0.0, 10.0, 0.0, 0.0),
-    )  # fmt: skip
+        motion,
+        10,
+        level=True,
+        gyro_bias_dph=(0.0, 0.02, 0.0),
+        accel_bias_ug=(50.0, 0.0, 0.0),
+        gyro_scale_ppm=(1000.0, 1000.0, 1000.0),
+        accel_misalignment_arcsec=(0.0, 0.0, 0.0, 10.0, 0.0, 0.0),
+    )
     assert errors.gyro[0] == pytest.approx([0.0, 0.02 * DEG_PER_HOUR, 0.0])
     assert errors.accel[0] == pytest.approx([50.0 * MICRO_G, 10.0 * ARCSEC * WGS84.gravity(SITE.lat), 0.0])
 

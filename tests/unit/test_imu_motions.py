@@ -7,7 +7,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from navcore.earth import WGS84
+from navcore.foundation.earth import WGS84
 from navcore.motion import MOTIONS
 from navcore.motion.base import Truth
 from navcore.motion.inertial import inertial_signals

@@ -7,25 +7,29 @@ import math
 import numpy as np
 import pytest
 
-from navcore.earth import EARTH_RATE, SPHERE, WGS84, Earth, attitude_matrix
+from navcore.foundation.earth import EARTH_RATE, SPHERE, WGS84, Earth, attitude_matrix
+from navcore.foundation.units import DEG
 from navcore.motion import LegsMotion, StaticMotion, SwingMotion
 from navcore.motion.base import AE, HEADING, LAT, LON, PITCH, ROLL, VE, VU, MotionParameters, Site
 from navcore.motion.inertial import inertial_signals
-from navcore.units import DEG
 
 SITE = Site(60.0 * DEG, 20.0 * DEG, 100.0)
 STEP = 0.01
 OMEGA = np.array([0.0, 0.0, EARTH_RATE])
 
 SWING = SwingMotion(
-    pitch_deg=8.0, roll_deg=6.0, heading_deg=75.0,
-    pitch={"amplitude_deg": 10.0, "frequency_hz": 0.2}, roll={"amplitude_deg": 12.0, "frequency_hz": 0.125},
+    pitch_deg=8.0,
+    roll_deg=6.0,
+    heading_deg=75.0,
+    pitch={"amplitude_deg": 10.0, "frequency_hz": 0.2},
+    roll={"amplitude_deg": 12.0, "frequency_hz": 0.125},
     heading={"amplitude_deg": 6.0, "frequency_hz": 0.15},
-)  # fmt: skip
+)
 LEGS = LegsMotion(
-    pitch_deg=3.0, roll_deg=-20.0,
+    pitch_deg=3.0,
+    roll_deg=-20.0,
     leg=[{"duration_s": 60.0, "speed_mps": 200.0, "heading_deg": 20.0, "accel_mps2": -0.5, "turn_dps": 3.0}],
-)  # fmt: skip
+)
 
 
 def _earth_frame(lat: float, lon: float) -> np.ndarray:

@@ -7,8 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from navcore.compiled import kernel
-from navcore.earth import WGS84
+from navcore.foundation.compiled import kernel
+from navcore.foundation.earth import WGS84
+from navcore.foundation.units import ARCSEC, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
 from navcore.motion.base import Truth
 from navcore.motion.inertial import inertial_signals
 from navcore.motion.static import StaticMotion
@@ -17,7 +18,6 @@ from navcore.sensors.imu_simulation import ImuSimulation
 from navcore.sensors.imu_simulation import simulation as module
 from navcore.sensors.imu_simulation.normal import fill_normals
 from navcore.sensors.imu_simulation.work import HALF_NORMALS, NORMAL, WORK, W
-from navcore.units import ARCSEC, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
 from tests.strapdown import DENG_SWING, DRIVE, SITE
 
 RATE = 100.0

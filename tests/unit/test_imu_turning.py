@@ -7,26 +7,31 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.earth import WGS84, attitude_matrix
+from navcore.foundation.earth import WGS84, attitude_matrix
+from navcore.foundation.units import DEG, DEG_PER_HOUR, MICRO_G
 from navcore.motion import LegsMotion, StaticMotion, SwingMotion
 from navcore.motion.base import HEADING, PITCH, ROLL, MotionParameters, Site
 from navcore.motion.inertial import inertial_signals
 from navcore.sensors.imu import Imu, imu_errors
-from navcore.units import DEG, DEG_PER_HOUR, MICRO_G
 
 SITE = Site(45.0 * DEG, 10.0 * DEG, 0.0)
 SWING = SwingMotion(
-    pitch_deg=8.0, roll_deg=6.0, heading_deg=75.0,
-    pitch={"amplitude_deg": 10.0, "frequency_hz": 0.2}, roll={"amplitude_deg": 12.0, "frequency_hz": 0.125},
+    pitch_deg=8.0,
+    roll_deg=6.0,
+    heading_deg=75.0,
+    pitch={"amplitude_deg": 10.0, "frequency_hz": 0.2},
+    roll={"amplitude_deg": 12.0, "frequency_hz": 0.125},
     heading={"amplitude_deg": 6.0, "frequency_hz": 0.15},
-)  # fmt: skip
+)
 TURN = LegsMotion(leg=[{"duration_s": 60.0, "speed_mps": 20.0, "accel_mps2": 0.1, "turn_dps": 3.0}])
 IMU = Imu(
-    gyro_bias_dph=(0.3, -0.2, 0.1), accel_bias_ug=(100.0, 50.0, -80.0),
-    gyro_scale_ppm=(100.0, -200.0, 50.0), accel_scale_ppm=(-30.0, 60.0, 90.0),
+    gyro_bias_dph=(0.3, -0.2, 0.1),
+    accel_bias_ug=(100.0, 50.0, -80.0),
+    gyro_scale_ppm=(100.0, -200.0, 50.0),
+    accel_scale_ppm=(-30.0, 60.0, 90.0),
     gyro_misalignment_arcsec=(10.0, -20.0, 30.0, 5.0, -15.0, 25.0),
     accel_misalignment_arcsec=(-10.0, 20.0, 30.0, -5.0, 15.0, 25.0),
-)  # fmt: skip
+)
 FINE = 200
 
 

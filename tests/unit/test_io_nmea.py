@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from navcore.errors import InputError
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import DEG, KNOT
 from navcore.io.recording import read_recording
 from navcore.io.source import LARGEST_FILE_BYTES, require_file
-from navcore.units import DEG, KNOT
 from tests.nmea import START, gga, rmc, sentence, stamped, vbw, write
 
 T0 = START.timestamp()
@@ -202,7 +202,7 @@ def test_jitter_within_the_tolerance_is_sorted_and_counted(tmp_path):
         ((sentence("HEHDT,10.0,T") + "\n").encode(), "no time"),
         (b"2024-02-28T00:00:00Z $VDVBW,9.0,0.0,A*zz\n", "not a log this reader knows"),
     ],
-)  # fmt: skip
+)
 def test_files_that_are_no_log_are_refused_in_one_line(tmp_path, content, said):
     path = tmp_path / "log.txt"
     path.write_bytes(content)

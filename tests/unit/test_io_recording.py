@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from navcore.errors import InputError
+from navcore.foundation.errors import InputError
 from navcore.io.recording import load, require_cover, shared_window
 from navcore.io.series import Series
 from tests.nmea import START, sentence, ship_files, stamped, write

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from navcore.errors import InputError
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import DEG, KNOT
 from navcore.io.recording import read_recording
-from navcore.units import DEG, KNOT
 
 T0 = datetime(2024, 2, 28, 23, 59, 59, tzinfo=UTC).timestamp()
 CSV = """# a comment
@@ -63,7 +63,7 @@ def test_a_zone_is_heeded_and_no_zone_means_utc(tmp_path):
         ("t_s,speed_starboard_kn\n1,2\n", ["missing column: speed_mps or speed_kn"]),
         ("t_s,heading_deg,heading_deg\n1,2,3\n", ["'heading_deg': column given twice"]),
         ("t_s,heading_deg\n", ["a header but no rows"]),
-        ("t_s,heading_deg\n0,1\n1,x\n2,\n", ["row 3: heading_deg = 'x': is not", "row 4: heading_deg = ''"]),
+        ("t_s,heading_deg\n0,1\n1,x\n2,\n", ["row 3: heading_deg = 'x': is not"]),
         ("t_s;heading_deg\n0;1,5\n", ["row 2: heading_deg = '1,5': is not a number (decimal comma?)"]),
         ("t_s,heading_deg\n0,nan\n", ["row 2: heading_deg = nan: must be a number from -360 to 360"]),
         ("t_s,heading_deg\n0,inf\n", ["row 2: heading_deg = inf"]),
@@ -74,7 +74,7 @@ def test_a_zone_is_heeded_and_no_zone_means_utc(tmp_path):
         ("utc,heading_deg\nyesterday,1\n", ["row 2: utc = 'yesterday': is not an ISO 8601 time"]),
         ('t_s,heading_deg\n0,"1\n', ["not a CSV row"]),
     ],
-)  # fmt: skip
+)
 def test_csv_faults_name_row_and_column(tmp_path, text, said):
     found = faults(csv_file(tmp_path, text))
     assert len(found) == len(said)
@@ -98,13 +98,16 @@ def columns() -> dict[str, np.ndarray]:
     }
 
 
-def test_parquet_has_the_same_columns(tmp_path):
-    import pandas as pd
+def write_parquet(path, data):
+    import pyarrow.parquet as parquet
+    from pyarrow import table
 
-    frame = pd.DataFrame(
-        columns() | {"utc": pd.to_datetime(["2024-02-28T23:59:59Z", "2024-02-29T00:00:00Z"])}
-    )
-    frame.to_parquet(tmp_path / "table.parquet")
+    parquet.write_table(table(data), path)
+
+
+def test_parquet_has_the_same_columns(tmp_path):
+    utc = [datetime(2024, 2, 28, 23, 59, 59, tzinfo=UTC), datetime(2024, 2, 29, tzinfo=UTC)]
+    write_parquet(tmp_path / "table.parquet", columns() | {"utc": utc})
     recording = read_recording(tmp_path / "table.parquet")
     assert recording.heading.time_s == pytest.approx([T0, T0 + 1.0])
     assert recording.water.values.tolist() == [[0.0, 5.0], [0.0, 6.0]]
@@ -120,13 +123,15 @@ def test_mat_has_the_same_columns(tmp_path):
 
 
 def test_parquet_faults_are_those_of_a_table(tmp_path):
-    import pandas as pd
-
-    pd.DataFrame({"t_s": [0.0, 0.0], "heading_deg": [1.0, 2.0]}).to_parquet(tmp_path / "a.parquet")
-    pd.DataFrame({"t_s": [0.0, 1.0], "heading_deg": [1.0, None]}).to_parquet(tmp_path / "b.parquet")
-    pd.DataFrame({"t_s": [0.0, 1.0], "heading_deg": ["x", "y"]}).to_parquet(tmp_path / "c.parquet")
+    write_parquet(tmp_path / "a.parquet", {"t_s": [0.0, 0.0], "heading_deg": [1.0, 2.0]})
+    write_parquet(tmp_path / "b.parquet", {"t_s": [0.0, 1.0], "heading_deg": [1.0, None]})
+    write_parquet(tmp_path / "c.parquet", {"t_s": [0.0, 1.0], "heading_deg": ["x", "y"]})
+    write_parquet(tmp_path / "d.parquet", {"t_s": [0, 1, 2], "heading_deg": [1, None, 2]})
+    assert read_recording(tmp_path / "d.parquet").heading.time_s.tolist() == [0.0, 2.0]
     assert "row 2: t_s: time is the same" in faults(tmp_path / "a.parquet")[0]
-    assert "row 2: heading_deg = nan" in faults(tmp_path / "b.parquet")[0]
+    recording = read_recording(tmp_path / "b.parquet")
+    assert recording.heading.values[:, 0] == pytest.approx([1.0 * DEG])
+    assert recording.warnings == ("b.parquet: empty cells, missing samples: heading_deg 1",)
     assert "heading_deg: must be a column of numbers" in faults(tmp_path / "c.parquet")[0]
 
 
@@ -137,3 +142,134 @@ def test_a_damaged_binary_table_is_one_line(tmp_path, head):
     found = faults(path)
     assert len(found) == 1
     assert "cannot be read as a" in found[0]
+
+
+# ------------------------------------------------------------ as ships' loggers write tables
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t", "|", " "])
+def test_any_separator_and_common_names_are_read(tmp_path, separator):
+    rows = [("Time", "Latitude", "Longitude", "Gyro", "STW", "SOG", "COG")]
+    rows += [(f"2024-02-28T23:59:5{k}Z", "48.0", "-123.0", "90.0", "9.5", "10.0", "90.0") for k in range(3)]
+    recording = read_recording(csv_file(tmp_path, "\n".join(separator.join(row) for row in rows)))
+    assert recording.position.values[0, :2] == pytest.approx([48.0 * DEG, -123.0 * DEG])
+    assert recording.heading.values[0, 0] == pytest.approx(90.0 * DEG)
+    assert recording.water.values[0] == pytest.approx([0.0, 9.5 * KNOT])
+    assert recording.velocity.values[0] == pytest.approx([10.0 * KNOT, 0.0], abs=1e-9)
+    assert [w.removeprefix("table.csv: ") for w in recording.warnings] == [
+        "column STW names no unit: taken as kn",
+        "column SOG names no unit: taken as kn",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "mps"),
+    [("speed_mps", 2.0), ("Speed (m/s)", 2.0), ("Water Speed [kn]", 2 * KNOT), ("stw_kts", 2 * KNOT),
+     ("SpeedThroughWater_knots", 2 * KNOT), ("log_speed (km/h)", 2 / 3.6), ("PL_SOW", 2.0)],
+)  # fmt: skip
+def test_units_stand_in_the_name(tmp_path, name, mps):
+    recording = read_recording(csv_file(tmp_path, f"t_s,{name}\n0,2\n1,2\n"))
+    assert recording.water.values[0] == pytest.approx([0.0, mps])
+
+
+def test_a_row_of_units_below_the_header_is_heeded(tmp_path):
+    text = "utc,heading,sog,cog\nISO,degrees,m/s,degrees\n2024-02-28T23:59:59Z,90,2,0\n"
+    recording = read_recording(csv_file(tmp_path, text))
+    assert recording.velocity.values[0] == pytest.approx([0.0, 2.0])
+
+
+def test_an_unknown_header_names_the_columns_found_and_those_needed(tmp_path):
+    found = faults(csv_file(tmp_path, "zeit\tkurs_mag\ttiefe\n1\t2\t3\n2\t3\t4\n"))
+    assert len(found) == 2
+    assert all("columns found: zeit, kurs_mag, tiefe" in fault for fault in found)
+    assert "utc" in found[0] and "lat_deg" in found[1] and "speed_kn" in found[1]
+
+
+def test_an_empty_cell_is_a_missing_sample(tmp_path):
+    text = (
+        "t_s,lat_deg,lon_deg,heading_deg,speed_kn\n0,48,-123,10,\n1,,-123,20,5\n2,48,-123,,6\n,48,-123,1,1\n"
+    )
+    recording = read_recording(csv_file(tmp_path, text))
+    assert recording.position.time_s.tolist() == [0.0, 2.0]
+    assert recording.heading.time_s.tolist() == [0.0, 1.0]
+    assert recording.water.time_s.tolist() == [1.0, 2.0]
+    assert any("lat_deg 1, heading_deg 1, speed_kn 1" in warning for warning in recording.warnings)
+    assert any("1 row without a time" in warning for warning in recording.warnings)
+
+
+def test_numbers_that_stand_for_no_reading_are_missing(tmp_path):
+    recording = read_recording(csv_file(tmp_path, "t_s,heading_deg\n0,1\n1,-999\n2,nan\n3,2\n"))
+    assert recording.heading.time_s.tolist() == [0.0, 3.0]
+
+
+@pytest.mark.parametrize(
+    "cells",
+    ["26.03.2019 10:06:31", "03/26/2019 10:06:31", "1553594791", "1553594791000", "2019:085:10:06:31"],
+)
+def test_times_of_a_column_in_any_known_form(tmp_path, cells):
+    recording = read_recording(csv_file(tmp_path, f"timestamp,heading\n{cells},1\n"))
+    assert recording.heading.time_s == pytest.approx([1553594791.0])
+    assert recording.heading.dated
+
+
+def test_date_and_time_in_two_columns(tmp_path):
+    recording = read_recording(csv_file(tmp_path, "Date,Time,Heading\n03/26/2019,10:06:31.5,1\n"))
+    assert recording.heading.time_s == pytest.approx([1553594791.5])
+
+
+@pytest.mark.parametrize(
+    ("lat", "lon"), [("48.5N", "123.25W"), ("48 30.0' N", "123 15.0' W"), ("4830.000N", "12315.000W")]
+)
+def test_degrees_with_a_hemisphere(tmp_path, lat, lon):
+    recording = read_recording(csv_file(tmp_path, f"t_s,lat,lon\n0,{lat},{lon}\n"))
+    assert recording.position.values[0, :2] == pytest.approx([48.5 * DEG, -123.25 * DEG])
+
+
+def test_a_preamble_and_a_row_cut_off_at_the_end(tmp_path):
+    text = (
+        "Cruise: X\nShip: Y\n\nutc,lat_deg,lon_deg,heading_deg\n2024-02-28T23:59:59Z,48,-123,1,\n2024-02-29T0"
+    )
+    recording = read_recording(csv_file(tmp_path, text))
+    assert recording.heading.time_s.size == 1
+    assert any("cut off" in warning for warning in recording.warnings)
+
+
+def test_a_nul_byte_costs_its_row(tmp_path):
+    path = csv_file(tmp_path, "t_s,heading_deg\n0,1\n1,2\n2,3\n")
+    path.write_bytes(path.read_bytes().replace(b"1,2", b"1\0,2"))
+    recording = read_recording(path)
+    assert recording.heading.time_s.tolist() == [0.0, 2.0]
+    assert recording.warnings == ("table.csv: 1 line with NUL bytes left out",)
+
+
+def test_ground_speed_along_the_axes_is_a_column(tmp_path):
+    recording = read_recording(csv_file(tmp_path, "t_s,ground_kn,ground_starboard_kn,speed_kn\n0,8,0.1,9\n"))
+    assert recording.ground.values == pytest.approx(np.array([[0.1, 8.0]]) * KNOT)
+
+
+def test_millions_of_columns_are_told_in_one_short_line(tmp_path):
+    found = faults(csv_file(tmp_path, "," * 400_000 + "\n1\n"))
+    assert len(found) == 1 and len(found[0]) < 300
+    found = faults(csv_file(tmp_path, "t_s," + ",".join(f"unknown {k}" for k in range(900)) + "\n1\n"))
+    assert len(found) == 1 and len(found[0]) < 2000
+
+
+def test_parquet_texts_that_repeat_and_types_that_are_no_numbers(tmp_path):
+    import pyarrow as pa
+    import pyarrow.parquet as parquet
+
+    times = ["2024-02-28T23:59:59Z"] * 2
+    parquet.write_table(pa.table({"utc": times, "heading_deg": [1.0, 2.0]}), tmp_path / "a.parquet")
+    assert "is the same time" in faults(tmp_path / "a.parquet")[0]
+    nested = pa.table({"t_s": [0.0, 1.0], "heading_deg": [[1.0], [2.0]]})
+    parquet.write_table(nested, tmp_path / "b.parquet")
+    assert "heading_deg: must be a column of numbers" in faults(tmp_path / "b.parquet")[0]
+
+
+def test_a_mat_file_of_cells_is_refused_unread(tmp_path):
+    from scipy.io import savemat
+
+    cell = np.empty((1, 1), dtype=object)
+    cell[0, 0] = np.zeros((10, 10))
+    savemat(tmp_path / "table.mat", {"t_s": np.array([0.0]), "heading_deg": cell})
+    assert "heading_deg: must be a column of numbers, is of class cell" in faults(tmp_path / "table.mat")[0]

@@ -7,7 +7,9 @@ from functools import lru_cache
 
 import pytest
 
-from app.learn.lessons import (
+from app.session.display import Display
+from app.views import load
+from app.views.learn.lessons import (
     Lesson,
     Question,
     Step,
@@ -19,14 +21,12 @@ from app.learn.lessons import (
     right_choice,
     to_html,
 )
-from app.learn.names import Named, named
-from app.panels.lessons import right_answer, spec_at
-from app.panels.results import SWITCHING, TABS
-from app.session.display import Display
-from navcore.errors import InputError
-from navcore.run import Run
-from navcore.scenario import Scenario
-from navcore.simulation import simulate
+from app.views.learn.names import Named, named
+from app.views.learn.view import right_answer, spec_at
+from navcore.engine.run import Run
+from navcore.engine.simulation import simulate
+from navcore.foundation.errors import InputError
+from navcore.scenario.model import Scenario
 
 LESSONS = lessons()
 STEPS = [(lesson, i) for lesson in LESSONS for i in range(len(lesson.steps))]
@@ -49,8 +49,8 @@ def run_of(lesson: str, index: int) -> Run:
     return simulate(next(other for other in LESSONS if other.id == lesson).scenario_of(index))
 
 
-def test_there_are_the_seven_lessons_with_questions_and_actions() -> None:
-    assert [lesson.id[0] for lesson in LESSONS] == list("1234567")
+def test_there_are_the_eight_lessons_with_questions_and_actions() -> None:
+    assert [lesson.id[0] for lesson in LESSONS] == list("12345678")
     for lesson in LESSONS:
         assert sum(step.question is not None for step in lesson.steps) >= 3, lesson.id
         assert all(step.action is not None for step in lesson.steps), lesson.id
@@ -61,7 +61,7 @@ def test_there_are_the_seven_lessons_with_questions_and_actions() -> None:
 def test_what_a_step_asks_of_the_page_exists(lesson: Lesson, index: int) -> None:
     action = lesson.steps[index].action
     scenario = lesson.scenario_of(index)
-    assert set(action.tabs) <= {*TABS, SWITCHING}
+    assert set(action.tabs) <= {kind.title for kind in load() if kind.place in ("upper", "lower")}
     Display().with_(**action.display)
     assert action.method is None or action.method < len(scenario.method)
     for path in action.sliders:

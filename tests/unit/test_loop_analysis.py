@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from navcore.loop import analyse, initial_tilt_response
-from navcore.loop.analysis import closed_loop_polynomial
-from navcore.network import NETWORKS, LinearNetwork, parse_network
+from navcore.analysis import analyse, initial_tilt_response
+from navcore.analysis.loop import closed_loop_polynomial
+from navcore.networks import NETWORKS, LinearNetwork, parse_network
 
 OMEGA_S = float(np.sqrt(9.80665 / 6378137.0))
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from navcore.loop.locus import root_locus
-from navcore.network.compass import CompassNetwork
-from navcore.network.pole2 import Pole2Network
-from navcore.network.unity2 import Unity2Network
+from navcore.analysis.locus import root_locus
+from navcore.networks.compass import CompassNetwork
+from navcore.networks.pole2 import Pole2Network
+from navcore.networks.unity2 import Unity2Network
 
 OMEGA_S = 1.24e-3
 

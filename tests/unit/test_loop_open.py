@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from control import TransferFunction, stability_margins
 
-from navcore.filters import DiscreteNetwork, discretise
-from navcore.loop import Margins, margins, to_control
-from navcore.loop.measured import measured_response
-from navcore.network import NETWORKS, parse_network
-from navcore.network.base import LinearNetwork
+from navcore.analysis import Margins, disk_margin, margins
+from navcore.analysis.measured import measured_response
+from navcore.networks import NETWORKS, parse_network
+from navcore.networks.base import LinearNetwork
+from navcore.networks.discrete import DiscreteNetwork, discretise
 
 OMEGA_S = float(np.sqrt(9.80665 / 6378137.0))
 DAMPED = [{"id": name} for name in NETWORKS if name not in ("none", "custom")]
@@ -21,7 +21,7 @@ RESONANT = {"id": "compass", "sigma": 1e-4, "xi": 0.05}
 
 def control_margins(network: LinearNetwork) -> Margins:
     """The same from python-control."""
-    own = to_control(network, normalised=True)
+    own = network.to_control(normalised=True)
     open_loop = own * TransferFunction([1.0], [1.0, 0.0, 0.0])
     gains, phases, _, _, crossings, _ = stability_margins(open_loop, returnall=True)
     gains = np.asarray(gains)[np.isfinite(gains)]
@@ -49,6 +49,22 @@ def test_margins_are_those_of_python_control(block: dict) -> None:
             assert ours == pytest.approx(reference, rel=1e-5), name
 
 
+@pytest.mark.parametrize("block", [*DAMPED, RESONANT], ids=lambda b: b["id"])
+def test_the_disk_margin_is_one_over_the_largest_difference_of_the_sensitivities(block: dict) -> None:
+    network = parse_network(block).transfer(OMEGA_S)
+    found, classical = disk_margin(network), margins(network)
+    assert found is not None and classical is not None and classical.phase_rad is not None
+    omega = np.logspace(-3, 4, 400_001) * OMEGA_S
+    loop = -network.response(omega) * (OMEGA_S / omega) ** 2
+    alpha = float(np.min(2.0 / np.abs((1.0 - loop) / (1.0 + loop))))
+    assert found.size == pytest.approx(alpha, rel=1e-4)
+    assert found.gain == pytest.approx((2.0 + alpha) / (2.0 - alpha), rel=1e-3)
+    assert found.phase_rad == pytest.approx(2.0 * math.atan(0.5 * alpha), rel=1e-3)
+    assert found.phase_rad <= classical.phase_rad * (1.0 + 1e-4)
+    assert classical.gain_up is None or found.gain <= classical.gain_up
+    assert classical.gain_down is None or 1.0 / found.gain >= classical.gain_down
+
+
 def test_margins_of_a_loop_worked_out_by_hand() -> None:
     """H = 1 + 2 z p: L = -(1 + 2 z j x)/x^2 up to a far pole; |L| = 1 at x^4 = 1 + 4 z^2 x^2."""
     z, far = 0.5, 1e5
@@ -62,6 +78,7 @@ def test_margins_of_a_loop_worked_out_by_hand() -> None:
 
 def test_undamped_and_unstable_loops_have_none() -> None:
     assert margins(parse_network('id = "none"').transfer(OMEGA_S)) is None
+    assert disk_margin(parse_network('id = "none"').transfer(OMEGA_S)) is None
     unstable = parse_network('id = "pole2", xi = 0.08, variant = "as_printed"').transfer(OMEGA_S)
     assert margins(unstable) is None
 

@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from navcore.errors import InputError
-from navcore.loop.analysis import closed_loop_poles
-from navcore.loop.placement import place
-from navcore.network.classic import Classic2Network
-from navcore.network.compass import CompassNetwork
-from navcore.network.complementary import ComplementaryNetwork
-from navcore.network.pole2 import Pole2Network
-from navcore.network.unity2 import Unity2Network
+from navcore.analysis.loop import closed_loop_poles
+from navcore.analysis.placement import place
+from navcore.foundation.errors import InputError
+from navcore.networks.classic import Classic2Network
+from navcore.networks.compass import CompassNetwork
+from navcore.networks.complementary import ComplementaryNetwork
+from navcore.networks.pole2 import Pole2Network
+from navcore.networks.unity2 import Unity2Network
 
 OMEGA_S = 1.24e-3
 ALL = (CompassNetwork(), Unity2Network(), Pole2Network(), ComplementaryNetwork())

@@ -1,4 +1,4 @@
-"""Transfers of one channel against the differential equations of physics.md section 3."""
+"""Transfers of one channel against the differential equations of theory.md section 3."""
 
 from __future__ import annotations
 
@@ -7,9 +7,7 @@ import typing
 import numpy as np
 import pytest
 
-from navcore.earth import SEMI_MAJOR_AXIS, SPHERE
-from navcore.errors import InputError
-from navcore.loop import (
+from navcore.analysis import (
     OUTPUTS,
     RADIUS,
     SOURCES,
@@ -23,9 +21,11 @@ from navcore.loop import (
     to_control,
     transfer,
 )
-from navcore.loop.transfers import Channel, Output, Source
-from navcore.network import NETWORKS, parse_network
-from navcore.network.base import LinearNetwork
+from navcore.analysis.transfers import Channel, Output, Source
+from navcore.foundation.earth import SEMI_MAJOR_AXIS, SPHERE
+from navcore.foundation.errors import InputError
+from navcore.networks import NETWORKS, parse_network
+from navcore.networks.base import LinearNetwork
 
 OMEGA_S = float(np.sqrt(9.80665 / 6378137.0))
 GRAVITY = 9.80665
@@ -74,7 +74,7 @@ def network_equations(network: LinearNetwork, sign: float) -> Equations:
 
 
 def feedback_equations(k: tuple[float, float, float], printed: bool) -> Equations:
-    """x = [phi, dV, p, V] of physics.md 3.1, north; as printed without the reference's transport rate."""
+    """x = [phi, dV, p, V] of theory.md 3.1, north; as printed without the reference's transport rate."""
     k1, k2, k3 = k
     inverse = 1.0 / RADIUS
     A = np.zeros((4, 4))

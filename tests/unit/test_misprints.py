@@ -1,4 +1,4 @@
-"""The misprint laboratory against the numbers of physics.md sections 3, 8 and 9."""
+"""The misprint laboratory against the numbers of theory.md sections 3, 8 and 9."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.misprints import MISPRINTS, Comparison
-from navcore.misprints.base import OMEGA_S, growth_time
-from navcore.misprints.direct_form import direct_form_error, direct_form_growth, state_space_error
-from navcore.misprints.liu import variation
-from navcore.misprints.sun import least_stable
-from navcore.network import parse_network
-from navcore.network.pole2 import Pole2Network
-from navcore.units import ARCSEC, HOUR, KNOT, MINUTE
+from app.misprints import MISPRINTS, Comparison
+from app.misprints.base import OMEGA_S, growth_time
+from app.misprints.direct_form import direct_form_error, direct_form_growth, state_space_error
+from app.misprints.liu import variation
+from app.misprints.sun import least_stable
+from navcore.foundation.units import ARCSEC, HOUR, KNOT, MINUTE
+from navcore.networks import parse_network
+from navcore.networks.pole2 import Pole2Network
 
 _kept: dict[str, Comparison] = {}
 
@@ -143,7 +143,7 @@ def test_zha_gain():
     slow = number("zha-4.1", "time in which")
     assert slow.printed == pytest.approx(19.0 * MINUTE, rel=0.03)
     assert slow.corrected == pytest.approx(10.0 * MINUTE, rel=0.01)
-    # physics.md 9.6 has 541 and 545 s on WGS-84 with biases; one channel on the sphere takes 544 s
+    # theory.md 9.6 has 541 and 545 s on WGS-84 with biases; one channel on the sphere takes 544 s
     assert number("zha-4.1", "last above 2").corrected == pytest.approx(543.0, abs=3.0)
 
 
@@ -156,6 +156,11 @@ def test_deng_periods():
     assert number("deng-intro", "Schuler").corrected == pytest.approx(84.45 * MINUTE, rel=1e-4)
     assert number("deng-intro", "Earth").corrected == pytest.approx(23.934 * HOUR, rel=1e-4)
     assert number("deng-intro", "Schuler").printed < 0.01
+    # 23.9345 h / sin 32.06 deg
+    assert number("deng-intro", "Foucault").corrected == pytest.approx(45.0918 * HOUR, rel=1e-4)
+    found = comparison("deng-intro")
+    foucault = next(curve for curve in found.curves if curve.form == "corrected")
+    np.testing.assert_allclose(foucault.y * np.sin(found.x), 23.9345 * HOUR, rtol=1e-4)
 
 
 def test_deng_transport_rate_matters_only_when_the_speed_changes():
@@ -206,7 +211,7 @@ def test_variation_by_hand():
 
 def test_liu_direct_form():
     network = parse_network('id = "complementary", zeta = 0.5').transfer(OMEGA_S)
-    # physics.md 3.5: 6e-5 at 1 s, 14 % at 0.1 s, unstable at 0.01 s; in float32 unstable at 1 s
+    # theory.md 3.5: 6e-5 at 1 s, 14 % at 0.1 s, unstable at 0.01 s; in float32 unstable at 1 s
     assert direct_form_error(network, 1.0, np.float64) == pytest.approx(6e-5, rel=0.5)
     assert direct_form_error(network, 0.1, np.float64) == pytest.approx(0.14, rel=0.3)
     assert direct_form_growth(0.5, 1.0, np.float64) is None

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.earth import WGS84
-from navcore.errors import InputError
+from navcore.foundation.earth import WGS84
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import DEG, KNOT
 from navcore.motion.base import AE, AN, HEADING, HEADING_RATE, LAT, PITCH, ROLL, VE, VN, Site
 from navcore.motion.legs import LegsMotion
-from navcore.units import DEG, KNOT
 
 SITE = Site(math.radians(40.0), math.radians(-70.0), 0.0)
 
@@ -74,8 +74,9 @@ def test_acceleration_alone_acts_over_the_whole_leg() -> None:
     mean = 2.0 * KNOT / 60.0
     values = _values(
         {"duration_s": 60.0, "speed_kn": 2.0, "heading_deg": 45.0},
-        {"duration_s": 240.0, "accel_mps2": mean}, {"duration_s": 10.0},
-    )  # fmt: skip
+        {"duration_s": 240.0, "accel_mps2": mean},
+        {"duration_s": 10.0},
+    )
     speed = _speed(values) / KNOT
     assert speed[120] == pytest.approx(2.0)
     assert speed[360] == pytest.approx(6.0)

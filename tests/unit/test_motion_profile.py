@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from navcore.earth import SPHERE, WGS84
-from navcore.errors import InputError
+from navcore.foundation.earth import SPHERE, WGS84
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import DEG, KNOT
 from navcore.motion import ProfileMotion
 from navcore.motion.base import (
     AE,
@@ -29,7 +30,6 @@ from navcore.motion.base import (
     VU,
     Site,
 )
-from navcore.units import DEG, KNOT
 from tests.motions import MANOEUVRES, SUN, ZHAO
 
 SITE = Site(45.78 * DEG, 126.7 * DEG, 0.0)
@@ -69,9 +69,7 @@ def test_against_sun_2017() -> None:
 def test_rates_are_derivatives(shape: str) -> None:
     h = 1e-2
     rows = values(MANOEUVRES.model_copy(update={"shape": shape}), 620.0, h)
-    for column, rate in (
-        (VE, AE), (VN, AN), (PITCH, PITCH_RATE), (ROLL, ROLL_RATE), (HEADING, HEADING_RATE),
-    ):  # fmt: skip
+    for column, rate in ((VE, AE), (VN, AN), (PITCH, PITCH_RATE), (ROLL, ROLL_RATE), (HEADING, HEADING_RATE)):
         numeric = (rows[2:, column] - rows[:-2, column]) / (2.0 * h)
         # Where a rate has a corner or a jump of its slope the difference sees half of it.
         assert np.abs(numeric - rows[1:-1, rate]).max() < 0.02 * np.abs(rows[:, rate]).max()
@@ -137,11 +135,13 @@ def test_what_a_point_leaves_out_is_as_before() -> None:
 
 def test_from_rest_the_course_is_that_of_the_next_point_and_at_rest_it_stays() -> None:
     motion = profile(
-        {"velocity_mps": [0.0, 0.0]}, {"t_s": 100.0, "velocity_mps": [0.0, 5.0]},
-        {"t_s": 200.0, "velocity_mps": [0.0, 0.0]}, {"t_s": 300.0},
+        {"velocity_mps": [0.0, 0.0]},
+        {"t_s": 100.0, "velocity_mps": [0.0, 5.0]},
+        {"t_s": 200.0, "velocity_mps": [0.0, 0.0]},
+        {"t_s": 300.0},
         {"t_s": 400.0, "velocity_mps": [5.0, 0.0]},
         heading_deg=77.0,
-    )  # fmt: skip
+    )
     rows = values(motion, 400.0, 50.0)
     np.testing.assert_allclose(rows[:, HEADING] / DEG, [0, 0, 0, 0, 0, 0, 0, 45, 90], atol=1e-12)
     assert rows[0, AE] == rows[0, AN] == 0.0

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from navcore.earth import WGS84
+from navcore.foundation.earth import WGS84
 from navcore.motion import MOTIONS, Motion, ProfileMotion, StaticMotion, WavesMotion
 from navcore.motion.base import HEADING, HEADING_RATE, HEIGHT, LAT, LON, PITCH, ROLL, VE, Site
 
@@ -53,10 +53,10 @@ def test_every_default_is_a_motion() -> None:
 
 
 def test_every_number_carries_its_range_unit_label_and_help() -> None:
+    from navcore.foundation.parameters import allowed_range, extra_of
     from navcore.motion.legs import Leg
     from navcore.motion.profile import Point
     from navcore.motion.swing import Oscillation
-    from navcore.parameters import allowed_range, extra_of
 
     words = {"kind", "shape", "bow", "point", "spectrum"}
     for model in (StaticMotion, Oscillation, Leg, ProfileMotion, Point, WavesMotion):

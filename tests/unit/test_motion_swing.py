@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.earth import WGS84
-from navcore.errors import InputError
+from navcore.foundation.earth import WGS84
+from navcore.foundation.errors import InputError
 from navcore.motion.base import (
     AE,
     AU,
@@ -29,10 +29,13 @@ from navcore.motion.swing import SwingMotion
 
 SITE = Site(math.radians(45.78), math.radians(126.7), 3.0)
 DENG: dict[str, Any] = {
-    "roll_deg": 6.0, "roll": {"amplitude_deg": 12.0, "frequency_hz": 0.125},
-    "pitch_deg": 8.0, "pitch": {"amplitude_deg": 10.0, "frequency_hz": 0.2},
-    "heading_deg": 75.0, "heading": {"amplitude_deg": 6.0, "frequency_hz": 0.15, "phase_deg": 30.0},
-}  # fmt: skip
+    "roll_deg": 6.0,
+    "roll": {"amplitude_deg": 12.0, "frequency_hz": 0.125},
+    "pitch_deg": 8.0,
+    "pitch": {"amplitude_deg": 10.0, "frequency_hz": 0.2},
+    "heading_deg": 75.0,
+    "heading": {"amplitude_deg": 6.0, "frequency_hz": 0.15, "phase_deg": 30.0},
+}
 
 
 def test_deng_swing_follows_its_formula_for_a_day() -> None:

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from navcore.earth import WGS84
-from navcore.errors import InputError
+from navcore.foundation.earth import WGS84
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import DEG
 from navcore.motion import LegsMotion, WavesMotion
 from navcore.motion.base import (
     AE,
@@ -29,7 +30,6 @@ from navcore.motion.base import (
     Site,
 )
 from navcore.motion.sea import Answer, Seaway, energy_below, make_seaway
-from navcore.units import DEG
 from tests.motions import SEA
 
 SITE = Site(32.06 * DEG, 118.8 * DEG, 7.0)
@@ -138,8 +138,12 @@ def test_rates_are_derivatives() -> None:
     h = 1e-3
     states = rows(SEA, 60.0, h)
     for column, rate in (
-        (PITCH, PITCH_RATE), (ROLL, ROLL_RATE), (HEADING, HEADING_RATE), (HEIGHT, VU), (VU, AU),
-    ):  # fmt: skip
+        (PITCH, PITCH_RATE),
+        (ROLL, ROLL_RATE),
+        (HEADING, HEADING_RATE),
+        (HEIGHT, VU),
+        (VU, AU),
+    ):
         numeric = (states[2:, column] - states[:-2, column]) / (2.0 * h)
         assert np.abs(numeric - states[1:-1, rate]).max() < 2e-6 * max(1.0, np.abs(states[:, rate]).max())
         assert np.abs(states[:, rate]).max() > 1e-3

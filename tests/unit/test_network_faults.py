@@ -7,10 +7,10 @@ from typing import Annotated, Any, Literal
 import pytest
 from pydantic import ConfigDict, Field, ValidationError, field_validator, model_validator
 
-from navcore.errors import Fault, InputError
-from navcore.faults import faults_from
-from navcore.network import Network
-from navcore.parameters import Parameters, bounded, quantity
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.faults import faults_from
+from navcore.foundation.parameters import Parameters, bounded, quantity
+from navcore.networks import Network
 
 
 class Run(Parameters):

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from navcore.network import NETWORKS, parse_network
-from navcore.network.base import linear_network, pair, quadratic_roots
-from navcore.network.state_space import state_space
+from navcore.networks import NETWORKS, parse_network
+from navcore.networks.base import linear_network, pair, quadratic_roots
+from navcore.networks.state_space import state_space
 
 OMEGA_S = float(np.sqrt(9.80665 / 6378137.0))
 EXAMPLES = [
@@ -122,7 +122,7 @@ def test_state_space_has_the_transfer_asked_for(poles: list[complex], num: list[
 
 def test_importing_the_loop_stays_light(repo_root: Path) -> None:
     code = (
-        "import sys, navcore.loop, navcore.filters, navcore.network;"
+        "import sys, navcore.analysis, navcore.networks.discrete, navcore.networks;"
         "heavy = {'scipy', 'control', 'matplotlib', 'numba', 'pandas'} & set(sys.modules);"
         "sys.exit(' '.join(heavy) or 0)"
     )

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from navcore.errors import InputError
-from navcore.network import MAX_ORDER, NETWORKS, Network, parse_network
-from navcore.network.base import NetworkParameters
-from navcore.network.compass import CompassNetwork, gains_from_sigma_xi, sigma_xi_from_gains
-from navcore.parameters import extra_of
+from navcore.foundation.errors import InputError
+from navcore.foundation.parameters import extra_of
+from navcore.networks import MAX_ORDER, NETWORKS, Network, parse_network
+from navcore.networks.base import NetworkParameters
+from navcore.networks.compass import CompassNetwork, gains_from_sigma_xi, sigma_xi_from_gains
 
 OMEGA_S = float(np.sqrt(9.80665 / 6378137.0))
 
@@ -35,6 +35,7 @@ def test_registry_union_and_ids_agree() -> None:
         "complementary",
         "pole2",
         "unity2",
+        "optimal",
         "custom",
     ]
     for name, model in NETWORKS.items():
@@ -97,7 +98,7 @@ def test_out_of_range_names_field_value_and_whole_range() -> None:
         ('id = "compass", sigma = 0.01, k1 = 0.03', "k1", "together with sigma"),
         ('id = "compass", k1 = 0.03', "k1", "needs k2, k3 too"),
         ('id = "unity2", zeta2 = 0.7, alpha = 0.001', "alpha", "together with zeta2"),
-        ('id = "unity2", r = 1.0', "r", "must be >= 1.01"),
+        ('id = "unity2", r = 1.0', "r", "must be <= 0.99 or >= 1.01"),
         ('id = "custom", poles = [[-1, 2]]', "poles", "[-1, 2] must come with its conjugate [-1, -2]"),
         ('id = "custom", poles = [[-1, -2]]', "poles", "[-1, -2] must come with its conjugate [-1, 2]"),
         ('id = "custom", poles = [-1], zeros = [-1, -2]', "zeros", "H(infinity) would be infinite"),
@@ -154,6 +155,7 @@ def test_damping_coefficients() -> None:
         "complementary": 0.5,
         "pole2": 0.5,
         "unity2": 0.5,
+        "optimal": None,
         "custom": None,
     }
     with pytest.raises(NotImplementedError):

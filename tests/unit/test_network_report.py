@@ -6,9 +6,9 @@ import json
 
 import pytest
 
-from navcore.earth import SPHERE
-from navcore.network import NETWORKS, parse_network
-from navcore.network.report import network_report
+from navcore.analysis.report import network_report
+from navcore.foundation.earth import SPHERE
+from navcore.networks import NETWORKS, parse_network
 
 KEYS = [
     "id",
@@ -23,6 +23,10 @@ KEYS = [
     "damping_ratio",
     "natural_frequency_rad_s",
     "settling_s",
+    "lat_deg",
+    "earth_mode_growth_per_s",
+    "h_slope_s",
+    "whole_system_stable",
     "warnings",
 ]
 

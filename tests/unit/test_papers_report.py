@@ -5,19 +5,20 @@ from __future__ import annotations
 import hashlib
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from app.papers.claim import Claim, Paper, about, at_least, at_most, number, order_of
-from app.papers.markdown import Contradiction, check, exhibit_text
+from app.papers.claim import Claim, Exhibit, Paper, about, at_least, at_most, number, order_of
+from app.papers.markdown import Contradiction, check, exhibit_text, summary
 from app.papers.measure import interval, last_above
 from app.papers.runs import Runs, method, scenario_of
 from app.papers.write import papers, write_report
-from navcore.scenario_file import presets
+from navcore.scenario.file import presets
 
-OWN = {"sikuliaq-like"}
+OWN = {"sikuliaq-like", "sikuliaq-recorded"}
 """Presets that are of no paper."""
 CHEAP = ("liu-fig-3", "sun-table-1")
 """Exhibits that need no run."""
@@ -35,6 +36,27 @@ def claim(value: float, why: str = "", **more: object) -> Claim:
 def test_a_number_within_the_range_agrees():
     assert check(claim(2.1), Runs()).verdict == "agrees"
     assert check(claim(2.3, why="it is not"), Runs()).verdict == "differs"
+
+
+def test_the_verdict_goes_by_the_confidence_interval():
+    def verdict(samples: list[float], why: str = "") -> str:
+        return check(
+            Claim("x", "2", about(2.0, 0.1), lambda runs: np.array(samples), why=why), Runs()
+        ).verdict
+
+    assert verdict([1.99, 2.0, 2.01]) == "agrees"
+    assert verdict([2.0, 2.1, 2.2]) == "undecided"
+    assert verdict([2.49, 2.5, 2.51], why="it is not") == "differs"
+
+
+def test_a_number_over_seeds_is_printed_with_its_interval_and_their_count():
+    stated = Claim("x", "2", about(2.0, 0.5), lambda runs: np.array([1.0, 2.0, 3.0]), unit="m", kind="fitted")
+    wide = check(replace(stated, agreed=about(2.0, 3.0)), Runs())
+    exhibit = Exhibit(name="x", title="X", presets=(), setting="Made up.")
+    assert "| 2.00 +- 2.5 m (3 seeds) | -4.00 to 8.00 | fitted | agrees |" in exhibit_text(
+        exhibit, [wide], []
+    )
+    assert summary([(Paper("P", "", ()), exhibit, [wide])]).rows[-1][3:] == ("", "1 of 1", "", "0", "0")
 
 
 def test_a_claim_that_differs_needs_a_reason_and_one_that_agrees_must_not_have_one():
@@ -64,10 +86,18 @@ def test_ranges():
 @pytest.mark.parametrize(
     ("value", "text"),
     [
-        (0.0, "0"), (1234.5, "1230"), (12.345, "12.3"), (-0.00012345, "-0.000123"), (1.2e-5, "1.20e-5"),
-        (1e7, "1.00e7"), (3e-9, "< 1e-6"), (9.996, "10.0"), (float("inf"), "infinite"), (float("nan"), "-"),
+        (0.0, "0"),
+        (1234.5, "1230"),
+        (12.345, "12.3"),
+        (-0.00012345, "-0.000123"),
+        (1.2e-5, "1.20e-5"),
+        (1e7, "1.00e7"),
+        (3e-9, "< 1e-6"),
+        (9.996, "10.0"),
+        (float("inf"), "infinite"),
+        (float("nan"), "-"),
     ],
-)  # fmt: skip
+)
 def test_number_as_text(value, text):
     assert number(value) == text
 
@@ -141,8 +171,6 @@ def test_the_same_code_writes_the_same_files(tmp_path: Path):
 
 
 def test_nothing_is_written_when_a_claim_contradicts_its_reason(tmp_path: Path, every):
-    from dataclasses import replace
-
     [exhibit] = [exhibit for paper in every for exhibit in paper.exhibits if exhibit.name == "sun-table-1"]
     wrong = replace(exhibit, claims=(claim(5.0),), tables=(), draw=None)
     faults = write_report([replace(every[0], exhibits=(wrong,))], tmp_path)

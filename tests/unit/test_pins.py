@@ -8,15 +8,16 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from app.session.pins import COLORS, LONGEST_NAME, MOST_PINS, MOST_ROWS, Pins, few_rows
-from navcore.errors import InputError
-from navcore.run import Run
-from navcore.scenario import Scenario
+from app.jobs.rows import MOST_ROWS, few_rows
+from app.session.pins import COLORS, LONGEST_NAME, MOST_PINS, Pins
+from navcore.engine.run import Run
+from navcore.foundation.errors import InputError
+from navcore.scenario.model import Scenario
 from tests.unit.figures_runs import run_of, static_run
 
 
 def simulated(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Run:
-    from navcore.simulation import simulate
+    from navcore.engine.simulation import simulate
 
     return simulate(scenario, progress, cancelled)
 

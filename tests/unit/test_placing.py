@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.editing.placing import pair_at, read_point, typed_pair, with_pair
-from navcore.errors import InputError
-from navcore.loop import analyse
-from navcore.scenario import Scenario
+from app.views.poles.placing import pair_at, read_point, typed_pair, with_pair
+from navcore.analysis import analyse
+from navcore.foundation.errors import InputError
+from navcore.scenario.model import Scenario
 from tests.unit.figures_runs import THREE, scenario
 
 NETWORKS = [{"id": "compass"}, {"id": "unity2"}, {"id": "pole2"}, {"id": "complementary"}]
@@ -70,9 +70,17 @@ def test_out_of_the_parameters_range_is_said_with_the_range() -> None:
 
 @pytest.mark.parametrize(
     ("text", "said"),
-    [("", "two numbers"), ("1", "two numbers"), ("a b", "two numbers"), ("nan 1", "within"),
-     ("0 0", "not at 0"), ("1e9 0", "within"), ("1 2 3", "two numbers"), ("-1 " + "9" * 400, "within")],
-)  # fmt: skip
+    [
+        ("", "two numbers"),
+        ("1", "two numbers"),
+        ("a b", "two numbers"),
+        ("nan 1", "within"),
+        ("0 0", "not at 0"),
+        ("1e9 0", "within"),
+        ("1 2 3", "two numbers"),
+        ("-1 " + "9" * 400, "within"),
+    ],
+)
 def test_hostile_points_are_refused(text: str, said: str) -> None:
     with pytest.raises(InputError, match=said):
         pair_at(read_point(text))

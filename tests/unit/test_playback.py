@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from app.scene.playback import MOST_AHEAD, SLOW_S, SPEEDS, TICK_S, Playback, PlayState
+from app.views.scene.playback import MOST_AHEAD, SLOW_S, SPEEDS, TICK_S, Playback, PlayState
 
 
 def test_the_time_runs_with_its_speed_and_stops_at_the_end() -> None:
@@ -114,7 +114,7 @@ def test_a_page_that_falls_behind_gets_fewer_updates(monkeypatch: pytest.MonkeyP
             enough.set()
 
     playback = Playback(lambda state: None)
-    monkeypatch.setattr("app.scene.playback.time.sleep", sleep)
+    monkeypatch.setattr("app.views.scene.playback.time.sleep", sleep)
     playback.follow(1e9)
     playback.toggle()
     assert enough.wait(10.0)

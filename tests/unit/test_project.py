@@ -17,19 +17,31 @@ from pathlib import Path
 import pytest
 from packaging.markers import Marker
 from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 import navcore
-from navcore.assets import asset_path, assets_folder
+from navcore.foundation.assets import asset_path, assets_folder
 
 LOCKS = (
     "requirements.lock",
     "requirements-build.lock",
     "requirements-test.lock",
+    "requirements-docs.lock",
     "requirements-benchmarks.lock",
 )
 TOP_LEVEL = {
-    *("app", "assets", "benchmarks", "docs", "examples", "navcore", "tests", ".ci"),
-    *("CHANGELOG.md", "Dockerfile", "LICENSE", "Makefile", "README.md", "pyproject.toml", *LOCKS),
+    *("app", "assets", "benchmarks", "deploy", "docs", "examples", "navcore", "tests", ".ci"),
+    *(
+        "CHANGELOG.md",
+        "CONTRIBUTING.md",
+        "SECURITY.md",
+        "Dockerfile",
+        "LICENSE",
+        "Makefile",
+        "README.md",
+        "pyproject.toml",
+        *LOCKS,
+    ),
     *(".dockerignore", ".gitattributes", ".gitignore"),
 }
 NEVER_IN_NAVCORE = {"app", "plotly", "viser"}
@@ -227,7 +239,8 @@ def test_locks_satisfy_what_the_project_asks_for(repo_root: Path, platform: tupl
     groups = project["dependency-groups"]
     extras = project["project"]["optional-dependencies"]
     runtime = project["project"]["dependencies"]
-    asked = dict(zip(LOCKS, (runtime, groups["build"], groups["test"], extras["benchmarks"]), strict=True))
+    per_lock = (runtime, groups["build"], groups["test"], groups["docs"], extras["benchmarks"])
+    asked = dict(zip(LOCKS, per_lock, strict=True))
     environment = {"sys_platform": platform[0], "platform_machine": platform[1]}
     for lock, texts in asked.items():
         entries = locked(repo_root, lock)
@@ -249,12 +262,14 @@ def test_what_is_imported_is_asked_for(repo_root: Path):
     project = tomllib.loads((repo_root / "pyproject.toml").read_text("utf-8"))
     runtime = {Requirement(text).name for text in project["project"]["dependencies"]}
     testing = runtime | {Requirement(text).name for text in project["dependency-groups"]["test"]}
-    known = {*sys.stdlib_module_names, "app", "benchmarks", "navcore", "tests"}
+    known = {*sys.stdlib_module_names, "app", "benchmarks", "docs", "navcore", "tests"}
     providers = packages_distributions()
     for packages, asked in ((("app", "benchmarks", "navcore", "examples"), runtime), (("tests",), testing)):
         for path in modules(repo_root, *packages):
             for name in set(imported(ast.parse(path.read_text("utf-8")))) - known:
-                assert asked & set(providers.get(name, ())), f"{path.relative_to(repo_root)} imports {name}"
+                assert asked & {canonicalize_name(found) for found in providers.get(name, ())}, (
+                    f"{path.relative_to(repo_root)} imports {name}"
+                )
 
 
 def test_locks_agree_with_each_other(repo_root: Path):
@@ -325,7 +340,7 @@ def test_wheel_holds_code_and_assets_and_no_tests(repo_root: Path, wheel: Path):
 
 def test_assets_are_found_in_an_installed_wheel(wheel: Path, tmp_path: Path):
     zipfile.ZipFile(wheel).extractall(tmp_path)
-    code = "from navcore.assets import asset_path; print(asset_path('presets'))"
+    code = "from navcore.foundation.assets import asset_path; print(asset_path('presets'))"
     environment = os.environ | {"PYTHONPATH": str(tmp_path)}
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True

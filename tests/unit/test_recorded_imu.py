@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from navcore.errors import InputError
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import ARCSEC
 from navcore.sensors.recorded_imu import check_rest, read_imu
-from navcore.units import ARCSEC
 
 PSINS = """% PSINS-format SIMU log file.
 0 0 -90.6 0 0 0

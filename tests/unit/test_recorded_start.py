@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.earth import WGS84
-from navcore.errors import InputError
+from navcore.engine.simulation import simulate
+from navcore.foundation.earth import WGS84
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import DEG
 from navcore.motion.base import HEADING, Site
 from navcore.motion.static import StaticMotion
-from navcore.scenario import Scenario
+from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
-from navcore.simulation import simulate
-from navcore.units import DEG
 
 RATE, SECONDS = 20.0, 900
 SITE = Site(32.06 * DEG, 118.8 * DEG, 0.0)

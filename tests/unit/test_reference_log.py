@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from navcore.foundation.units import DEG, HOUR, KNOT
 from navcore.motion.base import AE, AN, COLUMNS, HEADING, HEADING_RATE, VE, VN, Truth
 from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.reference import LogEvent, Outage, Reference, event_velocity, reference_errors
 from navcore.sensors.true_state import horizontal_state, to_navigation, to_ship
-from navcore.units import DEG, HOUR, KNOT
 
 
 def truth(duration_s: float = 600.0, accel: float = 0.01, turn: float = 0.02, step_s: float = 0.5) -> Truth:
@@ -213,13 +213,24 @@ def test_ship_axes_are_starboard_and_forward():
 @pytest.mark.parametrize(
     "fields",
     [
-        {"noise_mps": -0.1}, {"rate_hz": 0.0}, {"bias_mps": (51.0, 0.0)}, {"bias_mps": (0.0,)}, {"kind": "g"},
-        {"frame": "ned"}, {"drift_tau_s": 0.0}, {"delay_s": -1.0}, {"lsb_mps": -1.0}, {"scale_ppm": 1e6},
-        {"tide_period_h": 0.0}, {"event": ({"duration_s": 0.0},)}, {"outage": ({"t_h": -1.0},)},
+        {"noise_mps": -0.1},
+        {"rate_hz": 0.0},
+        {"bias_mps": (51.0, 0.0)},
+        {"bias_mps": (0.0,)},
+        {"kind": "g"},
+        {"frame": "ned"},
+        {"drift_tau_s": 0.0},
+        {"delay_s": -1.0},
+        {"lsb_mps": -1.0},
+        {"scale_ppm": 1e6},
+        {"tide_period_h": 0.0},
+        {"event": ({"duration_s": 0.0},)},
+        {"outage": ({"t_h": -1.0},)},
         {"speed": "air"},
-        {"event": ({"accel_mps2": (math.nan, 0.0)},)}, {"unknown": 1},
+        {"event": ({"accel_mps2": (math.nan, 0.0)},)},
+        {"unknown": 1},
     ],
-)  # fmt: skip
+)
 def test_fields_out_of_range_are_refused(fields):
     with pytest.raises(ValidationError):
         Reference(**fields)

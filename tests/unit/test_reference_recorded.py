@@ -7,15 +7,15 @@ import math
 import numpy as np
 import pytest
 
-from navcore.earth import SPHERE
-from navcore.errors import InputError
+from navcore.foundation.earth import SPHERE
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import DEG, KNOT
 from navcore.motion.base import HEADING, Site, Truth
 from navcore.motion.static import StaticMotion
 from navcore.motion.track import TrackMotion
 from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.recorded import recorded_window, recording_notices
 from navcore.sensors.reference import LogEvent, Outage, Reference, reference_errors
-from navcore.units import DEG, KNOT
 from tests.nmea import rmc, ship_files, stamped, vbw, write
 
 SECONDS = 299.0

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from app.figures.requirements import allowed_poles, requirements_html, step_limits
 from app.session.display import Display
 from app.session.requirements import (
     MEASURES,
@@ -19,8 +18,11 @@ from app.session.requirements import (
     read_limit,
     verdicts,
 )
-from navcore.errors import InputError
-from navcore.units import ARCSEC
+from app.views.poles.figure import allowed_poles
+from app.views.requirements.table import requirements_html
+from app.views.step.figure import step_limits
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import ARCSEC
 from tests.unit.figures_runs import INTERNAL, THREE, UNSTABLE, diverging, run_of, static_run
 
 

@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from navcore.errors import InputError
-from navcore.io import results
-from navcore.io.results import require_replaceable, timeseries, write_results
-from navcore.measures import metrics
-from navcore.run import Run
-from navcore.scenario import Scenario
-from navcore.simulation import simulate
+from navcore.engine import results
+from navcore.engine.measures import metrics
+from navcore.engine.results import require_replaceable, timeseries, write_results
+from navcore.engine.run import Run
+from navcore.engine.simulation import simulate
+from navcore.foundation.errors import InputError
+from navcore.scenario.model import Scenario
 
 
 @pytest.fixture(scope="module")

@@ -6,9 +6,9 @@ import tomllib
 
 import pytest
 
-from navcore.errors import InputError
-from navcore.scenario import Scenario
-from navcore.scenario_file import apply_overrides, load, parse_toml, presets, scenario_hash, to_toml
+from navcore.foundation.errors import InputError
+from navcore.scenario.file import apply_overrides, load, parse_toml, presets, scenario_hash, to_toml
+from navcore.scenario.model import Scenario
 
 CONTRACT_EXAMPLE = """
 schema = 1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from navcore.scenario_guide import guide
+from navcore.scenario.guide import guide
 
 
 def test_the_guide_is_up_to_date(repo_root):

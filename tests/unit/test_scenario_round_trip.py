@@ -6,9 +6,9 @@ from typing import Any
 
 from hypothesis import HealthCheck, assume, given, settings
 
-from navcore.errors import InputError
-from navcore.scenario import Scenario
-from navcore.scenario_file import load, parse_toml, scenario_hash, to_toml
+from navcore.foundation.errors import InputError
+from navcore.scenario.file import load, parse_toml, scenario_hash, to_toml
+from navcore.scenario.model import Scenario
 from tests.random_models import raw_scenarios
 
 _CHECKS = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]

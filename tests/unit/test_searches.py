@@ -9,12 +9,14 @@ from typing import Any
 
 import pytest
 
-from app.background import why as why_module
-from app.background.searches import Searches
-from app.background.tuner import STOPPED, Tuner
-from app.background.why import Explainer
-from navcore.errors import Fault, InputError
-from navcore.tuning import TuningSettings
+from app.jobs import tuner as tuner_module
+from app.jobs import why as why_module
+from app.jobs.scheduler import Lane, Load
+from app.jobs.searches import Searches
+from app.jobs.tuner import STOPPED, Tuner
+from app.jobs.why import Explainer
+from navcore.foundation.errors import Fault, InputError
+from navcore.studies.tuning import TuningSettings
 
 
 class Finder:
@@ -41,6 +43,7 @@ class Finder:
 def finder(monkeypatch: pytest.MonkeyPatch) -> Finder:
     monkeypatch.setattr(why_module, "STILL_S", 0.1)
     monkeypatch.setattr(why_module, "_REPORT_AFTER_S", 0.05)
+    monkeypatch.setattr(why_module, "_load", lambda _: Load(Lane.SPARE))
     return Finder()
 
 
@@ -127,7 +130,8 @@ def tune(scenario: Any, settings: Any, progress: Any, cancelled: Any) -> Any:
     return SimpleNamespace(status="stopped" if cancelled() else "ok", of=scenario)
 
 
-def test_a_table_is_found_stopped_refused_and_kept() -> None:
+def test_a_table_is_found_stopped_refused_and_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tuner_module, "spare_load", lambda _: Load(Lane.SPARE))
     told: list[float | None] = []
     tuner = Tuner(lambda: told.append(tuner.fraction), tune)  # pyright: ignore[reportArgumentType]
     settings = TuningSettings()

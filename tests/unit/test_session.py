@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Set
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -14,8 +14,8 @@ from app.editing import edits
 from app.session import sessions
 from app.session.session import Session, first_editable, runs_on_demand
 from app.session.sessions import Sessions, first_scenario
-from navcore.errors import Fault, InputError
-from navcore.scenario import Scenario
+from navcore.foundation.errors import Fault, InputError
+from navcore.scenario.model import Scenario
 
 DURATION = ("run", "duration_h")
 
@@ -50,11 +50,17 @@ class Watcher:
     def display_changed(self, by: object) -> None:
         self.told.append(("display", by))
 
+    def not_kept(self, why: str) -> None:
+        self.told.append(("not kept", why))
+
     def run_waits(self) -> None:
         self.told.append(("waits", None))
 
     def presenter_changed(self) -> None:
         self.told.append(("presenter", None))
+
+    def front_changed(self, front: Set[str]) -> None:
+        self.told.append(("front", front))
 
     def verification_changed(self) -> None:
         self.told.append(("verification", None))
@@ -148,7 +154,7 @@ def test_a_long_run_is_stopped_by_the_user(work: tuple[Session, Watcher]) -> Non
 def test_a_long_run_gives_way_to_a_new_change(
     work: tuple[Session, Watcher], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.background.worker.SUPERSEDE_AFTER_S", 0.0)
+    monkeypatch.setattr("app.jobs.worker.SUPERSEDE_AFTER_S", 0.0)
     made, page = work
     made.change(edits.with_value(made.scenario, DURATION, 5.0), page)
     made.change(edits.with_value(made.scenario, DURATION, 2.0), page)
@@ -295,7 +301,7 @@ def test_a_change_of_the_display_is_told_once_and_runs_nothing(work: tuple[Sessi
 
 
 def test_every_preset_says_what_it_shows_and_where_it_comes_from() -> None:
-    from navcore.scenario_file import load, presets
+    from navcore.scenario.file import load, presets
 
     for name in presets():
         opened = load(name)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
 from app.editing import edits
-from navcore.errors import InputError
-from navcore.network.compass import gains_from_sigma_xi
-from navcore.scenario import Scenario
+from app.shell.editor import Editor
+from navcore.foundation.errors import InputError
+from navcore.networks.compass import gains_from_sigma_xi
+from navcore.scenario.model import Scenario
 
 NETWORK = ("method", 1, "network")
 
@@ -156,3 +158,31 @@ def test_leaving_the_strapdown_gives_up_what_only_it_can_do() -> None:
     }
     left = edits.with_value(Scenario.parse(data), ("run", "fidelity"), "error_model")
     assert (left.run.vertical, left.run.compensation, left.alignment.kind) == ("locked", True, "none")
+
+
+def test_legs_come_back_after_another_motion(scenario: Scenario) -> None:
+    legs = [{"duration_s": 600.0, "speed_mps": 5.0}, {"duration_s": 600.0, "turn_dps": 0.1}]
+    data = scenario.canonical() | {"motion": {"kind": "legs", "leg": legs, "heading_deg": 10.0}}
+    along = Scenario.parse(data)
+    rest = edits.with_choice(along, ("motion", "kind"), "static")
+    turned = edits.with_value(rest, ("motion", "heading_deg"), 20.0)
+    back = edits.with_choice(turned, ("motion", "kind"), "legs", along.canonical()["motion"])
+    assert edits.value_at(back, ("motion", "leg")) == edits.value_at(along, ("motion", "leg"))
+    assert edits.value_at(back, ("motion", "heading_deg")) == 20.0
+    assert len(edits.value_at(edits.with_choice(turned, ("motion", "kind"), "legs"), ("motion", "leg"))) == 1
+
+
+def test_the_page_brings_back_the_legs_that_it_left(scenario: Scenario) -> None:
+    """legs -> static -> legs, as the chooser of the motion does it."""
+    legs = [{"duration_s": 600.0, "speed_mps": 5.0}, {"duration_s": 600.0, "turn_dps": 0.1}]
+    session = SimpleNamespace(
+        scenario=Scenario.parse(scenario.canonical() | {"motion": {"kind": "legs", "leg": legs}})
+    )
+    chooser = SimpleNamespace(spec=SimpleNamespace(path=("motion", "kind")))
+    editor = Editor(cast(Any, None), cast(Any, session), None, tuple)
+    for kind in ("static", "swing", "legs"):
+        session.scenario = editor._changed(cast(Any, chooser), kind)
+    assert len(edits.value_at(session.scenario, ("motion", "leg"))) == 2
+    session.scenario = scenario.model_copy(update={"title": "another scenario"})
+    session.scenario = editor._changed(cast(Any, chooser), "legs")
+    assert len(edits.value_at(session.scenario, ("motion", "leg"))) == 1

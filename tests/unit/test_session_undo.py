@@ -11,12 +11,12 @@ import pytest
 
 from app.editing import edits, form
 from app.editing.form import FieldSpec
-from app.editing.reset import opened_value
 from app.session.session import Session
-from navcore.errors import Fault, InputError
-from navcore.network import NETWORKS
-from navcore.scenario import Method, Scenario
-from navcore.scenario_file import load
+from app.shell.reset import opened_value
+from navcore.foundation.errors import Fault, InputError
+from navcore.networks import NETWORKS
+from navcore.scenario.file import load
+from navcore.scenario.model import Method, Scenario
 
 HOURS = ("run", "duration_h")
 SEED = ("run", "seed")
@@ -106,7 +106,7 @@ def test_what_is_to_outlive_the_server_is_told(made: Session) -> None:
 
 
 def load_run() -> Any:
-    from navcore.simulation import simulate as run
+    from navcore.engine.simulation import simulate as run
 
     return run(load("zha-fast", ["run.duration_h=0.1"]))
 
@@ -165,6 +165,18 @@ def test_one_page_presents_at_a_time_and_its_leaving_frees_the_others(made: Sess
     made.present(one)
     made.attach(late)
     assert late.told == ["presenter_changed"]
+
+
+def test_watchers_are_told_the_tabs_of_the_page_that_presents(made: Session) -> None:
+    one, two = Silent(), Silent()
+    for page in (one, two):
+        made.attach(page)
+    made.tell_front(one, {"Poles"})
+    assert "front_changed" not in two.told  # nobody presents: each looks where it likes
+    made.present(one)
+    made.tell_front(two, {"Step"})
+    made.tell_front(one, {"Poles"})
+    assert (one.told.count("front_changed"), two.told.count("front_changed")) == (0, 1)
 
 
 def test_opening_the_same_preset_again_is_a_step_of_its_own(made: Session) -> None:

@@ -10,13 +10,14 @@ from app.session import uploads
 from app.session.uploads import (
     Uploads,
     opened_scenario,
+    plain_names,
     recorded_scenario,
     shared_files,
     with_plain_names,
 )
-from navcore.errors import InputError
-from navcore.scenario import Scenario
-from navcore.scenario_file import to_toml
+from navcore.foundation.errors import InputError
+from navcore.scenario.file import load, to_toml
+from navcore.scenario.model import Scenario
 
 LOG = "t_s,speed_mps,heading_deg\n" + "".join(f"{t},5.0,90.0\n" for t in range(120))
 TRACK = "t_s,lat_deg,lon_deg,heading_deg\n" + "".join(
@@ -172,3 +173,9 @@ def test_a_scenario_cannot_read_an_imu_file_of_the_server(files: Uploads) -> Non
     )
     assert ours.imu.file == str(files.folder / "imu.csv")
     assert with_plain_names(ours).imu.file == "imu.csv"
+
+
+def test_recordings_that_come_with_the_program_need_no_upload() -> None:
+    preset = load("sikuliaq-recorded")
+    again = shared_files(Scenario.parse(plain_names(preset.canonical())), {})
+    assert again.canonical() == preset.canonical()

@@ -11,12 +11,13 @@ from typing import Any
 import pytest
 
 from app.editing import edits
-from app.http.ids import is_shared, new_copy_id
+from app.http.ids import SessionIds, is_shared
+from app.session.database import Database
 from app.session.session import Session
 from app.session.sessions import Sessions
 from app.session.store import open_store
 from app.session.uploads import recorded_scenario
-from navcore.scenario_file import load
+from navcore.scenario.file import load
 
 ID = "visitor-of-the-tests-000"
 XI = ("method", 2, "network", "xi")
@@ -38,6 +39,18 @@ def started(tmp_path: Path) -> Iterator[Callable[[], Sessions]]:
     yield start
     while running:
         running.pop().close()
+
+
+def rewritten(tmp_path: Path, spoil: Callable[[dict[str, Any]], Any] | None = None) -> dict[str, Any] | None:
+    """Document of the session as it lies in the database, after it was changed there."""
+    database = Database(tmp_path / "sessions")
+    content = database.read(ID)
+    document = None if content is None else json.loads(content)
+    if document is not None and spoil is not None:
+        spoil(document)
+        database.write(ID, json.dumps(document).encode())
+    database.close()
+    return document
 
 
 def xi_of(session: Session) -> Any:
@@ -69,7 +82,7 @@ def test_a_session_comes_back_after_a_restart(started: Callable[[], Sessions]) -
 def test_a_session_only_looked_at_is_not_kept(started: Callable[[], Sessions], tmp_path: Path) -> None:
     started().get(ID)
     started()
-    assert list((tmp_path / "sessions").glob("*.json")) == []
+    assert rewritten(tmp_path) is None
 
 
 def test_a_session_that_had_to_make_room_comes_back(
@@ -106,11 +119,12 @@ def test_a_scenario_in_a_file_cannot_name_a_file_of_the_server(
     secret.write_bytes(LOG)
     worked_on(started())
     started()
-    path = tmp_path / "sessions" / f"{ID}.json"
-    document = json.loads(path.read_bytes())
-    for scenario in document["scenarios"]:
-        scenario["reference"] = {"kind": "file", "file": [str(secret)]}
-    path.write_text(json.dumps(document))
+
+    def spoil(document: dict[str, Any]) -> None:
+        for scenario in document["scenarios"]:
+            scenario["reference"] = {"kind": "file", "file": [str(secret)]}
+
+    rewritten(tmp_path, spoil)
     with caplog.at_level(logging.WARNING):
         after = started().get(ID)
     assert after.scenario == load("zha-fast")
@@ -141,10 +155,7 @@ def test_a_strange_document_is_a_fresh_session_and_one_log_line(
 ) -> None:
     worked_on(started())
     started()
-    path = tmp_path / "sessions" / f"{ID}.json"
-    document = json.loads(path.read_bytes())
-    spoil(document)
-    path.write_text(json.dumps(document))
+    rewritten(tmp_path, spoil)
     caplog.clear()
     after = started().get(ID)
     assert (after.scenario, after.origin) == (load("zha-fast"), "zha-fast")
@@ -166,10 +177,7 @@ def test_what_cannot_be_read_beside_the_scenario_is_left_out(
 ) -> None:
     before = worked_on(started())
     started()
-    path = tmp_path / "sessions" / f"{ID}.json"
-    document = json.loads(path.read_bytes())
-    spoil(document)
-    path.write_text(json.dumps(document))
+    rewritten(tmp_path, spoil)
     caplog.clear()
     after = started().get(ID)
     assert after.scenario == before.scenario
@@ -192,14 +200,14 @@ def test_a_shared_state_is_a_frozen_copy(started: Callable[[], Sessions], stored
     session.uploads.clear()
     if stored:
         sessions = started()
-    first = sessions.get(new_copy_id(shared))
+    first = sessions.get(SessionIds().new_copy(shared))
     assert (first.scenario, first.origin, first.selected) == (frozen, "zha-fast", 2)
     assert first.display.scale == "log"
     assert first.uploads.files["log.csv"].path.read_bytes() == LOG
     assert (first.history.undo_name, first.history.redo_name) == (None, None)
     first.change(edits.with_value(first.scenario, XI, 0.8), None)
     first.uploads.clear()
-    second = sessions.get(new_copy_id(shared))
+    second = sessions.get(SessionIds().new_copy(shared))
     assert second.scenario == frozen
     assert list(second.uploads.files) == ["log.csv"]
     assert xi_of(sessions.get(ID)) == 0.9
@@ -209,4 +217,4 @@ def test_a_shared_state_is_a_frozen_copy(started: Callable[[], Sessions], stored
 
 def test_a_copy_of_a_state_that_is_gone_is_a_fresh_session(started: Callable[[], Sessions]) -> None:
     sessions = started()
-    assert sessions.get(new_copy_id("share-" + "x" * 24)).scenario == load("zha-fast")
+    assert sessions.get(SessionIds().new_copy("share-" + "x" * 24)).scenario == load("zha-fast")

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from navcore.engine.simulation import simulate
 from navcore.mechanization.recorder import NAMES, output_steps
-from navcore.scenario import Scenario
-from navcore.simulation import simulate
+from navcore.scenario.model import Scenario
 
 COMPASS = {"damping": "external", "network": {"id": "compass"}}
 NOISY = {
@@ -133,3 +133,27 @@ def test_internal_damping_does_not_take_a_constant_speed_for_an_acceleration():
     manoeuvre = simulate(Scenario.parse({**scenario, "motion": {"kind": "legs", "leg": legs}}))
     assert steady.methods[0].errors["phi_e_rad"]["max_abs"] < 1e-12
     assert manoeuvre.methods[0].errors["phi_e_rad"]["max_abs"] > 1e-5
+
+
+def test_the_law_in_force_is_told_and_the_loop_is_that_of_its_mean():
+    """`adaptive` re-tunes its network: the figures of the loop are those of the mean coefficient in force."""
+    given = {
+        "run": {"duration_h": 2.0},
+        "reference": {"kind": "log", "outage": [{"t_h": 1.0, "duration_s": 1800.0}]},
+        "initial_error": {"velocity_mps": [0.5, 0.0]},
+        "method": [
+            {"name": "adaptive", "damping": "external", "policy": {"id": "adaptive"}},
+            {"name": "constant", "damping": "external", "network": {"id": "classic2"}},
+            {"name": "free"},
+        ],
+    }
+    adaptive, constant, free = simulate(Scenario.parse(given)).methods
+    for method in (adaptive, constant):
+        assert method.law_in_force.damped_share == pytest.approx(0.75, abs=0.01)
+    law = adaptive.law_in_force
+    assert law.xi_min is not None and law.xi_mean is not None and law.xi_max is not None
+    assert law.xi_min < law.xi_mean < law.xi_max
+    # the exact damping of unity2 is the coefficient itself
+    assert adaptive.loop.damping_ratio == pytest.approx(law.xi_mean, rel=1e-9)
+    assert constant.law_in_force.xi_min == constant.law_in_force.xi_max
+    assert (free.law_in_force.damped_share, free.law_in_force.xi_mean) == (0.0, None)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from navcore.scenario import Scenario
-from navcore.scenario_file import load
-from navcore.simulation import simulate
-from navcore.sources import active_sources, apart, only
+from navcore.engine.simulation import simulate
+from navcore.scenario.file import load
+from navcore.scenario.model import Scenario
+from navcore.studies.sources import active_sources, apart, only
 
 SCENARIO = {
     "run": {"duration_h": 3.0, "step_s": 5.0},
@@ -73,3 +73,35 @@ def test_cancel_leaves_out_what_has_not_run():
     asked = iter([False, False, False, True])
     (free, _) = apart(scenario, whole, cancelled=lambda: next(asked, True))
     assert len(free.contributions) < len(ALL)
+
+
+def test_an_unchanged_method_is_not_run_apart_again(monkeypatch: pytest.MonkeyPatch):
+    from navcore.studies import sources
+
+    scenario = Scenario.parse(SCENARIO | {"run": {"duration_h": 2.5, "step_s": 5.0}})
+    ran: list[tuple[str, ...]] = []
+
+    def noted(one: Scenario, **options: object):
+        ran.append(tuple(method.name for method in one.method))
+        return simulate(one, **options)
+
+    monkeypatch.setattr(sources, "simulate", noted)
+    first = apart(scenario, simulate(scenario))
+    assert set(ran) == {("free", "damped")}
+    data = scenario.canonical()
+    data["method"][1]["network"] = {"id": "compass"}
+    moved = Scenario.parse(data)
+    ran.clear()
+    second = apart(moved, simulate(moved))
+    assert set(ran) == {("damped",)} and len(ran) == len(ALL)
+    assert (
+        [c.source for c in second[1].contributions] == [c.source for c in first[1].contributions] == list(ALL)
+    )
+    for old, new in zip(first[0].contributions, second[0].contributions, strict=True):
+        assert np.array_equal(old.rms, new.rms)
+    sources._apart.clear()
+    afresh = apart(moved, simulate(moved))
+    for one, other in zip(afresh, second, strict=True):
+        assert all(
+            np.array_equal(a.rms, b.rms) for a, b in zip(one.contributions, other.contributions, strict=True)
+        )

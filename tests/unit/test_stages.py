@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from navcore.foundation.stage_cache import _size
 from tests import stages
 from tests.stages import CODE, STAGES, Count, closing_line, read_counts, run_stage
 
@@ -69,8 +72,8 @@ def bare_checkout(repo_root: Path, tmp_path: Path) -> Path:
     """What `make setup` needs before it looks at any code."""
     for name in ("Makefile", "pyproject.toml", *repo_root.glob("requirements*.lock")):
         shutil.copy(repo_root / name, tmp_path)
-    (tmp_path / "navcore").mkdir()
-    shutil.copy(repo_root / "navcore" / "__init__.py", tmp_path / "navcore")
+    (tmp_path / "navcore" / "foundation").mkdir(parents=True)
+    shutil.copy(repo_root / "navcore" / "foundation" / "version.py", tmp_path / "navcore" / "foundation")
     return tmp_path
 
 
@@ -104,3 +107,15 @@ def test_a_python_without_venv_is_told_how_to_get_it(bare_checkout: Path):
     assert done.returncode != 0
     assert "apt-get install python3-venv" in done.stderr
     assert not (bare_checkout / ".venv").exists()
+
+
+@dataclass
+class Held:
+    inside: object
+
+
+def test_the_cache_counts_arrays_wherever_they_lie() -> None:
+    rows = np.zeros(1000)
+    assert _size(Held((rows, {"more": [rows]}))) == 1024 + 16_000
+    assert _size(Held(Held(rows))) == 1024 + 8_000
+    assert _size(Held("text")) == 1024

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from navcore.earth import WGS84
+from navcore.foundation.earth import WGS84
 from navcore.mechanization.strapdown import Settings, start_from, start_run
 from navcore.mechanization.strapdown.batch import WIDTH, BatchNoise, BatchRun
 from navcore.motion.static import StaticMotion
-from navcore.network.classic import Classic2Network
-from navcore.network.compass import CompassNetwork
+from navcore.networks.classic import Classic2Network
+from navcore.networks.compass import CompassNetwork
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
 from navcore.sensors.imu_simulation.normal import fill_normals, stream_key
@@ -45,9 +45,14 @@ def test_each_run_is_the_single_run(motion, network):
     assert ended[-1] and not any(ended[:-1])
     for run in (0, 7, WIDTH - 1, WIDTH, RUNS - 1):
         single = start_run(
-            starts[run], settings, WGS84, law("external", network, 1.0), truth, log,
+            starts[run],
+            settings,
+            WGS84,
+            law("external", network, 1.0),
+            truth,
+            log,
             sim.before() + biases[run] / RATE,
-        )  # fmt: skip
+        )
         single.advance(increments + biases[run] / RATE)
         rows = single.recorder.rows
         np.testing.assert_allclose(batch.errors[:, run, :2], rows[:, 3:5], rtol=0, atol=2e-9)
@@ -78,9 +83,14 @@ def test_noise_of_a_run_is_that_of_a_single_run(every):
         unit = _unit_normals(run, len(increments) // every, 11)
         own = biases[run] / RATE + np.repeat(unit * walk / np.sqrt(RATE * every), every, axis=0)
         single = start_run(
-            starts[run], settings, WGS84, law("external", CompassNetwork(), 1.0), truth, log,
+            starts[run],
+            settings,
+            WGS84,
+            law("external", CompassNetwork(), 1.0),
+            truth,
+            log,
             sim.before() + biases[run] / RATE,
-        )  # fmt: skip
+        )
         single.advance(increments + own)
         rows = single.recorder.rows
         np.testing.assert_allclose(batch.errors[:, run, :2], rows[:, 3:5], rtol=0, atol=2e-9)
@@ -97,10 +107,16 @@ def test_noise_walks_as_asked_for(every):
     truth = sim.truth_rows(1, 1.0)
     walk = np.repeat([2e-6, 3e-4], 3)
     batch = BatchRun(
-        [start_from(truth[0])] * runs, [law("free", CompassNetwork(), 1.0) for _ in range(runs)],
-        np.zeros((runs, 6)), Settings(RATE, samples, int(RATE), int(RATE), 1.0), WGS84, truth, None,
-        sim.before(), BatchNoise(walk, 5, every),
-    )  # fmt: skip
+        [start_from(truth[0])] * runs,
+        [law("free", CompassNetwork(), 1.0) for _ in range(runs)],
+        np.zeros((runs, 6)),
+        Settings(RATE, samples, int(RATE), int(RATE), 1.0),
+        WGS84,
+        truth,
+        None,
+        sim.before(),
+        BatchNoise(walk, 5, every),
+    )
     assert batch.advance(increments)
     last = batch.errors[-1]
     # 400 runs give a deviation to 3.5 %; tilts of 4e-6 rad add 1e-4 m/s to the 6e-4 m/s in 4 s.
@@ -113,8 +129,20 @@ def test_noise_walks_as_asked_for(every):
 def test_what_a_batch_cannot_do_is_refused():
     truth = np.zeros((1, 15))
     with pytest.raises(ValueError, match="locked"):
-        BatchRun([start_from(truth[0])], [law("free", CompassNetwork(), 1.0)], np.zeros((1, 6)),
-                 Settings(50.0, 50, 50, 50, 1.0, "altimeter"), WGS84, truth)  # fmt: skip
+        BatchRun(
+            [start_from(truth[0])],
+            [law("free", CompassNetwork(), 1.0)],
+            np.zeros((1, 6)),
+            Settings(50.0, 50, 50, 50, 1.0, "altimeter"),
+            WGS84,
+            truth,
+        )
     with pytest.raises(ValueError, match="multiple"):
-        BatchRun([start_from(truth[0])], [law("free", CompassNetwork(), 1.0)], np.zeros((1, 6)),
-                 Settings(50.0, 150, 50, 75, 1.0), WGS84, truth)  # fmt: skip
+        BatchRun(
+            [start_from(truth[0])],
+            [law("free", CompassNetwork(), 1.0)],
+            np.zeros((1, 6)),
+            Settings(50.0, 150, 50, 75, 1.0),
+            WGS84,
+            truth,
+        )

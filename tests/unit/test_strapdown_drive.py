@@ -6,12 +6,12 @@ import time
 
 import numpy as np
 
-from navcore.earth import WGS84
+from navcore.foundation.earth import WGS84
 from navcore.mechanization.strapdown import Settings, start_from, start_run
-from navcore.mechanization.strapdown import layout as at
+from navcore.mechanization.strapdown import records as at
 from navcore.mechanization.strapdown.drive import drive
 from navcore.motion.static import StaticMotion
-from navcore.network.undamped import UndampedNetwork
+from navcore.networks.undamped import UndampedNetwork
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
 from tests.strapdown import SITE, law
@@ -37,7 +37,7 @@ def test_a_run_that_diverges_leaves_the_others_alone():
     assert drive(runs, chunks, seen.append)
     assert [run.code for run in runs] == [at.COMPLETE, at.DIVERGED]
     assert seen == sorted(seen) and seen[-1] == 1.0
-    assert runs[0].recorder.cursor[1] == 721
+    assert runs[0].recorder.cursor["count"] == 721
 
 
 def test_a_cancel_acts_soon_and_keeps_what_was_computed():
@@ -47,7 +47,7 @@ def test_a_cancel_acts_soon_and_keeps_what_was_computed():
     # No wall time is asserted: a chunk is 6000 samples of some 70 ns, so the cancel came in after very few.
     assert 0 < runs[0].position < runs[0].settings.samples
     assert runs[0].position == runs[1].position
-    assert runs[0].recorder.cursor[1] == -(-runs[0].position // int(RATE))
+    assert runs[0].recorder.cursor["count"] == -(-runs[0].position // int(RATE))
 
 
 def test_a_cancel_is_asked_for_after_every_chunk():

@@ -7,24 +7,24 @@ import math
 import numpy as np
 import pytest
 
-from navcore.control.policy.constant import Constant
-from navcore.control.switching.hard import Hard
-from navcore.control.twin import TwinLaw
-from navcore.earth import WGS84, attitude_matrix
+from navcore.foundation.earth import WGS84, attitude_matrix
+from navcore.foundation.units import DEG
+from navcore.law.policy.constant import Constant
+from navcore.law.switching.hard import Hard
 from navcore.mechanization.strapdown import Settings, start_from, start_run
-from navcore.mechanization.strapdown import layout as at
+from navcore.mechanization.strapdown import records as at
 from navcore.mechanization.strapdown.attitude import angles_of, misalignment, quaternion_of
 from navcore.mechanization.strapdown.run import turned_by
-from navcore.mechanization.strapdown.twin import run_twin
-from navcore.network.base import NetworkParameters
-from navcore.network.classic import Classic2Network
-from navcore.network.compass import CompassNetwork
-from navcore.network.complementary import ComplementaryNetwork
-from navcore.network.undamped import UndampedNetwork
+from navcore.networks.base import NetworkParameters
+from navcore.networks.classic import Classic2Network
+from navcore.networks.compass import CompassNetwork
+from navcore.networks.complementary import ComplementaryNetwork
+from navcore.networks.undamped import UndampedNetwork
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
-from navcore.units import DEG
+from tests.law_twin import TwinLaw
 from tests.strapdown import DENG_SWING, DRIVE, SITE, law, navigate, reference
+from tests.strapdown_twin import run_twin
 
 RATE, SECONDS = 50.0, 20
 NOISY = Imu(
@@ -72,11 +72,11 @@ def test_kernel_equals_twin_sample_by_sample(motion, kind, network):
     for k in range(samples):
         run.advance(increments[k : k + 1])
         x = run.x
-        got = np.array([_turn(x[at.Q0 : at.Q0 + 4], axis) for axis in np.eye(3)]).T
+        got = np.array([_turn(x["q"], axis) for axis in np.eye(3)]).T
         assert np.abs(got - matrices[k + 1]).max() < 5e-12
-        assert np.abs(x[at.V_E : at.V_U + 1] - velocities[k + 1]).max() < 2e-10
-        assert abs(start.lat + x[at.D_LAT] - positions[k + 1, 0]) < 1e-14
-        assert abs(start.lon + x[at.D_LON] - positions[k + 1, 1]) < 1e-14
+        assert np.abs(x["v"] - velocities[k + 1]).max() < 2e-10
+        assert abs(start.lat + x["d_lat"] - positions[k + 1, 0]) < 1e-14
+        assert abs(start.lon + x["d_lon"] - positions[k + 1, 1]) < 1e-14
     assert run.code == at.COMPLETE
 
 
@@ -121,7 +121,7 @@ def test_chunks_of_any_length_give_the_same_run():
         pass
     np.testing.assert_allclose(run.recorder.rows, whole.recorder.rows, rtol=1e-12, atol=1e-15)
     np.testing.assert_allclose(run.recorder.stats, whole.recorder.stats, rtol=1e-6, atol=1e-9)
-    assert run.recorder.cursor[1] == 701
+    assert run.recorder.cursor["count"] == 701
 
 
 def test_navigation_rows_hold_the_solution():
@@ -147,7 +147,7 @@ def test_altimeter_holds_the_height_where_a_free_vertical_channel_runs_away():
 
 
 def test_as_printed_lacks_the_transport_rate_of_the_reference():
-    """Deng 4: a moving vehicle tilts the platform of the printed form (physics.md 8)."""
+    """Deng 4: a moving vehicle tilts the platform of the printed form (theory.md 8)."""
 
     def tilt(realisation: str) -> float:
         network = CompassNetwork(sigma=0.02, xi=0.7, realisation=realisation)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from navcore.errors import InputError
-from navcore.scenario import Scenario
-from navcore.scenario_file import load, presets
+from navcore.foundation.errors import InputError
+from navcore.scenario.file import load, presets
+from navcore.scenario.model import Scenario
 
 FAST = {"amplitude_deg": 2.0, "frequency_hz": 5.0}
 

@@ -8,15 +8,15 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 
-from navcore.io.results import timeseries, write_results
-from navcore.measures import metrics
+from navcore.engine.measures import metrics
+from navcore.engine.results import timeseries, write_results
+from navcore.engine.run import Run
+from navcore.engine.simulation import simulate
+from navcore.foundation.units import DEG
 from navcore.mechanization.recorder import NAMES
-from navcore.mechanization.strapdown.layout import NAVIGATION
+from navcore.mechanization.strapdown.records import NAVIGATION
 from navcore.motion.base import HEADING, LAT, VE
-from navcore.run import Run
-from navcore.scenario import Scenario
-from navcore.simulation import simulate
-from navcore.units import DEG
+from navcore.scenario.model import Scenario
 
 COMPASS = {"damping": "external", "network": {"id": "compass", "sigma": 0.0088, "xi": 0.7}}
 UNSTABLE = {"damping": "external", "network": {"id": "compass", "k1": 0.001, "k2": 1.0, "k3": 0.5}}
@@ -182,7 +182,7 @@ SWING = {"amplitude_deg": 5.0, "frequency_hz": 0.13, "phase_deg": 40.0}
     "motion", [{"kind": "static"}, {"kind": "waves"}, {"kind": "swing", "roll": SWING, "heading": SWING}]
 )
 def test_an_alignment_takes_the_initial_error_out(motion):
-    """0.1 deg of tilt and 1 deg of heading: 0.003 deg of heading are left (physics.md 6.1)."""
+    """0.1 deg of tilt and 1 deg of heading: 0.003 deg of heading are left (theory.md 6.1)."""
     run = run_of(
         0.02, imu={}, reference={}, motion=motion, alignment={"kind": "compass"},
         initial_error={"attitude_arcmin": [6.0, -6.0, 60.0], "position_arcsec": [10.0, 0.0]},

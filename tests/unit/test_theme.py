@@ -9,14 +9,15 @@ from pathlib import Path
 import pytest
 
 import app
-from app.figures import style
-from app.figures.style import METHOD_COLORS
-from app.page import notices, theme
+from app.plots import style
+from app.plots.style import METHOD_COLORS
 from app.session.pins import COLORS
+from app.shell import notices
+from app.views.appearance import theme
 
 WHITE = "#FFFFFF"
 BOTH = pytest.mark.parametrize("shown", ["light", "dark"])
-STATIC = Path(app.__file__).parent / "static"
+LESSONS = Path(app.__file__).parent / "views" / "learn" / "learn.css"
 
 
 def ratio(color: str, ground: str, shown: theme.Theme) -> float:
@@ -52,7 +53,7 @@ def test_notes_are_readable(tone: notices.Tone, shown: theme.Theme) -> None:
 def rules() -> list[tuple[str, str, str]]:
     """Selector, text and ground of every rule of ours that names a colour of text."""
     found = []
-    for selector, body in re.findall(r"([^{}]+)\{([^{}]*)\}", (STATIC / "learn.css").read_text()):
+    for selector, body in re.findall(r"([^{}]+)\{([^{}]*)\}", LESSONS.read_text()):
         ink = re.search(r"(?<![-\w])color: (#[0-9a-f]{3,6})\b", body)
         ground = re.search(r"background: (#[0-9a-f]{3,6})\b", body)
         if ink:

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from navcore.compiled import kernel
-from navcore.trigonometry import sincos, sincos_cycles
+from navcore.foundation.compiled import kernel
+from navcore.foundation.trigonometry import sincos, sincos_cycles
 
 
 @kernel

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.errors import InputError
-from navcore.network import parse_network
-from navcore.scenario import Scenario
-from navcore.simulation import simulate
-from navcore.tuning import TuningSettings, sun_scenario, tune, with_table
-from navcore.units import HOUR, KNOT
+from navcore.engine.simulation import simulate
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import HOUR, KNOT
+from navcore.networks import parse_network
+from navcore.scenario.model import Scenario
+from navcore.studies.tuning import TuningSettings, sun_scenario, tune, with_table
 
 COARSE = TuningSettings(differences_kn=(0.0, 0.5, 3.0), smallest=0.1, step=0.3)
 
@@ -84,7 +84,7 @@ def test_unstable_loops_are_never_the_best():
         differences_kn=(0.0, 3.0), smallest=0.02, largest=0.2, step=0.02, network=network, error="drift"
     )
     found = tune(scenario(), settings)
-    # physics.md 3.3: unstable for xi <= 0.104
+    # theory.md 3.3: unstable for xi <= 0.104
     np.testing.assert_array_equal(np.isinf(found.cost[1]), found.coefficients <= 0.104)
     assert np.all(found.best > 0.104)
     assert any("5 of 10" in warning for warning in found.warnings)

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.errors import InputError
+from navcore.engine.verification import verify, why_not
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import DEG
 from navcore.mechanization.recorder import NAMES
-from navcore.scenario import Scenario
-from navcore.units import DEG
-from navcore.verification import verify, why_not
+from navcore.scenario.model import Scenario
 
 METHODS = [
     {"name": "free"},
@@ -51,17 +51,20 @@ def test_the_difference_is_that_of_the_output_rows():
     assert found.differences[1]["dve_mps"].peak == gap > 0.0
     assert full.navigation is not None and simple.navigation is None
     assert (found.strapdown.scenario.run.fidelity, found.linear.scenario.run.fidelity) == (
-        "strapdown", "error_model",
-    )  # fmt: skip
+        "strapdown",
+        "error_model",
+    )
 
 
 def test_an_alignment_gives_both_the_same_start():
     found = verify(
         scenario(
-            run={"fidelity": "strapdown"}, alignment={"kind": "compass", "duration_s": 600.0}, imu={},
+            run={"fidelity": "strapdown"},
+            alignment={"kind": "compass", "duration_s": 600.0},
+            imu={},
             initial_error={"attitude_arcmin": [6.0, -6.0, 60.0]},
         )
-    )  # fmt: skip
+    )
     start = found.linear.methods[0].rows[0]
     np.testing.assert_allclose(start[:3], found.strapdown.methods[0].rows[0, :3], atol=1e-12)
     assert 0.0 < abs(start[2]) < 0.01 * DEG

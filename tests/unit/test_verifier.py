@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from app.background.verifier import CHANGED, STOPPED, Verifier
 from app.editing import edits
-from navcore.errors import Fault, InputError
-from navcore.scenario import Scenario
+from app.jobs.verifier import CHANGED, STOPPED, Verifier
+from navcore.foundation.errors import Fault, InputError
+from navcore.scenario.model import Scenario
 
 DURATION = ("run", "duration_h")
 

@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 import pytest
 
-from app.background import worker
-from app.background.worker import Watch, Worker
+from app.jobs import worker
+from app.jobs.worker import Watch, Worker
 
 
 def until(true: Callable[[], bool], seconds: float = 5.0) -> None:

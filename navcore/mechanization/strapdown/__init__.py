@@ -1,4 +1,4 @@
-"""The full strapdown mechanization: quaternion, increments in, the damping law inside (physics.md 6)."""
+"""The full strapdown mechanization: quaternion, increments in, the damping law inside (theory.md 6)."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from navcore.compiled import inlined
+from navcore.foundation.compiled import inlined
 
 
 @inlined
@@ -37,7 +37,7 @@ def heading_of(q0, q1, q2, q3):
 def misalignment(q0, q1, q2, q3, t0, t1, t2, t3):
     """Rotation vector phi of C~ = exp(-[phi x]) C from the computed quaternion q and the true one t, rad.
 
-    For small angles C~ = (I - [phi x]) C, the phi-angle of physics.md section 1.
+    For small angles C~ = (I - [phi x]) C, the phi-angle of theory.md section 1.
     """
     s = q0 * t0 + q1 * t1 + q2 * t2 + q3 * t3
     x = -q0 * t1 + q1 * t0 - q2 * t3 + q3 * t2

@@ -12,29 +12,31 @@ import math
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from navcore.compiled import inlined, kernel
-from navcore.control.law import Law
-from navcore.earth import Earth
+from navcore.foundation.compiled import inlined, kernel
+from navcore.foundation.earth import Earth
+from navcore.law.law import LAW_PARAMETERS, LAW_STATE, Law
 from navcore.mechanization.strapdown.attitude import misalignment, quaternion_of
-from navcore.mechanization.strapdown.kernel import _law_epoch
-from navcore.mechanization.strapdown.layout import (
-    E2,
-    G_EQUATOR,
-    HEIGHT0,
-    K6,
-    K12,
-    K_GRAVITY,
+from navcore.mechanization.strapdown.kernel import law_epoch
+from navcore.mechanization.strapdown.records import (
+    CONSTANTS,
     LARGEST_LATITUDE,
-    LAT0,
-    LON0,
-    STATE,
-    STEP,
+    LAST_CALL,
+    constants_of,
 )
 from navcore.mechanization.strapdown.run import Settings, Start, VelocityReference, constants, no_reference
-from navcore.mechanization.strapdown.step import earth_terms, strapdown_step
+from navcore.mechanization.strapdown.step import (
+    EarthTerms,
+    Held,
+    Increment,
+    Navigation,
+    earth_terms,
+    increment_at,
+    strapdown_step,
+)
 from navcore.motion.base import HEADING, LAT, LON, PITCH, ROLL, VE, VN
 from navcore.sensors.imu_simulation.normal import fill_normals, stream_key
 from navcore.sensors.imu_simulation.work import HALF_NORMALS, NORMAL, WORK, W
@@ -54,39 +56,76 @@ ERRORS = 7
 """dV_E, dV_N (m/s), dL, dlambda (rad), phi_E, phi_N, phi_U (rad)."""
 
 
+@inlined
+def _navigation_of(x, j, height):
+    return Navigation(
+        x[_D_LAT * _W + j], x[_D_LON * _W + j], height, x[_V_E * _W + j], x[_V_N * _W + j], 0.0,
+        x[_Q * _W + j], x[(_Q + 1) * _W + j], x[(_Q + 2) * _W + j], x[(_Q + 3) * _W + j],
+        x[_Z * _W + j], x[(_Z + 1) * _W + j], x[(_Z + 2) * _W + j], x[(_Z + 3) * _W + j],
+        x[_M_E * _W + j], x[_M_N * _W + j], 0.0, x[_M_LAT * _W + j],
+    )  # fmt: skip
+
+
+@inlined
+def _keep_navigation(x, j, nav):
+    x[_D_LAT * _W + j], x[_D_LON * _W + j], x[_M_LAT * _W + j] = nav.d_lat, nav.d_lon, nav.m_lat
+    x[_V_E * _W + j], x[_V_N * _W + j] = nav.v_e, nav.v_n
+    x[_Q * _W + j], x[(_Q + 1) * _W + j], x[(_Q + 2) * _W + j] = nav.q0, nav.q1, nav.q2
+    x[(_Q + 3) * _W + j] = nav.q3
+    x[_Z * _W + j], x[(_Z + 1) * _W + j], x[(_Z + 2) * _W + j] = nav.z0, nav.z1, nav.z2
+    x[(_Z + 3) * _W + j] = nav.z3
+    x[_M_E * _W + j], x[_M_N * _W + j] = nav.m_e, nav.m_n
+
+
+@inlined
+def _before(x, j):
+    return Increment(
+        x[_BEFORE * _W + j], x[(_BEFORE + 1) * _W + j], x[(_BEFORE + 2) * _W + j],
+        x[(_BEFORE + 3) * _W + j], x[(_BEFORE + 4) * _W + j], x[(_BEFORE + 5) * _W + j],
+    )  # fmt: skip
+
+
+@inlined
+def _keep_before(x, j, now):
+    x[_BEFORE * _W + j], x[(_BEFORE + 1) * _W + j], x[(_BEFORE + 2) * _W + j] = now.tx, now.ty, now.tz
+    x[(_BEFORE + 3) * _W + j], x[(_BEFORE + 4) * _W + j] = now.bx, now.by
+    x[(_BEFORE + 5) * _W + j] = now.bz
+
+
+@inlined
+def _disturbed(true, x, j):
+    """Increment of one run: the common one and the run's own error."""
+    return Increment(
+        true.tx + x[_ERROR * _W + j], true.ty + x[(_ERROR + 1) * _W + j], true.tz + x[(_ERROR + 2) * _W + j],
+        true.bx + x[(_ERROR + 3) * _W + j], true.by + x[(_ERROR + 4) * _W + j],
+        true.bz + x[(_ERROR + 5) * _W + j],
+    )  # fmt: skip
+
+
+@inlined
+def _terms_of(x, j):
+    return EarthTerms(
+        x[_TERMS * _W + j], x[(_TERMS + 1) * _W + j], x[(_TERMS + 2) * _W + j], x[(_TERMS + 3) * _W + j],
+        x[(_TERMS + 4) * _W + j], x[(_TERMS + 5) * _W + j], x[(_TERMS + 6) * _W + j],
+        x[(_TERMS + 7) * _W + j],
+    )  # fmt: skip
+
+
 @kernel
-def _run_samples(first, last, increments, dt, e2, g_equator, k_gravity, k12, k6, height, x):
+def _run_samples(first, last, increments, con, x):
+    """Integrate samples first..last of a chunk for all runs of a block with what their laws hold."""
+    step, height = constants_of(con), con.height0
     for i in range(first, last):
-        tx, ty, tz = increments[i, 0], increments[i, 1], increments[i, 2]
-        bx, by, bz = increments[i, 3], increments[i, 4], increments[i, 5]
+        true = increment_at(increments, i)
         for j in range(_W):
-            t0, t1, t2 = tx + x[_ERROR * _W + j], ty + x[(_ERROR + 1) * _W + j], tz + x[(_ERROR + 2) * _W + j]
-            b0, b1 = bx + x[(_ERROR + 3) * _W + j], by + x[(_ERROR + 4) * _W + j]
-            b2 = bz + x[(_ERROR + 5) * _W + j]
-            d_lat, m_lat = x[_D_LAT * _W + j], x[_M_LAT * _W + j]
-            (v_e, v_n, _, q0, q1, q2, q3, z0, z1, z2, z3, m_e, m_n, _, m_lat, m_lon) = strapdown_step(
-                dt, e2, g_equator, k_gravity, k12, k6, False,
-                t0, t1, t2, b0, b1, b2,
-                x[_BEFORE * _W + j], x[(_BEFORE + 1) * _W + j], x[(_BEFORE + 2) * _W + j],
-                x[(_BEFORE + 3) * _W + j], x[(_BEFORE + 4) * _W + j], x[(_BEFORE + 5) * _W + j],
-                x[_TERMS * _W + j], x[(_TERMS + 1) * _W + j], x[(_TERMS + 2) * _W + j],
-                x[(_TERMS + 3) * _W + j], x[(_TERMS + 4) * _W + j], x[(_TERMS + 5) * _W + j],
-                x[(_TERMS + 6) * _W + j], x[(_TERMS + 7) * _W + j],
-                d_lat - x[_ORIGIN * _W + j] + 0.5 * m_lat,
-                height, x[_V_E * _W + j], x[_V_N * _W + j], 0.0,
-                x[_Q * _W + j], x[(_Q + 1) * _W + j], x[(_Q + 2) * _W + j], x[(_Q + 3) * _W + j],
-                x[_Z * _W + j], x[(_Z + 1) * _W + j], x[(_Z + 2) * _W + j], x[(_Z + 3) * _W + j],
-                x[_M_E * _W + j], x[_M_N * _W + j], 0.0,
-                x[_C_E * _W + j], x[_C_N * _W + j], x[_A_E * _W + j], x[_A_N * _W + j], 0.0,
+            now = _disturbed(true, x, j)
+            held = Held(x[_C_E * _W + j], x[_C_N * _W + j], x[_A_E * _W + j], x[_A_N * _W + j], 0.0, 0.0)
+            nav = strapdown_step(
+                step, now, _before(x, j), _navigation_of(x, j, height), _terms_of(x, j), x[_ORIGIN * _W + j],
+                held, False,
             )  # fmt: skip
-            x[_BEFORE * _W + j], x[(_BEFORE + 1) * _W + j], x[(_BEFORE + 2) * _W + j] = t0, t1, t2
-            x[(_BEFORE + 3) * _W + j], x[(_BEFORE + 4) * _W + j], x[(_BEFORE + 5) * _W + j] = b0, b1, b2
-            x[_D_LAT * _W + j] = d_lat + m_lat
-            x[_D_LON * _W + j] += m_lon
-            x[_V_E * _W + j], x[_V_N * _W + j] = v_e, v_n
-            x[_Q * _W + j], x[(_Q + 1) * _W + j], x[(_Q + 2) * _W + j], x[(_Q + 3) * _W + j] = q0, q1, q2, q3
-            x[_Z * _W + j], x[(_Z + 1) * _W + j], x[(_Z + 2) * _W + j], x[(_Z + 3) * _W + j] = z0, z1, z2, z3
-            x[_M_E * _W + j], x[_M_N * _W + j], x[_M_LAT * _W + j] = m_e, m_n, m_lat
+            _keep_before(x, j, now)
+            _keep_navigation(x, j, nav)
 
 
 @inlined
@@ -100,59 +139,73 @@ def _draw(number, block, key, again, x, w):
         x[_ERROR * _W + i] = x[_BIAS * _W + i] + x[_WHITE * _W + i] * w[unit + i]
 
 
+class _Runs(NamedTuple):
+    """What each run has of its own, and the common log and truth."""
+
+    con: np.ndarray  # `records.CONSTANTS`, a run each
+    last: np.ndarray  # `records.LAST_CALL`
+    p: np.ndarray  # of the laws
+    s: np.ndarray
+    ring: np.ndarray
+    log: VelocityReference
+    truth: np.ndarray
+    errors: np.ndarray
+
+
+class _Pace(NamedTuple):
+    """Samples of the run, between two calls of the law, two records and two draws of noise (0: none)."""
+
+    final: int
+    law_every: int
+    record_every: int
+    noise_every: int
+
+
 @kernel
-def _epoch(k, run, j, record, con, x, last, truth, epoch_s, epoch_v, epoch_valid, p, s, ring, out):
-    """Earth terms, law and record of one run at sample k."""
+def _epoch(k, run, j, row, x, runs):
+    """Earth terms, law and record of one run, lane j of its block, at sample k."""
+    con, truth = runs.con[run], runs.truth
     d_lat, v_e, v_n = x[_D_LAT * _W + j], x[_V_E * _W + j], x[_V_N * _W + j]
-    q0, q1, q2, q3 = x[_Q * _W + j], x[(_Q + 1) * _W + j], x[(_Q + 2) * _W + j], x[(_Q + 3) * _W + j]
-    lat = con[run, LAT0] + d_lat
+    q = (x[_Q * _W + j], x[(_Q + 1) * _W + j], x[(_Q + 2) * _W + j], x[(_Q + 3) * _W + j])
+    lat = con.lat0 + d_lat
     if not abs(lat) < LARGEST_LATITUDE:
         lat = 0.0 if not math.isfinite(lat) else math.copysign(LARGEST_LATITUDE, lat)
     x[_ORIGIN * _W + j] = d_lat
-    for i, term in enumerate(earth_terms(con[run, E2], lat, con[run, HEIGHT0])):
+    for i, term in enumerate(earth_terms(con.e2, lat, con.height0)):
         x[(_TERMS + i) * _W + j] = term
-    c_e, c_n, a_e, a_n = _law_epoch(
-        k * con[run, STEP], v_e, v_n, q0, q1, q2, q3, con[run], last,
-        epoch_s, epoch_v, epoch_valid, p, s, ring,
-    )  # fmt: skip
-    x[_C_E * _W + j], x[_C_N * _W + j], x[_A_E * _W + j], x[_A_N * _W + j] = c_e, c_n, a_e, a_n
-    if record >= 0:
-        i = record if truth.shape[0] > 1 else 0
+    law = Law(runs.p[run], runs.s[run], runs.ring[run])
+    held = law_epoch(k * con.dt, v_e, v_n, q, runs.last[run], runs.log, law)
+    x[_C_E * _W + j], x[_C_N * _W + j], x[_A_E * _W + j], x[_A_N * _W + j] = held
+    if row >= 0:
+        i = row if truth.shape[0] > 1 else 0
         t0, t1, t2, t3 = quaternion_of(truth[i, PITCH], truth[i, ROLL], truth[i, HEADING])
-        phi_e, phi_n, phi_u = misalignment(q0, q1, q2, q3, t0, t1, t2, t3)
-        out[record, run, 0], out[record, run, 1] = v_e - truth[i, VE], v_n - truth[i, VN]
-        out[record, run, 2] = con[run, LAT0] + d_lat - truth[i, LAT]
-        out[record, run, 3] = con[run, LON0] - truth[i, LON] + x[_D_LON * _W + j]
-        out[record, run, 4], out[record, run, 5], out[record, run, 6] = phi_e, phi_n, phi_u
+        phi_e, phi_n, phi_u = misalignment(q[0], q[1], q[2], q[3], t0, t1, t2, t3)
+        out = runs.errors[row, run]
+        out[0], out[1] = v_e - truth[i, VE], v_n - truth[i, VN]
+        out[2] = con.lat0 + d_lat - truth[i, LAT]
+        out[3] = con.lon0 - truth[i, LON] + x[_D_LON * _W + j]
+        out[4], out[5], out[6] = phi_e, phi_n, phi_u
 
 
 @kernel
-def _advance_block(
-    increments, first, law_every, record_every, final, block, runs, con, x, lasts, noise_every, key,
-    truth, epoch_s, epoch_v, epoch_valid, p, s, ring, out,
-):  # fmt: skip
-    """Advance one block, of which ``runs`` runs are in use, by a chunk."""
-    begin = block * _W
-    dt, w = con[begin, STEP], np.empty(WORK)
+def _advance_block(increments, first, pace, block, lanes, key, x, runs):
+    """Advance one block, of which ``lanes`` lanes are in use, by a chunk."""
+    begin, w = block * _W, np.empty(WORK)
+    con = runs.con[begin]
     k, end = first, first + increments.shape[0]
     while True:
-        if k % law_every == 0 and (k < end or k == final):
-            record = k // record_every if k % record_every == 0 else -1
-            for j in range(runs):
-                run = begin + j
-                _epoch(k, run, j, record, con, x, lasts[run], truth, epoch_s, epoch_v, epoch_valid,
-                       p[run], s[run], ring[run], out)  # fmt: skip
+        if k % pace.law_every == 0 and (k < end or k == pace.final):
+            row = k // pace.record_every if k % pace.record_every == 0 else -1
+            for j in range(lanes):
+                _epoch(k, begin + j, j, row, x, runs)
         if k == end:
             return
-        n = min(law_every - k % law_every, end - k)
-        if noise_every > 0:
-            n = min(n, noise_every - k % noise_every)
-            if k % noise_every == 0 or k == first:
-                _draw(k // noise_every, block, key, k == first, x, w)
-        _run_samples(
-            k - first, k - first + n, increments, dt, con[begin, E2], con[begin, G_EQUATOR],
-            con[begin, K_GRAVITY], con[begin, K12], con[begin, K6], con[begin, HEIGHT0], x,
-        )  # fmt: skip
+        n = min(pace.law_every - k % pace.law_every, end - k)
+        if pace.noise_every > 0:
+            n = min(n, pace.noise_every - k % pace.noise_every)
+            if k % pace.noise_every == 0 or k == first:
+                _draw(k // pace.noise_every, block, key, k == first, x, w)
+        _run_samples(k - first, k - first + n, increments, con, x)
         k += n
 
 
@@ -228,16 +281,21 @@ class BatchRun:
             raise ValueError("samples must be a multiple of record_every, and that of law_every")
         reference = no_reference() if reference is None else reference
         self.settings, self.runs, self.position = settings, len(starts), 0
-        self._reference, self._truth = reference, np.ascontiguousarray(truth, dtype=float)
         self._noise_every = 0 if noise is None else noise.every
         self._key = np.uint64(0 if noise is None else stream_key(noise.seed, "batch.white"))
-        self._con = np.stack([constants(start, settings, earth, reference) for start in starts])
-        self._p, self._s = np.stack([law.p for law in laws]), np.stack([law.s for law in laws])
-        self._ring = np.stack([law.ring for law in laws])
-        self._last = np.zeros((self.runs, STATE))
         blocks = -(-self.runs // WIDTH)
         self._x = np.zeros((blocks, _ROWS * WIDTH))
         self.errors = np.zeros((settings.samples // settings.record_every + 1, self.runs, ERRORS))
+        self._own = _Runs(
+            con=_stacked([constants(start, settings, earth) for start in starts], CONSTANTS),
+            last=np.zeros(self.runs, LAST_CALL),
+            p=_stacked([law.p for law in laws], LAW_PARAMETERS),
+            s=_stacked([law.s for law in laws], LAW_STATE),
+            ring=np.stack([law.ring for law in laws]),
+            log=reference,
+            truth=np.ascontiguousarray(truth, dtype=float),
+            errors=self.errors,
+        )
         for run in range(self.runs):
             self._lay_out(run, starts[run], np.asarray(biases, dtype=float)[run] / settings.rate_hz, before)
             if noise is not None:
@@ -272,17 +330,23 @@ class BatchRun:
             Threads.
         """
         increments = np.ascontiguousarray(increments[: self.settings.samples - self.position], dtype=float)
-        log, set_ = self._reference, self.settings
+        set_ = self.settings
+        pace = _Pace(set_.samples, set_.law_every, set_.record_every, self._noise_every)
 
         def one(block: int) -> None:
+            lanes = min(WIDTH, self.runs - block * WIDTH)
             _advance_block(
-                increments, self.position, set_.law_every, set_.record_every, set_.samples, block,
-                min(WIDTH, self.runs - block * WIDTH), self._con, self._x[block], self._last,
-                self._noise_every, self._key, self._truth, log.time_s, log.velocity, log.valid,
-                self._p, self._s, self._ring, self.errors,
-            )  # fmt: skip
+                increments, self.position, pace, block, lanes, self._key, self._x[block], self._own
+            )
 
         with ThreadPoolExecutor(workers) as pool:
             list(pool.map(one, range(len(self._x))))
         self.position += len(increments)
         return self.position >= self.settings.samples
+
+
+def _stacked(records: Sequence[np.void], kind: np.dtype) -> np.ndarray:
+    out = np.zeros(len(records), kind)
+    for i, each in enumerate(records):
+        out[i] = each
+    return out

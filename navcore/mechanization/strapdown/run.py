@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
 import numpy as np
 
-from navcore.compiled import plain
-from navcore.control.law import Law
-from navcore.earth import Earth
+from navcore.foundation.compiled import plain
+from navcore.foundation.earth import Earth
+from navcore.foundation.records import new_record
+from navcore.law.law import Law
 from navcore.mechanization.recorder import QUANTITIES, Recorder, make_recorder
-from navcore.mechanization.strapdown import layout as at
+from navcore.mechanization.strapdown import records as at
 from navcore.mechanization.strapdown.attitude import quaternion_of
-from navcore.mechanization.strapdown.kernel import advance_kernel
+from navcore.mechanization.strapdown.kernel import Pace, advance_kernel
+from navcore.mechanization.strapdown.log import VelocityReference
 from navcore.mechanization.strapdown.step import THIRD_ORDER, TWO_SAMPLE
 from navcore.motion.base import HEADING, HEIGHT, LAT, LON, PITCH, ROLL, VE, VN, VU
 from navcore.sensors.base import ReferenceErrors
@@ -24,29 +26,6 @@ Vertical = Literal["locked", "altimeter"]
 
 ALTIMETER_TAU_S = 100.0
 """Time constant of the third-order vertical loop: all three poles at -1/tau."""
-
-
-@dataclass(frozen=True)
-class VelocityReference:
-    """The reference velocity itself, as a strapdown run compares it with its own.
-
-    Attributes
-    ----------
-    time_s : ndarray, shape (m,)
-        Epochs, s.
-    velocity : ndarray, shape (m, 2)
-        East, north; with ``body_frame`` starboard, forward (turned by the computed heading), m/s.
-    valid : ndarray of bool, shape (m,)
-    body_frame : bool
-    hold_s : float
-        A sample older than this counts as missing, s.
-    """
-
-    time_s: np.ndarray
-    velocity: np.ndarray
-    valid: np.ndarray
-    body_frame: bool
-    hold_s: float
 
 
 def no_reference() -> VelocityReference:
@@ -63,7 +42,7 @@ def velocity_reference(errors: ReferenceErrors, truth) -> VelocityReference:
     measured = velocity + errors.error
     if errors.body_frame:
         measured = to_ship(measured, np.broadcast_to(heading, len(measured)))
-    return VelocityReference(errors.time_s, measured, errors.valid, errors.body_frame, errors.hold_s)
+    return VelocityReference(errors.time_s, measured, errors.valid, errors.body_frame, float(errors.hold_s))
 
 
 @dataclass(frozen=True)
@@ -142,20 +121,20 @@ class Settings:
         return self.record_every / self.rate_hz
 
 
-def constants(start: Start, settings: Settings, earth: Earth, reference: VelocityReference) -> np.ndarray:
-    """Lay out what the kernel reads and never changes."""
-    con = np.zeros(at.CONSTANTS)
-    con[at.STEP], con[at.E2] = 1.0 / settings.rate_hz, earth.e2
-    con[at.G_EQUATOR], con[at.K_GRAVITY] = earth.g_equator, earth.somigliana_k
+def constants(start: Start, settings: Settings, earth: Earth) -> np.void:
+    """Make the record of what the kernel reads and never changes."""
+    con = new_record(
+        at.CONSTANTS, dt=1.0 / settings.rate_hz, e2=earth.e2, g_equator=earth.g_equator,
+        k_gravity=earth.somigliana_k, lat0=start.lat, lon0=start.lon, height0=start.height,
+    )  # fmt: skip
     if settings.compensation:
-        con[at.K12], con[at.K6] = TWO_SAMPLE, THIRD_ORDER
-    con[at.LAT0], con[at.LON0], con[at.HEIGHT0] = start.lat, start.lon, start.height
-    con[at.BODY_LOG], con[at.HOLD] = float(reference.body_frame), reference.hold_s
+        con["two_sample"], con["third_order"] = TWO_SAMPLE, THIRD_ORDER
     if settings.vertical == "altimeter":
         a = 1.0 / ALTIMETER_TAU_S
         stiffness = 2.0 * earth.gravity(start.lat, start.height) / earth.radii(start.lat)[1]
-        con[at.ALTIMETER] = 1.0
-        con[at.ALT_K1], con[at.ALT_K2], con[at.ALT_K3] = 3.0 * a, 3.0 * a * a + stiffness, a**3
+        con["altimeter"] = True
+        con["altimeter_k1"], con["altimeter_k2"] = 3.0 * a, 3.0 * a * a + stiffness
+        con["altimeter_k3"] = a**3
     return con
 
 
@@ -166,24 +145,24 @@ class StrapdownRun:
     Attributes
     ----------
     settings : Settings
-    con, x : ndarray
-        Constants and state, laid out in `layout`.
+    con, x : record
+        `records.CONSTANTS` and `records.STATE`.
     law : Law
     reference : VelocityReference
     truth : ndarray, shape (records + 1, 15) or (1, 15)
         True states at the recorded times.
     recorder : Recorder
     navigation : ndarray, shape (rows, 11)
-        Navigation solution at the output rows, columns `layout.NAVIGATION`.
+        Navigation solution at the output rows, columns `records.NAVIGATION`.
     position : int
         Samples done.
     code : int
-        `layout.UNDER_WAY`, COMPLETE, DIVERGED (errors out of range) or POLE (too near a pole).
+        `records.UNDER_WAY`, COMPLETE, DIVERGED (errors out of range) or POLE (too near a pole).
     """
 
     settings: Settings
-    con: np.ndarray
-    x: np.ndarray
+    con: np.void
+    x: np.void
     law: Law
     reference: VelocityReference
     truth: np.ndarray
@@ -191,7 +170,6 @@ class StrapdownRun:
     navigation: np.ndarray
     position: int = 0
     code: int = at.UNDER_WAY
-    _errors: np.ndarray = field(default_factory=lambda: np.zeros(7))
 
     @cached_property
     def _heights(self) -> np.ndarray:
@@ -219,14 +197,12 @@ class StrapdownRun:
             Angle (rad) and velocity increments (m/s) in body axes, the sample after the last one first.
         """
         room = self.settings.samples - self.position
-        r, log, set_ = self.recorder, self.reference, self.settings
+        set_ = self.settings
         self.position, self.code = advance_kernel(
-            np.ascontiguousarray(increments[:room], dtype=float), self.position, set_.samples, set_.law_every,
-            set_.record_every, self.con, self.x, self.truth, set_.record_step_s,
-            self._heights, log.time_s, log.velocity, log.valid,
-            self.law.p, self.law.s, self.law.ring, self._errors, self.navigation,
-            r.row_steps, r.rows, r.stats, r.bin_width, r.bin_low, r.bin_high, r.bin_order,
-            r.buffer, r.cursor,
+            np.ascontiguousarray(increments[:room], dtype=float), self.position,
+            Pace(set_.samples, set_.law_every, set_.record_every, set_.record_step_s),
+            self.con, self.x, self.truth, self._heights, self.reference, self.law, self.navigation,
+            self.recorder,
         )  # fmt: skip
         return self.code != at.UNDER_WAY
 
@@ -251,7 +227,7 @@ def start_run(
     earth : Earth
         WGS-84 or the sphere.
     law : Law
-        From `navcore.control.law.prepare_law` with ``law_step_s = law_every / rate_hz``.
+        From `navcore.law.law.prepare_law` with ``law_step_s = law_every / rate_hz``.
     truth : ndarray, shape (records + 1, 15) or (1, 15)
         True states at the recorded times.
     reference : VelocityReference, optional
@@ -270,19 +246,20 @@ def start_run(
     if truth.shape[0] not in (1, records + 1):
         raise ValueError(f"{records + 1} recorded states, but {truth.shape[0]} rows of truth")
     reference = no_reference() if reference is None else reference
-    x = np.zeros(at.STATE)
-    x[at.HEIGHT], x[at.V_E : at.V_U + 1] = start.height, start.velocity
-    x[at.Q0 : at.Q0 + 4] = start.quaternion
+    velocity = np.array(start.velocity, dtype=float)
     if settings.vertical == "locked":
-        x[at.V_U] = 0.0
+        velocity[2] = 0.0
+    x = new_record(
+        at.STATE, height=start.height, v=velocity, q=start.quaternion,
+        last={"v_e": velocity[0], "v_n": velocity[1]},
+    )  # fmt: skip
     if before is not None:
-        x[at.THETA : at.THETA + 6] = before
-    x[at.LAST_V_E], x[at.LAST_V_N] = start.velocity[:2]
+        x["before"] = before
     recorder = make_recorder(records, settings.record_step_s, settings.output_step_s)
     assert recorder.stats.shape[0] == QUANTITIES
     return StrapdownRun(
         settings=settings,
-        con=constants(start, settings, earth, reference),
+        con=constants(start, settings, earth),
         x=x,
         law=law,
         reference=reference,

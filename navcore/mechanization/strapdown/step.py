@@ -14,31 +14,104 @@ the renormalisation included: a plain product drifts by 1e-7 m/s in three hours 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
-from navcore.compiled import inlined
-from navcore.earth import EARTH_RATE, SEMI_MAJOR_AXIS
+from navcore.foundation.compiled import inlined
+from navcore.foundation.earth import EARTH_RATE, SEMI_MAJOR_AXIS, normal_gravity
 
 TWO_SAMPLE = 1.0 / 12.0
 """Weight of the coning and sculling terms with the previous increment (Savage 1998)."""
 THIRD_ORDER = 1.0 / 6.0
 
 
+class Increment(NamedTuple):
+    """What an IMU gives over one interval in body axes: angles t (rad) and velocities b (m/s)."""
+
+    tx: float
+    ty: float
+    tz: float
+    bx: float
+    by: float
+    bz: float
+
+
+class Constants(NamedTuple):
+    """What a step needs and never changes: interval (s), Earth, weights of the compensation terms."""
+
+    dt: float
+    e2: float
+    g_equator: float
+    k_gravity: float
+    two_sample: float
+    third_order: float
+
+
+class EarthTerms(NamedTuple):
+    """Sine and cosine of a latitude, then value and slope of 1/(N+h), 1/(M+h) (1/m) and sec L."""
+
+    sin: float
+    cos: float
+    inv_n: float
+    inv_n_slope: float
+    inv_m: float
+    inv_m_slope: float
+    sec: float
+    sec_slope: float
+
+
+class Navigation(NamedTuple):
+    """What changes with each interval.
+
+    Latitude and longitude (rad) are offsets from the start; q is the quaternion body to navigation axes and z
+    its carries; m are the changes of velocity (m/s) and latitude over the last interval.
+    """
+
+    d_lat: float
+    d_lon: float
+    height: float
+    v_e: float
+    v_n: float
+    v_u: float
+    q0: float
+    q1: float
+    q2: float
+    q3: float
+    z0: float
+    z1: float
+    z2: float
+    z3: float
+    m_e: float
+    m_n: float
+    m_u: float
+    m_lat: float
+
+
+class Held(NamedTuple):
+    """What law and altimeter hold: c (m/s) into the transport rate, a (m/s^2), a rate of the height (m/s)."""
+
+    c_e: float
+    c_n: float
+    a_e: float
+    a_n: float
+    a_u: float
+    height_rate: float
+
+
 @inlined
-def compensated_angle(k12, tx, ty, tz, px, py, pz):
-    """Rotation vector of an interval: the angle increment with coning, previous increment p (rad)."""
+def compensated_angle(k12, now, before):
+    """Rotation vector of an interval: the angle increment with coning from the previous one (rad)."""
     return (
-        tx + k12 * (py * tz - pz * ty),
-        ty + k12 * (pz * tx - px * tz),
-        tz + k12 * (px * ty - py * tx),
+        now.tx + k12 * (before.ty * now.tz - before.tz * now.ty),
+        now.ty + k12 * (before.tz * now.tx - before.tx * now.tz),
+        now.tz + k12 * (before.tx * now.ty - before.ty * now.tx),
     )
 
 
 @inlined
-def compensated_velocity(k12, k6, tx, ty, tz, bx, by, bz, px, py, pz, ex, ey, ez):
-    """Velocity increment in the axes at the interval's start: rotation, sculling and third-order term.
-
-    Angles t, velocities b of this interval; p, e of the previous one (rad, m/s).
-    """
+def compensated_velocity(k12, k6, now, before):
+    """Velocity increment in the axes at the interval's start: rotation, sculling and third-order term."""
+    tx, ty, tz, bx, by, bz = now
+    px, py, pz, ex, ey, ez = before
     rx, ry, rz = ty * bz - tz * by, tz * bx - tx * bz, tx * by - ty * bx
     sx = py * bz - pz * by + ey * tz - ez * ty
     sy = pz * bx - px * bz + ez * tx - ex * tz
@@ -93,7 +166,7 @@ def compensated_sum(total, carry, change):
 
 @inlined
 def earth_terms(e2, lat, height):
-    """Sine and cosine of a latitude (rad), then value and slope of 1/(N+h), 1/(M+h) and sec L.
+    """`EarthTerms` of a latitude (rad) and height (m).
 
     Between two calls the step takes them as linear in the latitude (sine and cosine as quadratic). At
     300 m/s and 1 s between calls this leaves 1e-9 of them.
@@ -104,53 +177,72 @@ def earth_terms(e2, lat, height):
     stretch = e2 * s * c / x
     inv_n, inv_m, sec = 1.0 / (n + height), 1.0 / (m + height), 1.0 / c
     slope_n, slope_m = -stretch * n * inv_n * inv_n, -3.0 * stretch * m * inv_m * inv_m
-    return s, c, inv_n, slope_n, inv_m, slope_m, sec, s * sec * sec
+    return EarthTerms(s, c, inv_n, slope_n, inv_m, slope_m, sec, s * sec * sec)
 
 
 @inlined
-def strapdown_step(
-    dt, e2, g_equator, k_gravity, k12, k6, altimeter,
-    tx, ty, tz, bx, by, bz, px, py, pz, ex, ey, ez,
-    sin_0, cos_0, n_0, n_1, m_0, m_1, sec_0, sec_1, offset,
-    height, v_e, v_n, v_u, q0, q1, q2, q3, z0, z1, z2, z3, m_e, m_n, m_u,
-    c_e, c_n, a_e, a_n, a_u,
-):  # fmt: skip
-    """Advance one interval of dt s.
+def strapdown_step(con, now, before, nav, terms, origin, held, altimeter):
+    """Advance one interval; return the next `Navigation`.
 
-    Increments t (rad), b (m/s), the previous p, e; `earth_terms` and the offset of the mid-interval
-    latitude from theirs; height (m), velocity (m/s), quaternion q with carries z; m: changes of velocity
-    over the previous interval. The law's c (m/s, into the transport rate) and a (m/s^2). Returns velocity,
-    quaternion, carries and the changes of velocity, latitude and longitude.
+    Parameters
+    ----------
+    con : Constants
+    now, before : Increment
+        Of this interval and the previous one.
+    nav : Navigation
+    terms, origin : EarthTerms, float
+        Earth terms, and the offset of the latitude (rad) at which they were formed.
+    held : Held
+    altimeter : bool
+        Whether the vertical channel runs; height and vertical velocity stay otherwise.
     """
-    ux, uy, uz = compensated_velocity(k12, k6, tx, ty, tz, bx, by, bz, px, py, pz, ex, ey, ez)
-    d_e, d_n, d_u = turned(q0, q1, q2, q3, ux, uy, uz)
-    sm, cm = sin_0 + offset * (cos_0 - 0.5 * offset * sin_0), cos_0 - offset * (sin_0 + 0.5 * offset * cos_0)
-    inv_n, inv_m, sec = n_0 + offset * n_1, m_0 + offset * m_1, sec_0 + offset * sec_1
-    mid_e, mid_n = v_e + 0.5 * m_e, v_n + 0.5 * m_n
+    dt, v_e, v_n, v_u = con.dt, nav.v_e, nav.v_n, nav.v_u
+    ux, uy, uz = compensated_velocity(con.two_sample, con.third_order, now, before)
+    d_e, d_n, d_u = turned(nav.q0, nav.q1, nav.q2, nav.q3, ux, uy, uz)
+    offset = nav.d_lat - origin + 0.5 * nav.m_lat
+    sm = terms.sin + offset * (terms.cos - 0.5 * offset * terms.sin)
+    cm = terms.cos - offset * (terms.sin + 0.5 * offset * terms.cos)
+    inv_n, inv_m = terms.inv_n + offset * terms.inv_n_slope, terms.inv_m + offset * terms.inv_m_slope
+    sec = terms.sec + offset * terms.sec_slope
+    mid_e, mid_n = v_e + 0.5 * nav.m_e, v_n + 0.5 * nav.m_n
     earth_n, earth_u = EARTH_RATE * cm, EARTH_RATE * sm
     transport_n = mid_e * inv_n
     w_u = earth_u + transport_n * sm * sec
-    # The platform turns with V* = V_c + c in its level components, physics.md section 3.
-    w_e, w_n = -(mid_n + c_n) * inv_m, earth_n + (mid_e + c_e) * inv_n
+    # The platform turns with V* = V_c + c in its level components, theory.md section 3.
+    w_e, w_n = -(mid_n + held.c_n) * inv_m, earth_n + (mid_e + held.c_e) * inv_n
     o_u = w_u + earth_u
     half = 0.5 * dt
     if altimeter:
-        o_e, o_n, mid_u, s2 = -mid_n * inv_m, 2.0 * earth_n + transport_n, v_u + 0.5 * m_u, sm * sm
-        surface = g_equator * (1.0 + k_gravity * s2) / math.sqrt(1.0 - e2 * s2)
-        gravity = surface * (1.0 - (2.0 / SEMI_MAJOR_AXIS) * height)
-        n_e = d_e - half * (w_n * d_u - w_u * d_n) - dt * (o_n * mid_u - o_u * mid_n - a_e)
-        n_n = d_n - half * (w_u * d_e - w_e * d_u) - dt * (o_u * mid_e - o_e * mid_u - a_n)
-        n_u = d_u - half * (w_e * d_n - w_n * d_e) - dt * (o_e * mid_n - o_n * mid_e + gravity - a_u)
+        o_e, o_n, mid_u = -mid_n * inv_m, 2.0 * earth_n + transport_n, v_u + 0.5 * nav.m_u
+        gravity = normal_gravity(con.g_equator, con.k_gravity, con.e2, sm, nav.height)
+        n_e = d_e - half * (w_n * d_u - w_u * d_n) - dt * (o_n * mid_u - o_u * mid_n - held.a_e)
+        n_n = d_n - half * (w_u * d_e - w_e * d_u) - dt * (o_u * mid_e - o_e * mid_u - held.a_n)
+        n_u = d_u - half * (w_e * d_n - w_n * d_e) - dt * (o_e * mid_n - o_n * mid_e + gravity - held.a_u)
+        height = nav.height + dt * (0.5 * (v_u + (v_u + n_u)) + held.height_rate)
     else:
-        n_e = d_e - half * (w_n * d_u - w_u * d_n) + dt * (o_u * mid_n + a_e)
-        n_n = d_n - half * (w_u * d_e - w_e * d_u) - dt * (o_u * mid_e - a_n)
-        n_u = 0.0
+        n_e = d_e - half * (w_n * d_u - w_u * d_n) + dt * (o_u * mid_n + held.a_e)
+        n_n = d_n - half * (w_u * d_e - w_e * d_u) - dt * (o_u * mid_e - held.a_n)
+        n_u, height = 0.0, nav.height
     d_lat = (v_n + 0.5 * n_n) * inv_m * dt
     d_lon = (v_e + 0.5 * n_e) * inv_n * sec * dt
-    ax, ay, az = compensated_angle(k12, tx, ty, tz, px, py, pz)
-    f0, f1, f2, f3 = quaternion_change(q0, q1, q2, q3, ax, ay, az, -half * w_e, -half * w_n, -half * w_u)
-    q0, z0 = compensated_sum(q0, z0, f0)
-    q1, z1 = compensated_sum(q1, z1, f1)
-    q2, z2 = compensated_sum(q2, z2, f2)
-    q3, z3 = compensated_sum(q3, z3, f3)
-    return v_e + n_e, v_n + n_n, v_u + n_u, q0, q1, q2, q3, z0, z1, z2, z3, n_e, n_n, n_u, d_lat, d_lon
+    ax, ay, az = compensated_angle(con.two_sample, now, before)
+    f0, f1, f2, f3 = quaternion_change(
+        nav.q0, nav.q1, nav.q2, nav.q3, ax, ay, az, -half * w_e, -half * w_n, -half * w_u
+    )
+    q0, z0 = compensated_sum(nav.q0, nav.z0, f0)
+    q1, z1 = compensated_sum(nav.q1, nav.z1, f1)
+    q2, z2 = compensated_sum(nav.q2, nav.z2, f2)
+    q3, z3 = compensated_sum(nav.q3, nav.z3, f3)
+    return Navigation(
+        nav.d_lat + d_lat, nav.d_lon + d_lon, height, v_e + n_e, v_n + n_n, v_u + n_u,
+        q0, q1, q2, q3, z0, z1, z2, z3, n_e, n_n, n_u, d_lat,
+    )  # fmt: skip
+
+
+@inlined
+def increment_at(increments, i):
+    """Row i of a chunk of increments (n, 6)."""
+    return Increment(
+        increments[i, 0], increments[i, 1], increments[i, 2],
+        increments[i, 3], increments[i, 4], increments[i, 5],
+    )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Increments of a simulated IMU, by quadrature of the analytic truth (physics.md 6)."""
+"""Increments of a simulated IMU, by quadrature of the analytic truth (theory.md 6)."""
 
 from __future__ import annotations
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from navcore.compiled import kernel
+from navcore.foundation.compiled import kernel
 from navcore.motion.base import HEIGHT, LAT
-from navcore.motion.kinematics import COURSE, PROFILE, REST, SWING, TRACK, WAVES, WIDTH
-from navcore.motion.pieces import fill_track
+from navcore.motion.kinematics import COURSE, PIECES, PROFILE, REST, SWING, WAVES, WIDTH
+from navcore.motion.pieces import fill_pieces
 from navcore.motion.profile import fill_profile
 from navcore.motion.waves import fill_waves
 from navcore.sensors.imu_simulation.corrupt import SUMS, add_sums, fill_errors, write_measured
@@ -27,9 +27,32 @@ assert W == WIDTH
 
 @kernel
 def simulate_blocks(
-    kind, first_block, blocks, block_samples, dt, rest, oscillations, turns, legs, nodes, attitude, place,
-    e2, g_equator, k, flags, key, bias, drift, white, coupling, lsb, left, measured, sums,
-):  # fmt: skip
+    kind,
+    first_block,
+    blocks,
+    block_samples,
+    dt,
+    rest,
+    oscillations,
+    turns,
+    legs,
+    nodes,
+    attitude,
+    place,
+    e2,
+    g_equator,
+    k,
+    flags,
+    key,
+    bias,
+    drift,
+    white,
+    coupling,
+    lsb,
+    left,
+    measured,
+    sums,
+):
     """Measured increments of ``blocks`` blocks of ``block_samples`` each into ``measured`` (n, 6).
 
     ``kind`` to ``attitude``: the motion (`navcore.motion.kinematics.Kinematics`); ``turns``: its
@@ -58,8 +81,8 @@ def simulate_blocks(
             if kind == COURSE:
                 fill_course(t0, dt, legs, nodes, place, columns, samples, w)
                 fill_navigation(padded, e2, g_equator, k, w)
-            elif kind == TRACK:
-                fill_track(t0, dt, legs, place, rest[HEIGHT], e2, columns, samples, w)
+            elif kind == PIECES:
+                fill_pieces(t0, dt, legs, place, e2, columns, samples, w)
                 fill_navigation(padded, e2, g_equator, k, w)
             elif kind == PROFILE:
                 fill_profile(t0, dt, legs, nodes, attitude, place, columns, samples, w)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from navcore.compiled import inlined
+from navcore.foundation.compiled import inlined
 from navcore.sensors.imu_simulation.normal import fill_normals
 from navcore.sensors.imu_simulation.work import ERR, HALF_NORMALS, INC, NORMAL, C, W
 

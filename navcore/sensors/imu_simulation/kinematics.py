@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from navcore.compiled import inlined
+from navcore.foundation.compiled import inlined
+from navcore.foundation.trigonometry import sincos_cycles
 from navcore.motion.base import (
     AE,
     AN,
@@ -20,7 +21,6 @@ from navcore.motion.base import (
 )
 from navcore.motion.course import course_state_at, leg_at, node_at
 from navcore.sensors.imu_simulation.work import W
-from navcore.trigonometry import sincos_cycles
 
 _TWO_PI = 6.283185307179586
 

@@ -10,9 +10,9 @@ import hashlib
 
 import numpy as np
 
-from navcore.compiled import inlined, kernel
+from navcore.foundation.compiled import inlined, kernel
+from navcore.foundation.trigonometry import sincos_cycles
 from navcore.sensors.imu_simulation.work import HALF_NORMALS, NORMAL, W
-from navcore.trigonometry import sincos_cycles
 
 _MULTIPLIER = np.uint64(0xD256D193)
 _WEYL = np.uint64(0x9E3779B9)

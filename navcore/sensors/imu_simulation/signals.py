@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import math
 
-from navcore.compiled import inlined
-from navcore.earth import EARTH_RATE, meridian_radius, normal_gravity, prime_vertical_radius
+from navcore.foundation.compiled import inlined
+from navcore.foundation.earth import EARTH_RATE, meridian_radius, normal_gravity, prime_vertical_radius
+from navcore.foundation.trigonometry import sincos
 from navcore.motion.base import (
     AE,
     AN,
@@ -28,7 +29,6 @@ from navcore.motion.base import (
     VU,
 )
 from navcore.sensors.imu_simulation.work import INC, NAV, SIG, TRIG, C, W
-from navcore.trigonometry import sincos
 
 
 @inlined

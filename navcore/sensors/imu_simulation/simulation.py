@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from navcore.earth import Earth
-from navcore.errors import InputError
+from navcore.foundation.earth import Earth
+from navcore.foundation.errors import InputError
 from navcore.motion.base import MotionParameters, Site
 from navcore.motion.kinematics import Kinematics
 from navcore.sensors.imu import Imu
@@ -81,9 +81,15 @@ class ImuSimulation:
     def before(self) -> np.ndarray:
         """Perfect increment of the interval that ends at t = 0, shape (6,)."""
         perfect = ImuSimulation(
-            self.motion, self.site, self.earth, Imu(), self.rate_hz, max(self.samples, self.block), 0,
+            self.motion,
+            self.site,
+            self.earth,
+            Imu(),
+            self.rate_hz,
+            max(self.samples, self.block),
+            0,
             self._start_utc,
-        )  # fmt: skip
+        )
         measured = np.empty((self.block, 6))
         earlier = self._kinematics.moved(-1.0 / self.rate_hz)
         perfect._fill(0, 1, measured, np.empty((0, 6)), kinematics=earlier)
@@ -128,12 +134,32 @@ class ImuSimulation:
         e, earth, dt = self._errors, self.earth, 1.0 / self.rate_hz
         kin = kinematics or self._kinematics
         simulate_blocks(
-            kin.kind, first, blocks, self.block, dt, kin.rest, kin.oscillations, self._turns, kin.legs,
-            kin.nodes, kin.attitude, np.zeros(2, np.int64) if place is None else place,
-            earth.e2, earth.g_equator, earth.somigliana_k, e.flags | (SUMS if len(sums) else 0),
-            e.key, e.bias, e.drift[first : first + blocks], e.white, e.coupling,
-            e.lsb, e.left, measured, sums,
-        )  # fmt: skip
+            kin.kind,
+            first,
+            blocks,
+            self.block,
+            dt,
+            kin.rest,
+            kin.oscillations,
+            self._turns,
+            kin.legs,
+            kin.nodes,
+            kin.attitude,
+            np.zeros(2, np.int64) if place is None else place,
+            earth.e2,
+            earth.g_equator,
+            earth.somigliana_k,
+            e.flags | (SUMS if len(sums) else 0),
+            e.key,
+            e.bias,
+            e.drift[first : first + blocks],
+            e.white,
+            e.coupling,
+            e.lsb,
+            e.left,
+            measured,
+            sums,
+        )
 
 
 class _Errors:

@@ -1,0 +1,172 @@
+"""The controls of a page by their ids: what they hold, locking them, showing what they hold again.
+
+viser knows controls by the handles that it returned, not by the ids in its messages. Each function says what
+the public interface lacks; `tests/attack/test_viser_insides.py` fails when an inside changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import viser
+from viser import _messages as messages
+
+_FREE, _GREYED = "_schuler_free", "_schuler_greyed"
+"""Marks on a client's gui: ids that a locked page may still use, and those that the lock has disabled."""
+
+
+@dataclass(frozen=True)
+class Control:
+    """What a browser's new value for a control is judged by.
+
+    Attributes
+    ----------
+    label : str
+        As the visitor sees it.
+    value : object
+        The value the server holds; its type is the type of the control.
+    disabled : bool
+        Writes are refused.
+    options : tuple of str or None
+        The only values allowed.
+    bounds : tuple of float or None
+        Set for controls whose widget cannot leave its range (sliders). Number boxes can: the scenario judges
+        them.
+    takes_files : bool
+        It is an upload button.
+    """
+
+    label: str
+    value: object
+    disabled: bool
+    options: tuple[str, ...] | None
+    bounds: tuple[float, float] | None
+    takes_files: bool
+
+
+def find_control(server: viser.ViserServer, client_id: int, uuid: str) -> Control | None:
+    """Return the control a browser's message is about; viser offers no look-up by its id."""
+    handle = _find_handle(server, client_id, uuid)
+    if handle is None:
+        return None
+    state, props = handle._impl, handle._impl.props
+    bounds = None
+    if isinstance(handle, (viser.GuiSliderHandle, viser.GuiMultiSliderHandle)):
+        bounds = (float(props.min), float(props.max))
+    elif isinstance(handle, (viser.GuiRgbHandle, viser.GuiRgbaHandle)):
+        bounds = (0.0, 255.0)
+    return Control(
+        label=str(getattr(props, "label", "") or ""),
+        value=state.value,
+        disabled=bool(getattr(props, "disabled", False)) or _is_locked(server, client_id, uuid),
+        options=getattr(props, "options", None),
+        bounds=bounds,
+        takes_files=isinstance(handle, viser.GuiUploadButtonHandle),
+    )
+
+
+def lock_controls(client: viser.ClientHandle, but: frozenset[str] | None) -> None:
+    """Let a page's user change nothing: controls are shown disabled, and what is sent for them is dropped.
+
+    viser knows no list of a page's controls.
+
+    Parameters
+    ----------
+    client : viser.ClientHandle
+        The page. Controls made later are locked too, but shown so only after another call.
+    but : frozenset of str or None
+        Ids of the controls that stay free; None frees all that this function has locked.
+    """
+    gui: Any = client.gui
+    greyed: set[str] = getattr(gui, _GREYED, set())
+    setattr(gui, _FREE, but)
+    setattr(gui, _GREYED, greyed)
+    for uuid, handle in list(gui._gui_input_handle_from_uuid.items()):
+        if isinstance(handle, viser.GuiButtonGroupHandle):  # viser cannot show it disabled
+            continue
+        if but is None and uuid in greyed:
+            handle.disabled = False
+        elif but is not None and uuid not in but and not getattr(handle, "disabled", True):
+            handle.disabled = True
+            greyed.add(uuid)
+    if but is None:
+        greyed.clear()
+
+
+def _is_locked(server: viser.ViserServer, client_id: int, uuid: str) -> bool:
+    client = server.get_clients().get(client_id)
+    free = None if client is None else getattr(client.gui, _FREE, None)
+    return free is not None and uuid not in free
+
+
+def show_held_value(server: viser.ViserServer, client_id: int, uuid: str) -> None:
+    """Send the held value to a page that shows another one; assigning an equal value sends nothing."""
+    handle = _find_handle(server, client_id, uuid)
+    if handle is not None and not handle._impl.is_button:
+        _queue(server, client_id, messages.GuiUpdateMessage(uuid, {"value": handle._impl.value}))
+
+
+def end_upload(server: viser.ViserServer, client_id: int, component: str, transfer: str, size: int) -> None:
+    """Let the page's progress bar end. Without it the button of a refused upload stays blocked."""
+    _queue(server, client_id, messages.FileTransferPartAck(component, transfer, size, size))
+
+
+def show_held_values(client: viser.ClientHandle, ids: Iterable[str]) -> None:
+    """Send the held values of some controls to a page that may show others."""
+    for id in ids:
+        show_held_value(client._viser_server, client.client_id, id)
+
+
+def forget_upload(server: viser.ViserServer, client_id: int, transfer: str) -> None:
+    """Drop the parts of an upload that have come: viser keeps them until the last one has come."""
+    client = server.get_clients().get(client_id)
+    if client is not None:
+        client.gui._current_file_upload_states.pop(transfer, None)
+
+
+def _queue(server: viser.ViserServer, client_id: int, message: messages.Message) -> None:
+    client = server.get_clients().get(client_id)
+    if client is not None:
+        client._websock_connection.queue_message(message)
+
+
+def _find_handle(server: viser.ViserServer, client_id: int, uuid: str) -> Any:
+    client = server.get_clients().get(client_id)
+    for owner in (client, server):
+        handle = None if owner is None else owner.gui._gui_input_handle_from_uuid.get(uuid)
+        if handle is not None:
+            return handle
+    return None
+
+
+def show_numbers(plot: viser.GuiUplotHandle, data: tuple[np.ndarray, ...]) -> None:
+    """Send a plot over time its numbers, if they are others, as float32: viser sends float64 only."""
+    single = in_single(data)
+    props: Any = plot._impl.props
+    held = props.data
+    if len(held) == len(single) and all(map(_same, held, single)):
+        return
+    props.data = single
+    plot._queue_update("data", single)
+
+
+def in_single(data: tuple[np.ndarray, ...]) -> tuple[np.ndarray, ...]:
+    """Numbers as float32: a plot that is made with them shows the same ones as one that they are sent to."""
+    return tuple(np.asarray(values, dtype=np.float32) for values in data)
+
+
+def _same(one: np.ndarray, other: np.ndarray) -> bool:
+    return np.array_equal(one, other, equal_nan=True)
+
+
+def id_of(handle: Any) -> str:
+    """Id of a control, in viser's messages and in the page; viser keeps it to itself."""
+    return handle._impl.uuid
+
+
+def control_with(gui: viser.GuiApi, id: str) -> Any:
+    """Return the handle of a client's control from its id, None when there is none."""
+    return gui._gui_input_handle_from_uuid.get(id)

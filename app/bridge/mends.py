@@ -1,0 +1,77 @@
+"""What viser is mended in: the queue of each page, and the threads in which callbacks run."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import viser
+from viser.infra import _infra
+from viser.infra._async_message_buffer import AsyncMessageBuffer
+
+from app.bridge.pool import FairPool
+
+_CALLBACK_THREADS = 16
+
+
+class _LoopEvent(asyncio.Event):
+    """An event that is set in its event loop alone; from another thread nothing happens."""
+
+    def set(self) -> None:
+        """Set the event, if this is the thread of an event loop."""
+        if asyncio._get_running_loop() is not None:
+            super().set()
+
+
+@dataclass
+class MendedBuffer(AsyncMessageBuffer):
+    """viser's queue of what is to be sent to a page, without its lost wake-up.
+
+    viser's ``push`` sets the queue's `asyncio.Event` in the calling thread *and* has the event loop set it.
+    When the first call falls between the loop's look at the event and its entry among the waiters, the event
+    is set, nobody is woken, and the second call does nothing, because the event is set already: the message
+    stays in the queue until the next one comes, which may be never. Without the first call nothing is lost:
+    whatever is pushed or ends an atomic block has the event loop set the event.
+    """
+
+    def __post_init__(self) -> None:
+        """Exchange the event."""
+        self.message_event = _LoopEvent()
+
+
+def mend_queues() -> None:
+    """Let every page that connects from now on have a mended queue."""
+    setattr(_infra, AsyncMessageBuffer.__name__, MendedBuffer)
+
+
+def share_threads_fairly(server: viser.ViserServer) -> None:
+    """Exchange viser's pool, where one visitor's callbacks can fill all threads and the queue before them."""
+    pool: Any = FairPool(_CALLBACK_THREADS, _visitor_of, _read_again)
+    server._thread_executor.shutdown(wait=False)
+    server._thread_executor = server.gui._thread_executor = server.scene._thread_executor = pool
+
+
+def forget_callbacks(server: viser.ViserServer, client_id: int) -> None:
+    """Drop the callbacks of a visitor who has gone that have not begun."""
+    pool: Any = server._thread_executor
+    pool.forget(client_id)
+
+
+def _visitor_of(arguments: tuple[Any, ...]) -> object:
+    event = arguments[0] if arguments else None
+    owner = event if hasattr(event, "client_id") else getattr(event, "client", None)
+    return getattr(owner, "client_id", None)
+
+
+def _read_again(call: Callable[..., Any], arguments: tuple[Any, ...]) -> object:
+    """A control's callback reads the value the control holds then: of several that wait, one is enough."""
+    event = arguments[0] if arguments else None
+    if isinstance(event, viser.CameraHandle):
+        return call, id(event)
+    target = getattr(event, "target", None)
+    state: Any = getattr(target, "_impl", None)
+    if isinstance(target, viser.GuiUploadButtonHandle) or getattr(state, "is_button", True):
+        return None
+    return call, state.uuid

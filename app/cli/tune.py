@@ -1,0 +1,128 @@
+"""``schuler tune``: the best setting of a method under requirements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from tyro.conf import Positional, UseAppendAction, arg
+
+from app.cli.table import columns, number
+from app.cli.terminal import emit, emit_json, on_terminal, say
+
+if TYPE_CHECKING:
+    from navcore.design.tune import Tuned
+
+
+@dataclass(frozen=True)
+class TuneCommand:
+    """Find the parameters of a method that make an objective least while requirements are kept.
+
+    Objectives and requirements: tilt_rms, velocity_rms, heading_rms, position_rms, settling_s, overshoot,
+    log_tilt, damping_ratio, h0_deviation, h_slope_s; an objective may be a sum, tilt_rms + 0.5*velocity_rms.
+
+    Attributes
+    ----------
+    scenario : str
+        Name of a preset, or a TOML file.
+    objective : str
+        What to make small.
+    vary : tuple of str
+        A number of a method, e.g. method.1.network.sigma, or with a range method.1.network.sigma=1e-4:0.1.
+    require : tuple of str
+        A limit, e.g. 'settling_s<=3600' or 'tilt_rms<=5arcsec'.
+    worst_of : tuple of str
+        A further scenario in which the same method counts too: the worst of all is made small.
+    along : bool
+        Over the scenario's run, in place of the steady state at rest.
+    set : tuple of str
+        Override one field of the scenario first.
+    out : Path or None
+        File for the scenario with the best setting.
+    json : bool
+        Print one JSON document.
+    quiet : bool
+        No progress bar.
+    """
+
+    scenario: Annotated[Positional[str], arg(metavar="SCENARIO")]
+    objective: Annotated[str, arg(metavar="NAME")]
+    vary: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="FIELD[=LOW:HIGH]")] = ()
+    require: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="NAME<=VALUE")] = ()
+    worst_of: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="SCENARIO")] = ()
+    along: bool = False
+    set: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="KEY=VALUE")] = ()
+    out: Annotated[Path | None, arg(metavar="FILE")] = None
+    json: bool = False
+    quiet: bool = False
+
+    def execute(self) -> int:
+        """Search and print; 3 when it was stopped."""
+        from app.cli.progress import Bar
+        from app.cli.stop import stop_on_signal
+        from navcore.design.tune import tune
+        from navcore.foundation.errors import Fault, InputError
+        from navcore.scenario.file import load, to_toml
+
+        scenario = load(self.scenario, self.set)
+        others = [load(other) for other in self.worst_of]
+        with stop_on_signal() as stopped, Bar("tuning", on_terminal() and not self.quiet) as bar:
+            found = tune(
+                scenario,
+                self.objective,
+                self.vary,
+                self.require,
+                along=self.along,
+                worst_of=others,
+                progress=bar.advance,
+                cancelled=stopped,
+            )
+        if self.out is not None:
+            try:
+                self.out.write_text(to_toml(found.scenario), encoding="utf-8")
+            except OSError as error:
+                raise InputError(
+                    Fault("", "--out", str(self.out), f"cannot be written: {error.strerror}")
+                ) from None
+        if self.json:
+            emit_json(found.as_dict())
+        else:
+            emit("\n".join(tune_text(self.objective, found)))
+        if found.stopped:
+            say(f"{self.scenario}: stopped; this is the best so far")
+        return 3 if found.stopped else 0
+
+
+def tune_text(objective: str, found: Tuned) -> list[str]:
+    """Lines: the best values and how flat the optimum is, the objective before and after, what holds it."""
+    rows = [["parameter", "best", "within 5 %", ""]]
+    for field, value in found.best.items():
+        low, high = found.flat.get(field, (value, value))
+        end = "at the end of its range" if field in found.at_end_of_range else ""
+        rows.append([field, number(value, 5), f"{number(low, 3)} to {number(high, 3)}", end])
+    lines = [*columns(rows), ""]
+    lines += columns(
+        [
+            [objective, "", ""],
+            ["  before", *_shown(objective, found.before)],
+            ["  after", *_shown(objective, found.objective)],
+            ["  floor", *_shown(objective, found.floor)],
+            ["  times the floor", number(found.objective / found.floor, 4) if found.floor else "-", ""],
+        ]
+    )
+    for text in found.active:
+        cost = found.cost.get(text)
+        value, unit = _shown(objective, cost)
+        lines.append(f"active: {text}" + ("" if cost is None else f"; without it {value} {unit}".rstrip()))
+    return lines
+
+
+def _shown(objective: str, value: float | None) -> tuple[str, str]:
+    from navcore.design.measures import MEASURES
+    from navcore.foundation.units import ARCSEC
+
+    unit = MEASURES[objective][1] if objective in MEASURES else ""
+    if unit == "rad":
+        return number(None if value is None else value / ARCSEC), "arcsec"
+    return number(value), unit

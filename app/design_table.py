@@ -1,0 +1,132 @@
+"""``python -m app.design_table``: docs/design.md, what the budget covers and a table over the presets.
+
+For each preset: the source that contributes most to the tilt along its run, how many times the floor the tilt
+of its first damped method is in the steady state, before and after tuning, and which network comes nearest.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from navcore.design.budget import budget
+from navcore.design.pareto import LEFT_OUT
+from navcore.design.tune import tune
+from navcore.foundation.errors import InputError
+from navcore.networks import NETWORKS
+from navcore.scenario.file import load, presets
+from navcore.scenario.model import Method, Scenario
+
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "design.md"
+MARK = "<!-- the table below is written by `make design` -->"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One preset.
+
+    Attributes
+    ----------
+    preset, method, source : str
+        Names; the source that contributes most along the run.
+    before, after : str
+        Times the floor.
+    best, optimal : str
+        The network that comes nearest apart from `optimal`, and how near that comes.
+    note : str
+        Why numbers are missing.
+    """
+
+    preset: str
+    method: str
+    source: str
+    before: str = "-"
+    after: str = "-"
+    best: str = "-"
+    optimal: str = "-"
+    note: str = ""
+
+    def cells(self) -> list[str]:
+        """Cells of the table."""
+        return [
+            self.preset,
+            self.method,
+            self.source,
+            self.before,
+            self.after,
+            self.best,
+            self.optimal,
+            self.note,
+        ]
+
+
+def row(name: str) -> Row:
+    """Compute the row of one preset."""
+    scenario = load(name)
+    damped = [i for i, m in enumerate(scenario.method) if m.damping in ("external", "internal")]
+    index = damped[0] if damped else 0
+    method = scenario.method[index]
+    alone = scenario.model_copy(update={"method": (method,)})
+    source = budget(alone, seeds=2).methods[0].largest or "not split: shown by seeds"
+    steady = budget(alone, steady=True)
+    if steady.floor_reason or not steady.floor.rms.tilt_rad:
+        why = steady.floor_reason or "gyros and accelerometers have no random error: the floor is 0"
+        return Row(name, method.name, source, note=why)
+    if method.damping != "external":
+        return Row(name, method.name, source, note="no method is damped by the log")
+    found = {n: _least(alone, n) for n in NETWORKS if n not in LEFT_OUT}
+    times = {n: value / steady.floor.rms.tilt_rad for n, value in found.items() if value is not None}
+    optimal = times.pop("optimal")
+    best = min(times, key=lambda n: times[n])
+    before = steady.times_floor(steady.methods[0])["tilt"]
+    own = times.get(method.network.id)
+    return Row(
+        name,
+        method.name,
+        source,
+        "-" if before is None else f"{before:.3g}",
+        "-" if own is None else f"{own:.3g}",
+        f"`{best}` {times[best]:.3g}",
+        f"{optimal:.3g}",
+    )
+
+
+def _least(scenario: Scenario, network: str) -> float | None:
+    """Least steady tilt of a network in place of the method's own, rad."""
+    method = scenario.method[0]
+    plain = Method.model_validate({"name": method.name, "damping": "external", "network": {"id": network}})
+    plain = plain.model_copy(update={"network": plain.network.with_sensors(scenario.figures())})
+    other = scenario.model_copy(update={"method": (plain,)})
+    fields = plain.network.design_fields()
+    if not fields:
+        return budget(other, steady=True).methods[0].total.rms.tilt_rad
+    try:
+        return tune(other, "tilt_rms", [f"method.0.network.{field}" for field in fields]).objective
+    except InputError:
+        return None
+
+
+def table(rows: list[Row]) -> str:
+    """Markdown of the rows."""
+    head = [
+        *("preset", "method", "largest source of tilt", "x floor", "x floor, tuned"),
+        *("best network", "`optimal`", ""),
+    ]
+    lines = [head, ["---"] * len(head), *(row.cells() for row in rows)]
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
+
+
+def main() -> int:
+    """Write the table into docs/design.md, whose text above it stays."""
+    rows = []
+    for name in presets():
+        rows.append(row(name))
+        print(" | ".join(rows[-1].cells()), file=sys.stderr, flush=True)
+    text = PAGE.read_text("utf-8").split(MARK)[0]
+    PAGE.write_text(f"{text}{MARK}\n\n{table(rows)}\n", "utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,1 +1,0 @@
-"""Run -> figure data: pure functions without viser, without physics of their own."""

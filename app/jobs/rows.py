@@ -1,0 +1,34 @@
+"""A run with fewer output rows: for those that are kept beside the present one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from navcore.engine.run import MethodRun, Run
+
+MOST_ROWS = 2000
+"""Output rows that a kept run needs: what a picture can show."""
+
+
+def few_rows(run: Run, most: int = MOST_ROWS) -> Run:
+    """The same run with at most about ``most`` output rows, first and last among them; curves stay whole."""
+    step = -(-len(run.t_s) // most)
+    if step <= 1:
+        return run
+    last = len(run.t_s) - 1
+    chosen = np.unique(np.append(np.arange(0, last + 1, step), last))
+    methods = tuple(_few_rows(method, chosen) for method in run.methods)
+    return replace(run, methods=methods, t_s=run.t_s[chosen], truth=run.truth[chosen])
+
+
+def _few_rows(method: MethodRun, chosen: np.ndarray) -> MethodRun:
+    mine = chosen[chosen < len(method.t_s)]
+    return replace(
+        method,
+        t_s=method.t_s[mine],
+        rows=method.rows[mine],
+        law_series=method.law_series[mine],
+        navigation=None if method.navigation is None else method.navigation[mine],
+    )

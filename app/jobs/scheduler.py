@@ -1,0 +1,262 @@
+"""Whose turn it is: one scheduler for everything that is computed for the visitors of this process.
+
+Three lanes. *Answers* are the short runs that follow a control: one a core, the visitors in turn. *Long* runs
+are those that are estimated to take a while: one a core but for one core, and they stand still while answers
+want the cores. *Spare* work (what dominates a run, envelopes, verification, searches, pins after a restart)
+goes on only while nothing else does. A job stands still where it asks whether it is cancelled; so that none
+stands still for ever under lasting load, each gets a short turn after a while all the same. All jobs together
+are admitted by their estimated memory.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+GIB = 1 << 30
+WORKERS = "SCHULER_WORKERS"
+"""Set in the environment of a worker: how many share the machine."""
+_TURN_S = 0.2
+"""A long or spare job that was let on goes on for at least so long."""
+_PATIENCE_S = {"long": 0.8, "spare": 2.0}
+"""So long one stands still at most before it gets a turn."""
+_LOOK_S = 0.05
+_MOST_REMEMBERED = 4096
+
+
+class Lane(Enum):
+    """What kind of work a job is."""
+
+    ANSWER = "answer"
+    LONG = "long"
+    SPARE = "spare"
+
+
+@dataclass(frozen=True)
+class Load:
+    """What a job is estimated to take.
+
+    Attributes
+    ----------
+    lane : Lane
+        Where it waits.
+    bytes : float
+        Memory it holds while it is under way.
+    """
+
+    lane: Lane = Lane.ANSWER
+    bytes: float = 0.0
+
+
+@dataclass(eq=False)
+class Ticket:
+    """One job's place in the line.
+
+    Attributes
+    ----------
+    visitor : object
+        Whose job it is; visitors take turns.
+    call : callable
+        ``call()`` does the work.
+    load : Load
+        What it takes.
+    due_s : float
+        Not to be begun before, monotonic.
+    """
+
+    visitor: object
+    call: Callable[[], None]
+    load: Load
+    due_s: float = 0.0
+    _order: int = 0
+    _since_s: float = 0.0
+    _still: bool = False
+
+
+class Scheduler:
+    """Threads, at most one a core for each lane, and the line of what waits for them.
+
+    Parameters
+    ----------
+    cores : int
+        Answers that are under way at once; of the other lanes one less, but at least one.
+    memory_bytes : float
+        What all jobs under way may hold together, by estimate; one job alone is always admitted.
+    """
+
+    def __init__(self, cores: int, memory_bytes: float) -> None:
+        self.cores, self.memory_bytes = cores, memory_bytes
+        self._changed = threading.Condition()
+        self._waiting: list[Ticket] = []
+        self._running: list[Ticket] = []
+        self._served: dict[object, int] = {}
+        self._count = 0
+        self._threads = dict.fromkeys(Lane, 0)
+        self._idle = dict.fromkeys(Lane, 0)
+
+    def put(self, ticket: Ticket) -> None:
+        """Let a job wait for its turn."""
+        with self._changed:
+            self._count += 1
+            ticket._order = self._count
+            self._waiting.append(ticket)
+            lane = ticket.load.lane
+            if not self._idle[lane] and self._threads[lane] < self._most(lane):
+                self._threads[lane] += 1
+                name = f"{lane.value}-{self._threads[lane]}"
+                threading.Thread(target=self._loop, args=(lane,), name=name, daemon=True).start()
+            self._changed.notify_all()
+
+    def _most(self, lane: Lane) -> int:
+        """Jobs of a lane at once; where nobody waits for it at every step, a core stays free for answers."""
+        return self.cores if lane is Lane.ANSWER else max(1, self.cores - 1)
+
+    def take_back(self, ticket: Ticket) -> bool:
+        """Remove a job that still waits; False when it does not, or not any more."""
+        with self._changed:
+            if ticket not in self._waiting:
+                return False
+            self._waiting.remove(ticket)
+            return True
+
+    def give_way(self, ticket: Ticket, ended: Callable[[], bool]) -> None:
+        """Stand still while more urgent work wants the cores; called by the job itself, now and then.
+
+        Parameters
+        ----------
+        ticket : Ticket
+            Of the job.
+        ended : callable
+            Whether the job is to end anyway.
+        """
+        lane = ticket.load.lane
+        if lane is Lane.ANSWER:
+            return
+        with self._changed:
+            began_s = time.monotonic()
+            if began_s - ticket._since_s < _TURN_S:
+                return
+            until_s = began_s + _PATIENCE_S[lane.value]
+            while self._must_wait(ticket) and not ended() and time.monotonic() < until_s:
+                ticket._still = True
+                self._changed.wait(_LOOK_S)
+            ticket._still = False
+            ticket._since_s = time.monotonic()
+
+    def figures(self) -> dict[str, float]:
+        """What waits and runs now, for ``/metrics``: jobs of each lane, estimated bytes under way."""
+        with self._changed:
+            counts = {
+                f"{state}_{lane.value}": float(sum(t.load.lane is lane for t in tickets))
+                for state, tickets in (("waiting", self._waiting), ("running", self._running))
+                for lane in Lane
+            }
+            return counts | {"running_bytes": sum(t.load.bytes for t in self._running)}
+
+    # ------------------------------------------------------------ choosing
+
+    def _must_wait(self, ticket: Ticket) -> bool:
+        mine = ticket.load.lane
+        if any(t.load.lane is Lane.ANSWER or mine is Lane.SPARE is not t.load.lane for t in self._waiting):
+            return True
+        active = [t for t in self._running if not t._still and t is not ticket]
+        if mine is Lane.SPARE:
+            return any(t.load.lane is not Lane.SPARE for t in active)
+        return sum(t.load.lane is not Lane.SPARE for t in active) >= self.cores
+
+    def _next(self, lane: Lane) -> Ticket | None:
+        now_s = time.monotonic()
+        held = sum(t.load.bytes for t in self._running)
+        free = [
+            t
+            for t in self._waiting
+            if t.load.lane is lane
+            and t.due_s <= now_s
+            and (not self._running or held + t.load.bytes <= self.memory_bytes)
+        ]
+        if not free or (lane is Lane.SPARE and self._must_wait(free[0])):
+            return None
+        chosen = min(free, key=lambda t: (self._served.get(t.visitor, 0), t._order))
+        self._waiting.remove(chosen)
+        self._count += 1
+        self._served.pop(chosen.visitor, None)
+        self._served[chosen.visitor] = self._count
+        while len(self._served) > _MOST_REMEMBERED:
+            del self._served[next(iter(self._served))]
+        return chosen
+
+    def _loop(self, lane: Lane) -> None:
+        while True:
+            with self._changed:
+                self._idle[lane] += 1
+                while (ticket := self._next(lane)) is None:
+                    self._changed.wait(self._until_due_s(lane))
+                self._idle[lane] -= 1
+                ticket._since_s = time.monotonic()
+                self._running.append(ticket)
+            try:
+                ticket.call()
+            finally:
+                with self._changed:
+                    self._running.remove(ticket)
+                    self._changed.notify_all()
+                del ticket
+
+    def _until_due_s(self, lane: Lane) -> float | None:
+        dues = [t.due_s for t in self._waiting if t.load.lane is lane]
+        if not dues:
+            return None
+        left_s = min(dues) - time.monotonic()
+        return left_s if left_s > 0.0 else _LOOK_S if lane is Lane.SPARE else None
+
+
+def memory_of_machine() -> float:
+    """Bytes this process may hold: of the container it runs in, else of the machine; 4 GiB if unknown."""
+    found = []
+    for name in ("memory.max", "memory/memory.limit_in_bytes"):
+        try:
+            text = Path("/sys/fs/cgroup", name).read_text().strip()
+        except OSError:
+            continue
+        found += [float(text)] if text.isdigit() else []
+    try:
+        found.append(float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")))
+    except (OSError, ValueError, AttributeError):
+        found.append(4.0 * GIB)
+    return min(found)
+
+
+def cores_of_machine() -> int:
+    """Cores this process may use, at least two: a run that waits must not keep all others waiting."""
+    if hasattr(os, "sched_getaffinity"):
+        return max(2, len(os.sched_getaffinity(0)))
+    return max(2, os.cpu_count() or 1)
+
+
+_one: list[Scheduler] = []
+_making = threading.Lock()
+
+
+def scheduler() -> Scheduler:
+    """The one scheduler of this process."""
+    with _making:
+        if not _one:
+            workers = int(os.environ.get(WORKERS, "1"))
+            cores = cores_of_machine() if workers == 1 else max(1, cores_of_machine() // workers)
+            _one.append(Scheduler(cores, _PART_FOR_RUNS * memory_of_machine() / workers))
+        return _one[0]
+
+
+_PART_FOR_RUNS = 0.4
+LARGEST_RUN = 2.0 * GIB
+"""Bytes that one run may take by estimate; less where the machine has less."""
+
+
+def largest_run_bytes() -> float:
+    """Estimated bytes beyond which a run is refused."""
+    return min(LARGEST_RUN, scheduler().memory_bytes)

@@ -1,0 +1,88 @@
+"""What is looked for beside the runs of a session: what dominates the result, and a damping table."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+
+from app.jobs.designer import Budgeter, Designer
+from app.jobs.tuner import Tuner
+from app.jobs.why import Explainer
+from navcore.engine.run import Run
+
+_log = logging.getLogger("schuler.searches")
+
+
+class Searches:
+    """The searches of one session; without an open page none goes on.
+
+    Parameters
+    ----------
+    name : str
+        In the names of the threads.
+
+    Attributes
+    ----------
+    explainer : Explainer
+        What dominates the run.
+    tuner : Tuner
+        Sun's double loop.
+    budgeter : Budgeter
+        Error budget along the run.
+    designer : Designer
+        Best setting of a method.
+    """
+
+    def __init__(self, name: str) -> None:
+        self._lock = threading.Lock()
+        self._watchers: list[Callable[[], None]] = []
+        self.explainer = Explainer(self._tell, name=name)
+        self.tuner = Tuner(self._tell, name=name)
+        self.budgeter = Budgeter(self._tell, name=name)
+        self.designer = Designer(self._tell, name=name)
+
+    def watch(self, changed: Callable[[], None], run: Run | None) -> None:
+        """Tell an open page whenever there is something new; ``run`` is what it shows."""
+        with self._lock:
+            self._watchers.append(changed)
+        if run is not None and not self.explainer.fits(run):
+            self.explainer.follow(run)
+
+    def unwatch(self, changed: Callable[[], None]) -> None:
+        """Forget a page that has gone; after the last one all searches end."""
+        with self._lock:
+            self._watchers = [other for other in self._watchers if other != changed]
+            alone = not self._watchers
+        if alone:
+            self.explainer.cancel()
+            self.tuner.cancel()
+            self.budgeter.cancel()
+            self.designer.cancel()
+
+    def changed(self) -> None:
+        """The scenario has changed: the processors belong to its run."""
+        self.explainer.cancel()
+
+    def ran(self, run: Run) -> None:
+        """A run is shown from now on."""
+        with self._lock:
+            watched = bool(self._watchers)
+        if watched and not self.explainer.fits(run):
+            self.explainer.follow(run)
+
+    def stop(self) -> None:
+        """End the threads."""
+        self.explainer.stop()
+        self.tuner.stop()
+        self.budgeter.stop()
+        self.designer.stop()
+
+    def _tell(self) -> None:
+        with self._lock:
+            watchers = list(self._watchers)
+        for changed in watchers:
+            try:
+                changed()
+            except Exception:
+                _log.exception("a page could not be brought up to date")

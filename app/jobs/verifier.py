@@ -1,0 +1,100 @@
+"""One visitor's verifications: the scenario as full strapdown beside the linear model, in the background."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from app.jobs.load import spare_load
+from app.jobs.search import Search
+from navcore.scenario.model import Scenario
+
+if TYPE_CHECKING:
+    from navcore.engine.verification import Verification
+
+
+@dataclass(frozen=True)
+class Verified:
+    """A verification to be shown beside a run.
+
+    Attributes
+    ----------
+    verification : Verification
+        Of the same methods.
+    old : bool
+        It is of an earlier scenario.
+    """
+
+    verification: Verification
+    old: bool
+
+
+STOPPED, CHANGED = "Stopped: nothing was verified.", "Stopped: the scenario was changed meanwhile."
+
+Verify = Callable[[Scenario, Callable[[float], None], Callable[[], bool]], "Verification"]
+
+
+class Verifier(Search[Scenario, "Verification"]):
+    """Verifies one scenario at a time; a change of the scenario stops it, and makes its result an old one.
+
+    Parameters
+    ----------
+    tell : callable
+        ``tell()`` whenever there is something new to show, from the thread that verifies.
+    verify : callable, optional
+        In place of `navcore.engine.verification.verify`.
+    name : str
+        Of the visitor, for the turns.
+    """
+
+    def __init__(
+        self, tell: Callable[[], None], verify: Verify | None = None, name: str = "verifier"
+    ) -> None:
+        self._verify = verify or _verify
+        super().__init__(
+            tell,
+            lambda scenario, *watch: self._verify(scenario, *watch),
+            lambda found: found.complete,
+            STOPPED,
+            name,
+            spare_load,
+        )
+
+    @property
+    def scenario(self) -> Scenario | None:
+        """What the result is of."""
+        return self.asked
+
+    def start(self, scenario: Scenario) -> None:
+        """Verify a scenario, in place of one that is under way."""
+        self.begin(scenario)
+
+    def forget(self) -> None:
+        """Drop the result: quite another scenario was opened."""
+        with self._lock:
+            self.result = self.asked = None
+
+    def follow(self, scenario: Scenario) -> None:
+        """Take note that this is the scenario now."""
+        with self._lock:
+            self.words = ()
+            outdated = self._under_way is not None and self._under_way != scenario
+        if outdated:
+            self.cancel(CHANGED)
+
+    def beside(self, scenario: Scenario) -> Verified | None:
+        """What can be shown beside a run of this scenario: a result with the same methods by name."""
+        with self._lock:
+            result, of = self.result, self.asked
+        if result is None or of is None or [m.name for m in of.method] != [m.name for m in scenario.method]:
+            return None
+        return Verified(result, of != scenario)
+
+
+def _verify(
+    scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]
+) -> Verification:
+    from navcore.engine.verification import verify
+
+    return verify(scenario, progress, cancelled)

@@ -1,0 +1,35 @@
+"""What a page may say of a fault: file names, never where on the server the files lie."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+from navcore.foundation.errors import InputError
+
+_FOLDERS = re.compile(r"(?<![\w./])/(?:[^/\s'\":]+/)+")
+
+
+def without_folders(text: str) -> str:
+    """The text with each absolute path shortened to its last part.
+
+    Examples
+    --------
+    >>> without_folders("reference.file = '/var/lib/x/log.csv': no such file, 3 m/s")
+    "reference.file = 'log.csv': no such file, 3 m/s"
+    """
+    return _FOLDERS.sub("", text)
+
+
+def for_a_page(error: InputError) -> InputError:
+    """The same faults without the folders of the server."""
+
+    def plain(value: object) -> object:
+        if isinstance(value, str):
+            return without_folders(value)
+        return [plain(item) for item in value] if isinstance(value, (list, tuple)) else value
+
+    return InputError(
+        replace(fault, **{name: plain(getattr(fault, name)) for name in ("where", "value", "allowed")})
+        for fault in error.faults
+    )

@@ -1,1 +1,0 @@
-"""Lessons and explanations, read from `assets`, with the live numbers they speak of."""

@@ -1,0 +1,215 @@
+"""Deng 2019: periods, the network's extra s, and what the printed damping law leaves out."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from app.misprints.base import (
+    OMEGA_S,
+    TIME,
+    Axis,
+    Comparison,
+    Curve,
+    Misprint,
+    Number,
+    as_network,
+    run_scenario,
+)
+from app.misprints.two_loops import TwoLoops
+from navcore.foundation.earth import EARTH_RATE, SEMI_MAJOR_AXIS
+from navcore.foundation.units import ARCSEC, DEG, DEG_PER_HOUR, HOUR, MICRO_G, MINUTE
+from navcore.mechanization.recorder import PHI_N, PHI_U
+from navcore.networks.compass import CompassNetwork, gains_from_sigma_xi
+
+_SIGMA, _XI = 0.0088, 0.7
+_COMPASS = CompassNetwork(sigma=_SIGMA, xi=_XI)
+
+
+def _periods() -> Comparison:
+    lat = np.arange(5.0, 85.5, 0.5) * DEG
+    here = math.sin(32.06 * DEG)
+    day = 2.0 * math.pi / EARTH_RATE
+    printed_schuler, printed_day = 2.0 * math.pi * OMEGA_S, 2.0 * math.pi / math.sqrt(EARTH_RATE)
+    schuler = 2.0 * math.pi / OMEGA_S
+    return Comparison(
+        x_axis=Axis("latitude", "rad"),
+        y_axis=Axis("Foucault period", "s"),
+        x=lat,
+        curves=(
+            Curve("2 pi/omega_ie sin(phi) as printed", "printed", day * np.sin(lat)),
+            Curve("2 pi/(omega_ie sin(phi))", "corrected", day / np.sin(lat)),
+        ),
+        numbers=(
+            Number("Schuler period", "s", printed_schuler, schuler),
+            Number("Earth period", "s", printed_day, day),
+            Number("Foucault period at 32.06 deg", "s", day * here, day / here),
+        ),
+        words=f"As printed the Schuler period would be {printed_schuler:.4f} s instead of "
+        f"{schuler / MINUTE:.1f} min, the Earth's {printed_day / MINUTE:.1f} min instead of {day / HOUR:.1f} "
+        f"h, and Foucault's would fall towards the equator ({day * here / HOUR:.1f} h at 32 deg) instead of "
+        f"rising ({day / here / HOUR:.1f} h).",
+    )
+
+
+def _extra_s() -> Comparison:
+    right = _COMPASS.transfer(OMEGA_S)
+    # the s in the denominator is the velocity integrator, counted once more
+    loops = TwoLoops(as_network([*right.num_p / OMEGA_S], [*right.den_p, 0.0]), right)
+    assert loops.corrected.settling_s is not None
+    return loops.compare(
+        np.arange(0.0, 901.0, 2.0),
+        ("with the extra s", "((1+K2)s+K3)/(s+K1)"),
+        (loops.growth, loops.settling),
+        f"Taken as the network, the printed H makes the loop unstable: e-fold in {loops.growth_s:.0f} s. "
+        f"Without the extra s it settles in {loops.corrected.settling_s / MINUTE:.1f} min.",
+    )
+
+
+def _radius() -> Comparison:
+    k1, k2, k3 = gains_from_sigma_xi(_SIGMA, _XI, OMEGA_S)
+    printed = CompassNetwork(k1=k1, k2=k2, k3=k3 * SEMI_MAJOR_AXIS).transfer(OMEGA_S)
+    loops = TwoLoops(printed, _COMPASS.transfer(OMEGA_S))
+    return loops.compare(
+        np.arange(0.0, 10.01, 0.05),
+        ("dp = K3 dv/s", "dp = K3 dv/(R s)"),
+        (loops.growth,),
+        f"A velocity added to an angular rate: the integral gain is {SEMI_MAJOR_AXIS:.1e} times too "
+        f"large and the loop grows e-fold every {loops.growth_s:.2f} s.",
+    )
+
+
+def _drive(heading_deg: float) -> dict[str, object]:
+    return {
+        "kind": "legs",
+        "leg": [
+            {"duration_s": 1200.0, "speed_mps": 0.0, "heading_deg": heading_deg},
+            {"duration_s": 3600.0, "speed_mps": 10.0, "accel_mps2": 0.2},
+            {"duration_s": 2400.0, "speed_mps": 0.0, "accel_mps2": 0.2},
+        ],
+    }
+
+
+def _transport_rate() -> Comparison:
+    def method(realisation: str) -> dict[str, object]:
+        network = {"id": "compass", "sigma": _SIGMA, "xi": _XI, "realisation": realisation}
+        return {"name": realisation, "damping": "external", "network": network}
+
+    t, (printed, corrected) = run_scenario(
+        {
+            "run": {"duration_h": 2.0, "earth": "sphere"},
+            "motion": _drive(90.0),
+            "reference": {"kind": "log"},
+            "method": [method("as_printed"), method("feedback")],
+        },
+        PHI_N,
+    )
+    peaks = float(np.nanmax(np.abs(printed))), float(np.nanmax(np.abs(corrected)))
+    return Comparison(
+        x_axis=TIME,
+        y_axis=Axis("tilt phi_N", "rad"),
+        x=t,
+        curves=(
+            Curve("Deng 4 as printed", "printed", printed),
+            Curve("with the reference's transport rate", "corrected", corrected),
+        ),
+        numbers=(Number("largest tilt", "rad", peaks[0], peaks[1]),),
+        words=f"Perfect sensors and log, 0 to 10 m/s and back: as printed every change of speed tilts the "
+        f"platform by up to {peaks[0] / ARCSEC:.0f} arcsec; with V_r/R the tilt stays "
+        f"below {max(peaks[1] / ARCSEC, 1e-3):.2g} arcsec.",
+    )
+
+
+def _coriolis() -> Comparison:
+    speed, lat = 10.0, 32.06 * DEG
+    transport_up = speed * math.tan(lat) / SEMI_MAJOR_AXIS
+    coriolis_north = -(2.0 * EARTH_RATE * math.sin(lat) + transport_up) * speed
+    # What the computer leaves out acts like a sensor error of the opposite sign (body x is south here).
+    left_out = {
+        "accel_bias_ug": [coriolis_north / MICRO_G, 0.0, 0.0],
+        "gyro_bias_dph": [0.0, 0.0, -transport_up / DEG_PER_HOUR],
+    }
+
+    def heading(imu: dict[str, list[float]]) -> tuple[np.ndarray, np.ndarray]:
+        t, (value,) = run_scenario(
+            {
+                "run": {"duration_h": 2.0, "output_step_s": 20.0, "earth": "sphere"},
+                "motion": {"kind": "legs", "leg": [{"speed_mps": speed, "heading_deg": 90.0}]},
+                "imu": imu,
+                "reference": {"kind": "log"},
+                "method": [{"damping": "external", "network": {"id": "compass"}}],
+            },
+            PHI_U,
+        )
+        return t, value
+
+    t, printed = heading(left_out)
+    _, corrected = heading({})
+    ends = float(printed[-1]), float(corrected[-1])
+    return Comparison(
+        x_axis=TIME,
+        y_axis=Axis("heading error phi_U", "rad"),
+        x=t,
+        curves=(
+            Curve("no Coriolis, no up command", "printed", printed),
+            Curve("with both", "corrected", corrected),
+        ),
+        numbers=(
+            Number("heading error after 2 h", "rad", ends[0], ends[1]),
+            Number("Coriolis term left out", "m/s^2", coriolis_north, 0.0),
+        ),
+        words="Due east at 10 m/s in 32 deg north the terms left out act like "
+        f"{coriolis_north / MICRO_G:.0f} ug and {transport_up / DEG_PER_HOUR:.2f} deg/h: "
+        f"after 2 h the heading is off by {abs(ends[0]) / DEG:.2f} deg.",
+    )
+
+
+DENG = (
+    Misprint(
+        id="deng-intro",
+        paper="Deng 2019",
+        where="introduction",
+        printed="T_s = 2 pi/sqrt(R/g), T_e = 2 pi/sqrt(omega_ie), T_c = 2 pi/omega_ie sin(phi)",
+        right="2 pi sqrt(R/g), 2 pi/omega_ie, 2 pi/(omega_ie sin(phi))",
+        consequence="none of the three periods comes out",
+        compute=_periods,
+    ),
+    Misprint(
+        id="deng-1",
+        paper="Deng 2019",
+        where="eq. 1",
+        printed="H has an extra s in the denominator",
+        right="H = ((1+K2)s+K3)/(s+K1): that s is the velocity integrator",
+        consequence="the loop is unstable",
+        compute=_extra_s,
+    ),
+    Misprint(
+        id="deng-3",
+        paper="Deng 2019",
+        where="eq. 3 and 4",
+        printed="dp = K3 dv/s, added to a rate",
+        right="dp = K3 dv/(R s)",
+        consequence="the integral gain is R times too large: the loop explodes within seconds",
+        compute=_radius,
+    ),
+    Misprint(
+        id="deng-4-transport",
+        paper="Deng 2019",
+        where="eq. 3 and 4",
+        printed="omega_c from the difference dv alone",
+        right="plus the reference's transport rate V_r/R",
+        consequence="a moving vehicle has transients at every change of speed",
+        compute=_transport_rate,
+    ),
+    Misprint(
+        id="deng-4-coriolis",
+        paper="Deng 2019",
+        where="eq. 3 and 4",
+        printed="no Coriolis term, no up command",
+        right="add both",
+        consequence="a moving vehicle's heading drifts",
+        compute=_coriolis,
+    ),
+)
+"""Misprints of Deng 2019 in the order of the paper."""

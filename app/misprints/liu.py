@@ -1,0 +1,233 @@
+"""Liu 2021: powers of omega_s, a mean over one term too many, the direct form, and figure 7."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.misprints.base import (
+    OMEGA_S,
+    TIME,
+    Axis,
+    Comparison,
+    Curve,
+    Misprint,
+    Number,
+    as_network,
+    run_scenario,
+)
+from app.misprints.direct_form import direct_form_error, direct_form_growth, state_space_error
+from app.misprints.two_loops import TwoLoops
+from navcore.analysis import RADIUS, frequency_response
+from navcore.foundation.units import MINUTE
+from navcore.mechanization.recorder import DV_E
+from navcore.networks.complementary import ComplementaryNetwork
+
+_ZETA = 0.7
+
+
+def _power() -> Comparison:
+    right = ComplementaryNetwork(zeta=_ZETA).transfer(OMEGA_S)
+    # omega_s^3 s^3 where omega_s s^3 is meant: omega_s^2 (rad/s, numbers) on the coefficient of p^3
+    num, den = right.num_p.copy(), right.den_p.copy()
+    num[1] *= OMEGA_S**2
+    den[1] *= OMEGA_S**2
+    loops = TwoLoops(as_network(num, den), right)
+    return loops.compare(
+        np.arange(0.0, 6 * 3600.0 + 1.0, 30.0),
+        ("omega_s^3 s^3 (printed)", "omega_s s^3"),
+        (loops.damping, loops.growth),
+        f"With the printed power the s^3 terms vanish and the loop grows e-fold in "
+        f"{loops.growth_s / MINUTE:.0f} min; mended its least damping ratio is "
+        f"{loops.corrected.damping_ratio:.2f}.",
+    )
+
+
+def _transfer_powers() -> Comparison:
+    omega = np.geomspace(1e-5, 1e-1, 301)
+    network = ComplementaryNetwork(zeta=_ZETA).transfer(OMEGA_S)
+    corrected = RADIUS * np.abs(frequency_response(network, "dv_r", "phi", omega))
+    s, w = 1j * omega, OMEGA_S
+    # Liu 6 with the powers of omega_s as they stand
+    den = np.polyval([1.0, 3.4 * w**5, 6.8 * w**4, 8.2 * w**3, 6.8 * w**2, 3.4 * w, w**6], s)
+    printed = np.abs(1.4 * w**3 * s**2 / den)
+    here = int(np.argmin(np.abs(omega - w)))
+    gains = float(printed[here]), float(corrected[here])
+    return Comparison(
+        x_axis=Axis("frequency", "rad/s", log=True),
+        y_axis=Axis("R phi / dV_r", "s", log=True),
+        x=omega,
+        curves=(
+            Curve("Liu 6 as printed", "printed", printed),
+            Curve("powers mended", "corrected", corrected),
+        ),
+        numbers=(Number("gain at the Schuler frequency", "s", gains[0], gains[1]),),
+        words=f"At the Schuler frequency the printed transfer has the gain {gains[0]:.1e} s instead of "
+        f"{gains[1]:.0f} s: fig. 3 cannot have been drawn with it.",
+    )
+
+
+def variation(difference: np.ndarray, window: int, apart: int, terms: int) -> np.ndarray:
+    """Compute s of Liu 15 (m/s) at each sample: sums of ``terms`` samples divided by ``window``.
+
+    Parameters
+    ----------
+    difference : ndarray, shape (n,)
+        V_r - V_c each second, m/s; before the first it counts as zero.
+    window : int
+        Divisor n.
+    apart : int
+        Samples t0 between the two windows.
+    terms : int
+        Samples summed: n, or n + 1 as printed.
+    """
+    sums = np.convolve(difference, np.ones(terms))[: len(difference)] / window
+    earlier = np.concatenate([np.zeros(apart), sums[:-apart]])
+    return np.abs(sums - earlier)
+
+
+def _terms() -> Comparison:
+    t = np.arange(0.0, 401.0)
+    change = 0.43
+    difference = change * np.clip((t - 100.0) / 40.0, 0.0, 1.0)
+    printed, corrected = variation(difference, 20, 80, 21), variation(difference, 20, 80, 20)
+    peaks = float(np.max(printed)), float(np.max(corrected))
+    return Comparison(
+        x_axis=TIME,
+        y_axis=Axis("s of Liu 15", "m/s"),
+        x=t,
+        curves=(
+            Curve("n + 1 terms over n (printed)", "printed", printed),
+            Curve("n terms over n", "corrected", corrected),
+        ),
+        numbers=(Number("largest s for a change of 0.43 m/s", "m/s", peaks[0], peaks[1]),),
+        words=f"A change of {change:g} m/s counts as {peaks[0]:.4g} m/s, beyond c = 0.45: the loop is "
+        "undamped where it should stay as it is.",
+    )
+
+
+def _direct_form() -> Comparison:
+    steps = np.geomspace(0.005, 1.0, 24)
+    network = ComplementaryNetwork(zeta=0.5).transfer(OMEGA_S)
+    double = np.array([direct_form_error(network, float(step), np.float64) for step in steps])
+    single = np.array([direct_form_error(network, float(step), np.float32) for step in steps])
+    right = np.array([state_space_error(network, float(step)) for step in steps])
+    at_tenth = direct_form_error(network, 0.1, np.float64), state_space_error(network, 0.1)
+    growth = direct_form_growth(0.5, 0.01, np.float64)
+    unstable = "" if growth is None else f", and at 0.01 s it is unstable (e-fold in {growth:.0f} s)"
+    return Comparison(
+        x_axis=Axis("step T", "s", log=True),
+        y_axis=Axis("largest relative error of H", "", log=True),
+        x=steps,
+        curves=(
+            Curve("direct form, double", "printed", double),
+            Curve("direct form, single", "printed", single),
+            Curve("state space in normalised time", "corrected", right),
+        ),
+        numbers=(
+            Number("error of H at T = 0.1 s", "", at_tenth[0], at_tenth[1]),
+            Number("e-folding time at T = 0.01 s", "s", growth, None),
+        ),
+        words=f"The coefficients are right, but they do not fit into a double: at 0.1 s H is wrong by "
+        f"{100.0 * at_tenth[0]:.0f} %{unstable}.",
+    )
+
+
+def _after_ten_hours(switching: str = "hard", **reference: object) -> tuple[np.ndarray, np.ndarray]:
+    """Change of dV_E from its value at 10 h (m/s), one level channel, zeta = 0.5, 0.5 m/s of log error."""
+    t, (east,) = run_scenario(
+        {
+            "run": {"fidelity": "channel", "duration_h": 14.0, "output_step_s": 20.0, "earth": "sphere"},
+            "imu": {"gyro_bias_dph": [1e-4] * 3, "accel_bias_ug": [10.0] * 3},
+            "reference": {"kind": "log", "bias_mps": [0.5, 0.0], **reference},
+            "method": [
+                {
+                    "damping": "external",
+                    "network": {"id": "complementary", "zeta": 0.5, "eta": 0.5},
+                    "switching": {"id": switching},
+                },
+            ],
+        },
+        DV_E,
+    )
+    start = int(np.searchsorted(t, 10 * 3600.0))
+    return t[start:], east[start:] - east[start]
+
+
+def _figure_7() -> Comparison:
+    def step(size: float) -> tuple[np.ndarray, np.ndarray]:
+        return _after_ten_hours(event=[{"t_h": 10.0, "duration_s": 20.0, "accel_mps2": [size / 20.0, 0.0]}])
+
+    t, quarter = step(0.25)
+    _, half = step(0.5)
+    outage = [{"t_h": 10.0, "duration_s": 200.0}]
+    _, switched = _after_ten_hours(outage=outage)
+    _, kept = _after_ten_hours("keep", outage=outage)
+    peaks = [float(np.max(np.abs(y))) for y in (quarter, half, switched, kept)]
+    return Comparison(
+        x_axis=TIME,
+        y_axis=Axis("change of the east velocity error", "m/s"),
+        x=t,
+        curves=(
+            Curve("s = 0.25 m/s (what Liu says it is like)", "printed", quarter),
+            Curve("undamped for 200 s, network cleared", "corrected", switched),
+            Curve("s = 0.5 m/s", "corrected", half),
+            Curve("undamped for 200 s, network kept", "corrected", kept),
+        ),
+        numbers=(
+            Number("overshoot after the switch", "m/s", peaks[0], peaks[2]),
+            Number("the same without clearing the network", "m/s", None, peaks[3]),
+        ),
+        words=f"Clearing the network with 0.5 m/s of log error present acts like a step of 0.5 m/s: the "
+        f"overshoot is {peaks[2]:.3f} m/s ({peaks[1]:.3f} for the step), not the {peaks[0]:.3f} of 0.25 m/s. "
+        "Without clearing there is none.",
+    )
+
+
+LIU = (
+    Misprint(
+        id="liu-5",
+        paper="Liu 2021",
+        where="eq. 5",
+        printed="omega_s^3 s^3 in numerator and denominator",
+        right="omega_s s^3",
+        consequence="the loop is unstable",
+        compute=_power,
+    ),
+    Misprint(
+        id="liu-6",
+        paper="Liu 2021",
+        where="eq. 6",
+        printed="3.4 omega_s^5 s^5 + 6.8 omega_s^4 s^4 + ... + 3.4 omega_s s + omega_s^6",
+        right="omega_s s^5, omega_s^2 s^4, ..., omega_s^5 s",
+        consequence="a gain that has nothing to do with fig. 3",
+        compute=_transfer_powers,
+    ),
+    Misprint(
+        id="liu-15",
+        paper="Liu 2021",
+        where="eq. 15",
+        printed="n + 1 terms divided by n",
+        right="n terms",
+        consequence="every change counts 5 % too large",
+        compute=_terms,
+    ),
+    Misprint(
+        id="liu-19",
+        paper="Liu 2021",
+        where="eq. 17 to 19",
+        printed="the direct form",
+        right="state space in normalised time (theory.md 3.5)",
+        consequence="a wrong, then unstable network at small steps",
+        compute=_direct_form,
+    ),
+    Misprint(
+        id="liu-fig7",
+        paper="Liu 2021",
+        where="fig. 7",
+        printed="switching undamped for 200 s is like s = 0.25 m/s",
+        right="like a step of the whole 0.5 m/s that the log is off",
+        consequence="the cost of a switch is put at half its size",
+        compute=_figure_7,
+    ),
+)
+"""Misprints of Liu 2021 in the order of the paper."""

@@ -1,0 +1,228 @@
+"""Sun 2017: a missing radius, the sign in the quadratic and what it becomes, and the network's B."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.misprints.base import (
+    OMEGA_S,
+    Axis,
+    Comparison,
+    Curve,
+    Misprint,
+    Number,
+    as_network,
+)
+from app.misprints.two_loops import TwoLoops
+from navcore.analysis import RADIUS, analyse, frequency_response
+from navcore.foundation.units import HOUR, KNOT, MINUTE
+from navcore.law.policy.adaptive import HIGHEST, LOWEST, QUADRATIC, SUN_TABLE
+from navcore.networks.base import LinearNetwork
+from navcore.networks.classic import Classic3Network
+from navcore.networks.pole2 import Pole2Network
+from navcore.networks.unity2 import Unity2Network
+
+_DIFFERENCE = Axis("|V_c - V_r|", "m/s")
+_PRINTED = (QUADRATIC[0], -QUADRATIC[1], QUADRATIC[2])
+
+
+def _table(difference_kn: np.ndarray | float) -> np.ndarray:
+    from scipy.interpolate import PchipInterpolator
+
+    knots, xi = zip(*SUN_TABLE, strict=True)
+    return np.clip(PchipInterpolator(knots, xi)(difference_kn), LOWEST, HIGHEST)
+
+
+def _radius() -> Comparison:
+    omega = np.geomspace(1e-5, 1.0, 301)
+    corrected = np.abs(frequency_response(Classic3Network().transfer(OMEGA_S), "acceleration", "phi", omega))
+    printed = corrected * RADIUS
+    here = int(np.argmin(np.abs(omega - OMEGA_S)))
+    gains = float(printed[here]), float(corrected[here])
+    return Comparison(
+        x_axis=Axis("frequency", "rad/s", log=True),
+        y_axis=Axis("tilt for 1 m/s^2 of acceleration", "rad", log=True),
+        x=omega,
+        curves=(
+            Curve("(1-H)/(s^2 + omega_s^2 H)", "printed", printed),
+            Curve("(1-H)/(R (s^2 + omega_s^2 H))", "corrected", corrected),
+        ),
+        numbers=(Number("gain at the Schuler frequency", "rad/(m/s^2)", gains[0], gains[1]),),
+        words=f"Without 1/R the tilt comes out {RADIUS:.1e} times too large: {gains[0]:.1e} rad for 1 m/s^2 "
+        f"at the Schuler frequency instead of {gains[1]:.2f} rad.",
+    )
+
+
+def _sign() -> Comparison:
+    knots = np.arange(0.0, 3.005, 0.01)
+    printed, mended = np.polyval(_PRINTED, knots), np.polyval(QUADRATIC, knots)
+    table = _table(knots)
+    return Comparison(
+        x_axis=_DIFFERENCE,
+        y_axis=Axis("damping coefficient xi"),
+        x=knots * KNOT,
+        curves=(
+            Curve("Sun 9 as printed", "printed", printed),
+            Curve("Sun 9, sign mended", "corrected", mended),
+            Curve("Sun's Table 1, PCHIP", "corrected", table),
+        ),
+        numbers=(Number("xi at 3 kn", "", float(printed[-1]), float(table[-1])),),
+        words=f"As printed xi rises with the difference, to {printed[-1]:.1f} at 3 kn where Sun's own table "
+        f"has {table[-1]:.2f}: the worse the log, the harder it is believed.",
+    )
+
+
+def negative_range() -> tuple[float, float]:
+    """Differences (m/s) between which Sun 9 with its sign mended asks for negative damping."""
+    low, high = np.sort(np.roots(QUADRATIC).real) * KNOT
+    return float(low), float(high)
+
+
+def _mirrored(network: LinearNetwork) -> LinearNetwork:
+    """H(-s): the same design with the signs of xi, and so of all its poles, changed."""
+    signs = [(-1.0) ** np.arange(len(c) - 1, -1, -1) for c in (network.num_p, network.den_p)]
+    return as_network(network.num_p * signs[0], network.den_p * signs[1])
+
+
+def _negative() -> Comparison:
+    difference = 1.8
+    asked, table = float(np.polyval(QUADRATIC, difference)), float(_table(difference))
+    loops = TwoLoops(
+        _mirrored(Pole2Network(xi=-asked).transfer(OMEGA_S)), Unity2Network(zeta=table).transfer(OMEGA_S)
+    )
+    low, high = negative_range()
+    return loops.compare(
+        np.arange(0.0, 1801.0, 5.0),
+        (f"quadratic at 1.8 kn: xi = {asked:.3f}", f"table at 1.8 kn: xi = {table:.2f}"),
+        (
+            Number("xi at 1.8 kn", "", asked, table),
+            loops.growth,
+            Number("negative from", "m/s", low, None),
+            Number("negative to", "m/s", high, None),
+        ),
+        f"Even with its sign mended the quadratic is negative between {low / KNOT:.2f} and {high / KNOT:.2f} "
+        f"kn: negative damping, e-fold in {loops.growth_s / MINUTE:.1f} min at 1.8 kn.",
+    )
+
+
+def _sigma() -> Comparison:
+    right = Pole2Network(xi=0.5).transfer(OMEGA_S)
+    loops = TwoLoops(_mirrored(right), right)
+    return loops.compare(
+        np.arange(0.0, 901.0, 2.0),
+        ("sigma = + xi omega_n (printed)", "sigma = - xi omega_n"),
+        (loops.damping, loops.growth),
+        f"With the positive sigma of Sun 16 all four poles of Sun 14 and 15 lie on the right: e-fold "
+        f"in {loops.growth_s:.0f} s.",
+    )
+
+
+def real_damping(xi: float) -> tuple[float, float]:
+    """Damping ratio of the loop with `pole2` as printed and exact, n1 = 14, n2 = 5, when xi is asked."""
+    printed = Pole2Network(xi=xi, variant="as_printed").transfer(OMEGA_S)
+    return analyse(printed).damping_ratio, analyse(Pole2Network(xi=xi).transfer(OMEGA_S)).damping_ratio
+
+
+def least_stable() -> float:
+    """Smallest xi for which `pole2` as printed (n1 = 14, n2 = 5) is stable."""
+    low, high = 0.01, 0.5
+    while high - low > 1e-6:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if real_damping(middle)[0] > 0.0 else (middle, high)
+    return high
+
+
+def _residue() -> Comparison:
+    asked = np.linspace(0.02, 1.0, 50)
+    real = np.array([real_damping(float(xi)) for xi in asked])
+    limit, (printed, exact) = least_stable(), real_damping(0.5)
+    return Comparison(
+        x_axis=Axis("damping ratio asked"),
+        y_axis=Axis("damping ratio of the loop"),
+        x=asked,
+        curves=(
+            Curve("B = -A w2/w1 (printed)", "printed", real[:, 0]),
+            Curve("B = (c-a) - A", "corrected", real[:, 1]),
+        ),
+        numbers=(
+            Number("damping ratio when 0.5 is asked", "", printed, exact),
+            Number("unstable for xi up to", "", limit, None),
+        ),
+        words=f"Forcing H(0) = 1 moves the pair: {printed:.2f} when 0.5 is asked, and no stability at all up "
+        f"to xi = {limit:.3f}.",
+    )
+
+
+def _small_xi() -> Comparison:
+    xi = 0.08
+    loops = TwoLoops(
+        Pole2Network(xi=xi, variant="as_printed").transfer(OMEGA_S), Pole2Network(xi=xi).transfer(OMEGA_S)
+    )
+    entries = sum(real_damping(value)[0] < 0.0 for _, value in SUN_TABLE)
+    return loops.compare(
+        np.arange(0.0, 86401.0, 120.0),
+        ("xi = 0.08 as printed", "xi = 0.08 exact"),
+        (loops.damping, loops.growth),
+        f"At xi = 0.08, an entry of Sun's own table, the loop as printed grows e-fold in "
+        f"{loops.growth_s / HOUR:.0f} h (damping {loops.printed.damping_ratio:.3f}); so it does for "
+        f"{entries} of the {len(SUN_TABLE)} entries.",
+    )
+
+
+SUN = (
+    Misprint(
+        id="sun-3",
+        paper="Sun 2017",
+        where="eq. 3",
+        printed="phi/A = (1-H)/(s^2 + omega_s^2 H)",
+        right="with 1/R",
+        consequence="a tilt six million times too large",
+        compute=_radius,
+    ),
+    Misprint(
+        id="sun-9",
+        paper="Sun 2017",
+        where="eq. 9",
+        printed="xi = 0.3076 d^2 + 1.1452 d + 0.8101",
+        right="- 1.1452 d; better the table itself",
+        consequence="the damping rises with the difference instead of falling",
+        compute=_sign,
+    ),
+    Misprint(
+        id="sun-9-negative",
+        paper="Sun 2017",
+        where="eq. 9, sign mended",
+        printed="xi = 0.3076 d^2 - 1.1452 d + 0.8101",
+        right="the table, interpolated monotonically and clamped to 0.04 .. 0.99",
+        consequence="negative damping between 0.95 and 2.77 kn",
+        compute=_negative,
+    ),
+    Misprint(
+        id="sun-16",
+        paper="Sun 2017",
+        where="eq. 16",
+        printed="sigma = xi omega_n",
+        right="sigma = -xi omega_n",
+        consequence="all poles on the right",
+        compute=_sigma,
+    ),
+    Misprint(
+        id="sun-18",
+        paper="Sun 2017",
+        where="eq. 18",
+        printed="B = -A w2/w1",
+        right="B = (c-a) - A (pole2 exact), or unity2 for H(0) = 1",
+        consequence="the loop is less damped than asked",
+        compute=_residue,
+    ),
+    Misprint(
+        id="sun-18-unstable",
+        paper="Sun 2017",
+        where="eq. 18 with Table 1",
+        printed="B = -A w2/w1 at xi = 0.08",
+        right="B = (c-a) - A",
+        consequence="the loop is unstable",
+        compute=_small_xi,
+    ),
+)
+"""Misprints of Sun 2017 in the order of the paper."""

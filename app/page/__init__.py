@@ -1,1 +1,0 @@
-"""One open page: its widgets' arrangement, commands, notices, and what it is told."""

@@ -1,1 +1,0 @@
-"""Arrangement of widgets, one panel a file; no arithmetic, no lists of fields."""

@@ -1,0 +1,166 @@
+"""The one visual language of all pictures: a colour per method, fonts, greys, line styles, the light theme.
+
+Colours follow a method's place in the scenario, so that a method looks the same in the Bode plot, the error
+curves, the 3D scene and the table. They are Okabe and Ito's colour-blind-safe set where it reads on white,
+then Tol's muted set.
+"""
+
+from __future__ import annotations
+
+from html import escape
+from typing import Any
+
+METHOD_COLORS = (
+    "#0072B2",  # blue
+    "#D55E00",  # vermilion
+    "#009E73",  # green
+    "#AA4499",  # purple
+    "#C48500",  # ochre: Okabe-Ito orange, darkened to read on white
+    "#2F99D0",  # sky blue
+    "#882255",  # wine
+    "#7A7A18",  # olive
+    "#332288",  # indigo
+    "#CC6677",  # rose
+    "#2F9C93",  # teal
+    "#6B6B6B",  # grey
+)
+TRUTH_COLOR = "#1F2933"
+
+INK = "#243B53"
+"""Text and axis lines."""
+MUTED = "#52667A"
+"""Secondary text: tick labels, marker labels."""
+GRID = "#E1E7ED"
+GRID_FINE = "#F1F4F7"
+REFERENCE = "#9AA9B8"
+"""Reference lines: natural frequencies, damping rays, zero."""
+DANGER = "#B42318"
+SEA = "#F4F7FA"
+
+# The page's own font stack, so that a plot's text is the page's text.
+FONT_FAMILY = '-apple-system, BlinkMacSystemFont, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif'
+FONT_SIZE = 13
+TITLE_SIZE = 14
+
+LINE_WIDTH = 2.0
+CURVE_WIDTH = 1.5
+"""Of time curves: noise drawn any wider hides what lies below it."""
+
+UPLOT_CSS = (
+    ".uplot .u-legend{font-size:13px;margin:0;text-align:left;padding-left:58px}"
+    ".uplot .u-legend .u-marker{width:14px;height:4px;border-radius:2px;vertical-align:middle}"
+    ".uplot .u-legend th{font-weight:500}"
+    ".uplot .u-legend .u-value{min-width:6ch;display:inline-block;font-variant-numeric:tabular-nums}"
+)
+"""For the page to add once: uPlot's legend in the size of all other text (its own is 11 px)."""
+
+
+def plain(name: str) -> str:
+    """Name as plotly must get it to show it letter by letter: it reads a part of HTML."""
+    return escape(name, quote=False)
+
+
+def method_color(index: int) -> str:
+    """Colour of a method by its place in the scenario, ``#RRGGBB``."""
+    return METHOD_COLORS[index % len(METHOD_COLORS)]
+
+
+def method_rgb(index: int) -> tuple[int, int, int]:
+    """Return the same colour as red, green, blue, 0..255, for the 3D scene."""
+    return rgb(method_color(index))
+
+
+def rgb(color: str) -> tuple[int, int, int]:
+    """Red, green, blue of ``#RRGGBB``, 0..255."""
+    return int(color[1:3], 16), int(color[3:5], 16), int(color[5:7], 16)
+
+
+def axis(title: str = "", **more: Any) -> dict[str, Any]:
+    """A plotly axis in the house style; ``more`` overrides."""
+    made: dict[str, Any] = {
+        "title": {"text": title, "standoff": 6, "font": {"size": FONT_SIZE, "color": INK}},
+        "tickfont": {"size": FONT_SIZE, "color": MUTED},
+        "gridcolor": GRID,
+        "linecolor": REFERENCE,
+        "showline": True,
+        "mirror": True,
+        "ticks": "outside",
+        "ticklen": 4,
+        "tickcolor": REFERENCE,
+        "zeroline": False,
+        "automargin": False,
+    }
+    made.update(more)
+    return made
+
+
+def legend(**more: Any) -> dict[str, Any]:
+    """A horizontal plotly legend along the lower edge of the figure."""
+    made: dict[str, Any] = {
+        "orientation": "h",
+        "x": 0.0,
+        "xref": "paper",
+        "xanchor": "left",
+        "y": 0.0,
+        "yref": "container",
+        "yanchor": "bottom",
+        "font": {"size": FONT_SIZE, "color": INK},
+        "itemwidth": 30,
+        "bgcolor": "rgba(0,0,0,0)",
+        "tracegroupgap": 0,
+    }
+    made.update(more)
+    return made
+
+
+def layout(**more: Any) -> dict[str, Any]:
+    """What all plotly layouts share; ``more`` overrides."""
+    made: dict[str, Any] = {
+        "font": {"family": FONT_FAMILY, "size": FONT_SIZE, "color": INK},
+        "paper_bgcolor": "white",
+        "plot_bgcolor": "white",
+        "hoverlabel": {"font": {"size": FONT_SIZE, "family": FONT_FAMILY}, "bgcolor": "white"},
+        "dragmode": "zoom",
+        "autosize": True,
+    }
+    made.update(more)
+    return made
+
+
+def text(x: float | str, y: float, content: str, **more: Any) -> dict[str, Any]:
+    """A plotly annotation without an arrow; ``more`` overrides."""
+    made: dict[str, Any] = {
+        "x": x,
+        "y": y,
+        "text": content,
+        "showarrow": False,
+        "font": {"size": FONT_SIZE, "color": INK},
+    }
+    made.update(more)
+    return made
+
+
+def legend_rows(names: list[str], width_px: float) -> int:
+    """Rows that a horizontal legend of these names needs, estimated from the number of letters."""
+    rows, used = 1, 0.0
+    for name in names:
+        need = 52.0 + 7.2 * len(name)
+        if used and used + need > width_px:
+            rows, used = rows + 1, 0.0
+        used += need
+    return rows
+
+
+def panel_title(content: str, suffix: str = "", shift_px: float = 13.0) -> dict[str, Any]:
+    """Bold title above the subplot with axes ``x<suffix>``, ``y<suffix>``, flush left."""
+    return text(
+        0.0,
+        1.0,
+        f"<b>{content}</b>",
+        xref=f"x{suffix} domain",
+        yref=f"y{suffix} domain",
+        xanchor="left",
+        yanchor="middle",
+        yshift=shift_px,
+        font={"size": TITLE_SIZE, "color": INK},
+    )

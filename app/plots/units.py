@@ -1,0 +1,158 @@
+"""Which unit a plot shows: chosen by the size of what it shows, named in its label.
+
+The time plots' axis labels and cursor values have at most three decimals, so a unit must keep the peak well
+above 0.01; the bounds below leave a factor of two to spare.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from navcore.foundation.units import ARCMIN, ARCSEC, DEG, HOUR, KNOT, MINUTE, NAUTICAL_MILE
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit on screen.
+
+    Attributes
+    ----------
+    name : str
+        As written in a label.
+    si : float
+        One unit in SI.
+    """
+
+    name: str
+    si: float
+
+
+ARCSECONDS = Unit("arcsec", ARCSEC)
+ARCMINUTES = Unit("arcmin", ARCMIN)
+DEGREES = Unit("deg", DEG)
+METRES_PER_SECOND = Unit("m/s", 1.0)
+METRES = Unit("m", 1.0)
+NAUTICAL_MILES = Unit("nmi", NAUTICAL_MILE)
+KILOMETRES = Unit("km", 1e3)
+KNOTS = Unit("kn", KNOT)
+MINUTES = Unit("min", MINUTE)
+HOURS = Unit("h", HOUR)
+AUTO = "auto"
+NAMED: dict[str, Unit] = {
+    unit.name: unit
+    for unit in (
+        ARCSECONDS,
+        ARCMINUTES,
+        DEGREES,
+        METRES,
+        KILOMETRES,
+        NAUTICAL_MILES,
+        METRES_PER_SECOND,
+        KNOTS,
+        MINUTES,
+        HOURS,
+    )
+}
+"""Units that a user can ask for, by name."""
+_LEAST = 0.02
+"""Peak below which three decimals say too little."""
+
+# Smallest peak (SI) from which each unit is used; the last whose bound is reached counts.
+_ANGLES = (
+    (0.0, Unit("µas", 1e-6 * ARCSEC)),
+    (2e-5 * ARCSEC, Unit("mas", 1e-3 * ARCSEC)),
+    (0.02 * ARCSEC, ARCSECONDS),
+    (180.0 * ARCSEC, ARCMINUTES),
+    (180.0 * ARCMIN, DEGREES),
+)
+_SPEEDS = (
+    (0.0, Unit("µm/s", 1e-6)),
+    (2e-5, Unit("mm/s", 1e-3)),
+    (0.02, METRES_PER_SECOND),
+    (5e3, Unit("km/s", 1e3)),
+)
+_LENGTHS = (
+    (0.0, Unit("µm", 1e-6)),
+    (2e-5, Unit("mm", 1e-3)),
+    (0.02, METRES),
+    (3e3, Unit("km", 1e3)),
+    (10.0 * NAUTICAL_MILE, NAUTICAL_MILES),
+)
+
+
+def angle_unit(peak_rad: float) -> Unit:
+    """Unit for angles up to ``peak_rad``: arcsec below 3', arcmin below 3 deg."""
+    return _chosen(_ANGLES, peak_rad, ARCSECONDS)
+
+
+def speed_unit(peak_mps: float) -> Unit:
+    """Unit for velocities up to ``peak_mps``: m/s from 2 cm/s."""
+    return _chosen(_SPEEDS, peak_mps, METRES_PER_SECOND)
+
+
+def length_unit(peak_m: float) -> Unit:
+    """Unit for lengths up to ``peak_m``: m below 3 km, km below 10 nmi, then nmi."""
+    return _chosen(_LENGTHS, peak_m, METRES)
+
+
+def time_unit(span_s: float, wanted: str = AUTO) -> Unit:
+    """Minutes below 3 h, else hours; or the one that is wanted by name."""
+    if wanted != AUTO:
+        return NAMED[wanted]
+    return MINUTES if span_s < 3.0 * HOUR else HOURS
+
+
+def wanted_unit(name: str, peak: float, chosen: Callable[[float], Unit]) -> Unit:
+    """Unit that is asked for by name, legibly scaled; with ``AUTO`` what ``chosen`` gives for the peak."""
+    return chosen(peak) if name == AUTO else scaled_unit(name, peak)
+
+
+def scaled_unit(name: str, peak: float) -> Unit:
+    """The named unit, or a thousandth, a millionth ... of it where the peak (SI) needs that to be legible.
+
+    Examples
+    --------
+    >>> scaled_unit("m", 3.0).name, scaled_unit("nmi", 3.0).name
+    ('m', '10⁻³ nmi')
+    """
+    unit = NAMED[name]
+    if not math.isfinite(peak) or peak <= 0.0 or peak >= _LEAST * unit.si:
+        return unit
+    parts = ((1e-3, "10⁻³"), (1e-6, "10⁻⁶"), (1e-9, "10⁻⁹"))
+    part, word = next((found for found in parts if peak >= _LEAST * unit.si * found[0]), parts[-1])
+    return Unit(f"{word} {unit.name}", unit.si * part)
+
+
+def _chosen(table: tuple[tuple[float, Unit], ...], peak: float, otherwise: Unit) -> Unit:
+    if not math.isfinite(peak) or peak <= 0.0:
+        return otherwise
+    return [unit for bound, unit in table if peak >= bound][-1]
+
+
+def number(value: float, digits: int = 5) -> str:
+    """Number with at most ``digits`` significant digits, without an exponent where that is readable.
+
+    Examples
+    --------
+    >>> number(1234567.0), number(0.012345678), number(2.5), number(-1e-9)
+    ('1.2346e+06', '0.012346', '2.5', '-1e-09')
+    """
+    if not math.isfinite(value):
+        return "∞" if value > 0 else "-∞" if value < 0 else "n/a"
+    return f"{value:.{digits}g}"
+
+
+def duration(seconds: float, digits: int = 3) -> str:
+    """Period or duration in the unit a navigator would use.
+
+    Examples
+    --------
+    >>> duration(5067.0), duration(86164.0), duration(45.0), duration(7e5)
+    ('84.5 min', '23.9 h', '45 s', '8.1 d')
+    """
+    for bound, size, name in ((100.0, 1.0, "s"), (3.0 * HOUR, MINUTE, "min"), (100.0 * HOUR, HOUR, "h")):
+        if seconds < bound:
+            return f"{seconds / size:.{digits}g} {name}"
+    return f"{seconds / (24.0 * HOUR):.{digits}g} d"

@@ -1,0 +1,102 @@
+"""The right column: the views of a run in one or two panels, and which of them are out of date."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence, Set
+from typing import TYPE_CHECKING, Any
+
+from app.session.shown import Shown
+from app.shell.layout import Layout
+from app.shell.view import PictureView, View
+
+if TYPE_CHECKING:
+    import viser
+
+
+class Column:
+    """Tabs of the upper and of the lower right panel.
+
+    Parameters
+    ----------
+    gui : viser.GuiApi
+        Of the client.
+    views : sequence of View
+        Those of the page that stand there, in the order of their tabs.
+    """
+
+    def __init__(self, gui: viser.GuiApi, views: Sequence[View]) -> None:
+        self._gui, self._views = gui, views
+        self._pictured = {view.title: view for view in views if isinstance(view, PictureView)}
+        self._panels: list[viser.PanelHandle] = []
+        self._tabs: dict[str, viser.GuiTabHandle] = {}
+        self._stale = set(self._pictured)
+
+    def build(self, layout: Layout) -> None:
+        """Place the panels and the tabs that are always there, in place of earlier ones."""
+        for panel in self._panels:
+            panel.remove()
+        upper = self._gui.add_panel()
+        upper.dock_right()
+        self._panels, self._tabs = [upper], {}
+        if layout.wide:
+            lower = self._gui.add_panel()
+            lower.dock_below(upper)
+            self._panels.append(lower)
+        upper.set_width(layout.right_px)
+        self._stale = set(self._pictured)
+        for view in self._views:
+            if view.always:
+                self._add(view)
+
+    def _add(self, view: View) -> None:
+        panel = self._panels[0 if view.place == "upper" else -1]
+        tab = self._tabs[view.title] = panel.add_tab(view.title)
+        view.build(tab)
+
+    # ------------------------------------------------------------ what is out of date
+
+    def mark_stale(self, titles: Iterable[str] | None = None) -> None:
+        """Note that some pictures, or all, are of another run or another choice."""
+        self._stale |= set(self._pictured if titles is None else titles)
+
+    @property
+    def of_selected(self) -> set[str]:
+        """Titles of the pictures that depend on which method the controls edit."""
+        return {title for title, view in self._pictured.items() if view.of_selected}
+
+    def wanted(self, front: Set[str]) -> set[str]:
+        """Titles of the pictures among the tabs in front; all of them where none is."""
+        return (self._pictured.keys() & front) or set(self._pictured)
+
+    def stale(self, front: Set[str]) -> set[str]:
+        """Titles of the pictures in front that are out of date; ``front`` is empty while it is unknown."""
+        return self._stale & (front or self._pictured.keys())
+
+    # ------------------------------------------------------------ pictures
+
+    def make(self, found: Shown, wanted: Iterable[str]) -> dict[str, Any]:
+        """Make the wanted pictures: title -> picture; nothing is sent yet."""
+        views = [self._pictured[title] for title in wanted]
+        return {view.title: view.picture(found) for view in views if view.stands(found.run)}
+
+    def show(self, found: Shown, pictures: dict[str, Any], wanted: set[str]) -> None:
+        """Send pictures that `make` gave for ``wanted``; they are up to date from now on."""
+        self._stale -= wanted
+        for view in self._pictured.values():
+            if not view.always:
+                self._place(view, view.stands(found.run))
+        for title, picture in pictures.items():
+            self._pictured[title].show(picture)
+
+    def _place(self, view: PictureView[Any], stands: bool) -> None:
+        """Let a tab be there exactly while its view has something to show."""
+        if stands and view.title not in self._tabs:
+            self._add(view)
+        elif not stands and view.title in self._tabs:
+            self._tabs.pop(view.title).remove()
+
+    def tell_front(self, front: Set[str]) -> None:
+        """Let the views in front know that they are."""
+        for view in self._views:
+            if view.title in front:
+                view.to_front()

@@ -1,0 +1,217 @@
+"""One control: a field's slider with its exact number box, or a chooser or text, and the note below it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from app.bridge.controls import id_of
+from app.editing import form
+from app.editing.form import FieldSpec
+from app.shell import notices
+
+if TYPE_CHECKING:
+    import viser
+
+DECIMALS = 12
+"""Decimals that a number box takes and shows."""
+_READ = {"roots": form.read_roots, "numbers": form.read_numbers, "pairs": form.read_pairs}
+_WRITE = {"roots": form.write_roots, "numbers": form.write_numbers, "pairs": form.write_pairs}
+_AS_THEY_ARE = ("integer", "choice", "flag")
+EXACT = ", exact"
+"""Ends the label of a number box that stands beside a slider."""
+
+Edit = Callable[["Control", bool], None]
+"""``edit(control, by_slider)``: the user has moved the slider, or filled the box."""
+
+
+class _Widget:
+    """A viser widget, and the value in it that has been dealt with.
+
+    viser stores what a browser sends before it calls back, and calls back concurrently: a value other than
+    the known one belongs to an event that is still to come, and must not be overwritten by an older one.
+    """
+
+    def __init__(self, handle: Any) -> None:
+        self.handle = handle
+        self.known = handle.value
+
+    def take(self) -> Any:
+        """Value the user has given; it counts as dealt with."""
+        self.known = self.handle.value
+        return self.known
+
+    def show(self, value: Any) -> None:
+        """Show a value, unless the user has just given another one."""
+        if self.handle.value == self.known:
+            self.handle.value = value
+            self.known = self.handle.value
+
+
+class Control:
+    """Widgets of one field; it shows values and reports what the user does, nothing else.
+
+    Parameters
+    ----------
+    gui : viser.GuiApi
+        Of the client; widgets go into its present container.
+    spec : FieldSpec
+        The field.
+    edit : callable
+        Called when the user has changed a widget, in any thread; it may `take` the value then.
+    order : float
+        Place in the container; the control takes ``order`` to ``order + 0.9``.
+    value : object
+        To show first.
+    """
+
+    def __init__(self, gui: viser.GuiApi, spec: FieldSpec, edit: Edit, order: float, value: Any) -> None:
+        self.spec = spec
+        self.value = value
+        self._slider: _Widget | None = None
+        self._slider_moved = False
+        self.removed = False
+        make = {
+            "choice": self._make_choice,
+            "flag": self._make_flag,
+            "integer": self._make_integer,
+            "number": self._make_number,
+        }
+        self._box = _Widget(make.get(spec.kind, self._make_text)(gui, order, value))
+        self._box.handle.on_update(lambda event: edit(self, False) if event.client is not None else None)
+        if self._slider is not None:
+            self._slider.handle.on_update(
+                lambda event: edit(self, True) if event.client is not None else None
+            )
+        self._note = gui.add_html("", order=order + 0.5, visible=False)
+
+    # ------------------------------------------------------------ making
+
+    def _make_choice(self, gui: viser.GuiApi, order: float, value: Any) -> Any:
+        spec = self.spec
+        return gui.add_dropdown(
+            spec.label, spec.choices, initial_value=str(value), hint=spec.hint or None, order=order
+        )
+
+    def _make_flag(self, gui: viser.GuiApi, order: float, value: Any) -> Any:
+        return gui.add_checkbox(self.spec.label, bool(value), hint=self.spec.hint or None, order=order)
+
+    def _make_integer(self, gui: viser.GuiApi, order: float, value: Any) -> Any:
+        spec, label = self.spec, self._make_slider(gui, order, value)
+        return gui.add_number(label, int(value), step=1, hint=spec.hint or None, order=order + 0.2)
+
+    def _make_text(self, gui: viser.GuiApi, order: float, value: Any) -> Any:
+        return gui.add_text(self.spec.label, self.as_text(value), hint=self.spec.hint or None, order=order)
+
+    def _make_slider(self, gui: viser.GuiApi, order: float, value: Any) -> str:
+        """Make the slider, if the field has one; return the label of the box beside it."""
+        spec, slider = self.spec, self.spec.slider
+        if slider is None:
+            return spec.label
+        low, high = slider.ends
+        marks = ((low, f"{slider.low:g}"), (high, f"{slider.high:g}"))
+        position = slider.position(0.0 if value is None else float(value))
+        self._slider = _Widget(
+            gui.add_slider(
+                spec.label, low, high, slider.step, position, marks=marks, hint=spec.hint or None, order=order
+            )
+        )
+        return spec.label + EXACT
+
+    def _make_number(self, gui: viser.GuiApi, order: float, value: Any) -> Any:
+        spec, label = self.spec, self._make_slider(gui, order, value)
+        shown = 0.0 if value is None else float(value)
+        # Explicitly a float, or viser would cast every later value to a whole number.
+        box = gui.add_number(label, shown, step=self._box_step(), hint=spec.hint or None, order=order + 0.2)
+        box.precision = DECIMALS
+        return box
+
+    def _box_step(self) -> float:
+        slider = self.spec.slider
+        if slider is None:
+            return 1.0
+        return form.round_step(slider.low) if slider.log else slider.step
+
+    # ------------------------------------------------------------ showing
+
+    def show(self, value: Any) -> None:
+        """Show a value; widgets that show it already send nothing. None leaves what is shown."""
+        if value is None and self.spec.kind == "number":
+            return
+        self.value = value
+        self._box.show(self._as_shown(value))
+        self._show_on_slider(value)
+
+    def take(self, by_slider: bool) -> Any:
+        """What the user has given: a number, a choice, or text as typed."""
+        self._slider_moved = by_slider
+        if by_slider and self._slider is not None and self.spec.slider is not None:
+            return self.spec.slider.value(self._slider.take())
+        return self._box.take()
+
+    def follow(self, value: Any) -> None:
+        """Take over the value the user has just given, leaving the widget in hand alone."""
+        self.value = value
+        if self._slider_moved:
+            self._box.show(self._as_shown(value))
+        else:
+            self._show_on_slider(value)
+
+    def _show_on_slider(self, value: Any) -> None:
+        if self._slider is not None and self.spec.slider is not None:
+            self._slider.show(self.spec.slider.position(value))
+
+    def _as_shown(self, value: Any) -> Any:
+        if self.spec.kind == "number":
+            return float(value)
+        return value if self.spec.kind in _AS_THEY_ARE else self.as_text(value)
+
+    def as_text(self, value: Any) -> str:
+        """Text of a value in a text box."""
+        write = _WRITE.get(self.spec.kind)
+        return str(value or "") if write is None else write(value)
+
+    def read(self, shown: Any) -> Any:
+        """Value of the field from what its box holds; raises ValueError for text that cannot be read."""
+        read = _READ.get(self.spec.kind)
+        return shown if read is None else read(shown)
+
+    @property
+    def held(self) -> Any:
+        """What the box holds."""
+        return self._box.handle.value
+
+    @property
+    def moving(self) -> bool:
+        """Whether the user has given another value that is still to be dealt with."""
+        widget = self._slider if self._slider_moved and self._slider is not None else self._box
+        return widget.handle.value != widget.known
+
+    @property
+    def typed(self) -> bool:
+        """Whether the last value was typed letter by letter, so that a wrong one may only be unfinished."""
+        return self.spec.kind not in ("choice", "flag") and not self._slider_moved
+
+    def say(self, html: str) -> None:
+        """Put a note below the control, or take it away."""
+        if self._note.content != html:
+            self._note.content = html
+        self._note.visible = bool(html)
+
+    def refuse(self, lines: list[str]) -> None:
+        """Say below the control why a value was not taken over."""
+        self.say(notices.note(lines, "error"))
+
+    def remove(self) -> None:
+        """Take the widgets off the page."""
+        self.removed = True
+        self._note.remove()
+        for widget in (self._slider, self._box):
+            if widget is not None:
+                widget.handle.remove()
+
+    def ids(self, *, but_box: bool = False, but_moved: bool = False) -> list[str]:
+        """Ids of the widgets in viser; without the box that is perhaps typed into, or the one moved last."""
+        slider = None if but_moved and self._slider_moved else self._slider
+        box = None if (but_box or but_moved) and not self._slider_moved else self._box
+        return [id_of(widget.handle) for widget in (slider, box) if widget is not None]

@@ -1,0 +1,175 @@
+"""From a moved control to a new scenario: wrong values are refused and restored, the last good ones kept."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from app.bridge.controls import show_held_values
+from app.editing import edits
+from app.editing.form import Path
+from app.session.session import Session
+from app.shell import notices
+from app.shell.control import Control
+from app.shell.timer import timer
+from navcore.foundation.errors import InputError
+from navcore.scenario.model import Scenario
+
+if TYPE_CHECKING:
+    import viser
+
+_UNFINISHED_S = 1.2
+"""A typed value that is wrong is only refused when it stays: it may be on the way to a right one."""
+_PASSING_S = 0.25
+"""The same for a slider, which may only pass a wrong value."""
+_BURST_OVER_S = 0.6
+"""After this long without an event the server's values are shown again: the browser drops some while several
+controls move at once."""
+_HAND_OFF_S = 2.0
+"""The same for the widget that was moved last: a step that its user makes just then would be counted from the
+value that is shown again, and be lost."""
+
+
+class Editor:
+    """What the controls of one page do to the session.
+
+    Parameters
+    ----------
+    client : viser.ClientHandle
+        The browser.
+    session : Session
+        Whose scenario is edited.
+    by : object
+        Whom the session is told to be the author of changes.
+    controls : callable
+        Gives all controls of the page.
+    """
+
+    def __init__(
+        self,
+        client: viser.ClientHandle,
+        session: Session,
+        by: object,
+        controls: Callable[[], Iterable[Control]],
+    ) -> None:
+        self.moved: Control | None = None
+        """The control the user has in hand."""
+        self._client, self._session, self._by = client, session, by
+        self._controls = controls
+        self._closed = False
+        self._motions: dict[tuple[str, str, str], Mapping[str, Any]] = {}
+        self._doubts: dict[Control, threading.Timer] = {}
+        self._quiet: threading.Timer | None = None
+
+    def edit(self, control: Control, by_slider: bool) -> None:
+        """Take over what a control holds, if the scenario allows it."""
+        with self._session.lock:
+            if control.removed or self._closed:
+                return
+            shown = control.take(by_slider)
+            self._touched(control)
+            try:
+                value = control.read(shown)
+                changed = self._changed(control, value)
+            except (InputError, ValueError) as error:
+                self._doubt(control, shown, error)
+                return
+            self._trust(control)
+            control.follow(value)
+            self._session.change(changed, self._by)
+
+    def put(self, control: Control, value: Any) -> None:
+        """Set a control's field to a value that the control does not hold yet; raises `InputError`."""
+        with self._session.lock:
+            if not self._closed and not control.removed:
+                self._trust(control)
+                changed = self._changed(control, value)
+                self._session.change(changed, None, name=f"reset {control.spec.label}")
+
+    def close(self) -> None:
+        """Let nothing follow any more."""
+        with self._session.lock:
+            self._closed = True
+            for waiting in (*self._doubts.values(), self._quiet):
+                if waiting is not None:
+                    waiting.cancel()
+
+    def _changed(self, control: Control, value: Any) -> Scenario:
+        scenario, path = self._session.scenario, control.spec.path
+        if path[-1] == "id" or path == ("motion", "kind"):
+            return edits.with_choice(scenario, path, value, self._earlier(scenario, path, value))
+        return edits.with_value(scenario, path, value, self._beside(path))
+
+    def _beside(self, path: Path) -> dict[str, Any]:
+        """What the controls hold for the other numbers of the same model: name -> value."""
+        beside: dict[str, Any] = {}
+        for control in self._controls():
+            if control.spec.kind == "number" and control.spec.path[:-1] == path[:-1]:
+                beside.setdefault(str(control.spec.path[-1]), control.held)
+        return beside
+
+    def _earlier(self, scenario: Scenario, path: Path, chosen: str) -> Mapping[str, Any] | None:
+        """Fields of the motion when it was last of the kind chosen; those of the present one are kept."""
+        if path[0] != "motion":
+            return None
+        whose = scenario.title, scenario.source
+        self._motions[(*whose, scenario.motion.kind)] = scenario.canonical()["motion"]
+        return self._motions.get((*whose, chosen))
+
+    # ------------------------------------------------------------ wrong values
+
+    def _doubt(self, control: Control, shown: Any, error: Exception) -> None:
+        self._trust(control)
+        delay_s = _UNFINISHED_S if control.typed else _PASSING_S
+        doubt = self._doubts[control] = timer(delay_s, self._refuse, control, shown, error)
+        doubt.start()
+
+    def _trust(self, control: Control) -> None:
+        doubt = self._doubts.pop(control, None)
+        if doubt is not None:
+            doubt.cancel()
+        control.say("")
+
+    def _refuse(self, control: Control, shown: Any, error: Exception) -> None:
+        with self._session.lock, self._client.atomic():
+            if self._closed or control.removed or control.moving or self._doubts.pop(control, None) is None:
+                return
+            control.show(control.value)
+            kept = f"{control.value:.9g}" if control.spec.kind == "number" else control.as_text(control.value)
+            if isinstance(error, InputError):
+                lines = [notices.refusal(fault, kept) for fault in error.faults]
+            else:
+                lines = [f"{shown!r} was not taken over: cannot be read ({kept} is kept)"]
+            control.refuse(lines)
+        notices.tell(self._client, f"{control.spec.label}: not taken over", lines)
+        self._client.flush()
+
+    # ------------------------------------------------------------ bursts
+
+    def _touched(self, control: Control) -> None:
+        self.moved = control
+        if self._quiet is not None:
+            self._quiet.cancel()
+        self._quiet = timer(_BURST_OVER_S, self._burst_over, control)
+        self._quiet.start()
+
+    def _burst_over(self, last: Control) -> None:
+        with self._session.lock, self._client.atomic():
+            if self._closed or self._quiet is not threading.current_thread():
+                return  # something has been moved again
+            for control in self._controls():
+                self._show_held(control.ids(but_moved=control is last))
+            self._quiet = timer(_HAND_OFF_S - _BURST_OVER_S, self._hand_off, last)
+            self._quiet.start()
+        self._client.flush()
+
+    def _hand_off(self, last: Control) -> None:
+        with self._session.lock, self._client.atomic():
+            if self._closed or last.removed or self._quiet is not threading.current_thread():
+                return
+            self._show_held(last.ids(but_box=True))
+        self._client.flush()
+
+    def _show_held(self, ids: Iterable[str]) -> None:
+        show_held_values(self._client, ids)

@@ -1,0 +1,131 @@
+"""Above the left tabs: state of the run, its progress and cancel, the scenario chooser."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from html import escape
+from typing import TYPE_CHECKING
+
+from app.plots import style
+from app.plots.units import duration
+from app.session.session import Session
+from app.shell import notices
+from app.shell.opening import Opening
+from app.shell.view import if_user
+from navcore.engine.run import Run
+from navcore.foundation.units import HOUR
+from navcore.scenario.model import Scenario
+
+if TYPE_CHECKING:
+    import viser
+
+RUN_AGAIN, RUN_STRAPDOWN = "Run again", "Run the strapdown"
+# While a picture is old it is dimmed.
+_DIM = "<style>.js-plotly-plot,.uplot,.sb-table{opacity:.45}</style>"
+
+
+class HeaderPanel:
+    """What is always in view at the left.
+
+    Parameters
+    ----------
+    gui : viser.GuiApi
+        Of the client.
+    opening : Opening
+        Scenarios to choose from.
+    session : Session
+        Whose scenario and run are shown.
+    focus : mapping
+        Name in a scenario's block ``view`` -> title of the tab in which such a scenario opens.
+    """
+
+    def __init__(
+        self, gui: viser.GuiApi, opening: Opening, session: Session, focus: Mapping[str, str]
+    ) -> None:
+        self._opening, self._session, self._focus = opening, session, focus
+        self._state = gui.add_html("", order=10)
+        self._progress = gui.add_progress_bar(0.0, visible=False, order=11)
+        self._stop = gui.add_button("Stop the run", color="orange", visible=False, order=12)
+        self._again = gui.add_button(RUN_AGAIN, visible=False, order=13)
+        self._scenario = gui.add_dropdown(
+            "scenario",
+            opening.scenarios(),
+            hint="A preset, or what was uploaded; choosing one starts from it anew.",
+            order=14,
+        )
+        self._about = gui.add_html("", order=15)
+        self._note = gui.add_html("", visible=False, order=16)
+        self._scenario.on_update(if_user(lambda: opening.choose_scenario(self._scenario.value)))
+        self._stop.on_click(lambda _: session.cancel_run())
+        self._again.on_click(lambda _: session.redo_run())
+
+    def show_scenario(self) -> None:
+        """Show which scenario the session has."""
+        scenario, origin, options = self._session.scenario, self._session.origin, self._opening.scenarios()
+        offered = options if origin in options else (*options, origin)
+        if self._scenario.options != offered:
+            self._scenario.options = offered
+        self._scenario.value = origin
+        lines = [f"<b>{escape(scenario.title)}</b>" if scenario.title else "", escape(scenario.source)]
+        tab = self._focus.get(scenario.view.focus, "")
+        self._about.content = (
+            f'<div id="sb-focus" data-scenario="{escape(origin)}" data-tab="{escape(tab)}" '
+            f'style="margin:-2px 10px 8px;font-size:12.5px;line-height:1.35;color:{style.MUTED}">'
+            f"{'<br>'.join(line for line in lines if line)}</div>"
+        )
+
+    def show_run(self, run: Run, number: int, *, outdated: bool, frame_ms: float) -> None:
+        """Say which run the pictures show."""
+        ended = {"ok": "", "diverged": ", diverged", "stopped": ", stopped"}[run.status]
+        count = len(run.methods)
+        span = duration(float(run.t_s[-1])) if len(run.t_s) else "0 s"
+        text = f"Run {number}: {span}, {count} method{'s' * (count != 1)}, {frame_ms:.0f} ms{ended}"
+        self._show_state(text, "#2E7D32" if run.status == "ok" else style.DANGER)
+        if outdated:
+            self._show_state(f"{text}; a new run follows", "#B26A00")
+        self._hide_progress(again=False)
+        self._say(notices.note(run.warnings, "info"))
+
+    def show_moving(self) -> None:
+        """Say that only the pictures in front follow the slider; the rest is shown when it rests."""
+        self._show_state("The slider moves; 3D view and numbers follow when it rests", "#B26A00")
+
+    def show_progress(self, fraction: float, number: int) -> None:
+        """Say that the pictures are old and a run is under way."""
+        self._progress.value = round(100.0 * fraction, 1)
+        if not self._progress.visible:
+            self._show_state(f"Computing; the pictures still show run {number}", "#B26A00", old=True)
+            self._progress.visible = self._stop.visible = True
+            self._again.visible = False
+
+    def show_stopped(self, number: int) -> None:
+        """Say that the pictures are old because the run was stopped."""
+        self._show_state(f"Stopped; the pictures still show run {number}", "#B26A00", old=True)
+        self._hide_progress(again=True)
+
+    def show_waiting(self, scenario: Scenario, number: int) -> None:
+        """Say that the pictures are old until the user starts a run that would take long."""
+        samples = scenario.run.duration_h * HOUR * scenario.run.rate_hz / 1e6
+        text = f"{samples:.3g} million samples a method: run it when you are ready"
+        self._show_state(f"Strapdown, {text}; the pictures still show run {number}", "#B26A00", old=True)
+        self._hide_progress(again=True, label=RUN_STRAPDOWN)
+
+    def show_failed(self, number: int) -> None:
+        """Say that the pictures are the last good ones."""
+        self._show_state(f"The run failed; the pictures show run {number}", style.DANGER, old=True)
+        self._hide_progress(again=True)
+
+    def _hide_progress(self, *, again: bool, label: str = RUN_AGAIN) -> None:
+        self._progress.visible = self._stop.visible = False
+        self._again.label = label
+        self._again.visible = again
+
+    def _say(self, html: str) -> None:
+        self._note.content, self._note.visible = html, bool(html)
+
+    def _show_state(self, text: str, color: str, *, old: bool = False) -> None:
+        self._state.content = (
+            '<div id="sb-status" role="status" style="margin:2px 10px 8px;font-size:12.5px;'
+            f'color:{style.INK}"><span style="display:inline-block;width:9px;height:9px;border-radius:50%;'
+            f'margin-right:7px;background:{color}"></span>{escape(text)}</div>{_DIM if old else ""}'
+        )

@@ -1,0 +1,90 @@
+"""Where things stand on the page, from the size of the browser's window."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+SMALLEST = (640, 400)
+LARGEST = (7680, 4320)
+WIDE_FROM_PX = 1600
+"""From this width on the plots stand in two panels above each other; below, in one column of tabs."""
+
+# Measured in the page (tests/browser/test_page_layout.py holds them against it).
+_COLUMN_PADDING_PX = 12
+"""Between the edges of a column and its plots, both sides together."""
+_CHROME_PX = {True: 53, False: 58}
+"""Handles and tabs above a panel's content: of one of two panels, of a single one."""
+_MARGIN_PX = 18
+"""Above and below a panel's content."""
+CHOOSER_PX = 36
+"""A chooser above a plot."""
+TOOLS = '<div class="sb-tools"></div>'
+"""HTML that lets the controls of a tab stand in one row (static/page.css)."""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Sizes in CSS pixels.
+
+    Attributes
+    ----------
+    wide : bool
+        Two panels above each other; else one.
+    left_px, right_px : int
+        Widths of the columns.
+    plot_px : int
+        Width of a plot.
+    room_px : int
+        Height for a panel's content.
+    view_aspect : float
+        Width / height of the 3D view between the columns.
+    """
+
+    wide: bool
+    left_px: int
+    right_px: int
+    plot_px: int
+    room_px: int
+    view_aspect: float
+
+    def aspect(self, taken_px: int = 0) -> float:
+        """Height / width of a plot that fills the panel, ``taken_px`` being used by something else."""
+        return max(self.room_px - taken_px, 160) / self.plot_px
+
+
+def layout_for(width: int, height: int) -> Layout:
+    """Arrange the page for a window of this size (CSS pixels).
+
+    Examples
+    --------
+    >>> layout_for(1920, 1080).wide, layout_for(1366, 768).wide
+    (True, False)
+    """
+    wide = width >= WIDE_FROM_PX
+    left = 360 if width >= 1500 else 340 if width >= 1300 else 320
+    right = width // 2 if wide else max(360, min(round(0.5 * width), width - left - 260))
+    room = (height // 2 if wide else height) - _CHROME_PX[wide] - _MARGIN_PX
+    view = max(width - left - right, 120) / height
+    return Layout(wide, left, right, right - _COLUMN_PADDING_PX, max(room, 200), view)
+
+
+def read_state(text: str) -> tuple[tuple[int, int] | None, tuple[str, ...]]:
+    """Window size and front tabs as the page reports them; (None, ()) for anything else.
+
+    Examples
+    --------
+    >>> read_state("1920x1080|Frequency|Errors")
+    ((1920, 1080), ('Frequency', 'Errors'))
+    >>> read_state("hello")
+    (None, ())
+    """
+    size, *tabs = text.strip().split("|")
+    found = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})", size)
+    if found is None:
+        return None, ()
+    width, height = (
+        min(max(int(number), low), high)
+        for number, low, high in zip(found.groups(), SMALLEST, LARGEST, strict=True)
+    )
+    return (width, height), tuple(tabs[:20])

@@ -1,0 +1,96 @@
+"""What the page says in words: notifications at its edge, notes beside controls."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from html import escape
+from typing import TYPE_CHECKING, Literal
+
+from app.plots import style
+from navcore.foundation.errors import Fault, InputError
+
+if TYPE_CHECKING:
+    import viser
+
+Tone = Literal["error", "warning", "info"]
+
+_TONES: dict[Tone, tuple[str, str]] = {
+    "error": (style.DANGER, "#FDECEA"),
+    "warning": ("#8A5A00", "#FFF6E0"),
+    "info": (style.MUTED, style.SEA),
+}
+_NOTICE_COLORS: dict[Tone, Literal["red", "orange", "blue"]] = {
+    "error": "red",
+    "warning": "orange",
+    "info": "blue",
+}
+_LONGEST_NOTICE = 600
+
+
+def tell(client: viser.ClientHandle, title: str, lines: Iterable[str], tone: Tone = "error") -> None:
+    """Show a notification that goes away by itself; errors stay longer."""
+    text = "\n".join(lines)
+    if len(text) > _LONGEST_NOTICE:
+        text = text[: _LONGEST_NOTICE - 3] + "..."
+    seconds = 10.0 if tone == "info" else 15.0
+    client.add_notification(title, text, color=_NOTICE_COLORS[tone], auto_close_seconds=seconds)
+
+
+@contextmanager
+def told(client: viser.ClientHandle, title: str, otherwise: Callable[[], None]) -> Iterator[None]:
+    """Tell what is wrong with an input, or why a file cannot be stored, and do something else instead."""
+    try:
+        yield
+    except InputError as error:
+        tell(client, title, fault_lines(error))
+        otherwise()
+    except OSError as error:
+        tell(client, title, [error.strerror or str(error)])
+        otherwise()
+
+
+def note(lines: Iterable[str], tone: Tone) -> str:
+    """HTML of a note that stands beside the control it is about; empty without lines."""
+    shown = "<br>".join(escape(line) for line in lines)
+    if not shown:
+        return ""
+    ink, ground = _TONES[tone]
+    return (
+        f'<div role="note" class="sb-note sb-{tone}" style="margin:0 10px 8px;padding:4px 8px;'
+        f"font-size:12.5px;line-height:1.35;color:{ink};background:{ground};border-left:3px solid {ink};"
+        f'border-radius:2px">{shown}</div>'
+    )
+
+
+def heading(text: str) -> str:
+    """HTML of a small heading between controls."""
+    return (
+        f'<div style="margin:6px 10px 4px;font-size:12.5px;font-weight:600;color:{style.INK}">'
+        f"{escape(text)}</div>"
+    )
+
+
+def small(text: str) -> str:
+    """HTML of a line of secondary text."""
+    return (
+        f'<div style="margin:0 10px 8px;font-size:12.5px;line-height:1.35;color:{style.MUTED}">'
+        f"{escape(text)}</div>"
+    )
+
+
+def refusal(fault: Fault, kept: str = "") -> str:
+    """One fault in words, for a reader who looks at the control: the value, what it must be, what is kept."""
+    value = "" if fault.value is None else f"{_shown(fault.value)} was not taken over: "
+    keeps = f" ({kept} is kept)" if kept else ""
+    return f"{value}{fault.allowed}{keeps}"
+
+
+def fault_lines(error: InputError) -> list[str]:
+    """Faults of an error, one line each."""
+    return [str(fault) for fault in error.faults]
+
+
+def _shown(value: object) -> str:
+    text = f"{value:.6g}" if isinstance(value, float) else str(value)
+    return text if len(text) <= 40 else text[:37] + "..."

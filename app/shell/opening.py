@@ -1,0 +1,121 @@
+"""Scenarios and files: what is opened, what is uploaded, what is saved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from app.editing import edits
+from app.session.session import Session, first_editable
+from app.session.uploads import opened_scenario, recorded_scenario, with_plain_names
+from app.shell import notices
+from navcore.engine.measures import metrics
+from navcore.foundation.errors import InputError
+from navcore.scenario.file import load, presets, to_toml
+
+if TYPE_CHECKING:
+    import viser
+
+UPLOADED = "uploaded"
+"""Stands for the uploaded recordings in the scenario chooser."""
+SCENARIO, METRICS = "scenario.toml", "metrics.json"
+"""Files that can be saved."""
+
+
+class Opening:
+    """Opens scenarios, keeps uploaded files and gives files to save.
+
+    Parameters
+    ----------
+    client : viser.ClientHandle
+        The browser, for notifications and downloads.
+    session : Session
+        Whose scenario is replaced.
+    refresh : callable
+        Lets all controls show the session's scenario again.
+    """
+
+    def __init__(self, client: viser.ClientHandle, session: Session, refresh: Callable[[], None]) -> None:
+        self._client, self._session, self._refresh = client, session, refresh
+
+    def scenarios(self) -> tuple[str, ...]:
+        """Names to choose from."""
+        return (*presets(), *((UPLOADED,) if self._session.uploads.files else ()))
+
+    def choose_scenario(self, name: str) -> None:
+        """Open a preset, or run on the uploaded recordings."""
+        with self._session.lock, notices.told(self._client, f"{name} cannot be opened", self._refresh):
+            if name == self._session.origin:
+                return
+            if name not in presets():
+                self.use_files()
+                return
+            opened = load(name)
+            self._session.change(opened, None, origin=name, selected=first_editable(opened))
+
+    # ------------------------------------------------------------ files
+
+    def take_file(self, name: str, content: bytes) -> None:
+        """Keep an uploaded recording and run on it, or open an uploaded scenario."""
+        session = self._session
+        title = "The file cannot be used; nothing was changed"
+        with session.lock, notices.told(self._client, title, self._refresh):
+            if name.lower().endswith(".toml"):
+                opened = opened_scenario(name, content, session.uploads)
+                session.change(opened, None, origin=name[:60], selected=first_editable(opened))
+                return
+            upload = session.uploads.add(name, content)
+            session.on_change()
+            held = f"It holds: {', '.join(sorted(upload.quantities))}."
+            self._run_on_files(f"{upload.path.name}: {upload.kind}", [held, *upload.warnings])
+
+    def use_files(self) -> None:
+        """Run on the uploaded recordings."""
+        with self._session.lock:
+            self._run_on_files("Running on the uploaded recording", [])
+
+    def _run_on_files(self, title: str, lines: list[str]) -> None:
+        """Run on the files if they suffice, and tell in one notification what was done."""
+        session = self._session
+        tone: notices.Tone = "info"
+        try:
+            changed, notes = recorded_scenario(session.scenario, session.uploads)
+            session.change(changed, None, origin=UPLOADED)
+        except InputError as error:
+            notes, tone = ["Not run on the files yet:", *notices.fault_lines(error)], "warning"
+        notices.tell(self._client, title, [*lines, *notes], tone)
+        self._refresh()
+
+    def forget_files(self) -> None:
+        """Remove the uploaded files, unless the scenario runs on them."""
+        uploads = self._session.uploads
+        with self._session.lock:
+            used = {str(upload.path) for upload in uploads.files.values()}
+            if used & edits.files_of(self._session.scenario):
+                reason = "the scenario runs on them: choose another scenario first"
+                notices.tell(self._client, "The files were kept", [reason], "warning")
+                return
+            uploads.clear()
+            self._session.on_change()
+        self._refresh()
+
+    def give_file(self, name: str) -> None:
+        """Let the browser save the scenario or the metrics."""
+        with self._session.lock:
+            scenario, run = self._session.scenario, self._session.run
+        if name == SCENARIO:
+            content = to_toml(with_plain_names(scenario)).encode()
+        elif run is not None:
+            content = as_json(metrics(run), indent=True)
+        else:
+            notices.tell(self._client, "No run yet", ["there are no numbers to download"], "warning")
+            return
+        self._client.send_file_download(name, content, save_immediately=True)
+        self._client.flush()
+
+
+def as_json(document: Any, *, indent: bool = False) -> bytes:
+    """JSON text of a document of plain values."""
+    import orjson
+
+    return orjson.dumps(document, option=orjson.OPT_INDENT_2 if indent else None)

@@ -1,0 +1,385 @@
+"""One open page: makes its views, tells them what the session says, and shows the pictures in front.
+
+For programs that watch the page: the element ``#sb-run`` carries ``data-run`` (the number of the run that is
+shown), ``data-digest`` (of the run's arrays) and, as its text, the run's metrics as JSON. It is the last
+thing sent for a run. A control is found by its label's exact text.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import threading
+import time
+from collections.abc import Sequence, Set
+from contextlib import nullcontext
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.bridge.controls import id_of
+from app.bridge.server import leaving_is_no_fault
+from app.plots import style
+from app.session.session import Session
+from app.session.shown import shown
+from app.shell import notices
+from app.shell.column import Column
+from app.shell.commands import Commands
+from app.shell.editor import Editor
+from app.shell.header import HeaderPanel
+from app.shell.layout import layout_for, read_state
+from app.shell.opening import Opening, as_json
+from app.shell.pace import Pace
+from app.shell.palette import Palette
+from app.shell.presenter import PresenterLock
+from app.shell.view import Frame, View, styles_of
+from navcore.engine.measures import metrics
+from navcore.engine.run import Run
+from navcore.foundation.errors import InputError
+
+if TYPE_CHECKING:
+    import viser
+
+PAGE_STATE = "page state"
+"""Label of the control through which the page reports its size and front tabs (static/page.js)."""
+
+PAGE_PAINTED = "page painted"
+"""Label of the control through which the page says which picture it has painted (static/drawn.js)."""
+
+_STATIC = Path(__file__).parent / "static"
+_SIZE_WAIT_S = 1.5
+_SAY_AGAIN_S = 120.0
+
+
+class Page:
+    """A browser page on a session (`app.session.view.View`).
+
+    Parameters
+    ----------
+    client : viser.ClientHandle
+        The browser.
+    session : Session
+        Whose work is shown.
+    kinds : sequence of type
+        The registered views, in the order of their tabs.
+    """
+
+    def __init__(self, client: viser.ClientHandle, session: Session, kinds: Sequence[type[View]]) -> None:
+        self.client, self.session, self.gui = client, session, client.gui
+        self._closed = self._built = False
+        self._say_again_s = 0.0
+        self._reported = threading.Event()
+        self._window = (0, 0)
+        self._shown_result = session.verifier.result
+        self._selected = session.selected
+        self._front: frozenset[str] = frozenset()
+        self._views: list[View] = []
+        self._pace = Pace(self._draw)
+        self._build(kinds)
+
+    # ------------------------------------------------------------ building
+
+    def _build(self, kinds: Sequence[type[View]]) -> None:
+        gui, session = self.gui, self.session
+        leaving_is_no_fault(self.client)
+        self._state = gui.add_text(PAGE_STATE, "", order=1)
+        self._state.on_update(lambda _: self._on_state())
+        self._painted = gui.add_text(PAGE_PAINTED, "", order=1)
+        self._painted.on_update(lambda _: self._on_painted())
+        self.commands = Commands(gui, self._command_failed)
+        gui.add_html(f"<style>{self._styles(kinds)}</style>", order=0)
+        self.client.flush()
+        if not self._reported.wait(_SIZE_WAIT_S):
+            # No word from the script: the view covers the window as long as nothing is docked, but its size
+            # counts device pixels.
+            camera = self.client.camera
+            self._window = (max(camera.image_width, 1280), max(camera.image_height, 720))
+        with session.lock, self.client.atomic():
+            self._layout = layout_for(*self._window)
+            gui.main_panel.dock_left()
+            gui.main_panel.set_width(self._layout.left_px)
+            self._make_views(kinds)
+            self._run_element = gui.add_html("", order=2)
+            self._heard = gui.add_html("", order=3)
+            self._picture = gui.add_html("", order=3)
+            self.refresh()
+            for view in self._views:
+                view.follow_display()
+            self.commands.show()
+        self.client.flush()
+        self._built = True
+        self._arrange()
+        for view in self._views:
+            view.resize()
+        session.attach(self)
+        session.searches.watch(self._searches_changed, session.run)
+        if session.run is not None:
+            self.run_ended()
+        if session.waits:
+            self.run_waits()
+
+    def _styles(self, kinds: Sequence[type[View]]) -> str:
+        css = "".join((_STATIC / f"{name}.css").read_text(encoding="utf-8") for name in ("page", "commands"))
+        css = css.replace("PAGE_STATE", id_of(self._state)).replace("PAGE_COMMAND", self.commands.box_id)
+        return css + styles_of(kinds) + style.UPLOT_CSS
+
+    def _make_views(self, kinds: Sequence[type[View]]) -> None:
+        gui, session, client = self.gui, self.session, self.client
+        opening = Opening(client, session, self._again)
+        self.editor = Editor(client, session, self, lambda: frame.controls())
+        frame = Frame(
+            client, session, self.commands, self.editor, opening, kinds, lambda: self._layout,
+            lambda: self._views, self._again_pictures, self._again,
+        )  # fmt: skip
+        focus = {kind.focus: kind.title for kind in kinds if kind.focus}
+        self.header = HeaderPanel(gui, opening, session, focus)
+        self._views = [kind(frame) for kind in kinds]
+        group = gui.add_tab_group(order=20)
+        for view in self._views:
+            if view.place == "edit":
+                view.build(group.add_tab(view.title))
+            elif view.place == "page":
+                view.build(nullcontext())
+        self.column = Column(gui, [view for view in self._views if view.place in ("upper", "lower")])
+        self.column.build(self._layout)
+        free = frozenset({id_of(self._state), id_of(self._painted), self.commands.box_id})
+        lock = PresenterLock(client, session, self, self.commands, free)
+        self.palette = Palette(frame, lock)
+
+    def close(self) -> None:
+        """The browser has gone."""
+        with self.session.lock:
+            self._closed = True
+        self.editor.close()
+        self._pace.close()
+        self.commands.close()
+        for view in self._views:
+            view.close()
+        self.session.searches.unwatch(self._searches_changed)
+        self.session.detach(self)
+
+    def _command_failed(self, error: Exception) -> None:
+        fault = isinstance(error, InputError)
+        lines = notices.fault_lines(error) if fault else [f"{type(error).__name__}: {error}"]
+        notices.tell(self.client, "That did not work", lines)
+
+    # ------------------------------------------------------------ what the session says
+
+    def scenario_changed(self, by: object) -> None:
+        """Show the session's scenario in all controls."""
+        if by is not self:
+            self.editor.moved = None
+        with self.client.atomic():
+            self.refresh()
+        if self._selected != self.session.selected:
+            self._selected = self.session.selected
+            self.column.mark_stale(self.column.of_selected)
+            self._show_stale()
+
+    def refresh(self) -> None:
+        """Let every view show the session's scenario; the control in hand stays as it is."""
+        self.header.show_scenario()
+        for view in self._views:
+            view.follow_scenario()
+            view.follow_jobs()
+        if not self._pace.moving:
+            self.palette.show()
+
+    def display_changed(self, by: object) -> None:
+        """Draw the pictures in front as the session's display says."""
+        del by
+        with self.session.lock, self.client.atomic():
+            if self._closed:
+                return
+            found = shown(self.session)
+            for view in self._views:
+                view.follow_display()
+                if found is not None:
+                    view.draw(found)
+        self.client.flush()
+        self._again_pictures()
+
+    def run_progressed(self, fraction: float, elapsed_s: float) -> None:
+        """Mark the picture as old once a run takes its time."""
+        if elapsed_s > 0.5 and not self._closed:
+            self.header.show_progress(fraction, self.session.run_number)
+            self.client.flush()
+
+    def run_stopped(self) -> None:
+        """The user stopped the run."""
+        self.header.show_stopped(self.session.run_number)
+        self.client.flush()
+
+    def not_kept(self, why: str) -> None:
+        """The work is not kept over a restart at present; said once in a while."""
+        if time.monotonic() >= self._say_again_s:
+            self._say_again_s = time.monotonic() + _SAY_AGAIN_S
+            words = [f"The server could not write it down: {why}.", "A download keeps the scenario."]
+            notices.tell(self.client, "Your work is not saved at present", words, "warning")
+
+    def run_waits(self) -> None:
+        """The changed scenario takes long: it runs when the user asks for it."""
+        self.palette.show()
+        self.header.show_waiting(self.session.scenario, self.session.run_number)
+        self.client.flush()
+
+    def presenter_changed(self) -> None:
+        """Another page drives now, or none."""
+        with self.session.lock, self.client.atomic():
+            if not self._closed:
+                self.palette.show_presenter()
+        self.client.flush()
+        self.session.tell_front(self, self._front)
+
+    def front_changed(self, front: Set[str]) -> None:
+        """Follow the tabs of the page that presents."""
+        missing = front - self._front
+        if missing and not self._closed:
+            self.commands.ask_page("front", "|".join(sorted(missing)))
+            self.client.flush()
+
+    def verification_changed(self) -> None:
+        """A verification has come further, or has ended."""
+        self._jobs_changed()
+        fresh = self.session.verifier.result is not self._shown_result
+        self._shown_result = self.session.verifier.result
+        if fresh:
+            self._again_pictures()
+
+    def envelope_progressed(self) -> None:
+        """The envelope of the error curves has come further, or cannot be made."""
+        self._jobs_changed()
+
+    def _searches_changed(self) -> None:
+        self._jobs_changed()
+        with self.session.lock:
+            fresh = not self._closed and [view for view in self._views if view.take_new()]
+        if fresh:
+            self._again_pictures()
+
+    def _jobs_changed(self) -> None:
+        with self.session.lock, self.client.atomic():
+            if self._closed:
+                return
+            for view in self._views:
+                view.follow_jobs()
+        self.client.flush()
+
+    def run_refused(self, error: InputError) -> None:
+        """The scenario cannot run; the last good one is back."""
+        title = "The scenario cannot run; the last good one is back"
+        notices.tell(self.client, title, notices.fault_lines(error))
+        if self.session.run is not None:
+            self.run_ended()
+
+    def run_failed(self, error: Exception) -> None:
+        """Something of ours went wrong; the last good picture stays."""
+        notices.tell(self.client, "Something went wrong", [f"{type(error).__name__}: {error}"])
+        self.header.show_failed(self.session.run_number)
+        self.client.flush()
+
+    def run_ended(self) -> None:
+        """Show the session's run, once the page has painted what it was sent before."""
+        self._pace.ended()
+
+    def _draw(self, number: int, whole: bool) -> None:
+        """Show the session's run: what is in front; if ``whole``, all other views and the run element too."""
+        began = time.perf_counter()
+        session, found = self.session, shown(self.session)
+        if found is None or session.run is None or self._closed:
+            return
+        run, wanted = session.run, self.column.wanted(self._front)
+        pictures = self.column.make(found, wanted)
+        content = _run_element(run, found.number) if whole else ""
+        with session.lock, self.client.atomic():
+            self.column.mark_stale()
+            self.column.show(found, pictures, wanted)
+            if whole:
+                self.palette.show()
+                for view in self._views:
+                    view.draw(found)
+                    view.follow_jobs()
+                frame_ms = 1e3 * (run.elapsed_s + time.perf_counter() - began)
+                self.header.show_run(run, found.number, outdated=session.outdated, frame_ms=frame_ms)
+                self._run_element.content = content
+            else:
+                self.header.show_moving()
+            told = f'data-number="{number}" data-answer="{id_of(self._painted)}"'
+            self._picture.content = f"<div id='sb-picture' hidden {told}></div>"
+        self.client.flush()
+        # A tab that came to the front meanwhile was not yet known to be out of date.
+        self._show_stale()
+
+    def _again(self) -> None:
+        with self.session.lock, self.client.atomic():
+            self.refresh()
+
+    def _again_pictures(self) -> None:
+        """Make the pictures in front anew, from the run there is."""
+        self.column.mark_stale()
+        self._show_stale()
+
+    def _show_stale(self) -> None:
+        session = self.session
+        with session.lock:
+            found, wanted = shown(session), self.column.stale(self._front)
+        if found is None or not wanted:
+            return
+        pictures = self.column.make(found, wanted)
+        with session.lock, self.client.atomic():
+            if self._closed or session.run_number != found.number:
+                return
+            self.column.show(found, pictures, wanted)
+        self.client.flush()
+
+    # ------------------------------------------------------------ size and tabs
+
+    def _on_state(self) -> None:
+        window, front = read_state(self._state.value)
+        if window is None:
+            return
+        self._window = window
+        if front:
+            fresh, self._front = frozenset(front) - self._front, frozenset(front)
+            self.session.tell_front(self, fresh)
+        self._reported.set()
+        if self._built:
+            heard = escape(self._state.value.strip())
+            self._heard.content = f'<div id="sb-heard" hidden data-state="{heard}"></div>'
+            self._arrange()
+            self._show_stale()
+            self.column.tell_front(self._front)
+
+    def _on_painted(self) -> None:
+        told = re.fullmatch(r"([0-9]{1,9}) ([01])", self._painted.value)
+        if told is not None:
+            self._pace.told(int(told[1]), moving=told[2] == "1")
+
+    def _arrange(self) -> None:
+        """Lay the results out anew if the window has another size now."""
+        with self.session.lock, self.client.atomic():
+            layout = layout_for(*self._window)
+            if self._closed or layout == self._layout:
+                return
+            self._layout = layout
+            self.gui.main_panel.set_width(layout.left_px)
+            self.column.build(layout)
+            self._front = frozenset()
+            for view in self._views:
+                view.follow_scenario()
+                view.follow_display()
+                view.follow_jobs()
+        for view in self._views:
+            view.resize()
+        self.client.flush()
+
+
+def _run_element(run: Run, number: int) -> str:
+    digest = hashlib.blake2b(digest_size=16)
+    for method in run.methods:
+        digest.update(method.plot.values.tobytes())
+        digest.update(method.rows.tobytes())
+    return (
+        f'<div id="sb-run" hidden data-run="{number}" data-status="{run.status}" '
+        f'data-digest="{digest.hexdigest()}">{escape(as_json(metrics(run)).decode())}</div>'
+    )

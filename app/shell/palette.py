@@ -1,0 +1,115 @@
+"""The commands that every page has, and the row of buttons that stands for some of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import lru_cache
+
+from app.session.history import changed_fields
+from app.shell import notices
+from app.shell.opening import Opening
+from app.shell.presenter import PresenterLock
+from app.shell.reset import Resets
+from app.shell.toolbar import PRESENT, REDO, RESET_ALL, SHARE, UNDO, Toolbar
+from app.shell.view import Frame
+from navcore.scenario.file import load, presets
+
+_LONGEST_UNDO = 48
+
+
+class Palette:
+    """Registers the commands and keeps their titles, the buttons and the banner up to date.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of the page.
+    lock : PresenterLock
+        Of the page.
+    """
+
+    def __init__(self, frame: Frame, lock: PresenterLock) -> None:
+        self._client, self._session, self._commands = frame.client, frame.session, frame.commands
+        self._frame, self._lock = frame, lock
+        self._toolbar = Toolbar(frame.gui, order=5)
+        self._register(frame.opening)
+        self._offer_tabs(kind.title for kind in frame.kinds if kind.title and kind.always)
+        self._resets = Resets(self._commands, frame.editor.put)
+
+    def _register(self, opening: Opening) -> None:
+        add, session, ask = self._commands.register, self._session, self._commands.ask_page
+        add(UNDO, lambda _: self._if(session.undo(), "Nothing to undo"), "Undo", "Ctrl+Z")
+        add(REDO, lambda _: self._if(session.redo(), "Nothing to redo"), "Redo", ("Ctrl+Shift+Z", "Ctrl+Y"))
+        add(RESET_ALL, lambda _: self._if(session.reset(None), "Nothing has been changed"), "Reset all")
+        add(SHARE, lambda _: self._share(), "Share: a link that opens this state")
+        add(PRESENT, lambda _: self._present(), "Present: drive alone, others watch")
+        add("run", lambda _: session.redo_run(), "Run again")
+        add("stop", lambda _: session.cancel_run(), "Stop the run")
+        add("keys", lambda _: ask("keys", ""), "Keys: what they do", "?", watcher=True)
+        add("tab", lambda name: ask("tab", name), watcher=True)
+        for name, title in _preset_titles():
+            add(f"preset-{name}", lambda _, name=name: opening.choose_scenario(name), f"Open {name}: {title}")
+
+    def _offer_tabs(self, names: Iterable[str]) -> None:
+        """Let each of these tabs be brought to the front by a command."""
+        for name in names:
+            slug = "".join(letter for letter in name.lower() if letter.isalnum())
+            self._commands.register(
+                f"tab-{slug}",
+                lambda _, name=name: self._commands.ask_page("tab", name),
+                f"Show {name}",
+                watcher=True,
+            )
+
+    # ------------------------------------------------------------ showing
+
+    def show(self) -> None:
+        """Show what can be undone and reset now."""
+        session, history = self._session, self._session.history
+        self._resets.show(session.opened, session.scenario, self._frame.controls())
+        changed = len(changed_fields(session.opened, session.scenario))
+        self._toolbar.show(history, session.origin, changed, self._lock.drives, self._lock.watches)
+        control = None if self._lock.watches else self._frame.editor.moved
+        last = self._resets.of(control)
+        found = None if control is None or last is None else (last[0], control.spec.label, last[1])
+        self._toolbar.show_changed(session.origin, changed, found)
+        self._commands.rename(UNDO, _titled("Undo", history.undo_name))
+        self._commands.rename(REDO, _titled("Redo", history.redo_name))
+        self._commands.rename(RESET_ALL, f"Reset all: back to {session.origin} as opened")
+        self._lock.apply()
+
+    def show_presenter(self) -> None:
+        """Show who presents."""
+        self._lock.apply()
+        self._toolbar.show_banner(self._lock.banner, self._lock.drives)
+        self.show()
+
+    # ------------------------------------------------------------ doing
+
+    def _if(self, done: bool, otherwise: str) -> None:
+        if not done:
+            notices.tell(self._client, otherwise, [], "info")
+
+    def _share(self) -> None:
+        try:
+            link = self._session.share()
+        except OSError as error:
+            why = f"{error.strerror or error}."
+            notices.tell(self._client, "No link was made", [why[:1].upper() + why[1:]], "warning")
+            return
+        self._commands.ask_page("link", link)
+
+    def _present(self) -> None:
+        if not self._lock.toggle():
+            notices.tell(self._client, "Another page presents", ["It must end first."], "warning")
+
+
+@lru_cache(maxsize=1)
+def _preset_titles() -> tuple[tuple[str, str], ...]:
+    return tuple((name, load(name).title) for name in presets())
+
+
+def _titled(what: str, name: str | None) -> str:
+    if name is None:
+        return what
+    return f"{what} {name}" if len(name) <= _LONGEST_UNDO else f"{what} {name[: _LONGEST_UNDO - 1]}…"

@@ -1,0 +1,81 @@
+"""A view whose picture is one plotly figure, which fills the tab below a chooser."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from app.plots.pinned import restyled, together
+from app.plots.plotly_data import PlotlyFigure
+from app.session.shown import Shown
+from app.shell.layout import CHOOSER_PX
+from app.shell.view import Figures, Frame, PictureView, Tab
+from navcore.engine.run import Run
+
+
+class PlotlyView(PictureView[PlotlyFigure]):
+    """Gives `figure`, and in `build_tools` what stands above the plot.
+
+    Attributes
+    ----------
+    above_px : int
+        Height of what stands above the plot.
+    """
+
+    above_px: ClassVar[int] = CHOOSER_PX
+
+    def __init__(self, frame: Frame) -> None:
+        super().__init__(frame)
+        self._tab: Tab | None = None
+        self._plot: Any = None
+
+    def build(self, tab: Tab) -> None:
+        """Make the tools; the plot is made with its first figure."""
+        self._tab, self._plot = tab, None
+        with tab:
+            self.build_tools()
+
+    def build_tools(self) -> None:
+        """Make what stands above the plot."""
+
+    def figure(self, both: Run, found: Shown) -> PlotlyFigure:
+        """Make the figure.
+
+        Parameters
+        ----------
+        both : Run
+            The run together with the methods of the pinned ones.
+        found : Shown
+            What the pictures show.
+        """
+        raise NotImplementedError
+
+    @property
+    def aspect(self) -> float:
+        """Height over width of the plot."""
+        return self.frame.layout().aspect(self.above_px)
+
+    @property
+    def width_px(self) -> float:
+        """Width of the plot."""
+        return float(self.frame.layout().plot_px)
+
+    def picture(self, found: Shown) -> PlotlyFigure:
+        """Make the figure; it carries the run's number and the tab's title."""
+        figure = self.figure(together(found.run, found.pins), found)
+        restyled(figure, found.run, found.pins)
+        figure["layout"]["meta"] = figure["layout"]["meta"] | {"run": found.number, "view": self.title}
+        return figure
+
+    def show(self, picture: PlotlyFigure) -> None:
+        """Send the figure."""
+        if self._plot is not None:
+            self._plot.figure = picture
+        elif self._tab is not None:
+            plot: Any = picture
+            with self._tab:
+                self._plot = self.frame.gui.add_plotly(plot, aspect=self.aspect)
+
+    def figures(self, found: Shown, plot: str) -> Figures:
+        """Make the figure to be saved."""
+        del plot
+        return self.picture(found), []

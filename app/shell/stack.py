@@ -1,0 +1,54 @@
+"""Plots over time below each other in a tab."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from app.bridge.controls import in_single, show_numbers
+from app.plots import style
+from app.plots.uplot import UplotFigure
+from app.shell.layout import CHOOSER_PX, Layout
+from app.shell.view import Tab
+
+if TYPE_CHECKING:
+    import viser
+
+_LEGEND_ROW_PX = 23
+_LEGEND_MARGIN_PX = 7
+_LEGEND_INDENT_PX = 90
+
+
+class Stack:
+    """Plots below each other in a tab, kept while only their numbers change."""
+
+    def __init__(self, gui: viser.GuiApi, tab: Tab) -> None:
+        self._gui, self._tab = gui, tab
+        self._held: dict[str, tuple[tuple[Any, ...], viser.GuiUplotHandle]] = {}
+
+    def show(self, figures: Sequence[UplotFigure], heights: Sequence[int], labelled: int) -> None:
+        """Show these plots; the last ``labelled`` ones carry the time axis."""
+        keys = [figure.key for figure in figures]
+        for key in [key for key in self._held if key not in keys]:
+            self._held.pop(key)[1].remove()
+        for order, (figure, height) in enumerate(zip(figures, heights, strict=True)):
+            self._show(figure, order, height, last=order >= len(figures) - labelled)
+
+    def _show(self, figure: UplotFigure, order: int, height: int, *, last: bool) -> None:
+        config = (*figure.config_key(), order, height, last)
+        held = self._held.get(figure.key)
+        if held is not None and held[0] == config:
+            show_numbers(held[1], figure.data)
+            return
+        if held is not None:
+            held[1].remove()
+        arguments = figure.kwargs(height=height, time_axis=last, legend=False)
+        arguments["data"] = in_single(figure.data)
+        with self._tab:
+            self._held[figure.key] = config, self._gui.add_uplot(**arguments, order=10 + order)
+
+
+def room_px(layout: Layout, names: list[str]) -> int:
+    """Height for plots below a chooser and a legend of these names."""
+    rows = style.legend_rows(names, layout.plot_px - _LEGEND_INDENT_PX)
+    return layout.room_px - CHOOSER_PX - _LEGEND_MARGIN_PX - rows * _LEGEND_ROW_PX

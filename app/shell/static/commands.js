@@ -1,0 +1,201 @@
+// What the page asks the server for: `schuler.command("name", "argument", ...)`, from any script of ours, from keys and
+// from elements with data-command="name argument". It is written, with a running number, into the control labelled
+// "page command", which the page's style hides (app/shell/commands.py). viser sends at most one value in 50 ms, whichever
+// control it comes from: everything that the server has not heard is written again.
+(() => {
+  const LABEL = "page command";
+  const SPACING_MS = 60;
+  const REPEAT_MS = 250;
+  let count = 0;
+  let waiting = [];
+  let timer = 0;
+  let sent = 0;
+
+  function send() {
+    timer = 0;
+    const heard = Number(document.getElementById("sb-told")?.dataset.count ?? 0);
+    waiting = waiting.filter(({ asked }) => asked[0] > heard);
+    if (waiting.length === 0) return;
+    timer = setTimeout(send, REPEAT_MS);
+    const input = window.schuler.box(LABEL);
+    // While the user moves something, only what is new and asked for is worth displacing a value of theirs.
+    const busy = window.schuler.busy();
+    const ready = waiting.filter(({ gives }) => !(gives && busy)).slice(0, 50);
+    if (input === null || ready.length === 0 || (busy && ready.every(({ told }) => told))) return;
+    const text = JSON.stringify(ready.map(({ asked }) => asked));
+    for (const one of ready) one.told = true;
+    window.schuler.write(input, text);
+    sent = performance.now();
+  }
+
+  function ask(name, words, { onlyLatest = false, gives = false } = {}) {
+    if (onlyLatest) waiting = waiting.filter(({ asked }) => asked[1] !== name);
+    waiting.push({ asked: [++count, name, words.join(" ")], gives, told: false });
+    clearTimeout(timer);
+    timer = setTimeout(send, Math.max(0, sent + SPACING_MS - performance.now()));
+  }
+
+  Object.assign(window.schuler, {
+    // Every one of these is carried out, in order.
+    command: (name, ...words) => ask(name, words),
+    // Of these, for what changes continuously, one that is not yet sent gives way to the next of its name.
+    stream: (name, ...words) => ask(name, words, { onlyLatest: true }),
+    // What the page says by itself: it waits too while the user moves something, whose value it would displace.
+    report: (name, ...words) => ask(name, words, { onlyLatest: true, gives: true }),
+  });
+
+  addEventListener("click", (event) => {
+    const asked = event.target instanceof Element && event.target.closest("[data-command]");
+    if (!asked || asked.getAttribute("aria-disabled") === "true") return;
+    window.schuler.command(...asked.dataset.command.split(" "));
+  });
+
+  // ------------------------------------------------------------ keys
+
+  const TYPED = "input:not([type=checkbox]):not([type=radio]):not([type=button]), textarea, select, [contenteditable]";
+  let keys = {};
+  let read = "";
+
+  function command(event) {
+    const text = document.getElementById("sb-commands")?.dataset.keys ?? "{}";
+    if (text !== read) keys = JSON.parse((read = text));
+    const key = event.key === " " ? "space" : event.key.toLowerCase();
+    const control = event.ctrlKey || event.metaKey;
+    // What Shift makes of a key that is no letter is in the key already: "?".
+    const shift = event.shiftKey && (key.length > 1 || key.toUpperCase() !== key.toLowerCase());
+    return keys[`${control ? "ctrl+" : ""}${event.altKey ? "alt+" : ""}${shift ? "shift+" : ""}${key}`];
+  }
+
+  // Before viser's own listener, on the document, which moves the camera by letters and arrows.
+  document.documentElement.addEventListener("keydown", (event) => {
+    const target = event.target instanceof Element ? event.target : document.body;
+    if (event.defaultPrevented || target.closest(TYPED) || target.closest("[role=dialog], dialog")) return;
+    // These two keys press what has the focus.
+    if ([" ", "Enter"].includes(event.key) && target.closest("button, a, summary, [role=button], [role=tab]")) return;
+    const name = command(event);
+    if (name === undefined) return;
+    event.preventDefault();
+    event.stopPropagation();
+    if (!event.repeat || event.ctrlKey || event.metaKey) window.schuler.command(name);
+  });
+
+  // A value that is typed and ended by Enter or Escape is done with: the keys act again. A form's text stays in hand.
+  addEventListener("keydown", (event) => {
+    const box = event.target;
+    if (!["Enter", "Escape"].includes(event.key) || !(box instanceof HTMLInputElement)) return;
+    if (box.form !== null || !box.closest(".mantine-TextInput-root, .mantine-NumberInput-root")) return;
+    if (box.closest("[role=dialog], dialog")) return;
+    setTimeout(() => box.blur());
+  });
+
+  // ------------------------------------------------------------ what the server asks the page for
+
+  function openTab(name) {
+    const tab = window.schuler.tab(name);
+    window.schuler.open(tab);
+    tab?.focus();
+  }
+
+  function element(tag, text, attributes = {}) {
+    const made = Object.assign(document.createElement(tag), { textContent: text });
+    for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+    return made;
+  }
+
+  // The browser's own dialog: it holds the focus, and Escape closes it.
+  function dialog(title, ...content) {
+    document.querySelector("dialog.sb-dialog")?.remove();
+    const made = element("dialog", "", { class: "sb-dialog", "aria-label": title });
+    const close = element("button", "Close", { class: "sb-do" });
+    close.addEventListener("click", () => made.close());
+    made.append(element("h2", title), ...content, close);
+    made.addEventListener("close", () => made.remove());
+    document.body.append(made);
+    // What the dark theme does to the page does not reach the browser's top layer.
+    made.style.filter = getComputedStyle(document.documentElement).filter;
+    made.showModal();
+    return made;
+  }
+
+  function showKeys() {
+    const told = JSON.parse(document.getElementById("sb-commands")?.dataset.told ?? "[]");
+    const table = element("table", "");
+    for (const [key, title] of [["Ctrl+K", "All commands"], ...told]) {
+      const row = table.insertRow();
+      row.append(element("th", key, { scope: "row" }), element("td", title));
+    }
+    dialog("Keys", element("p", "They act while no text box has the focus: Enter or Esc leaves one. Esc closes what is open."), table);
+  }
+
+  function showLink(id) {
+    const link = new URL(`../${id}/`, location.origin + location.pathname).href;
+    const input = element("input", "", { readonly: "", value: link, "aria-label": "Link to this state" });
+    const copy = element("button", "Copy the link", { class: "sb-do" });
+    const done = element("span", "", { role: "status" });
+    copy.addEventListener("click", async () => {
+      input.select();
+      // Only a page that came over https, or from this computer, may write to the clipboard by itself.
+      if (navigator.clipboard) await navigator.clipboard.writeText(link);
+      else document.execCommand("copy");
+      done.textContent = " Copied.";
+    });
+    const told = "Whoever opens this link gets a copy of the present state, under an address of their own. What you " +
+      "or they change afterwards does not change what the link opens.";
+    const row = element("p", "");
+    row.append(copy, done);
+    const texts = [element("p", told)];
+    if (/^(localhost|127(\.\d+){3}|\[::1\]|.*\.localhost)$/.test(location.hostname)) {
+      const alone = "Only this computer can open this link: its address is that of the computer itself. Others can open " +
+        "it when the server listens on the network (schuler serve --host) and this page is opened at that address.";
+      texts.push(element("p", alone, { class: "sb-alone", role: "note" }));
+    }
+    dialog("Share this state", ...texts, input, row);
+    input.select();
+  }
+
+  // The browser opens its file dialog because the user has just pressed a key or a button.
+  function upload() {
+    openTab("Files");
+    setTimeout(() => document.querySelector("input[type=file]")?.click(), 200);
+  }
+
+  // The tabs of who presents come to the front without taking the focus.
+  const follow = (names) => names.split("|").forEach((name) => window.schuler.open(window.schuler.tab(name)));
+
+  const ACTIONS = { tab: openTab, front: follow, upload, keys: showKeys, link: showLink };
+  let answered = 0;
+  let seen = "[]";
+
+  setInterval(() => {
+    const asked = document.getElementById("sb-asked")?.dataset.asked ?? "[]";
+    if (asked === seen) return;
+    seen = asked;
+    for (const [number, what, text] of JSON.parse(asked)) {
+      if (number <= answered) continue;
+      answered = number;
+      ACTIONS[what]?.(text);
+    }
+  }, 100);
+
+  // ------------------------------------------------------------ the row of buttons
+
+  // Its HTML is replaced when what can be undone changes: the focus goes to the new button of the same name.
+  let focused = "";
+  addEventListener("focusin", (event) => {
+    const inside = event.target instanceof Element && event.target.closest(".sb-row [data-command]");
+    focused = inside ? inside.dataset.command : "";
+  });
+  addEventListener("focusout", (event) => {
+    if (focused !== "" && event.relatedTarget !== null) focused = "";
+  });
+  setInterval(() => {
+    if (focused === "" || document.activeElement !== document.body) return;
+    document.querySelector(`.sb-row [data-command="${CSS.escape(focused)}"]`)?.focus();
+  }, 100);
+
+  addEventListener("click", (event) => {
+    if (!(event.target instanceof Element) || !event.target.closest("[data-palette]")) return;
+    const pressed = { key: "k", code: "KeyK", ctrlKey: true, bubbles: true };
+    document.documentElement.dispatchEvent(new KeyboardEvent("keydown", pressed));
+  });
+})();

@@ -1,0 +1,67 @@
+// Marks what page.css lays out: `data-sb-kind` on the block of a control or plot, `data-sb-holds` on the container of
+// such blocks. CSS could find them by :has(), but then every change that plotly makes to its drawing lets the browser
+// look at the whole page again: 100 to 200 ms a slider step. Leans on the names of viser's page, as pinned.
+(() => {
+  const KINDS = { slider: "Slider", number: "NumberInput", select: "Select", text: "TextInput" };
+  const HIDDEN = ["page state", "page command", "page painted"];
+  const CONTAINERS = ["tools", "limits", "compare"];
+  const WIDE = ".sb-pins, .sb-no-pins";
+
+  // The child of ``container`` in which ``inner`` stands.
+  function childWith(container, inner) {
+    let at = inner;
+    while (at !== null && at.parentElement !== container) at = at.parentElement;
+    return at;
+  }
+
+  function found() {
+    const kinds = new Map();
+    const holds = new Map();
+    const hold = (element, word) => element && holds.set(element, new Set(holds.get(element)).add(word));
+    for (const row of document.getElementsByClassName("mantine-Flex-root")) {
+      const label = row.firstElementChild?.querySelector(":scope > p > label");
+      if (!label) continue;
+      const of = ([, name]) => row.querySelector(`:scope > div .mantine-${name}-root`) !== null;
+      const kind = HIDDEN.includes(label.textContent) ? "hidden" : (Object.entries(KINDS).find(of)?.[0] ?? "other");
+      kinds.set(row.parentElement, kind);
+      if (kind === "slider") hold(row.parentElement.parentElement, "sliders");
+    }
+    for (const plot of document.getElementsByClassName("uplot-container")) {
+      kinds.set(plot.parentElement, "uplot");
+      const container = plot.parentElement.parentElement;
+      if (container.querySelector(":scope > div .sb-two")) hold(container, "two");
+    }
+    for (const name of CONTAINERS) {
+      for (const mark of document.getElementsByClassName(`sb-${name}`)) {
+        const container = mark.parentElement?.parentElement;
+        if (!container) continue;
+        hold(container, name);
+        kinds.set(mark.parentElement, "mark");
+        for (const plot of container.getElementsByClassName("js-plotly-plot")) kinds.set(childWith(container, plot), "plot");
+        for (const wide of container.querySelectorAll(WIDE)) kinds.set(childWith(container, wide), "wide");
+      }
+    }
+    for (const plot of document.getElementsByClassName("js-plotly-plot")) kinds.set(plot.parentElement, "paper");
+    return [
+      ["data-sb-kind", kinds, (kind) => kind],
+      ["data-sb-holds", holds, (words) => [...words].join(" ")],
+    ];
+  }
+
+  function mark() {
+    for (const [name, wanted, word] of found()) {
+      for (const element of document.querySelectorAll(`[${name}]`)) {
+        if (!wanted.has(element)) element.removeAttribute(name);
+      }
+      for (const [element, value] of wanted) {
+        if (element.getAttribute(name) !== word(value)) element.setAttribute(name, word(value));
+      }
+    }
+  }
+
+  const drawn = (node) =>
+    node instanceof SVGElement || (node instanceof Element && node.closest(".js-plotly-plot, .uplot") !== null);
+  new MutationObserver((changes) => {
+    if (changes.some((change) => !drawn(change.target))) mark();
+  }).observe(document.documentElement, { childList: true, subtree: true });
+})();

@@ -1,0 +1,191 @@
+"""What a view is to the page that shows it, and what the page gives to its views."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
+
+from app.plots.plotly_data import PlotlyFigure
+from app.plots.uplot import UplotFigure
+from app.session.session import Session
+from app.session.shown import Shown
+from app.shell.commands import Commands
+from app.shell.control import Control
+from app.shell.editor import Editor
+from app.shell.layout import Layout
+from app.shell.opening import Opening
+from navcore.engine.run import Run
+
+if TYPE_CHECKING:
+    import viser
+
+Place = Literal["edit", "upper", "lower", "page"]
+"""Left tabs with controls; tabs of the upper and of the lower right panel; anywhere, without a tab."""
+Tab = AbstractContextManager[Any]
+"""Widgets that are made inside it stand in the tab."""
+Figures = tuple[PlotlyFigure | None, list[UplotFigure]]
+"""What can be saved of a plot: the plotly figure, or the plots over time."""
+P = TypeVar("P")
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What a page gives to its views.
+
+    Attributes
+    ----------
+    client : viser.ClientHandle
+        The browser.
+    session : Session
+        Whose work is shown.
+    commands : Commands
+        Of the page.
+    editor : Editor
+        Turns a moved control into a new scenario.
+    opening : Opening
+        Scenarios and files.
+    kinds : sequence of type
+        The registered views, in the order of their tabs.
+    layout : callable
+        Gives the present sizes.
+    views : callable
+        Gives all views of the page.
+    redraw : callable
+        Makes the pictures in front anew, from the run there is.
+    refresh : callable
+        Lets all views show the session's scenario again.
+    """
+
+    client: viser.ClientHandle
+    session: Session
+    commands: Commands
+    editor: Editor
+    opening: Opening
+    kinds: Sequence[type[View]]
+    layout: Callable[[], Layout]
+    views: Callable[[], Sequence[View]]
+    redraw: Callable[[], None]
+    refresh: Callable[[], None]
+
+    @property
+    def gui(self) -> viser.GuiApi:
+        """Where widgets are made."""
+        return self.client.gui
+
+    def controls(self) -> list[Control]:
+        """All controls of fields on the page."""
+        return [control for view in self.views() for control in view.controls]
+
+    def show(self, **choices: object) -> None:
+        """Change how the pictures are shown; raises `pydantic.ValidationError`."""
+        self.session.show(None, **choices)
+
+
+class View:
+    """A tab, or another part of a page. What the page tells it does nothing unless a view wants it.
+
+    The page calls everything but `build` and `to_front` with the session's lock held.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of the page.
+
+    Attributes
+    ----------
+    title : str
+        Of its tab; "" for a view without one.
+    place : Place
+        Where it stands.
+    focus : str
+        Name in a scenario's block ``view`` that brings its tab to the front.
+    plots : tuple of str
+        Titles of the plots that can be saved from it.
+    always : bool
+        The tab is always there; else while a `PictureView` has something to show.
+    """
+
+    title: ClassVar[str] = ""
+    place: ClassVar[Place] = "page"
+    focus: ClassVar[str] = ""
+    plots: ClassVar[tuple[str, ...]] = ()
+    always: ClassVar[bool] = True
+
+    def __init__(self, frame: Frame) -> None:
+        self.frame, self.session = frame, frame.session
+
+    def build(self, tab: Tab) -> None:
+        """Make the widgets; again when the page is laid out anew and the old ones have gone."""
+
+    @property
+    def controls(self) -> Sequence[Control]:
+        """Its controls of fields."""
+        return ()
+
+    def follow_scenario(self) -> None:
+        """Show the session's scenario; the control in hand (``frame.editor.moved``) stays as it is."""
+
+    def follow_display(self) -> None:
+        """Show what the session's display says."""
+
+    def follow_jobs(self) -> None:
+        """Show how far the work beside the page is, or what it gave."""
+
+    def take_new(self) -> bool:
+        """Whether work beside the page has given something that the pictures do not show yet; asked once."""
+        return False
+
+    def draw(self, found: Shown) -> None:
+        """Show what the pictures are of from now on; large pictures belong to `PictureView`."""
+
+    def resize(self) -> None:
+        """The window has another size."""
+
+    def to_front(self) -> None:
+        """The tab is in front."""
+
+    def figures(self, found: Shown, plot: str) -> Figures:
+        """Figures of one of `plots`, to be saved."""
+        raise NotImplementedError(plot)
+
+    def close(self) -> None:
+        """The browser has gone."""
+
+
+class PictureView(View, Generic[P]):
+    """A view of a run in the right column: it is drawn only while it is in front."""
+
+    def stands(self, run: Run) -> bool:
+        """Whether there is something to show of a run."""
+        del run
+        return True
+
+    @property
+    def of_selected(self) -> bool:
+        """Whether the picture depends on which method the controls edit."""
+        return False
+
+    def picture(self, found: Shown) -> P:
+        """Make the picture; changes nothing, and is called without the session's lock."""
+        raise NotImplementedError
+
+    def show(self, picture: P) -> None:
+        """Show a picture."""
+        raise NotImplementedError
+
+
+def styles_of(kinds: Sequence[type[View]]) -> str:
+    """Style sheets in the folders of some views, each once."""
+    folders = dict.fromkeys(Path(inspect.getfile(kind)).parent for kind in kinds)
+    return "".join(
+        path.read_text(encoding="utf-8") for folder in folders for path in sorted(folder.glob("*.css"))
+    )
+
+
+def if_user(act: Callable[[], None]) -> Callable[[Any], None]:
+    """Call-back of a widget that acts only on what a user does, not on values that we set."""
+    return lambda event: act() if event.client is not None else None

@@ -1,0 +1,1 @@
+"""Tab "View": units, axes, envelope, export of a plot, light or dark page."""

@@ -1,0 +1,93 @@
+"""Tab "View": units, axes and envelope of the plots over time, export of any plot, light or dark page."""
+
+from __future__ import annotations
+
+from typing import Any, get_args
+
+from app.jobs.envelopes import SEEDS
+from app.session.display import Display
+from app.shell import notices
+from app.shell.view import Tab, View, if_user
+from app.views.appearance.dark import DarkPage
+from app.views.appearance.export import FORMATS, Export
+
+_CHOICES = {
+    "angles in": ("angle", "Unit of tilts and headings in the plots over time, the spectrum and the table."),
+    "lengths in": ("length", "Unit of position errors."),
+    "velocities in": ("speed", "Unit of velocity errors."),
+    "times in": ("time", "Unit of the time axis, and of the spectrum's periods."),
+    "error axis": (
+        "scale",
+        "log: magnitudes of the errors, on an axis of decades. Linear: with their signs.",
+    ),
+}
+ENVELOPE = "envelope"
+_ENVELOPES = {"none": "none", f"{SEEDS} seeds, 5 to 95 %": "seeds"}
+EXPORT, FORMAT = "export plot", "export as"
+
+
+class AppearanceView(View):
+    """How the plots are read, and what is taken from them."""
+
+    title = "View"
+    place = "edit"
+
+    def build(self, tab: Tab) -> None:
+        """Make the widgets."""
+        gui, export = self.frame.gui, Export(self.frame)
+        self._dark = DarkPage(self.frame)
+        self._choosers: dict[str, Any] = {}
+        with tab:
+            gui.add_html(notices.heading("Units and axes"), order=0)
+            for order, (label, (field, hint)) in enumerate(_CHOICES.items(), start=1):
+                self._choosers[field] = self._chooser(label, field, hint, order)
+            gui.add_html(notices.heading("Envelope of the error curves"), order=10)
+            self._envelope: Any = gui.add_dropdown(
+                ENVELOPE, tuple(_ENVELOPES), order=11,
+                hint=f"Runs the scenario with {SEEDS} other seeds, and fills where 90 % of them lie.",
+            )  # fmt: skip
+            self._progress = gui.add_progress_bar(0.0, visible=False, order=12)
+            self._words = gui.add_html("", visible=False, order=13)
+            gui.add_html(notices.heading("Export a plot"), order=20)
+            plot: Any = gui.add_dropdown(
+                EXPORT,
+                export.plots,
+                order=21,
+                hint="Plot to save: as it is shown, with its units and curves.",
+            )
+            format: Any = gui.add_button_group(
+                FORMAT, FORMATS, order=22, hint="CSV: the plotted numbers in full. SVG, PNG: the picture."
+            )
+            self._dark.build()
+        self._envelope.on_update(if_user(lambda: self.frame.show(envelope=_ENVELOPES[self._envelope.value])))
+        format.on_click(
+            lambda event: export.save(plot.value, event.target.value) if event.client is not None else None
+        )
+
+    def _chooser(self, label: str, field: str, hint: str, order: int) -> Any:
+        options = get_args(Display.model_fields[field].annotation)
+        made: Any = self.frame.gui.add_dropdown(label, options, order=order, hint=hint)
+        made.on_update(if_user(lambda: self.frame.show(**{field: made.value})))
+        return made
+
+    def follow_display(self) -> None:
+        """Show the session's choices."""
+        display = self.session.display
+        for field, chooser in self._choosers.items():
+            chooser.value = getattr(display, field)
+        self._envelope.value = next(word for word, key in _ENVELOPES.items() if key == display.envelope)
+        self._dark.show(display)
+        self.follow_jobs()
+
+    def follow_jobs(self) -> None:
+        """Show how far the envelope is, or why there is none."""
+        fraction, words = self.session.envelopes.fraction, self.session.envelopes.words
+        self._progress.visible = fraction is not None
+        self._progress.value = round(100.0 * (fraction or 0.0), 1)
+        self._words.content, self._words.visible = (
+            notices.note([words] if words else [], "warning"),
+            bool(words),
+        )
+
+
+VIEW = AppearanceView

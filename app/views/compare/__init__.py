@@ -1,0 +1,1 @@
+"""Tab "Compare": pinned runs beside the present one."""

@@ -1,0 +1,192 @@
+"""Tab "Compare": the pins of a session, and the controls of the one that is chosen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from html import escape
+from typing import Any
+
+from app.plots import style
+from app.plots.units import number
+from app.session.pins import COLORS, Pin
+from app.session.shown import Shown
+from app.shell import notices
+from app.shell.view import Frame, Tab, View, if_user
+from app.views.compare.comparing import Comparing
+
+PIN, FLIP = "Pin this run", "Flip to the baseline"
+CHOSEN, NAME, NOTE, COLOR, SHOWN = "pin", "pin name", "pin note", "pin colour", "pin shown"
+BASELINE, DELTA = "compare with", "Δ of"
+BACK, REMOVE = "Go back to this pin", "Remove this pin"
+_FIRST = "the first pin"
+_STATISTICS = {"rms": "rms", "max": "max_abs", "final": "final"}
+_EMPTY = (
+    "Nothing is pinned yet. Pin the present run (key P), then move a slider: every plot keeps the pinned run "
+    "as thin dashed curves, the table shows the difference, and B flips between the two."
+)
+
+
+class CompareView(View):
+    """List of the pins, and controls of the one that is chosen."""
+
+    title = "Compare"
+    place = "lower"
+
+    def __init__(self, frame: Frame) -> None:
+        super().__init__(frame)
+        self._comparing = Comparing(frame.client, frame.session)
+        self._comparing.register(frame.commands)
+
+    def build(self, tab: Tab) -> None:
+        """Make the widgets."""
+        gui, comparing = self.frame.gui, self._comparing
+        self._options: dict[str, int] = {}
+        pins = self.session.pins
+        with tab:
+            gui.add_html('<div class="sb-compare"></div>', order=0)
+            pin = gui.add_button(PIN, hint="Keep the present run as a baseline. Key: P.", order=1)
+            flip = gui.add_button(
+                FLIP,
+                hint="All plots show the baseline in the place of this run. Key: B.",
+                order=2,
+            )
+            self._baseline: Any = gui.add_dropdown(
+                BASELINE,
+                (_FIRST,),
+                order=3,
+                hint="Baseline of the differences in the table, and of the flip.",
+            )
+            self._delta: Any = gui.add_dropdown(
+                DELTA,
+                tuple(_STATISTICS),
+                order=4,
+                hint="Number of each error that the table compares: rms, largest, last.",
+            )
+            self._list = gui.add_html("", order=5)
+            self._chosen: Any = gui.add_dropdown(CHOSEN, ("",), order=6, hint="Pin that is edited here.")
+            self._name = gui.add_text(NAME, "", order=7, hint="Shown in every legend.")
+            self._color: Any = gui.add_dropdown(COLOR, tuple(COLORS), order=8, hint="Of its curves.")
+            self._shown = gui.add_checkbox(SHOWN, True, order=9, hint="Lay it over every plot.")
+            self._note = gui.add_text(NOTE, "", order=10, hint="What there is to say of it.")
+            back = gui.add_button(
+                BACK, order=11, hint="Its scenario becomes the present one; this can be undone."
+            )
+            remove = gui.add_button(REMOVE, order=12, color="orange", hint="Its curves go from every plot.")
+        self._details = [self._chosen, self._name, self._color, self._shown, self._note, back, remove]
+        pin.on_click(lambda _: comparing.pin())
+        flip.on_click(lambda _: comparing.flip())
+        back.on_click(lambda _: self._with_chosen(comparing.go_back))
+        remove.on_click(lambda _: self._with_chosen(lambda chosen: pins.remove(chosen.id)))
+        self._chosen.on_update(if_user(self._show))
+        self._baseline.on_update(if_user(self._choose_baseline))
+        self._delta.on_update(if_user(lambda: self.session.show(None, delta=_STATISTICS[self._delta.value])))
+        self._name.on_update(if_user(lambda: self._edit(name=self._name.value)))
+        self._note.on_update(if_user(lambda: self._edit(note=self._note.value)))
+        self._color.on_update(if_user(lambda: self._edit(color=self._color.value)))
+        self._shown.on_update(if_user(lambda: self._edit(shown=self._shown.value)))
+        self._edited: int | None = None
+        self._show()
+
+    def follow_display(self) -> None:
+        """Show the session's pins."""
+        self._show()
+
+    def draw(self, found: Shown) -> None:
+        """Mark whether a pin is drawn in place of the run."""
+        self._comparing.mark(found.flipped)
+
+    def _show(self) -> None:
+        session = self.session
+        pins, display = session.pins.all, session.display
+        options = {_title(pin): pin.id for pin in pins}
+        names = tuple(options) or ("",)
+        chosen = next(
+            (t for t, id in options.items() if id == self._options.get(self._chosen.value)), names[-1]
+        )
+        newest = bool(options) and max(options.values()) > max(self._options.values(), default=0)
+        self._options = options
+        _offer(self._chosen, names, names[-1] if newest else chosen)
+        baseline = next((title for title, id in options.items() if id == display.baseline), _FIRST)
+        _offer(self._baseline, (_FIRST, *options), baseline)
+        self._delta.value = next(word for word, key in _STATISTICS.items() if key == display.delta)
+        self._list.content = _list_html(pins, session.pins.baseline(display.baseline))
+        for handle in self._details:
+            handle.visible = bool(pins)
+        pin = self._pin
+        if pin is None:
+            return
+        # What the user is typing is theirs: texts change only with the pin.
+        if pin.id != self._edited:
+            self._edited = pin.id
+            self._name.value, self._note.value = pin.name, pin.note
+        self._color.value, self._shown.value = pin.color, pin.shown
+
+    @property
+    def _pin(self) -> Pin | None:
+        return self.session.pins.get(self._options.get(self._chosen.value))
+
+    def _with_chosen(self, act: Callable[[Pin], None]) -> None:
+        if (pin := self._pin) is not None:
+            act(pin)
+
+    def _edit(self, **changes: Any) -> None:
+        if (pin := self._pin) is not None:
+            self.session.pins.change(pin.id, **changes)
+
+    def _choose_baseline(self) -> None:
+        self.session.show(None, baseline=self._options.get(self._baseline.value))
+
+
+def _offer(handle: Any, options: tuple[str, ...], value: str) -> None:
+    if handle.options != options:
+        handle.options = options
+    handle.value = value
+
+
+def _title(pin: Pin) -> str:
+    return f"{pin.id}: {pin.name}"
+
+
+_CELL = "padding:3px 10px 3px 2px;vertical-align:top"
+
+
+def _list_html(pins: tuple[Pin, ...], baseline: Pin | None) -> str:
+    """Table of the pins: what they are of, and their position errors."""
+    if not pins:
+        return f'<div class="sb-no-pins">{notices.small(_EMPTY)}</div>'
+    head = "".join(
+        f'<th style="{_CELL};text-align:left;font-weight:600">{title}</th>'
+        for title in ("pin", "of", "largest position error (m)", "note")
+    )
+    return (
+        '<div class="sb-pins" style="margin:4px 10px 8px;overflow-x:auto">'
+        f'<table style="border-collapse:collapse;width:100%;'
+        f'font-size:{style.FONT_SIZE}px;color:{style.INK}"><thead><tr>{head}</tr></thead>'
+        f"<tbody>{''.join(_row_html(pin, pin is baseline) for pin in pins)}</tbody></table></div>"
+    )
+
+
+def _row_html(pin: Pin, is_baseline: bool) -> str:
+    bar = (
+        f'<span style="display:inline-block;width:18px;border-top:3px dashed {pin.hex};margin-right:6px;'
+        'vertical-align:middle"></span>'
+    )
+    marks = (", baseline" if is_baseline else "") + ("" if pin.shown else ", hidden")
+    if pin.run is None:
+        worst = "being computed"
+    else:
+        worst = ", ".join(
+            f"{method.method.name} {number(method.errors['position_m']['max_abs'], 4)}"
+            for method in pin.run.methods
+        )
+    cells = (
+        f"{bar}<b>{escape(pin.name)}</b>{marks}",
+        escape(pin.origin),
+        escape(worst),
+        escape(pin.note),
+    )
+    line = "".join(f'<td style="{_CELL}">{cell}</td>' for cell in cells)
+    return f'<tr style="border-top:1px solid {style.GRID}">{line}</tr>'
+
+
+VIEW = CompareView

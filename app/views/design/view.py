@@ -1,0 +1,88 @@
+"""Tab "Design": the error budget of every method by source, and how many times the floor it is."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from app.plots.budgets import steady_budget
+from app.plots.plotly_data import PlotlyFigure
+from app.session.shown import Shown
+from app.shell.plotly_view import PlotlyView
+from app.shell.view import Frame, if_user
+from app.views.design.figure import budget_figure
+from navcore.design.budget import Budget
+from navcore.engine.run import Run
+from navcore.scenario.model import Scenario
+
+BUDGET_OF = "budget of"
+CHOICES = {"steady": "the steady state, one level channel", "run": "this run, all sources"}
+
+
+class DesignView(PlotlyView):
+    """Chooser above the bars.
+
+    The steady budget follows a slider. The budget of the run takes longer: it is computed in the background
+    once the scenario stands still, and the steady one is shown until then.
+    """
+
+    title = "Design"
+    place = "lower"
+    plots = (title,)
+
+    def __init__(self, frame: Frame) -> None:
+        super().__init__(frame)
+        self._budgeter = frame.session.searches.budgeter
+        self._drawn: Budget | None = None
+
+    def build_tools(self) -> None:
+        """Make the chooser."""
+        self._chooser: Any = self.frame.gui.add_dropdown(
+            BUDGET_OF,
+            tuple(CHOICES.values()),
+            initial_value=CHOICES[self.session.display.budget],
+            hint="Which source each method's error is made of. Dashed: the floor, the least error that any "
+            "causal linear damping can reach with these sensors and this log.",
+        )
+        words = {word: key for key, word in CHOICES.items()}
+        self._chooser.on_update(if_user(lambda: self.frame.show(budget=words[self._chooser.value])))
+
+    def follow_display(self) -> None:
+        """Show the display's choice."""
+        self._chooser.value = CHOICES[self.session.display.budget]
+        if self.session.run is not None:
+            self._ask(self.session.run.scenario)
+
+    def draw(self, found: Shown) -> None:
+        """Have the budget of the new run computed, if that is what is shown."""
+        self._ask(found.run.scenario)
+
+    def take_new(self) -> bool:
+        """Whether the budget of the run has just been computed."""
+        run = self.session.run
+        result = None if run is None else self._budgeter.beside(run.scenario)
+        if result is None or result is self._drawn or self.session.display.budget != "run":
+            return False
+        self._drawn = result
+        return True
+
+    def figure(self, both: Run, found: Shown) -> PlotlyFigure:
+        """Stacked bars."""
+        del both
+        scenario, note = found.run.scenario, ""
+        shown = self._budgeter.beside(scenario) if found.display.budget == "run" else None
+        if shown is None:
+            shown = steady_budget(scenario)
+            if found.display.budget == "run":
+                note = self._budgeter.words[0] if self._budgeter.words else "that of the run is under way"
+        if shown.floor_reason:
+            note = f"{note}; " * bool(note) + f"no floor: {shown.floor_reason}"
+        return budget_figure(shown, self.aspect, width_px=self.width_px, note=note)
+
+    def _ask(self, scenario: Scenario) -> None:
+        wanted = self.session.display.budget == "run"
+        under_way = self._budgeter.fraction is not None
+        if wanted and not under_way and self._budgeter.beside(scenario) is None:
+            self._budgeter.begin(scenario)
+
+
+VIEW = DesignView

@@ -1,0 +1,1 @@
+"""Tab "Errors": the error curves of a run over time."""

@@ -1,0 +1,128 @@
+"""Tab "Errors": the error curves of a run, in small plots of all quantities or larger ones of a few."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from app.jobs.verifier import Verified
+from app.plots.uplot import UplotFigure, stack_heights
+from app.session.display import Display
+from app.session.requirements import error_limits
+from app.session.shown import Shown
+from app.shell import notices
+from app.shell.stack import Stack, room_px
+from app.shell.view import Figures, PictureView, Tab, if_user
+from app.views.errors.figure import GROUPS, QUANTITIES, Overlay, error_plots, legend_html, legend_names
+from app.views.errors.verified import verification_plots
+
+OVERVIEW = "Overview"
+VERIFICATION = "Verification"
+NOT_VERIFIED = 'There is nothing to compare yet: press "Verify with full strapdown".'
+OWN_NOISE = (
+    "Left: the linear model (solid) and the full strapdown (dashed) on the noise of the verification, "
+    "which is another draw than the run's. Right: strapdown minus linear model."
+)
+_OVERVIEW_KEYS = ("phi_e", "dve", "phi_n", "dvn", "phi_u", "position")
+"""Two abreast: attitude left, velocity and position right."""
+_TWO = '<div class="sb-two"></div>'
+_KEYS = {f"Errors: {title}": key for key, title in QUANTITIES.items()}
+
+
+@dataclass(frozen=True)
+class ErrorCurves:
+    """Plots of error quantities, with their legend.
+
+    Attributes
+    ----------
+    plots : dict
+        Key -> plot over time, in the order in which they are shown.
+    legend : str
+        HTML of their legend.
+    names : list of str
+        Texts in it.
+    two_abreast : bool
+        The plots stand in two columns.
+    """
+
+    plots: dict[str, UplotFigure]
+    legend: str
+    names: list[str]
+    two_abreast: bool = False
+
+
+class ErrorsView(PictureView[ErrorCurves]):
+    """Chooser of the quantities, legend and plots."""
+
+    title = "Errors"
+    place = "lower"
+    focus = "errors"
+    plots = tuple(_KEYS)
+
+    def build(self, tab: Tab) -> None:
+        """Make chooser and legend."""
+        gui = self.frame.gui
+        self._stack = Stack(gui, tab)
+        with tab:
+            groups = (OVERVIEW, *(name for name in GROUPS if name != OVERVIEW), VERIFICATION)
+            self._group = gui.add_dropdown(
+                "curves",
+                groups,
+                hint="Overview: one small plot for each quantity. Attitude, Velocity, Position: larger plots "
+                "of a few. Verification: the full strapdown beside the linear model, and their difference.",
+                order=0,
+            )
+            self._legend = gui.add_html("", order=1)
+        self._group.on_update(if_user(self.frame.redraw))
+
+    def picture(self, found: Shown) -> ErrorCurves:
+        """Make the plots of the chosen quantities."""
+        group = self._group.value
+        if group == VERIFICATION:
+            return _verified_curves(found.verified, found.display)
+        return error_curves(found, _OVERVIEW_KEYS if group == OVERVIEW else GROUPS[group], group == OVERVIEW)
+
+    def show(self, picture: ErrorCurves) -> None:
+        """Show the plots that are chosen, below their legend."""
+        room, plots = room_px(self.frame.layout(), picture.names), list(picture.plots.values())
+        abreast = 2 if picture.two_abreast else 1
+        heights = [each for each in stack_heights(room, len(plots) // abreast) for _ in range(abreast)]
+        self._legend.content = (_TWO if picture.two_abreast else "") + picture.legend
+        self._stack.show(plots, heights, labelled=abreast)
+
+    def figures(self, found: Shown, plot: str) -> Figures:
+        """Make the plot of one quantity."""
+        return None, [error_curves(found).plots[_KEYS[plot]]]
+
+
+def error_curves(
+    found: Shown, keys: Sequence[str] = tuple(QUANTITIES), two_abreast: bool = False
+) -> ErrorCurves:
+    """Error curves of what is shown, with pins, envelope and limits."""
+    plots = error_plots(
+        found.run,
+        display=found.display,
+        pins=found.pins,
+        envelope=found.envelope,
+        limits=error_limits(found.display.requirements, found.run),
+    )
+    described = found.run, None, found.pins, found.envelope
+    chosen = {key: plots[key] for key in keys}
+    return ErrorCurves(chosen, legend_html(*described), legend_names(*described), two_abreast)
+
+
+def _verified_curves(verified: Verified | None, display: Display) -> ErrorCurves:
+    """Both models on the verification's noise, beside their difference; without a verification no plot."""
+    if verified is None:
+        return ErrorCurves({}, notices.note([NOT_VERIFIED], "info"), [NOT_VERIFIED])
+    verification = verified.verification
+    described = verification.linear, Overlay(verification.strapdown, verified.old)
+    return ErrorCurves(
+        verification_plots(verification, old=verified.old, display=display),
+        notices.note([OWN_NOISE], "info") + legend_html(*described),
+        [OWN_NOISE, *legend_names(*described)],
+        two_abreast=True,
+    )
+
+
+VIEW = ErrorsView

@@ -1,0 +1,1 @@
+"""Tab "Files": recordings and scenarios in, scenario and numbers out."""

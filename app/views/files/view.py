@@ -1,0 +1,81 @@
+"""Tab "Files": upload of recordings and scenarios, download of the scenario and its numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from app.plots import style
+from app.session.uploads import LARGEST_FILE, MIB, Upload
+from app.shell import notices
+from app.shell.opening import METRICS, SCENARIO
+from app.shell.view import Frame, Tab, View
+
+if TYPE_CHECKING:
+    import viser
+
+
+class FilesView(View):
+    """Upload and download."""
+
+    title = "Files"
+    place = "edit"
+
+    def __init__(self, frame: Frame) -> None:
+        super().__init__(frame)
+        add, opening = frame.commands.register, frame.opening
+        add("save", lambda _: opening.give_file(SCENARIO), "Save the scenario (TOML)", "Ctrl+S")
+        add("save-numbers", lambda _: opening.give_file(METRICS), "Save the numbers (JSON)")
+        upload = "Open a scenario or a recording"
+        add("open", lambda _: frame.commands.ask_page("upload", ""), upload, "Ctrl+O")
+
+    def build(self, tab: Tab) -> None:
+        """Make the widgets."""
+        gui, opening = self.frame.gui, self.frame.opening
+        with tab:
+            gui.add_html(notices.heading("Run on recordings"), order=0)
+            told = (
+                f"Speed log, track and heading: NMEA 0183, CSV, Parquet or MAT, one file after the other, "
+                f"at most {LARGEST_FILE / MIB:.0f} MiB each. A recorded IMU (PSINS or CSV) runs as full "
+                "strapdown. A scenario (.toml) is opened."
+            )
+            gui.add_html(notices.small(told), order=1)
+            upload = gui.add_upload_button("Upload a file", hint=told, order=2)
+            self._list = gui.add_html("", order=3)
+            self._use = gui.add_button("Run on these files", order=4, visible=False)
+            self._forget = gui.add_button("Remove the files", color="gray", order=5, visible=False)
+            gui.add_html(notices.heading("Save"), order=10)
+            save = [
+                gui.add_button(f"Download {name}", color="gray", order=11) for name in (SCENARIO, METRICS)
+            ]
+        upload.on_upload(lambda event: _pass_on(event, opening.take_file))
+        self._use.on_click(lambda _: opening.use_files())
+        self._forget.on_click(lambda _: opening.forget_files())
+        for button, name in zip(save, (SCENARIO, METRICS), strict=True):
+            button.on_click(lambda _, name=name: opening.give_file(name))
+
+    def follow_scenario(self) -> None:
+        """List the uploaded files and what they hold."""
+        uploads = self.session.uploads
+        self._list.content = "".join(_entry(name, upload) for name, upload in uploads.files.items())
+        self._use.visible = self._forget.visible = bool(uploads.files)
+
+
+def _pass_on(event: viser.GuiEvent[Any], take: Callable[[str, bytes], None]) -> None:
+    file = event.target.value
+    take(file.name, file.content)
+
+
+def _entry(name: str, upload: Upload) -> str:
+    text = "\n".join(line.removeprefix("  ") for line in upload.text)
+    return (
+        f'<details class="sb-file" style="margin:0 10px 8px;font-size:12.5px;color:{style.INK}"><summary>'
+        f"<b>{escape(name)}</b> <span style='color:{style.MUTED}'>{escape(upload.kind)}: "
+        f"{escape(', '.join(sorted(upload.quantities)))}</span></summary>"
+        f'<div style="white-space:pre-wrap;margin-top:4px;color:{style.MUTED}">{escape(text)}</div>'
+        f"{notices.note(upload.warnings, 'warning')}</details>"
+    )
+
+
+VIEW = FilesView

@@ -1,0 +1,1 @@
+"""Tab "Frequency": Bode and Nyquist plots."""

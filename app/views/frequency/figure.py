@@ -1,0 +1,384 @@
+"""Bode plots: the network H on the left, a transfer of the closed loop on the right, all methods in each."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from app.plots import style
+from app.plots.effective import effective_network, frequency
+from app.plots.plotly_data import PlotlyFigure, figure, packed
+from app.plots.transfer_views import OPEN_LOOP as OPEN_LOOP
+from app.plots.transfer_views import SHOWN as SHOWN
+from app.plots.transfer_views import TRANSFERS as TRANSFERS
+from app.plots.transfer_views import VIEWS, TransferView
+from app.plots.units import duration
+from app.views.frequency.discrete import law_step_s, measured_gain
+from app.views.frequency.nyquist import nyquist
+from navcore.engine.run import MethodRun, Run
+from navcore.foundation.earth import EARTH_RATE
+from navcore.foundation.units import DEG
+
+OMEGA_MIN, OMEGA_MAX = 5e-6, 0.2
+"""Range of the frequency axis, rad/s: periods from 14 days to 31 s."""
+_PLAIN_POINTS = 240
+_CLUSTER = np.logspace(-3.5, -0.5, 24)
+_NEAR = 0.02
+_MOST_DECADES = 8.0
+_NOTHING = packed(np.array([]))
+_BOLD_PX = 7.8
+"""Mean width of a letter in a title."""
+_LONGEST_SILENCE = 22
+_COLUMN = 0.44
+_LEAST_COLUMN_PX = 240.0
+_MUTED_FONT = {"size": style.FONT_SIZE, "color": style.MUTED}
+
+
+@lru_cache(maxsize=8)
+def omega_grid(omega_s: float) -> np.ndarray:
+    """Frequencies of the plots, rad/s: even in the logarithm, denser towards the Schuler frequency."""
+    plain = np.geomspace(OMEGA_MIN, OMEGA_MAX, _PLAIN_POINTS)
+    near = np.concatenate([omega_s * (1.0 - _CLUSTER), omega_s * (1.0 + _CLUSTER)])
+    grid = np.unique(np.concatenate([plain, near]))
+    grid.setflags(write=False)
+    return grid
+
+
+@lru_cache(maxsize=8)
+def _packed_grid(omega_s: float) -> dict[str, str]:
+    return packed(omega_grid(omega_s))
+
+
+def natural_frequencies(run: Run) -> dict[str, float]:
+    """Schuler, Foucault and Earth frequencies at the site, rad/s; Foucault only where the axis reaches it."""
+    found = {"24 h": EARTH_RATE, "Schuler": run.scenario.omega_s}
+    foucault = EARTH_RATE * abs(math.sin(run.scenario.site.lat_deg * DEG))
+    if foucault > OMEGA_MIN:
+        found["Foucault"] = foucault
+    return found
+
+
+def frequency_view(
+    run: Run, shown: str, aspect: float = 0.46, *, width_px: float = 940.0, discrete: bool = False
+) -> PlotlyFigure:
+    """What the chooser of the frequency side asks for: `bode` with a transfer, or `nyquist`.
+
+    Parameters
+    ----------
+    run : Run
+        Result.
+    shown : str
+        Key of `SHOWN`.
+    aspect, width_px, discrete
+        See `bode`.
+    """
+    if shown == OPEN_LOOP:
+        return nyquist(run, aspect, width_px=width_px)
+    return bode(run, shown, aspect, width_px=width_px, discrete=discrete)
+
+
+def bode(
+    run: Run,
+    transfer_id: str = "phi/dv_r",
+    aspect: float = 0.46,
+    *,
+    width_px: float = 940.0,
+    discrete: bool = False,
+) -> PlotlyFigure:
+    """Bode plots of H and of one transfer for all methods.
+
+    Parameters
+    ----------
+    run : Run
+        Result; only its networks are used.
+    transfer_id : str
+        Key of `TRANSFERS`.
+    discrete : bool
+        Measure the filters that run, and draw what they do as dots on H.
+    aspect : float
+        Height / width of the figure.
+    width_px : float
+        Expected width on screen, for room for the legend.
+    """
+    view = VIEWS[transfer_id]
+    omega_s = run.scenario.omega_s
+    omega, x = omega_grid(omega_s), _packed_grid(omega_s)
+    smooth = np.abs(omega / omega_s - 1.0) > _NEAR
+    data: list[dict[str, Any]] = []
+    seen: dict[str, list[np.ndarray]] = {"y": [], "y2": [], "y3": [], "y4": []}
+    silent: list[str] = []
+    for i, method in enumerate(run.methods):
+        h = effective_network(method).response(omega)
+        level, angle = _decibel(h), _phase(h)
+        seen["y"].append(level[smooth])
+        seen["y2"].append(angle)
+        data += _pair(method, i, x, (level, angle), "x", ("y", "y2"), "%{y:.2f} dB")
+        value = frequency(method, view.source, view.output, omega)
+        if value is None:
+            silent.append(method.method.name)
+            data += _pair(method, i, _NOTHING, None, "x2", ("y3", "y4"), "")
+            continue
+        size = _decibel(value * view.scale) if _in_decibel(view) else np.abs(value) * view.scale
+        angle = _phase(value)
+        seen["y3"].append(size[smooth])
+        seen["y4"].append(angle)
+        hover = "%{y:.2f} dB" if _in_decibel(view) else "%{y:.4g} " + view.unit
+        data += _pair(method, i, x, (size, angle), "x2", ("y3", "y4"), hover)
+    if discrete:
+        data += [dots for i, method in enumerate(run.methods) for dots in _discrete_dots(run, method, i)]
+    return figure(data, _layout(run, view, seen, silent, aspect, width_px))
+
+
+def _discrete_dots(run: Run, method: MethodRun, index: int) -> list[dict[str, Any]]:
+    """Gain and phase of the running filter; the phase is that turn of it which lies next to the curve."""
+    measured = measured_gain(method, law_step_s(run))
+    if measured is None:
+        return []
+    omega, gain = measured
+    grid = omega_grid(run.scenario.omega_s)
+    network = effective_network(method)
+    beside = np.interp(np.log(omega), np.log(grid), _phase(network.response(grid)))
+    angle = beside + np.rad2deg(np.angle(gain * np.exp(-1j * np.deg2rad(beside))))
+    name = style.plain(method.method.name)
+    common: dict[str, Any] = {
+        "type": "scatter",
+        "mode": "markers",
+        "x": packed(omega),
+        "xaxis": "x",
+        "name": f"{name} measured",
+        "legendgroup": str(index),
+        "showlegend": False,
+        "marker": {
+            "symbol": "circle",
+            "size": 8,
+            "color": "white",
+            "line": {"color": style.method_color(index), "width": 2},
+        },
+    }
+    return [
+        common | {"y": packed(_decibel(gain)), "yaxis": "y", "hovertemplate": "%{y:.3f} dB measured"},
+        common | {"y": packed(angle), "yaxis": "y2", "hovertemplate": "%{y:.2f}° measured"},
+    ]
+
+
+def _in_decibel(view: TransferView) -> bool:
+    return view.unit.startswith("dB")
+
+
+def _decibel(value: np.ndarray) -> np.ndarray:
+    size = np.abs(value)
+    return 20.0 * np.log10(size, out=np.full(size.shape, -np.inf), where=size > 0.0)
+
+
+def _phase(value: np.ndarray) -> np.ndarray:
+    """Continuous phase in deg that starts within (-180, 180]; numpy's unwrap takes five times as long."""
+    turns = np.angle(value) / (2.0 * math.pi)
+    turns[1:] -= np.cumsum(np.rint(np.diff(turns)))
+    return 360.0 * turns
+
+
+def _pair(
+    method: MethodRun,
+    index: int,
+    x: dict[str, str],
+    curves: tuple[np.ndarray, np.ndarray] | None,
+    xaxis: str,
+    yaxes: tuple[str, str],
+    hover: str,
+) -> list[dict[str, Any]]:
+    """Magnitude and phase traces of one method in one column; empty ones keep its place in the legend."""
+    name = method.method.name
+    common: dict[str, Any] = {
+        "type": "scatter",
+        "mode": "lines",
+        "x": x,
+        "xaxis": xaxis,
+        "name": style.plain(name),
+        "legendgroup": str(index),
+        "line": {"color": style.method_color(index), "width": style.LINE_WIDTH, "simplify": False},
+    }
+    hovers = (hover, "%{y:.1f}°")
+    ys = (_NOTHING, _NOTHING) if curves is None else tuple(packed(curve) for curve in curves)
+    return [
+        common | {"y": y, "yaxis": yaxis, "hovertemplate": text, "showlegend": yaxis == "y"}
+        for y, yaxis, text in zip(ys, yaxes, hovers, strict=True)
+    ]
+
+
+def _layout(
+    run: Run,
+    view: TransferView,
+    seen: dict[str, list[np.ndarray]],
+    silent: list[str],
+    aspect: float,
+    width_px: float,
+) -> dict[str, Any]:
+    names = [m.method.name for m in run.methods]
+    rows = style.legend_rows(names, width_px - 84.0)
+    column_px = _COLUMN * (width_px - 84.0)
+    annotations = [
+        _title("x domain", "<b>Damping network H(jω)</b>"),
+        _title("x2 domain", _transfer_title(view, silent, column_px)),
+        *(note for axis in ("x", "x2") for note in _marker_labels(run, axis)),
+    ]
+    if len(silent) == len(names):
+        annotations.append(
+            style.text(0.5, 0.5, "no method reacts", xref="x2 domain", yref="y3 domain", font=_MUTED_FONT)
+        )
+    upper, lower = {"domain": [0.53, 1.0]}, {"domain": [0.0, 0.47]}
+    return style.layout(
+        margin={"l": 68, "r": 16, "t": 62, "b": 66 + 22 * rows},
+        hovermode="x unified",
+        legend=style.legend(),
+        xaxis=_omega_axis("y2", [0.0, _COLUMN], column_px),
+        xaxis2=_omega_axis("y4", [1.0 - _COLUMN, 1.0], column_px),
+        yaxis=_level_axis("|H|  (dB)", seen["y"]) | upper | {"anchor": "x"},
+        yaxis2=_phase_axis(seen["y2"]) | lower | {"anchor": "x"},
+        yaxis3=(_level_axis(view.unit, seen["y3"]) if _in_decibel(view) else _log_axis(view.unit, seen["y3"]))
+        | upper
+        | {"anchor": "x2"},
+        yaxis4=_phase_axis(seen["y4"]) | lower | {"anchor": "x2"},
+        annotations=annotations,
+        shapes=[line for axis in ("x", "x2") for line in _marker_lines(run, axis)],
+        meta={"aspect": aspect},
+    )
+
+
+def _level_axis(title: str, curves: list[np.ndarray]) -> dict[str, Any]:
+    low, high = _range(curves, widest=160.0, least=6.0)
+    step = _tick_step(high - low, (1.0, 2.0, 5.0, 10.0, 20.0, 40.0))
+    return style.axis(title, range=_calm(low, high, step), dtick=step)
+
+
+def _phase_axis(curves: list[np.ndarray]) -> dict[str, Any]:
+    low, high = _range(curves, widest=1800.0, least=40.0)
+    step = _tick_step(high - low, (15.0, 30.0, 45.0, 90.0, 180.0, 360.0))
+    return style.axis("phase (deg)", range=_calm(low, high, step), dtick=step)
+
+
+def _log_axis(title: str, curves: list[np.ndarray]) -> dict[str, Any]:
+    low, high = _range([np.log10(c[c > 0.0]) for c in curves], widest=_MOST_DECADES, least=1.0)
+    step = int(_tick_step(high - low, (1.0, 2.0, 3.0, 4.0)))
+    low, high = _calm(low, high, 0.5)
+    decades = [k for k in range(math.ceil(low), math.floor(high) + 1) if k % step == 0]
+    return style.axis(
+        title,
+        type="log",
+        range=[low, high],
+        tickvals=[10.0**k for k in decades],
+        ticktext=[f"{10.0**k:g}" if -3 <= k <= 4 else f"10<sup>{k}</sup>" for k in decades],
+        minor={"showgrid": True, "dtick": 1, "gridcolor": style.GRID_FINE},
+    )
+
+
+def _tick_step(span: float, steps: tuple[float, ...], most: float = 5.0) -> float:
+    return next((step for step in steps if span <= most * step), steps[-1])
+
+
+def _calm(low: float, high: float, step: float) -> list[float]:
+    """Range out to half steps: the axis stands still while a slider moves the curves, and is not laid out."""
+    half = 0.5 * step
+    return [half * math.floor(low / half), half * math.ceil(high / half)]
+
+
+def _range(curves: list[np.ndarray], *, widest: float, least: float) -> tuple[float, float]:
+    """Range over all finite values: padded, at least ``least``, at most ``widest`` below the top."""
+    finite = [c[np.isfinite(c)] for c in curves]
+    values = np.concatenate(finite) if finite else np.array([])
+    if len(values) == 0:
+        return -least, least
+    top, bottom = float(np.max(values)), float(np.min(values))
+    bottom = max(bottom, top - widest)
+    pad = max(0.06 * (top - bottom), 0.5 * (least - (top - bottom)))
+    return bottom - pad, top + pad
+
+
+def _title(xref: str, content: str) -> dict[str, Any]:
+    return style.text(
+        0.0,
+        1.0,
+        content,
+        xref=xref,
+        yref="paper",
+        xanchor="left",
+        yanchor="middle",
+        yshift=48,
+        font={"size": style.TITLE_SIZE, "color": style.INK},
+    )
+
+
+def _omega_axis(anchor: str, domain: list[float], column_px: float) -> dict[str, Any]:
+    decades = range(-5, 0) if column_px >= _LEAST_COLUMN_PX else (-5, -3, -1)
+    return style.axis(
+        "frequency ω (rad/s) and period",
+        type="log",
+        domain=domain,
+        anchor=anchor,
+        mirror="all",
+        ticks="",
+        range=[math.log10(OMEGA_MIN), math.log10(OMEGA_MAX)],
+        tickvals=[10.0**k for k in decades],
+        ticktext=[f"10<sup>{k}</sup><br>{duration(2.0 * math.pi / 10.0**k)}" for k in decades],
+        minor={"showgrid": True, "dtick": "D1", "gridcolor": style.GRID_FINE},
+        unifiedhovertitle={"text": "ω = %{x:.3e} rad/s"},
+    )
+
+
+def _marker_lines(run: Run, axis: str) -> list[dict[str, Any]]:
+    return [
+        {
+            "type": "line",
+            "xref": axis,
+            "x0": omega,
+            "x1": omega,
+            "yref": "paper",
+            "y0": 0.0,
+            "y1": 1.0,
+            "layer": "below",
+            "line": {"color": style.REFERENCE, "width": 1.2, "dash": "dot"},
+        }
+        for omega in natural_frequencies(run).values()
+    ]
+
+
+def _marker_labels(run: Run, axis: str) -> list[dict[str, Any]]:
+    """Labels above the plots; Foucault always lies left of 24 h, so it is written to the left."""
+    notes = []
+    for name, omega in natural_frequencies(run).items():
+        period = duration(2.0 * math.pi / omega)
+        content = name if name == "24 h" else f"{name}<br>{period}"
+        anchor = {"24 h": "left", "Foucault": "right", "Schuler": "center"}[name]
+        shift = {"left": 1, "right": -1, "center": 0}[anchor]
+        notes.append(
+            style.text(
+                math.log10(omega),
+                1.0,
+                content,
+                xref=axis,
+                yref="paper",
+                xanchor=anchor,
+                yanchor="bottom",
+                xshift=shift,
+                align=anchor,
+                font=_MUTED_FONT,
+            )
+        )
+    return notes
+
+
+def _transfer_title(view: TransferView, silent: list[str], column_px: float) -> str:
+    """Title of the right column, as much as there is room for; it also says which methods have no curve."""
+    room = column_px / _BOLD_PX
+    full = f"{view.symbol}: {view.title}"
+    letters = len(view.symbol.replace("<sub>", "").replace("</sub>", "")) + 2 + len(view.title)
+    title = f"<b>{full}</b>" if letters <= room else f"<b>{view.symbol}</b>"
+    if not silent:
+        return title
+    who = ", ".join(silent)
+    who = style.plain(who) if len(who) <= _LONGEST_SILENCE else f"{len(silent)} methods"
+    note = f"(no {'log' if view.source == 'dv_r' else 'own acceleration'} in: {who})"
+    fits = letters + len(note) <= room
+    return f'{title} <span style="color:{style.MUTED}">{note}</span>' if fits else title

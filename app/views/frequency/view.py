@@ -1,0 +1,56 @@
+"""Tab "Frequency": Bode plots of the network and of a transfer, or the open loop's Nyquist plot."""
+
+from __future__ import annotations
+
+from app.plots.plotly_data import PlotlyFigure
+from app.plots.transfer_views import SHOWN
+from app.session.shown import Shown
+from app.shell.layout import TOOLS
+from app.shell.plotly_view import PlotlyView
+from app.shell.view import if_user
+from app.views.frequency.figure import frequency_view
+from navcore.engine.run import Run
+
+DISCRETE = "measured filter"
+_IDS = {label: id for id, label in SHOWN.items()}
+
+
+class FrequencyView(PlotlyView):
+    """Chooser of the transfer and switch for the measured filter above the plots."""
+
+    title = "Frequency"
+    place = "upper"
+    focus = "bode"
+    plots = (title,)
+
+    def build_tools(self) -> None:
+        """Make chooser and switch."""
+        gui, display = self.frame.gui, self.session.display
+        self._transfer = gui.add_dropdown(
+            "transfer", tuple(_IDS), initial_value=SHOWN[display.transfer],
+            hint="Shown at the right, beside the network H; or the open loop with its margins.",
+        )  # fmt: skip
+        gui.add_html(TOOLS)
+        self._discrete = gui.add_checkbox(
+            DISCRETE, display.discrete,
+            hint="Dots on H: gain (dB) and phase (deg) of the filter that runs, at the step of the run, "
+            "measured by driving it with sines. Gains that act as velocity feedback have no filter.",
+        )  # fmt: skip
+        self._transfer.on_update(if_user(lambda: self.frame.show(transfer=_IDS[self._transfer.value])))
+        self._discrete.on_update(if_user(lambda: self.frame.show(discrete=self._discrete.value)))
+
+    def follow_display(self) -> None:
+        """Show the display's choices."""
+        display = self.session.display
+        self._transfer.value = SHOWN[display.transfer]
+        self._discrete.value = display.discrete
+
+    def figure(self, both: Run, found: Shown) -> PlotlyFigure:
+        """Bode plots, or Nyquist plot."""
+        display = found.display
+        return frequency_view(
+            both, display.transfer, self.aspect, width_px=self.width_px, discrete=display.discrete
+        )
+
+
+VIEW = FrequencyView

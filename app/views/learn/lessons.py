@@ -1,0 +1,327 @@
+"""Lessons: read from ``assets/lessons/*.md``, checked, and turned into what the page shows.
+
+A file begins with TOML between two lines ``+++``: ``title``, ``about`` (one sentence), and the scenario it
+plays in, as ``preset = "NAME"`` or as a table ``[scenario]``. Each ``## Heading`` begins a step: Markdown
+with ``$...$`` and ``$$...$$`` (LaTeX), ``{{name}}`` for a number of the present run
+(`app.views.learn.names`), and at most one each of two fenced blocks of TOML:
+
+``toml action``
+    The button "Show me". ``set``: fields of the scenario as on the command line, each step beginning from the
+    lesson's scenario; ``tabs`` to bring to the front; ``display``: fields of `app.session.display.Display`;
+    ``method``: number of the method to edit; ``sliders``: fields that get a slider in the lesson.
+
+``toml question``
+    ``ask``, ``why`` (shown once it is answered rightly), and either ``answer`` (a name) and its ``tolerance``
+    (relative), or ``choices``: tables with ``say`` and ``when``, a comparison of names and numbers
+    (``error.1.phi_n.max > 2 * error.0.phi_n.max``). The right choice is the one whose comparison holds for
+    the run: no answer is typed into a file.
+"""
+
+from __future__ import annotations
+
+import operator
+import re
+import tomllib
+from collections.abc import Callable
+from copy import deepcopy
+from functools import lru_cache
+from html import escape
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from app.views.learn.names import named
+from navcore.engine.run import Run
+from navcore.foundation.assets import asset_path
+from navcore.foundation.errors import Fault, InputError
+from navcore.scenario.file import apply_overrides, load
+from navcore.scenario.model import Scenario
+
+_FRONT = re.compile(r"\A\+\+\+\n(.*?)\n\+\+\+\n(.*)\Z", re.DOTALL)
+_FENCE = re.compile(r"^```toml (action|question)\n(.*?)^```$\n?", re.DOTALL | re.MULTILINE)
+_MATH = re.compile(r"\$\$(.+?)\$\$|\$(.+?)\$", re.DOTALL)
+_NAME = re.compile(r"\{\{([a-z0-9_.]+)\}\}")
+_SIGN = re.compile(r"<=|>=|<|>")
+_TERM = re.compile(r"(?:([0-9.eE+-]+)\s*\*\s*)?([a-z][a-z0-9_.]*)")
+_MARK = "\ue000{}\ue001"
+"""Stands for a formula while the Markdown around it is read."""
+_SIGNS: dict[str, Callable[[float, float], bool]] = {
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+MISSING = "(press Show me)"
+"""Stands where the present run has no such number."""
+
+
+_T = TypeVar("_T")
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Action(_Part):
+    """What "Show me" does; see the module's text."""
+
+    set: tuple[str, ...] = ()
+    tabs: tuple[str, ...] = ()
+    display: dict[str, str | float] = Field(default_factory=dict)
+    method: int | None = Field(default=None, ge=0)
+    sliders: tuple[str, ...] = ()
+
+
+class Choice(_Part):
+    """One of the answers to choose from, and when it is right."""
+
+    say: str
+    when: str
+
+
+class Question(_Part):
+    """A question, and how its answer follows from a run; see the module's text."""
+
+    ask: str
+    why: str
+    answer: str = ""
+    tolerance: float = Field(default=0.05, gt=0.0, le=0.5)
+    choices: tuple[Choice, ...] = ()
+
+
+class Step(_Part):
+    """A step of a lesson.
+
+    Attributes
+    ----------
+    title, text : str
+        Heading, and Markdown without the fenced blocks.
+    action : Action or None
+        What its button does.
+    question : Question or None
+        What it asks.
+    """
+
+    title: str
+    text: str
+    action: Action | None = None
+    question: Question | None = None
+
+
+class Lesson(_Part):
+    """A lesson.
+
+    Attributes
+    ----------
+    id : str
+        Name of its file.
+    title, about : str
+        As listed.
+    preset : str
+        Scenario it plays in; or
+    scenario : dict
+        the same as a table.
+    steps : tuple of Step
+        In order.
+    """
+
+    id: str
+    title: str
+    about: str
+    preset: str = ""
+    scenario: dict[str, Any] = Field(default_factory=dict)
+    steps: tuple[Step, ...]
+
+    def scenario_of(self, step: int) -> Scenario:
+        """Scenario in which a step plays: that of the nearest action up to it; raises `InputError`."""
+        acting = (s.action for s in reversed(self.steps[: step + 1]) if s.action is not None)
+        action = next(acting, None)
+        return self._with(() if action is None else action.set)
+
+    def _with(self, overrides: tuple[str, ...]) -> Scenario:
+        if self.preset:
+            return load(self.preset, overrides)
+        data = deepcopy(self.scenario)
+        apply_overrides(data, overrides)
+        return Scenario.parse(data, self.id)
+
+
+# ------------------------------------------------------------ reading
+
+
+@lru_cache(maxsize=1)
+def lessons() -> tuple[Lesson, ...]:
+    """All lessons that come with the product, in the order of their files' names.
+
+    Raises
+    ------
+    InputError
+        A file is no lesson.
+    """
+    files = sorted(asset_path("lessons").glob("*.md"))
+    return tuple(read_lesson(file.stem, file.read_text(encoding="utf-8")) for file in files)
+
+
+def read_lesson(id: str, text: str) -> Lesson:
+    """Read a lesson from its file's text.
+
+    Raises
+    ------
+    InputError
+        It is none; the fault says where.
+    """
+    found = _FRONT.match(text)
+    if found is None:
+        raise InputError(Fault(id, "", None, "must begin with TOML between two lines +++"))
+    heading, *parts = re.split(r"^## (.+)$", found.group(2), flags=re.MULTILINE)
+    if heading.strip() or not parts:
+        raise InputError(Fault(id, "", None, 'must have its text in steps, each under a heading "## ..."'))
+    steps = [_step(id, title, body) for title, body in zip(parts[::2], parts[1::2], strict=True)]
+    front = _toml(id, "", found.group(1))
+    return _checked(id, "", lambda: Lesson(id=id, steps=tuple(steps), **front))
+
+
+def _step(id: str, title: str, body: str) -> Step:
+    blocks: dict[str, Any] = {}
+    for kind, toml in _FENCE.findall(body):
+        if kind in blocks:
+            raise InputError(Fault(id, title, kind, "must stand once in a step"))
+        blocks[kind] = _toml(id, title, toml)
+    text = _FENCE.sub("", body).strip()
+    return _checked(id, title, lambda: Step(title=title.strip(), text=text, **blocks))
+
+
+def _toml(id: str, where: str, text: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(Fault(id, where, None, f"is not valid TOML: {error}")) from None
+
+
+def _checked(id: str, where: str, make: Callable[[], _T]) -> _T:
+    try:
+        return make()
+    except ValidationError as error:
+        first = error.errors()[0]
+        at = ".".join(map(str, (where, *first["loc"])))
+        raise InputError(Fault(id, at, first.get("input"), first["msg"])) from None
+
+
+# ------------------------------------------------------------ showing
+
+
+def to_html(text: str, run: Run | None) -> str:
+    """Markdown of a lesson as HTML, with formulas as MathML and the numbers of a run.
+
+    Parameters
+    ----------
+    text : str
+        Markdown; HTML in it is shown as text.
+    run : Run or None
+        Where the numbers come from; `MISSING` without one.
+    """
+    return _NAME.sub(lambda found: _number_html(found.group(1), run), _markdown(text))
+
+
+@lru_cache(maxsize=256)
+def _markdown(text: str) -> str:
+    from markdown_it import MarkdownIt
+
+    formulas: list[str] = []
+
+    def keep(found: re.Match[str]) -> str:
+        block, inline = found.groups()
+        formulas.append(formula_html(block or inline, block=block is not None))
+        return _MARK.format(len(formulas) - 1)
+
+    html = MarkdownIt("commonmark", {"html": False}).enable("table").render(_MATH.sub(keep, text))
+    return re.sub("\ue000([0-9]+)\ue001", lambda found: formulas[int(found.group(1))], html)
+
+
+def formula_html(latex: str, *, block: bool = False) -> str:
+    """A formula as MathML; one that stands alone can be scrolled when it is too wide."""
+    from latex2mathml.converter import convert
+
+    if not block:
+        return convert(latex.strip(), display="inline")
+    return f'<span class="sb-formula">{convert(latex.strip(), display="block")}</span>'
+
+
+def names_in(text: str) -> tuple[str, ...]:
+    """Names that a text speaks of."""
+    return tuple(_NAME.findall(text))
+
+
+def _number_html(name: str, run: Run | None) -> str:
+    try:
+        shown = MISSING if run is None else named(name, run).text
+    except KeyError:
+        shown = MISSING
+    return f'<span class="sb-live" data-name="{escape(name)}">{escape(shown)}</span>'
+
+
+# ------------------------------------------------------------ answers
+
+
+def holds(comparison: str, run: Run) -> bool:
+    """Whether a comparison of names and numbers holds for a run.
+
+    Raises
+    ------
+    KeyError
+        It is no comparison, or a name is unknown.
+    """
+    found = _SIGN.search(comparison)
+    if found is None:
+        raise KeyError(comparison)
+    left, right = comparison[: found.start()].strip(), comparison[found.end() :].strip()
+    return _SIGNS[found[0]](_term(left, run), _term(right, run))
+
+
+def _term(text: str, run: Run) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        pass
+    found = _TERM.fullmatch(text)
+    if found is None:
+        raise KeyError(text)
+    factor, name = found.groups()
+    return float(factor or 1.0) * named(name, run).value
+
+
+def right_choice(question: Question, run: Run) -> int:
+    """Number of the choice that is right for a run.
+
+    Raises
+    ------
+    KeyError
+        Not exactly one is.
+    """
+    right = [i for i, choice in enumerate(question.choices) if holds(choice.when, run)]
+    if len(right) != 1:
+        raise KeyError(f"{question.ask}: {len(right)} choices are right")
+    return right[0]
+
+
+def is_right(question: Question, given: str, run: Run) -> bool:
+    """Whether an answer is right for a run.
+
+    Parameters
+    ----------
+    question : Question
+        What was asked.
+    given : str
+        Number of the choice, or the number that was typed.
+    run : Run
+        Of the scenario that the question is about.
+
+    Raises
+    ------
+    ValueError
+        ``given`` is no number.
+    """
+    if question.choices:
+        return int(given) == right_choice(question, run)
+    value = named(question.answer, run).value
+    return abs(float(given.replace(",", ".")) - value) <= question.tolerance * abs(value)

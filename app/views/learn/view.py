@@ -1,0 +1,306 @@
+"""Tab "Learn": a lesson step by step, its button "Show me", its sliders, its question."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from functools import lru_cache
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel
+
+from app.editing import edits, form
+from app.editing.form import FieldSpec, Path
+from app.session.shown import Shown
+from app.shell.control import Control
+from app.shell.section import Section
+from app.shell.view import Frame, Tab, View
+from app.views.learn.lessons import Action, Lesson, Question, is_right, lessons, right_choice, to_html
+from navcore.engine.run import Run
+from navcore.scenario.model import Scenario
+
+if TYPE_CHECKING:
+    import viser
+
+COMMAND = "lesson"
+"""Command with which the panel's HTML asks: ``lesson open 2``, ``step 1``, ``next``, ``back``, ``list``,
+``show``, ``answer TEXT``."""
+_TRY = "try:"
+_UNREADABLE = "Type a number, such as 84.4."
+
+
+class LearnView(View):
+    """Shows lessons and carries out what they ask for."""
+
+    title = "Learn"
+    place = "edit"
+
+    def __init__(self, frame: Frame) -> None:
+        super().__init__(frame)
+        self._lock = threading.RLock()
+        self._lesson: int | None = None
+        self._step = 0
+        self._given: dict[tuple[int, int], str] = {}
+        self._run: Run | None = None
+        self._live: Scenario | None = None
+        self._asked = 0
+        frame.commands.register(COMMAND, self.command)
+
+    def build(self, tab: Tab) -> None:
+        """Make the places of text, question and buttons."""
+        gui = self.frame.gui
+        with tab:
+            self._text = gui.add_html("", order=0)
+            self._question = gui.add_html("", order=50)
+            self._below = gui.add_html("", order=60)
+            self._front = gui.add_html("", order=70)
+        self._section = Section(gui, tab, self.frame.editor.edit, 1.0)
+
+    @property
+    def controls(self) -> list[Control]:
+        """The sliders of the lesson."""
+        return list(self._section.controls.values())
+
+    # ------------------------------------------------------------ what the user asks for
+
+    def command(self, argument: str) -> None:
+        """Carry out what a button of the panel's HTML asks for; anything else is ignored."""
+        what, _, rest = argument.partition(" ")
+        acts: dict[str, Callable[[], None]] = {
+            "open": lambda: self._go(int(rest), 0),
+            "list": lambda: self._go(None, 0),
+            "next": lambda: self._go(self._lesson, self._step + 1),
+            "back": lambda: self._go(self._lesson, self._step - 1),
+            "step": lambda: self._go(self._lesson, int(rest)),
+            "show": self._show_me,
+            "answer": lambda: self._answer(rest.strip()),
+        }
+        act = acts.get(what)
+        if act is None or (rest and not rest.strip()) or (what in ("open", "step") and not rest.isdigit()):
+            return
+        with self.session.lock, self._lock:
+            act()
+            self._show(None)
+
+    def _go(self, lesson: int | None, step: int) -> None:
+        if lesson is not None and not (lesson < len(lessons()) and 0 <= step < len(lessons()[lesson].steps)):
+            return
+        self._lesson, self._step = lesson, step
+
+    def _show_me(self) -> None:
+        lesson, action = self._current(), self._action()
+        if lesson is None or action is None:
+            return
+        scenario, session = self._scenario(), self.session
+        self._live = None
+        session.change(scenario, None, origin=self._origin(lesson), selected=action.method)
+        if action.display:
+            session.show(None, **action.display)
+        self._asked += 1
+        tabs = escape("|".join(action.tabs))
+        self._front.content = (
+            f'<div id="sb-front" hidden data-count="{self._asked}" data-tabs="{tabs}"></div>'
+        )
+
+    def _answer(self, given: str) -> None:
+        if self._lesson is not None and given and len(given) < 40:
+            self._given[self._lesson, self._step] = given
+
+    # ------------------------------------------------------------ showing
+
+    def follow_scenario(self) -> None:
+        """Show the lesson, and its sliders with the scenario's values."""
+        self._show(self.frame.editor.moved)
+
+    def draw(self, found: Shown) -> None:
+        """Show the lesson with the numbers of the run."""
+        del found
+        self._show(self.frame.editor.moved)
+
+    def _show(self, moved: Control | None) -> None:
+        scenario, run = self.session.scenario, self.session.run
+        with self._lock:
+            lesson, action = self._current(), self._action()
+            if lesson is None:
+                _say(self._text, _list_html())
+                _say(self._question, "")
+                _say(self._below, "")
+            else:
+                _say(self._text, self._step_html(lesson, scenario, run))
+                _say(self._question, self._question_html(lesson))
+                _say(self._below, self._below_html(lesson))
+            specs = [spec for path in (action.sliders if action else ()) for spec in spec_at(scenario, path)]
+            values = {spec.path: edits.value_at(scenario, spec.path) for spec in specs}
+            self._section.show(specs, values, moved)
+
+    def _current(self) -> Lesson | None:
+        return None if self._lesson is None else lessons()[self._lesson]
+
+    def _action(self) -> Action | None:
+        lesson = self._current()
+        return None if lesson is None else lesson.steps[self._step].action
+
+    def _origin(self, lesson: Lesson) -> str:
+        """Where a session's scenario comes from that the present step has set."""
+        action = self._action()
+        plain = bool(lesson.preset) and (action is None or not action.set)
+        return lesson.preset if plain else f"lesson: {lesson.title}"
+
+    def _spoken_of(self, lesson: Lesson, run: Run | None) -> Run | None:
+        """Run whose numbers the step may tell: of its own scenario, or of that as its sliders changed it."""
+        own = self._scenario()
+        if run is not None and run.scenario == own:
+            self._live = own
+        return run if self._live == own and self.session.origin == self._origin(lesson) else None
+
+    def _scenario(self) -> Scenario:
+        return _scenario(self._lesson or 0, self._step)
+
+    def _step_html(self, lesson: Lesson, scenario: Scenario, run: Run | None) -> str:
+        step = lesson.steps[self._step]
+        dots = "".join(
+            f'<button class="sb-dot{" sb-here" * (i == self._step)}" data-command="{COMMAND} step {i}" '
+            f'aria-label="Step {i + 1} of {len(lesson.steps)}: {escape(s.title)}"'
+            f"{' aria-current=step' * (i == self._step)}></button>"
+            for i, s in enumerate(lesson.steps)
+        )
+        button = ""
+        if step.action is not None:
+            fresh = scenario == self._scenario()
+            button = (
+                f'<button class="sb-button{" sb-quiet" * fresh}" data-command="{COMMAND} show">'
+                f"{'Show me again' if fresh else 'Show me'}</button>"
+            )
+        return (
+            f'<section class="sb-lesson" aria-label="Lesson"><div class="sb-crumb">'
+            f'<button class="sb-link" data-command="{COMMAND} list">All lessons</button>'
+            f'<nav class="sb-dots" aria-label="Steps">{dots}</nav></div>'
+            f'<h2>{escape(lesson.title)}</h2><div aria-live="polite"><h3>{escape(step.title)}</h3>'
+            f"{to_html(step.text, self._spoken_of(lesson, run))}</div>{button}</section>"
+        )
+
+    def _question_html(self, lesson: Lesson) -> str:
+        question = lesson.steps[self._step].question
+        if question is None:
+            return ""
+        given = self._given.get((self._lesson or 0, self._step))
+        verdict, right = "", False
+        if given is not None:
+            verdict, right = self._verdict(question, given)
+        if question.choices:
+            answers = "".join(
+                f'<button class="sb-choice{" sb-chosen" * (given == str(i))}" '
+                f'aria-pressed="{str(given == str(i)).lower()}" data-command="{COMMAND} answer {i}">'
+                f"{to_html(choice.say, None).removeprefix('<p>').removesuffix('</p>' + chr(10))}</button>"
+                for i, choice in enumerate(question.choices)
+            )
+        else:
+            answers = (
+                f'<form class="sb-number" data-answer="{COMMAND}"><input type="text" inputmode="decimal" '
+                f'aria-label="Your answer" value="{escape(given or "")}" autocomplete="off">'
+                '<button class="sb-button">Check</button></form>'
+            )
+        return (
+            f'<section class="sb-lesson sb-question" aria-label="Question" data-right="{str(right).lower()}">'
+            f'{to_html(question.ask, None)}{answers}<div role="status">{verdict}</div></section>'
+        )
+
+    def _verdict(self, question: Question, given: str) -> tuple[str, bool]:
+        run = self._run_of(self._scenario())
+        try:
+            right = is_right(question, given, run)
+        except ValueError:
+            return f'<p class="sb-wrong"><b>{_UNREADABLE}</b></p>', False
+        if right:
+            why = to_html(question.why, run).removeprefix("<p>")
+            return f'<p class="sb-right"><b>&#10003; Right.</b> {why}', True
+        told = "Look again: press Show me if the pictures are of something else."
+        if not question.choices:
+            told += f" Within {100.0 * question.tolerance:g} % counts as right."
+        return f'<p class="sb-wrong"><b>&#10007; Not so.</b> {told}</p>', False
+
+    def _run_of(self, scenario: Scenario) -> Run:
+        """Run of the step's own scenario: that on the page, or one made for the answer."""
+        shown = self.session.run
+        if shown is not None and shown.scenario == scenario:
+            return shown
+        if self._run is None or self._run.scenario != scenario:
+            from navcore.engine.simulation import simulate
+
+            self._run = simulate(scenario)
+        return self._run
+
+    def _below_html(self, lesson: Lesson) -> str:
+        last = self._step == len(lesson.steps) - 1
+        following = (self._lesson or 0) + 1
+        forward = f"{COMMAND} next", "Next"
+        if last:
+            more = following < len(lessons())
+            forward = (f"{COMMAND} open {following}", "Next lesson") if more else (f"{COMMAND} list", "Done")
+        back = (
+            f'<button class="sb-button sb-quiet" data-command="{COMMAND} back">Back</button>'
+            if self._step
+            else "<span></span>"
+        )
+        return (
+            f'<nav class="sb-lesson sb-below" aria-label="Lesson">{back}'
+            f'<button class="sb-button sb-quiet" data-command="{forward[0]}">{forward[1]}</button></nav>'
+        )
+
+
+@lru_cache(maxsize=64)
+def _scenario(lesson: int, step: int) -> Scenario:
+    """Scenario of a step; it depends on the files alone."""
+    return lessons()[lesson].scenario_of(step)
+
+
+def spec_at(scenario: Scenario, dotted: str) -> list[FieldSpec]:
+    """The control of one field of a scenario, labelled for a lesson; none if the scenario lacks it."""
+    path: Path = tuple(int(part) if part.isdigit() else part for part in dotted.split("."))
+    place: Any = scenario
+    for depth, part in enumerate(path):
+        model = type(place)
+        if issubclass(model, BaseModel):
+            chosen = [spec for spec in form.fields(model, path[:depth], _TRY) if spec.path == path]
+            if chosen:
+                return chosen
+        try:
+            place = place[part] if isinstance(part, int) else getattr(place, part)
+        except (AttributeError, IndexError, TypeError):
+            break
+    return []
+    return []
+
+
+def right_answer(question: Question, run: Run) -> str:
+    """An answer that counts as right, as it would be given."""
+    from app.views.learn.names import named
+
+    return (
+        str(right_choice(question, run)) if question.choices else f"{named(question.answer, run).value:.4g}"
+    )
+
+
+def _list_html() -> str:
+    entries = "".join(
+        f'<li><button class="sb-choice" data-command="{COMMAND} open {i}"><b>{escape(lesson.title)}</b>'
+        f"<br>{escape(lesson.about)}</button></li>"
+        for i, lesson in enumerate(lessons())
+    )
+    return (
+        '<section class="sb-lesson" aria-label="Lessons"><h2>Lessons</h2>'
+        "<p>Each takes five minutes and sets the page up as it goes. Your own scenario comes back with "
+        "Undo.</p>"
+        f"<ol>{entries}</ol></section>"
+    )
+
+
+def _say(handle: viser.GuiHtmlHandle, html: str) -> None:
+    if handle.content != html:
+        handle.content = html
+    if handle.visible != bool(html):
+        handle.visible = bool(html)
+
+
+VIEW = LearnView

@@ -1,0 +1,1 @@
+"""Tab "Log": the reference velocity, its errors, events and outages."""

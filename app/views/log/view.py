@@ -1,0 +1,142 @@
+"""Tab "Log": the reference velocity, its errors, events and outages."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from app.editing import edits, form
+from app.editing.form import FieldSpec
+from app.session.log_fit import can_fit, fit_of, told, with_fitted_log
+from app.shell import notices
+from app.shell.control import Control
+from app.shell.section import Section, controls_of
+from app.shell.view import Tab, View, if_user
+from navcore.scenario.model import Scenario
+from navcore.sensors.reference import LogEvent, Outage, Reference
+
+if TYPE_CHECKING:
+    from navcore.sensors.fit import LogErrorFit
+
+ADD_EVENT, REMOVE_EVENT = "add event", "remove event"
+ADD_OUTAGE, REMOVE_OUTAGE = "add outage", "remove outage"
+FIT, USE_FIT = "Fit this log's error", "Simulate a log with this error"
+_FIT_TOLD = "Compares the recorded log with the recorded track: delay, bias, noise and drift of its error."
+_USE_TOLD = (
+    "The recorded log gives way to a simulated one with the fitted error, of any length. Undo brings it back."
+)
+_FIRST = 7
+"""Fields of the log's model, in its order, that are shown without asking."""
+_KINDS = {"event": LogEvent, "outage": Outage}
+
+
+class LogView(View):
+    """The reference velocity, its errors, events and outages."""
+
+    title = "Log"
+    place = "edit"
+
+    def build(self, tab: Tab) -> None:
+        """Make the widgets."""
+        gui, edit = self.frame.gui, self.frame.editor.edit
+        self._specs = form.fields(Reference, ("reference",))
+        with tab:
+            self._all = gui.add_checkbox(
+                "all log errors", False, hint="Scale, delay, resolution, current and tide too.", order=29
+            )
+            self._buttons = gui.add_button_group(
+                "events",
+                (ADD_EVENT, REMOVE_EVENT),
+                hint="A passing disturbance: its acceleration is integrated into the log's velocity.",
+                order=60,
+            )
+            self._outages = gui.add_button_group(
+                "outages",
+                (ADD_OUTAGE, REMOVE_OUTAGE),
+                hint="A time in which the log gives nothing: undamped meanwhile.",
+                order=200,
+            )
+            self._fit = gui.add_button(FIT, hint=_FIT_TOLD, order=20, visible=False)
+            self._fitted = gui.add_html("", order=21)
+            self._use = gui.add_button(USE_FIT, color="gray", hint=_USE_TOLD, order=22, visible=False)
+        self._found: tuple[Scenario, LogErrorFit] | None = None
+        self._fit.on_click(lambda _: self._fit_error())
+        self._use.on_click(lambda _: self._use_fit())
+        self._all.on_update(if_user(self.frame.refresh))
+        for group in (self._buttons, self._outages):
+            group.on_click(
+                lambda event: self._arrange(event.target.value) if event.client is not None else None
+            )
+        places = {"kind": 0.0, "first": 1.0, "more": 30.0, "event": 61.0, "outage": 201.0}
+        self.sections = {name: Section(gui, tab, edit, order) for name, order in places.items()}
+
+    @property
+    def controls(self) -> list[Control]:
+        """Controls of the log's fields."""
+        return controls_of(self.sections)
+
+    def _arrange(self, what: str) -> None:
+        """Add or remove an event or outage of the log."""
+        session = self.session
+        with session.lock, notices.told(self.frame.client, "Not possible", self.frame.refresh):
+            block = "event" if what in (ADD_EVENT, REMOVE_EVENT) else "outage"
+            change = edits.with_block if what in (ADD_EVENT, ADD_OUTAGE) else edits.without_block
+            session.change(change(session.scenario, ("reference", block)), None)
+
+    def _fit_error(self) -> None:
+        """Fit the recorded log's error, and show it beside the button."""
+        with self.session.lock:
+            scenario = self.session.scenario
+        with notices.told(self.frame.client, "The log's error cannot be fitted", self.frame.refresh):
+            self._found = scenario, fit_of(scenario)
+            self.frame.refresh()
+
+    def _use_fit(self) -> None:
+        """Run on a simulated log with the fitted error in the place of the recorded one."""
+        session = self.session
+        with session.lock, notices.told(self.frame.client, "Not possible", self.frame.refresh):
+            if self._found is not None:
+                session.change(with_fitted_log(session.scenario, self._found[1]), None)
+
+    def _show_fit(self, scenario: Scenario) -> None:
+        """Show the fit as long as it is of the scenario's own recordings."""
+        self._fit.visible = can_fit(scenario)
+        if self._found is not None:
+            of = self._found[0]
+            if (of.reference, of.motion) != (scenario.reference, scenario.motion):
+                self._found = None
+        self._fitted.content = "" if self._found is None else notices.note(told(self._found[1]), "info")
+        self._use.visible = self._found is not None
+
+    def follow_scenario(self) -> None:
+        """Show the scenario's values; errors that it sets are always shown."""
+        scenario, moved = self.session.scenario, self.frame.editor.moved
+        self._show_fit(scenario)
+        kind = scenario.reference.kind
+        shown = {"none": [], "file": [spec for spec in self._specs if spec.kind == "choice"]}
+        specs = shown.get(kind, self._specs)
+        first, more = specs[:_FIRST], specs[_FIRST:]
+        self._all.visible = bool(more)
+        if not self._all.value:
+            more = [spec for spec in more if edits.value_at(scenario, spec.path) != spec.default]
+        self._buttons.visible = self._outages.visible = kind != "none"
+        listed = {
+            "kind": [form.choice(Reference, "kind", ("reference",))],
+            "first": first,
+            "more": more,
+            "event": _blocks(scenario, "event"),
+            "outage": _blocks(scenario, "outage"),
+        }
+        for name, found in listed.items():
+            self.sections[name].show(found, edits.values_at(scenario, [spec.path for spec in found]), moved)
+
+
+def _blocks(scenario: Scenario, name: str) -> list[FieldSpec]:
+    blocks = getattr(scenario.reference, name)
+    return [
+        spec
+        for i in range(len(blocks))
+        for spec in form.fields(_KINDS[name], ("reference", name, i), prefix=f"{name} {i + 1}")
+    ]
+
+
+VIEW = LogView

@@ -1,0 +1,1 @@
+"""Tab "Method": which method the controls edit, its network, policy and switching."""

@@ -1,0 +1,146 @@
+"""In the tab "Method", below an adaptive policy: find its table for this scenario (Sun's double loop)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from pydantic import ValidationError
+
+from app.editing import form
+from app.editing.form import FieldSpec
+from app.plots import style
+from app.shell import notices
+from app.shell.control import Control
+from app.shell.section import Section
+from app.shell.view import Frame, Tab
+from app.views.method.tuned import table_html
+from navcore.foundation.errors import InputError
+from navcore.foundation.faults import faults_from
+from navcore.scenario.model import Method
+from navcore.studies.tuning.settings import TuningSettings
+
+FIND, STOP, USE = "Find the table for this scenario", "Stop the search", "Use this table"
+_TITLE = "Table by Sun's double loop"
+_SHOWN = ("smallest", "largest", "step", "error", "drift_tau_s", "realisations")
+_LABELS = {"step": "coefficient step", "realisations": "drifts averaged"}
+_TOLD = (
+    "Runs this scenario with every damping coefficient, and takes for each velocity difference the one with "
+    "the least integral of the squared velocity errors (Sun 8)."
+)
+
+
+class TuningPanel:
+    """Settings, button, progress, and the table that came out.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of the page.
+    tab : context manager
+        Where it stands.
+    order : float
+        Place in the tab.
+    """
+
+    def __init__(self, frame: Frame, tab: Tab, order: float) -> None:
+        gui = frame.gui
+        self._client, self._session, self._network = frame.client, frame.session, None
+        self._tuner = frame.session.searches.tuner
+        self._fields: dict[str, Any] = {}
+        with tab:
+            self._folder = gui.add_folder(_TITLE, order=order, expand_by_default=False)
+        self._folder.visible = False
+        self._section = Section(gui, self._folder, self._edit, 0.0)
+        with self._folder:
+            gui.add_html(notices.small(_TOLD), order=-1.0)
+            self._start = gui.add_button(FIND, order=20.0, hint=_TOLD)
+            self._progress = gui.add_progress_bar(0.0, visible=False, order=21.0)
+            self._stop = gui.add_button(STOP, color="orange", visible=False, order=22.0)
+            self._found = gui.add_html("", visible=False, order=23.0)
+            self._use = gui.add_button(USE, visible=False, order=24.0, hint="One step of undo takes it back.")
+        self._start.on_click(lambda _: self._find())
+        self._stop.on_click(lambda _: self._tuner.cancel())
+        self._use.on_click(lambda _: self._take())
+
+    def show(self) -> None:
+        """Show how far the search is, or what it gave, where the method's policy has a table."""
+        tuner, scenario, index = self._tuner, self._session.scenario, self._session.selected
+        method = scenario.method[index]
+        wanted = tunable(method)
+        if self._folder.visible != wanted:
+            self._folder.visible = wanted
+        if not wanted:
+            return
+        self._network = method.network
+        settings = self._settings()
+        values: dict[form.Path, Any] = {("tuning", name): getattr(settings, name) for name in _SHOWN}
+        self._section.show(_specs(settings), values, None)
+        fraction, result = tuner.fraction, tuner.result
+        if fraction is not None:
+            self._progress.value = round(100.0 * fraction, 1)
+        running = fraction is not None
+        visible = ((self._start, not running), (self._progress, running), (self._stop, running))
+        for handle, shown in (*visible, (self._use, not running and result is not None)):
+            if handle.visible != shown:
+                handle.visible = shown
+        html = notices.note(tuner.words, "warning")
+        if result is not None:
+            if tuner.scenario != scenario:
+                html += notices.note(["Found for the scenario as it was before: find it anew."], "warning")
+            html += table_html(result, style.method_color(index))
+        if self._found.content != html:
+            self._found.content, self._found.visible = html, bool(html)
+
+    def _settings(self) -> TuningSettings:
+        """Settings as entered, for the network at hand."""
+        return TuningSettings.model_validate(self._fields | {"network": self._network})
+
+    def _find(self) -> None:
+        with self._session.lock:
+            scenario = self._session.scenario
+        self._tuner.start(scenario, self._settings())
+
+    def _take(self) -> None:
+        """Give the method the table that was found."""
+        from navcore.studies.tuning import with_table
+
+        session = self._session
+        with session.lock:
+            result = self._tuner.result
+            if result is None:
+                return
+            try:
+                changed = with_table(session.scenario, result, session.selected)
+                session.change(changed, None, name="damping table found")
+            except InputError as error:
+                notices.tell(self._client, "The table cannot be used", notices.fault_lines(error))
+
+    def _edit(self, control: Control, by_slider: bool) -> None:
+        name, shown = str(control.spec.path[-1]), control.take(by_slider)
+        if isinstance(shown, float) and name == "realisations":
+            shown = int(shown)
+        data = self._fields | {name: shown, "network": self._network}
+        try:
+            TuningSettings.model_validate(data)
+        except (ValidationError, InputError) as error:
+            faults = (
+                error.faults
+                if isinstance(error, InputError)
+                else faults_from(error, TuningSettings, data, "")
+            )
+            control.refuse([notices.refusal(fault, f"{self._fields.get(name, '')}") for fault in faults])
+            return
+        self._fields[name] = shown
+        control.say("")
+
+
+def tunable(method: Method) -> bool:
+    """Whether a method has a damping table."""
+    return method.policy.id == "adaptive" and not method.undamped
+
+
+def _specs(settings: TuningSettings) -> list[FieldSpec]:
+    by_name = {str(spec.path[-1]): spec for spec in form.fields(TuningSettings, ("tuning",))}
+    names = [n for n in _SHOWN if n in by_name and (settings.error == "drift" or n not in _SHOWN[4:])]
+    return [replace(by_name[n], label=_LABELS.get(n, by_name[n].label)) for n in names]

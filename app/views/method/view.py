@@ -1,0 +1,225 @@
+"""Tab "Method": which method the controls edit, its network, policy and switching."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from app.editing import edits, form
+from app.editing.form import FieldSpec, Path
+from app.plots import style
+from app.plots.earth_mode import earth_mode_text
+from app.plots.units import duration, number
+from app.plots.warnings import severity, warnings_for
+from app.session.shown import Shown
+from app.shell import notices
+from app.shell.control import Control
+from app.shell.section import Section, controls_of
+from app.shell.view import Frame, Tab, View, if_user
+from app.views.method.tuning import TuningPanel
+from navcore.engine.run import MethodRun, Run
+from navcore.law.policy import POLICIES
+from navcore.law.switching import SWITCHINGS
+from navcore.networks import NETWORKS
+from navcore.scenario.model import Method, Scenario
+
+if TYPE_CHECKING:
+    import viser
+
+ADD, COPY, REMOVE = "add", "copy", "remove"
+NO_DESIGN = "no (sigma, xi) gives these K"
+_CATALOGUES: Mapping[str, tuple[Mapping[str, type], str]] = {
+    "network": (NETWORKS, "network"),
+    "policy": (POLICIES, "policy"),
+    "switching": (SWITCHINGS, "switching"),
+}
+
+
+class MethodView(View):
+    """Controls of the selected method."""
+
+    title = "Method"
+    place = "edit"
+
+    def __init__(self, frame: Frame) -> None:
+        super().__init__(frame)
+        self._names: tuple[str, ...] = ()
+        add = frame.commands.register
+        add("method-add", lambda _: self._arrange(ADD), "Add a method")
+        add("method-copy", lambda _: self._arrange(COPY), "Copy the method")
+        add("method-remove", lambda _: self._arrange(REMOVE), "Remove the method")
+
+    def build(self, tab: Tab) -> None:
+        """Make the chooser, the buttons and the places for controls and notes."""
+        gui, edit = self.frame.gui, self.frame.editor.edit
+        with tab:
+            self._chooser: Any = gui.add_dropdown(
+                "method to edit",
+                ("",),
+                hint="The controls below belong to this method.",
+                order=0,
+            )
+            self._chip = gui.add_html("", order=0.5)
+            buttons = gui.add_button_group(
+                "methods",
+                (ADD, COPY, REMOVE),
+                hint="Add a method, copy the present one to vary it, or remove it. All methods run on the "
+                "same truth, sensors and log.",
+                order=1,
+            )
+            self._unused = gui.add_html("", order=19, visible=False)
+            self._warnings = gui.add_html("", order=28, visible=False)
+            self._loop = gui.add_html("", order=29, visible=False)
+        self._chooser.on_update(if_user(self._choose))
+        buttons.on_click(
+            lambda event: self._arrange(event.target.value) if event.client is not None else None
+        )
+        places = {
+            "method": 2.0,
+            "averaging": 10.0,
+            "network": 20.0,
+            "parameters": 30.0,
+            "policy": 70.0,
+            "switching": 100.0,
+        }
+        self.sections = {name: Section(gui, tab, edit, order) for name, order in places.items()}
+        self._tuning = TuningPanel(self.frame, tab, order=95.0)
+
+    @property
+    def controls(self) -> list[Control]:
+        """Controls of the method's fields."""
+        return controls_of(self.sections)
+
+    def _choose(self) -> None:
+        if self._chooser.value in self._names:
+            self.session.select(self._names.index(self._chooser.value), None)
+
+    def _arrange(self, what: str) -> None:
+        """Add, copy or remove a method."""
+        session = self.session
+        with session.lock, notices.told(self.frame.client, "Not possible", self.frame.refresh):
+            at = session.selected
+            if what in (ADD, COPY):
+                changed, at = edits.with_method(session.scenario, at if what == COPY else None)
+            else:
+                changed = edits.without_method(session.scenario, at)
+            session.change(changed, None, selected=at)
+
+    def follow_scenario(self) -> None:
+        """Show the selected method and the warnings about it."""
+        scenario, index = self.session.scenario, self.session.selected
+        self._show(scenario, index, self.frame.editor.moved)
+        self._show_warnings(self.session.run, scenario, index)
+
+    def follow_jobs(self) -> None:
+        """Show how far the search for a damping table is."""
+        self._tuning.show()
+
+    def draw(self, found: Shown) -> None:
+        """Show the warnings about the selected method."""
+        del found
+        self._show_warnings(self.session.run, self.session.scenario, self.session.selected)
+
+    def _show(self, scenario: Scenario, index: int, moved: Control | None) -> None:
+        """Show a method of the scenario."""
+        names = tuple(method.name for method in scenario.method)
+        if names != self._names:
+            self._names = names
+            self._chooser.options = names
+        self._chooser.value = names[index]
+        self._chip.content = _chip(index)
+        method, path = scenario.method[index], ("method", index)
+        values = _values(scenario, index)
+        self.sections["method"].show(form.fields(Method, path), values, moved)
+        averaged = method.damping == "averaging"
+        networked = method.damping not in ("averaging", "kalman")
+        network = form.fields(type(method.network), (*path, "network"))
+        self.sections["network"].show([_catalogue("network", path)] if networked else [], values, moved)
+        self.sections["parameters"].show(network if networked else [], values, moved)
+        for part in ("policy", "switching"):
+            specs = [_catalogue(part, path), *form.fields(type(getattr(method, part)), (*path, part))]
+            self.sections[part].show(specs if networked else [], _values_at(scenario, specs), moved)
+        block = form.fields(type(method.averaging), (*path, "averaging")) if averaged else []
+        self.sections["averaging"].show(block, _values_at(scenario, block), moved)
+        last_gain = self.sections["parameters"].controls.get((*path, "network", "k3"))
+        if last_gain is not None:
+            known = (*path, "network", "sigma") in values
+            last_gain.say(notices.note([] if known else [NO_DESIGN], "warning"))
+
+    def _show_warnings(self, run: Run | None, scenario: Scenario, index: int) -> None:
+        """Say beside the controls concerned what the last run found about the method."""
+        network, unused, loop = "", "", ""
+        if run is not None and run.scenario == scenario:
+            loop = (
+                notices.small(loop_text(run.methods[index], scenario.site.lat_deg))
+                if not scenario.method[index].undamped
+                else ""
+            )
+            told = {NO_DESIGN, *run.methods[index].whole.warnings}  # the line below the network says these
+            texts = [text for text in warnings_for(run).get(index, ()) if text not in told]
+            about_damping = [text for text in texts if "damping" in text.split(":")[0].split(" ")[:2]]
+            others = [text for text in texts if text not in about_damping]
+            network = notices.note(others, severity(run, index) or "warning")
+            unused = notices.note(about_damping, "warning")
+        _say(self._warnings, network)
+        _say(self._loop, loop)
+        _say(self._unused, unused)
+
+
+def _catalogue(part: str, path: Path) -> FieldSpec:
+    members, label = _CATALOGUES[part]
+    told = (f"{key}: {getattr(m, 'title', '') or first_line(m)}" for key, m in members.items())
+    return FieldSpec(
+        (*path, part, "id"), label, "; ".join(told), "choice", next(iter(members)), tuple(members)
+    )
+
+
+def loop_text(method: MethodRun, lat_deg: float) -> str:
+    """One channel and the whole system in two sentences, to be read while a slider moves."""
+    loop = method.loop
+    if not loop.stable:
+        return ""
+    settles = "never settles" if loop.settling_s is None else f"settles to 2 % in {duration(loop.settling_s)}"
+    earth_mode = earth_mode_text(method.whole.earth_growth)
+    return (
+        f"One channel: least damping ratio {number(loop.damping_ratio, 3)}, {settles}. "
+        f"Whole system: 24 h mode {earth_mode} at {abs(lat_deg):.3g} deg."
+    )
+
+
+def first_line(kind: type) -> str:
+    """First line of a class's docstring, for a tooltip."""
+    return (kind.__doc__ or "").strip().partition("\n")[0]
+
+
+def _values(scenario: Scenario, index: int) -> dict[Path, Any]:
+    method, path = scenario.method[index], ("method", index)
+    found: dict[Path, Any] = {(*path, "name"): method.name, (*path, "damping"): method.damping}
+    network = edits.network_values(scenario, index) | {"id": method.network.id}
+    return found | {(*path, "network", name): _shown(value) for name, value in network.items()}
+
+
+def _values_at(scenario: Scenario, specs: list[FieldSpec]) -> dict[Path, Any]:
+    return {spec.path: edits.value_at(scenario, spec.path) for spec in specs}
+
+
+def _shown(value: Any) -> Any:
+    # What follows from other parameters has endless digits; six are shown, all are used.
+    return form.significant(value, 9) if isinstance(value, float) else value
+
+
+def _chip(index: int) -> str:
+    return (
+        f'<div style="height:4px;margin:-4px 10px 8px calc(8.4rem + 10px);border-radius:2px;'
+        f'background:{escape(style.method_color(index))}"></div>'
+    )
+
+
+def _say(handle: viser.GuiHtmlHandle, html: str) -> None:
+    if handle.content != html:
+        handle.content = html
+    handle.visible = bool(html)
+
+
+VIEW = MethodView

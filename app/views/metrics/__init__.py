@@ -1,0 +1,1 @@
+"""Tab "Metrics": the numbers of a run, what dominates them, its warnings."""

@@ -1,0 +1,129 @@
+"""Tab "Metrics": the numbers of all methods, what dominates them, and the warnings about the run."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from app.jobs.verifier import Verified
+from app.plots import style
+from app.plots.warnings import notices_for, severity, warnings_for
+from app.session.shown import Shown
+from app.session.window import window_of
+from app.shell import notices
+from app.shell.view import PictureView, Tab, if_user
+from app.views.metrics.table import metrics_html, system_html, verdict
+from app.views.metrics.why import why_html
+from navcore.engine.run import Run
+
+_METHOD_PX = {True: 215, False: 187}
+"""Width of a method in the table: in the large print of a wide window, in the small one."""
+_DELTA_PX = {True: 150, False: 125}
+_ROW_NAME_PX = 110
+OVER = "errors over"
+_WINDOWS = {"the whole run": "whole", "after settling": "settled", "chosen hours": "hours"}
+_ENDS = {
+    "window_from_h": ("measured from (h)", "Begin of the part of the run that is measured."),
+    "window_to_h": ("measured to (h)", "End of the part of the run that is measured."),
+}
+
+
+class MetricsView(PictureView[tuple[str, str]]):
+    """Table and warnings, and between them which error source dominates."""
+
+    title = "Metrics"
+    place = "lower"
+
+    def build(self, tab: Tab) -> None:
+        """Make the places of the texts."""
+        with tab:
+            self._over: Any = self.frame.gui.add_dropdown(
+                OVER, tuple(_WINDOWS), hint="Part of the run over which errors and requirements are measured."
+            )
+            self._ends = {
+                field: self.frame.gui.add_number(label, 0.0, min=0.0, max=1e5, visible=False, hint=hint)
+                for field, (label, hint) in _ENDS.items()
+            }
+            self._table = self.frame.gui.add_html("")
+            self._why = self.frame.gui.add_html("")
+            self._warnings = self.frame.gui.add_html("")
+
+        self._over.on_update(if_user(self._choose))
+        for field, box in self._ends.items():
+            box.on_update(if_user(lambda field=field, box=box: self.frame.show(**{field: float(box.value)})))
+
+    def _choose(self) -> None:
+        """Measure over another part of the run; hours begin as those of the whole run."""
+        window, display = _WINDOWS[self._over.value], self.session.display
+        to_h = display.window_to_h
+        if window == "hours" and to_h is None:
+            to_h = self.session.scenario.run.duration_h
+        self.frame.show(window=window, window_to_h=to_h)
+
+    def follow_display(self) -> None:
+        """Show what the errors are measured over."""
+        display = self.session.display
+        self._over.value = next(word for word, key in _WINDOWS.items() if key == display.window)
+        for field, box in self._ends.items():
+            value = getattr(display, field)
+            box.value = self.session.scenario.run.duration_h if value is None else value
+            box.visible = display.window == "hours"
+
+    def follow_jobs(self) -> None:
+        """Tell what dominates the run, as far as it is known."""
+        run, session = self.session.run, self.session
+        if run is None:
+            return
+        folded = not self.frame.layout().wide
+        html = why_html(session.searches.explainer, run, session.selected, folded=folded)
+        if self._why.content != html:
+            self._why.content = html
+
+    def picture(self, found: Shown) -> tuple[str, str]:
+        """Make the table and the warnings, HTML."""
+        return self._table_html(found), _warnings_html(found.run, found.verified)
+
+    def show(self, picture: tuple[str, str]) -> None:
+        """Show table and warnings."""
+        table, warnings = picture
+        narrow = "" if self.frame.layout().wide else " sb-narrow"
+        self._table.content = f'<div class="sb-table{narrow}" style="padding:4px 10px">{table}</div>'
+        self._warnings.content = warnings
+
+    def _table_html(self, found: Shown) -> str:
+        """Metrics of all methods, in as many tables below each other as the width asks for."""
+        window = window_of(found.run, found.display)
+        layout, run, verified = self.frame.layout(), window.run, found.verified
+        baseline = found.baseline
+        if baseline is not None and baseline.run is not None:
+            baseline = replace(baseline, run=window.of(baseline.run))
+        each_px = _METHOD_PX[layout.wide] + (0 if found.baseline is None else _DELTA_PX[layout.wide])
+        most = max((layout.plot_px - _ROW_NAME_PX) // each_px, 1)
+        count = len(run.methods)
+        tables = -(-count // most)
+        each = -(-count // tables)
+        parts = (range(first, min(first + each, count)) for first in range(0, count, each))
+        beside = None if verified is None else verified.verification
+        old = verified is not None and verified.old
+        told = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
+        tables = "".join(
+            '<div style="margin-bottom:2px">'
+            + metrics_html(run, part, beside, old=old, display=found.display, baseline=baseline)
+            + "</div>"
+            for part in parts
+        )
+        return told + tables + system_html(found.run)
+
+
+def _warnings_html(run: Run, verified: Verified | None) -> str:
+    parts = [notices.note(notices_for(run), "info")]
+    if verified is not None and not verified.old:
+        parts.append(notices.note([verdict(verified.verification)], "info"))
+        parts.append(notices.note(verified.verification.statements, "warning"))
+    for index, texts in warnings_for(run).items():
+        name = run.methods[index].method.name
+        parts.append(notices.note([f"{name}: {text}" for text in texts], severity(run, index) or "warning"))
+    return f'<div style="padding-top:3px;color:{style.INK}">{"".join(parts)}</div>'
+
+
+VIEW = MetricsView

@@ -1,0 +1,111 @@
+"""Under the metrics: which error source and which period dominate each method's result, in words."""
+
+from __future__ import annotations
+
+import math
+from html import escape
+from typing import TYPE_CHECKING
+
+from app.plots import style
+from app.plots.units import duration
+from navcore.studies.dominance import HEADING, POSITION, TILT
+
+if TYPE_CHECKING:
+    from app.jobs.why import Explainer
+    from navcore.engine.run import Run
+    from navcore.studies.dominance import Cause, Why
+
+_WAITS = "What dominates this result is looked for as soon as it stands still."
+
+
+def why_html(explainer: Explainer, run: Run, selected: int = 0, *, folded: bool = False) -> str:
+    """A line for each method; a mark while it is of an earlier run.
+
+    Parameters
+    ----------
+    explainer : Explainer
+        Of the session.
+    run : Run
+        That is shown.
+    selected : int
+        Method that ``folded`` tells about.
+    folded : bool
+        One line in the place of all, which opens: there is little room.
+    """
+    result, fits = explainer.result, explainer.fits(run)
+    if fits and result is not None:
+        name, causes = result.methods[min(selected, len(result.methods) - 1)]
+        return _box(_lines(result, run), "", f"{name}: {_words(causes, result)}", folded=folded)
+    if explainer.failed:
+        return _box("", "What dominates this result could not be found.", "", folded=folded)
+    if explainer.fraction is not None:
+        told = f"Running the error sources apart: {100.0 * explainer.fraction:.0f} %."
+    else:
+        told = _WAITS
+    if result is None or len(result.methods) != len(run.methods):
+        return _box("", told, "", folded=folded)
+    old = f'<div class="sb-old">{_lines(result, run)}</div>'
+    return _box(old, f"{told} Below: of an earlier run.", "", folded=folded)
+
+
+def _box(lines: str, state: str, short: str, *, folded: bool) -> str:
+    look = f"margin:2px 10px 8px;font-size:12.5px;line-height:1.4;color:{style.INK}"
+    told = f'<span role="status" style="color:{style.MUTED}">{escape(state)}</span>' if state else ""
+    which = f'id="sb-why" data-fits="{int(not state)}" style="{look}"'
+    if not folded:
+        return f"<div {which}><b>Why</b> {told}{lines}</div>"
+    row = "white-space:nowrap;overflow:hidden;text-overflow:ellipsis;cursor:pointer"
+    return (
+        f'<details {which}><summary style="{row}"><b>Why</b> {told}{escape(short)}</summary>{lines}</details>'
+    )
+
+
+def _words(causes: tuple[Cause, ...], result: Why) -> str:
+    """Position and tilt in words; the heading stands in the tooltip."""
+    told = [cause_text(cause, result) for cause in causes if cause.quantity in (POSITION, TILT)]
+    return "; ".join(told) or "neither position error nor tilt"
+
+
+def _heading(causes: tuple[Cause, ...], result: Why) -> str:
+    return "; ".join(cause_text(cause, result) for cause in causes if cause.quantity == HEADING)
+
+
+def _lines(result: Why, run: Run) -> str:
+    rows = []
+    for index, (name, causes) in enumerate(result.methods):
+        words = _words(causes, result)
+        rows.append(
+            f'<div title="{escape(_heading(causes, result))}"><span style="display:inline-block;width:14px;'
+            f"height:4px;border-radius:2px;margin-right:6px;vertical-align:middle;"
+            f'background:{style.method_color(index)}"></span><b>{escape(name)}</b>: {escape(words)}.</div>'
+        )
+    remarks = "".join(f'<div style="color:{style.MUTED}">{escape(text)}</div>' for text in result.remarks)
+    return "".join(rows) + remarks
+
+
+def cause_text(cause: Cause, result: Why) -> str:
+    """One cause in words.
+
+    Such as "position error mostly (83 %) from log bias, as a constant".
+    """
+    source = ""
+    if cause.source:
+        how = "all" if cause.share > 0.995 else "mostly" if cause.share >= 0.5 else "most of all"
+        part = "" if cause.share > 0.995 else f" ({100.0 * cause.share:.0f} %)"
+        source = f" {how}{part} from {cause.source},"
+    return f"{cause.quantity}{source} {_period(cause, result)}"
+
+
+def _period(cause: Cause, result: Why) -> str:
+    largest = cause.swing.largest
+    if largest == "schuler":
+        beat = ""
+        if cause.swing.beats and math.isfinite(result.foucault_s):
+            beat = f", beating (Foucault {duration(result.foucault_s)})"
+        return f"at the Schuler period ({duration(result.schuler_s)}){beat}"
+    return {
+        "constant": "as a constant",
+        "drift": "as a slow drift",
+        "earth": "at the 24 h period",
+        "other": "without a natural period",
+    }[largest]

@@ -1,0 +1,1 @@
+"""Tab "Misprints": errors printed in the papers, as printed and corrected."""

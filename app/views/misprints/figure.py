@@ -1,0 +1,186 @@
+"""A misprint's two forms in one plot, and what they are in words and numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from html import escape
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from app.misprints import Axis, Comparison, Curve, Misprint, Number
+from app.plots import style
+from app.plots.plotly_data import PlotlyFigure, figure, packed
+from app.plots.units import Unit, angle_unit, length_unit, number, speed_unit
+from navcore.foundation.units import HOUR, MINUTE
+
+Shown = Literal["both", "as printed", "corrected"]
+SHOWN: tuple[Shown, ...] = get_args(Shown)
+FORMS: dict[Shown, tuple[str, ...]] = {
+    "both": ("printed", "corrected"),
+    "as printed": ("printed",),
+    "corrected": ("corrected",),
+}
+_COLORS = {"printed": "#D55E00", "corrected": "#0072B2"}
+_DASHES = {"printed": ("6px,4px", "2px,3px"), "corrected": ("solid", "dot", "dashdot")}
+_MOST_TICKS = 6
+_LEAVES = 12.0
+"""A printed curve that many times as large as the corrected one leaves the plot, not to flatten the other."""
+_SECONDS = (Unit("s", 1.0), Unit("min", MINUTE), Unit("h", HOUR))
+
+
+def comparison_plot(
+    comparison: Comparison, shown: Shown = "both", aspect: float = 0.4, *, width_px: float = 940.0
+) -> PlotlyFigure:
+    """Curves of a misprint as printed (dashed) and corrected (solid).
+
+    Parameters
+    ----------
+    comparison : Comparison
+        From `Misprint.compute`.
+    shown : {"both", "as printed", "corrected"}
+        Which curves are drawn.
+    aspect : float
+        Height / width of the figure.
+    width_px : float
+        Expected width on screen, for room for the legend.
+    """
+    curves = [curve for curve in comparison.curves if curve.form in FORMS[shown]]
+    low, high, leaves = _range(curves, log=comparison.y_axis.log)
+    x_unit = _unit(comparison.x_axis, _extent(comparison.x))
+    y_unit = _unit(comparison.y_axis, max(abs(low), abs(high)))
+    x = packed(comparison.x / x_unit.si)
+    counted = {"printed": 0, "corrected": 0}
+    data: list[dict[str, Any]] = []
+    for curve in curves:
+        data.append(_trace(curve, counted[curve.form], x, y_unit))
+        counted[curve.form] += 1
+    rows = style.legend_rows([curve.label for curve in curves], width_px - 84.0)
+    margin = {"l": 76, "r": 18, "t": 30 if leaves else 12, "b": 46 + 22 * rows}
+    layout = style.layout(
+        margin=margin, hovermode="x unified", showlegend=True, legend=style.legend(), meta={"aspect": aspect}
+    )
+    layout["xaxis"] = _axis(comparison.x_axis, x_unit, 1)
+    decades = _decades([curve.y for curve in curves])
+    layout["yaxis"] = _axis(comparison.y_axis, y_unit, decades) | {"zeroline": not comparison.y_axis.log}
+    layout["yaxis"] |= {"zerolinecolor": style.REFERENCE, "zerolinewidth": 1, "nticks": 7}
+    if not comparison.y_axis.log and high > low:
+        pad = 0.06 * (high - low)
+        layout["yaxis"]["range"] = [(low - pad) / y_unit.si, (high + pad) / y_unit.si]
+    layout["annotations"] = [style.panel_title("The printed form leaves the plot")] if leaves else []
+    return figure(data, layout)
+
+
+def _range(curves: list[Curve], *, log: bool) -> tuple[float, float, bool]:
+    """Lowest and highest value that the plot shows, SI, and whether a printed curve is cut off."""
+    extents = {form: _span([c.y for c in curves if c.form == form]) for form in _COLORS}
+    present = [span for span in extents.values() if span is not None]
+    if not present:
+        return 0.0, 0.0, False
+    low, high = min(span[0] for span in present), max(span[1] for span in present)
+    printed, corrected = extents["printed"], extents["corrected"]
+    if printed is None or corrected is None or log:
+        return low, high, False
+    width = corrected[1] - corrected[0]
+    if width == 0.0 or printed[1] - printed[0] <= _LEAVES * width:
+        return low, high, False
+    return max(low, corrected[0] - width), min(high, corrected[1] + width), True
+
+
+def _span(values: list[np.ndarray]) -> tuple[float, float] | None:
+    finite = [y[np.isfinite(y)] for y in values]
+    found = [y for y in finite if len(y)]
+    return (min(float(y.min()) for y in found), max(float(y.max()) for y in found)) if found else None
+
+
+def _extent(values: np.ndarray) -> float:
+    finite = values[np.isfinite(values)]
+    return float(np.max(np.abs(finite))) if len(finite) else 0.0
+
+
+def _trace(curve: Curve, place: int, x: dict[str, str], unit: Unit) -> dict[str, Any]:
+    dashes = _DASHES[curve.form]
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "x": x,
+        "y": packed(curve.y / unit.si),
+        "name": style.plain(curve.label),
+        "hovertemplate": f"%{{y:.4g}} {unit.name}".rstrip(),
+        "line": {
+            "color": _COLORS[curve.form],
+            "dash": dashes[min(place, len(dashes) - 1)],
+            "width": style.LINE_WIDTH,
+            "simplify": False,
+        },
+    }
+
+
+def _decades(values: Sequence[np.ndarray]) -> int:
+    """Decades between two ticks of a logarithmic axis, so that they stay apart."""
+    found = _span([np.where(v > 0.0, v, np.nan) for v in values])
+    spanned = 1.0 if found is None else math.log10(found[1] / found[0])
+    return max(1, math.ceil(spanned / _MOST_TICKS))
+
+
+def _axis(axis: Axis, unit: Unit, decades: int) -> dict[str, Any]:
+    title = style.plain(axis.label) + (f" ({unit.name})" if unit.name else "")
+    made = style.axis(title)
+    if not axis.log:
+        return made
+    small = {"size": style.FONT_SIZE - 2, "color": style.MUTED}
+    return made | {"type": "log", "exponentformat": "power", "dtick": decades, "tickfont": small}
+
+
+def _unit(axis: Axis | Number, peak: float) -> Unit:
+    """Unit on screen: readable for times, angles, speeds and lengths, the given one for the rest."""
+    if axis.unit == "s" and isinstance(axis, Axis) and axis.log:
+        return _SECONDS[0]
+    if axis.unit == "s":
+        return _SECONDS[0] if peak < 300.0 else _SECONDS[1] if peak < 3.0 * HOUR else _SECONDS[2]
+    choose = {"rad": angle_unit, "m/s": speed_unit, "m": length_unit}.get(axis.unit)
+    return choose(peak) if choose is not None else Unit(axis.unit, 1.0)
+
+
+def words_html(misprint: Misprint, comparison: Comparison) -> str:
+    """What is printed, what is right, what follows, and the numbers of both forms side by side."""
+    told = (
+        ("printed", misprint.printed, _COLORS["printed"]),
+        ("right", misprint.right, _COLORS["corrected"]),
+        ("so", comparison.words or misprint.consequence, style.INK),
+    )
+    line = "border-bottom:2.5px solid "
+    lines = "".join(
+        f'<div><b style="{line}{color}">{name}:</b> {escape(text)}</div>'
+        for name, text, color in told
+        if text
+    )
+    rows = "".join(_number_row(found) for found in comparison.numbers)
+    cell = "padding:0 0 0 14px;text-align:right;font-weight:600"
+    table = (
+        f'<table style="border-collapse:collapse;white-space:nowrap;font-variant-numeric:tabular-nums">'
+        f'<tr><td></td><td style="{cell};{line}{_COLORS["printed"]}">as printed</td>'
+        f'<td style="{cell};{line}{_COLORS["corrected"]}">corrected</td></tr>{rows}</table>'
+    )
+    return (
+        f'<div class="sb-misprint" style="display:flex;gap:6px 28px;margin:0 12px;color:{style.INK};'
+        f'font-size:{style.FONT_SIZE}px;line-height:1.4"><div style="flex:1 1 0">{lines}</div>'
+        f"<div>{table}</div></div>"
+    )
+
+
+def _number_row(found: Number) -> str:
+    cells = "".join(
+        f'<td style="padding:0 0 0 14px;text-align:right">{_number(found, value)}</td>'
+        for value in (found.printed, found.corrected)
+    )
+    return f'<tr><td style="color:{style.MUTED};white-space:normal">{escape(found.name)}</td>{cells}</tr>'
+
+
+def _number(found: Number, value: float | None) -> str:
+    if value is None:
+        return "none"
+    # each in its own unit: 0.03 s beside 84 min reads better than 0.0005 min
+    unit = _unit(found, abs(value))
+    return escape(f"{number(value / unit.si, 4)} {unit.name}".rstrip())

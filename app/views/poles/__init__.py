@@ -1,0 +1,1 @@
+"""Tab "Poles": the pole map, root locus and placement of a pair."""

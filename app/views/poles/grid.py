@@ -1,0 +1,196 @@
+"""What lies behind the poles: rays, arcs and settling lines, and where the requirements let no pole lie."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from app.plots import style
+from app.plots.plotly_data import packed
+from navcore.foundation.units import MINUTE
+
+DAMPING = tuple(k / 10.0 for k in range(1, 10))
+"""Damping ratios of the rays."""
+PAPER = "rgba(255,255,255,0.85)"
+"""Behind words that stand over lines."""
+_TO_SETTLE = math.log(50.0)
+"""Time constants after which 2 % are left."""
+_SETTLING_MIN = (
+    10080.0,
+    2880.0,
+    1440.0,
+    720.0,
+    480.0,
+    360.0,
+    240.0,
+    180.0,
+    120.0,
+    90.0,
+    60.0,
+    45.0,
+    30.0,
+    20.0,
+    15.0,
+    10.0,
+    5.0,
+    3.0,
+    2.0,
+    1.0,
+    0.5,
+)
+_LABEL_PX = 58.0
+"""Least distance of two settling lines: room for a label."""
+_BEYOND = 1e3
+"""Extent of the shaded region in sizes of the panel."""
+FORBIDDEN = "rgba(180,35,24,0.09)"
+"""Shade of what the requirements rule out."""
+
+Interval = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Allowed:
+    """Where poles may lie; drawn by shading the rest.
+
+    Attributes
+    ----------
+    damping_ratio : float or None
+        Least one.
+    rate : float or None
+        Least decay rate, 1/s.
+    """
+
+    damping_ratio: float | None = None
+    rate: float | None = None
+
+
+ANYWHERE = Allowed()
+
+
+def damping_lines(suffix: str, re: Interval, im: Interval) -> dict[str, Any]:
+    """Rays of equal damping ratio and arcs of equal natural frequency in one panel, as one trace."""
+    x, y = _ray_points(re, im)
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "x": packed(x),
+        "y": packed(y),
+        "xaxis": f"x{suffix}",
+        "yaxis": f"y{suffix}",
+        "line": {"color": "#CBD5E0", "width": 1},
+        "hoverinfo": "skip",
+        "showlegend": False,
+    }
+
+
+@lru_cache(maxsize=32)
+def _ray_points(re: Interval, im: Interval) -> tuple[np.ndarray, np.ndarray]:
+    """Rays of equal damping ratio and arcs of equal natural frequency, parted by NaN."""
+    gap = [math.nan]
+    xs: list[np.ndarray | list[float]] = []
+    ys: list[np.ndarray | list[float]] = []
+    far = 3.0 * math.hypot(re[0], im[1])
+    for ratio in DAMPING:
+        x, y = -ratio * far, math.sqrt(1.0 - ratio * ratio) * far
+        xs += [[x, 0.0, x], gap]
+        ys += [[y, 0.0, -y], gap]
+    angle = np.linspace(0.5 * math.pi, 1.5 * math.pi, 91)
+    for radius in _circles(im[1]):
+        xs += [radius * np.cos(angle), gap]
+        ys += [radius * np.sin(angle), gap]
+    return np.concatenate(xs), np.concatenate(ys)
+
+
+def _circles(half_height: float) -> list[float]:
+    """Radii of the frequency arcs: omega_s itself, and a few even ones over the panel."""
+    steps = (m * 10.0**k for k in range(-2, 8) for m in (1.0, 2.0, 5.0))
+    step = next(s for s in steps if 4.0 * s >= 1.5 * half_height)
+    return sorted({1.0, *(step * k for k in range(1, 9))})
+
+
+def settling_lines(left: float, omega_s: float, width_px: float, span: float) -> dict[float, float]:
+    """Lines of equal settling time that fit a panel: minutes -> Re s / omega_s.
+
+    Parameters
+    ----------
+    left : float
+        Left edge of the panel, units of omega_s.
+    omega_s : float
+        Schuler frequency, rad/s.
+    width_px, span : float
+        Width of the panel on screen and in units of omega_s.
+    """
+    found: dict[float, float] = {}
+    last = 0.0
+    for minutes in _SETTLING_MIN:
+        at = -_TO_SETTLE / (minutes * MINUTE * omega_s)
+        if at > left + _LABEL_PX / width_px * span and last - at >= _LABEL_PX / width_px * span:
+            found[minutes], last = at, at
+    return found
+
+
+def settling_shapes(suffix: str, re: Interval, omega_s: float, width_px: float) -> list[dict[str, Any]]:
+    """Draw the lines of `settling_lines` upright through one panel."""
+    return [
+        {
+            "type": "line",
+            "xref": f"x{suffix}",
+            "x0": at,
+            "x1": at,
+            "yref": f"y{suffix} domain",
+            "y0": 0.0,
+            "y1": 1.0,
+            "layer": "below",
+            "line": {"color": "#CBD5E0", "width": 1, "dash": "dash"},
+        }
+        for at in settling_lines(re[0], omega_s, width_px, re[1] - re[0]).values()
+    ]
+
+
+def settling_labels(suffix: str, re: Interval, omega_s: float, width_px: float) -> list[dict[str, Any]]:
+    """Write the settling time at the foot of each line."""
+    lines = settling_lines(re[0], omega_s, width_px, re[1] - re[0])
+    return [
+        style.text(
+            at,
+            0.0,
+            f"{minutes:g} min" if minutes < 120.0 else f"{minutes / 60.0:g} h",
+            xref=f"x{suffix}",
+            yref=f"y{suffix} domain",
+            xanchor="right",
+            yanchor="bottom",
+            xshift=-1,
+            yshift=3,
+            font={"size": style.FONT_SIZE, "color": style.MUTED},
+            bgcolor=PAPER,
+            borderpad=0,
+        )
+        for minutes, at in lines.items()
+    ]
+
+
+def forbidden(
+    suffix: str, re: Interval, im: Interval, allowed: Allowed, omega_s: float
+) -> list[dict[str, Any]]:
+    """Shade where the requirements do not let poles lie: too little damped, or too slow."""
+    axes: dict[str, Any] = {"xref": f"x{suffix}", "yref": f"y{suffix}", "layer": "below"}
+    fill = axes | {"type": "path", "fillcolor": FORBIDDEN, "line": {"width": 0}}
+    edge = axes | {"type": "line", "line": {"color": style.DANGER, "width": 1.2, "dash": "dash"}}
+    # Far beyond whatever a zoom can show: only the limit itself is an edge.
+    far = _BEYOND * math.hypot(re[0], im[1])
+    made: list[dict[str, Any]] = []
+    if allowed.damping_ratio is not None:
+        x, y = -allowed.damping_ratio * far, math.sqrt(1.0 - allowed.damping_ratio**2) * far
+        path = f"M {x} {y} L 0 0 L {x} {-y} L {far} {-y} L {far} {y} Z"
+        made.append(fill | {"name": "damping", "path": path})
+        made += [edge | {"x0": 0.0, "y0": 0.0, "x1": x, "y1": side} for side in (y, -y)]
+    if allowed.rate is not None:
+        at = -allowed.rate / omega_s
+        path = f"M {at} {-far} L {at} {far} L {far} {far} L {far} {-far} Z"
+        made.append(fill | {"name": "settling", "path": path})
+        made.append(edge | {"x0": at, "y0": -far, "x1": at, "y1": far})
+    return made

@@ -1,0 +1,147 @@
+"""A point picked on the pole map, or typed, becomes the parameters of the selected method's network."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from app.plots.units import number
+from navcore.analysis import analyse
+from navcore.analysis.placement import LEAST_DAMPING, place, placeable
+from navcore.foundation.errors import Fault, InputError
+from navcore.networks.base import NetworkParameters
+from navcore.scenario.model import Method, Scenario
+
+COMMAND = "place"
+_FARTHEST = 1e6
+
+
+@dataclass(frozen=True)
+class Placed:
+    """What a wanted pair led to.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        With the changed network.
+    words : str
+        What the pair now is.
+    note : str
+        What could not be met; empty when all was.
+    """
+
+    scenario: Scenario
+    words: str
+    note: str
+
+
+def read_point(text: str) -> complex:
+    """Point of the pole map, units of omega_s, from ``re im``.
+
+    Raises
+    ------
+    InputError
+        Not two finite numbers of a sensible size.
+    """
+    words = text.split()
+    try:
+        re, im = (float(word) for word in words)
+    except ValueError:
+        raise InputError(
+            Fault("", "point", text[:60], "must be two numbers: Re and Im of s/omega_s")
+        ) from None
+    if not (abs(re) <= _FARTHEST and abs(im) <= _FARTHEST) or re == im == 0.0:
+        raise InputError(
+            Fault("", "point", text[:60], f"must lie within {_FARTHEST:g} omega_s, and not at 0")
+        )
+    return complex(re, im)
+
+
+def pair_at(point: complex) -> tuple[float, float]:
+    """Damping ratio and frequency (units of omega_s) of the pair through a point of the left half plane.
+
+    Raises
+    ------
+    InputError
+        The point is unstable, or hardly damped.
+    """
+    size = abs(point)
+    ratio = -point.real / size
+    if ratio < LEAST_DAMPING:
+        side = "grows without bound" if ratio < 0.0 else "is hardly damped"
+        allowed = (
+            f"must be >= {LEAST_DAMPING:g}: a pair there {side}; the nearest possible one at ω = "
+            f"{number(size, 3)} ω_s has ξ = {LEAST_DAMPING:g}"
+        )
+        raise InputError(Fault("", "damping ratio ξ", round(ratio, 4), allowed))
+    return ratio, size
+
+
+def with_pair(scenario: Scenario, index: int, damping_ratio: float, ratio: float) -> Placed:
+    """Give a method's network the closed-loop pair that is wanted.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Stays as it is.
+    index : int
+        Which method.
+    damping_ratio, ratio : float
+        Of the pair: xi, and |p| / omega_s.
+
+    Raises
+    ------
+    InputError
+        The method or its network cannot; says why, and where its pair lies.
+    """
+    method = scenario.method[index]
+    if method.undamped:
+        allowed = f'{method.name} runs without its network: set its damping to "internal" or "external" first'
+        raise InputError(Fault("", f"method.{index}.damping", method.damping, allowed))
+    omega_s = scenario.omega_s
+    wanted = f"ξ = {number(damping_ratio, 3)}, ω = {number(ratio, 3)} ω_s"
+    try:
+        placed = place(method.network, damping_ratio, ratio * omega_s, omega_s)
+    except InputError as error:
+        raise _why_not(method, wanted, omega_s, error) from None
+    changed = _with_network(scenario, index, placed.parameters)
+    words = f"ξ = {number(placed.damping_ratio, 3)}, ω = {number(placed.frequency / omega_s, 3)} ω_s"
+    return Placed(changed, f"{method.name}: pair at {words}", placed.note)
+
+
+def _with_network(scenario: Scenario, index: int, parameters: NetworkParameters) -> Scenario:
+    data = scenario.canonical()
+    data["method"][index]["network"] = parameters.model_dump(exclude_none=True)
+    return Scenario.parse(data)
+
+
+def _why_not(method: Method, wanted: str, omega_s: float, error: InputError) -> InputError:
+    """Say why the network cannot, what it does now, and what can."""
+    loop = analyse(method.network.transfer(omega_s))
+    now = (
+        f"its least damped pair stays at ξ = {number(loop.damping_ratio, 3)}, "
+        f"ω = {number(loop.natural_frequency / omega_s, 3)} ω_s"
+    )
+    fault = error.faults[0]
+    if fault.field == "network":
+        reason = f"this network has no parameter that puts a pair at {wanted}; {now}; use {placeable()}"
+        return InputError(Fault("", f"{method.name}, network", method.network.id, reason))
+    return InputError(
+        Fault("", f"{method.name}, {fault.field}", fault.value, f"{fault.allowed}, for {wanted}; {now}")
+    )
+
+
+def typed_pair(damping_ratio: float, ratio: float) -> tuple[float, float]:
+    """Check a typed pair; the same bounds as of a picked one.
+
+    Raises
+    ------
+    InputError
+        Not a number, or not a pair.
+    """
+    if not (math.isfinite(damping_ratio) and LEAST_DAMPING <= damping_ratio <= 1.0):
+        allowed = f"must be >= {LEAST_DAMPING:g} and <= 1 (above 1 there is no pair)"
+        raise InputError(Fault("", "pair ξ", damping_ratio, allowed))
+    if not (math.isfinite(ratio) and 0.0 < ratio <= _FARTHEST):
+        raise InputError(Fault("", "pair ω/ω_s", ratio, f"must be > 0 and <= {_FARTHEST:g}"))
+    return damping_ratio, ratio

@@ -1,0 +1,127 @@
+"""Tab "Poles": the pole map of one channel with locus and placement, or the modes of the whole system."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from app.plots.plotly_data import PlotlyFigure
+from app.session.display import Display
+from app.session.shown import Shown
+from app.shell.layout import CHOOSER_PX, TOOLS
+from app.shell.plotly_view import PlotlyView
+from app.shell.view import Frame, if_user
+from app.views.poles.figure import allowed_poles, poles
+from app.views.poles.locus import NO_LOCUS, locus_fields
+from app.views.poles.placer import Placer
+from app.views.poles.whole import whole_system_figure
+from navcore.engine.run import Run
+from navcore.scenario.model import Method
+
+LOCUS = "locus over"
+PAIR_XI, PAIR_OMEGA, PLACE = "pair ξ", "pair ω/ωs", "Place"
+POLES_OF = "poles of"
+SYSTEMS = {"one channel": "channel", "whole system": "whole"}
+_NONE = "nothing"
+
+
+class PolesView(PlotlyView):
+    """Chooser of the locus and boxes of the pair, above the pole map."""
+
+    title = "Poles"
+    place = "upper"
+    plots = (title,)
+    above_px = CHOOSER_PX + 10
+
+    def __init__(self, frame: Frame) -> None:
+        super().__init__(frame)
+        self._placer = Placer(frame.client, frame.session)
+        frame.commands.register("place", self._placer.picked)
+
+    def build_tools(self) -> None:
+        """Make the chooser, the boxes and the button."""
+        gui, display = self.frame.gui, self.session.display
+        self._fields = _offered(self._method)
+        gui.add_html(TOOLS)
+        self._system: Any = gui.add_dropdown(
+            POLES_OF, tuple(SYSTEMS), initial_value=_system(display),
+            hint="One channel: the closed loop of one level channel. Whole system: both channels with "
+            "heading and latitude, whose 24 h mode most networks let grow, and its growth over latitude.",
+        )  # fmt: skip
+        self._system.on_update(if_user(lambda: self.frame.show(poles=SYSTEMS[self._system.value])))
+        self._locus: Any = gui.add_dropdown(
+            LOCUS, tuple(self._fields), initial_value=_chosen(self._fields, display),
+            hint="Draws how the poles of the selected method move while one parameter of its network goes "
+            "through the range of its slider; the crosses are at the present value.",
+        )  # fmt: skip
+        self._xi = gui.add_number(
+            PAIR_XI, 0.5, step=0.01,
+            hint="Damping ratio (no unit, 0.01 to 1) wanted of the selected method's closed-loop pair. Or "
+            "click into the pole map.",
+        )  # fmt: skip
+        self._ratio = gui.add_number(
+            PAIR_OMEGA, 1.2, step=0.1,
+            hint="Frequency wanted of the pair, in units of the Schuler frequency (above 0).",
+        )  # fmt: skip
+        button = gui.add_button(
+            PLACE,
+            hint="Sets the parameters of the selected method's network that give this pair, where it can.",
+        )
+        self._locus.on_update(if_user(self._choose))
+        button.on_click(if_user(lambda: self._placer.typed(self._xi.value, self._ratio.value)))
+
+    @property
+    def _method(self) -> Method:
+        return self.session.scenario.method[self.session.selected]
+
+    def _choose(self) -> None:
+        self.frame.show(locus=self._fields.get(self._locus.value, NO_LOCUS))
+
+    def follow_scenario(self) -> None:
+        """Offer the parameters of the selected method's network, and show which is chosen."""
+        offered = _offered(self._method)
+        if offered != self._fields:
+            self._fields = offered
+            self._locus.options = tuple(offered)
+        chosen = _chosen(offered, self.session.display)
+        if self._locus.value != chosen:
+            self._locus.value = chosen
+
+    def follow_display(self) -> None:
+        """Show whose poles and which parameter are chosen."""
+        self._system.value = _system(self.session.display)
+        self.follow_scenario()
+
+    @property
+    def of_selected(self) -> bool:
+        """The locus is that of the selected method."""
+        return bool(self.session.display.locus)
+
+    def figure(self, both: Run, found: Shown) -> PlotlyFigure:
+        """Pole map, or the modes of the whole system."""
+        if found.display.poles == "whole":
+            return whole_system_figure(both, self.aspect, width_px=self.width_px)
+        return poles(
+            both,
+            self.aspect,
+            width_px=self.width_px,
+            selected=found.selected,
+            locus=found.display.locus,
+            allowed=allowed_poles(found.display.requirements),
+        )
+
+
+def _offered(method: Method) -> dict[str, str]:
+    """Choices of the locus: label -> field."""
+    fields = {} if method.undamped else locus_fields(method.network)
+    return {_NONE: NO_LOCUS} | {label: name for name, label in fields.items()}
+
+
+def _system(display: Display) -> str:
+    return next(label for label, name in SYSTEMS.items() if name == display.poles)
+
+
+def _chosen(offered: dict[str, str], display: Display) -> str:
+    return next((label for label, name in offered.items() if name == display.locus), _NONE)
+
+
+VIEW = PolesView

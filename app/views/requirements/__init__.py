@@ -1,0 +1,1 @@
+"""Tab "Requirements": limits and which method meets them."""

@@ -1,0 +1,1 @@
+"""Tab "Run": duration, site, motion, initial errors, strapdown settings."""

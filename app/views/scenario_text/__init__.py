@@ -1,0 +1,1 @@
+"""Tab "Scenario": the scenario as TOML."""

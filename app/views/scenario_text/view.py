@@ -1,0 +1,37 @@
+"""Tab "Scenario": the scenario of the run as TOML, as it can be saved."""
+
+from __future__ import annotations
+
+from html import escape
+
+from app.session.shown import Shown
+from app.session.uploads import with_plain_names
+from app.shell.view import PictureView, Tab
+
+
+class ScenarioTextView(PictureView[str]):
+    """The text alone."""
+
+    title = "Scenario"
+    place = "lower"
+
+    def build(self, tab: Tab) -> None:
+        """Make the place of the text."""
+        with tab:
+            self._text = self.frame.gui.add_html("")
+
+    def picture(self, found: Shown) -> str:
+        """Write the scenario, HTML."""
+        from navcore.scenario.file import to_toml
+
+        return (
+            '<pre style="margin:4px 12px;font-size:12.5px;line-height:1.4;white-space:pre-wrap">'
+            f"{escape(to_toml(with_plain_names(found.run.scenario)))}</pre>"
+        )
+
+    def show(self, picture: str) -> None:
+        """Show the text."""
+        self._text.content = picture
+
+
+VIEW = ScenarioTextView

@@ -1,0 +1,1 @@
+"""The 3D view between the columns: trajectory, cameras and playback."""

@@ -1,0 +1,88 @@
+"""Over the 3D view: play, scrub, speed, cameras, and what the ship and its pendulums do at that time.
+
+The bar is made by playback.js; what it shows comes from the element ``#sb-playback``, and what is
+pressed comes back as commands.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from html import escape
+from typing import TYPE_CHECKING
+
+from app.session.display import Display
+from app.views.scene.cameras import CAMERAS
+from app.views.scene.moment import moment, readout_html
+from app.views.scene.pendulum import caption_of, pendulum, pendulum_svg
+from app.views.scene.playback import SPEEDS, Playback, PlayState
+from navcore.engine.run import Run
+
+if TYPE_CHECKING:
+    import viser
+
+    from app.shell.commands import Commands
+
+
+class PlaybackPanel:
+    """The bar, the readout and the pendulum of one page.
+
+    Parameters
+    ----------
+    gui : viser.GuiApi
+        Of the client.
+    commands : Commands
+        Of the page.
+    playback : Playback
+        Of the page.
+    look : callable
+        ``look(camera)``: see the scene from another of `CAMERAS`.
+    """
+
+    def __init__(
+        self, gui: viser.GuiApi, commands: Commands, playback: Playback, look: Callable[[str], None]
+    ) -> None:
+        self._now = gui.add_html("", order=3)
+        self._playback, self._count = playback, 0
+
+        def number(text: str, use: Callable[[float], None]) -> None:
+            try:
+                use(float(text))
+            except (ValueError, OverflowError):
+                return
+
+        # Hostile or torn arguments ask for nothing.
+        commands.register("shown", lambda text: number(text, self._heard), watcher=True)
+        commands.register("play", lambda _: playback.toggle(), "Play or pause", "Space", watcher=True)
+        commands.register("seek", lambda text: number(text, playback.seek), watcher=True)
+        commands.register("speed", lambda text: number(text, playback.set_speed), watcher=True)
+        commands.register("loop", lambda text: playback.set_loop(text == "on"), watcher=True)
+        for camera in CAMERAS:
+            commands.register(
+                f"camera-{camera}", lambda _, camera=camera: look(camera), f"3D view: {camera}", watcher=True
+            )
+
+    def _heard(self, count: float) -> None:
+        self._playback.heard(self._count - int(count))
+
+    def show(self, state: PlayState, run: Run, selected: int, camera: str, display: Display) -> None:
+        """Show a time of a run."""
+        swung = pendulum(run, state.time_s)
+        readout = readout_html(moment(run, state.time_s), selected, display)
+        self._count += 1
+        told = {
+            "count": self._count,
+            "time": round(state.time_s, 3),
+            "span": state.span_s,
+            "playing": state.playing,
+            "loop": state.loop,
+            "speed": state.speed,
+            "speeds": SPEEDS,
+            "camera": camera,
+            "cameras": CAMERAS,
+        }
+        self._now.content = (
+            f'<div id="sb-playback" hidden data-now="{escape(json.dumps(told))}">'
+            f'<div data-part="pendulum">{pendulum_svg(swung)}<p>{escape(caption_of(swung))}</p></div>'
+            f'<div data-part="readout">{readout}</div></div>'
+        )

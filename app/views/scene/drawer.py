@@ -1,0 +1,250 @@
+"""Draws the map of true and computed tracks into a client's 3D view, updating in place what only moved."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from app.plots import style
+from app.views.scene.graticule import SceneLabel
+from app.views.scene.polyline import segments
+from app.views.scene.ship import ship_parts
+from app.views.scene.track import HALF_WIDTH, LINE_WIDTH, SHIP_LENGTH, MethodTrack, Place, TrackScene
+
+if TYPE_CHECKING:
+    import viser
+
+Anchor = Literal["top-center", "center-left"]
+
+_GRID_LINE = 0.02
+_PINNED_LINE = 0.5 * LINE_WIDTH
+_FAINT = 0.6
+"""Width of what lies ahead of the ship."""
+_TIP_POINTS = 60
+_HEADING_LENGTH = 1.6
+_LABEL = 0.9
+_LEGEND_ROWS = 5
+
+
+_BAR_SHIFT = np.array([0.0, -0.55, 0.0], dtype=np.float32)
+"""Keeps the scale bar and its label (the first of a map's labels) clear of the longitudes."""
+
+
+class SceneDrawer:
+    """The 3D view of one client.
+
+    Parameters
+    ----------
+    scene : viser.SceneApi
+        Of the client.
+
+    Attributes
+    ----------
+    place : Place or None
+        Where the ships are.
+    """
+
+    def __init__(self, scene: viser.SceneApi) -> None:
+        self._scene = scene
+        self._nodes: dict[str, Any] = {}
+        self._labels: dict[str, tuple[SceneLabel, ...]] = {}
+        self._drawn: TrackScene | None = None
+        self._selected = 0
+        self._past: dict[str, tuple[object, int]] = {}
+        self._ghost: tuple[int, int, int] | None = None
+        self.place: Place | None = None
+        # Shadows and the environment map keep two cores busy under software rendering.
+        scene.configure_default_lights(cast_shadow=False)
+        scene.configure_environment_map(hdri=None)
+        scene.add_light_ambient("/light", intensity=1.4)
+        self._make_sea()
+        self._make_ship()
+
+    def draw(self, track: TrackScene, time_s: float, selected: int = 0) -> None:
+        """Show a run's map, the ships where they are at ``time_s``; ``selected`` has a computed one."""
+        self._lines("/map/grid", track.graticule.segments, style.rgb("#FFFFFF"), _GRID_LINE)
+        self._lines("/map/bar", track.bar + _BAR_SHIFT, style.rgb(style.INK), 2 * _GRID_LINE)
+        caption = SceneLabel(track.caption, (0.0, -HALF_WIDTH - 2.3, 0.0))
+        south = (replace(label, position=_shifted(label)) for label in track.labels[:1])
+        self._texts("/map/labels", (*track.graticule.labels, *south, *track.labels[1:]))
+        self._texts("/map/caption", (caption,), size=1.0)
+        self._lines("/track/truth", track.truth_dashes(), style.rgb(style.TRUTH_COLOR), LINE_WIDTH)
+        for number, pinned in enumerate(track.pinned):
+            self._lines(f"/track/pinned{number}", pinned.segments, pinned.color, _PINNED_LINE)
+        self._drop_beyond("/track/pinned", len(track.pinned))
+        self._drawn, self._selected = track, min(selected, len(track.methods) - 1)
+        self._past.clear()
+        self.move_ship(time_s)
+        self._drop_beyond("/track/method", len(track.methods))
+
+    def move_ship(self, time_s: float) -> None:
+        """Put ships, error vectors and trails where they are at a time."""
+        track = self._drawn
+        if track is None:
+            return
+        place = self.place = track.place(time_s)
+        ship, computed = self._nodes["/ship"], self._computed_ship(track.methods[self._selected].color)
+        ship.position, ship.wxyz = place.truth, place.wxyz
+        computed.position, computed.wxyz = place.computed[self._selected], place.wxyz
+        under_way = time_s < track.t_s[-1]
+        for number, (vector, method) in enumerate(zip(place.error_vectors(), track.methods, strict=True)):
+            self._whole(number, method, faint=under_way)
+            self._trail(number, method, place, shown=under_way)
+            self._lines(f"/error/method{number}", vector[None], method.color, 0.6 * LINE_WIDTH)
+            self._legend_row(number, len(track.methods), method.color, method.error_text(place.index))
+        for name in ("/error/method", "/legend/line", "/legend/text", "/trail/past", "/trail/tip"):
+            self._drop_beyond(name, len(track.methods))
+
+    def select(self, method: int) -> bool:
+        """Let another method have the computed ship; False when it has it already."""
+        if self._drawn is None or self.place is None:
+            return False
+        method = min(method, len(self._drawn.methods) - 1)
+        if method == self._selected:
+            return False
+        self._selected = method
+        computed = self._computed_ship(self._drawn.methods[method].color)
+        computed.position, computed.wxyz = self.place.computed[method], self.place.wxyz
+        return True
+
+    def _whole(self, number: int, method: MethodTrack, *, faint: bool) -> None:
+        """The whole computed track; pale while what lies ahead is not yet past."""
+        color = _paler(method.color) if faint else method.color
+        name = f"/track/method{number}"
+        if self._past.get(name) != (color, id(self._drawn)):
+            self._lines(name, method.drawn(), color, (_FAINT if faint else 1.0) * LINE_WIDTH)
+            self._past[name] = color, id(self._drawn)
+
+    def _trail(self, number: int, method: MethodTrack, place: Place, *, shown: bool) -> None:
+        """The part of a track that is past: only its last few points are sent anew at each moment."""
+        past, tip = f"/trail/past{number}", f"/trail/tip{number}"
+        if not shown:
+            none = np.empty((0, 2, 3), dtype=np.float32)
+            self._lines(past, none, method.color, LINE_WIDTH)
+            self._lines(tip, none, method.color, LINE_WIDTH)
+            self._past.pop(past, None)
+            return
+        whole = place.index // _TIP_POINTS * _TIP_POINTS
+        if self._past.get(past) != (whole, id(self._drawn)):
+            self._lines(past, method.drawn(whole), method.color, LINE_WIDTH)
+            self._past[past] = whole, id(self._drawn)
+        recent = method.points[whole : place.index + 1]
+        here = place.computed[number][None] if place.index < len(method.points) else recent[:0]
+        self._lines(tip, segments(np.concatenate([recent, here])), method.color, LINE_WIDTH)
+
+    def _legend_row(self, number: int, count: int, color: tuple[int, int, int], text: str) -> None:
+        """A method's line, name and present error, south of the map; many stand in two columns."""
+        rows = count if count <= _LEGEND_ROWS else -(-count // 2)
+        x = -HALF_WIDTH + (HALF_WIDTH + 0.4) * (number // rows)
+        y = -HALF_WIDTH - 3.3 - 0.75 * (number % rows)
+        line = np.array([[[x, y, 0.0], [x + 0.7, y, 0.0]]], dtype=np.float32)
+        self._lines(f"/legend/line{number}", line, color, LINE_WIDTH)
+        self._text(f"/legend/text{number}", SceneLabel(text, (x + 0.9, y, 0.0)), anchor="center-left")
+
+    # ------------------------------------------------------------ nodes
+
+    def _make_sea(self) -> None:
+        edge = HALF_WIDTH
+        corners = np.array([[-edge, -edge, 0], [edge, -edge, 0], [edge, edge, 0], [-edge, edge, 0]]) - [
+            0,
+            0,
+            0.03,
+        ]
+        self._scene.add_mesh_simple(
+            "/map/sea",
+            corners,
+            np.array([[0, 1, 2], [0, 2, 3]]),
+            color=style.rgb("#8FC3EE"),
+            side="double",
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+
+    def _make_ship(self) -> None:
+        self._nodes["/ship"] = self._scene.add_frame("/ship", show_axes=False)
+        for part in ship_parts():
+            self._scene.add_mesh_simple(
+                f"/ship/{part.name}",
+                part.vertices,
+                part.faces,
+                color=part.color,
+                scale=SHIP_LENGTH,
+                flat_shading=True,
+                cast_shadow=False,
+                receive_shadow=False,
+            )
+        ahead = np.array([[[0.0, 0.5 * SHIP_LENGTH, 0.1], [0.0, _HEADING_LENGTH, 0.1]]])
+        self._scene.add_arrows(
+            "/ship/heading",
+            ahead,
+            style.rgb(style.TRUTH_COLOR),
+            shaft_radius=0.025,
+            head_radius=0.08,
+            head_length=0.2,
+        )
+
+    def _computed_ship(self, color: tuple[int, int, int]) -> Any:
+        """A translucent ship in a method's colour."""
+        if self._ghost != color:
+            self._ghost = color
+            if "/computed" in self._nodes:
+                self._nodes.pop("/computed").remove()
+            self._nodes["/computed"] = self._scene.add_frame("/computed", show_axes=False)
+            for part in ship_parts():
+                self._scene.add_mesh_simple(
+                    f"/computed/{part.name}",
+                    part.vertices,
+                    part.faces,
+                    color=color,
+                    scale=SHIP_LENGTH,
+                    opacity=0.38,
+                    flat_shading=True,
+                    cast_shadow=False,
+                    receive_shadow=False,
+                )
+        return self._nodes["/computed"]
+
+    def _lines(self, name: str, points: np.ndarray, color: tuple[int, int, int], thickness: float) -> None:
+        node = self._nodes.get(name)
+        if node is not None and len(points) and tuple(node.colors) == color:
+            node.points = points
+            return
+        if node is not None:
+            self._nodes.pop(name).remove()
+        if len(points):
+            self._nodes[name] = self._scene.add_line_segments(name, points, color, thickness=thickness)
+
+    def _texts(self, name: str, labels: tuple[SceneLabel, ...], size: float = _LABEL) -> None:
+        for index, label in enumerate(labels):
+            self._text(f"{name}{index}", label, size)
+        self._drop_beyond(name, len(labels))
+
+    def _text(
+        self, name: str, label: SceneLabel, size: float = _LABEL, anchor: Anchor = "top-center"
+    ) -> None:
+        node = self._nodes.get(name)
+        if node is None:
+            self._nodes[name] = self._scene.add_label(
+                name, label.text, position=label.position, font_screen_scale=size, anchor=anchor
+            )
+            return
+        if node.text != label.text:
+            node.text = label.text
+        node.position = label.position
+
+    def _drop_beyond(self, name: str, count: int) -> None:
+        while (node := self._nodes.pop(f"{name}{count}", None)) is not None:
+            node.remove()
+            count += 1
+
+
+def _paler(color: tuple[int, int, int]) -> tuple[int, int, int]:
+    red, green, blue = (round(255 - 0.35 * (255 - part)) for part in color)
+    return red, green, blue
+
+
+def _shifted(label: SceneLabel) -> tuple[float, float, float]:
+    x, y, z = (float(a + b) for a, b in zip(label.position, _BAR_SHIFT, strict=True))
+    return x, y, z

@@ -1,0 +1,194 @@
+"""Lines of latitude and longitude with labels under a local scene, and its scale bar."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.plots.rounding import round_down, round_up
+from app.plots.units import length_unit, number
+from navcore.foundation.units import ARCMIN, ARCSEC, DEG
+
+# Steps of the lines, arcsec: 1-2-5 below a minute's 10, 20, 30, then the same in minutes and degrees.
+_STEPS_ARCSEC = (
+    0.01,
+    0.02,
+    0.05,
+    0.1,
+    0.2,
+    0.5,
+    1.0,
+    2.0,
+    5.0,
+    10.0,
+    20.0,
+    30.0,
+    60.0,
+    120.0,
+    300.0,
+    600.0,
+    1200.0,
+    1800.0,
+    3600.0,
+    7200.0,
+    18000.0,
+    36000.0,
+    72000.0,
+    162000.0,
+)
+_MOST_LINES = 7
+_MOST_BESIDE = 4
+"""Labels that fit beside each other in a small view: of more meridians every second has one."""
+
+
+@dataclass(frozen=True, eq=False)
+class SceneLabel:
+    """A text at a place of the scene.
+
+    Attributes
+    ----------
+    text : str
+        What is written.
+    position : (float, float, float)
+        Scene units: east, north, up.
+    """
+
+    text: str
+    position: tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Graticule:
+    """Grid on the sea.
+
+    Attributes
+    ----------
+    segments : ndarray of float32, shape (n, 2, 3)
+        Lines, scene units.
+    labels : tuple of SceneLabel
+        Latitudes at the western edge, longitudes at the southern one.
+    """
+
+    segments: np.ndarray
+    labels: tuple[SceneLabel, ...]
+
+
+@dataclass(frozen=True)
+class LocalMap:
+    """Equirectangular map of a small part of the Earth; graticule lines are straight and evenly spaced in it.
+
+    Attributes
+    ----------
+    lat0, lon0 : float
+        Point at the scene's origin, rad.
+    metres_per_lat, metres_per_lon : float
+        Metres per radian there.
+    metres_per_unit : float
+        Scale of the scene.
+    """
+
+    lat0: float
+    lon0: float
+    metres_per_lat: float
+    metres_per_lon: float
+    metres_per_unit: float
+
+
+def graticule(area: LocalMap, half_width: float) -> Graticule:
+    """Lines over the square of +-``half_width`` scene units; in metres where an arc-second is too coarse."""
+    half_m = half_width * area.metres_per_unit
+    lat_step = _step(2.0 * half_m / area.metres_per_lat)
+    lon_step = _step(2.0 * half_m / area.metres_per_lon)
+    if lat_step is None or lon_step is None:
+        return _metre_grid(area, half_width)
+    norths = _multiples(area.lat0, half_m / area.metres_per_lat, lat_step)
+    norths = norths[np.abs(norths) < 0.5 * math.pi]
+    easts = _multiples(area.lon0, min(half_m / area.metres_per_lon, math.pi), lon_step)
+    y = (norths - area.lat0) * area.metres_per_lat / area.metres_per_unit
+    x = (easts - area.lon0) * area.metres_per_lon / area.metres_per_unit
+    lat_texts = [angle_text(value, lat_step, "NS") for value in norths]
+    lon_texts = [angle_text(math.remainder(value, 2.0 * math.pi), lon_step, "EW") for value in easts]
+    return _assemble(x, lon_texts, y, lat_texts, half_width)
+
+
+def scale_bar(metres_per_unit: float, half_width: float) -> tuple[np.ndarray, SceneLabel]:
+    """Bar of a round length at the south-eastern corner: its segments, shape (3, 2, 3), and its label."""
+    unit = length_unit(half_width * metres_per_unit)
+    wanted = 0.4 * half_width * metres_per_unit / unit.si
+    value = round_down(wanted)
+    length = value * unit.si / metres_per_unit
+    right, y, tick = half_width, -half_width - 0.55, 0.12
+    left = right - length
+    bar = [
+        [[left, y, 0.0], [right, y, 0.0]],
+        [[left, y - tick, 0.0], [left, y + tick, 0.0]],
+        [[right, y - tick, 0.0], [right, y + tick, 0.0]],
+    ]
+    label = SceneLabel(f"{number(value)} {unit.name}", (0.5 * (left + right), y - 0.3, 0.0))
+    return np.array(bar, dtype=np.float32), label
+
+
+def angle_text(value: float, step: float, letters: str) -> str:
+    """Latitude or longitude (rad) as finely as lines ``step`` (rad) apart need; ``letters`` as in "NS", "EW".
+
+    Examples
+    --------
+    >>> angle_text(0.5, 1.0 * DEG, "NS"), angle_text(-0.5, 1.0 * ARCMIN, "EW"), angle_text(0.5, ARCSEC, "NS")
+    ('29°N', '28°39′W', '28°38′52″N')
+    """
+    side = letters[0] if value >= 0.0 else letters[1]
+    size = abs(value)
+    if step >= DEG * (1.0 - 1e-9):
+        return f"{size / DEG:.0f}°{side}"
+    if step >= ARCMIN * (1.0 - 1e-9):
+        minutes = round(size / ARCMIN)
+        return f"{minutes // 60}°{minutes % 60:02d}′{side}"
+    decimals = max(0, -math.floor(math.log10(step / ARCSEC * (1.0 + 1e-9))))
+    ticks = round(size / ARCSEC * 10**decimals)
+    seconds, fraction = divmod(ticks, 10**decimals)
+    tail = f".{fraction:0{decimals}d}" if decimals else ""
+    return f"{seconds // 3600}°{seconds // 60 % 60:02d}′{seconds % 60:02d}{tail}″{side}"
+
+
+def _step(span_rad: float) -> float | None:
+    """Angle between lines, rad; None when even the finest step is too coarse."""
+    span = span_rad / ARCSEC
+    if span / _STEPS_ARCSEC[0] < 2.0:
+        return None
+    return next((s for s in _STEPS_ARCSEC if span / s <= _MOST_LINES), _STEPS_ARCSEC[-1]) * ARCSEC
+
+
+def _multiples(centre: float, half: float, step: float) -> np.ndarray:
+    first, last = math.ceil((centre - half) / step), math.floor((centre + half) / step)
+    return np.arange(first, last + 1) * step
+
+
+def _metre_grid(area: LocalMap, half_width: float) -> Graticule:
+    half_m = half_width * area.metres_per_unit
+    step = round_up(2.0 * half_m / _MOST_LINES)
+    offsets = _multiples(0.0, half_m, step)
+    unit = length_unit(half_m)
+    at = offsets / area.metres_per_unit
+    values = [f"{number(offset / unit.si, 4)} {unit.name}" for offset in offsets]
+    return _assemble(at, [f"E {v}" for v in values], at, [f"N {v}" for v in values], half_width)
+
+
+def _assemble(
+    x: np.ndarray, x_texts: list[str], y: np.ndarray, y_texts: list[str], half_width: float
+) -> Graticule:
+    segments = np.zeros((len(x) + len(y), 2, 3), dtype=np.float32)
+    segments[: len(x), :, 0] = x[:, None]
+    segments[: len(x), :, 1] = (-half_width, half_width)
+    segments[len(x) :, :, 0] = (-half_width, half_width)
+    segments[len(x) :, :, 1] = y[:, None]
+    apart = max(1, -(-len(x) // _MOST_BESIDE))
+    south = [
+        SceneLabel(text, (float(at), -half_width - 0.12, 0.0))
+        for text, at in list(zip(x_texts, x, strict=True))[::apart]
+    ]
+    west = [
+        SceneLabel(text, (-half_width - 0.12, float(at), 0.0)) for text, at in zip(y_texts, y, strict=True)
+    ]
+    return Graticule(segments, (*south, *west))

@@ -1,0 +1,158 @@
+// The bar over the 3D view: play, time, speed, loop, cameras; the pendulum and the readout above it; and the present
+// time as a line in every plot over time. All it shows comes from #sb-playback (app/views/scene/bar.py); what is
+// pressed goes back as commands (commands.js).
+(() => {
+  const PERIOD_MS = 100;
+  const AFTER_SCRUB_MS = 500;
+  const HEARD_MS = 250;
+  const UNITS = { s: 1, min: 60, h: 3600, d: 86400 };
+  let now = null;
+  let shown = "";
+  let scrubbed = -1e9;
+  let heard = -1e9;
+  let stage = null;
+
+  const element = (html) => {
+    const holder = document.createElement("template");
+    holder.innerHTML = html;
+    return holder.content.firstElementChild;
+  };
+  const find = (name) => stage.querySelector(`[data-is="${name}"]`);
+
+  function clock(seconds) {
+    const minutes = Math.floor(seconds / 60 + 1e-6);
+    const two = (n) => String(n).padStart(2, "0");
+    return `${Math.floor(minutes / 60)}:${two(minutes % 60)}:${two(Math.floor(seconds % 60))}`;
+  }
+
+  function build() {
+    const speeds = now.speeds.map((x) => `<option value="${x}">${x >= 3600 ? `${x / 3600} h/s` : `${x / 60} min/s`}</option>`);
+    const cameras = now.cameras.map(
+      (c) => `<button type="button" data-command="camera-${c}" data-camera="${c}" aria-label="view: ${c}">${c}</button>`,
+    );
+    stage = element(`<section id="sb-stage" aria-label="time and 3D view">
+      <div class="sb-instruments">
+        <div class="sb-shown" role="group" aria-label="instruments">
+          <button type="button" data-shows="pendulum" title="Schuler pendulum: tilt of every method's platform">pendulum</button>
+          <button type="button" data-shows="readout" title="true and computed attitude and speed">readout</button>
+        </div>
+        <div class="sb-pendulum" data-is="pendulum"></div><div class="sb-readout" data-is="readout"></div>
+      </div>
+      <div class="sb-bar"><div>
+        <button type="button" class="sb-play" data-command="play" data-is="play"></button>
+        <input type="range" min="0" max="1000" step="1" data-is="time" aria-label="time in the run">
+        <output data-is="clock" title="hours : minutes : seconds"></output></div><div>
+        <select data-is="speed" aria-label="speed of the playback" title="time of the run in a second">${speeds.join("")}</select>
+        <button type="button" data-is="loop" aria-label="begin anew at the end" title="begin anew at the end">⟲</button>
+        <span class="sb-cameras" role="group" aria-label="camera">${cameras.join("")}</span>
+      </div></div></section>`);
+    document.body.append(stage);
+    find("time").addEventListener("input", (event) => {
+      scrubbed = performance.now();
+      const time = (now.span * event.target.value) / 1000;
+      window.schuler.stream("seek", time);
+      find("clock").textContent = clock(time);
+      mark(time);
+    });
+    find("speed").addEventListener("change", (event) => window.schuler.command("speed", event.target.value));
+    find("loop").addEventListener("click", () => window.schuler.command("loop", now.loop ? "off" : "on"));
+    // After a click by the mouse the space bar plays; whoever goes by the keyboard keeps the focus.
+    stage.addEventListener("click", (event) => event.detail > 0 && event.target.closest("button")?.blur());
+    for (const button of stage.querySelectorAll("[data-shows]")) {
+      button.addEventListener("click", () => reveal(button, button.getAttribute("aria-pressed") !== "true"));
+      reveal(button, innerHeight >= (button.dataset.shows === "pendulum" ? 560 : 900));
+    }
+  }
+
+  // A small view has room for one of them.
+  function reveal(button, shown) {
+    if (shown && stage.classList.contains("sb-small")) {
+      for (const other of stage.querySelectorAll("[data-shows]")) if (other !== button) reveal(other, false);
+    }
+    button.setAttribute("aria-pressed", String(shown));
+    find(button.dataset.shows).hidden = !shown;
+  }
+
+  const set = (target, name, value) => target.getAttribute(name) !== value && target.setAttribute(name, value);
+
+  // A range's value, and its words for who hears it.
+  function update(source) {
+    const scrubbing = performance.now() - scrubbed < AFTER_SCRUB_MS;
+    const play = find("play");
+    set(play, "aria-label", now.playing ? "pause" : "play");
+    play.textContent = now.playing ? "❚❚" : "▶";
+    if (!scrubbing) {
+      find("time").value = now.span > 0 ? Math.round((1000 * now.time) / now.span) : 0;
+      find("clock").textContent = clock(now.time);
+    }
+    set(find("time"), "aria-valuetext", `${clock(now.time)} hours`);
+    if (document.activeElement !== find("speed")) find("speed").value = String(now.speed);
+    set(find("loop"), "aria-pressed", String(now.loop));
+    for (const button of stage.querySelectorAll("[data-camera]")) {
+      set(button, "aria-pressed", String(button.dataset.camera === now.camera));
+    }
+    for (const part of ["pendulum", "readout"]) {
+      find(part).innerHTML = source.querySelector(`[data-part="${part}"]`)?.innerHTML ?? "";
+    }
+    if (!scrubbing) mark(now.time);
+  }
+
+  // Leans on viser's handles of its charts, as pinned: tests/browser/test_page_playback.py looks at the result.
+  function mark(time) {
+    const charts = Object.values(window.__viserTestpoints?.uplots ?? {});
+    for (const { chart } of charts) {
+      const over = chart?.over;
+      if (!over?.isConnected) continue;
+      let line = over.querySelector(":scope > .sb-time");
+      if (line === null) {
+        line = element('<div class="sb-time" aria-hidden="true"></div>');
+        over.append(line);
+      }
+      const unit = UNITS[/\((\w+)\)/.exec(chart.series[0].label)?.[1]] ?? 3600;
+      const x = chart.valToPos(time / unit, "x");
+      const within = Number.isFinite(x) && x >= -0.5 && x <= over.clientWidth + 0.5;
+      line.style.display = within ? "" : "none";
+      if (within) line.style.transform = `translateX(${x.toFixed(1)}px)`;
+    }
+  }
+
+  function place() {
+    const canvas = document.querySelector("canvas[data-engine]") ?? document.querySelector("canvas");
+    const box = canvas?.getBoundingClientRect();
+    if (!box || box.width < 40) return;
+    const wanted = [box.left, box.bottom, box.width].map(Math.round);
+    stage.style.left = `${wanted[0]}px`;
+    stage.style.top = `${Math.round(box.top)}px`;
+    stage.style.width = `${wanted[2]}px`;
+    stage.style.height = `${Math.round(box.height)}px`;
+    const small = box.width < 480;
+    if (small === stage.classList.contains("sb-small")) return;
+    stage.classList.toggle("sb-small", small);
+    const shown = stage.querySelectorAll('[data-shows][aria-pressed="true"]');
+    if (small && shown.length > 1) reveal(shown[0], true);
+  }
+
+  // The server slows the playback down when it hears nothing, and it hears nothing while the user moves something.
+  function tellShown() {
+    const time = performance.now();
+    if (!now.playing || time - heard < HEARD_MS) return;
+    heard = time;
+    window.schuler.report("shown", now.count);
+  }
+
+  let turn = 0;
+  setInterval(() => {
+    const source = document.getElementById("sb-playback");
+    if (source === null) return;
+    if (source.dataset.now !== shown) {
+      shown = source.dataset.now;
+      now = JSON.parse(shown);
+      if (stage === null) build();
+      update(source);
+      tellShown();
+    } else if (++turn % 3 === 0 && now !== null) {
+      if (performance.now() - scrubbed > AFTER_SCRUB_MS) mark(now.time); // a plot was zoomed or made anew
+    }
+    if (turn % 3 === 0) place();
+  }, PERIOD_MS);
+})();

@@ -1,0 +1,1 @@
+"""Tab "Sensors": errors of gyros and accelerometers."""

@@ -1,0 +1,1 @@
+"""Tab "Spectrum": amplitude over period of an error."""

@@ -1,0 +1,315 @@
+"""Step responses of the loop and of the network, by the linear theory of one level channel."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from app.plots import style
+from app.plots.effective import effective_network, network_step, reacts, response, time_grid
+from app.plots.plotly_data import PlotlyFigure, figure, packed
+from app.plots.units import Unit, angle_unit, speed_unit
+from app.session.requirements import Requirements
+from app.views.poles.grid import FORBIDDEN
+from navcore.analysis.transfers import Source
+from navcore.engine.run import MethodRun, Run
+from navcore.foundation.units import ARCSEC, DEG_PER_HOUR, MINUTE
+
+POINTS = 400
+_SPANS_MIN = (5, 10, 20, 30, 45, 60, 90, 120, 180, 240, 360)
+_LONGEST_MIN = 360.0
+_UNDAMPED_MIN = 180.0
+_SETTLED = 0.02
+_NO_UNIT = Unit("", 1.0)
+
+Curves = list[np.ndarray | None]
+
+
+@dataclass(frozen=True)
+class _Disturbance:
+    """What the lower panels respond to."""
+
+    source: Source
+    size: float
+    words: str
+
+
+_LOG = _Disturbance("dv_r", 1.0, "a log step of 1 m/s")
+_GYRO = _Disturbance("eps", 0.01 * DEG_PER_HOUR, "a gyro step of 0.01 °/h")
+
+
+@dataclass(frozen=True)
+class StepLimits:
+    """What the requirements ask of the responses; drawn by shading the rest.
+
+    Attributes
+    ----------
+    settling_s : float or None
+        After it the tilt stays within 2 %.
+    overshoot : float or None
+        Largest swing of the tilt to the other side, part of the initial tilt.
+    log_tilt : float or None
+        Largest tilt after a log step of 1 m/s, rad.
+    """
+
+    settling_s: float | None = None
+    overshoot: float | None = None
+    log_tilt: float | None = None
+
+
+NO_LIMITS = StepLimits()
+
+
+def step(
+    run: Run, aspect: float = 0.46, *, width_px: float = 940.0, limits: StepLimits = NO_LIMITS
+) -> PlotlyFigure:
+    """Responses of every method: tilt to an initial tilt, H itself, velocity error and tilt to a log step.
+
+    Where no method uses the log, the lower plots show the response to a gyro step instead.
+
+    Parameters
+    ----------
+    run : Run
+        Result; only its networks are used.
+    aspect : float
+        Height / width of the figure.
+    width_px : float
+        Expected width on screen, for room for the legend.
+    limits : StepLimits
+        Of the requirements.
+    """
+    loop_s, network_s = _loop_span(run), _network_span(run)
+    cause = _LOG if any(reacts(m, "dv_r") for m in run.methods) else _GYRO
+    tilt: Curves = [response(m, "initial_tilt", "phi", loop_s, POINTS) for m in run.methods]
+    network: Curves = [network_step(m, network_s, POINTS) for m in run.methods]
+    caused_dv = _scaled([response(m, cause.source, "dv", loop_s, POINTS) for m in run.methods], cause.size)
+    caused_phi = _scaled([response(m, cause.source, "phi", loop_s, POINTS) for m in run.methods], cause.size)
+    stable = [m.loop.stable for m in run.methods]
+    units = speed_unit(_peak(caused_dv, stable)), angle_unit(_peak(caused_phi, stable))
+    panels = (
+        ("", loop_s, tilt, _NO_UNIT),
+        ("2", network_s, network, _NO_UNIT),
+        ("3", loop_s, caused_dv, units[0]),
+        ("4", loop_s, caused_phi, units[1]),
+    )
+    data: list[dict[str, Any]] = []
+    ranges: dict[str, list[float]] = {}
+    for suffix, span_s, curves, unit in panels:
+        for i, (method, curve) in enumerate(zip(run.methods, curves, strict=True)):
+            data.append(_trace(method, i, suffix, span_s, curve, unit))
+        ranges[suffix] = _range(_deciding(curves, stable), unit)
+    data += [_settled_mark(m, i, tilt[i], loop_s) for i, m in enumerate(run.methods)]
+    layout = _layout(run, cause, (loop_s, network_s), ranges, units, aspect, width_px)
+    layout["shapes"] += _forbidden(limits, loop_s, units[1], cause)
+    return figure(data, layout)
+
+
+def _scaled(curves: Curves, size: float) -> Curves:
+    return [None if curve is None else size * curve for curve in curves]
+
+
+def _loop_span(run: Run) -> float:
+    """Time shown, s: until the slowest method has settled, within reason."""
+    need = 0.0
+    for method in run.methods:
+        settles = method.loop.settling_s
+        minutes = _UNDAMPED_MIN if settles is None else 1.25 * settles / MINUTE
+        need = max(need, min(minutes, _LONGEST_MIN))
+    return _round_up(need) * MINUTE
+
+
+def _network_span(run: Run) -> float:
+    """Time shown for H alone, s: six time constants of its slowest pole."""
+    slowest = math.inf
+    for method in run.methods:
+        rates = -np.real(effective_network(method).poles)
+        slowest = min([slowest, *(float(rate) for rate in rates if rate > 0.0)])
+    return _round_up(6.0 / slowest / MINUTE if math.isfinite(slowest) else 30.0) * MINUTE
+
+
+def _round_up(minutes: float) -> float:
+    return float(next((span for span in _SPANS_MIN if minutes <= span), _SPANS_MIN[-1]))
+
+
+@lru_cache(maxsize=16)
+def _minutes(span_s: float) -> dict[str, str]:
+    return packed(time_grid(span_s, POINTS) / MINUTE)
+
+
+def _deciding(curves: Curves, stable: list[bool]) -> list[np.ndarray]:
+    """Curves that decide units and ranges: an unstable one leaves the plot, not to flatten the rest."""
+    present = [(c, ok) for c, ok in zip(curves, stable, strict=True) if c is not None]
+    return [c for c, ok in present if ok] or [c for c, _ in present]
+
+
+def _peak(curves: Curves, stable: list[bool]) -> float:
+    return max((float(np.max(np.abs(c))) for c in _deciding(curves, stable)), default=0.0)
+
+
+def _range(curves: list[np.ndarray], unit: Unit) -> list[float]:
+    if not curves:
+        return [-1.0, 1.0]
+    low = min(0.0, *(float(np.min(c)) / unit.si for c in curves))
+    high = max(0.0, *(float(np.max(c)) / unit.si for c in curves))
+    pad = 0.06 * (high - low) or 1.0
+    return [low - pad, high + pad]
+
+
+def _trace(
+    method: MethodRun, index: int, suffix: str, span_s: float, values: np.ndarray | None, unit: Unit
+) -> dict[str, Any]:
+    known = values is not None
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "x": _minutes(span_s) if known else [],
+        "y": packed(values / unit.si) if known else [],
+        "xaxis": f"x{suffix}",
+        "yaxis": f"y{suffix}",
+        "name": style.plain(method.method.name),
+        "legendgroup": str(index),
+        "showlegend": suffix == "",
+        "hovertemplate": f"%{{y:.4g}} {unit.name}".rstrip(),
+        "line": {"color": style.method_color(index), "width": style.LINE_WIDTH, "simplify": False},
+    }
+
+
+def _settled_mark(method: MethodRun, index: int, tilt: np.ndarray | None, span_s: float) -> dict[str, Any]:
+    """Diamond where the response to an initial tilt has come to rest; no point where it does not here."""
+    settles = None if method.method.undamped else method.loop.settling_s
+    x, y = [], []
+    if settles is not None and tilt is not None and settles <= span_s:
+        x, y = [settles / MINUTE], [float(np.interp(settles, time_grid(span_s, POINTS), tilt))]
+    return {
+        "type": "scatter",
+        "mode": "markers",
+        "x": x,
+        "y": y,
+        "xaxis": "x",
+        "yaxis": "y",
+        "name": style.plain(f"{method.method.name} settled"),
+        "legendgroup": str(index),
+        "showlegend": False,
+        "marker": {
+            "symbol": "diamond",
+            "size": 11,
+            "color": style.method_color(index),
+            "line": {"width": 1.5, "color": "white"},
+        },
+        "hovertemplate": "settled to 2 % at %{x:.4g} min<extra></extra>",
+    }
+
+
+def _layout(
+    run: Run,
+    cause: _Disturbance,
+    spans_s: tuple[float, float],
+    ranges: dict[str, list[float]],
+    units: tuple[Unit, Unit],
+    aspect: float,
+    width_px: float,
+) -> dict[str, Any]:
+    rows = style.legend_rows([m.method.name for m in run.methods], width_px - 84.0)
+    margin = {"l": 68, "r": 18, "t": 30, "b": 46 + 22 * rows}
+    # room between the rows for tick labels, axis title and the title of the lower plot
+    gap = 68.0 / max(aspect * width_px - margin["t"] - margin["b"], 150.0)
+    upper, lower = [0.5 + 0.5 * gap, 1.0], [0.0, 0.5 - 0.5 * gap]
+    left, right = [0.0, 0.44], [0.56, 1.0]
+    loop_min, network_min = (span / MINUTE for span in spans_s)
+    panels = (
+        ("", left, upper, loop_min, "Tilt after an initial tilt (◆ settled to 2 %)", "φ/φ<sub>0</sub>"),
+        ("2", right, upper, network_min, "Step response of H itself", "output / step"),
+        ("3", left, lower, loop_min, f"Velocity error after {cause.words}", f"δV ({units[0].name})"),
+        ("4", right, lower, loop_min, f"Tilt after {cause.words}", f"φ ({units[1].name})"),
+    )
+    made = style.layout(margin=margin, hovermode="x unified", legend=style.legend(), meta={"aspect": aspect})
+    notes: list[dict[str, Any]] = []
+    for suffix, column, row, span_min, title, y_title in panels:
+        made[f"xaxis{suffix}"] = style.axis(
+            "time (min)",
+            domain=column,
+            anchor=f"y{suffix}",
+            range=[0.0, span_min],
+            dtick=_tick(span_min),
+            unifiedhovertitle={"text": "%{x:.1f} min"},
+        )
+        made[f"yaxis{suffix}"] = style.axis(
+            y_title,
+            domain=row,
+            anchor=f"x{suffix}",
+            range=ranges[suffix],
+            nticks=6,
+            zeroline=True,
+            zerolinecolor=style.REFERENCE,
+            zerolinewidth=1,
+        )
+        notes.append(style.panel_title(title, suffix))
+    return made | {"annotations": notes, "shapes": [_settled_band()]}
+
+
+def _tick(span_min: float) -> float:
+    return next(s for s in (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0) if span_min <= 6.5 * s)
+
+
+def _settled_band() -> dict[str, Any]:
+    """Band of +-2 %, in which a response counts as settled."""
+    return {
+        "type": "rect",
+        "xref": "x domain",
+        "x0": 0.0,
+        "x1": 1.0,
+        "yref": "y",
+        "y0": -_SETTLED,
+        "y1": _SETTLED,
+        "layer": "below",
+        "line": {"width": 0},
+        "fillcolor": "rgba(154,169,184,0.3)",
+    }
+
+
+def _forbidden(limits: StepLimits, span_s: float, unit: Unit, cause: _Disturbance) -> list[dict[str, Any]]:
+    """Shade what the requirements rule out: beyond any height that a plot shows."""
+    far, span_min = 1e6, span_s / MINUTE
+    boxes: list[tuple[str, str, float, float, float]] = []
+    if limits.overshoot is not None:
+        boxes.append(("overshoot", "", 0.0, -far, -limits.overshoot))
+    if limits.settling_s is not None and limits.settling_s < span_s:
+        at = limits.settling_s / MINUTE
+        boxes += [("settling", "", at, _SETTLED, far), ("settling", "", at, -far, -_SETTLED)]
+    if limits.log_tilt is not None and cause is _LOG:
+        size = limits.log_tilt / unit.si
+        boxes += [("log tilt", "4", 0.0, size, far), ("log tilt", "4", 0.0, -far, -size)]
+    return [
+        {
+            "type": "rect",
+            "name": name,
+            "xref": f"x{suffix}",
+            "yref": f"y{suffix}",
+            "x0": start,
+            "x1": span_min,
+            "y0": low,
+            "y1": high,
+            "layer": "below",
+            "fillcolor": FORBIDDEN,
+            "line": {"color": style.DANGER, "width": 1.2, "dash": "dash"},
+        }
+        for name, suffix, start, low, high in boxes
+    ]
+
+
+def step_limits(requirements: Requirements) -> StepLimits:
+    """What the requirements ask of the responses in the tab "Step", SI."""
+    settling, overshoot, tilt = (
+        requirements.settling_min,
+        requirements.overshoot_percent,
+        requirements.log_tilt_arcsec,
+    )
+    return StepLimits(
+        settling_s=None if settling is None else settling * MINUTE,
+        overshoot=None if overshoot is None else overshoot / 100.0,
+        log_tilt=None if tilt is None else tilt * ARCSEC,
+    )

@@ -1,0 +1,27 @@
+"""Tab "Step": responses of tilt and velocity error to steps of log, gyro and accelerometer errors."""
+
+from __future__ import annotations
+
+from app.plots.plotly_data import PlotlyFigure
+from app.session.shown import Shown
+from app.shell.plotly_view import PlotlyView
+from app.views.step.figure import step, step_limits
+from navcore.engine.run import Run
+
+
+class StepView(PlotlyView):
+    """The plots alone."""
+
+    title = "Step"
+    place = "upper"
+    focus = "step"
+    plots = (title,)
+    above_px = 0
+
+    def figure(self, both: Run, found: Shown) -> PlotlyFigure:
+        """Step responses."""
+        limits = step_limits(found.display.requirements)
+        return step(both, self.aspect, width_px=self.width_px, limits=limits)
+
+
+VIEW = StepView

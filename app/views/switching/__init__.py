@@ -1,0 +1,1 @@
+"""Tab "Switching": when and why each method damps."""

@@ -1,0 +1,90 @@
+"""Tab "Switching": an error curve, and on the same time axis when and why each method damps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from app.plots.uplot import UplotFigure, stack_heights
+from app.session.shown import Shown
+from app.shell.stack import Stack, room_px
+from app.shell.view import Figures, Frame, PictureView, Tab, if_user
+from app.views.errors.view import error_curves
+from app.views.switching.figure import legend_names, switched_methods, switching_legend, switching_plots
+from navcore.engine.run import Run
+
+_FIRST_ABOVE = "dve"
+_LEAST_PX = 64
+
+
+@dataclass(frozen=True)
+class Switching:
+    """Plots of the methods that switch.
+
+    Attributes
+    ----------
+    errors : dict
+        Key -> error curves, of which one stands above.
+    plots : tuple of UplotFigure
+        Measures, states and xi.
+    run : Run
+        Whose they are.
+    """
+
+    errors: dict[str, UplotFigure]
+    plots: tuple[UplotFigure, ...]
+    run: Run
+
+
+class SwitchingView(PictureView[Switching]):
+    """Chooser of the error curve, legend and plots; the tab is there while a method switches."""
+
+    title = "Switching"
+    place = "lower"
+    plots = (title,)
+    always = False
+
+    def __init__(self, frame: Frame) -> None:
+        super().__init__(frame)
+        self._titles: dict[str, str] = {}
+
+    def build(self, tab: Tab) -> None:
+        """Make chooser and legend."""
+        gui = self.frame.gui
+        self._stack = Stack(gui, tab)
+        self._titles = {}
+        with tab:
+            self._above: Any = gui.add_dropdown(
+                "curve above", ("",), order=0, hint="Error curve over the states and thresholds."
+            )
+            self._legend = gui.add_html("", order=1)
+        self._above.on_update(if_user(self.frame.redraw))
+
+    def stands(self, run: Run) -> bool:
+        """Whether a method switches."""
+        return bool(switched_methods(run))
+
+    def picture(self, found: Shown) -> Switching:
+        """Make the error curves and the plots below."""
+        plots = switching_plots(found.run, found.display.time)
+        return Switching(error_curves(found).plots, plots, found.run)
+
+    def show(self, picture: Switching) -> None:
+        """Show one error curve above the other plots."""
+        titles = {plot.title: key for key, plot in picture.errors.items()}
+        if titles != self._titles:
+            self._titles = titles
+            self._above.options = tuple(titles)
+            self._above.value = picture.errors[_FIRST_ABOVE].title
+        figures = [picture.errors[titles[self._above.value]], *picture.plots]
+        self._legend.content = switching_legend(picture.run)
+        room = room_px(self.frame.layout(), legend_names(picture.run))
+        self._stack.show(figures, stack_heights(room, len(figures), _LEAST_PX), labelled=1)
+
+    def figures(self, found: Shown, plot: str) -> Figures:
+        """Make the plots below the error curve; none where no method switches."""
+        del plot
+        return None, list(self.picture(found).plots) if self.stands(found.run) else []
+
+
+VIEW = SwitchingView

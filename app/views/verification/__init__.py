@@ -1,0 +1,1 @@
+"""Above the tabs: verification with the full strapdown."""

@@ -1,0 +1,75 @@
+"""Above the tabs: verify the scenario with the full strapdown, progress, stop, and what came out."""
+
+from __future__ import annotations
+
+from app.jobs.verifier import Verifier
+from app.shell import notices
+from app.shell.view import Frame, Tab, View
+from app.views.metrics.table import verdict
+from navcore.scenario.model import Scenario
+
+VERIFY, STOP = "Verify with full strapdown", "Stop verifying"
+_ORDER = 13.5
+"""Place in the left column: below the state of the run."""
+_TOLD = (
+    "Runs the scenario as full nonlinear strapdown, and the linear model on the same noise. The run's own "
+    'curves stay. The tab Errors draws both models and their difference (curves "Verification"), and the tab '
+    "Metrics shows the largest differences."
+)
+_WHERE = 'Tab Errors, curves "Verification": both models and their difference.'
+
+
+class VerificationView(View):
+    """Button, progress and verdict."""
+
+    def __init__(self, frame: Frame) -> None:
+        super().__init__(frame)
+        frame.commands.register("verify", lambda _: self._verify(), "Verify with the strapdown")
+
+    def build(self, tab: Tab) -> None:
+        """Make the widgets."""
+        gui = self.frame.gui
+        with tab:
+            self._start = gui.add_button(VERIFY, color="gray", hint=_TOLD, order=_ORDER)
+            self._progress = gui.add_progress_bar(0.0, visible=False, order=_ORDER + 0.1)
+            self._stop = gui.add_button(STOP, color="orange", visible=False, order=_ORDER + 0.2)
+            self._verdict = gui.add_html("", visible=False, order=_ORDER + 0.3)
+        self._start.on_click(lambda _: self._verify())
+        self._stop.on_click(lambda _: self.session.verifier.cancel())
+
+    def _verify(self) -> None:
+        with self.session.lock:
+            scenario = self.session.scenario
+        self.session.verifier.start(scenario)
+
+    def follow_jobs(self) -> None:
+        """Show how far a verification is, or what the last one gave, and of which scenario."""
+        verifier = self.session.verifier
+        fraction = verifier.fraction
+        running = fraction is not None
+        if fraction is not None:
+            self._progress.value = round(100.0 * fraction, 1)
+        for handle, wanted in ((self._start, not running), (self._progress, running), (self._stop, running)):
+            if handle.visible != wanted:
+                handle.visible = wanted
+        html = _html(verifier, self.session.scenario)
+        if self._verdict.content != html:
+            self._verdict.content, self._verdict.visible = html, bool(html)
+
+
+def _html(verifier: Verifier, scenario: Scenario) -> str:
+    if verifier.fraction is not None:
+        return notices.note(["Verifying: the full strapdown and the linear model on its noise."], "info")
+    if verifier.words:
+        return notices.note(verifier.words, "warning")
+    result = verifier.result
+    if result is None:
+        return ""
+    if verifier.scenario != scenario:
+        return notices.note(["The verification is of an earlier scenario: verify again."], "warning")
+    trusted = notices.note([f"Verified. {verdict(result)}", _WHERE], "info")
+    against = ["The linear model is not to be trusted here:", *result.statements] if result.statements else []
+    return notices.note(against, "warning") + trusted
+
+
+VIEW = VerificationView

@@ -1,0 +1,1 @@
+"""Coarse and compass alignment: where navigation begins."""

@@ -1,0 +1,59 @@
+"""Design of the compass loop of an alignment (theory.md 6.1): its numbers, gains and where it works."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.units import DEG
+
+LARGEST_LATITUDE_DEG = 85.0
+"""Beyond, the horizontal Earth rate is too small to find north."""
+
+
+@dataclass(frozen=True)
+class CompassLoop:
+    """Design of the fine alignment.
+
+    Attributes
+    ----------
+    level_s : float
+        Length of the first part, level channels only, s.
+    level_sigma : float
+        Decay rate of the level loops in the first part, 1/s.
+    sigma, xi : float
+        Of level and azimuth loops in the second part.
+    """
+
+    level_s: float = 120.0
+    level_sigma: float = 0.03
+    sigma: float = 0.02
+    xi: float = 0.707
+
+
+def check_latitude(lat: float) -> None:
+    """Refuse a latitude (rad) at which the compass loop finds no north.
+
+    Raises
+    ------
+    InputError
+        |latitude| above 85 deg.
+    """
+    if abs(lat) > LARGEST_LATITUDE_DEG * DEG:
+        raise InputError(
+            Fault(
+                "",
+                "site.lat_deg",
+                round(lat / DEG, 6),
+                f"compass alignment needs |latitude| <= {LARGEST_LATITUDE_DEG:g} deg: the horizontal "
+                "Earth rate, by which it finds north, is too small beyond",
+            )
+        )
+
+
+def azimuth_gains(
+    sigma: float, xi: float, omega_s: float, gravity: float
+) -> tuple[float, float, float, float]:
+    """K_U1 (1/s), K_U2, K_U3 (1/(m s^2) times rad), K_U4 (1/s) of theory.md 6.1."""
+    stiffness = sigma**2 / xi**2
+    return 2.0 * sigma, 2.0 * stiffness / omega_s**2 - 1.0, stiffness**2 / gravity, 2.0 * sigma

@@ -1,0 +1,203 @@
+"""Stability of the damping law as it runs: sampled, with the log's difference held between two log epochs.
+
+Between two epochs of the log the law holds the difference V_r - V_c of the last one (interface.md), and
+between two calls of the law the correction is held. A loop that is stable in continuous time diverges when
+either lasts too long: a log each 100 s, or `compass` with sigma = 1 at a law step of 1 s (theory.md 10). The
+map over one period of the log is linear, so its eigenvalues decide.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from navcore.analysis.loop import closed_loop_poles
+from navcore.analysis.response import matrix_exponential
+from navcore.analysis.whole_system import (
+    STATES,
+    duration,
+    feedback_gains,
+    free_matrix,
+    inputs_of_law,
+    network_that_acts,
+)
+from navcore.foundation.earth import SPHERE, Earth
+from navcore.foundation.errors import InputError
+from navcore.networks.base import LinearNetwork
+from navcore.networks.discrete import discretise
+
+_FAST = 0.3
+"""A growing mode faster than this times omega_s is not the 24 h mode: it comes from the hold."""
+_STANDS = 1e-7
+_SEARCH = 20
+
+
+@dataclass(frozen=True)
+class HeldLog:
+    """What holding the log's difference does to the loop.
+
+    Attributes
+    ----------
+    log_period_s, law_step_s : float
+        s; the log's period is rounded to whole steps of the law.
+    stable : bool
+        No mode that comes from the hold grows.
+    growth : float
+        Fastest growth of such a mode, 1/s; negative: all decay; nan where there is none.
+    stable_up_to_s : float or None
+        Longest log period (or law step, when the log is as fast as the law) that is stable, s; None when
+        stable as it is, or unstable in continuous time too; 0 when no shorter one helps.
+    warnings : tuple of str
+        Says what is held too long; empty when the loop is unstable in continuous time too.
+    """
+
+    log_period_s: float
+    law_step_s: float
+    stable: bool
+    growth: float
+    stable_up_to_s: float | None
+    warnings: tuple[str, ...]
+
+
+@lru_cache(maxsize=256)
+def held_log(
+    network: LinearNetwork,
+    damping: str,
+    log_period_s: float,
+    law_step_s: float,
+    lat: float,
+    earth: Earth = SPHERE,
+) -> HeldLog:
+    """Check the sampled law of a method at rest.
+
+    Parameters
+    ----------
+    network : LinearNetwork
+        H(s).
+    damping : {"free", "internal", "external", "averaging", "kalman"}
+        Internal damping has no log: its own velocity is read at each call of the law.
+    log_period_s : float
+        Time between two epochs of the log, s; a log faster than the law is read once a call.
+    law_step_s : float
+        Time between two calls of the law, s.
+    lat : float
+        rad.
+    earth : Earth
+        WGS-84 or the sphere.
+    """
+    network = network_that_acts(network, damping)
+    period = log_period_s if damping == "external" else law_step_s
+    calls = max(1, round(period / law_step_s))
+    growth = _growth(network, damping, law_step_s, calls, lat, earth)
+    stable = not growth > _STANDS * network.omega_s
+    up_to, warnings = None, ()
+    if not stable and np.max(closed_loop_poles(network).real) <= _STANDS:
+        up_to = _stable_up_to(network, damping, law_step_s, calls, lat, earth)
+        warnings = (_warning(growth, calls * law_step_s, law_step_s, calls, up_to),)
+    return HeldLog(calls * law_step_s, law_step_s, stable, growth, up_to, warnings)
+
+
+def period_map(
+    network: LinearNetwork, damping: str, law_step_s: float, calls: int, lat: float, earth: Earth = SPHERE
+) -> np.ndarray:
+    """Map of the state over one period of the log, i.e. ``calls`` calls of the law.
+
+    The state holds the six errors (normalised as in `whole_system.free_matrix`), the law's states of both
+    channels and, when the log is slower than the law, the two held differences V_r - V_c.
+
+    Raises
+    ------
+    InputError
+        The network cannot run at this step.
+    """
+    dA, B, C, D, k1 = _sampled_law(network, damping, law_step_s)
+    n, omega_s = len(B), network.omega_s
+    plant, forced = _held_plant(lat, omega_s, law_step_s, earth)
+    held = STATES + 2 * n
+    step = np.zeros((held + 2, held + 2))
+    step[:STATES, :STATES] = plant
+    for channel in range(2):
+        z = slice(STATES + channel * n, STATES + (channel + 1) * n)
+        step[:STATES, z] = np.outer(forced[:, channel], C)
+        step[:STATES, held + channel] = forced[:, channel] * D + forced[:, 2 + channel] * k1
+        step[z, z] = np.eye(n) + dA
+        step[z, held + channel] = B
+        step[held + channel, held + channel] = 1.0
+    # a fresh epoch: the difference becomes -dV before the law is called
+    fresh = np.eye(held + 2)
+    fresh[held:, held:] = 0.0
+    fresh[held, 0] = fresh[held + 1, 1] = -1.0
+    return np.linalg.matrix_power(step, calls) @ fresh
+
+
+def _sampled_law(
+    network: LinearNetwork, damping: str, step_s: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, float]:
+    """dA, B, C, D of c = C z + D d, z += dA z + B d, and k1/omega_s of a = k1 d, for d = V_r - V_c."""
+    if damping == "external" and network.realisation != "network":
+        k1, k2, k3 = feedback_gains(network)
+        tau = network.omega_s * step_s
+        return np.zeros((1, 1)), np.array([-k3 * tau]), np.ones(1), -k2 - 0.5 * k3 * tau, k1
+    discrete = discretise(network, step_s)
+    return discrete.dA, discrete.B, -discrete.C, 1.0 - discrete.D, 0.0
+
+
+def _held_plant(lat: float, omega_s: float, step_s: float, earth: Earth) -> tuple[np.ndarray, np.ndarray]:
+    """Transition of the six states over a step, and that of the four inputs held over it."""
+    both = np.zeros((STATES + 4, STATES + 4))
+    both[:STATES, :STATES] = free_matrix(lat, omega_s, earth)
+    both[:STATES, STATES:] = inputs_of_law(lat, omega_s, earth)
+    moved = matrix_exponential(both * (omega_s * step_s))
+    return moved[:STATES, :STATES], moved[:STATES, STATES:]
+
+
+def _growth(
+    network: LinearNetwork, damping: str, step_s: float, calls: int, lat: float, earth: Earth
+) -> float:
+    """Growth of the fastest growing mode that is not a slow one, 1/s."""
+    try:
+        factors = np.linalg.eigvals(period_map(network, damping, step_s, calls, lat, earth))
+    except InputError:  # the run itself says why this network cannot run at this step
+        return math.nan
+    rates = np.log(factors[np.abs(factors) > 1e-300].astype(complex)) / (calls * step_s)
+    fast = rates[np.abs(rates) > _FAST * network.omega_s]
+    return float(np.max(fast.real)) if len(fast) else math.nan
+
+
+def _stable_up_to(
+    network: LinearNetwork, damping: str, step_s: float, calls: int, lat: float, earth: Earth
+) -> float:
+    """Longest stable log period, or law step when the log is as fast as the law, s; 0: none."""
+    limit = _STANDS * network.omega_s
+
+    def grows(n: int, step: float) -> bool:
+        return _growth(network, damping, step, n, lat, earth) > limit
+
+    if calls > 1 and not grows(1, step_s):
+        low, high = 1, calls
+        while high - low > 1:
+            middle = (low + high) // 2
+            low, high = (low, middle) if grows(middle, step_s) else (middle, high)
+        return low * step_s
+    low, high = 0.0, step_s
+    for _ in range(_SEARCH):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if grows(1, middle) else (middle, high)
+    return low if low > 1e-3 * step_s else 0.0
+
+
+def _warning(growth: float, period_s: float, step_s: float, calls: int, up_to: float) -> str:
+    slower_log = calls > 1 and up_to >= step_s
+    what = (
+        f"the log's difference is held for {period_s:g} s"
+        if slower_log
+        else f"the law runs every {step_s:g} s and holds its correction"
+    )
+    every = duration(1.0 / growth)
+    text = f"unstable as sampled: {what}, too long for this loop; the errors grow by e every {every}"
+    if up_to > 0.0:
+        text += f"; stable up to about {up_to:.3g} s"
+    return text

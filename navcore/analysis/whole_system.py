@@ -1,0 +1,328 @@
+"""Stability of the whole system: both level channels, heading and latitude, coupled by the Earth's rotation.
+
+One level channel (`navcore.analysis.loop`) says nothing about the slow modes. A horizontal damping network
+moves the 24 h mode of the six-state error model, and most networks let it grow (theory.md 10). The model is
+the one of theory.md 2 at rest, without longitude, with the network's states in both channels. Time is
+measured in 1/omega_s and velocity in g/omega_s, so that all elements of the matrix lie near 1.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from navcore.analysis.loop import closed_loop_poles
+from navcore.foundation.earth import EARTH_RATE, SPHERE, Earth
+from navcore.foundation.units import DEG
+from navcore.networks.base import ComplexArray, LinearNetwork, linear_network, sorted_roots
+from navcore.networks.state_space import state_space
+
+DV_E, DV_N, LATITUDE, PHI_E, PHI_N, PHI_U = range(6)
+STATES = 6
+EARTH_MODE, SCHULER_MODE, NETWORK_MODE = "24 h", "Schuler-Foucault", "network"
+_DAY = 86400.0
+_STANDS = 1e-7
+"""Growth over omega_s that counts as none: rounding moves a mode of two equal eigenvalues by so much."""
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One eigenvalue, or a complex pair.
+
+    Attributes
+    ----------
+    name : str
+        "24 h", "Schuler-Foucault" or "network".
+    eigenvalue : complex
+        rad/s; of a pair, the one above the real axis.
+    """
+
+    name: str
+    eigenvalue: complex
+
+    @property
+    def growth(self) -> float:
+        """Real part, 1/s; positive: grows."""
+        return self.eigenvalue.real
+
+    @property
+    def damping_ratio(self) -> float:
+        """-Re/|s|; 0 for an eigenvalue at zero."""
+        size = abs(self.eigenvalue)
+        return -self.eigenvalue.real / size if size > 0.0 else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class WholeSystem:
+    """Eigenvalues of the whole system at one latitude.
+
+    Attributes
+    ----------
+    lat : float
+        rad.
+    modes : tuple of Mode
+        The 24 h mode first, then the Schuler-Foucault modes, then those of the network; each by size.
+    stable : bool
+        No mode grows. A free system counts as stable.
+    earth_growth : float
+        Largest real part of the 24 h mode, 1/s; positive: it grows. 0 where rounding alone would move it.
+    h_slope : float
+        H'(0), s; nan where H has a pole at zero.
+    warnings : tuple of str
+        Names each mode that grows, with its e-folding time.
+    """
+
+    lat: float
+    modes: tuple[Mode, ...]
+    stable: bool
+    earth_growth: float
+    h_slope: float
+    warnings: tuple[str, ...]
+
+    def named(self, name: str) -> tuple[Mode, ...]:
+        """Modes of one name."""
+        return tuple(mode for mode in self.modes if mode.name == name)
+
+    @property
+    def e_folding_s(self) -> float:
+        """Time in which the 24 h mode grows by the factor e, s; negative: decays by it; inf: neither."""
+        return 1.0 / self.earth_growth if self.earth_growth != 0.0 else math.inf
+
+
+@dataclass(frozen=True, eq=False)
+class LawForm:
+    """The damping law of one channel as it acts on the velocity error dV, in normalised time.
+
+    c = C z + D dV is the correction of the platform's velocity and a = -k1 dV the feedback into the velocity,
+    with z' = A z + B dV.
+    """
+
+    A: np.ndarray
+    B: np.ndarray
+    C: np.ndarray
+    D: float
+    k1: float
+
+
+def network_that_acts(network: LinearNetwork, damping: str) -> LinearNetwork:
+    """The network, or H = 1 where none acts: free, the copies of an averaging method, a Kalman filter."""
+    if damping in ("internal", "external"):
+        return network
+    return linear_network("none", network.omega_s, [1.0], [1.0])
+
+
+def law_form(network: LinearNetwork, damping: str) -> LawForm:
+    """State-space form of a method's damping law.
+
+    Parameters
+    ----------
+    network : LinearNetwork
+        H(s).
+    damping : {"free", "internal", "external", "averaging", "kalman"}
+        See `network_that_acts`.
+    """
+    network = network_that_acts(network, damping)
+    if damping == "external" and network.realisation != "network":
+        k1, k2, k3 = feedback_gains(network)
+        return LawForm(np.zeros((1, 1)), np.array([k3]), np.ones(1), k2, k1)
+    system = state_space(network.num_p, network.poles / network.omega_s)
+    return LawForm(system.A, system.B, system.C, system.D - 1.0, 0.0)
+
+
+def feedback_gains(network: LinearNetwork) -> tuple[float, float, float]:
+    """K1/omega_s, K2, K3/omega_s of H = ((1 + K2) p + K3)/(p + K1), p = s/omega_s (theory.md 3.1)."""
+    num, den = np.zeros(2), np.zeros(2)
+    num[2 - len(network.num_p) :] = network.num_p
+    den[2 - len(network.den_p) :] = network.den_p
+    if len(network.den_p) == 1:  # a common root at zero was removed
+        return 0.0, float(num[1]) - 1.0, 0.0
+    return float(den[1]), float(num[0]) - 1.0, float(num[1])
+
+
+def free_matrix(lat: float, omega_s: float, earth: Earth = SPHERE, height: float = 0.0) -> np.ndarray:
+    """System matrix of the undamped model at rest in normalised units, shape (6, 6) (theory.md 2).
+
+    States dV_E, dV_N over g/omega_s, dL, phi_E, phi_N, phi_U.
+
+    Parameters
+    ----------
+    lat : float
+        rad.
+    omega_s : float
+        Unit of the eigenvalues, rad/s.
+    earth : Earth
+        WGS-84 or the sphere.
+    height : float
+        m.
+    """
+    east, north = _stiffness(lat, omega_s, earth, height)
+    wz, wy = EARTH_RATE / omega_s * math.sin(lat), EARTH_RATE / omega_s * math.cos(lat)
+    f = np.zeros((STATES, STATES))
+    f[DV_E, DV_N], f[DV_E, PHI_N] = 2.0 * wz, -1.0
+    f[DV_N, DV_E], f[DV_N, PHI_E] = -2.0 * wz, 1.0
+    f[LATITUDE, DV_N] = north
+    f[PHI_E, DV_N], f[PHI_E, PHI_N], f[PHI_E, PHI_U] = -north, wz, -wy
+    f[PHI_N, DV_E], f[PHI_N, LATITUDE], f[PHI_N, PHI_E] = east, -wz, -wz
+    f[PHI_U, DV_E], f[PHI_U, LATITUDE], f[PHI_U, PHI_E] = east * math.tan(lat), wy, wy
+    return f
+
+
+def inputs_of_law(lat: float, omega_s: float, earth: Earth = SPHERE, height: float = 0.0) -> np.ndarray:
+    """How c_E, c_N, a_E, a_N act on the six states, shape (6, 4)."""
+    east, north = _stiffness(lat, omega_s, earth, height)
+    b = np.zeros((STATES, 4))
+    b[PHI_N, 0], b[PHI_E, 1] = east, -north
+    b[DV_E, 2] = b[DV_N, 3] = 1.0
+    return b
+
+
+def _stiffness(lat: float, omega_s: float, earth: Earth, height: float) -> tuple[float, float]:
+    """g/((N + h) omega_s^2) and g/((M + h) omega_s^2): 1 on the sphere whose omega_s is the unit."""
+    m, n = earth.radii(lat)
+    scale = earth.gravity(lat, height) / omega_s**2
+    return scale / (n + height), scale / (m + height)
+
+
+def system_matrix(
+    network: LinearNetwork, damping: str, lat: float, earth: Earth = SPHERE, height: float = 0.0
+) -> np.ndarray:
+    """System matrix with the law's states of the east, then the north channel, shape (6 + 2 n, 6 + 2 n)."""
+    law = law_form(network, damping)
+    n = len(law.B)
+    act = inputs_of_law(lat, network.omega_s, earth, height)
+    f = np.zeros((STATES + 2 * n, STATES + 2 * n))
+    f[:STATES, :STATES] = free_matrix(lat, network.omega_s, earth, height)
+    for channel in (DV_E, DV_N):
+        z = slice(STATES + channel * n, STATES + (channel + 1) * n)
+        f[:STATES, channel] += act[:, channel] * law.D - act[:, 2 + channel] * law.k1
+        f[:STATES, z] = np.outer(act[:, channel], law.C)
+        f[z, channel], f[z, z] = law.B, law.A
+    return f
+
+
+@lru_cache(maxsize=256)
+def whole_system(
+    network: LinearNetwork, damping: str, lat: float, earth: Earth = SPHERE, height: float = 0.0
+) -> WholeSystem:
+    """Analyse the whole system at rest.
+
+    Parameters
+    ----------
+    network : LinearNetwork
+        H(s); its realisation counts under external damping only.
+    damping : {"free", "internal", "external", "averaging", "kalman"}
+        Internal and external damping by the network form have the same eigenvalues.
+    lat : float
+        rad.
+    earth : Earth
+        WGS-84 or the sphere.
+    height : float
+        m.
+    """
+    network = network_that_acts(network, damping)
+    values = np.linalg.eigvals(system_matrix(network, damping, lat, earth, height)).astype(np.complex128)
+    modes = tuple(_named(values, network, lat))
+    growth = max(mode.growth for mode in modes if mode.name == EARTH_MODE)
+    tolerance = _STANDS * network.omega_s
+    growing = [mode for mode in modes if mode.growth > tolerance]
+    return WholeSystem(
+        lat=lat,
+        modes=modes,
+        stable=not growing,
+        earth_growth=growth if abs(growth) > tolerance else 0.0,
+        h_slope=network.h_slope,
+        warnings=tuple(_warnings(growing, network, lat)),
+    )
+
+
+def growth_over_latitude(
+    network: LinearNetwork, damping: str, lats: np.ndarray, earth: Earth = SPHERE
+) -> np.ndarray:
+    """Growth rate of the 24 h mode at each latitude (rad), 1/s, shape of ``lats``."""
+    lats = np.asarray(lats, dtype=float)
+    rates = [whole_system(network, damping, float(lat), earth).earth_growth for lat in lats.reshape(-1)]
+    return np.array(rates).reshape(lats.shape)
+
+
+def approximate_growth(h_slope: float, lat: float) -> float:
+    """Growth of the 24 h mode for H(0) = 1, Omega^2 (1 + sin^2 L) H'(0)/2, 1/s; good to 6 % (theory.md 10).
+
+    Parameters
+    ----------
+    h_slope : float
+        H'(0), s.
+    lat : float
+        rad.
+    """
+    return 0.5 * EARTH_RATE**2 * (1.0 + math.sin(lat) ** 2) * h_slope
+
+
+def duration(seconds: float) -> str:
+    """A time constant in the unit that suits it, to two or three digits: "3.1 days", "53 min"."""
+    seconds = abs(seconds)
+    if seconds >= 0.95 * _DAY:
+        days = seconds / _DAY
+        return f"{days:.2g} days" if days < 9.95 else f"{days:.0f} days"
+    if seconds >= 5400.0:
+        return f"{seconds / 3600.0:.2g} h"
+    return f"{seconds / 60.0:.2g} min" if seconds >= 90.0 else f"{seconds:.2g} s"
+
+
+def _named(values: ComplexArray, network: LinearNetwork, lat: float) -> list[Mode]:
+    """Name every eigenvalue after the mode it comes from; of a pair only the upper one is kept."""
+    targets, names = _uncoupled(network, lat)
+    target_of = _nearest(values, targets)
+    modes: list[Mode] = []
+    for name in (EARTH_MODE, SCHULER_MODE, NETWORK_MODE):
+        found = [v for v, i in zip(values, target_of, strict=True) if v.imag >= 0.0 and names[i] == name]
+        modes += [Mode(name, complex(root)) for root in sorted_roots(np.array(found)) * network.omega_s]
+    return modes
+
+
+def _uncoupled(network: LinearNetwork, lat: float) -> tuple[ComplexArray, list[str]]:
+    """Modes as they were without coupling: +-j Omega and the poles of both channels.
+
+    The main pair is split by Omega sin L. The last, at zero, is for a state of the law that H(s) has not.
+    """
+    rate = 1j * EARTH_RATE / network.omega_s
+    poles = closed_loop_poles(network)
+    size = np.abs(poles)
+    damping = np.where(size > _STANDS, -poles.real / np.maximum(size, _STANDS), np.inf)
+    least = poles[np.argmin(damping)]
+    main = np.zeros(len(poles), dtype=bool)
+    for pole in (least, np.conj(least)):
+        main[np.argmin(np.where(main, np.inf, np.abs(poles - pole)))] = True
+    split = np.where(main, rate * math.sin(lat), 0.0)
+    names = [SCHULER_MODE if own else NETWORK_MODE for own in main]
+    targets = np.concatenate([[rate, -rate], poles + split, poles - split, [0.0]])
+    return targets, [EARTH_MODE, EARTH_MODE, *names, *names, NETWORK_MODE]
+
+
+def _nearest(values: ComplexArray, targets: ComplexArray) -> list[int]:
+    """Index of a target for each value: the closest two, relative to their size, are joined first."""
+    apart = np.abs(values[:, None] - targets)
+    apart /= np.abs(values[:, None]) + np.abs(targets) + 1e-300
+    target_of = [-1] * len(values)
+    free = set(range(len(targets)))
+    for flat in np.argsort(apart, axis=None, kind="stable").tolist():
+        i, j = divmod(flat, len(targets))
+        if target_of[i] < 0 and j in free:
+            target_of[i] = j
+            free.discard(j)
+    return target_of
+
+
+def _warnings(growing: list[Mode], network: LinearNetwork, lat: float) -> list[str]:
+    texts = []
+    for mode in growing:
+        reason = ""
+        if mode.name == EARTH_MODE and math.isfinite(network.h_slope):
+            reason = f" (H(0) = {network.h0:.3g}, H'(0) = {network.h_slope:+.4g} s)"
+        texts.append(
+            f"whole system at latitude {lat / DEG:.4g} deg: the {mode.name} mode grows, e-folding time "
+            f"{duration(1.0 / mode.growth)}{reason}"
+        )
+    return texts

@@ -1,0 +1,243 @@
+"""What a file holds and what is wrong with it, in words and as data: behind ``schuler check``."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.units import DEG, KNOT
+from navcore.io.plausible import speed_warnings
+from navcore.io.recording import read_recording
+from navcore.io.series import Recording, Series, SourceReport, StreamReport, utc_text
+from navcore.io.source import require_file
+
+_SNIFFED_BYTES = 8192
+_NAMES = {
+    "position": "positions",
+    "velocity": "velocity over ground (E, N)",
+    "water": "speed through water",
+    "ground": "speed over ground along axes",
+    "heading": "heading",
+    "attitude": "pitch and roll",
+}
+
+
+@dataclass(frozen=True)
+class FileReport:
+    """Outcome of a check.
+
+    Attributes
+    ----------
+    file : str
+        Path as given.
+    kind : str
+        What it was understood as; empty when it was not.
+    details : dict
+        What it holds, ready for JSON.
+    text : tuple of str
+        The same for reading.
+    warnings : tuple of str
+        What the user should know.
+    faults : tuple of Fault
+        Why it was not understood.
+    """
+
+    file: str
+    kind: str
+    details: dict[str, Any] = field(default_factory=dict)
+    text: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    faults: tuple[Fault, ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """Whether the file was understood."""
+        return not self.faults
+
+    def lines(self) -> list[str]:
+        """Text for a terminal: what it holds, then warnings and faults."""
+        head = [f"{self.file}: {self.kind}"] if self.kind else []
+        words = [f"warning: {warning}" for warning in self.warnings]
+        return [*head, *self.text, *words, *(str(fault) for fault in self.faults)]
+
+    def as_dict(self) -> dict[str, Any]:
+        """One JSON document (numbers that are unknown are null)."""
+        return {
+            "file": self.file,
+            "ok": self.ok,
+            "kind": self.kind,
+            **self.details,
+            "warnings": list(self.warnings),
+            "faults": [
+                {"where": f.where, "field": f.field, "value": _plain(f.value), "allowed": f.allowed}
+                for f in self.faults
+            ],
+        }
+
+
+class Checker(NamedTuple):
+    """One kind of file: whether a file that begins so is of it, and what it holds.
+
+    ``recognises(path, head)`` gets the first 8 KiB; ``check(path)`` may raise `InputError`.
+    """
+
+    recognises: Callable[[Path, bytes], bool]
+    check: Callable[[Path], FileReport]
+
+
+def check_file(path: str | os.PathLike[str], others: Sequence[Checker] = ()) -> FileReport:
+    """Say what a file holds.
+
+    Parameters
+    ----------
+    path : path
+        Any file.
+    others : sequence of Checker
+        Further kinds of files, asked first, in this order; a file that none recognises is read as a log.
+
+    Returns
+    -------
+    FileReport
+        With ``ok`` False and one fault for each thing wrong when it cannot be understood; nothing is raised
+        for the content of a file.
+    """
+    try:
+        found = require_file(path)
+        with found.open("rb") as stream:
+            head = stream.read(_SNIFFED_BYTES)
+        checker = next((c for c in others if c.recognises(found, head)), None)
+        return checker.check(found) if checker is not None else check_log(found)
+    except InputError as error:
+        return FileReport(str(path), "", faults=error.faults)
+
+
+def check_log(path: Path) -> FileReport:
+    """Say what a log, track or heading file holds; raises `InputError`."""
+    recording = read_recording(path)
+    source = recording.sources[0]
+    quantities = {name: _quantity(name, series) for name, series in recording.quantities().items()}
+    details = {
+        "lines": source.lines,
+        "sentences": {s.name: _stream(s) for s in source.streams},
+        "checksum_faults": source.checksum_faults,
+        "without_checksum": source.without_checksum,
+        "unparsable_lines": source.unparsable,
+        "invalid_readings": source.invalid,
+        "untimed_sentences": source.untimed,
+        "out_of_order": source.jitter,
+        "quantities": quantities,
+    }
+    return FileReport(
+        str(path),
+        source.kind,
+        details,
+        tuple(_text(source, recording, quantities)),
+        _warnings(source, recording),
+    )
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value if value is None or isinstance(value, str | int | float) else str(value)
+
+
+def _stream(stream: StreamReport) -> dict[str, Any]:
+    known = math.isfinite(stream.start_s)
+    return {
+        "count": stream.count,
+        "used": stream.used,
+        "start_utc": utc_text(stream.start_s) if known else None,
+        "end_utc": utc_text(stream.end_s) if known else None,
+        "span_s": round(stream.end_s - stream.start_s, 4) if known else None,
+        "rate_hz": round(stream.rate_hz, 4) if math.isfinite(stream.rate_hz) else None,
+        "gaps": stream.gaps,
+        "longest_gap_s": round(stream.longest_gap_s, 4),
+    }
+
+
+def _quantity(name: str, series: Series) -> dict[str, Any]:
+    gaps, longest = series.gaps()
+    entry: dict[str, Any] = {
+        "source": series.what,
+        "count": int(series.time_s.size),
+        "valid": int(np.count_nonzero(series.valid)),
+        "dated": series.dated,
+        "start_utc": utc_text(series.time_s[0]) if series.dated else None,
+        "end_utc": utc_text(series.time_s[-1]) if series.dated else None,
+        "span_s": round(float(series.time_s[-1] - series.time_s[0]), 4),
+        "interval_s": round(series.interval_s, 4),
+        "gaps": gaps,
+        "longest_gap_s": round(longest, 4),
+    }
+    values = series.values[series.valid]
+    if values.size:
+        entry |= _range(name, values)
+    return entry
+
+
+def _range(name: str, values: np.ndarray) -> dict[str, list[float]]:
+    """Smallest and largest values in the units users read."""
+
+    def extent(column: np.ndarray, unit: float, digits: int) -> list[float]:
+        return [round(float(column.min()) / unit, digits), round(float(column.max()) / unit, digits)]
+
+    if name == "position":
+        return {"lat_deg": extent(values[:, 0], DEG, 6), "lon_deg": extent(values[:, 1], DEG, 6)}
+    if name == "velocity":
+        speed = np.hypot(values[:, 0], values[:, 1])
+        return {"speed_mps": extent(speed, 1.0, 3), "speed_kn": extent(speed, KNOT, 2)}
+    if name in ("water", "ground"):
+        return {
+            "forward_mps": extent(values[:, 1], 1.0, 3),
+            "forward_kn": extent(values[:, 1], KNOT, 2),
+            "starboard_mps": extent(values[:, 0], 1.0, 3),
+            "starboard_kn": extent(values[:, 0], KNOT, 2),
+        }
+    if name == "heading":
+        return {"heading_deg": extent(values[:, 0], DEG, 2)}
+    return {"pitch_deg": extent(values[:, 0], DEG, 2), "roll_deg": extent(values[:, 1], DEG, 2)}
+
+
+def _text(source: SourceReport, recording: Recording, quantities: dict[str, Any]) -> list[str]:
+    words = [
+        f"  {source.lines} lines, {source.checksum_faults} checksum faults, {source.unparsable} unparsable, "
+        f"{source.invalid} flagged invalid"
+    ]
+    for stream in source.streams:
+        rate = f", {stream.rate_hz:.3g} Hz" if math.isfinite(stream.rate_hz) else ""
+        words.append(f"  {stream.count:>7} {stream.name}{rate}{'' if stream.used else ' (not used)'}")
+    series = recording.quantities()
+    for name, entry in quantities.items():
+        when = f"{entry['start_utc']} to {entry['end_utc']}, " if entry["dated"] else ""
+        gaps = (
+            f"{entry['gaps']} gaps (longest {entry['longest_gap_s']:.1f} s)" if entry["gaps"] else "no gaps"
+        )
+        every = f", each {entry['interval_s']:.3g} s" if series[name].time_s.size > 1 else ""
+        samples = f"{entry['count']} samples{every}, {when}{entry['span_s']:.1f} s, {gaps}"
+        words.append(f"  {_NAMES[name]} ({entry['source']}): {samples}")
+        words += [f"    {_extent(key, entry[key])}" for key in entry if key.endswith(("_deg", "_kn", "_mps"))]
+    return words
+
+
+def _extent(key: str, extent: list[float]) -> str:
+    stem, unit = key.rsplit("_", 1)
+    return f"{stem} {extent[0]:g} to {extent[1]:g} {'m/s' if unit == 'mps' else unit}"
+
+
+def _warnings(source: SourceReport, recording: Recording) -> tuple[str, ...]:
+    found = [*source.warnings, *speed_warnings(recording)]
+    for name, series in recording.quantities().items():
+        gaps, longest = series.gaps()
+        if gaps:
+            found.append(f"{_NAMES[name]}: {gaps} gaps, the longest {longest:.1f} s")
+        if series.time_s.size < 2:
+            found.append(f"{_NAMES[name]}: a single sample")
+    return tuple(found)

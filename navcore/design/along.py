@@ -1,0 +1,269 @@
+"""The transient error budget along a scenario's motion: P(t) of every source by discretised steps.
+
+The random processes are carried as covariances, one matrix a source; the constants as responses, one column
+each. The law must be known in advance: `constant` or `schedule`, with outages of the log (theory.md 15).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from navcore.design.constants import Column, own_columns, shared_columns
+from navcore.design.course import Course
+from navcore.design.form import LawForm
+from navcore.design.maps import (
+    ACCEL,
+    ERRORS,
+    GYRO,
+    INPUTS,
+    LAW,
+    LoopModel,
+    interval_map,
+    loop_model,
+    mean_coefficients,
+)
+from navcore.design.noise import AXES, INPUTS_OF, interval_noise
+from navcore.design.scheduled import law_stages
+from navcore.scenario.model import Method, Scenario
+from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
+
+QUANTITIES = ("phi_e_rad", "phi_n_rad", "phi_u_rad", "dve_mps", "dvn_mps", "dlat_m", "dlon_m")
+_STATES = np.array([4, 5, 6, 0, 1, 2, 3])
+_DAMPED, _UNDAMPED = True, False
+
+
+@dataclass(frozen=True, eq=False)
+class Along:
+    """Variances of one method along the run.
+
+    Attributes
+    ----------
+    t_s : ndarray, shape (k + 1,)
+        Times, s.
+    variance : dict of ndarray, shape (k + 1, 7)
+        Of each source that does anything, for `QUANTITIES`, in their units squared.
+    """
+
+    t_s: np.ndarray
+    variance: dict[str, np.ndarray]
+
+    @property
+    def total(self) -> np.ndarray:
+        """Variance of all sources together, shape (k + 1, 7)."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return sum(self.variance.values(), np.zeros((len(self.t_s), len(QUANTITIES))))
+
+
+def along(
+    scenario: Scenario,
+    method: Method,
+    course: Course,
+    model: StochasticModel,
+    columns: tuple[Column, ...] | None = None,
+) -> Along:
+    """Variances of each source along the scenario's motion.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Complete and checked.
+    method : Method
+        Of damping ``free``, ``internal`` or ``external``, with a law that is known in advance.
+    course : Course
+        Of `navcore.design.course.course`.
+    model : StochasticModel
+        The sources.
+    columns : tuple of Column, optional
+        Of `navcore.design.constants.shared_columns`, which is the same for all methods.
+    """
+    forms, stage = law_stages(method, scenario.omega_s, course)
+    course, stage = _with_stages(course, stage)
+    loops = [loop_of(scenario, form, course, model) for form in forms]
+    loop = loops[-1]
+    shared = shared_columns(scenario, course, model) if columns is None else columns
+    with np.errstate(over="ignore", invalid="ignore"):  # an unstable loop: told by who reads the variances
+        tables = _tables(loops, stage, model, course)
+        random = _random(loop, model, course, tables)
+        known = _known(loop, course, tables, (*shared, *own_columns(method, course, loop)))
+        scale = np.ones((len(course.edges), len(QUANTITIES)))
+        scale[:, 5:] = course.metres**2
+        variance = {source: random[:, k] * scale for k, source in enumerate(RANDOM_SOURCES)}
+        variance |= {source: values * scale for source, values in known.items()}
+    return Along(course.t_s, variance)
+
+
+def _with_stages(course: Course, stage: np.ndarray) -> tuple[Course, np.ndarray]:
+    """Tell intervals apart by the stage of the law too; the stage of each kind."""
+    if not stage.any():
+        return course, np.zeros(len(course.length), dtype=np.int64)
+    pairs, kind = np.unique(np.column_stack([course.kind, stage]), axis=0, return_inverse=True)
+    old = pairs[:, 0]
+    found = replace(
+        course,
+        kind=kind.reshape(-1),
+        length=course.length[old],
+        served=course.served[old],
+        half=course.half[old],
+    )
+    return found, pairs[:, 1]
+
+
+def loop_of(scenario: Scenario, form: LawForm, course: Course, model: StochasticModel) -> LoopModel:
+    """Collect what the maps of a method need."""
+    return loop_model(
+        form,
+        course,
+        scenario.omega_s,
+        body_frame=scenario.reference.frame == "body",
+        heading=scenario.run.fidelity != "channel",
+        taus=(model.gyro_drift.tau_s, model.accel_drift.tau_s, model.log_drift.tau_s),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Tables:
+    """Matrices of every kind of interval.
+
+    Attributes
+    ----------
+    Phi : ndarray, shape (g, n, n)
+    B, G : ndarray, shape (g, n, INPUTS)
+    decay : ndarray, shape (g, INPUTS)
+    Q : ndarray, shape (g, 6, n + 3, n + 3)
+        Added covariance of the random sources in navigation axes.
+    engaged : ndarray of bool, shape (k,)
+        Intervals at whose beginning the networks are cleared.
+    """
+
+    Phi: np.ndarray
+    B: np.ndarray
+    G: np.ndarray
+    decay: np.ndarray
+    Q: np.ndarray
+    engaged: np.ndarray
+
+
+def _tables(loops: list[LoopModel], stage: np.ndarray, model: StochasticModel, course: Course) -> _Tables:
+    loop = loops[-1]
+    g, n = len(course.length), loop.states
+    Phi, decay = np.zeros((g, n, n)), np.zeros((g, INPUTS))
+    B, G = np.zeros((2, g, n, INPUTS))
+    Q = np.zeros((g, len(RANDOM_SOURCES), n + AXES, n + AXES))
+    needs_log = loop.form.damping == "external"
+    served = course.served | (not needs_log)
+    mean = mean_coefficients(course)
+    alike = np.column_stack([course.length, served, stage])
+    for calls, damped, of_law in np.unique(alike, axis=0).tolist():
+        of = np.flatnonzero((alike == (calls, damped, of_law)).all(axis=1))
+        loop = loops[of_law]
+        found = interval_map(loop, course.half[of], calls, bool(damped))
+        Phi[of], B[of], G[of], decay[of] = found.Phi, found.B, found.G, found.decay
+        Q[of] = interval_noise(loop, model, mean, calls, bool(damped)).Q
+    works = served[course.kind]
+    engaged = works & ~np.concatenate([works[:1], works[:-1]])
+    return _Tables(Phi, B, G, decay, Q, engaged)
+
+
+def _random(loop: LoopModel, model: StochasticModel, course: Course, tables: _Tables) -> np.ndarray:
+    """Variances of the random sources, shape (k + 1, 6, 7), in radians for the position."""
+    n, sources = loop.states, len(RANDOM_SOURCES)
+    turns, turn_of = _turns(loop, course)
+    P = np.zeros((sources, n + AXES, n + AXES))
+    for k, drift in ((1, model.gyro_drift), (3, model.accel_drift), (5, model.log_drift)):
+        P[k, range(n, n + AXES), range(n, n + AXES)] = drift.sigma**2
+    out = np.empty((len(course.edges), sources, len(_STATES)))
+    out[0] = P[:, _STATES, _STATES]
+    A, Q, places = _joint(loop, course, tables, turns, turn_of)
+    for k, at in enumerate(places.tolist()):
+        if tables.engaged[k]:
+            P[:, loop.networks] = 0.0
+            P[:, :, loop.networks] = 0.0
+        P = A[at] @ P @ A[at].mT + Q[at]
+        out[k + 1] = P[:, _STATES, _STATES]
+    return out
+
+
+def _turns(loop: LoopModel, course: Course) -> tuple[np.ndarray, np.ndarray]:
+    """Distinct attitudes to which the drifts of the sensors are turned, and which each interval has."""
+    rows = np.rint(course.turn / 1e-3).astype(np.int64)
+    _, first, which = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    return course.turn[first].reshape(-1, 3, 3), which.reshape(-1)
+
+
+def _joint(
+    loop: LoopModel, course: Course, tables: _Tables, turns: np.ndarray, turn_of: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Joint matrices of errors and body-fixed drifts for each pair of kind and attitude that occurs."""
+    n = loop.states
+    pairs, places = np.unique(np.column_stack([course.kind, turn_of]), axis=0, return_inverse=True)
+    kind, turn = pairs[:, 0], turns[pairs[:, 1]]
+    A = np.zeros((len(pairs), len(RANDOM_SOURCES), n + AXES, n + AXES))
+    Q = tables.Q[kind].copy()
+    A[:, :, :n, :n] = tables.Phi[kind][:, None]
+    own = slice(n, n + AXES)
+    axes = {GYRO.start: turn, ACCEL.start: turn[:, :2], LAW.start: _log_turn(loop, turn)}
+    for s in (1, 3, 5):
+        inputs = INPUTS_OF[s]
+        to_navigation, width = axes[inputs.start], inputs.stop - inputs.start
+        A[:, s, :n, own] = tables.G[kind][:, :, inputs] @ to_navigation
+        left = tables.decay[kind, inputs.start]
+        A[:, s, range(n, n + AXES), range(n, n + AXES)] = left[:, None]
+        # the drift lives in body axes: x stays, the covariance with the drift is turned back
+        cross = Q[:, s, :n, n : n + width] @ to_navigation
+        variance = Q[:, s, n, n].copy()
+        Q[:, s, :n, own], Q[:, s, own, :n] = cross, cross.mT
+        Q[:, s, own, own] = variance[:, None, None] * np.eye(AXES)
+    return A, Q, places.reshape(-1)
+
+
+def _log_turn(loop: LoopModel, turn: np.ndarray) -> np.ndarray:
+    """Columns of the log's axes in E, N and a third that nothing hangs on; shape (g, 2, 3)."""
+    out = np.zeros((len(turn), 2, AXES))
+    if not loop.body_frame:
+        out[:, 0, 0] = out[:, 1, 1] = 1.0
+        return out
+    heading = np.arctan2(turn[:, 0, 1], turn[:, 1, 1])
+    sine, cosine = np.sin(heading), np.cos(heading)
+    out[:, 0, 0], out[:, 1, 0], out[:, 0, 1], out[:, 1, 1] = cosine, -sine, sine, cosine
+    return out
+
+
+def _known(
+    loop: LoopModel, course: Course, tables: _Tables, columns: tuple[Column, ...]
+) -> dict[str, np.ndarray]:
+    """Squares of the responses, summed by source; shape (k + 1, 7) each."""
+    if not columns:
+        return {}
+    count, k = len(columns), len(course.kind)
+    W = np.empty((k, INPUTS, count))
+    X = np.zeros((loop.states, count))
+    for j, column in enumerate(columns):
+        W[:, :, j] = column.drive
+        X[:ERRORS, j] = column.start
+    if loop.form.damping == "internal":
+        _rest(loop, X, W[0])
+    drive = tables.B[course.kind] @ W
+    out = np.empty((k + 1, len(_STATES), count))
+    out[0] = X[_STATES]
+    for i, kind in enumerate(course.kind.tolist()):
+        if tables.engaged[i]:
+            X[loop.networks] = 0.0
+        X = tables.Phi[kind] @ X + drive[i]
+        out[i + 1] = X[_STATES]
+    found: dict[str, np.ndarray] = {}
+    for j, column in enumerate(columns):
+        found[column.source] = found.get(column.source, 0.0) + out[:, :, j] ** 2
+    return found
+
+
+def _rest(loop: LoopModel, X: np.ndarray, first: np.ndarray) -> None:
+    """Internal damping starts at rest for the velocity at t = 0 (theory.md 3)."""
+    n = loop.order
+    if n == 0:
+        return
+    steady = np.linalg.solve(loop.form.A, -loop.form.B)
+    for channel in (0, 1):
+        u = first[LAW.start + channel] - X[channel]
+        X[ERRORS + n * channel : ERRORS + n * (channel + 1)] = steady[:, None] * u

@@ -1,0 +1,97 @@
+"""A method's law as linear equations: what its network makes of the difference V_r - V_c, in one channel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from navcore.law.combination import network_in_force, realisation_of
+from navcore.networks.base import NetworkParameters
+from navcore.networks.compass import CompassNetwork
+from navcore.networks.state_space import state_space
+from navcore.scenario.model import Method
+
+Damping = Literal["free", "internal", "external"]
+
+
+@dataclass(frozen=True, eq=False)
+class LawForm:
+    """xi' = A xi + B u, c = C xi + D u, a = E xi + F u, in normalised time tau = omega_s t.
+
+    u is the law's input (m/s), c is added to the velocity that forms the transport rate (m/s), a is fed back
+    into the velocity integrator (omega_s m/s).
+
+    Attributes
+    ----------
+    damping : {"free", "internal", "external"}
+        u is 0, minus the computed velocity, or V_r - V_c.
+    A : ndarray, shape (n, n)
+    B, C, E : ndarray, shape (n,)
+    D, F : float
+    as_printed : bool
+        The transport rate is formed from c alone, without the reference's own (Deng 4).
+    """
+
+    damping: Damping
+    A: np.ndarray
+    B: np.ndarray
+    C: np.ndarray
+    D: float
+    E: np.ndarray
+    F: float
+    as_printed: bool = False
+
+    @property
+    def order(self) -> int:
+        """States of the network in one channel."""
+        return len(self.B)
+
+
+def law_form(method: Method, omega_s: float) -> LawForm:
+    """Form in which a method runs at a site, without its policy and switching.
+
+    Parameters
+    ----------
+    method : Method
+        Of damping ``free``, ``internal`` or ``external``.
+    omega_s : float
+        Schuler frequency of the site, rad/s.
+    """
+    damping: Damping = (
+        "internal" if method.damping == "internal" else "external" if method.damping == "external" else "free"
+    )
+    parameters = network_in_force(damping, method.network, method.policy)
+    realisation = realisation_of(damping, parameters)
+    if damping == "free":
+        empty = np.zeros(0)
+        return LawForm("free", np.zeros((0, 0)), empty, empty, 0.0, empty, 0.0)
+    if realisation != "network" and isinstance(parameters, CompassNetwork):
+        return feedback_form(parameters.gains(omega_s), omega_s, realisation == "as_printed")
+    return _network_form(damping, parameters, omega_s)
+
+
+def feedback_form(gains: tuple[float, float, float], omega_s: float, as_printed: bool = False) -> LawForm:
+    """Velocity feedback: c = -K2 u + P, P' = -K3 u, a = K1 u (theory.md 3.1).
+
+    Parameters
+    ----------
+    gains : tuple of float
+        K1 (1/s), K2, K3 (1/s).
+    omega_s : float
+        Schuler frequency, rad/s.
+    as_printed : bool
+        As in Deng 4.
+    """
+    k1, k2, k3 = gains
+    one = np.ones(1)
+    return LawForm(
+        "external", np.zeros((1, 1)), -k3 / omega_s * one, one, -k2, np.zeros(1), k1 / omega_s, as_printed
+    )
+
+
+def _network_form(damping: Damping, parameters: NetworkParameters, omega_s: float) -> LawForm:
+    network = parameters.transfer(omega_s)
+    h = state_space(network.num_p, network.poles / omega_s)
+    return LawForm(damping, h.A, h.B, -h.C, 1.0 - h.D, np.zeros(len(h.B)), 0.0)

@@ -1,0 +1,232 @@
+"""One level channel at rest with a method's loop: what each source does to it in the steady state.
+
+Everything is in normalised units, or double precision is lost (theory.md 15): time tau = omega_s t, velocity
+in m/s, tilt times sqrt(g R) in m/s, so that the free loop is dV' = phi, phi' = -dV.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from navcore.analysis.transfers import RADIUS
+from navcore.design.form import LawForm
+from navcore.foundation.units import HOUR
+from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
+
+DV, PHI = 0, 1
+_MARGINAL = 1e-9
+"""Real part over omega_s above which a mode has no decay to speak of."""
+_UNSEEN = 1e-12
+"""Share of a mode in a source or an output below which it takes no part in it."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """What one source does to a channel.
+
+    Attributes
+    ----------
+    tilt_rad, velocity_mps : float or None
+        Standard deviations in the steady state; None where there is none.
+    tilt_growth, velocity_growth : float or None
+        Where there is none: standard deviation after one hour, rad and m/s, which grows with the square root
+        of time; None where it grows exponentially.
+    """
+
+    tilt_rad: float | None
+    velocity_mps: float | None
+    tilt_growth: float | None = None
+    velocity_growth: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Level:
+    """The channel of a method with the drifts of its sensors: x' = A x + sum of B_s w_s, in tau.
+
+    States dV, phi sqrt(gR), network, gyro drift, accelerometer drift, log drift.
+
+    Attributes
+    ----------
+    A : ndarray, shape (n, n)
+    drives : dict of ndarray, shape (n,)
+        Input column of each random source, scaled so that its white noise has unit density in tau.
+    constants : dict of ndarray, shape (n,)
+        Input column of 1 rad/s, 1 m/s^2, 1 m/s of ``gyro``, ``accel`` and ``log``.
+    omega_s : float
+        rad/s.
+    """
+
+    A: np.ndarray
+    drives: dict[str, np.ndarray]
+    constants: dict[str, np.ndarray]
+    omega_s: float
+
+    @property
+    def tilt_unit(self) -> float:
+        """Tilt (rad) of one normalised unit."""
+        return 1.0 / (self.omega_s * RADIUS)
+
+    def growth_per_s(self) -> float:
+        """Largest real part of the eigenvalues, 1/s: positive when the loop is unstable."""
+        return float(np.max(np.real(np.linalg.eigvals(self.A)))) * self.omega_s
+
+
+def level(form: LawForm, model: StochasticModel, omega_s: float) -> Level:
+    """Make the channel of a method.
+
+    Parameters
+    ----------
+    form : LawForm
+        The method's law.
+    model : StochasticModel
+        The sensors.
+    omega_s : float
+        Schuler frequency, rad/s.
+    """
+    n = form.order
+    size = n + 5
+    net, gyro, accel, log = slice(2, n + 2), n + 2, n + 3, n + 4
+    A, own, reference = np.zeros((size, size)), _own_input(form), 1.0 if form.damping == "external" else 0.0
+    A[DV, PHI], A[PHI, DV] = 1.0, -1.0
+    # u = own dV + reference d with d the log's error; c = C xi + D u, less dV + u where as_printed
+    A[PHI, net], A[DV, net], A[net, net] = -form.C, form.E, form.A
+    printed = 1.0 if form.as_printed else 0.0
+    law = np.zeros(size)
+    law[PHI], law[DV], law[net] = -(form.D - printed), form.F, form.B
+    A[:, DV] += own * law
+    A[PHI, DV] += printed
+    A[PHI, gyro], A[DV, accel], A[:, log] = -1.0, 1.0, reference * law
+    constants = {
+        "gyro": -RADIUS * _unit(size, PHI),
+        "accel": _unit(size, DV) / omega_s,
+        "log": reference * law,
+    }
+    drives = {
+        "gyro_white": constants["gyro"] * model.figures.gyro_white * math.sqrt(omega_s),
+        "accel_white": constants["accel"] * model.figures.accel_white * math.sqrt(omega_s),
+        "log_white": constants["log"] * math.sqrt(model.figures.log_density * omega_s),
+    }
+    sizes = {
+        "gyro_drift": (gyro, model.gyro_drift, RADIUS),
+        "accel_drift": (accel, model.accel_drift, 1.0 / omega_s),
+        "log_drift": (log, model.log_drift, 1.0),
+    }
+    for source, (i, drift, unit) in sizes.items():
+        A[i, i] = -1.0 / (drift.tau_s * omega_s)
+        drives[source] = _unit(size, i) * unit * math.sqrt(drift.drive / omega_s)
+    return Level(A, drives, constants, omega_s)
+
+
+def _own_input(form: LawForm) -> float:
+    return 0.0 if form.damping == "free" else -1.0
+
+
+def _unit(size: int, i: int) -> np.ndarray:
+    column = np.zeros(size)
+    column[i] = 1.0
+    return column
+
+
+def steady_parts(channel: Level) -> dict[str, Part]:
+    """Standard deviations that each random source leaves in the steady state (theory.md 15).
+
+    The adjoint equation A^T X + X A + c c^T = 0 gives the variance of one output for every source at once,
+    b^T X b.
+
+    Parameters
+    ----------
+    channel : Level
+        Of `level`.
+    """
+    from scipy.linalg import matrix_balance, solve_continuous_lyapunov
+
+    A = channel.A
+    if np.max(np.real(np.linalg.eigvals(A))) >= -_MARGINAL:
+        return {source: _growing(channel, channel.drives[source]) for source in RANDOM_SOURCES}
+    balanced, (scale, order) = matrix_balance(A, separate=True)
+    columns = np.stack([channel.drives[source] for source in RANDOM_SOURCES], axis=1)
+    columns = (columns / scale[:, None])[order]
+    deviations = {}
+    for output in (DV, PHI):
+        row = np.zeros(len(A))
+        row[output] = scale[output]
+        X = solve_continuous_lyapunov(balanced.T, -np.outer(row[order], row[order]))
+        deviations[output] = np.sqrt(np.maximum(np.einsum("is,ij,js->s", columns, X, columns), 0.0))
+    return {
+        source: Part(float(deviations[PHI][k]) * channel.tilt_unit, float(deviations[DV][k]))
+        for k, source in enumerate(RANDOM_SOURCES)
+    }
+
+
+def _growing(channel: Level, column: np.ndarray) -> Part:
+    """Steady deviation where the source meets only modes that decay, else how it grows."""
+    values, right = np.linalg.eig(channel.A)
+    try:
+        shares = np.linalg.solve(right, column.astype(complex))
+    except np.linalg.LinAlgError:
+        return Part(None, None)
+    found: list[float | None] = []
+    for output in (PHI, DV):
+        residues = right[output] * shares
+        size = float(np.max(np.abs(residues), initial=0.0))
+        seen = np.abs(residues) > _UNSEEN * max(size, 1e-300)
+        marginal = seen & (np.real(values) >= -_MARGINAL)
+        unit = channel.tilt_unit if output == PHI else 1.0
+        if not np.any(marginal):
+            found += [unit * _decaying(values[seen], residues[seen]), None]
+        elif np.any(np.real(values[seen]) > _MARGINAL):
+            found += [None, None]
+        else:  # white noise into a mode without decay: variance |residue|^2 a unit of tau
+            rate = float(np.sum(np.abs(residues[marginal]) ** 2))
+            found += [None, unit * math.sqrt(rate * channel.omega_s * HOUR)]
+    return Part(found[0], found[2], found[1], found[3])
+
+
+def _decaying(values: np.ndarray, residues: np.ndarray) -> float:
+    """Standard deviation of sum of residue exp(value tau) under white noise of unit density."""
+    if len(values) == 0:
+        return 0.0
+    pairs = -np.outer(residues, residues.conj()) / (values[:, None] + values.conj()[None, :])
+    return math.sqrt(max(float(np.sum(pairs).real), 0.0))
+
+
+def line_part(channel: Level, amplitude: float, omega: float) -> Part:
+    """Standard deviation that a sine of the log's error leaves: amplitude |T(j omega)| / sqrt(2).
+
+    Parameters
+    ----------
+    channel : Level
+        Of `level`.
+    amplitude : float
+        m/s.
+    omega : float
+        Its frequency, rad/s.
+    """
+    system = 1j * omega / channel.omega_s * np.eye(len(channel.A)) - channel.A
+    try:
+        x = np.linalg.solve(system, channel.constants["log"].astype(complex))
+    except np.linalg.LinAlgError:
+        return Part(None, None)
+    root = amplitude / math.sqrt(2.0)
+    return Part(root * abs(x[PHI]) * channel.tilt_unit, root * abs(x[DV]))
+
+
+def constant_part(channel: Level, source: str, size: float) -> Part:
+    """What a constant error leaves in the steady state of a stable loop.
+
+    Parameters
+    ----------
+    channel : Level
+        Of `level`.
+    source : {"gyro", "accel", "log"}
+        Where it enters.
+    size : float
+        Its standard deviation, SI.
+    """
+    if channel.growth_per_s() >= -_MARGINAL * channel.omega_s:
+        return Part(None, None)
+    x = np.linalg.solve(channel.A, -channel.constants[source]) * size
+    return Part(abs(float(x[PHI])) * channel.tilt_unit, abs(float(x[DV])))

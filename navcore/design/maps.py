@@ -1,0 +1,290 @@
+"""What an interval does to the errors of a damped system: transition matrices of the sampled loop itself.
+
+One call of the damping law is written as a linear map, exactly as the simulation carries it out (held
+difference, bilinear network, RK4 of the error model with held inputs); an interval of m calls is that map
+composed with itself, by doubling. Kinds of intervals are handled together, as stacks of matrices.
+
+States: the seven of the error model, the network of the east and of the north channel, and (when the log is
+slower than the law) the held difference of both.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from navcore.design.course import Course
+from navcore.design.form import LawForm
+from navcore.mechanization.trajectory import named, table_of
+
+_T = TypeVar("_T")
+
+GYRO, ACCEL, LAW, RATE = slice(0, 3), slice(3, 5), slice(5, 7), slice(7, 9)
+"""Columns of the inputs: eps E, N, U; nabla E, N; error of the log E, N; velocity added to the transport
+rate by hand E, N."""
+INPUTS = 9
+ERRORS = 7
+
+
+@dataclass(frozen=True, eq=False)
+class Map:
+    """x -> Phi x + B w for a constant input w, and Phi x + G w for one that decays each call; stacked.
+
+    Attributes
+    ----------
+    Phi : ndarray, shape (g, n, n)
+    B, G : ndarray, shape (g, n, INPUTS)
+    decay : ndarray, shape (INPUTS,)
+        What is left of w after the map.
+    """
+
+    Phi: np.ndarray
+    B: np.ndarray
+    G: np.ndarray
+    decay: np.ndarray
+
+    def then(self, later: Map) -> Map:
+        """Return this map followed by another."""
+        return Map(
+            later.Phi @ self.Phi,
+            later.Phi @ self.B + later.B,
+            later.Phi @ self.G + later.G * self.decay,
+            self.decay * later.decay,
+        )
+
+
+def powered(one: Map, count: int) -> Map:
+    """Compose a map ``count`` times with itself."""
+    return repeated(one, count, Map.then)
+
+
+def repeated(one: _T, count: int, then: Callable[[_T, _T], _T]) -> _T:
+    """Join ``count`` equal pieces by doubling."""
+    result: _T | None = None
+    while True:
+        if count & 1:
+            result = one if result is None else then(result, one)
+        count >>= 1
+        if count == 0:
+            assert result is not None
+            return result
+        one = then(one, one)
+
+
+@dataclass(frozen=True, eq=False)
+class DiscreteForm:
+    """A `LawForm` at the step of the law, bilinear and prewarped at omega_s (theory.md 3.5)."""
+
+    A: np.ndarray
+    B: np.ndarray
+    C: np.ndarray
+    D: float
+    E: np.ndarray
+    F: float
+
+
+def discrete_form(form: LawForm, omega_s: float, step_s: float) -> DiscreteForm:
+    """Discretise a law; A is the whole transition matrix, E and F give m/s^2."""
+    n, a = form.order, math.tan(0.5 * omega_s * step_s)
+    inverse = np.linalg.inv(np.eye(n) - a * form.A)
+    return DiscreteForm(
+        A=np.eye(n) + 2.0 * a * form.A @ inverse,
+        B=2.0 * a * inverse @ form.B,
+        C=form.C @ inverse,
+        D=form.D + a * float(form.C @ inverse @ form.B),
+        E=omega_s * form.E @ inverse,
+        F=omega_s * (form.F + a * float(form.E @ inverse @ form.B)),
+    )
+
+
+def system_matrices(half: np.ndarray) -> np.ndarray:
+    """System matrices of the seven error states for rows of coefficients; shape (g, 7, 7)."""
+    c = named(half)
+    f = np.zeros((len(half), ERRORS, ERRORS))
+    coriolis = c["w_u"] + c["earth_u"]
+    up = c["tan_lat"] * c["inv_n"]
+    d_up = 2.0 * c["earth_n"] + c["up_lat"]
+    f[:, 0, 0] = up * c["v_n"] - c["inv_n"] * c["v_u"]
+    f[:, 0, 1], f[:, 0, 5], f[:, 0, 6] = coriolis, -c["f_u"], c["f_n"]
+    f[:, 0, 2] = d_up * c["v_n"] + 2.0 * c["earth_u"] * c["v_u"]
+    f[:, 1, 0], f[:, 1, 1] = -coriolis - up * c["v_e"], -c["inv_m"] * c["v_u"]
+    f[:, 1, 2], f[:, 1, 4], f[:, 1, 6] = -d_up * c["v_e"], c["f_u"], -c["f_e"]
+    f[:, 2, 1] = c["inv_m"]
+    f[:, 3, 0] = c["inv_n"] * c["sec_lat"]
+    f[:, 3, 2] = c["v_e"] * c["tan_lat"] * c["inv_n"] * c["sec_lat"]
+    f[:, 4, 1], f[:, 4, 5], f[:, 4, 6] = -c["inv_m"], c["w_u"], -c["w_n"]
+    f[:, 5, 0], f[:, 5, 2], f[:, 5, 4], f[:, 5, 6] = c["inv_n"], -c["earth_u"], -c["w_u"], c["w_e"]
+    f[:, 6, 0], f[:, 6, 2] = up, c["up_lat"] + c["earth_n"]
+    f[:, 6, 4], f[:, 6, 5] = c["w_n"], -c["w_e"]
+    return f
+
+
+def error_step(half: np.ndarray, step_s: float) -> tuple[np.ndarray, np.ndarray]:
+    """Transition and input integral of the undamped model over one step, as RK4 has them; (g, 7, 7) each."""
+    f = system_matrices(half) * step_s
+    eye = np.eye(ERRORS)
+    integral = step_s * (eye + f @ (eye / 2.0 + f @ (eye / 6.0 + f / 24.0)))
+    return eye + system_matrices(half) @ integral, integral
+
+
+@dataclass(frozen=True, eq=False)
+class LoopModel:
+    """What is the same in all intervals of a method.
+
+    Attributes
+    ----------
+    form : LawForm
+    omega_s, step_s : float
+        rad/s, s.
+    hold : int
+        Calls for which a difference is held.
+    body_frame : bool
+        The log is turned by the computed heading.
+    heading : bool
+        False for the `channel` fidelity: its up gyro drives nothing.
+    decay : ndarray, shape (INPUTS,)
+        What one call leaves of a drift; of the log's, one sample.
+    """
+
+    form: LawForm
+    omega_s: float
+    step_s: float
+    hold: int
+    body_frame: bool
+    heading: bool
+    decay: np.ndarray
+
+    @property
+    def order(self) -> int:
+        """Network states of one channel."""
+        return self.form.order
+
+    @property
+    def states(self) -> int:
+        """States in all."""
+        return ERRORS + 2 * self.order + (2 if self.hold > 1 else 0)
+
+    @property
+    def networks(self) -> slice:
+        """Where the networks' states lie."""
+        return slice(ERRORS, ERRORS + 2 * self.order)
+
+
+def interval_map(loop: LoopModel, half: np.ndarray, calls: int, damped: bool) -> Map:
+    """Map of an interval of ``calls`` calls for each row of coefficients."""
+    fresh = call_map(loop, half, damped, fresh=True)
+    if loop.hold == 1:
+        return powered(fresh, calls)
+    held = call_map(loop, half, damped, fresh=False)
+    samples, rest = divmod(calls, loop.hold)
+    sample = fresh.then(powered(held, loop.hold - 1))
+    if not samples:
+        return fresh if rest == 1 else fresh.then(powered(held, rest - 1))
+    whole = powered(sample, samples)
+    if not rest:
+        return whole
+    return whole.then(fresh if rest == 1 else fresh.then(powered(held, rest - 1)))
+
+
+def call_map(loop: LoopModel, half: np.ndarray, damped: bool, fresh: bool) -> Map:
+    """Map of one call of the law and the step that follows it.
+
+    Parameters
+    ----------
+    loop : LoopModel
+        The method.
+    half : ndarray, shape (g, COLUMNS)
+        Coefficients.
+    damped : bool
+        False: the log is out of service, the correction is zero and the networks stay as they are.
+    fresh : bool
+        A new sample of the log is taken; else the last difference is held.
+    """
+    transition, integral = error_step(half, loop.step_s)
+    g, size = len(half), loop.states
+    law = discrete_form(loop.form, loop.omega_s, loop.step_s)
+    Phi, B = np.zeros((g, size, size)), np.zeros((g, size, INPUTS))
+    Phi[:, :ERRORS, :ERRORS] = transition
+    Phi[:, range(ERRORS, size), range(ERRORS, size)] = 1.0
+    B[:, :ERRORS, GYRO] = -integral[:, :, 4:7]
+    B[:, :ERRORS, ACCEL] = integral[:, :, 0:2]
+    if not loop.heading:
+        B[:, :, 2] = 0.0
+    decay = loop.decay.copy()
+    if not fresh:
+        decay[LAW] = 1.0
+    if damped and loop.form.damping != "free":
+        _put_law(loop, law, half, integral, fresh, Phi, B)
+    return Map(Phi, B, B.copy(), decay)
+
+
+def _put_law(
+    loop: LoopModel,
+    law: DiscreteForm,
+    half: np.ndarray,
+    integral: np.ndarray,
+    fresh: bool,
+    Phi: np.ndarray,
+    B: np.ndarray,
+) -> None:
+    g, n = len(half), loop.order
+    printed = 1.0 if loop.form.as_printed else 0.0
+    # velocity added to the transport rate, E and N -> rates of the errors
+    rate = np.zeros((g, ERRORS, 2))
+    rate[:, 5, 0], rate[:, 4, 1] = named(half)["inv_n"], -named(half)["inv_m"]
+    rate = integral @ rate
+    fed = integral[:, :, 0:2] * law.F
+    into = rate * (law.D - printed) + fed  # of the input u on the errors
+    B[:, :ERRORS, RATE] = rate
+    Phi[:, :ERRORS, 0:2] -= printed * rate
+    own = np.zeros((g, 2, ERRORS))
+    own[:, 0, 0] = own[:, 1, 1] = -1.0
+    if loop.body_frame and loop.form.damping == "external":
+        own[:, 0, 6], own[:, 1, 6] = named(half)["v_n"], -named(half)["v_e"]
+    held = slice(ERRORS + 2 * n, ERRORS + 2 * n + 2)
+    for channel in (0, 1):
+        net = slice(ERRORS + n * channel, ERRORS + n * (channel + 1))
+        Phi[:, net, net] = law.A
+        Phi[:, :ERRORS, net] = rate[:, :, channel, None] * law.C + integral[:, :, channel, None] * law.E
+        if fresh:
+            Phi[:, net, :ERRORS] = law.B[:, None] * own[:, channel, None, :]
+            B[:, net, LAW.start + channel] = law.B
+        else:
+            Phi[:, net, held.start + channel] = law.B
+    if fresh:
+        Phi[:, :ERRORS, :ERRORS] += into @ own
+        B[:, :ERRORS, LAW] = into
+        if loop.hold > 1:
+            Phi[:, held, held] = 0.0
+            Phi[:, held, :ERRORS] = own
+            B[:, held, LAW] = np.eye(2)
+    else:
+        Phi[:, :ERRORS, held] = into
+
+
+def loop_model(
+    form: LawForm,
+    course: Course,
+    omega_s: float,
+    *,
+    body_frame: bool,
+    heading: bool,
+    taus: tuple[float, float, float],
+) -> LoopModel:
+    """Collect what `call_map` needs; ``taus`` are the correlation times of gyros, accelerometers, log (s)."""
+    decay = np.ones(INPUTS)
+    for columns, tau, calls in zip((GYRO, ACCEL, LAW), taus, (1, 1, course.hold), strict=True):
+        decay[columns] = math.exp(-calls * course.step_s / tau)
+    return LoopModel(form, omega_s, course.step_s, course.hold, body_frame, heading, decay)
+
+
+def mean_coefficients(course: Course) -> np.ndarray:
+    """Mean coefficients of a run without horizontal force and speed, shape (1, COLUMNS)."""
+    row = named(course.half.mean(axis=0)[None, :])
+    for name in ("f_e", "f_n", "v_e", "v_n", "v_u", "w_e", "up_lat"):
+        row[name] = 0.0
+    return table_of(row)

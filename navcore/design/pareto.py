@@ -1,0 +1,225 @@
+"""What two objectives cost each other: the Pareto front of every network of the catalogue (theory.md 18)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from navcore.design.measures import ALONG_ONLY, FLOORED, MEASURES, Setting, Ship, read_objective
+from navcore.design.search import MISSED, Effort, Search
+from navcore.design.vary import read_varied
+from navcore.foundation.errors import Fault, InputError
+from navcore.networks import NETWORKS
+from navcore.scenario.model import Method, Scenario
+
+LEFT_OUT = ("none", "custom")
+"""Networks without parameters of a design of their own."""
+_WEIGHTS = np.linspace(0.0, 1.0, 7)
+_EFFORT = Effort(6, 8, 40)
+_EFFORT_ALONG = Effort(5, 3, 14)
+_POINTS = 24
+
+
+@dataclass(frozen=True)
+class Point:
+    """One setting of a network that no other of that network beats in both objectives.
+
+    Attributes
+    ----------
+    values : (float, float)
+        Objectives, SI.
+    network : dict
+        The network block that gives them.
+    """
+
+    values: tuple[float, float]
+    network: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Pareto:
+    """Fronts of all networks.
+
+    Attributes
+    ----------
+    objectives : (str, str)
+        What is on the axes.
+    fronts : dict of tuple of Point
+        By network id, in order of the first objective.
+    present : (float, float) or None
+        Of the method as it is; None where it has no finite values.
+    floor : tuple of float or None
+        Of each objective.
+    stopped : bool
+        The search was cancelled.
+    """
+
+    objectives: tuple[str, str]
+    fronts: dict[str, tuple[Point, ...]]
+    present: tuple[float, float] | None
+    floor: tuple[float | None, float | None]
+    stopped: bool
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return a document that JSON can hold."""
+        return {
+            "objectives": list(self.objectives),
+            "floor": list(self.floor),
+            "present": None if self.present is None else list(self.present),
+            "fronts": [
+                {
+                    "network": name,
+                    "points": [{"values": list(p.values), "network": p.network} for p in points],
+                }
+                for name, points in self.fronts.items()
+            ],
+            "stopped": self.stopped,
+        }
+
+
+class _Weighed(Search):
+    """Search for w log a + (1 - w) log b that remembers every setting it saw."""
+
+    def __init__(self, ship: Ship, varied: Sequence[Any], names: tuple[str, str]) -> None:
+        super().__init__([ship], varied, read_objective(names[0]), ())
+        self.names, self.weight = names, 0.5
+        self.seen: list[tuple[tuple[float, float], dict[str, Any]]] = []
+
+    def value(self, settings: Sequence[Setting]) -> float:
+        both = _both(settings[0], self.names)
+        if both is None:
+            return math.inf
+        self.seen.append((both, settings[0].method.network.model_dump(mode="json", exclude_none=True)))
+        # above zero, or the clipping of missed requirements would take it
+        return 100.0 + self.weight * math.log(both[0]) + (1.0 - self.weight) * math.log(both[1])
+
+
+def pareto(
+    scenario: Scenario,
+    objectives: tuple[str, str] = ("tilt_rms", "velocity_rms"),
+    method: int = 0,
+    *,
+    networks: Sequence[str] | None = None,
+    along: bool = False,
+    progress: Callable[[float], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> Pareto:
+    """Pareto fronts of two objectives for every network in place of a method's own.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        With the method.
+    objectives : (str, str)
+        Two names of `navcore.design.measures.MEASURES`.
+    method : int
+        Index of the method; its damping, policy and switching stay.
+    networks : sequence of str, optional
+        Ids; default: all that have parameters or fixed coefficients of their own.
+    along : bool
+        Over the scenario's run, else in the steady state at rest.
+    progress, cancelled : callable, optional
+        Told the fraction done; asked before each evaluation.
+
+    Raises
+    ------
+    InputError
+        An objective or method is not known, or the method is not damped.
+    """
+    for name in objectives:
+        if name not in MEASURES:
+            raise InputError(Fault("", "objectives", name, f"must be one of {', '.join(MEASURES)}"))
+    if not 0 <= method < len(scenario.method):
+        raise InputError(Fault("", "method", method, f"must be 0 to {len(scenario.method) - 1}"))
+    if scenario.method[method].undamped:
+        told = f'damping = "{scenario.method[method].damping}" uses no network'
+        raise InputError(Fault("", f"method.{method}.damping", None, told))
+    along = along or any(name in ALONG_ONLY for name in objectives)
+    ids = [name for name in NETWORKS if name not in LEFT_OUT] if networks is None else list(networks)
+    ship = Ship(scenario, along)
+    if ship.model.silent and not along:
+        told = "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
+        raise InputError(Fault("", "objectives", objectives[0], told))
+    fronts: dict[str, tuple[Point, ...]] = {}
+    stopped = False
+    for k, name in enumerate(ids):
+        seen, stopped = _front(scenario, method, name, objectives, along, cancelled)
+        fronts[name] = _best(seen)
+        if progress is not None:
+            progress((k + 1) / len(ids))
+        if stopped:
+            break
+    least = ship.floor()
+    floors = [getattr(least, FLOORED[name]) if name in FLOORED else None for name in objectives]
+    return Pareto(
+        objectives=objectives,
+        fronts={name: points for name, points in fronts.items() if points},
+        present=_both(Setting(ship, scenario.method[method]), objectives),
+        floor=(floors[0], floors[1]),
+        stopped=stopped,
+    )
+
+
+def _both(setting: Setting, names: tuple[str, str]) -> tuple[float, float] | None:
+    try:
+        first, second = (float(MEASURES[name][0](setting)) for name in names)
+    except (InputError, np.linalg.LinAlgError):
+        return None
+    return (first, second) if all(math.isfinite(v) and v > 0.0 for v in (first, second)) else None
+
+
+def _front(
+    scenario: Scenario,
+    index: int,
+    network: str,
+    names: tuple[str, str],
+    along: bool,
+    cancelled: Callable[[], bool] | None,
+) -> tuple[list[tuple[tuple[float, float], dict[str, Any]]], bool]:
+    """Every setting of a network that a few weighted searches saw, and whether they were stopped."""
+    method = scenario.method[index]
+    block = {"network": {"id": network}}
+    with_network = Method.model_validate(
+        method.model_dump(mode="json", by_alias=True, exclude_none=True) | block
+    )
+    figures = scenario.figures()
+    with_network = with_network.model_copy(update={"network": with_network.network.with_sensors(figures)})
+    methods = tuple(with_network if i == index else m for i, m in enumerate(scenario.method))
+    other = scenario.model_copy(update={"method": methods})
+    ship = Ship(other, along)
+    own = _both(Setting(ship, with_network), names)
+    dumped = with_network.network.model_dump(mode="json", exclude_none=True)
+    seen = [] if own is None else [(own, dumped)]
+    fields = with_network.network.design_fields()
+    if not fields:
+        return seen, False
+    varied = read_varied(other, [f"method.{index}.network.{field}" for field in fields])
+    search = _Weighed(ship, varied, names)
+    search.cancelled = cancelled
+    for weight in _WEIGHTS:
+        search.weight = float(weight)
+        start = None if search.best is None else search.best[1]
+        if search.run(_EFFORT_ALONG if along else _EFFORT, start):
+            return seen + search.seen, True
+        assert search.best is not None and search.best[0] > -MISSED
+    return seen + search.seen, False
+
+
+def _best(seen: Sequence[tuple[tuple[float, float], dict[str, Any]]]) -> tuple[Point, ...]:
+    """Points that no other beats in both objectives, thinned out to equal ratios."""
+    front: list[Point] = []
+    lowest = math.inf
+    for values, network in sorted(seen, key=lambda one: one[0]):
+        if values[1] < lowest:
+            lowest = values[1]
+            front.append(Point(values, network))
+    if len(front) <= _POINTS:
+        return tuple(front)
+    places = np.log([[p.values[0], p.values[1]] for p in front])
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(places, axis=0), axis=1))])
+    chosen = np.unique(np.searchsorted(way, np.linspace(0.0, way[-1], _POINTS)))
+    return tuple(front[i] for i in np.minimum(chosen, len(front) - 1))

@@ -1,0 +1,108 @@
+"""The budget of a method whose law looks at the data: no covariance exists, so it is run with many seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from navcore.design.along import QUANTITIES
+from navcore.engine.simulation import simulate
+from navcore.foundation.errors import Fault, InputError
+from navcore.scenario.model import Method, Scenario
+
+SEEDS = 24
+
+
+def no_covariance(scenario: Scenario, method: Method) -> str:
+    """Say why a method has no covariance; empty when it has one.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Complete and checked.
+    method : Method
+        One of its methods.
+    """
+    if method.damping == "averaging":
+        return "averaging combines several navigations"
+    if method.damping == "kalman":
+        return "the Kalman filter corrects by its own gains"
+    if method.damping == "free":
+        return ""
+    if method.policy.id not in ("constant", "schedule"):
+        return f'policy "{method.policy.id}" looks at the data'
+    if method.policy.id == "schedule" and method.network.model_dump().get("realisation") != "feedback":
+        return 'policy "schedule" is followed in advance only with network.realisation = "feedback"'
+    if method.policy.id == "schedule" and scenario.reference.outage:
+        return 'policy "schedule" begins anew after each outage of the log'
+    outages = bool(scenario.reference.outage) and method.damping == "external"
+    if method.switching.id == "hard" or (method.switching.id == "keep" and not outages):
+        return ""
+    return f'switching "{method.switching.id}" acts on what was measured before'
+
+
+def seed_variance(
+    scenario: Scenario,
+    method: Method,
+    seeds: int = SEEDS,
+    progress: Callable[[float], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Mean squares of a method's errors over several seeds, on the linear error model.
+
+    Biases and initial errors stay as the scenario gives them.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Complete and checked; a strapdown scenario is run on the error model.
+    method : Method
+        One of its methods.
+    seeds : int
+        Number of runs; their seeds follow that of the scenario.
+    progress : callable, optional
+        Told the fraction done.
+    cancelled : callable, optional
+        When it says True, what was run so far is used.
+
+    Returns
+    -------
+    t_s : ndarray, shape (m,)
+    variance : ndarray, shape (m, 7)
+        For `navcore.design.along.QUANTITIES`.
+
+    Raises
+    ------
+    InputError
+        A run diverged: the method is unstable.
+    """
+    total: np.ndarray | None = None
+    t_s, count = np.zeros(0), 0
+    for k in range(seeds):
+        if k and cancelled is not None and cancelled():
+            break
+        run_settings = scenario.run.model_copy(
+            update={
+                "seed": scenario.run.seed + k,
+                "fidelity": "error_model" if scenario.strapdown else scenario.run.fidelity,
+            }
+        )
+        alone = scenario.model_copy(
+            update={
+                "run": run_settings,
+                "method": (method,),
+                "alignment": type(scenario.alignment)(),
+            }
+        )
+        result = simulate(alone).methods[0]
+        if result.status == "diverged":
+            raise InputError(
+                Fault("", "method", method.name, f"has no budget: it diverges ({result.reason})")
+            )
+        squares = result.rows[:, : len(QUANTITIES)] ** 2
+        total, t_s, count = squares if total is None else total + squares, result.t_s, count + 1
+        if progress is not None:
+            progress((k + 1) / seeds)
+    assert total is not None
+    return t_s, total / count

@@ -1,0 +1,289 @@
+"""The best setting of a method: a bounded global search with a local finish, by scipy (theory.md 18)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from navcore.design.measures import (
+    ALONG_ONLY,
+    FLOORED,
+    MEASURES,
+    Objective,
+    Requirement,
+    Setting,
+    Ship,
+    read_objective,
+    read_requirement,
+)
+from navcore.design.search import ALONG, MISSED, REFUSED, STEADY, Effort, Search
+from navcore.design.vary import Varied, present, read_varied
+from navcore.foundation.errors import Fault, InputError
+from navcore.scenario.model import Scenario
+
+_FLAT = 1.05
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """What a search found.
+
+    Attributes
+    ----------
+    best : dict of float
+        Value of each varied field.
+    objective : float
+        At the best setting, SI (of a sum: relative).
+    before : float or None
+        At the present setting; None where that makes no method or has no finite value.
+    floor : float or None
+        Least that any damping can reach; None where the objective has none.
+    at_end_of_range : tuple of str
+        Fields that stand at an end of their range: the true optimum may lie outside.
+    active : tuple of str
+        Requirements that hold the optimum back.
+    cost : dict of float
+        Objective without each active requirement.
+    flat : dict of (float, float)
+        Range of each field, the others held, within which the objective is at most 5 % above the best.
+    stopped : bool
+        The search was cancelled: the best so far.
+    scenario : Scenario
+        With the best setting in place.
+    """
+
+    best: dict[str, float]
+    objective: float
+    before: float | None
+    floor: float | None
+    at_end_of_range: tuple[str, ...]
+    active: tuple[str, ...]
+    cost: dict[str, float]
+    flat: dict[str, tuple[float, float]]
+    stopped: bool
+    scenario: Scenario = field(repr=False)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the document of interface.md."""
+        return {
+            "best": self.best,
+            "objective": self.objective,
+            "before": self.before,
+            "floor": self.floor,
+            "at_end_of_range": list(self.at_end_of_range),
+            "active": list(self.active),
+            "cost": self.cost,
+            "flat": {name: list(ends) for name, ends in self.flat.items()},
+            "stopped": self.stopped,
+        }
+
+
+def tune(
+    scenario: Scenario,
+    objective: str,
+    vary: Sequence[str],
+    require: Sequence[str] = (),
+    *,
+    along: bool = False,
+    worst_of: Sequence[Scenario] = (),
+    progress: Callable[[float], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> Tuned:
+    """Find the parameters of a method that make an objective least while requirements are kept.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        With the method.
+    objective : str
+        A name of `navcore.design.measures.MEASURES`, or a weighted sum, ``tilt_rms + 0.5*velocity_rms``,
+        whose terms count relative to their values before.
+    vary : sequence of str
+        Fields, ``method.1.network.sigma`` or with a range ``method.1.network.sigma=1e-4:0.1``.
+    require : sequence of str
+        Limits, ``settling_s<=3600``.
+    along : bool
+        Root mean squares over the scenario's run; else in the steady state at rest. Heading and position,
+        which have no steady state, are always over the run.
+    worst_of : sequence of Scenario
+        Further scenarios in whose same method the parameters are put too: the worst of all counts.
+    progress, cancelled : callable, optional
+        Told the fraction done, 0..1; when ``cancelled`` says True the best so far is given.
+
+    Raises
+    ------
+    InputError
+        A field must not vary, a range or requirement is wrong, or no setting meets all requirements.
+
+    Examples
+    --------
+    >>> from navcore import load, tune
+    >>> found = tune(load("sikuliaq-like"), "tilt_rms", ["method.1.network.xi=0.1:5"]) # doctest: +SKIP
+    """
+    wanted, limits = read_objective(objective), [read_requirement(text) for text in require]
+    along = along or any(name in ALONG_ONLY for name in (*wanted.names, *(one.name for one in limits)))
+    varied = read_varied(scenario, vary)
+    ships = [Ship(one, along) for one in (scenario, *worst_of)]
+    _check_method(ships, varied, wanted)
+    search = Search(ships, varied, wanted, limits, progress, cancelled)
+    start, before = _begin(search)
+    effort = ALONG if along else STEADY
+    stopped = search.run(effort, start)
+    best = search.best
+    if best is None or best[0] >= REFUSED:
+        if stopped:
+            raise InputError(Fault("", "--vary", None, "the search was stopped before it found a setting"))
+        raise InputError(Fault("", "--vary", ", ".join(vary), "no value within these ranges makes a method"))
+    if best[0] >= MISSED:
+        raise InputError(list(_nothing_meets(search, effort, start)))
+    return _result(search, best[1], before, effort, stopped)
+
+
+def _check_method(ships: Sequence[Ship], varied: Sequence[Varied], objective: Objective) -> None:
+    index = varied[0].method
+    for ship in ships:
+        if index >= len(ship.scenario.method):
+            raise InputError(Fault("", "--vary", varied[0].field, f"another scenario has no method.{index}"))
+    method = ships[0].scenario.method[index]
+    if method.undamped:
+        told = f'must not vary: damping = "{method.damping}" uses no network'
+        raise InputError(Fault("", "--vary", varied[0].field, told))
+    names = set(objective.names) & set(FLOORED)
+    if names and not ships[0].along_run and ships[0].model.silent:
+        told = "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
+        raise InputError(Fault("", "--objective", objective.text, told))
+
+
+def _begin(search: Search) -> tuple[np.ndarray | None, float | None]:
+    """Place and objective of the present setting; also fixes the scales of the objective."""
+    values = present(search.ships[0].scenario, search.varied)
+    try:
+        settings = [Setting(ship, ship.scenario.method[search.varied[0].method]) for ship in search.ships]
+        search.reference = {
+            name: max(MEASURES[name][0](setting) for setting in settings) for name in search.objective.names
+        }
+        before = search.value(settings)
+    except (InputError, np.linalg.LinAlgError):
+        before = math.inf
+    if math.isfinite(before) and before > 0.0:
+        search.scale = before
+    start = None
+    if np.all(np.isfinite(values)):
+        start = np.array([one.place(value) for one, value in zip(search.varied, values, strict=True)])
+    return start, before if math.isfinite(before) else None
+
+
+def _result(search: Search, places: np.ndarray, before: float | None, effort: Effort, stopped: bool) -> Tuned:
+    values = search.values(places)
+    settings = search.settings(places)
+    objective = search.value(settings)
+    active = [one for one in search.requirements if any(one.active(setting) for setting in settings)]
+    cost, flat = {}, {}
+    if not stopped:
+        flat = _flat(search, places, objective)
+        for one in active:
+            rest = [other for other in search.requirements if other is not one]
+            cost[one.text] = _without(search, rest, effort, places)
+    name = search.objective.names[0]
+    floor = None
+    if len(search.objective.terms) == 1 and name in FLOORED:
+        found = [getattr(ship.floor(), FLOORED[name]) for ship in search.ships]
+        floor = max((value for value in found if value is not None), default=None)
+    scenario = search.ships[0].scenario
+    index = search.varied[0].method
+    methods = tuple(settings[0].method if i == index else method for i, method in enumerate(scenario.method))
+    return Tuned(
+        best={one.field: value for one, value in zip(search.varied, values, strict=True)},
+        objective=objective,
+        before=before,
+        floor=floor,
+        at_end_of_range=tuple(
+            one.field for one, value in zip(search.varied, values, strict=True) if one.at_end(value)
+        ),
+        active=tuple(one.text for one in active),
+        cost=cost,
+        flat=flat,
+        stopped=stopped,
+        scenario=scenario.model_copy(update={"method": methods}),
+    )
+
+
+def _without(search: Search, rest: Sequence[Requirement], effort: Effort, start: np.ndarray) -> float:
+    """Objective that could be reached with fewer requirements."""
+    other = Search(search.ships, search.varied, search.objective, rest, None, search.cancelled)
+    other.reference, other.scale = search.reference, search.scale
+    other.run(effort, start)
+    assert other.best is not None
+    return other.best[0] * other.scale if other.best[0] < MISSED else math.inf
+
+
+def _flat(search: Search, places: np.ndarray, objective: float) -> dict[str, tuple[float, float]]:
+    """Range of each field in which the objective stays within 5 % of the best, the others held."""
+    quiet = Search(search.ships, search.varied, search.objective, search.requirements)
+    quiet.reference, quiet.scale = search.reference, search.scale
+    limit = _FLAT * objective / search.scale
+    found = {}
+    for i, one in enumerate(search.varied):
+        ends = []
+        for end in (0.0, 1.0):
+            inside, outside = float(places[i]), end
+            trial = places.copy()
+            trial[i] = end
+            if quiet.cost(trial) <= limit:
+                ends.append(one.value(end))
+                continue
+            for _ in range(9):
+                trial[i] = 0.5 * (inside + outside)
+                if quiet.cost(trial) <= limit:
+                    inside = float(trial[i])
+                else:
+                    outside = float(trial[i])
+            ends.append(one.value(inside))
+        found[one.field] = (ends[0], ends[1])
+    return found
+
+
+def _nothing_meets(search: Search, effort: Effort, start: np.ndarray | None) -> Any:
+    """Yield a fault for each requirement: what is the best of it alone, and what it costs."""
+    for one in search.requirements:
+        sense = 1.0 if one.sense == "<=" else -1.0
+        alone = Search(search.ships, search.varied, Objective(one.name, ((one.name, 1.0),)), ())
+        if sense > 0.0:
+            alone.run(effort, start)
+            assert alone.best is not None
+            reach = alone.best[0]
+        else:
+            reach = _largest(alone, effort, start)
+        rest = [other for other in search.requirements if other is not one]
+        without = Search(search.ships, search.varied, search.objective, rest)
+        without.reference, without.scale = search.reference, search.scale
+        without.run(effort, start)
+        assert without.best is not None
+        unit = MEASURES[one.name][1]
+        if without.best[0] < MISSED:
+            left = f"; without it {search.objective.text} comes to {without.best[0] * without.scale:.4g}"
+        else:
+            left = "; without it the others are not met either"
+        told = (
+            f"nothing within these ranges meets all requirements: alone it comes to {reach:.4g} {unit}{left}"
+        )
+        yield Fault("", "--require", one.text, " ".join(told.split()))
+
+
+def _largest(search: Search, effort: Effort, start: np.ndarray | None) -> float:
+    """Largest value of a measure, where a requirement asks for at least something."""
+    name = search.objective.names[0]
+    measure = MEASURES[name][0]
+
+    class _Upwards(Search):
+        def value(self, settings: Sequence[Setting]) -> float:
+            return -min(measure(setting) for setting in settings)
+
+    other = _Upwards(search.ships, search.varied, search.objective, ())
+    other.run(effort, start)
+    assert other.best is not None
+    return -other.best[0]

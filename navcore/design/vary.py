@@ -1,0 +1,242 @@
+"""Which parameters a search may move, and between which ends."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, get_args, get_origin
+
+import numpy as np
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.faults import faults_from
+from navcore.foundation.parameters import extra_of
+from navcore.scenario.model import Method, Scenario
+
+_WIDEST = 1e6
+"""Ratio of the ends of an allowed range that is searched as a whole; else the slider's range is."""
+_LOG_FROM = 30.0
+"""Ratio of two positive ends from which a parameter is searched in equal ratios."""
+_END = 1e-3
+"""Part of a range within which a value counts as standing at its end."""
+
+
+@dataclass(frozen=True)
+class Varied:
+    """One parameter of a search.
+
+    Attributes
+    ----------
+    field : str
+        E.g. ``method.1.network.sigma``.
+    method : int
+        Index of the method.
+    path : tuple of str
+        Where it lies in the method.
+    low, high : float
+        Ends of the range.
+    log : bool
+        Searched in equal ratios.
+    """
+
+    field: str
+    method: int
+    path: tuple[str, ...]
+    low: float
+    high: float
+    log: bool
+
+    def value(self, place: float) -> float:
+        """Value at a place 0..1 of the range."""
+        place = min(max(place, 0.0), 1.0)
+        if self.log:
+            value = self.low * (self.high / self.low) ** place
+        else:
+            value = self.low + place * (self.high - self.low)
+        return min(max(value, self.low), self.high)
+
+    def place(self, value: float) -> float:
+        """Place 0..1 of a value."""
+        value = min(max(value, self.low), self.high)
+        if self.log:
+            return math.log(value / self.low) / math.log(self.high / self.low)
+        return (value - self.low) / (self.high - self.low)
+
+    def at_end(self, value: float) -> bool:
+        """Whether a value stands at an end of the range."""
+        place = self.place(value)
+        return place < _END or place > 1.0 - _END
+
+
+def read_varied(scenario: Scenario, texts: Sequence[str]) -> tuple[Varied, ...]:
+    """Read ``method.1.network.sigma`` or ``method.1.network.sigma=1e-4:0.1``.
+
+    Without ends the range is all that the field allows, or that of its slider where that is endless.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Whose method is tuned.
+    texts : sequence of str
+        One a parameter; all of the same method.
+
+    Raises
+    ------
+    InputError
+        No parameter, no number of a method, or ends that the field does not allow.
+    """
+    if not texts:
+        raise InputError(Fault("", "--vary", None, "is required: e.g. method.0.network.xi"))
+    found, faults = [], []
+    for text in texts:
+        try:
+            found.append(_read_one(scenario, text))
+        except InputError as error:
+            faults += error.faults
+    if faults:
+        raise InputError(faults)
+    methods = {varied.method for varied in found}
+    if len(methods) > 1:
+        raise InputError(
+            Fault("", "--vary", ", ".join(texts), "must be parameters of one and the same method")
+        )
+    if len({varied.field for varied in found}) < len(found):
+        raise InputError(Fault("", "--vary", ", ".join(texts), "names a parameter twice"))
+    return tuple(found)
+
+
+def tunable_fields(scenario: Scenario, index: int) -> tuple[str, ...]:
+    """Numeric fields of a method's network that a search may move without being told a range.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        With the method.
+    index : int
+        Of the method; one that uses no network has no such field.
+    """
+    method = scenario.method[index]
+    if method.undamped:
+        return ()
+    given = method.network.model_fields_set
+    found = []
+    for name, info in type(method.network).model_fields.items():
+        field = f"method.{index}.network.{name}"
+        # A field without a default of its own is an alternative to others: it varies only where it is given.
+        if not _is_number(info) or (info.default is None and name not in given):
+            continue
+        try:
+            _read_one(scenario, field)
+        except InputError:
+            continue
+        found.append(field)
+    return tuple(found)
+
+
+def _read_one(scenario: Scenario, text: str) -> Varied:
+    field, equals, ends = (part.strip() for part in text.partition("="))
+    names = field.split(".")
+
+    def refuse(allowed: str) -> InputError:
+        return InputError(Fault("", "--vary", text, allowed))
+
+    if len(names) < 4 or names[0] != "method" or not names[1].isdigit():
+        raise refuse("must not vary: must be a number of a method, such as method.0.network.xi")
+    index = int(names[1])
+    if index >= len(scenario.method):
+        raise refuse(f"there is no method.{index}: must be 0 to {len(scenario.method) - 1}")
+    model: Any = scenario.method[index]
+    for name in names[2:-1]:
+        model = getattr(model, name, None) if isinstance(model, BaseModel) else None
+    info = type(model).model_fields.get(names[-1]) if isinstance(model, BaseModel) else None
+    if info is None:
+        known = ", ".join(type(model).model_fields) if isinstance(model, BaseModel) else "none"
+        raise refuse(f"is no field of this method; known there: {known}")
+    if not _is_number(info):
+        raise refuse("must not vary: it is not a number")
+    allowed = _allowed(info)
+    low, high = _read_ends(text, ends, allowed) if equals else _own_ends(text, info, allowed)
+    if not low < high:
+        raise refuse("the lower end must be below the upper one")
+    log = low > 0.0 and (high / low >= _LOG_FROM or bool(extra_of(info).get("log")))
+    return Varied(field, index, tuple(names[2:]), low, high, log)
+
+
+def _is_number(info: FieldInfo) -> bool:
+    kinds = get_args(info.annotation) or (info.annotation,)
+    return get_origin(info.annotation) is not Literal and float in kinds
+
+
+def _allowed(info: FieldInfo) -> tuple[float, float]:
+    low, high = -math.inf, math.inf
+    for rule in info.metadata:
+        for name in ("ge", "gt"):
+            if getattr(rule, name, None) is not None:
+                low = float(getattr(rule, name))
+                low = math.nextafter(low, math.inf) if name == "gt" and low != 0.0 else low
+        for name in ("le", "lt"):
+            if getattr(rule, name, None) is not None:
+                high = float(getattr(rule, name))
+    return low, high
+
+
+def _read_ends(text: str, ends: str, allowed: tuple[float, float]) -> tuple[float, float]:
+    parts = ends.split(":")
+    try:
+        low, high = (float(part) for part in parts)
+    except ValueError:
+        raise InputError(Fault("", "--vary", text, "must end in LOW:HIGH, two numbers")) from None
+    if not (math.isfinite(low) and math.isfinite(high)) or low < allowed[0] or high > allowed[1]:
+        told = f"its range must lie within {allowed[0]:g} and {allowed[1]:g}"
+        raise InputError(Fault("", "--vary", text, told))
+    return low, high
+
+
+def _own_ends(text: str, info: FieldInfo, allowed: tuple[float, float]) -> tuple[float, float]:
+    low, high = allowed
+    slider = extra_of(info).get("slider")
+    if math.isfinite(low) and math.isfinite(high):
+        if low > 0.0 and high / low <= _WIDEST:
+            return low, high
+        if low == 0.0 and high <= 10.0:
+            return 1e-3 * high, high
+    if slider:
+        return float(slider[0]), float(slider[1])
+    raise InputError(Fault("", "--vary", text, "has no range of its own: give one, as in FIELD=LOW:HIGH"))
+
+
+def changed(scenario: Scenario, varied: Sequence[Varied], values: Sequence[float]) -> Method:
+    """Method with the parameters at new values, checked, for the sensors of the scenario.
+
+    Raises
+    ------
+    InputError
+        The values do not go together.
+    """
+    method = scenario.method[varied[0].method]
+    data = method.model_dump(mode="json", by_alias=True, exclude_none=True)
+    for one, value in zip(varied, values, strict=True):
+        place = data
+        for name in one.path[:-1]:
+            place = place.setdefault(name, {})
+        place[one.path[-1]] = float(value)
+    try:
+        found = Method.model_validate(data)
+    except ValidationError as error:
+        raise InputError(faults_from(error, Method, data, f"method.{varied[0].method}")) from None
+    network = found.network.with_sensors(scenario.figures())
+    return found.model_copy(update={"network": network})
+
+
+def present(scenario: Scenario, varied: Sequence[Varied]) -> np.ndarray:
+    """Values of the parameters as the scenario has them; NaN where one is not given."""
+    found = []
+    for one in varied:
+        value: Any = scenario.method[one.method]
+        for name in one.path:
+            value = getattr(value, name, None)
+        found.append(float("nan") if value is None else float(value))
+    return np.array(found)

@@ -1,0 +1,1 @@
+"""A scenario carried out: inputs made once, a driver for each fidelity, runs, metrics, results."""

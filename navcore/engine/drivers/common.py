@@ -1,0 +1,192 @@
+"""What every fidelity does alike for a method: its network and law, the log it sees, its result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from navcore.analysis import Loop, analyse
+from navcore.analysis.held_log import held_log
+from navcore.analysis.whole_system import WholeSystem, whole_system
+from navcore.engine.run import MethodRun, Status, plot_series, statistics
+from navcore.foundation.units import DEG, HOUR
+from navcore.law.combination import combination_warnings, network_in_force
+from navcore.law.law import Law, prepare_law, realisation_of
+from navcore.mechanization.recorder import DAMPED_COLUMN, LAW_COLUMNS, XI_COLUMN, Recorder
+from navcore.motion.base import COLUMNS
+from navcore.networks.base import LinearNetwork
+from navcore.scenario.model import Method, Scenario
+from navcore.sensors.base import ReferenceErrors
+from navcore.sensors.reference import event_velocity
+
+Progress = Callable[[float], None]
+Cancelled = Callable[[], bool]
+STOPPED = "stopped by the user"
+
+
+def network_of(scenario: Scenario, method: Method) -> LinearNetwork:
+    """Return H(s) of a method at the site, as its policy runs it; 1 when it is free."""
+    damping = "free" if method.undamped else method.damping
+    return network_in_force(damping, method.network, method.policy).transfer(scenario.omega_s)
+
+
+def law_of(method: Method, network: LinearNetwork, law_step_s: float) -> Law:
+    """Damping law of a method, asked every ``law_step_s`` seconds."""
+    damping = "free" if method.undamped else method.damping
+    return prepare_law(damping, method.network, network, method.policy, method.switching, law_step_s)
+
+
+def seen_by(method: Method, reference: ReferenceErrors) -> ReferenceErrors:
+    """Add the log events that only this method sees."""
+    if not method.event:
+        return reference
+    extra = event_velocity(method.event, reference.time_s)
+    return ReferenceErrors(
+        reference.time_s, reference.error + extra, reference.valid, reference.body_frame, reference.hold_s
+    )
+
+
+def truth_at(values: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Rows of truth; a single row stands for all times."""
+    return np.broadcast_to(values, (len(rows), COLUMNS)) if values.shape[0] == 1 else values[rows]
+
+
+@dataclass(frozen=True)
+class Stability:
+    """What the analysis says of a method before it runs.
+
+    Attributes
+    ----------
+    loop : Loop
+        One level channel in continuous time.
+    whole : WholeSystem
+        Both channels, heading and latitude at the site.
+    warnings : tuple of str
+        Of the channel, of the whole system, and of the law as it is sampled.
+    """
+
+    loop: Loop
+    whole: WholeSystem
+    warnings: tuple[str, ...]
+
+
+def stability_of(
+    scenario: Scenario, method: Method, law_step_s: float, log: ReferenceErrors, network: LinearNetwork
+) -> Stability:
+    """Analyse a method at the site.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        The `channel` fidelity couples nothing: the whole system stands in its metrics, not in its warnings.
+    method : Method
+        As configured.
+    law_step_s : float
+        Time between two calls of the law, s.
+    log : ReferenceErrors
+        Gives the log's period.
+    network : LinearNetwork
+        H(s) to be judged.
+    """
+    loop, lat = analyse(network), scenario.site.lat_deg * DEG
+    whole = whole_system(network, method.damping, lat, scenario.earth, scenario.site.height_m)
+    if method.damping == "kalman":  # the loop of its gains is another one at every step
+        return Stability(loop, whole, ())
+    warnings = loop.warnings if scenario.run.fidelity == "channel" else (*loop.warnings, *whole.warnings)
+    if not method.undamped:
+        period_s = float(np.median(np.diff(log.time_s))) if len(log.time_s) > 1 else law_step_s
+        sampled = held_log(network, method.damping, period_s, law_step_s, lat, scenario.earth)
+        warnings = (*warnings, *sampled.warnings)
+    return Stability(loop, whole, warnings)
+
+
+def network_on_average(method: Method, network: LinearNetwork, rows: np.ndarray) -> LinearNetwork:
+    """Network at the mean coefficient in force, where the policy re-tunes it; else the network itself.
+
+    Parameters
+    ----------
+    method, network : Method, LinearNetwork
+        As configured, and its H(s).
+    rows : ndarray, shape (m, 12)
+        Output rows.
+    """
+    damped = rows[:, DAMPED_COLUMN] > 0.5
+    if method.undamped or not method.policy.tunes or not np.any(damped):
+        return network
+    parameters = method.policy.network_in_force(method.network)
+    mean_xi = float(np.mean(rows[damped, XI_COLUMN]))
+    return parameters.with_damping(mean_xi).transfer(network.omega_s)
+
+
+def method_run(
+    method: Method,
+    network: LinearNetwork,
+    judge: Callable[[LinearNetwork], Stability],
+    recorder: Recorder,
+    step_s: float,
+    status: Status,
+    reason: str,
+    reached_s: float,
+    navigation: np.ndarray | None = None,
+    notices: tuple[str, ...] = (),
+) -> MethodRun:
+    """Make the result of one method from what was recorded.
+
+    Parameters
+    ----------
+    method, network : Method, LinearNetwork
+        As configured, and its H(s).
+    judge : callable
+        `stability_of` for this method: what the loop's figures come from. Where the policy re-tunes the
+        network, they are those at the mean coefficient in force.
+    recorder : Recorder
+        Filled as far as the method came.
+    step_s : float
+        Time between two recorded states, s.
+    status : {"ok", "diverged", "stopped"}
+        How it ended.
+    reason : str
+        Why, without the time; empty when ok.
+    reached_s : float
+        Time it reached, s.
+    navigation : ndarray, shape (rows, 11), optional
+        Navigation solution at the output rows (strapdown).
+    notices : tuple of str
+        Further warnings.
+    """
+    written = int(recorder.cursor["row"])
+    network = network_on_average(method, network, recorder.rows[:written])
+    stability = judge(network)
+    told = f"{reason} at {reached_s:.0f} s = {reached_s / HOUR:.3g} h" if reason else ""
+    return MethodRun(
+        method=method,
+        network=network,
+        loop=stability.loop,
+        whole=stability.whole,
+        status=status,
+        reason=told,
+        warnings=_warnings(method, network, (*stability.warnings, *notices), told),
+        t_s=recorder.row_steps[:written] * step_s,
+        rows=recorder.rows[:written, : XI_COLUMN + 1],
+        errors=statistics(recorder),
+        plot=plot_series(recorder, step_s),
+        law_series=recorder.rows[:written, LAW_COLUMNS],
+        navigation=None if navigation is None else navigation[:written],
+    )
+
+
+def _warnings(
+    method: Method, network: LinearNetwork, further: tuple[str, ...], reason: str
+) -> tuple[str, ...]:
+    found = list(dict.fromkeys((*network.warnings, *further)))
+    if method.undamped and method.network.id != "none":
+        found.append(f'damping = "{method.damping}": the network is not used')
+    if method.damping == "kalman" and (method.policy.id != "constant" or method.switching.id != "hard"):
+        found.append('damping = "kalman": policy and switching are not used')
+    if method.damping == "internal" and realisation_of("external", method.network) != "network":
+        found.append("internal damping uses the network form; the feedback realisation needs a reference")
+    if not method.undamped:
+        found += combination_warnings(method.damping, method.network, method.policy, method.switching)
+    return (*found, reason) if reason else tuple(found)

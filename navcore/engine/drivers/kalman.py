@@ -1,0 +1,140 @@
+"""A method with ``damping = "kalman"`` among the others of a scenario: its model and its run."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from navcore.engine.drivers.common import law_of, network_of, seen_by
+from navcore.engine.environment import Environment
+from navcore.foundation.earth import attitude_matrix
+from navcore.mechanization.kalman.error_model import FilteredErrorModel
+from navcore.mechanization.kalman.filter import ACCEL, GYRO, LOG, FilterModel, filter_state
+from navcore.mechanization.recorder import make_recorder
+from navcore.motion.base import HEADING, PITCH, ROLL
+from navcore.scenario.model import Method, Scenario
+from navcore.scenario.start import ERRORS, aligned_errors, independent_errors
+from navcore.scenario.stochastic import Drift, StochasticModel, stochastic_model
+
+if TYPE_CHECKING:
+    from navcore.engine.strapdown_environment import StrapdownEnvironment
+    from navcore.mechanization.kalman.strapdown import FilteredStrapdown
+    from navcore.mechanization.strapdown import Settings
+
+LEAST_NOISE_MPS = 1e-5
+"""Standard deviation of a sample that counts as free of noise, m/s: the gain needs some."""
+NOTHING_RANDOM = "the scenario gives sensors and start no error that the filter knows of: it corrects nothing"
+
+
+def filter_model(
+    scenario: Scenario, step_s: float, true_row: np.ndarray
+) -> tuple[FilterModel, np.ndarray, tuple[str, ...]]:
+    """What the filter is told, and its covariance at t = 0: the stochastic model of the scenario.
+
+    Scale factors, current, tide, delay and events are not in it (theory.md 16).
+
+    Parameters
+    ----------
+    scenario : Scenario
+        With a simulated log and IMU.
+    step_s : float
+        Time between two steps of the filter, s.
+    true_row : ndarray, shape (15,)
+        Truth at t = 0: its attitude turns what an alignment makes of the sensors' biases.
+
+    Returns
+    -------
+    model : FilterModel
+    P : ndarray, shape (n, n)
+        Covariance at t = 0, SI.
+    notices : tuple of str
+        What the user should know.
+    """
+    known = stochastic_model(scenario)
+    axis, left, drive, start = _sensor_states(known, step_s)
+    figures = known.figures
+    model = FilterModel(
+        axis=np.array(axis, dtype=np.int64),
+        left=np.array(left, dtype=float),
+        drive=np.array(drive, dtype=float),
+        gyro_white=figures.gyro_white**2 / step_s,
+        accel_white=figures.accel_white**2 / step_s,
+        log_white=max(figures.log_noise**2 / max(1.0, figures.log_rate_hz * step_s), LEAST_NOISE_MPS**2),
+        body_frame=scenario.reference.frame == "body",
+    )
+    spread = np.diag([*independent_errors(scenario, known.initial), *start])
+    turn = attitude_matrix(true_row[PITCH], true_row[ROLL], true_row[HEADING])
+    for i, (which, share) in enumerate(zip(axis, left, strict=True)):
+        if share == 1.0 and which < LOG:  # what an alignment makes of a bias is correlated with it
+            error = turn[:, which % ACCEL] * start[i]
+            sides = (error, np.zeros(3)) if which < ACCEL else (np.zeros(3), error)
+            spread[:ERRORS, ERRORS + i] = aligned_errors(scenario, *sides)
+    silent = not spread.any() and not model.gyro_white and not model.accel_white
+    return model, spread @ spread.T, (NOTHING_RANDOM,) if silent else ()
+
+
+def _sensor_states(
+    known: StochasticModel, step_s: float
+) -> tuple[list[int], list[float], list[float], list[float]]:
+    """Axis, share left by a step, variance added by it and standard deviation at t = 0 of each state."""
+    axis: list[int] = []
+    left: list[float] = []
+    drive: list[float] = []
+    start: list[float] = []
+
+    def add(first: int, deviations: np.ndarray, drift: Drift | None) -> None:
+        for i in np.flatnonzero(deviations):
+            share = math.exp(-step_s / drift.tau_s) if drift else 1.0
+            axis.append(first + int(i))
+            left.append(share)
+            drive.append(float(deviations[i]) ** 2 * (1.0 - share * share))
+            start.append(float(deviations[i]))
+
+    for first, drift, bias in (
+        (GYRO, known.gyro_drift, known.gyro_bias),
+        (ACCEL, known.accel_drift, known.accel_bias),
+        (LOG, known.log_drift, known.log_bias),
+    ):
+        add(first, np.full(len(bias), drift.sigma), drift)
+        add(first, bias, None)
+    return axis, left, drive, start
+
+
+def filtered_linear(
+    scenario: Scenario, method: Method, env: Environment, state: np.ndarray
+) -> tuple[FilteredErrorModel, tuple[str, ...]]:
+    """Run of the filter on the error model, and what to tell the user."""
+    run, truth = scenario.run, env.truth_half.values
+    model, P, notices = filter_model(scenario, run.step_s, truth[0])
+    filtered = FilteredErrorModel(
+        step_s=run.step_s,
+        steps=env.steps,
+        coefficients=env.coefficients,
+        sensors=env.sensors,
+        reference=seen_by(method, env.reference),
+        truth=truth,
+        law=law_of(method, network_of(scenario, method), run.step_s),
+        x=state.copy(),
+        recorder=make_recorder(env.steps, run.step_s, run.output_step_s),
+        model=model,
+        filter=filter_state(P),
+    )
+    return filtered, notices
+
+
+def filtered_strapdown(
+    scenario: Scenario, method: Method, env: StrapdownEnvironment, settings: Settings
+) -> tuple[FilteredStrapdown, tuple[str, ...]]:
+    """Run of the filter on the full mechanization, and what to tell the user."""
+    # Only now: the strapdown kernels are slow to import, and most runs are linear.
+    from navcore.mechanization.kalman.strapdown import filtered_run
+    from navcore.mechanization.strapdown import start_run, velocity_reference
+
+    interval_s, truth = env.sampling.law_step_s, env.truth.values
+    model, P, notices = filter_model(scenario, interval_s, truth[0])
+    law = law_of(method, network_of(scenario, method), interval_s)
+    free = start_run(env.start, settings, scenario.earth, law, truth, before=env.imu.before())
+    log = velocity_reference(seen_by(method, env.reference), env.truth)
+    return filtered_run(free, log, model, filter_state(P)), notices

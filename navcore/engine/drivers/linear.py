@@ -1,0 +1,180 @@
+"""A scenario of fidelity `channel` or `error_model`: two methods at a time on the linear error model."""
+
+from __future__ import annotations
+
+import time
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+
+import numpy as np
+
+from navcore.averaging.error_model import AveragedErrorModel
+from navcore.engine.drivers.common import (
+    STOPPED,
+    Cancelled,
+    Progress,
+    law_of,
+    method_run,
+    network_of,
+    seen_by,
+    stability_of,
+    truth_at,
+)
+from navcore.engine.environment import Environment, environment
+from navcore.engine.run import MethodRun, Run, Status
+from navcore.mechanization.error_model import ErrorModelRun
+from navcore.mechanization.kalman.error_model import FilteredErrorModel
+from navcore.mechanization.recorder import make_recorder, output_steps
+from navcore.scenario.model import Method, Scenario
+
+CHUNK = 50_000
+"""Steps between two looks at the cancel flag, some 10 ms."""
+
+
+def run_linear(
+    scenario: Scenario,
+    progress: Progress | None = None,
+    cancelled: Cancelled | None = None,
+    before: Run | None = None,
+) -> Run:
+    """Run every method of a scenario on the linear error model; as `navcore.engine.simulation.simulate`."""
+    began = time.perf_counter()
+    env = environment(scenario)
+    state = np.array(scenario.initial_error.state())
+    return run_methods(scenario, env, state, progress, cancelled, began, unchanged_methods(scenario, before))
+
+
+def unchanged_methods(scenario: Scenario, before: Run | None) -> tuple[MethodRun, ...]:
+    """Methods of an earlier run that come out the same in this scenario.
+
+    Methods do not see each other: the result of one depends on itself and on everything in the scenario but
+    the other methods. Recordings may have been exchanged under the same name, so nothing is taken over from
+    a run on files.
+    """
+    if before is None or scenario.reference.file is not None or hasattr(scenario.motion, "file"):
+        return ()
+    if scenario.imu.file is not None or _shared(scenario) != _shared(before.scenario):
+        return ()
+    return tuple(method for method in before.methods if method.status != "stopped")
+
+
+def _shared(scenario: Scenario) -> Scenario:
+    return scenario.model_copy(update={"method": (), "title": "", "source": ""})
+
+
+def run_methods(
+    scenario: Scenario,
+    env: Environment,
+    state: np.ndarray,
+    progress: Progress | None,
+    cancelled: Cancelled | None,
+    began: float,
+    known: tuple[MethodRun, ...] = (),
+) -> Run:
+    """Run every method in a given environment.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Of fidelity ``channel`` or ``error_model``.
+    env : Environment
+        Truth, coefficients, sensor errors and log.
+    state : ndarray, shape (7,)
+        Errors at t = 0, SI.
+    progress, cancelled : callable, optional
+        As of `navcore.engine.simulation.simulate`.
+    began : float
+        Time of `time.perf_counter` at which the work began, s.
+    known : tuple of MethodRun, optional
+        Results of methods in this very environment; an equal method is not run again.
+    """
+    found = [next((other for other in known if other.method == method), None) for method in scenario.method]
+    done = [0.0 if other is None else 1.0 for other in found]
+
+    def advance(index: int) -> MethodRun:
+        def report(fraction: float) -> None:
+            done[index] = fraction
+            if progress is not None:
+                progress(sum(done) / len(done))
+
+        return found[index] or _run_method(scenario, scenario.method[index], env, state, report, cancelled)
+
+    if found.count(None) > 1:
+        with ThreadPoolExecutor(2) as pool:
+            methods = tuple(pool.map(advance, range(len(found))))
+    else:
+        methods = tuple(map(advance, range(len(found))))
+    steps = output_steps(env.steps, scenario.run.step_s, scenario.run.output_step_s)
+    return Run(
+        scenario=scenario,
+        methods=methods,
+        t_s=steps * scenario.run.step_s,
+        truth=truth_at(env.truth_half.values, 2 * steps),
+        warnings=env.warnings,
+        elapsed_s=time.perf_counter() - began,
+    )
+
+
+def _run_method(
+    scenario: Scenario,
+    method: Method,
+    env: Environment,
+    state: np.ndarray,
+    report: Progress,
+    cancelled: Cancelled | None,
+) -> MethodRun:
+    step_s = scenario.run.step_s
+    network = network_of(scenario, method)
+    judge = partial(stability_of, scenario, method, step_s, env.reference)
+    if method.damping == "averaging":
+        from navcore.engine.drivers.averaging import averaged_linear
+
+        run, notices = averaged_linear(scenario, method, env, state)
+        status, reason = _carry_out(run, report, cancelled)
+        report(1.0)
+        reached_s = run.position * step_s
+        return method_run(
+            method, network, judge, run.recorder, step_s, status, reason, reached_s, notices=notices
+        )
+    if method.damping == "kalman":
+        from navcore.engine.drivers.kalman import filtered_linear
+
+        run, notices = filtered_linear(scenario, method, env, state)
+        status, reason = _carry_out(run, report, cancelled)
+        report(1.0)
+        reached_s = run.position * step_s
+        return method_run(
+            method, network, judge, run.recorder, step_s, status, reason, reached_s, notices=notices
+        )
+    recorder = make_recorder(env.steps, step_s, scenario.run.output_step_s)
+    run = ErrorModelRun(
+        step_s=step_s,
+        steps=env.steps,
+        coefficients=env.coefficients,
+        sensors=env.sensors,
+        reference=seen_by(method, env.reference),
+        law=law_of(method, network, step_s),
+        x=state.copy(),
+        recorder=recorder,
+    )
+    status, reason = _carry_out(run, report, cancelled)
+    report(1.0)
+    return method_run(method, network, judge, recorder, step_s, status, reason, run.position * step_s)
+
+
+def _carry_out(
+    run: ErrorModelRun | AveragedErrorModel | FilteredErrorModel,
+    report: Progress,
+    cancelled: Cancelled | None,
+) -> tuple[Status, str]:
+    """Advance to the end; how it ended and why."""
+    while not run.advance(CHUNK):
+        report(run.position / max(run.steps, 1))
+        if cancelled is not None and cancelled():
+            return "stopped", STOPPED
+    if run.diverged:
+        return (
+            "diverged",
+            "the error left the range of the linear model (tilt 1 rad, velocity 1e5 m/s)",
+        )
+    return "ok", ""

@@ -1,0 +1,142 @@
+"""A scenario of fidelity `strapdown`: all methods ride on one stream of IMU samples, chunk by chunk."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import cast
+
+import numpy as np
+
+from navcore.averaging.strapdown import AveragedStrapdown
+from navcore.engine.drivers.averaging import averaged_strapdown
+from navcore.engine.drivers.common import (
+    STOPPED,
+    Cancelled,
+    Progress,
+    law_of,
+    method_run,
+    network_of,
+    seen_by,
+    stability_of,
+    truth_at,
+)
+from navcore.engine.run import MethodRun, Run, Status
+from navcore.engine.strapdown_environment import StrapdownEnvironment, strapdown_environment
+from navcore.mechanization.recorder import output_steps
+from navcore.mechanization.strapdown import Settings, StrapdownRun, start_run, velocity_reference
+from navcore.mechanization.strapdown.drive import drive
+from navcore.scenario.model import Method, Scenario
+from navcore.scenario.sampling import Sampling
+
+
+def run_strapdown(
+    scenario: Scenario, progress: Progress | None = None, cancelled: Cancelled | None = None
+) -> Run:
+    """Run every method of a scenario on the full mechanization; as `navcore.engine.simulation.simulate`.
+
+    Cancel is asked for after each chunk: a minute of samples.
+    """
+    began = time.perf_counter()
+    return run_methods(scenario, strapdown_environment(scenario), progress, cancelled, began)
+
+
+def run_methods(
+    scenario: Scenario,
+    env: StrapdownEnvironment,
+    progress: Progress | None,
+    cancelled: Cancelled | None,
+    began: float,
+    take_sums: Callable[[np.ndarray], None] | None = None,
+) -> Run:
+    """Run every method in a given environment.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Of fidelity ``strapdown``.
+    env : StrapdownEnvironment
+        Truth, samples, start and log.
+    progress, cancelled : callable, optional
+        As of `navcore.engine.simulation.simulate`.
+    began : float
+        Time of `time.perf_counter` at which the work began, s.
+    take_sums : callable, optional
+        Given the sums of the IMU's errors over each block of a chunk, shape (blocks, 6), rad and m/s, ENU.
+    """
+    started = [_start(scenario, method, env) for method in scenario.method]
+    # An averaging run is advanced like one of its copies.
+    runs = cast("list[StrapdownRun]", [run for run, _ in started])
+
+    def chunks() -> Iterator[np.ndarray]:
+        for increments, sums in env.imu.chunks(with_sums=take_sums is not None):
+            if take_sums is not None:
+                take_sums(sums)
+            yield increments
+
+    drive(runs, chunks(), progress, cancelled)
+    rates = env.sampling
+    rows = output_steps(rates.records, rates.record_step_s, scenario.run.output_step_s)
+    methods = zip(scenario.method, started, strict=True)
+    return Run(
+        scenario=scenario,
+        methods=tuple(_finish(scenario, env, method, *run) for method, run in methods),
+        t_s=rows * rates.record_step_s,
+        truth=truth_at(env.truth.values, rows),
+        warnings=env.warnings,
+        elapsed_s=time.perf_counter() - began,
+        sampling=rates,
+    )
+
+
+def settings_of(scenario: Scenario, rates: Sampling) -> Settings:
+    """How the mechanization of a scenario runs at given rates."""
+    return Settings(
+        rates.rate_hz, rates.samples, rates.law_every, rates.record_every, scenario.run.output_step_s,
+        scenario.run.vertical, scenario.run.compensation,
+    )  # fmt: skip
+
+
+def _start(
+    scenario: Scenario, method: Method, env: StrapdownEnvironment
+) -> tuple[StrapdownRun | AveragedStrapdown, tuple[str, ...]]:
+    """Run of a method, and what to tell the user about it."""
+    rates, settings = env.sampling, settings_of(scenario, env.sampling)
+    if method.damping == "averaging":
+        return averaged_strapdown(scenario, method, env, settings)
+    if method.damping == "kalman":
+        from navcore.engine.drivers.kalman import filtered_strapdown
+
+        return filtered_strapdown(scenario, method, env, settings)
+    law = law_of(method, network_of(scenario, method), rates.law_step_s)
+    log = velocity_reference(seen_by(method, env.reference), env.truth)
+    run = start_run(env.start, settings, scenario.earth, law, env.truth.values, log, env.imu.before())
+    return run, ()
+
+
+def _finish(
+    scenario: Scenario,
+    env: StrapdownEnvironment,
+    method: Method,
+    run: StrapdownRun | AveragedStrapdown,
+    notices: tuple[str, ...],
+) -> MethodRun:
+    status: Status = "ok"
+    reason = run.reason
+    if run.diverged:
+        status = "diverged"
+    elif run.position < run.settings.samples:
+        status, reason = "stopped", STOPPED
+    return method_run(
+        method,
+        network_of(scenario, method),
+        partial(stability_of, scenario, method, env.sampling.law_step_s, env.reference),
+        run.recorder,
+        run.settings.record_step_s,
+        status,
+        reason,
+        run.position / run.settings.rate_hz,
+        run.navigation,
+        notices,
+    )

@@ -1,0 +1,152 @@
+"""What all methods of a scenario share: truth, coefficients, sensor errors and log; made once and kept.
+
+Kept by what each stage depends on, so that a slider on a network or policy recomputes none of it, and one on
+a sensor error neither the truth nor its coefficients.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+
+from navcore.foundation.errors import InputError
+from navcore.foundation.stage_cache import file_state, kept
+from navcore.foundation.units import DEG, HOUR
+from navcore.mechanization.trajectory import Coefficients, coefficients
+from navcore.motion.base import LAT, Truth
+from navcore.scenario.model import Scenario
+from navcore.sensors.base import ReferenceErrors, SensorErrors
+from navcore.sensors.imu import imu_errors
+from navcore.sensors.recorded import recorded_window, recording_notices, short_run_notices
+from navcore.sensors.reference import reference_errors
+
+FAR_FROM_SITE_DEG = 2.0
+"""Latitude by which a track may start off the site before the user is told, deg."""
+
+
+@dataclass(frozen=True)
+class Environment:
+    """Shared inputs of all methods.
+
+    Attributes
+    ----------
+    steps : int
+        Integration steps.
+    truth_half : Truth
+        True motion on the half-step grid.
+    coefficients : Coefficients
+        Coefficients of the error model on it.
+    sensors : SensorErrors
+        Inertial sensor errors, mean over each step.
+    reference : ReferenceErrors
+        Log errors at the log's epochs.
+    warnings : tuple of str
+        What the recordings made necessary to say.
+    """
+
+    steps: int
+    truth_half: Truth
+    coefficients: Coefficients
+    sensors: SensorErrors
+    reference: ReferenceErrors
+    warnings: tuple[str, ...]
+
+
+def recorded_notices(scenario: Scenario) -> tuple[str, ...]:
+    """What the user should know about the recordings of a scenario; raises `InputError`."""
+    recorded = scenario.reference.kind == "file" or scenario.imu.file is not None
+    short = short_run_notices(scenario.motion, recorded, scenario.run.duration_h * HOUR)
+    return (*recording_notices(scenario.motion, scenario.reference), *short)
+
+
+def site_notices(scenario: Scenario, truth: Truth) -> list[str]:
+    """Say so when a recorded track starts far from the site, whose gravity gives omega_s."""
+    start = float(truth.values[0, LAT]) / DEG
+    if abs(start - scenario.site.lat_deg) < FAR_FROM_SITE_DEG:
+        return []
+    return [
+        f"the track starts at latitude {start:.2f} deg, the site is at {scenario.site.lat_deg:g} deg: "
+        "omega_s, and with it every network, is that of the site"
+    ]
+
+
+def _start_utc(scenario: Scenario) -> float | None:
+    window = recorded_window(scenario.motion, scenario.reference)
+    return None if window is None else window.start_s
+
+
+def _truth_key(scenario: Scenario, steps: int, step_s: float) -> Hashable:
+    motion_key = (scenario.motion, file_state(getattr(scenario.motion, "file", None)))
+    # t = 0 is the first epoch that track and log share, so each depends on the other's files.
+    log_files = file_state(scenario.reference.file)
+    return (motion_key, log_files, scenario.site, steps, step_s, scenario.earth.name)
+
+
+def truth_of(scenario: Scenario, steps: int, step_s: float) -> Truth:
+    """Make, or take from the cache, the true motion at 0, step_s / 2, ..., steps * step_s.
+
+    Raises
+    ------
+    InputError
+        The motion cannot be carried out, or a recording cannot serve the run.
+    """
+    start_utc = _start_utc(scenario)
+
+    def make() -> Truth:
+        site = scenario.site.site()
+        try:
+            return scenario.motion.truth(2 * steps + 1, 0.5 * step_s, site, scenario.earth, start_utc)
+        except InputError as error:
+            raise error.located("", "motion.") from None
+
+    return kept(("truth", _truth_key(scenario, steps, step_s)), make)
+
+
+def coefficients_of(scenario: Scenario, steps: int, step_s: float) -> Coefficients:
+    """Coefficients of the error model along `truth_of`, made or taken from the cache."""
+    channel = scenario.run.fidelity == "channel"
+    truth = truth_of(scenario, steps, step_s)
+    return kept(
+        ("coefficients", _truth_key(scenario, steps, step_s), channel),
+        lambda: coefficients(truth, scenario.earth, coupled=not channel),
+    )
+
+
+def environment(scenario: Scenario) -> Environment:
+    """Make, or take from the cache, what all methods share.
+
+    Raises
+    ------
+    InputError
+        The motion cannot be carried out, or a recording cannot serve the run.
+    """
+    steps, h, earth = scenario.steps, scenario.run.step_s, scenario.earth
+    channel = scenario.run.fidelity == "channel"
+    truth_key = _truth_key(scenario, steps, h)
+    log_key = (scenario.reference, file_state(scenario.reference.file))
+    seed = scenario.run.seed
+    start_utc = _start_utc(scenario)
+
+    def make_sensors() -> SensorErrors:
+        errors = imu_errors(scenario.imu, truth, steps, h, earth, seed, level_body=channel)
+        # `channel` has no heading: its up gyro drives nothing.
+        return SensorErrors(errors.gyro * (1.0, 1.0, 0.0), errors.accel) if channel else errors
+
+    def make_reference() -> ReferenceErrors:
+        try:
+            return reference_errors(scenario.reference, truth, steps * h, seed, step_s=h, start_utc=start_utc)
+        except InputError as error:
+            raise error.located("", "reference.") from None
+
+    truth = truth_of(scenario, steps, h)
+    return Environment(
+        steps=steps,
+        truth_half=truth,
+        coefficients=coefficients_of(scenario, steps, h),
+        sensors=kept(
+            ("sensors", truth_key, channel, scenario.imu, seed),
+            make_sensors,
+        ),
+        reference=kept(("reference", truth_key, log_key, seed), make_reference),
+        warnings=(*recorded_notices(scenario), *site_notices(scenario, truth)),
+    )

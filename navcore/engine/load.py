@@ -1,0 +1,124 @@
+"""What a run will cost before it is started: memory and processor time, for a scheduler that admits runs.
+
+Both are estimates from the scenario alone: no file is opened and nothing is simulated. The coefficients were
+fitted to measured runs (peak of the resident set above the start, time of the process) and are meant to be
+right to about a factor of two for runs that are large enough to matter.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+
+from navcore.foundation.units import HOUR
+from navcore.scenario.model import Scenario
+
+_FIXED_BYTES = 2e6
+"""Kernels' work space, one chunk of samples, small arrays."""
+_METHOD_BYTES = 0.3e6
+"""Plot bins and curves of one method."""
+_ROW_BYTES, _TRUE_ROW_BYTES, _NAVIGATION_ROW_BYTES = 136.0, 120.0, 88.0
+"""An output row: of each method (errors, law), of the truth, and of a method's navigation (strapdown)."""
+_FILE_FACTOR = 15.0
+"""Bytes held for one byte of a recorded file while it is read and joined."""
+_SMALLEST_S = 0.005
+
+
+@dataclass(frozen=True)
+class _Cost:
+    """Cost of one step (linear error model) or of one recorded interval (strapdown)."""
+
+    base: float
+    noise: float
+    moving: float
+    method: float
+    averaging: float
+    kalman: float = 0.0
+
+
+_LINEAR_BYTES = _Cost(base=60.0, noise=75.0, moving=650.0, method=0.0, averaging=180.0)
+_STRAPDOWN_BYTES = _Cost(base=60.0, noise=0.0, moving=140.0, method=0.0, averaging=60.0)
+_LINEAR_S = _Cost(base=0.15e-6, noise=0.2e-6, moving=1.2e-6, method=0.16e-6, averaging=0.5e-6, kalman=5e-6)
+_STRAPDOWN_S = _Cost(base=30e-9, noise=5e-9, moving=10e-9, method=40e-9, averaging=160e-9, kalman=50e-9)
+"""Of one IMU sample."""
+_ROW_S = 0.3e-6
+_WORKERS = 2
+"""Methods of a linear run that are under way at once."""
+
+
+def estimated_bytes(scenario: Scenario) -> float:
+    """Memory that a run of the scenario holds at its peak, above what the process holds already.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Complete and checked.
+
+    Returns
+    -------
+    float
+        Bytes.
+    """
+    cost = _STRAPDOWN_BYTES if scenario.strapdown else _LINEAR_BYTES
+    methods, moving = len(scenario.method), _moving(scenario)
+    per_step = cost.base + cost.noise * _noisy(scenario) + cost.moving * moving
+    per_step += cost.averaging * min(_averaging(scenario), _WORKERS)
+    per_row = _ROW_BYTES + (_NAVIGATION_ROW_BYTES if scenario.strapdown else 0.0)
+    arrays = scenario.steps * per_step + _rows(scenario) * (methods * per_row + _TRUE_ROW_BYTES * moving)
+    return _FIXED_BYTES + methods * _METHOD_BYTES + arrays + _FILE_FACTOR * _file_bytes(scenario)
+
+
+def estimated_seconds(scenario: Scenario) -> float:
+    """Processor time that a run of the scenario takes, kernels compiled, on one core of about 3 GHz.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Complete and checked.
+
+    Returns
+    -------
+    float
+        Seconds; what recorded files take to read (once, then cached) is not included.
+    """
+    methods, averaging, moving = len(scenario.method), _averaging(scenario), _moving(scenario)
+    cost = _STRAPDOWN_S if scenario.strapdown else _LINEAR_S
+    steps = scenario.sampling.samples if scenario.strapdown else scenario.steps
+    if scenario.alignment.kind == "compass":
+        steps += scenario.alignment.duration_s * scenario.run.rate_hz
+    per_step = cost.base + cost.noise * _noisy(scenario) + cost.moving * moving
+    filters = sum(method.damping == "kalman" for method in scenario.method)
+    per_step += cost.method * methods + cost.averaging * averaging + cost.kalman * filters
+    return _SMALLEST_S + steps * per_step + _rows(scenario) * methods * _ROW_S
+
+
+def _moving(scenario: Scenario) -> bool:
+    return scenario.motion.kind != "static"
+
+
+def _noisy(scenario: Scenario) -> bool:
+    models = scenario.imu.gyro(), scenario.imu.accel()
+    return any(model.white > 0.0 or model.instability > 0.0 for model in models)
+
+
+def _averaging(scenario: Scenario) -> int:
+    return sum(method.damping == "averaging" for method in scenario.method)
+
+
+def _rows(scenario: Scenario) -> float:
+    run = scenario.run
+    return min(run.duration_h * HOUR / run.output_step_s + 1.0, scenario.steps + 1.0)
+
+
+def _file_bytes(scenario: Scenario) -> float:
+    track = getattr(scenario.motion, "file", None)
+    named = (track, scenario.reference.file, scenario.imu.file)
+    files = {file for name in named if name for file in ((name,) if isinstance(name, str) else name)}
+    return float(sum(_size(file) for file in files))
+
+
+def _size(file: str) -> int:
+    try:
+        return os.stat(file).st_size
+    except (OSError, ValueError):
+        return 0

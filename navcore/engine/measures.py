@@ -1,0 +1,93 @@
+"""The numbers of a run as one document that JSON can hold (interface.md)."""
+
+from __future__ import annotations
+
+import math
+import platform
+from dataclasses import asdict
+from typing import Any
+
+from navcore.analysis.report import whole_system_report
+from navcore.engine.run import MethodRun, Run
+from navcore.foundation.version import __version__
+from navcore.scenario.file import scenario_hash
+from navcore.scenario.model import SCHEMA
+
+
+def metrics(run: Run) -> dict[str, Any]:
+    """Return the metrics of a run as a document that JSON can hold.
+
+    Parameters
+    ----------
+    run : Run
+        From `navcore.engine.simulation.simulate`.
+
+    Returns
+    -------
+    dict
+        The content of ``metrics.json``: ``schema``, ``scenario_sha256``, ``versions``, ``elapsed_s``,
+        ``computed_on`` (the steps that the statistics cover), ``warnings`` (about the scenario as a whole)
+        and ``methods``. Each method has ``name``, ``status``, ``warnings``, ``loop``, ``law`` (the share of
+        the output rows that were damped, the damping coefficient in force) and ``errors``, in SI units and
+        radians. An infinite value, or one that is not a number, is None.
+
+    Examples
+    --------
+    >>> from navcore import load, metrics, simulate
+    >>> document = metrics(simulate(load("zha-fast", ["run.duration_h=1"])))
+    >>> round(document["methods"][1]["loop"]["settling_s"] / 60)
+    53
+    """
+    return {
+        "schema": SCHEMA,
+        "scenario_sha256": scenario_hash(run.scenario),
+        "versions": versions(),
+        "elapsed_s": round(run.elapsed_s, 4),
+        "computed_on": run.computed_on,
+        "warnings": list(run.warnings),
+        "methods": [_method(method) for method in run.methods],
+    }
+
+
+def versions() -> dict[str, str]:
+    """Versions of what the numbers depend on."""
+    import numba
+    import numpy
+
+    return {
+        "schuler-bench": __version__,
+        "python": platform.python_version(),
+        "numpy": numpy.__version__,
+        "numba": numba.__version__,
+    }
+
+
+def _method(run: MethodRun) -> dict[str, Any]:
+    return {
+        "name": run.method.name,
+        "status": run.status,
+        "warnings": list(run.warnings),
+        "loop": _loop(run),
+        "law": {"computed_on": "output rows", **asdict(run.law_in_force)},
+        "errors": {
+            name: {key: _finite(value) for key, value in statistics.items()}
+            for name, statistics in run.errors.items()
+        },
+    }
+
+
+def _loop(run: MethodRun) -> dict[str, Any]:
+    loop = run.loop
+    return {
+        "stable": loop.stable,
+        "poles": [[_finite(pole.real), _finite(pole.imag)] for pole in loop.poles],
+        "h0": _finite(loop.h0),
+        "damping_ratio": _finite(loop.damping_ratio),
+        "settling_s": None if loop.settling_s is None else _finite(loop.settling_s),
+        **whole_system_report(run.whole),
+    }
+
+
+def _finite(value: float) -> float | None:
+    # + 0.0: no "-0.0" in a document
+    return float(value) + 0.0 if math.isfinite(value) else None

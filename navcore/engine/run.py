@@ -1,0 +1,199 @@
+"""What a simulation gives back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from navcore.analysis import Loop
+from navcore.analysis.whole_system import WholeSystem
+from navcore.mechanization.recorder import Recorder
+from navcore.networks.base import LinearNetwork
+from navcore.scenario.model import Method, Scenario
+from navcore.scenario.sampling import Sampling
+
+_DAMPED, _XI = 1, 2
+Status = Literal["ok", "diverged", "stopped"]
+
+
+@dataclass(frozen=True)
+class PlotSeries:
+    """Error curves at plot resolution that keep every extreme.
+
+    Attributes
+    ----------
+    t_s : ndarray, shape (m,)
+        Common time axis, s; two points a bin when steps were gathered into bins.
+    values : ndarray, shape (m, 8)
+        The quantities of `navcore.mechanization.recorder.NAMES`, rad, m/s, m.
+    """
+
+    t_s: np.ndarray
+    values: np.ndarray
+
+
+@dataclass(frozen=True)
+class LawInForce:
+    """What the damping law did, over the output rows.
+
+    Attributes
+    ----------
+    damped_share : float
+        Part of the rows at which the loop was damped, 0..1.
+    xi_min, xi_mean, xi_max : float or None
+        Damping coefficient in force at those rows; None when there are none.
+    """
+
+    damped_share: float
+    xi_min: float | None
+    xi_mean: float | None
+    xi_max: float | None
+
+
+@dataclass(frozen=True)
+class MethodRun:
+    """One method's result.
+
+    Attributes
+    ----------
+    method : Method
+        As configured.
+    network : LinearNetwork
+        Its H(s) at the site; of a policy that re-tunes it, at the mean coefficient in force.
+    loop : Loop
+        Closed-loop analysis of one channel.
+    whole : WholeSystem
+        Both channels, heading and latitude at the site.
+    status : {"ok", "diverged", "stopped"}
+        How the run ended.
+    reason : str
+        Why it did not end well, with the time; empty when ok.
+    warnings : tuple of str
+        In plain words.
+    t_s : ndarray, shape (m,)
+        Times of the output rows that were reached, s.
+    rows : ndarray, shape (m, 10)
+        Eight quantities (`recorder.NAMES`), damped (0/1), xi.
+    errors : dict
+        Statistics on the mechanization's own steps: quantity -> mean, std, rms, max_abs, final.
+    plot : PlotSeries
+        Curves for the screen.
+    law_series : ndarray, shape (m, 4)
+        At the output rows: the policy's wish (0/1), damped (0/1), xi in force, what the policy measured.
+    navigation : ndarray, shape (m, 11), or None
+        The navigation solution of a strapdown run, columns
+        `navcore.mechanization.strapdown.records.NAVIGATION`.
+    """
+
+    method: Method
+    network: LinearNetwork
+    loop: Loop
+    whole: WholeSystem
+    status: Status
+    reason: str
+    warnings: tuple[str, ...]
+    t_s: np.ndarray
+    rows: np.ndarray
+    errors: dict[str, dict[str, float]]
+    plot: PlotSeries
+    law_series: np.ndarray
+    navigation: np.ndarray | None = None
+
+    @property
+    def law_in_force(self) -> LawInForce:
+        """How much of the run was damped, and how hard, over the output rows."""
+        damped = self.law_series[:, _DAMPED] > 0.5
+        if not np.any(damped):
+            return LawInForce(0.0, None, None, None)
+        xi = self.law_series[damped, _XI]
+        share = float(np.mean(damped))
+        return LawInForce(share, float(np.min(xi)), float(np.mean(xi)), float(np.max(xi)))
+
+
+@dataclass(frozen=True)
+class Run:
+    """Results of all methods of a scenario on the same truth and sensors.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        Complete, resolved.
+    methods : tuple of MethodRun
+        In the scenario's order.
+    t_s : ndarray, shape (m,)
+        Times of all output rows, s.
+    truth : ndarray, shape (m, 15)
+        True motion at the output rows, columns of `navcore.motion.base`.
+    warnings : tuple of str
+        About the scenario as a whole (recorded data, say).
+    elapsed_s : float
+        Wall time of the simulation, s.
+    sampling : Sampling or None
+        Rates of a strapdown run.
+    """
+
+    scenario: Scenario
+    methods: tuple[MethodRun, ...]
+    t_s: np.ndarray
+    truth: np.ndarray
+    warnings: tuple[str, ...]
+    elapsed_s: float
+    sampling: Sampling | None = None
+
+    @property
+    def computed_on(self) -> str:
+        """Which states metrics and plots cover, in words."""
+        if self.sampling is None:
+            return f"every step of the mechanization, {self.scenario.run.step_s:g} s"
+        rates = self.sampling
+        return (
+            f"states every {rates.record_step_s:g} s (every {rates.record_every} steps of the mechanization "
+            f"at {rates.rate_hz:g} Hz)"
+        )
+
+    @property
+    def status(self) -> Status:
+        """Worst status of the methods."""
+        states = {m.status for m in self.methods}
+        return "stopped" if "stopped" in states else "diverged" if "diverged" in states else "ok"
+
+
+def plot_series(recorder: Recorder, step_s: float) -> PlotSeries:
+    """Turn a recorder's bins into curves: minimum and maximum of each bin in the order in which they came."""
+    states = int(recorder.cursor["count"])
+    width = recorder.bin_width
+    bins = -(-states // width)
+    low, high = recorder.bin_low[:bins], recorder.bin_high[:bins]
+    if width == 1:
+        return PlotSeries(np.arange(bins) * step_s, low.copy())
+    rising = recorder.bin_order[:bins] == 1
+    values = np.empty((2 * bins, low.shape[1]))
+    values[0::2] = np.where(rising, low, high)
+    values[1::2] = np.where(rising, high, low)
+    start = np.arange(bins) * width
+    length = np.minimum(width, states - start)
+    t = np.empty(2 * bins)
+    t[0::2] = (start + 0.25 * (length - 1)) * step_s
+    t[1::2] = (start + 0.75 * (length - 1)) * step_s
+    points = 2 * bins - int(length[-1] == 1)
+    return PlotSeries(t[:points], values[:points])
+
+
+def statistics(recorder: Recorder) -> dict[str, dict[str, float]]:
+    """Mean, standard deviation, RMS, largest magnitude and last value of each quantity over all states."""
+    from navcore.mechanization.recorder import FINAL, MAX_ABS, NAMES, SUM, SUM_SQUARES
+
+    count = max(int(recorder.cursor["count"]), 1)
+    out: dict[str, dict[str, float]] = {}
+    for name, row in zip(NAMES, recorder.stats, strict=True):
+        mean, square = row[SUM] / count, row[SUM_SQUARES] / count
+        out[name] = {
+            "mean": float(mean),
+            "std": float(np.sqrt(max(square - mean * mean, 0.0))),
+            "rms": float(np.sqrt(square)),
+            "max_abs": float(row[MAX_ABS]),
+            "final": float(row[FINAL]),
+        }
+    return out

@@ -1,0 +1,290 @@
+"""verify(scenario) -> Verification: the linear error model beside the full strapdown, on the same noise.
+
+The strapdown run makes the IMU's samples; what their errors add up to over each step of the linear model is
+fed to the error model, which starts from the same errors and sees the same log. The difference is therefore
+the linear model's own.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from navcore.engine.drivers import linear
+from navcore.engine.drivers.common import STOPPED, Cancelled, Progress
+from navcore.engine.environment import Environment, environment
+from navcore.engine.run import MethodRun, Run
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.units import ARCMIN, ARCSEC, DEG, HOUR
+from navcore.mechanization.recorder import DAMPED_COLUMN, NAMES, PHI_E, PHI_N, PHI_U
+from navcore.motion.base import LAT
+from navcore.scenario.model import Scenario
+from navcore.sensors.base import ReferenceErrors, SensorErrors
+
+TILT_DEG = 1.0
+"""Level misalignment from which products of errors count, deg."""
+HEADING_DEG = 5.0
+"""The same of the heading."""
+LATITUDE_DEG = 75.0
+"""Latitude from which tan L multiplies position errors too much for a linear model, deg."""
+LONG_H = 72.0
+"""Length from which small differences of the periods have put the curves out of phase, h."""
+OF_PEAK = 0.05
+"""Part of a curve's peak from which a difference is told."""
+_STRAPDOWN_SHARE = 0.95
+"""Of the time that a verification takes."""
+_SMALLEST = {"rad": 0.1 * ARCSEC, "mps": 1e-3, "m": 1.0}
+"""Differences below are nobody's concern, however small the peak."""
+_SHOWN = {
+    "phi_e_rad": ("phi_E", "arcsec", ARCSEC),
+    "phi_n_rad": ("phi_N", "arcsec", ARCSEC),
+    "phi_u_rad": ("phi_U", "arcmin", ARCMIN),
+    "dve_mps": ("dV_E", "m/s", 1.0),
+    "dvn_mps": ("dV_N", "m/s", 1.0),
+    "dlat_m": ("dL", "m", 1.0),
+    "dlon_m": ("dlambda", "m", 1.0),
+    "position_m": ("the position", "m", 1.0),
+}
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Strapdown minus linear model in one quantity, over the common output rows.
+
+    Attributes
+    ----------
+    peak : float
+        Largest magnitude of the difference, SI.
+    of_peak : float or None
+        The same relative to the largest magnitude of the strapdown curve; None where that is zero.
+    """
+
+    peak: float
+    of_peak: float | None
+
+
+@dataclass(frozen=True)
+class Verification:
+    """Both runs of a scenario and how far they are apart.
+
+    Attributes
+    ----------
+    strapdown : Run
+        With ``run.fidelity = "strapdown"``; its methods carry `MethodRun.navigation`.
+    linear : Run
+        The error model fed with the same noise, methods in the same order, on the same output times.
+    differences : tuple of dict
+        For each method: quantity (`navcore.mechanization.recorder.NAMES`) -> `Difference`. Empty for a method
+        of which one of the runs has no two rows.
+    statements : tuple of str
+        Plain words: why the linear model is not to be trusted here (tilt, latitude, duration, a method that
+        diverged ...); empty when nothing speaks against it.
+    complete : bool
+        False when it was cancelled: both runs hold what was computed.
+    """
+
+    strapdown: Run
+    linear: Run
+    differences: tuple[dict[str, Difference], ...]
+    statements: tuple[str, ...]
+    complete: bool
+
+
+def why_not(scenario: Scenario) -> str:
+    """Say why a scenario cannot be verified; empty when it can."""
+    if scenario.run.fidelity == "channel":
+        return (
+            'fidelity "channel" leaves the Earth\'s rotation and the heading out, which a strapdown run has: '
+            'set run.fidelity to "error_model"'
+        )
+    if scenario.imu.file is not None:
+        return "a recorded IMU has errors that nobody knows, so that no linear model can be fed with them"
+    return ""
+
+
+def verify(
+    scenario: Scenario, progress: Progress | None = None, cancelled: Cancelled | None = None
+) -> Verification:
+    """Run a scenario as full strapdown and as linear error model on the same noise, and compare them.
+
+    A step below one second is raised to one second in both runs.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Of fidelity ``error_model`` (or ``strapdown``); its ``run.rate_hz`` is the IMU's rate.
+    progress : callable, optional
+        Called with the fraction done, 0..1, from any thread.
+    cancelled : callable, optional
+        Asked at least every 60 s of IMU data; True ends both runs, and what was computed is kept.
+
+    Raises
+    ------
+    InputError
+        The scenario cannot be verified (`why_not`), or not be run as strapdown: one fault per field.
+    """
+    # Only now: the strapdown kernels are slow to import, and the page shows this module's names at once.
+    from navcore.engine.drivers import strapdown
+    from navcore.engine.strapdown_environment import strapdown_environment
+
+    full = _as_strapdown(scenario)
+    simple = full.model_copy(update={"run": full.run.model_copy(update={"fidelity": "error_model"})})
+    began = time.perf_counter()
+    env, flat = strapdown_environment(full), environment(simple)
+    sums: list[np.ndarray] = []
+
+    def report(fraction: float) -> None:
+        if progress is not None:
+            progress(_STRAPDOWN_SHARE * fraction)
+
+    first = strapdown.run_methods(full, env, report, cancelled, began, lambda part: sums.append(part.copy()))
+    fed = _fed(flat, np.concatenate(sums), full.run.step_s, env.block / env.sampling.rate_hz, env.reference)
+    second = _linear_run(simple, fed, env.errors)
+    complete = first.status != "stopped"
+    if not complete:
+        stopped = (replace(m, status="stopped", reason=STOPPED) for m in second.methods)
+        second = replace(second, methods=tuple(stopped))
+    if progress is not None:
+        progress(1.0)
+    pairs = list(zip(first.methods, second.methods, strict=True))
+    differences = tuple(_differences(*pair) for pair in pairs)
+    return Verification(
+        strapdown=first,
+        linear=second,
+        differences=differences,
+        statements=tuple(_statements(scenario, first, pairs, differences)),
+        complete=complete,
+    )
+
+
+def _linear_run(scenario: Scenario, env: Environment, state: np.ndarray) -> Run:
+    return linear.run_methods(scenario, env, state, None, None, time.perf_counter())
+
+
+def _as_strapdown(scenario: Scenario) -> Scenario:
+    """Return the scenario with fidelity strapdown and a step of whole blocks of the IMU (about 1 s)."""
+    reason, run = why_not(scenario), scenario.run
+    if reason:
+        field, value = "imu.file", scenario.imu.file
+        if value is None:
+            field, value = "run.fidelity", run.fidelity
+        raise InputError(Fault("", field, value, reason))
+    block_s = max(1, round(run.rate_hz)) / run.rate_hz
+    step_s = max(1, round(run.step_s / block_s)) * block_s
+    full = scenario.model_copy(
+        update={"run": run.model_copy(update={"fidelity": "strapdown", "step_s": step_s})}
+    )
+    faults = list(full.faults())
+    if faults:
+        raise InputError(faults)
+    return full
+
+
+def _fed(
+    env: Environment, sums: np.ndarray, step_s: float, block_s: float, log: ReferenceErrors
+) -> Environment:
+    """Put the errors that the strapdown's IMU and log made into the environment of the linear model."""
+    blocks = round(step_s / block_s)
+    steps = min(env.steps, len(sums) // blocks)
+    mean = sums[: steps * blocks].reshape(steps, blocks, 6).sum(axis=1) / step_s
+    sensors = SensorErrors(np.ascontiguousarray(mean[:, :3]), np.ascontiguousarray(mean[:, 3:]))
+    return replace(env, steps=steps, sensors=sensors, reference=_gathered(log, step_s))
+
+
+def _gathered(log: ReferenceErrors, step_s: float) -> ReferenceErrors:
+    """Give a log that is faster than the step once a step: the mean of what the strapdown run holds in it."""
+    if len(log.time_s) < 2:
+        return log
+    interval = float(log.time_s[-1] - log.time_s[0]) / (len(log.time_s) - 1)
+    many = round(step_s / interval)
+    if many < 2 or log.time_s[0] != 0.0:
+        return log
+    whole = len(log.time_s) // many
+    first = np.arange(whole) * many
+    means = log.error[: whole * many].reshape(whole, many, 2).mean(axis=1)
+    return ReferenceErrors(log.time_s[first], means, log.valid[first], log.body_frame, log.hold_s)
+
+
+def _differences(full: MethodRun, simple: MethodRun) -> dict[str, Difference]:
+    rows = min(len(full.t_s), len(simple.t_s))
+    if rows < 2:
+        return {}
+    found = {}
+    for i, name in enumerate(NAMES):
+        peak = float(np.abs(full.rows[:rows, i] - simple.rows[:rows, i]).max())
+        largest = float(np.abs(full.rows[:rows, i]).max())
+        found[name] = Difference(peak, peak / largest if largest > 0.0 else None)
+    return found
+
+
+def _statements(
+    scenario: Scenario,
+    full: Run,
+    pairs: list[tuple[MethodRun, MethodRun]],
+    differences: tuple[dict[str, Difference], ...],
+) -> Iterator[str]:
+    latitude = float(np.abs(full.truth[:, LAT]).max()) / DEG
+    if latitude > LATITUDE_DEG:
+        yield (
+            f"The latitude reaches {latitude:.1f} deg: beyond {LATITUDE_DEG:g} deg a small error of position "
+            "turns north too far for a linear model."
+        )
+    if scenario.run.duration_h > LONG_H:
+        yield (
+            f"The run is {scenario.run.duration_h:g} h long: beyond {LONG_H:g} h small differences of the "
+            "periods put the curves of an undamped method out of phase."
+        )
+    if scenario.run.step_s < 0.999 * full.scenario.run.step_s:
+        yield (
+            f"Both runs were made with steps of {full.scenario.run.step_s:g} s in place of "
+            f"{scenario.run.step_s:g} s: so finely are the errors of the IMU summed up."
+        )
+    for (strapdown, linear_run), difference in zip(pairs, differences, strict=True):
+        for text in _about_method(strapdown, linear_run, difference):
+            yield f"{strapdown.method.name}: {text}"
+
+
+def _about_method(full: MethodRun, simple: MethodRun, differences: dict[str, Difference]) -> Iterator[str]:
+    for run, which in ((full, "the strapdown run"), (simple, "the linear model")):
+        if run.status == "diverged":
+            yield f"{which} diverged: {run.reason}."
+    tilt = max(full.errors[NAMES[i]]["max_abs"] for i in (PHI_E, PHI_N)) / DEG
+    if tilt > TILT_DEG:
+        yield (
+            f"the tilt reaches {tilt:.2g} deg: beyond about {TILT_DEG:g} deg products of errors count, which "
+            "the linear model leaves out."
+        )
+    heading = full.errors[NAMES[PHI_U]]["max_abs"] / DEG
+    if heading > HEADING_DEG:
+        yield (
+            f"the heading errs by up to {heading:.2g} deg: beyond about {HEADING_DEG:g} deg sine and angle "
+            "differ, and the platform's rates couple in ways the linear model leaves out."
+        )
+    rows = min(len(full.t_s), len(simple.t_s))
+    apart = np.flatnonzero(full.rows[:rows, DAMPED_COLUMN] != simple.rows[:rows, DAMPED_COLUMN])
+    if apart.size:
+        yield (
+            f"damped and undamped at different times ({apart.size} of {rows} output rows, first at "
+            f"{full.t_s[apart[0]] / HOUR:.3g} h): from there on the runs are not of the same thing."
+        )
+    worst = _worst(differences)
+    if worst is not None:
+        name, difference = worst
+        label, unit, size = _SHOWN[name]
+        share = "" if difference.of_peak is None else f", {100.0 * difference.of_peak:.2g} % of the peak"
+        yield f"{label} differs by up to {difference.peak / size:.3g} {unit}{share}."
+
+
+def _worst(differences: dict[str, Difference]) -> tuple[str, Difference] | None:
+    """Quantity that differs most relative to its peak, if by more than `OF_PEAK` and by what can be seen."""
+    shares = {
+        name: difference.of_peak if difference.of_peak is not None else math.inf
+        for name, difference in differences.items()
+        if difference.peak > _SMALLEST[name.rsplit("_", 1)[1]]
+    }
+    name = max(shares, key=lambda key: shares[key], default=None)
+    return None if name is None or shares[name] <= OF_PEAK else (name, differences[name])

@@ -1,0 +1,243 @@
+"""From pydantic's errors to faults: the path as the user wrote it, the value, the whole allowed range."""
+
+from __future__ import annotations
+
+import difflib
+import types
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.parameters import allowed_range
+
+_ABSENT = object()
+_MOST_ERRORS = 100
+"""Errors that are told one by one: nobody reads more."""
+_LONGEST_NAME = 60
+_WANTED = {
+    "float": "must be a number",
+    "int": "must be a whole number",
+    "bool": "must be true or false",
+    "string": "must be text",
+    "list": "must be a list",
+    "tuple": "must be a list",
+    "dict": "must be a table of fields",
+    "model": "must be a table of fields",
+    "finite": "must be a finite number",
+}
+_BOUNDS = {"greater_than": ">", "greater_than_equal": ">=", "less_than": "<", "less_than_equal": "<="}
+
+
+def faults_from(error: ValidationError, model: Any, data: Any, where: str) -> list[Fault]:
+    """Translate a pydantic error.
+
+    Parameters
+    ----------
+    error : pydantic.ValidationError
+        What validation raised.
+    model : type or annotation
+        What was validated: a model class, or an annotation such as a discriminated union.
+    data : object
+        The raw input, from which the offending values are taken as the user wrote them.
+    where : str
+        File, preset or part of the page the input came from.
+
+    Returns
+    -------
+    list of Fault
+        One for each wrong field; an `InputError` raised in a validator is unfolded. Paths carry no union
+        tags: ``method.0.network.xi``.
+    """
+    faults: list[Fault] = []
+    items = error.errors(include_url=False)
+    for item in items[:_MOST_ERRORS]:
+        faults += _unfold(item, model, data, where)
+    more = len(items) - _MOST_ERRORS
+    told = [Fault(where, "", None, f"and {more} more faults")] if more > 0 else []
+    return [*_merged(faults), *told]
+
+
+def _merged(faults: list[Fault]) -> list[Fault]:
+    """One fault a field: pydantic reports every member of a plain union that did not fit."""
+    together: dict[tuple[str, str], Fault] = {}
+    for fault in faults:
+        key = (fault.where, fault.field)
+        first = together.get(key)
+        if first is None:
+            together[key] = fault
+        elif fault.allowed not in first.allowed:
+            together[key] = replace(first, allowed=f"{first.allowed}, or {fault.allowed}")
+    return list(together.values())
+
+
+def _unfold(item: Any, model: Any, data: Any, where: str) -> list[Fault]:
+    path, place, info = _walk(model, data, item["loc"])
+    cause = (item.get("ctx") or {}).get("error")
+    if isinstance(cause, InputError):
+        return [_relocated(fault, path, data, where) for fault in cause.faults]
+    kind = item["type"]
+    if kind.startswith("union_tag"):
+        name = (item.get("ctx") or {}).get("discriminator", "'id'").strip("'")
+        value = _lookup(data, [*path, name])
+        return [Fault(where, ".".join([*path, name]), _shown(value, None), _tags(place, name, value))]
+    value = _lookup(data, path)
+    if kind == "missing":
+        return [Fault(where, ".".join(path), None, _join("is required", _range(info)))]
+    allowed = _allowed(item, path, place, info)
+    return [Fault(where, ".".join(path), _shown(value, item.get("input")), allowed)]
+
+
+def _relocated(fault: Fault, path: list[str], data: Any, where: str) -> Fault:
+    whole = [*path, *(fault.field.split(".") if fault.field else [])]
+    value = _shown(_lookup(data, whole), fault.value)
+    return Fault(fault.where or where, ".".join(whole), value, fault.allowed)
+
+
+def _shown(value: Any, fallback: Any) -> Any:
+    if value is _ABSENT:
+        value = fallback
+    return None if isinstance(value, dict | BaseModel) else value
+
+
+def _range(info: FieldInfo | None) -> str:
+    return allowed_range(info) if info is not None else ""
+
+
+def _join(first: str, bounds: str) -> str:
+    return f"{first}, {bounds.removeprefix('must be ')}" if bounds else first
+
+
+def _allowed(item: Any, path: list[str], place: Any, info: FieldInfo | None) -> str:
+    kind, context = item["type"], item.get("ctx") or {}
+    if kind == "extra_forbidden":
+        return _unknown_field(path[-1], place)
+    if kind == "literal_error":
+        return f"must be {'one of ' if ' or ' in context['expected'] else ''}{context['expected']}"
+    if kind in _BOUNDS:
+        return _range(info) or f"must be {_BOUNDS[kind]} {next(iter(context.values())):g}"
+    if kind in ("too_short", "too_long"):
+        limit = context.get("min_length", context.get("max_length"))
+        return f"must have {'at least' if kind == 'too_short' else 'at most'} {limit} values"
+    wanted = _WANTED.get(kind.split("_")[0])
+    if wanted is not None:
+        return _join(wanted, _range(info))
+    message = str(context["error"]) if "error" in context else item["msg"]
+    return _join(message.replace("Input should be", "must be", 1), _range(info))
+
+
+def _unknown_field(name: str, place: Any) -> str:
+    known = list(place.model_fields) if _is_model(place) else []
+    close = difflib.get_close_matches(name[:_LONGEST_NAME], known, n=1)
+    hint = f"did you mean {close[0]}? " if close else ""
+    return f"is not a field here; {hint}known: {', '.join(known) or 'none'}"
+
+
+def _tags(place: Any, name: str, value: Any) -> str:
+    known = [tag for member in _members(place) for tag in _tags_of(member, name)]
+    close = difflib.get_close_matches(_tag_text(value), known, n=1)
+    hint = f" (did you mean {close[0]}?)" if close and value is not _ABSENT else ""
+    return f"{'is required: ' if value is _ABSENT else 'must be '}one of {', '.join(known)}{hint}"
+
+
+def _tag_text(value: Any) -> str:
+    return value[:_LONGEST_NAME] if isinstance(value, str) else ""
+
+
+def _lookup(data: Any, path: list[str]) -> Any:
+    for key in path:
+        if isinstance(data, dict) and key in data:
+            data = data[key]
+        elif isinstance(data, list | tuple) and key.isdigit() and int(key) < len(data):
+            data = data[int(key)]
+        else:
+            return _ABSENT
+    return data
+
+
+def _walk(model: Any, data: Any, loc: tuple[int | str, ...]) -> tuple[list[str], Any, FieldInfo | None]:
+    """Follow pydantic's location; return the path without tags, the annotation there and its field."""
+    path: list[str] = []
+    place, info = _unwrap(model, None)
+    holder = place
+    for step in loc:
+        members = list(_members(place))
+        if isinstance(step, str) and len(members) > 1:
+            chosen = next((m for m in members if step in _names(m)), None)
+            if chosen is not None:
+                place, info = _unwrap(chosen, info)
+            if chosen is not None or not any(_is_model(m) and _field(m, step) for m in members):
+                continue
+        if isinstance(step, str) and step.startswith(("function-", "constrained-", "lax-or-strict", "[key]")):
+            continue
+        path.append(str(step))
+        holder = place
+        place, info = _descend(members, step, info)
+    return path, (holder if place is None else place), info
+
+
+def _descend(members: list[Any], step: int | str, info: FieldInfo | None) -> tuple[Any, FieldInfo | None]:
+    for member in members:
+        if _is_model(member):
+            field = _field(member, step)
+            if field is not None:
+                return _unwrap(field.annotation, field)
+        elif isinstance(step, int) and get_origin(member) in (list, tuple, set, frozenset):
+            arguments = [a for a in get_args(member) if a is not Ellipsis]
+            if arguments:
+                return _unwrap(arguments[min(step, len(arguments) - 1)], info)
+        elif get_origin(member) is dict:
+            return _unwrap(get_args(member)[1], info)
+    return None, None
+
+
+def _field(model: type[BaseModel], step: int | str) -> FieldInfo | None:
+    return next(
+        (f for name, f in model.model_fields.items() if step in (name, f.alias, f.validation_alias)), None
+    )
+
+
+def _unwrap(annotation: Any, info: FieldInfo | None) -> tuple[Any, FieldInfo | None]:
+    """Strip Annotated and Optional; an Annotated[..., Field(...)] with bounds replaces the field's own."""
+    while True:
+        if get_origin(annotation) is Annotated:
+            inner, *extras = get_args(annotation)
+            own = next((e for e in extras if isinstance(e, FieldInfo) and allowed_range(e)), None)
+            annotation, info = inner, own or info
+        elif len(members := list(_members(annotation))) == 1 and members[0] is not annotation:
+            annotation = members[0]
+        else:
+            return annotation, info
+
+
+def _members(annotation: Any) -> Iterator[Any]:
+    """Members of a union without None; the annotation itself when it is no union."""
+    if get_origin(annotation) is Annotated:
+        yield from _members(get_args(annotation)[0])
+    elif get_origin(annotation) in (Union, types.UnionType):
+        for member in get_args(annotation):
+            if member is not type(None):
+                yield from _members(member)
+    else:
+        yield annotation
+
+
+def _is_model(annotation: Any) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, BaseModel)
+
+
+def _tags_of(member: Any, name: str) -> list[str]:
+    field = member.model_fields.get(name) if _is_model(member) else None
+    annotation = None if field is None else field.annotation
+    return [str(value) for value in get_args(annotation)] if get_origin(annotation) is Literal else []
+
+
+def _names(member: Any) -> list[str]:
+    """What pydantic may call a member of a union: class name, type text or discriminator tag."""
+    names = [str(member), getattr(member, "__name__", "")]
+    if _is_model(member):
+        names += [tag for name in member.model_fields for tag in _tags_of(member, name)]
+    return names

@@ -1,0 +1,3 @@
+"""The version of the bench: navcore, the page and the command have one."""
+
+__version__ = "0.1.0"

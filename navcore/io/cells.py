@@ -1,0 +1,137 @@
+"""Cells of a text table to numbers and times; a fault for each that makes no sense."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from datetime import UTC, datetime
+
+import numpy as np
+
+from navcore.foundation.errors import Fault, InputError
+from navcore.io.columns import limited
+from navcore.io.stamps import StampReader, day_comes_first
+
+_EMPTY = frozenset(("", "-", "--", "na", "n/a", "null", "none"))
+_HEMISPHERE = re.compile(r"[\d.]{1,20}[ \d.'\"°:]{0,30} ?[NSEWnsew]")
+_NUMBER = re.compile(r"\d{1,9}(?:\.\d{0,15})?")
+_UNIX_FROM = 1e8
+"""Numbers from here on are Unix time (1973), smaller ones seconds of the file's own."""
+_DAY = 86400.0
+
+
+def is_empty(cell: str) -> bool:
+    """Whether a cell stands for no reading."""
+    return cell.strip().lower() in _EMPTY
+
+
+def numbers(
+    where: str, name: str, cells: Sequence[str], rows: Sequence[int]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers of a column and which cells are empty (0 there).
+
+    Raises
+    ------
+    InputError
+        A cell is neither empty nor a number nor degrees with a hemisphere; names row and column.
+    """
+    try:
+        return np.array(cells, dtype=float), np.zeros(len(cells), dtype=bool)
+    except ValueError:
+        pass
+    values, empty = np.zeros(len(cells)), np.zeros(len(cells), dtype=bool)
+    faults: list[Fault] = []
+    for index, cell in enumerate(cells):
+        try:
+            values[index] = float(cell)
+        except ValueError:
+            degrees = None
+            if is_empty(cell):
+                empty[index] = True
+            elif (degrees := _degrees(cell.strip())) is not None:
+                values[index] = degrees
+            else:
+                hint = " (decimal comma?)" if "," in cell else ""
+                allowed = f"is not a number{hint}"
+                faults.append(Fault(f"{where}, row {rows[index]}", name, cell, allowed))
+    if faults:
+        raise InputError(limited(where, faults))
+    return values, empty
+
+
+def _degrees(cell: str) -> float | None:
+    """Degrees of ``59.2 N``, ``59 12.3' N``, ``5912.3N`` (degrees and minutes run together); else None."""
+    if len(cell) > 40 or _HEMISPHERE.fullmatch(cell) is None:
+        return None
+    parts = [float(part) for part in _NUMBER.findall(cell)]
+    if len(parts) == 1 and len(cell.split(".")[0].strip("NSEWnsew ")) >= 4:
+        parts = [parts[0] // 100.0, parts[0] % 100.0]
+    if not 1 <= len(parts) <= 3 or any(part >= 60.0 for part in parts[1:]):
+        return None
+    value = sum(part / 60.0**k for k, part in enumerate(parts))
+    return -value if cell[-1] in "SWsw" else value
+
+
+def times(where: str, name: str, cells: Sequence[str], rows: Sequence[int]) -> tuple[np.ndarray, bool]:
+    """Times of a column, s, and whether they are dated (since 1970) or of the file's own zero.
+
+    Taken are ISO 8601 (no zone means UTC), what `navcore.io.stamps` reads, Unix time in s or ms, and times of
+    day alone, which are undated.
+
+    Raises
+    ------
+    InputError
+        A cell is none of these; names the row.
+    """
+    try:
+        found = np.array(cells, dtype=float)
+    except ValueError:
+        return _written_times(where, name, cells, rows)
+    return unix_or_elapsed(found)
+
+
+def unix_or_elapsed(values: np.ndarray) -> tuple[np.ndarray, bool]:
+    """Numbers of time: Unix time in s, ms, us or ns by their size, or s since the file's own zero."""
+    size = float(np.nanmedian(np.abs(values))) if values.size else 0.0
+    if not size >= _UNIX_FROM:
+        return values, False
+    steps = 0
+    while size >= _UNIX_FROM * 1e3 and steps < 3:
+        size, steps = size / 1e3, steps + 1
+    return values / 1e3**steps, True
+
+
+def _written_times(
+    where: str, name: str, cells: Sequence[str], rows: Sequence[int]
+) -> tuple[np.ndarray, bool]:
+    reader = StampReader(day_comes_first(cell for cell in cells if "/" in cell))
+    seconds, dated = np.empty(len(cells)), np.ones(len(cells), dtype=bool)
+    faults: list[Fault] = []
+    for index, cell in enumerate(cells):
+        moment = _moment(cell.strip(), reader)
+        if moment is None:
+            faults.append(Fault(f"{where}, row {rows[index]}", name, cell, "is not an ISO 8601 time"))
+        else:
+            seconds[index], dated[index] = moment
+    if faults:
+        raise InputError(limited(where, faults))
+    if dated.all():
+        return seconds, True
+    if dated.any():
+        allowed = "some rows have a date and some have none"
+        raise InputError(Fault(f"{where}, row {rows[int(np.argmin(dated))]}", name, None, allowed))
+    nights = np.cumsum(np.diff(seconds, prepend=seconds[0]) < -0.5 * _DAY)
+    return seconds + _DAY * nights, False
+
+
+def _moment(cell: str, reader: StampReader) -> tuple[float, bool] | None:
+    try:
+        moment = datetime.fromisoformat(cell)
+        return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp(), True
+    except (ValueError, OverflowError):
+        pass
+    try:
+        stamp, _ = reader.read(cell[:80])
+    except ValueError:
+        return None
+    return None if stamp is None else (stamp.seconds, stamp.dated)

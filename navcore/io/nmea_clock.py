@@ -1,0 +1,156 @@
+"""UTC of each sentence of a log: from its own time, from the stamp beside it, from what was known before.
+
+In this order: the sentence's own UTC (the stamp says which day, since old receivers give wrong dates); the
+stamp; the last time known. Stamps in local time are told by the first dated sentence and corrected.
+"""
+
+from __future__ import annotations
+
+import re
+from datetime import UTC, datetime
+from pathlib import Path
+
+from navcore.io.nmea_lines import Tally
+from navcore.io.nmea_sentences import Reading
+from navcore.io.stamps import LONGEST_STAMP, Stamp, StampReader
+
+_DAY = 86400.0
+_QUARTER_S = 900.0
+"""Time zones differ from UTC by whole quarters of an hour."""
+_FARTHEST_ZONE_S = 14.5 * 3600.0
+_CLOCK_ERROR_S = 120.0
+"""By how much a logger's clock may be off for its time zone to be recognised."""
+_LONGEST_SENTENCE = 120
+_MOST_TRIES = 20_000
+_DATE_PLACES = {"RMC,": (0, 8), "ZDA,": (0, 1)}
+"""Where the fields stand: time and date (RMC), time and day (ZDA; month and year follow)."""
+_LOGGED_DAY = re.compile(r"(?<!\d)(\d{4})_\d{3}_\d{5}(?!\d)")
+"""Name of a file of the University of Hawaii's logger: year, day and second of the day."""
+
+
+class Clock:
+    """Time of the lines of one file, which are given in their order.
+
+    Parameters
+    ----------
+    text : str
+        Whole file: its first dated sentence serves those before it.
+    name : str
+        File name; some loggers put the year there.
+    tally : Tally
+        Told whether times are dated, and how far the stamps are off.
+    """
+
+    def __init__(self, text: str, name: str, tally: Tally) -> None:
+        self._tally = tally
+        self._now: float | None = None
+        self._logged: float | None = None
+        dated = _first_dated(text)
+        self._date = None if dated is None else dated[0] // _DAY * _DAY
+        if dated is not None:
+            tally.local_time_s = _zone(text, *dated)
+        year = _LOGGED_DAY.search(Path(name).stem)
+        known = datetime.fromtimestamp(self._date, UTC).year if self._date is not None else None
+        self._year = int(year[1]) if year is not None else known
+
+    def logged(self, sentence: str) -> None:
+        """Take the time of a line ``$UNIXD,<days since the year began>``: it holds for the lines after."""
+        try:
+            days = float(sentence.partition("*")[0].split(",")[1])
+            if self._year is not None and 0.0 <= days <= 800.0:
+                self._logged = datetime(self._year, 1, 1, tzinfo=UTC).timestamp() + days * _DAY
+        except (ValueError, IndexError):
+            return
+
+    def time_of(self, stamp: Stamp | None, reading: Reading | None) -> float | None:
+        """UTC of a sentence, s since 1970 (since midnight when nothing is dated); None when unknown."""
+        near = self._near(stamp)
+        own = reading.time_of_day if reading is not None else None
+        if own is None:
+            if near is not None:
+                self._now = near
+            return self._now
+        if near is not None:
+            self._now = _nearest_day(own, near)
+            self._tally.clock_offsets.append(near - self._now)
+        else:
+            self._now = self._without_stamp(own, reading.day if reading is not None else None)
+        return self._now
+
+    def _near(self, stamp: Stamp | None) -> float | None:
+        """Time of the stamp, or of the logger's line before."""
+        if stamp is None:
+            return self._logged
+        seconds = stamp.seconds - self._tally.local_time_s
+        if stamp.dated:
+            return seconds
+        return self._without_stamp(seconds, None)
+
+    def _without_stamp(self, own: float, day: float | None) -> float:
+        if day is not None:
+            return day + own
+        if self._now is not None:
+            return _nearest_day(own, self._now)
+        self._tally.dated = self._date is not None
+        return (self._date or 0.0) + own
+
+
+def _nearest_day(time_of_day: float, near: float) -> float:
+    return time_of_day + _DAY * round((near - time_of_day) / _DAY)
+
+
+def _first_dated(text: str) -> tuple[float, int] | None:
+    """UTC of the first RMC or ZDA sentence with a date, and where it stands in the text."""
+    found = [dated for key in _DATE_PLACES for dated in [_first_of(text, key)] if dated is not None]
+    return min(found, key=lambda dated: dated[1], default=None)
+
+
+def _first_of(text: str, key: str) -> tuple[float, int] | None:
+    position = text.find(key)
+    for _ in range(_MOST_TRIES):
+        if position < 0:
+            return None
+        moment = _moment(key, text[position + 4 : position + 4 + _LONGEST_SENTENCE].split("\n", 1)[0])
+        if moment is not None:
+            return moment, position
+        position = text.find(key, position + 4)
+    return None
+
+
+def _moment(key: str, fields: str) -> float | None:
+    """UTC of the fields behind an address; None when they hold no whole time."""
+    parts = fields.partition("*")[0].split(",")
+    time_place, date_place = _DATE_PLACES[key]
+    try:
+        time = parts[time_place]
+        if key == "RMC,":
+            if parts[1] != "A":
+                return None
+            date = parts[date_place]
+            day, month, year = int(date[:2]), int(date[2:4]), int(date[4:6])
+            year += 1900 if year >= 80 else 2000
+        else:
+            day, month, year = (int(part) for part in parts[date_place : date_place + 3])
+        midnight = datetime(year, month, day, tzinfo=UTC).timestamp()
+        return midnight + int(time[:2]) * 3600.0 + int(time[2:4]) * 60.0 + float(time[4:])
+    except (ValueError, IndexError):
+        return None
+
+
+def _zone(text: str, utc: float, position: int) -> float:
+    """By how much the stamp of a dated sentence's line is ahead of UTC when it is local time, s; else 0."""
+    begin = max(
+        text.rfind("\n", max(0, position - 2 * LONGEST_STAMP), position) + 1, position - LONGEST_STAMP
+    )
+    try:
+        stamp, _ = StampReader().read(text[max(0, begin) : position].rpartition("$")[0])
+    except ValueError:
+        return 0.0
+    if stamp is None:
+        return 0.0
+    ahead = stamp.seconds - (utc if stamp.dated else utc % _DAY)
+    if not stamp.dated:
+        ahead -= _DAY * round(ahead / _DAY)
+    quarters = round(ahead / _QUARTER_S) * _QUARTER_S
+    recognised = quarters != 0.0 and abs(quarters) <= _FARTHEST_ZONE_S
+    return quarters if recognised and abs(ahead - quarters) <= _CLOCK_ERROR_S else 0.0

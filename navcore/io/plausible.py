@@ -1,0 +1,68 @@
+"""Whether the speeds of a recording agree: a water speed far from the speed over ground is told."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from navcore.foundation.earth import WGS84
+from navcore.foundation.units import KNOT
+from navcore.io.series import Recording
+
+LARGEST_CURRENT_MPS = 1.5
+"""About 3 kn: a stream that is stronger is rare, and worth a word."""
+LARGEST_SHARE = 0.3
+"""... nor is a difference plain that is less than this share of the larger speed."""
+_SHORTEST_LEG_S = 10.0
+_KNOT_SLIP = 0.06
+
+
+def speed_warnings(recording: Recording) -> list[str]:
+    """Say that the speed through the water is plainly wrong, judged by the speed over ground.
+
+    Parameters
+    ----------
+    recording : Recording
+        With a water speed, and velocity, ground speed or positions that share its time; else nothing is said.
+    """
+    over_ground = _over_ground(recording)
+    if recording.water is None or over_ground is None:
+        return []
+    time_s, speed = over_ground
+    water = recording.water
+    shared = water.valid & (water.time_s >= time_s[0]) & (water.time_s <= time_s[-1])
+    if np.count_nonzero(shared) < 2:
+        return []
+    through = float(np.median(np.hypot(*water.values[shared].T)))
+    ground = float(np.median(np.interp(water.time_s[shared], time_s, speed)))
+    difference = abs(through - ground)
+    if difference <= max(LARGEST_CURRENT_MPS, LARGEST_SHARE * max(through, ground)):
+        return []
+    ratio = through / ground if ground > 0.0 else np.inf
+    slips = {KNOT: "m/s taken for knots", 1.0 / KNOT: "knots taken for m/s"}
+    slip = next((words for size, words in slips.items() if abs(ratio / size - 1.0) < _KNOT_SLIP), "")
+    reason = (
+        f"the ratio {ratio:.2f} suggests {slip}" if slip else "a wrong unit or scale, or a log that fails"
+    )
+    return [
+        f"the speed through the water (median {through / KNOT:.1f} kn, {water.source}) is far from the speed "
+        f"over ground ({ground / KNOT:.1f} kn): a stream of {difference / KNOT:.1f} kn, or {reason}"
+    ]
+
+
+def _over_ground(recording: Recording) -> tuple[np.ndarray, np.ndarray] | None:
+    """Times (s) and speeds over ground (m/s) of the best source: velocity, ground speed, positions."""
+    for series in (recording.velocity, recording.ground):
+        if series is not None and np.count_nonzero(series.valid) > 1:
+            kept = series.valid
+            return series.time_s[kept], np.hypot(*series.values[kept, :2].T)
+    position = recording.position
+    if position is None or position.time_s[-1] - position.time_s[0] < _SHORTEST_LEG_S:
+        return None
+    grid = np.arange(position.time_s[0], position.time_s[-1], _SHORTEST_LEG_S)
+    lat = np.interp(grid, position.time_s, position.values[:, 0])
+    lon = np.interp(grid, position.time_s, np.unwrap(position.values[:, 1]))
+    if grid.size < 3:
+        return None
+    meridian, prime_vertical = WGS84.radii(float(lat[0]))
+    north, east = np.diff(lat) * meridian, np.diff(lon) * prime_vertical * np.cos(lat[:-1])
+    return grid[:-1] + 0.5 * _SHORTEST_LEG_S, np.hypot(east, north) / _SHORTEST_LEG_S

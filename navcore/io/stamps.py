@@ -1,0 +1,201 @@
+"""The time that a data logger writes beside a sentence, in the forms in use on research vessels.
+
+Read are, anywhere in the text beside the sentence (UTC where no zone is given):
+
+- ISO 8601 and its relatives: ``2019-03-26T10:06:31.5Z``, ``2019/03/26 10:06:31``, ``20190326T100631.5Z``,
+  ``20190326100631``;
+- year and day of the year (Lamont, ``LDS``): ``19+085:10:06:31.512``, ``2019:085:10:06:31.512``;
+- ``03/26/2019,10:06:31.512`` (SCS; the month comes first, unless a file proves the contrary),
+  ``26.03.2019 10:06:31``, ``26-03-2019 10:06:31``, ``26-Mar-2019 10:06:31``;
+- Unix time in s, ms, us or ns, also in an NMEA 4 tag block (``c:1553594791``);
+- a time of day alone, ``10:06:31.512``: the day then comes from the sentences.
+
+No expression here repeats a group, and every repetition is bounded, so that each is linear in its input.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import lru_cache
+
+LONGEST_STAMP = 160
+"""Characters next to the sentence in which a stamp is looked for."""
+_TIME = (
+    r"(?P<h>\d\d?):(?P<m>\d\d):(?P<s>\d\d)(?:\.(?P<f>\d{1,9})|,(?P<g>\d{3}|\d{6})(?!\d))?"
+    r"(?P<half> ?[AaPp][Mm]\b)?(?P<zone> ?(?:Z|UTC|GMT)| ?[+-]\d\d:?\d\d(?!\d))?"
+)
+_GAP = r"[T ,;_\t:]{1,3}"
+_MONTHS = "jan feb mar apr may jun jul aug sep oct nov dec".split()
+_MONTH = r"(?P<name>[A-Za-z]{3})[a-z]{0,6}"
+_EARLIEST, _LATEST = 631152000.0, 4102444800.0
+"""1990 and 2100: a number outside is no Unix time."""
+_FARTHEST_ZONE_S = 15 * 3600.0
+_DAY = 86400.0
+
+
+@dataclass(frozen=True, slots=True)
+class Stamp:
+    """A stamp that was read.
+
+    Attributes
+    ----------
+    seconds : float
+        UTC, s since 1970, or s after midnight.
+    dated : bool
+        False for a time of day alone.
+    """
+
+    seconds: float
+    dated: bool = True
+
+
+def _calendar(found: re.Match[str], day_first: bool) -> Stamp:
+    year = int(found["y"])
+    return Stamp(_midnight(_whole_year(year), int(found["mo"]), int(found["d"])) + _clock_s(found))
+
+
+def _ordinal(found: re.Match[str], day_first: bool) -> Stamp:
+    day, year = int(found["n"]), _whole_year(int(found["y"]))
+    if not 1 <= day <= 366:
+        raise ValueError(f"{day} is no day of the year")
+    return Stamp(_midnight(year, 1, 1) + (day - 1) * _DAY + _clock_s(found))
+
+
+def _either_order(found: re.Match[str], day_first: bool) -> Stamp:
+    first, second = int(found["a"]), int(found["b"])
+    by_day = day_first or found["sep"] != "/"
+    if first > 12 or second > 12:
+        by_day = first > 12
+    month, day = (second, first) if by_day else (first, second)
+    return Stamp(_midnight(_whole_year(int(found["y"])), month, day) + _clock_s(found))
+
+
+def _named(found: re.Match[str], day_first: bool) -> Stamp:
+    name = found["name"].lower()
+    if name not in _MONTHS:
+        raise ValueError(f"{name} is no month")
+    return Stamp(
+        _midnight(_whole_year(int(found["y"])), _MONTHS.index(name) + 1, int(found["d"])) + _clock_s(found)
+    )
+
+
+def _unix(found: re.Match[str], day_first: bool) -> Stamp:
+    digits = found["u"]
+    seconds = float(digits + (found["f"] or "")) / 10.0 ** (0 if len(digits) < 13 else len(digits) - 10)
+    if not _EARLIEST <= seconds <= _LATEST:
+        raise LookupError(digits)
+    return Stamp(seconds)
+
+
+def _time_of_day(found: re.Match[str], day_first: bool) -> Stamp:
+    return Stamp(_clock_s(found), dated=False)
+
+
+Reader = Callable[[re.Match[str], bool], Stamp]
+_FORMS: tuple[tuple[re.Pattern[str], Reader], ...] = (
+    (re.compile(rf"(?<!\d)(?P<y>\d{{4}})[-/.](?P<mo>\d\d?)[-/.](?P<d>\d\d?){_GAP}{_TIME}"), _calendar),
+    (re.compile(rf"(?<!\d)(?P<y>\d{{4}}|\d\d)[+:/ -](?P<n>\d{{3}})[:T ,/+-]{_TIME}"), _ordinal),
+    (
+        re.compile(
+            rf"(?<!\d)(?P<a>\d\d?)(?P<sep>[/.-])(?P<b>\d\d?)[/.-](?P<y>\d{{4}}|\d\d)(?!\d){_GAP}{_TIME}"
+        ),
+        _either_order,
+    ),
+    (re.compile(rf"(?<!\d)(?P<d>\d\d?)[- ]{_MONTH}[- ](?P<y>\d{{4}}|\d\d){_GAP}{_TIME}"), _named),
+    (re.compile(rf"{_MONTH} (?P<d>\d\d?),? (?P<y>\d{{4}}){_GAP}{_TIME}"), _named),
+    (re.compile(rf"(?<!\d)(?P<y>\d{{4}})(?P<mo>\d\d)(?P<d>\d\d){_GAP}{_TIME}"), _calendar),
+    (
+        re.compile(
+            r"(?<!\d)(?P<y>\d{4})(?P<mo>\d\d)(?P<d>\d\d)[T ,;_-]?(?P<h>\d\d)(?P<m>\d\d)(?P<s>\d\d)"
+            r"(?:\.(?P<f>\d{1,9})|(?P<g>\d{3}))?(?P<zone>Z)?(?P<half>)(?!\d)"
+        ),
+        _calendar,
+    ),
+    (
+        re.compile(r"(?<![\d.])(?P<u>\d{9,10}|\d{13}|\d{16}|\d{19})(?P<f>\.\d{1,9})?(?![\d.])"),
+        _unix,
+    ),
+    (re.compile(rf"(?<![\d:]){_TIME}"), _time_of_day),
+)
+
+
+def _whole_year(year: int) -> int:
+    return year if year > 99 else year + (1900 if year >= 80 else 2000)
+
+
+@lru_cache(maxsize=64)
+def _midnight(year: int, month: int, day: int) -> float:
+    return datetime(year, month, day, tzinfo=UTC).timestamp()
+
+
+def _clock_s(found: re.Match[str]) -> float:
+    hour, minute, second = int(found["h"]), int(found["m"]), int(found["s"])
+    half = (found["half"] or "").strip().lower()
+    if half:
+        hour = hour % 12 + (12 if half == "pm" else 0)
+    if hour > 23 or minute > 59 or second > 60:
+        raise ValueError(f"{hour}:{minute}:{second} is no time of day")
+    fraction = found["f"] or found["g"] or ""
+    seconds = hour * 3600.0 + minute * 60.0 + second + (float(f"0.{fraction}") if fraction else 0.0)
+    zone = (found["zone"] or "").strip()
+    if zone[:1] in ("+", "-"):
+        offset = int(zone[1:3]) * 3600.0 + int(zone[-2:]) * 60.0
+        if offset > _FARTHEST_ZONE_S:
+            raise ValueError(f"{zone} is no time zone")
+        seconds -= offset if zone[0] == "+" else -offset
+    return seconds
+
+
+class StampReader:
+    """Reads the stamps of one file, in which all have the same form as a rule.
+
+    Parameters
+    ----------
+    day_first : bool
+        Whether ``03/04/2019`` means the third of April.
+    """
+
+    def __init__(self, day_first: bool = False) -> None:
+        self._day_first = day_first
+        self._last = 0
+
+    def read(self, text: str) -> tuple[Stamp | None, str]:
+        """Stamp in the text beside a sentence, and the text without it.
+
+        Raises
+        ------
+        ValueError
+            There is something of a stamp's form that is no time, such as the 30th of February.
+        """
+        if len(text) < 6:
+            return None, text
+        order = (self._last, *(i for i in range(len(_FORMS)) if i != self._last))
+        for index in order:
+            pattern, reader = _FORMS[index]
+            found = pattern.search(text)
+            if found is None:
+                continue
+            try:
+                stamp = reader(found, self._day_first)
+            except LookupError:
+                continue
+            # A time of day is found within a dated stamp too: it never becomes the first form tried.
+            self._last = index if stamp.dated else self._last
+            return stamp, text[: found.start()] + text[found.end() :]
+        return None, text
+
+
+_EITHER = re.compile(r"(?<!\d)(\d\d?)/(\d\d?)/(?:\d{4}|\d\d)(?!\d)")
+
+
+def day_comes_first(texts: Iterable[str]) -> bool:
+    """Whether dates with slashes begin with the day: some first number is above 12 and no second one."""
+    first, second = 0, 0
+    for text in texts:
+        found = _EITHER.search(text)
+        if found is not None:
+            first, second = max(first, int(found[1])), max(second, int(found[2]))
+    return first > 12 >= second

@@ -1,0 +1,75 @@
+"""Which network, policy and switching method make sense together, and what runs when they do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from navcore.foundation.errors import Fault
+from navcore.law.policy.base import PolicyParameters
+from navcore.law.switching.base import SwitchingParameters
+from navcore.networks.base import NetworkParameters
+from navcore.networks.compass import CompassNetwork
+from navcore.networks.undamped import UndampedNetwork
+
+LONGEST_HISTORY = 100_000
+"""Law calls that a policy or switching method may look back."""
+
+
+def network_in_force(damping: str, network: NetworkParameters, policy: PolicyParameters) -> NetworkParameters:
+    """Network that runs: `adaptive` may bring its own, `schedule` ends at its last gains, free has none."""
+    return UndampedNetwork() if damping == "free" else policy.network_in_force(network)
+
+
+def realisation_of(damping: str, parameters: NetworkParameters) -> str:
+    """Realisation in force: internal damping always uses the network form (theory.md 3)."""
+    if damping == "external" and isinstance(parameters, CompassNetwork):
+        return parameters.realisation
+    return "network"
+
+
+def combination_faults(
+    damping: str,
+    network: NetworkParameters,
+    policy: PolicyParameters,
+    switching: SwitchingParameters,
+    law_step_s: float,
+) -> Iterator[Fault]:
+    """Say what does not go together; fields are named relative to the method's block.
+
+    Parameters
+    ----------
+    damping : {"free", "internal", "external"}
+        Free: nothing is asked of the rest.
+    network, policy, switching
+        As configured.
+    law_step_s : float
+        Time between two calls of the law, s.
+    """
+    if damping == "free":
+        return
+    running = policy.network_in_force(network)
+    found = [*policy.network_faults(network)]
+    found += switching.network_faults(damping, running, realisation_of(damping, running), policy)
+    for name, part in (("policy", policy), ("switching", switching)):
+        rows = part.ring_rows(law_step_s)
+        if rows > LONGEST_HISTORY:
+            reason = f"would look back {rows} steps of {law_step_s:g} s: at most {LONGEST_HISTORY}"
+            found.append(Fault("", f"{name}.id", part.id, reason))
+    if not found:
+        found += policy.stability_faults(network)
+    yield from found
+
+
+def combination_warnings(
+    damping: str, network: NetworkParameters, policy: PolicyParameters, switching: SwitchingParameters
+) -> tuple[str, ...]:
+    """What the user should know about policy and switching method with this network.
+
+    Parameters
+    ----------
+    damping, network, policy, switching
+        As configured, free of `combination_faults`.
+    """
+    if damping == "free":
+        return ()
+    return (*policy.warnings(network), *switching.warnings(policy.network_in_force(network)))

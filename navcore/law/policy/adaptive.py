@@ -1,0 +1,220 @@
+"""Policy `adaptive`: the damping coefficient follows the velocity difference (Sun 2017, 8-18, Table 1)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
+
+import numpy as np
+from pydantic import BeforeValidator, Field, model_validator
+
+from navcore.foundation.compiled import inlined, kernel
+from navcore.foundation.errors import Fault
+from navcore.foundation.parameters import bounded, choice, quantity
+from navcore.foundation.records import COUNT, FLAG, REAL, record_type
+from navcore.foundation.units import KNOT
+from navcore.law.policy.base import LOW_MARGIN, Measure, PolicyParameters
+from navcore.law.records import E, N
+from navcore.networks.base import NetworkParameters, refuse
+from navcore.networks.pole2 import Pole2Network
+from navcore.networks.undamped import UndampedNetwork
+from navcore.networks.unity2 import Unity2Network
+
+LOWEST, HIGHEST = 0.04, 0.99
+"""Ends of the damping coefficient in either law (Sun's Table 1)."""
+QUADRATIC = (0.3076, -1.1452, 0.8101)
+"""Sun 9 with its sign mended: coefficients of d^2, d, 1 with d in knots (theory.md section 4)."""
+_LEAST_ROWS, _MOST_ROWS = 2, 500
+_LEAST_SPACING_KN = 1e-3
+_ADAPTABLE = "pole2 or unity2, in network or policy.network"
+
+
+class TableRow(NamedTuple):
+    """One row of the adaptive law's table: difference (kn) and damping coefficient."""
+
+    difference_kn: Annotated[float, bounded(unit="kn", ge=0.0, le=1000.0)]
+    xi: Annotated[float, bounded(ge=0.0, le=5.0)]
+
+
+def _rows(*pairs: tuple[float, float]) -> tuple[TableRow, ...]:
+    return tuple(TableRow(*pair) for pair in pairs)
+
+
+SUN_TABLE = _rows(
+    (0.0, 0.99), (0.1, 0.82), (0.2, 0.64), (0.3, 0.44), (0.4, 0.22), (0.5, 0.12), (0.6, 0.10), (0.7, 0.08),
+    (1.8, 0.05), (3.0, 0.04),
+)  # fmt: skip
+"""Sun 2017, Table 1."""
+
+
+def _by_id(value: Any) -> Any:
+    if isinstance(value, str) and value not in ("unity2", "pole2"):
+        raise refuse("", value, "must be unity2 or pole2, or a block with one of them as id")
+    return {"id": value} if isinstance(value, str) else value
+
+
+def _filled(values: np.ndarray) -> np.ndarray:
+    return np.pad(values, (0, _MOST_ROWS - len(values)))
+
+
+@inlined
+def _hermite(own, d):
+    """Look up the table: cubic between its rows, constant beyond."""
+    x, y, slope = own.argument, own.xi, own.slope
+    last = own.rows - 1
+    if d <= x[0]:
+        return y[0]
+    if d >= x[last]:
+        return y[last]
+    at = 0
+    while x[at + 1] < d:
+        at += 1
+    h = x[at + 1] - x[at]
+    t = (d - x[at]) / h
+    y0, m0, y1, m1 = y[at], h * slope[at], y[at + 1], h * slope[at + 1]
+    return y0 + t * (m0 + t * (3.0 * (y1 - y0) - 2.0 * m0 - m1 + t * (2.0 * (y0 - y1) + m0 + m1)))
+
+
+@kernel
+def law_coefficient(own, low, d):
+    """Damping coefficient for a difference d (m/s): the law, clamped, and kept at least ``low``."""
+    if own.quadratic:
+        knots = d / KNOT
+        xi = QUADRATIC[2] + knots * (QUADRATIC[1] + knots * QUADRATIC[0])
+    else:
+        xi = _hermite(own, d)
+    return max(min(max(xi, LOWEST), HIGHEST), low)
+
+
+@kernel
+def _follow(own, memory, law):
+    s, lowpass = law.s, memory.lowpass
+    if not s.valid:
+        return
+    share = 1.0 if s.fresh == 1 else own.share
+    lowpass[E] += share * (s.difference[E] - lowpass[E])
+    lowpass[N] += share * (s.difference[N] - lowpass[N])
+    s.measure = math.hypot(lowpass[E], lowpass[N])
+    s.xi_target = law_coefficient(own, law.p.tuning.low, s.measure)
+
+
+@inlined
+def _decide(own, memory, law, sensed):
+    """Set the damping coefficient to be reached; return True."""
+    _follow(own, memory, law)
+    return True
+
+
+class Adaptive(PolicyParameters):
+    """Always damped, with a damping coefficient that follows the low-passed |V_r - V_c| (Sun 2017, 8-18).
+
+    ``table`` holds pairs [difference in kn, xi]; between them the curve is monotone where they are (PCHIP),
+    beyond them it stays. Either law is held within 0.04 and 0.99, and above what the network needs to be
+    stable. The network that is re-tuned is the policy's own one, else the method's: `unity2` or `pole2`.
+    """
+
+    numbers: ClassVar[np.dtype] = record_type(
+        quadratic=FLAG,
+        share=REAL,  # of a new sample in the low-pass
+        rows=COUNT,  # of the table
+        argument=(REAL, (_MOST_ROWS,)),  # m/s
+        xi=(REAL, (_MOST_ROWS,)),
+        slope=(REAL, (_MOST_ROWS,)),  # per m/s
+    )
+    memory: ClassVar[np.dtype] = record_type(lowpass=(REAL, (2,)))  # filtered difference, m/s
+    decide: ClassVar[Any] = _decide
+    needs_reference: ClassVar[bool] = True
+    keeps_time: ClassVar[bool] = True
+    tunes: ClassVar[bool] = True
+    measure: ClassVar[Measure | None] = Measure("low-passed |V_r - V_c|", "kn", KNOT)
+    id: Literal["adaptive"] = "adaptive"
+    law: Literal["table", "quadratic"] = choice(
+        "table",
+        label="law",
+        help="table: Sun's Table 1 or your own; quadratic: Sun 9 with its sign mended, clamped.",
+    )
+    table: tuple[TableRow, ...] = Field(
+        default=SUN_TABLE,
+        description="Pairs [difference in kn, damping coefficient], in any order (Sun 2017, Table 1).",
+    )
+    network: Annotated[
+        Annotated[Unity2Network | Pole2Network, Field(discriminator="id")] | None, BeforeValidator(_by_id)
+    ] = Field(
+        default=None,
+        description="Network that is re-tuned: unity2 or pole2, a name or a block. When not given, that of "
+        "the method, and unity2 where the method has none.",
+    )
+    lowpass_s: float = quantity(
+        100.0,
+        unit="s",
+        gt=0.0,
+        le=1e5,
+        slider=(1.0, 1000.0),
+        log=True,
+        label="low-pass",
+        help="Time constant of the low-pass on the difference: above waves, below 806 s = 1/omega_s.",
+    )
+
+    @model_validator(mode="after")
+    def _increasing(self) -> Adaptive:
+        if not _LEAST_ROWS <= len(self.table) <= _MOST_ROWS:
+            raise refuse("table", len(self.table), f"must have {_LEAST_ROWS} to {_MOST_ROWS} rows")
+        arguments = sorted(row.difference_kn for row in self.table)
+        for first, second in zip(arguments, arguments[1:], strict=False):
+            if second - first < _LEAST_SPACING_KN:
+                near = f"must have rows {_LEAST_SPACING_KN:g} kn apart, not {first:g} and {second:g} kn"
+                raise refuse("table", [list(row) for row in self.table], near)
+        return self
+
+    def packed(self, law_step_s: float) -> dict[str, Any]:
+        """Law, share of a new sample, and the table with its PCHIP slopes."""
+        from scipy.interpolate import PchipInterpolator
+
+        x, y = np.array(sorted(self.table)).T
+        slopes = PchipInterpolator(x, y).derivative()(x)
+        return {
+            "quadratic": self.law == "quadratic",
+            "share": -math.expm1(-law_step_s / self.lowpass_s),
+            "rows": len(x),
+            "argument": _filled(x * KNOT),
+            "xi": _filled(y),
+            "slope": _filled(slopes / KNOT),
+        }
+
+    def network_in_force(self, network: NetworkParameters) -> NetworkParameters:
+        """The policy's own network, else the method's, else `unity2`."""
+        if self.network is not None:
+            return self.network
+        return Unity2Network() if isinstance(network, UndampedNetwork) else network
+
+    def warnings(self, network: NetworkParameters) -> tuple[str, ...]:
+        """The quadratic's flaw, and a printed form held where it is stable."""
+        found = []
+        if self.law == "quadratic":
+            found.append(
+                "adaptive: the quadratic is negative between 0.95 and 2.77 kn (held at 0.04 there), and "
+                "beyond it rises again: use the table"
+            )
+        least = self.network_in_force(network).least_coefficient()
+        if least > LOWEST:
+            found.append(f"adaptive: below xi = {least:.3g} the printed form is unstable: held above it")
+        return tuple(found)
+
+    def network_faults(self, network: NetworkParameters) -> Iterator[Fault]:
+        """Two networks given, or one that cannot be re-tuned."""
+        if self.network is not None:
+            if not isinstance(network, UndampedNetwork) and network != self.network:
+                allowed = f'differs from the policy\'s own network "{self.network.id}": give only one of them'
+                yield Fault("", "network.id", network.id, allowed)
+        elif network.id not in ("none", "pole2", "unity2"):
+            allowed = f'cannot re-tune network "{network.id}": must be {_ADAPTABLE}'
+            yield Fault("", "policy.id", self.id, allowed)
+
+    def stability_faults(self, network: NetworkParameters) -> Iterator[Fault]:
+        """Refuse a printed form that is unstable wherever the law can go; it is held above that otherwise."""
+        low = LOW_MARGIN * self.network_in_force(network).least_coefficient()
+        if low > HIGHEST:
+            reason = f"is unstable up to xi = {low:.3g} with these n1, n2: must be stable below {HIGHEST}"
+            at = "network" if self.network is None else "policy.network"
+            yield Fault("", f"{at}.variant", "as_printed", reason)

@@ -1,0 +1,153 @@
+"""What the law reads and changes: the shared fields of its parameters, state and history, each in one place.
+
+`navcore.law.law` joins them with the records that each policy and each switching method declares for itself.
+The network itself is part of the *state*: `adaptive`, `schedule`, `ramp` and `step` re-tune it while it runs.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from navcore.foundation.records import COUNT, FLAG, REAL, record_type
+
+MAX_STATES = 4
+"""States of a network in one channel (navcore.networks.base.MAX_ORDER)."""
+E, N = 0, 1
+"""Channels: the first index of every pair."""
+
+FREE, INTERNAL, EXTERNAL = 0, 1, 2
+"""Kinds of damping."""
+NETWORK, FEEDBACK, AS_PRINTED = 0, 1, 2
+"""Realisations of a network."""
+NOTHING, CLEAR, REST, RESTORE, MASKED = 0, 1, 2, 3, 4
+"""What a switching method asks to be done with the network's states."""
+AS_DECIDED = -1
+"""`wanted` while a policy has not said that it wishes something else than it decides."""
+
+TUNING = record_type(
+    code=COUNT,  # of the network that is re-tuned (navcore.networks.tuning_codes), 0: none
+    values=(REAL, (3,)),  # its parameters, meaning per network
+    low=REAL,  # below this damping coefficient the re-tuned loop is unstable
+)
+PARAMETERS = {
+    "damping": COUNT,  # FREE, INTERNAL, EXTERNAL
+    "realisation": COUNT,  # NETWORK, FEEDBACK, AS_PRINTED
+    "order": COUNT,  # states a channel
+    "policy": COUNT,  # place of the policy in its registry
+    "switching": COUNT,  # place of the switching method in its registry
+    "plain": FLAG,  # policy and switching need nothing but the present difference
+    "steady": FLAG,  # and, once damped, the policy never wishes anything else
+    "keeps_history": FLAG,  # clock, history and low-passes are kept
+    "freezes": FLAG,  # while undamped the last correction stays
+    "runs_on": FLAG,  # while undamped the network goes on with what the switching method feeds it
+    "remembers": COUNT,  # what of the motion goes into the history, navcore.law.history
+    "law_step": REAL,  # s between two calls of the law
+    "nominal_xi": REAL,  # damping coefficient of the network as configured
+    "feedback_k1": REAL,  # velocity feedback of gains that stay, 1/s
+    "omega_s": REAL,  # rad/s
+    "offset_decay": REAL,  # what a call leaves of the offset of a re-tuned network
+    "tan_half": REAL,  # tan(omega_s T/2), the bilinear step in normalised time
+    "tuning": TUNING,
+}
+"""Fields of the parameters, which stay during a run."""
+
+DISCRETE_NETWORK = record_type(
+    dA=(REAL, (MAX_STATES, MAX_STATES)),  # transition matrix minus the identity
+    B=(REAL, (MAX_STATES,)),
+    C=(REAL, (MAX_STATES,)),
+    D=REAL,
+    steady=(REAL, (MAX_STATES,)),  # state for a constant unit input
+)
+"""Discrete state space of Q = 1 - H of one channel; what lies beyond the order is zero."""
+RETUNED_NETWORK = record_type(
+    xi=REAL,  # damping coefficient of the coefficients in place
+    last_row=(REAL, (MAX_STATES,)),  # of A, continuous and normalised
+    output=(REAL, (MAX_STATES,)),  # output row
+    scale=REAL,  # of the states
+    scratch=(REAL, (MAX_STATES,)),
+)
+"""The network while it is re-tuned (navcore.law.tuned_network)."""
+STATE = {
+    "damped": FLAG,  # actual state
+    "wanted": COUNT,  # the policy's wish, 0 or 1
+    "xi": REAL,  # damping coefficient in force
+    "xi_target": REAL,
+    "measure": REAL,  # what the policy measured, for the switching view
+    "started": FLAG,  # there was a call before
+    "engaged": FLAG,  # the loop was damped before
+    "clock": REAL,  # s since the first call
+    "switch_time": REAL,  # s, last engagement
+    "difference": (REAL, (2,)),  # V_r - V_c held from the last log epoch, m/s
+    "valid": FLAG,  # the held difference may be used
+    "fresh": COUNT,  # calls in a row with a valid difference
+    "epoch": COUNT,  # index of the log epoch in force
+    "correction": (REAL, (2,)),  # velocity correction c applied last, m/s
+    "output": (REAL, (2,)),  # taken off the computed velocity where it is given out, m/s
+    "offset": (REAL, (2,)),  # what re-tuning would have made the correction jump by, fading, m/s
+    "feedback_gain": REAL,  # velocity feedback of gains that change, 1/s; feedback_k1 is 0 then
+    "action": COUNT,  # NOTHING, CLEAR, ...: what the switching method asks for in this call
+    "to_xi": REAL,  # what it wants the network re-tuned to; 0: as it is
+    "network": DISCRETE_NETWORK,
+    "retuned": RETUNED_NETWORK,
+    "x": (REAL, (2, MAX_STATES)),  # network states
+    "ring_head": COUNT,  # newest row of the history
+    "ring_fill": COUNT,  # rows written, at most all
+    "last_velocity": (REAL, (2,)),  # V_c at the last call, m/s
+    "last_heading": REAL,  # rad
+    "total_heading": REAL,  # rad, without wraps
+}
+"""Fields of the state, which changes during a run."""
+
+HISTORY = {
+    "difference": (REAL, (2,)),  # V_r - V_c, m/s
+    "input": (REAL, (2,)),  # the network's input, m/s
+    "x": (REAL, (2, MAX_STATES)),  # network states before the call
+    "auxiliary": REAL,  # heading without wraps (rad), or acceleration (m/s^2)
+    "damped": FLAG,
+}
+"""Fields of a row of the history, one a law call."""
+
+
+class Law(NamedTuple):
+    """A method's law ready to run: what the kernels read and change.
+
+    Attributes
+    ----------
+    p : record
+        Parameters: `PARAMETERS`, and a record of each policy and switching method.
+    s : record
+        State: `STATE`, and a record of each policy and switching method.
+    ring : ndarray of records
+        History: `HISTORY`, and a record of each switching method.
+    """
+
+    p: np.void
+    s: np.void
+    ring: np.ndarray
+
+
+class Sensed(NamedTuple):
+    """What the law is told in a call.
+
+    Attributes
+    ----------
+    v_e, v_n : float
+        Computed velocity V_c, m/s.
+    heading : float
+        rad.
+    """
+
+    v_e: float
+    v_n: float
+    heading: float
+
+
+class Watched(NamedTuple):
+    """What of the law is recorded: the wish, the state (0/1), xi in force, the policy's measure."""
+
+    wanted: float
+    damped: float
+    xi: float
+    measure: float

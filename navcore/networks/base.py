@@ -1,0 +1,386 @@
+"""What every damping network is: checked parameters that give an LTI object H(s).
+
+All polynomials are formed in normalised frequency p = s / omega_s, where their coefficients lie near 1; the
+physical ones (rad/s, as low as 1e-12) are exact multiples of them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.registry import Entry
+
+if TYPE_CHECKING:
+    from control import TransferFunction
+
+    from navcore.networks.lqg import SensorFigures
+    from navcore.networks.pair import Placement
+
+_T = TypeVar("_T", bound=np.generic)
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+MAX_ORDER = 4
+"""Highest order of a network: the compiled control law keeps this many states a channel."""
+
+
+@dataclass(frozen=True, eq=False)
+class LinearNetwork:
+    """A damping network H(s) = num/den at one Schuler frequency; arrays are read-only.
+
+    Attributes
+    ----------
+    id : str
+        Name in the catalogue (theory.md section 3).
+    num, den : ndarray, shapes (m + 1,) and (n + 1,)
+        Coefficients in descending powers of s, rad/s; den monic, m <= n.
+    omega_s : float
+        Schuler frequency the network was made for, rad/s.
+    zeros, poles : ndarray of complex, shapes (m,) and (n,)
+        rad/s.
+    gain : float
+        Leading coefficient of num.
+    num_p, den_p : ndarray
+        The same polynomials in p = s / omega_s.
+    warnings : tuple of str
+        What the user should know about these parameters.
+    realisation : str
+        How the mechanization carries it out under external damping: "network", "feedback" or "as_printed".
+    closed_loop_p : ndarray of complex or None
+        Closed-loop poles / omega_s where the design gives them exactly (a repeated pole found as a root of
+        the polynomial is right to 1e-5 only); None: to be computed.
+    """
+
+    id: str
+    num: FloatArray
+    den: FloatArray
+    omega_s: float
+    zeros: ComplexArray
+    poles: ComplexArray
+    gain: float
+    num_p: FloatArray
+    den_p: FloatArray
+    warnings: tuple[str, ...] = ()
+    realisation: str = "network"
+    closed_loop_p: ComplexArray | None = field(default=None, repr=False)
+
+    @property
+    def order(self) -> int:
+        """Number of poles."""
+        return len(self.den) - 1
+
+    @property
+    def h0(self) -> float:
+        """Gain at rest H(0); inf for a pole at zero. A loop with H(0) = 1 rejects a standing log error."""
+        if self.den_p[-1] == 0.0:
+            return math.inf
+        with np.errstate(over="ignore"):  # a pole next to zero
+            return float(self.num_p[-1] / self.den_p[-1])
+
+    @property
+    def h_slope(self) -> float:
+        """Slope H'(0) = dH/ds at s = 0, s; nan for a pole at zero (theory.md 10)."""
+        d0 = float(self.den_p[-1])
+        if d0 == 0.0:
+            return math.nan
+        n0 = float(self.num_p[-1])
+        n1 = float(self.num_p[-2]) if len(self.num_p) > 1 else 0.0
+        d1 = float(self.den_p[-2]) if len(self.den_p) > 1 else 0.0
+        return (n1 - n0 / d0 * d1) / d0 / self.omega_s
+
+    @property
+    def h_infinity(self) -> float:
+        """Gain H(inf) at high frequency."""
+        return self.gain if len(self.num) == len(self.den) else 0.0
+
+    def response(self, omega: np.ndarray | float) -> ComplexArray:
+        """Return the complex frequency response H(j omega).
+
+        Parameters
+        ----------
+        omega : array_like
+            Angular frequency, rad/s.
+
+        Returns
+        -------
+        ndarray of complex
+            Of the shape of ``omega``.
+        """
+        p = 1j * np.asarray(omega, dtype=float) / self.omega_s
+        return np.polyval(self.num_p, p) / np.polyval(self.den_p, p)
+
+    def to_control(self, *, normalised: bool = False) -> TransferFunction:
+        """Return H(s) as a `control.TransferFunction` (python-control).
+
+        Parameters
+        ----------
+        normalised : bool
+            In p = s / omega_s, time in units of 1/omega_s. To be preferred for anything numerical: the
+            coefficients in rad/s are as small as 1e-12.
+
+        Examples
+        --------
+        >>> from navcore.networks import parse_network
+        >>> network = parse_network('id = "unity2"').transfer(1.24e-3)
+        >>> bool(abs(network.to_control().dcgain() - 1.0) < 1e-12)
+        True
+        """
+        return transfer_function(self.num, self.den, self.omega_s if normalised else None)
+
+
+def transfer_function(num: np.ndarray, den: np.ndarray, omega_s: float | None = None) -> TransferFunction:
+    """Make a `control.TransferFunction` of polynomials in s (rad/s).
+
+    Parameters
+    ----------
+    num, den : ndarray
+        Coefficients in descending powers of s.
+    omega_s : float, optional
+        When given, the function of p = s / omega_s is returned.
+    """
+    import control
+
+    if omega_s is not None:
+        top = float(len(den) - 1)
+        num = num * omega_s ** (np.arange(len(num) - 1, -1, -1) - top)
+        den = den * omega_s ** (np.arange(len(den) - 1, -1, -1) - top)
+    return control.TransferFunction(num, den)
+
+
+class NetworkParameters(Entry):
+    """Base of the ``network`` block of a method; subclasses narrow ``id`` to a Literal.
+
+    Attributes
+    ----------
+    title : str
+        Name on the page.
+    alternatives : tuple of tuple of str
+        Groups of fields that stand for each other: giving one group takes the others away.
+    placeable : str
+        Name in the list of networks that a pole pair can place (`with_pair`); empty: it cannot be placed.
+    """
+
+    title: ClassVar[str] = ""
+    alternatives: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    placeable: ClassVar[str] = ""
+    id: Any  # a Literal in each subclass; str here would be narrowed against the rule for mutable fields
+
+    def transfer(self, omega_s: float) -> LinearNetwork:
+        """Return H(s) for a Schuler frequency.
+
+        Parameters
+        ----------
+        omega_s : float
+            Schuler frequency, rad/s.
+
+        Raises
+        ------
+        InputError
+            These parameters make no network (field names relative to the network block).
+        """
+        raise NotImplementedError
+
+    def damping_coefficient(self) -> float | None:
+        """Return the parameter that sets the damping (xi or zeta); None where there is none."""
+        return None
+
+    def tuning(self, omega_s: float) -> list[float] | None:
+        """Return code and parameters for `navcore.networks.retuning`; None where a run cannot re-tune it.
+
+        Parameters
+        ----------
+        omega_s : float
+            Schuler frequency, rad/s.
+        """
+        return None
+
+    def with_damping(self, coefficient: float) -> NetworkParameters:
+        """Return the same network with another damping coefficient.
+
+        Parameters
+        ----------
+        coefficient : float
+            xi or zeta; not checked against the range of the field.
+
+        Raises
+        ------
+        ValueError
+            The network has no such parameter.
+        """
+        for name in ("xi", "zeta"):
+            if name in type(self).model_fields:
+                return self.model_copy(update={name: coefficient})
+        raise ValueError(f"{self.id} has no damping coefficient")
+
+    def with_pair(self, damping_ratio: float, frequency: float, omega_s: float) -> Placement | None:
+        """Return parameters whose main closed-loop pair lies where it is wanted; None where none can.
+
+        Parameters
+        ----------
+        damping_ratio : float
+            Wanted, 0.01..1.
+        frequency : float
+            Wanted natural frequency |p|, rad/s.
+        omega_s : float
+            Schuler frequency, rad/s.
+
+        Raises
+        ------
+        InputError
+            The pair needs a parameter outside its range.
+        """
+        return None
+
+    @classmethod
+    def design_fields(cls) -> tuple[str, ...]:
+        """Return the parameters that a design chooses; if not said otherwise, all that have a number."""
+        return tuple(name for name, info in cls.model_fields.items() if isinstance(info.default, float))
+
+    def with_sensors(self, figures: SensorFigures) -> NetworkParameters:
+        """Return the network for the random errors of a scenario; the same where it does not look at them."""
+        return self
+
+    def changed(self, field: str, value: Any) -> NetworkParameters:
+        """Return the same network with one field changed, checked.
+
+        Raises
+        ------
+        ValueError
+            The value is refused.
+        """
+        return type(self).model_validate(self.model_dump(exclude_none=True) | {field: value})
+
+    def values(self, omega_s: float) -> dict[str, Any]:
+        """Return the values of all parameters, those included that follow from the given ones.
+
+        A parameter without a value (sigma and xi of gains that no (sigma, xi) gives) is missing.
+
+        Parameters
+        ----------
+        omega_s : float
+            Schuler frequency, rad/s.
+        """
+        names = type(self).model_fields
+        given = {name: value for name in names if (value := getattr(self, name)) is not None}
+        return self.following(self.transfer(omega_s)) | given if self.alternatives else given
+
+    def following(self, network: LinearNetwork) -> dict[str, Any]:
+        """Return the values of the `alternatives`, computed from the network that the parameters make."""
+        return {}
+
+    def least_coefficient(self) -> float:
+        """Return the damping coefficient above which the loop is stable; 0 where all are."""
+        return 0.0
+
+
+def given(data: Any, names: Sequence[str]) -> list[str]:
+    """Names of the fields that raw input sets to something."""
+    return [name for name in names if isinstance(data, dict) and data.get(name) is not None]
+
+
+def refuse(name: str, value: object, allowed: str) -> InputError:
+    """Make the error of one field, named relative to the network block."""
+    return InputError(Fault("", name, value, allowed))
+
+
+def linear_network(
+    id: str,
+    omega_s: float,
+    num_p: Sequence[float] | np.ndarray,
+    den_p: Sequence[float] | np.ndarray,
+    *,
+    zeros_p: Sequence[complex] | np.ndarray | None = None,
+    poles_p: Sequence[complex] | np.ndarray | None = None,
+    closed_loop_p: Sequence[complex] | np.ndarray | None = None,
+    warnings: tuple[str, ...] = (),
+    realisation: str = "network",
+) -> LinearNetwork:
+    """Make a `LinearNetwork` from polynomials in p = s / omega_s.
+
+    Parameters
+    ----------
+    id : str
+        Name in the catalogue.
+    omega_s : float
+        rad/s.
+    num_p, den_p : array_like
+        Coefficients, descending powers of p; leading zeros are removed, den is made monic.
+    zeros_p, poles_p, closed_loop_p : array_like of complex, optional
+        Roots where they are known exactly; else zeros and poles are computed.
+    warnings, realisation
+        See `LinearNetwork`.
+
+    Raises
+    ------
+    InputError
+        omega_s is not positive, H is zero, improper or of too high an order.
+    """
+    if not (math.isfinite(omega_s) and omega_s > 0.0):
+        raise refuse("omega_s", omega_s, "must be > 0 (rad/s)")
+    num = np.trim_zeros(np.asarray(num_p, dtype=float), "f")
+    den = np.trim_zeros(np.asarray(den_p, dtype=float), "f")
+    if len(den) == 0 or len(num) == 0:
+        raise refuse("", None, "H(s) must have a numerator and a denominator that are not zero")
+    if len(num) > len(den):
+        raise refuse("", None, "H(s) must be proper: no more zeros than poles, or H(infinity) is not finite")
+    if len(den) - 1 > MAX_ORDER:
+        raise refuse("", None, f"H(s) has {len(den) - 1} poles: at most {MAX_ORDER} can run")
+    num, den = num / den[0], den / den[0]
+    while num[-1] == 0.0 and den[-1] == 0.0:  # a common root at s = 0 would make H(0) = 0/0
+        num, den, zeros_p, poles_p = num[:-1], den[:-1], None, None
+    zeros = np.roots(num) if zeros_p is None else np.asarray(zeros_p)
+    poles = np.roots(den) if poles_p is None else np.asarray(poles_p)
+    degree = len(den) - len(num)
+    return LinearNetwork(
+        id=id,
+        num=_fixed(num * omega_s ** (degree + np.arange(len(num)))),
+        den=_fixed(den * omega_s ** np.arange(len(den))),
+        omega_s=omega_s,
+        zeros=_fixed(sorted_roots(zeros) * omega_s),
+        poles=_fixed(sorted_roots(poles) * omega_s),
+        gain=float(num[0] * omega_s**degree),
+        num_p=_fixed(num),
+        den_p=_fixed(den),
+        warnings=warnings,
+        realisation=realisation,
+        closed_loop_p=None if closed_loop_p is None else _fixed(sorted_roots(np.asarray(closed_loop_p))),
+    )
+
+
+def _fixed(array: NDArray[_T]) -> NDArray[_T]:
+    array = np.ascontiguousarray(array)
+    array.setflags(write=False)
+    return array
+
+
+def sorted_roots(roots: np.ndarray) -> ComplexArray:
+    """Return the roots as complex numbers, slowest first."""
+    values = np.asarray(roots, dtype=np.complex128)
+    return values[np.lexsort((values.imag, np.abs(values)))]
+
+
+def quadratic_roots(b: float, c: float) -> list[complex]:
+    """Roots of p^2 + b p + c without cancellation; complex ones as an exact conjugate pair."""
+    discriminant = 0.25 * b * b - c
+    if discriminant < 0.0:
+        imag = math.sqrt(-discriminant)
+        return [complex(-0.5 * b, -imag), complex(-0.5 * b, imag)]
+    large = -0.5 * b - math.copysign(math.sqrt(discriminant), b)
+    return [complex(large), complex(c / large if large != 0.0 else 0.0)]
+
+
+def pair(damping: float, frequency: float) -> list[complex]:
+    """Roots of p^2 + 2 damping frequency p + frequency^2, exact for damping = 1 too."""
+    real = -damping * frequency
+    if damping < 1.0:
+        imag = frequency * math.sqrt((1.0 - damping) * (1.0 + damping))
+        return [complex(real, -imag), complex(real, imag)]
+    large = real - frequency * math.sqrt((damping - 1.0) * (damping + 1.0))
+    return [complex(large), complex(frequency * frequency / large)]

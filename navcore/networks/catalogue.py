@@ -1,0 +1,29 @@
+"""The registry of networks and the type of a field that holds any of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias
+
+from navcore.foundation.registry import any_of, registry
+from navcore.networks.base import NetworkParameters
+
+NETWORKS = registry(
+    NetworkParameters,
+    "id",
+    "navcore.networks.undamped:UndampedNetwork",
+    "navcore.networks.classic:Classic2Network",
+    "navcore.networks.classic:Classic3Network",
+    "navcore.networks.compass:CompassNetwork",
+    "navcore.networks.complementary:ComplementaryNetwork",
+    "navcore.networks.pole2:Pole2Network",
+    "navcore.networks.unity2:Unity2Network",
+    "navcore.networks.optimal:OptimalNetwork",
+    "navcore.networks.custom:CustomNetwork",
+)
+"""All networks by id, in the order in which the page offers them."""
+
+if TYPE_CHECKING:
+    Network: TypeAlias = NetworkParameters
+else:
+    Network = any_of(NETWORKS, "id")
+    """Type of a field that holds any network, told apart by ``id``."""

@@ -1,0 +1,38 @@
+"""The two textbook networks with fixed coefficients."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network
+
+
+def _from_roots(id: str, omega_s: float, zeros: list[float], poles: list[float]) -> LinearNetwork:
+    zeros_p, poles_p = np.array(zeros) / omega_s, np.array(poles) / omega_s
+    return linear_network(id, omega_s, np.poly(zeros_p), np.poly(poles_p), zeros_p=zeros_p, poles_p=poles_p)
+
+
+class Classic2Network(NetworkParameters):
+    """H = (s+8.5e-4)(s+9.412e-2) / ((s+8.0e-3)(s+1.0e-2))."""
+
+    title: ClassVar[str] = "Classic, second order"
+    source: ClassVar[str] = "Liu 2, Sun 5, Zha 2"
+    id: Literal["classic2"] = "classic2"
+
+    def transfer(self, omega_s: float) -> LinearNetwork:
+        """Return H(s); its coefficients do not follow omega_s (rad/s)."""
+        return _from_roots("classic2", omega_s, [-8.5e-4, -9.412e-2], [-8.0e-3, -1.0e-2])
+
+
+class Classic3Network(NetworkParameters):
+    """H = (s+8.8e-4)(s+1.97e-2)^2 / ((s+4.41e-3)(s+8.8e-3)^2)."""
+
+    title: ClassVar[str] = "Classic, third order"
+    source: ClassVar[str] = "Liu 3, Sun 4"
+    id: Literal["classic3"] = "classic3"
+
+    def transfer(self, omega_s: float) -> LinearNetwork:
+        """Return H(s); its coefficients do not follow omega_s (rad/s)."""
+        return _from_roots("classic3", omega_s, [-8.8e-4, -1.97e-2, -1.97e-2], [-4.41e-3, -8.8e-3, -8.8e-3])

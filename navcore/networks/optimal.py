@@ -1,0 +1,194 @@
+"""The network that is best for given sensors: LQG on the model of one level channel (theory.md 17)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import PrivateAttr
+
+from navcore.foundation.parameters import quantity
+from navcore.foundation.units import DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
+from navcore.networks.base import MAX_ORDER, LinearNetwork, NetworkParameters, linear_network, refuse
+from navcore.networks.lqg import Compensator, SensorFigures, compensator, plant
+from navcore.networks.state_space import state_space
+
+EXAMPLE_SHIP = SensorFigures(
+    gyro_white=0.003 * DEG_PER_SQRT_HOUR,
+    gyro_drift=0.003 * DEG_PER_HOUR,
+    gyro_tau_s=3600.0,
+    accel_white=10.0 * MICRO_G,
+    accel_drift=10.0 * MICRO_G,
+    accel_tau_s=3600.0,
+    log_noise=0.2,
+    log_rate_hz=1.0,
+    log_drift=0.1,
+    log_tau_s=600.0,
+)
+"""Sensors of the example of theory.md 20: where neither the network nor the scenario has any."""
+FRAGILE = 0.5
+"""Modulus margin below which a loop counts as fragile."""
+
+_ACCURACY = 1e-8
+"""To which the running form must have the response of the network."""
+_FIELDS = {
+    "gyro_arw_dpsh": ("gyro_white", DEG_PER_SQRT_HOUR),
+    "gyro_instability_dph": ("gyro_drift", DEG_PER_HOUR),
+    "gyro_tau_s": ("gyro_tau_s", 1.0),
+    "accel_vrw_ugpshz": ("accel_white", MICRO_G),
+    "accel_instability_ug": ("accel_drift", MICRO_G),
+    "accel_tau_s": ("accel_tau_s", 1.0),
+    "log_noise_mps": ("log_noise", 1.0),
+    "log_rate_hz": ("log_rate_hz", 1.0),
+    "log_drift_mps": ("log_drift", 1.0),
+    "log_drift_tau_s": ("log_tau_s", 1.0),
+}
+
+
+def _figure(
+    unit: str, label: str, slider: tuple[float, float], *, ge: float = 0.0, le: float, log: bool = False
+) -> Any:
+    help = (
+        f"The {label} that the network is designed for; that of the scenario when not given (theory.md 17)."
+    )
+    return quantity(None, unit=unit, ge=ge, le=le, slider=slider, log=log, label=label, help=help)
+
+
+class OptimalNetwork(NetworkParameters):
+    """H = 1 - Q with Q the LQG law for the sensors at hand: filter and feedback of the same order.
+
+    The figures of sensors and log are those of the scenario, as far as they are not given here; where the
+    scenario has no random errors either, those of an example ship.
+    """
+
+    title: ClassVar[str] = "Optimal for the sensors (LQG)"
+    source: ClassVar[str] = "theory.md 17"
+    id: Literal["optimal"] = "optimal"
+    rho: float = quantity(
+        1e-2,
+        ge=1e-6,
+        le=1e3,
+        slider=(1e-5, 10.0),
+        log=True,
+        label="rho",
+        help="Weight of the correction in phi^2 + q dV^2 + rho u_c^2: the smaller, the faster the loop and "
+        "the nearer the tilt to the floor, and the larger the velocity error (theory.md 17).",
+    )
+    q: float = quantity(
+        0.0,
+        ge=0.0,
+        le=1e3,
+        slider=(0.0, 5.0),
+        label="q",
+        help="Weight of the velocity error beside that of the tilt (theory.md 17).",
+    )
+    gyro_arw_dpsh: float | None = _figure("deg/sqrt(h)", "angular random walk", (0.0, 0.05), le=10.0)
+    gyro_instability_dph: float | None = _figure("deg/h", "gyro instability", (0.0, 0.05), le=100.0)
+    gyro_tau_s: float | None = _figure(
+        "s", "gyro correlation time", (10.0, 86400.0), ge=1.0, le=1e7, log=True
+    )
+    accel_vrw_ugpshz: float | None = _figure("ug/sqrt(Hz)", "velocity random walk", (0.0, 100.0), le=1e5)
+    accel_instability_ug: float | None = _figure("ug", "accelerometer instability", (0.0, 100.0), le=1e5)
+    accel_tau_s: float | None = _figure(
+        "s", "accelerometer correlation time", (10.0, 86400.0), ge=1.0, le=1e7, log=True
+    )
+    log_noise_mps: float | None = _figure("m/s", "log noise", (0.0, 1.0), le=50.0)
+    log_rate_hz: float | None = _figure("Hz", "log rate", (0.1, 10.0), ge=0.001, le=1000.0, log=True)
+    log_drift_mps: float | None = _figure("m/s", "log drift", (0.0, 1.0), le=50.0)
+    log_drift_tau_s: float | None = _figure("s", "log drift time", (10.0, 36000.0), ge=1.0, le=1e7, log=True)
+    _sensors: SensorFigures | None = PrivateAttr(default=None)
+
+    def with_sensors(self, figures: SensorFigures) -> OptimalNetwork:
+        """Return the same network for the sensors of a scenario."""
+        found = self.model_copy()
+        found._sensors = figures
+        return found
+
+    def changed(self, field: str, value: Any) -> NetworkParameters:
+        """Return the same network with one field changed, for the same sensors."""
+        found = super().changed(field, value)
+        return found if self._sensors is None else found.with_sensors(self._sensors)
+
+    def figures(self) -> tuple[SensorFigures, tuple[str, ...]]:
+        """Figures that the network is designed for, and warnings about those that are nobody's."""
+        base, warnings = self._sensors, []
+        given = {
+            name: getattr(self, field) * unit
+            for field, (name, unit) in _FIELDS.items()
+            if getattr(self, field) is not None
+        }
+        found = SensorFigures(**{**vars(base or EXAMPLE_SHIP), **given})
+        for what, missing, prefixes in (
+            ("gyros and accelerometers", not found.inertial, ("gyro", "accel")),
+            ("log", not found.log, ("log",)),
+        ):
+            if missing or (base is None and not any(name.startswith(prefixes) for name in given)):
+                example = {k: v for k, v in vars(EXAMPLE_SHIP).items() if k.startswith(prefixes)}
+                found = SensorFigures(**{**vars(found), **example, **({} if missing else given)})
+                warnings.append(
+                    f"optimal: no random error of the {what} is given; designed for those of the example ship"
+                )
+        return found, tuple(warnings)
+
+    def transfer(self, omega_s: float) -> LinearNetwork:
+        """Return H(s) for a Schuler frequency in rad/s.
+
+        Raises
+        ------
+        InputError
+            No stable network of this kind exists for these figures.
+        """
+        figures, warnings = self.figures()
+        try:
+            law = _law(figures, self.rho, self.q, omega_s)
+        except np.linalg.LinAlgError:
+            raise refuse("rho", self.rho, "the Riccati equations of these figures have no solution") from None
+        poles = np.linalg.eigvals(law.A)
+        zeros = np.linalg.eigvals(law.A + np.outer(law.B, law.C))
+        found = linear_network(
+            "optimal",
+            omega_s,
+            np.real(np.poly(zeros)),
+            np.real(np.poly(poles)),
+            zeros_p=zeros,
+            poles_p=poles,
+        )
+        self._check(found)
+        margin = modulus_margin(found)
+        if margin < FRAGILE:
+            fragile = f"fragile: modulus margin {margin:.2g}, below {FRAGILE:g}; change rho or q"
+            warnings = (*warnings, fragile)
+        return replace(found, warnings=warnings)
+
+    def _check(self, network: LinearNetwork) -> None:
+        """Refuse what cannot run: an unstable network or loop, or one too wide for double precision."""
+        poles = network.poles / network.omega_s
+        loop = np.roots(np.polyadd(np.append(network.den_p, [0.0, 0.0]), network.num_p))
+        if np.max(np.real(poles)) >= 0.0 or np.max(np.real(loop)) >= 0.0:
+            raise refuse("rho", self.rho, "makes an unstable network with these figures: must be larger")
+        system = state_space(network.num_p, poles)
+        p = 1j * np.geomspace(1e-2, 1e2, 40)
+        states = np.linalg.solve(p[:, None, None] * np.eye(len(poles)) - system.A, system.B[:, None])[..., 0]
+        exact = network.response(p.imag * network.omega_s)
+        if np.max(np.abs(states @ system.C + system.D - exact) / np.abs(exact)) > _ACCURACY:
+            allowed = "makes a network too fast for these figures to run in double precision: must be larger"
+            raise refuse("rho", self.rho, allowed)
+
+
+@lru_cache(maxsize=256)
+def _law(figures: SensorFigures, rho: float, q: float, omega_s: float) -> Compensator:
+    return compensator(plant(figures, omega_s).excited(), rho, q, feedback=False).reduced(MAX_ORDER)
+
+
+def modulus_margin(network: LinearNetwork) -> float:
+    """Least distance of the open loop omega_s^2 H/s^2 from -1: 1 is the best, 0 the limit of stability.
+
+    Parameters
+    ----------
+    network : LinearNetwork
+        H(s).
+    """
+    omega = network.omega_s * np.geomspace(1e-2, 1e5, 700)
+    return float(np.min(np.abs(1.0 - (network.omega_s / omega) ** 2 * network.response(omega))))

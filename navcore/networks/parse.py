@@ -1,0 +1,57 @@
+"""A network from what a user types: ``id = "compass", sigma = 0.0088, xi = 0.7``."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.faults import faults_from
+from navcore.networks.base import NetworkParameters
+from navcore.networks.catalogue import Network
+
+_ADAPTER: TypeAdapter[Any] = TypeAdapter(Network)
+_EXAMPLE = 'must be fields such as: id = "compass", sigma = 0.0088, xi = 0.7'
+
+
+def parse_network(text_or_mapping: str | Mapping[str, Any], where: str = "network") -> NetworkParameters:
+    """Read a network block.
+
+    Parameters
+    ----------
+    text_or_mapping : str or mapping
+        The inside of an inline TOML table, or the fields themselves.
+    where : str
+        Place named in the faults.
+
+    Raises
+    ------
+    InputError
+        The text is not TOML, the id unknown, a field unknown, missing or out of range; one fault each.
+
+    Examples
+    --------
+    >>> parse_network('id = "complementary", zeta = 0.7').damping_coefficient()
+    0.7
+    """
+    if isinstance(text_or_mapping, str):
+        data = _table(text_or_mapping, where)
+    else:
+        data = dict(text_or_mapping)
+    try:
+        return _ADAPTER.validate_python(data)
+    except ValidationError as error:
+        raise InputError(faults_from(error, Network, data, where)) from None
+
+
+def _table(text: str, where: str) -> dict[str, Any]:
+    inside = " ".join(text.split()).strip().removeprefix("{").removesuffix("}").strip().strip(",")
+    try:
+        document = tomllib.loads(f"network = {{{inside}}}")
+    except tomllib.TOMLDecodeError as error:
+        reason = str(error).split(" (at line")[0]
+        raise InputError(Fault(where, "", text, f"{_EXAMPLE} ({reason})")) from None
+    return document["network"]

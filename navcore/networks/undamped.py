@@ -1,0 +1,19 @@
+"""No damping: H = 1."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network
+
+
+class UndampedNetwork(NetworkParameters):
+    """H = 1: the free Schuler loop."""
+
+    title: ClassVar[str] = "Undamped"
+    source: ClassVar[str] = "theory.md 3"
+    id: Literal["none"] = "none"
+
+    def transfer(self, omega_s: float) -> LinearNetwork:
+        """Return H = 1."""
+        return linear_network("none", omega_s, [1.0], [1.0], closed_loop_p=[-1j, 1j])

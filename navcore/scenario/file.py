@@ -1,0 +1,201 @@
+"""Scenario files: TOML in and out, presets by name, single fields overridden, one hash for one scenario."""
+
+from __future__ import annotations
+
+import difflib
+import hashlib
+import json
+import tomllib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from navcore.foundation.assets import asset_path
+from navcore.foundation.errors import Fault, InputError
+from navcore.scenario.bounds import LARGEST_BYTES, require_bounded, require_readable
+from navcore.scenario.model import SCHEMA, Scenario
+
+_FILE_FIELDS = (("motion", "file"), ("reference", "file"), ("imu", "file"))
+
+
+def presets() -> dict[str, Path]:
+    """Return the presets that come with the program.
+
+    Returns
+    -------
+    dict
+        Name -> path of its TOML file, sorted by name.
+    """
+    return {path.stem: path for path in sorted(asset_path("presets").glob("*.toml"))}
+
+
+def load(source: str, overrides: Iterable[str] = ()) -> Scenario:
+    """Read a scenario: a preset by its name, or a TOML file.
+
+    Parameters
+    ----------
+    source : str
+        Name of a preset (see `presets`), or path of a file. Names of recordings in a file are relative to it.
+    overrides : iterable of str
+        Fields to change, as ``KEY=VALUE`` with a dotted key: ``method.0.network.xi=0.5``. The value is read
+        as TOML and, where it is not TOML, as text.
+
+    Returns
+    -------
+    Scenario
+        Complete and checked; every field that was not given has its default.
+
+    Raises
+    ------
+    InputError
+        The scenario is wrong. It carries one fault for each field, with its value and the allowed range.
+
+    Examples
+    --------
+    >>> from navcore import load
+    >>> load("zha-fast", ["site.lat_deg=45"]).site.lat_deg
+    45.0
+    """
+    known = presets()
+    path = known.get(source, Path(source))
+    data = read_toml(path, source)
+    apply_overrides(data, overrides)
+    for block, field in _FILE_FIELDS:
+        table = data.get(block)
+        if isinstance(table, dict) and field in table:
+            table[field] = _resolved(table[field], path.parent)
+    return Scenario.parse(data, source)
+
+
+def read_toml(path: Path, where: str) -> dict[str, Any]:
+    """Read a TOML file into a mapping.
+
+    Raises
+    ------
+    InputError
+        The file is missing, too large, no text or no TOML.
+    """
+    try:
+        if path.stat().st_size > LARGEST_BYTES:
+            raise InputError(Fault(where, "", None, f"is larger than {LARGEST_BYTES} bytes: no scenario"))
+        text = path.read_bytes().decode("utf-8")
+    except OSError as error:
+        raise InputError(Fault(where, "", None, _not_there(where, error))) from None
+    except UnicodeDecodeError:
+        raise InputError(Fault(where, "", None, "is not UTF-8 text: no scenario")) from None
+    return parse_toml(text, where)
+
+
+def parse_toml(text: str, where: str) -> dict[str, Any]:
+    """Parse TOML text into a mapping; a migration notice would come here for older schemas.
+
+    Raises
+    ------
+    InputError
+        Not TOML (with line and column), too large or too deep for a scenario, or of a schema that this
+        version does not know.
+    """
+    require_readable(text, where)
+    try:
+        data = tomllib.loads(text)
+    except RecursionError:
+        raise InputError(Fault(where, "", None, "is nested too deep: no scenario")) from None
+    except ValueError as error:  # also what the reader does not call its own
+        raise InputError(Fault(where, "", None, f"is not valid TOML: {str(error)[:200]}")) from None
+    require_bounded(data, where)
+    if data.get("schema", SCHEMA) != SCHEMA:
+        raise InputError(Fault(where, "schema", data["schema"], f"must be {SCHEMA}"))
+    return data
+
+
+def _not_there(where: str, error: OSError) -> str:
+    if isinstance(error, FileNotFoundError):
+        near = difflib.get_close_matches(where, presets(), 1)
+        hint = f' (did you mean "{near[0]}"?)' if near else ""
+        return f"is neither a preset nor a file{hint}; presets: {', '.join(presets())}"
+    return f"cannot be read: {error.strerror}"
+
+
+def _resolved(value: Any, folder: Path) -> Any:
+    if isinstance(value, str):
+        # What no path can be is left as it is: the field's own check names it.
+        return str((folder / value).resolve()) if value and "\0" not in value else value
+    return [_resolved(item, folder) for item in value] if isinstance(value, list) else value
+
+
+def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> None:
+    """Set single fields of a scenario mapping in place.
+
+    Choosing another ``kind`` or ``id`` starts that block anew with the defaults of the new kind.
+
+    Raises
+    ------
+    InputError
+        No ``=`` in an override, or a path that leads through something that is no block.
+    """
+    faults: list[Fault] = []
+    for override in overrides:
+        key, equals, text = override.partition("=")
+        if not equals or not key.strip():
+            faults.append(Fault("--set", "", override, "must have the form KEY=VALUE, e.g. run.duration_h=2"))
+            continue
+        fault = _set(data, key.strip().split("."), _value(text.strip()))
+        if fault:
+            faults.append(Fault("--set", key.strip(), text, fault))
+    if faults:
+        raise InputError(faults)
+
+
+def _value(text: str) -> Any:
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text
+
+
+def _set(data: Any, path: list[str], value: Any) -> str:
+    """Set one field; return what is wrong with the path, or nothing."""
+    for depth, part in enumerate(path[:-1]):
+        if isinstance(data, list):
+            if not part.isdigit() or int(part) >= len(data):
+                return f'"{part}" must be a number from 0 to {len(data) - 1}'
+            data = data[int(part)]
+        elif isinstance(data, dict):
+            if part not in data and depth == 0 and part == "method":
+                data[part] = [{}]
+            data = data.setdefault(part, {})
+        else:
+            return f'"{".".join(path[:depth])}" is a single value, not a block'
+    last = path[-1]
+    if isinstance(data, list):
+        if not last.isdigit() or int(last) >= len(data):
+            return f'"{last}" must be a number from 0 to {len(data) - 1}'
+        data[int(last)] = value
+    elif isinstance(data, dict):
+        if last in ("id", "kind") and path[0] in ("motion", "method") and data.get(last) != value:
+            data.clear()
+        data[last] = value
+    else:
+        return f'"{".".join(path[:-1])}" is a single value, not a block'
+    return ""
+
+
+def to_toml(scenario: Scenario) -> str:
+    """Complete, resolved scenario as TOML text."""
+    import tomlkit
+
+    return tomlkit.dumps(scenario.canonical())
+
+
+def scenario_hash(scenario: Scenario) -> str:
+    """SHA-256 of the canonical scenario; a file counts by its name and content, not by its folder."""
+    data = scenario.canonical()
+    for block, field in _FILE_FIELDS:
+        if data.get(block, {}).get(field):
+            data[block][field] = _fingerprints(data[block][field])
+    return hashlib.sha256(json.dumps(data, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+
+
+def _fingerprints(files: str | list[str]) -> list[str]:
+    paths = [Path(file) for file in ([files] if isinstance(files, str) else files)]
+    return [f"{path.name}:{hashlib.sha256(path.read_bytes()).hexdigest()}" for path in paths]

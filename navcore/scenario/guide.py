@@ -1,0 +1,122 @@
+"""The guide to the scenario file, written from the parameter models: ``python -m navcore.scenario.guide``.
+
+A test holds ``docs/scenario.md`` against the models, so that no field is missing from it or told wrongly.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic.fields import FieldInfo
+
+from navcore.averaging import AlignmentMotion, Averaging
+from navcore.foundation.parameters import Parameters, allowed_range, element_of, extra_of
+from navcore.foundation.registry import blocks_of
+from navcore.law.policy import POLICIES
+from navcore.law.switching import SWITCHINGS
+from navcore.motion import MOTIONS
+from navcore.networks import NETWORKS
+from navcore.scenario.model import Alignment, InitialError, Method, RunSettings, Scenario, SiteSettings, View
+from navcore.sensors.imu import Imu
+from navcore.sensors.reference import LogEvent, Outage, Reference
+
+INTRODUCTION = """# The scenario file
+
+TOML, schema 1. Every field has a default; a field that is not known here is refused, as is a value out of
+its range. `schuler check FILE` tells what a scenario holds, `schuler run FILE --set KEY=VALUE` changes one
+field of it, and [the JSON Schema](../assets/scenario.schema.json) serves an editor. This page is written from
+the program by `make guide`; do not edit it.
+
+All `[[method]]` blocks of a scenario run on the same truth, the same sensor errors and the same log.
+"""
+
+
+_CITATION = re.compile(r"theory\.md (?:section )?(\d+)(?:\.(\d+))?")
+
+
+def _linked(text: str) -> str:
+    """Text in which each section of the theory that it cites is a link to its anchor."""
+    return _CITATION.sub(
+        lambda found: f"[{found[0]}](theory.md#s-{'-'.join(filter(None, found.groups()))})", text
+    )
+
+
+def _sections() -> Iterator[tuple[str, type[Parameters], str]]:
+    yield "at the top", Scenario, "The blocks follow below."
+    yield "[run]", RunSettings, ""
+    yield "[site]", SiteSettings, ""
+    for kind, model in MOTIONS.items():
+        yield f'[motion] kind = "{kind}"', model, ""
+        for block, fields in blocks_of(model).items():
+            tables = (f"[[motion.{name}]]" if many else f"[motion.{name}]" for name, many in fields)
+            yield ", ".join(tables), block, f'With kind = "{kind}".'
+    yield "[imu]", Imu, ""
+    yield "[alignment]", Alignment, ""
+    yield "[[alignment.motion]]", AlignmentMotion, ""
+    yield "[initial_error]", InitialError, ""
+    yield "[reference]", Reference, ""
+    yield "[[reference.event]]", LogEvent, "also `event` of a method"
+    yield "[[reference.outage]]", Outage, ""
+    yield "[[method]]", Method, ""
+    yield "averaging = { ... }", Averaging, ""
+    for name, model in NETWORKS.items():
+        yield f'network = {{ id = "{name}" }}', model, f"{model.title}. Source: {model.source}."
+    for name, model in POLICIES.items():
+        yield f'policy = {{ id = "{name}" }}', model, ""
+    for name, model in SWITCHINGS.items():
+        yield f'switching = {{ id = "{name}" }}', model, ""
+    yield "[view]", View, ""
+
+
+def _first_paragraph(model: type[Parameters]) -> str:
+    return " ".join((model.__doc__ or "").split("\n\n")[0].split())
+
+
+def _default(info: FieldInfo) -> str:
+    value: Any = info.default
+    if info.default_factory is not None or isinstance(value, Parameters):
+        return ""
+    if isinstance(value, tuple):
+        return "" if any(isinstance(item, Parameters) for item in value) else f"`{list(value)}`"
+    return "none" if value is None else f'`"{value}"`' if isinstance(value, str) else f"`{value}`"
+
+
+def _allowed(info: FieldInfo) -> str:
+    words = get_args(info.annotation) if get_origin(info.annotation) is Literal else ()
+    if words:
+        return ", ".join(f"`{word}`" for word in words)
+    return allowed_range(element_of(info) or info).removeprefix("must be ")
+
+
+def _row(name: str, info: FieldInfo) -> str:
+    text = " ".join((info.description or "").split())
+    elements = extra_of(info).get("elements")
+    if elements:
+        text = f"{', '.join(elements)}. {text}"
+    return f"| `{info.alias or name}` | {_default(info)} | {_allowed(info)} | {text} |".replace("|V", "\\|V")
+
+
+def guide() -> str:
+    """Return the guide as Markdown."""
+    parts = [INTRODUCTION]
+    for heading, model, note in _sections():
+        about = " ".join(text for text in (_first_paragraph(model), note) if text)
+        rows = [_row(name, info) for name, info in model.model_fields.items() if info.description]
+        parts.append(f"## `{heading}`\n\n{about}\n")
+        if rows:
+            parts.append("| field | default | allowed | what |\n|---|---|---|---|\n" + "\n".join(rows) + "\n")
+    return _linked("\n".join(parts))
+
+
+def main() -> None:
+    """Write ``docs/scenario.md`` of the checkout."""
+    path = Path(__file__).resolve().parents[2] / "docs" / "scenario.md"
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(guide(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,119 @@
+"""The stochastic model of a scenario's sensors, log and start, in SI (theory.md 14)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from navcore.foundation.units import DEG_PER_HOUR, HOUR, MICRO_G
+from navcore.networks.lqg import SensorFigures
+from navcore.scenario.model import Scenario
+
+RANDOM_SOURCES = ("gyro_white", "gyro_drift", "accel_white", "accel_drift", "log_white", "log_drift")
+"""Sources that are random processes, in the order of every table; the others are random constants."""
+
+
+@dataclass(frozen=True)
+class Drift:
+    """First-order Gauss-Markov process.
+
+    Attributes
+    ----------
+    sigma : float
+        Standard deviation, SI.
+    tau_s : float
+        Correlation time, s.
+    """
+
+    sigma: float
+    tau_s: float
+
+    @property
+    def drive(self) -> float:
+        """Power spectral density of the white noise that drives it, 2 sigma^2 / tau."""
+        return 2.0 * self.sigma**2 / self.tau_s
+
+
+@dataclass(frozen=True, eq=False)
+class StochasticModel:
+    """What is known of the error sources beforehand.
+
+    Attributes
+    ----------
+    figures : SensorFigures
+        Random errors; the log's resolution counts as noise of lsb / sqrt(12).
+    log : bool
+        Whether there is a log at all.
+    tide : ndarray, shape (2,)
+        Amplitudes of the tidal stream, E and N, m/s.
+    tide_period_s : float
+        Its period.
+    gyro_bias, accel_bias : ndarray, shape (3,)
+        Standard deviations in body axes, rad/s, m/s^2.
+    log_bias : ndarray, shape (2,)
+        Standard deviations in the log's axes, m/s.
+    initial : ndarray, shape (7,)
+        Standard deviations of dV_E, dV_N, dL, dlambda, phi_E, phi_N, phi_U at t = 0.
+    """
+
+    figures: SensorFigures
+    log: bool
+    tide: np.ndarray
+    tide_period_s: float
+    gyro_bias: np.ndarray
+    accel_bias: np.ndarray
+    log_bias: np.ndarray
+    initial: np.ndarray
+
+    @property
+    def gyro_drift(self) -> Drift:
+        """Gauss-Markov part of the gyros, rad/s."""
+        return Drift(self.figures.gyro_drift, self.figures.gyro_tau_s)
+
+    @property
+    def accel_drift(self) -> Drift:
+        """Gauss-Markov part of the accelerometers, m/s^2."""
+        return Drift(self.figures.accel_drift, self.figures.accel_tau_s)
+
+    @property
+    def log_drift(self) -> Drift:
+        """Gauss-Markov part of the log, m/s."""
+        return Drift(self.figures.log_drift, self.figures.log_tau_s)
+
+    @property
+    def silent(self) -> bool:
+        """Whether no random process is on at all."""
+        return not (self.figures.inertial or self.figures.log)
+
+
+def stochastic_model(scenario: Scenario) -> StochasticModel:
+    """Make the model from ``[imu]``, ``[reference]`` and ``[initial_error]``.
+
+    A bias or initial error that is given as one number counts as its own standard deviation, unless the
+    scenario gives one (``gyro_bias_std_dph`` and the like). Of a recorded log nothing is known beforehand:
+    it counts as a log without error.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Complete and checked.
+    """
+    imu, log = scenario.imu, scenario.reference
+    gyro, accel = imu.gyro(), imu.accel()
+    simulated = log.kind == "log"
+    known = 1.0 if simulated else 0.0
+    return StochasticModel(
+        figures=scenario.figures(),
+        log=log.kind != "none",
+        tide=known * np.array(log.tide_mps),
+        tide_period_s=log.tide_period_h * HOUR,
+        gyro_bias=_deviations(gyro.bias, imu.gyro_bias_std_dph, DEG_PER_HOUR),
+        accel_bias=_deviations(accel.bias, imu.accel_bias_std_ug, MICRO_G),
+        log_bias=known * _deviations(np.array(log.bias_mps), log.bias_std_mps, 1.0),
+        initial=np.array(scenario.initial_error.standard_deviations()),
+    )
+
+
+def _deviations(value: np.ndarray, given: float | None, unit: float) -> np.ndarray:
+    return np.abs(value) if given is None else np.full(value.shape, given * unit)

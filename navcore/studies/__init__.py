@@ -1,0 +1,1 @@
+"""Studies over many runs: tuning, and the sources that a result is made of."""

@@ -1,0 +1,234 @@
+"""What a result is made of: the error source and the natural period that dominate each method's errors.
+
+The source by running the sources apart (`navcore.studies.sources`), the period by least squares on the
+natural lines (`navcore.averaging.lines`). The parts of the fit are not orthogonal on a short record: the
+share of a part is its mean product with the whole curve, so that all shares and that of what the fit leaves
+are 1 together.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from navcore.averaging.lines import line_phases
+from navcore.engine.run import MethodRun, Run
+from navcore.engine.simulation import simulate
+from navcore.foundation.earth import EARTH_RATE
+from navcore.mechanization.recorder import NAMES
+from navcore.motion.base import LAT
+from navcore.scenario.model import Scenario
+from navcore.studies.sources import Apart, apart
+
+POSITION, TILT, HEADING = "position error", "tilt", "heading error"
+_QUANTITIES = {
+    POSITION: ("dlat_m", "dlon_m"),
+    TILT: ("phi_e_rad", "phi_n_rad"),
+    HEADING: ("phi_u_rad",),
+}
+CONSTANT, DRIFT, SCHULER, EARTH, OTHER = "constant", "drift", "schuler", "earth", "other"
+_MOST_ROWS = 1500
+_RESOLVED = 0.75 * math.tau
+"""Phase that a line must pass through to be told from a constant and a trend."""
+_BEATS = 0.5 * math.pi
+"""Phase by which the two Schuler lines must part to be told from one."""
+_BOTH = 0.4
+"""Of the larger Schuler line that the smaller must reach for a beat to be seen."""
+_RCOND = 1e-6
+
+
+@dataclass(frozen=True)
+class Swing:
+    """What curves are made of.
+
+    Attributes
+    ----------
+    shares : dict
+        `CONSTANT`, `DRIFT`, `SCHULER`, `EARTH`, `OTHER` -> share in the mean square; together 1.
+    beats : bool
+        Both Schuler lines are strong: the swing comes and goes with the Foucault period.
+    """
+
+    shares: dict[str, float]
+    beats: bool
+
+    @property
+    def largest(self) -> str:
+        """The part with the largest share."""
+        return max(self.shares, key=self.shares.__getitem__)
+
+
+@dataclass(frozen=True)
+class Cause:
+    """What dominates one error of one method.
+
+    Attributes
+    ----------
+    quantity : str
+        `POSITION`, `TILT` or `HEADING`.
+    source : str
+        The dominating source; empty when the sources cannot be told apart.
+    share : float
+        Its share in the sum of the mean squares of all sources, 0..1.
+    swing : Swing
+        How the error moves.
+    """
+
+    quantity: str
+    source: str
+    share: float
+    swing: Swing
+
+
+@dataclass(frozen=True)
+class Why:
+    """What dominates a run.
+
+    Attributes
+    ----------
+    methods : tuple of (str, tuple of Cause)
+        For each method its name, and a cause for each error that is not zero.
+    schuler_s, foucault_s : float
+        Periods at the start of the run, s; the Foucault period may be infinite.
+    remarks : tuple of str
+        What the statement rests on, where that is not the run itself.
+    complete : bool
+        False when it was cancelled.
+    """
+
+    methods: tuple[tuple[str, tuple[Cause, ...]], ...]
+    schuler_s: float
+    foucault_s: float
+    remarks: tuple[str, ...]
+    complete: bool
+
+
+def why(
+    run: Run,
+    progress: Callable[[float], None] = lambda fraction: None,
+    cancelled: Callable[[], bool] = lambda: False,
+) -> Why:
+    """Say what dominates a run, by running its sources apart on the linear error model.
+
+    Parameters
+    ----------
+    run : Run
+        With at least two output rows.
+    progress : callable
+        Told the fraction done, 0..1.
+    cancelled : callable
+        Asked often; True ends the search.
+    """
+    scenario = run.scenario
+    parts, remarks = _sources(run, progress, cancelled)
+    stop = cancelled()
+    made = []
+    for index, method in enumerate(run.methods):
+        causes = () if stop else _causes(run, method, parts[index] if parts else None)
+        made.append((method.method.name, causes))
+    if any(m.method.policy.id != "constant" and not m.method.undamped for m in run.methods):
+        remarks.append("Where a policy switches, the sources do not simply add up: shares are approximate.")
+    rate = EARTH_RATE * math.sin(float(run.truth[0, LAT])) if len(run.truth) else 0.0
+    return Why(
+        methods=tuple(made),
+        schuler_s=math.tau / scenario.omega_s,
+        foucault_s=math.tau / abs(rate) if rate else math.inf,
+        remarks=tuple(remarks),
+        complete=not stop,
+    )
+
+
+def _sources(
+    run: Run, progress: Callable[[float], None], cancelled: Callable[[], bool]
+) -> tuple[tuple[Apart, ...], list[str]]:
+    """Contributions for each method; none when the errors of the sensors are not known."""
+    scenario = run.scenario
+    if scenario.imu.file is not None:
+        return (), ["A recorded IMU: its errors are not known one by one, so only the periods are told."]
+    remarks = []
+    if scenario.reference.kind == "file":
+        remarks.append("The recorded log counts as one source: what it errs by is not known part by part.")
+    if scenario.strapdown:
+        remarks.append("The sources were run apart on the linear error model, not on the strapdown.")
+        scenario = _as_error_model(scenario)
+        run = simulate(scenario, cancelled=cancelled)
+    return apart(scenario, run, progress, cancelled), remarks
+
+
+def _as_error_model(scenario: Scenario) -> Scenario:
+    settings = scenario.run.model_copy(update={"fidelity": "error_model"})
+    return scenario.model_copy(update={"run": settings})
+
+
+def _causes(run: Run, method: MethodRun, parts: Apart | None) -> tuple[Cause, ...]:
+    if len(method.t_s) < 3:
+        return ()
+    causes = []
+    for quantity, names in _QUANTITIES.items():
+        if quantity == HEADING and run.scenario.run.fidelity == "channel":
+            continue
+        moved = swing(run, method, names)
+        if moved is None:
+            continue
+        source, share = "", 0.0
+        if parts is not None:
+            shares = parts.shares(*names)
+            source, share = shares[0] if shares else ("", 0.0)
+        causes.append(Cause(quantity, source, share, moved))
+    return tuple(causes)
+
+
+def swing(run: Run, method: MethodRun, names: tuple[str, ...]) -> Swing | None:
+    """Shares of constant, trend, Schuler and 24 h lines in some errors of a method; None when they are zero.
+
+    Parameters
+    ----------
+    run : Run
+        The method's.
+    method : MethodRun
+        One of its methods.
+    names : tuple of str
+        Of `navcore.mechanization.recorder.NAMES`; their mean squares are added.
+    """
+    chosen = np.arange(0, len(method.t_s), -(-len(method.t_s) // _MOST_ROWS))
+    curves = method.rows[chosen][:, [NAMES.index(name) for name in names]]
+    total = float(np.mean(np.sum(curves**2, axis=1)))
+    if not math.isfinite(total) or total == 0.0:
+        return None
+    columns = _columns(run, method.t_s[chosen], chosen)
+    design = np.column_stack([column for columns_of in columns.values() for column in columns_of])
+    # By the normal equations: a few columns, and a thousand times less work than the long matrix itself.
+    found, *_ = np.linalg.lstsq(design.T @ design, design.T @ curves, rcond=_RCOND**2)
+    shares, at, lines = {}, 0, []
+    for part, columns_of in columns.items():
+        coefficients = found[at : at + len(columns_of)]
+        at += len(columns_of)
+        made = np.column_stack(columns_of) @ coefficients
+        shares[part] = float(np.mean(np.sum(made * curves, axis=1)) / total)
+        if part == SCHULER:
+            lines = [float(np.sum(coefficients[k : k + 2] ** 2)) for k in range(0, len(columns_of), 2)]
+    shares[OTHER] = 1.0 - sum(shares.values())
+    beats = len(lines) == 2 and min(lines) >= _BOTH**2 * max(lines)
+    return Swing(shares, beats)
+
+
+def _columns(run: Run, time_s: np.ndarray, chosen: np.ndarray) -> dict[str, list[np.ndarray]]:
+    """What is fitted, by part: only lines that the record can tell from each other."""
+    scenario = run.scenario
+    ramp = (time_s - time_s[0]) / max(float(time_s[-1] - time_s[0]), 1e-9)
+    columns = {CONSTANT: [np.ones(len(time_s))], DRIFT: [ramp - 0.5]}
+    if scenario.run.fidelity == "channel":
+        plus = minus = scenario.omega_s * (time_s - time_s[0])
+        earth = np.zeros(len(time_s))
+    else:
+        plus, minus, earth = line_phases(time_s, run.truth[chosen], scenario.earth).T
+    if plus[-1] >= _RESOLVED:
+        both = plus[-1] - minus[-1] >= _BEATS
+        phases = (plus, minus) if both else (0.5 * (plus + minus),)
+        columns[SCHULER] = [wave(phase) for phase in phases for wave in (np.cos, np.sin)]
+    if earth[-1] >= _RESOLVED:
+        columns[EARTH] = [np.cos(earth), np.sin(earth)]
+    return columns

@@ -1,0 +1,178 @@
+"""``serve --workers``: one door, sessions stay with their worker, and come back when it has crashed."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from app.bench.process import environment
+from app.bench.visitor import PAGE_STATE, Visitor
+from app.http.front import Front, _told
+from app.http.limits import Limits
+from app.session.keys import session_key
+from app.session.store import open_store
+from tests.attack.wire import ask, shake_hands
+
+pytestmark = pytest.mark.attack
+
+TOKEN = "a-token-for-the-door"
+KNOWN = {"Authorization": f"Bearer {TOKEN}"}
+
+
+@dataclass
+class Door:
+    process: subprocess.Popen[str]
+    port: int
+    state: Path
+
+    def workers(self) -> list[int]:
+        """Process numbers of the workers that are there."""
+        tasks = Path(f"/proc/{self.process.pid}/task").glob("*/children")
+        return [int(pid) for task in tasks for pid in task.read_text().split()]
+
+    def session(self) -> str:
+        return ask(self.port, "/").headers["Location"].split("/")[1]
+
+
+def started(state: Path, *more: str) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-m", "app", "serve", "--port", "0", "--workers", "2", *more],
+        env=environment() | {"XDG_STATE_HOME": str(state)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+@pytest.fixture(scope="module")
+def door(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Door]:
+    if not Path("/proc/self/task").exists():
+        pytest.skip("the workers are found through /proc")
+    state = tmp_path_factory.mktemp("state")
+    process = started(state)
+    assert process.stdout is not None
+    line = process.stdout.readline()
+    found = Door(process, int(line.split("127.0.0.1:")[1].split("/")[0]), state)
+    until(lambda: _status(found.port, "/") == 302)
+    yield found
+    process.terminate()
+    process.communicate(timeout=10.0)
+    assert process.returncode == 0
+
+
+def _status(port: int, path: str) -> int:
+    try:
+        return ask(port, path).status
+    except OSError:
+        return 0
+
+
+def until(true, seconds: float = 30.0) -> None:
+    end = time.monotonic() + seconds
+    while not true():
+        assert time.monotonic() < end, "did not happen"
+        time.sleep(0.05)
+
+
+def test_page_and_websocket_come_through_the_door(door: Door) -> None:
+    assert len(door.workers()) == 2
+    assert ask(door.port, "/healthz").status == 200
+    own = door.session()
+    page = ask(door.port, f"/s/{own}/", {"Accept-Encoding": "gzip"})
+    assert page.status == 200 and page.headers["Content-Security-Policy"]
+    assert shake_hands(door.port, f"/s/{own}", Origin=f"http://127.0.0.1:{door.port}").status == 101
+    assert shake_hands(door.port, f"/s/{own}", Origin="http://evil.example").status == 403
+    assert ask(door.port, f"/s/{own}/", {"Host": "evil.example"}).status == 421
+
+
+def test_sessions_of_a_crashed_worker_reopen(door: Door) -> None:
+    own, before = door.session(), door.workers()
+    with Visitor(door.port, own) as page:
+        page.set(PAGE_STATE, "1920x1080|Method|Errors")
+        page.wait_for_run(1)
+        page.set("zeta", 0.37)
+        page.wait_for_run(2)
+        page.rest(1.5)  # written down after half a second
+    for pid in before:
+        os.kill(pid, signal.SIGKILL)
+    until(lambda: len(door.workers()) == 2 and not set(door.workers()) & set(before))
+    until(lambda: _status(door.port, f"/s/{own}/") == 200)
+    with Visitor(door.port, own) as page:
+        page.control("zeta")
+        page.wait_for_run(1)
+        assert page.held("zeta") == pytest.approx(0.37)
+
+
+def test_silent_sockets_at_the_door_keep_nobody_out(door: Door) -> None:
+    with ExitStack() as crowd:
+        for _ in range(260):
+            crowd.enter_context(socket.create_connection(("127.0.0.1", door.port)))
+        assert ask(door.port, "/healthz").status == 200
+        assert ask(door.port, "/").status == 302
+
+
+def test_a_second_server_on_the_same_folder_is_refused(door: Door) -> None:
+    second = started(door.state)
+    told, errors = second.communicate(timeout=30.0)
+    assert second.returncode == 2 and told == ""
+    assert len(errors.strip().splitlines()) == 1 and "another server keeps its sessions there" in errors
+
+
+@pytest.mark.parametrize("count", ["0", "65", "-1"])
+def test_a_strange_number_of_workers_is_refused(tmp_path: Path, count: str) -> None:
+    process = started(tmp_path, "--workers", count)
+    _, errors = process.communicate(timeout=30.0)
+    assert process.returncode == 2 and len(errors.strip().splitlines()) == 1 and "Traceback" not in errors
+
+
+def test_workers_of_an_open_server_need_the_token(tmp_path: Path) -> None:
+    process = started(tmp_path, "--host", "0.0.0.0")
+    _, errors = process.communicate(timeout=30.0)
+    assert process.returncode == 2 and "--token" in errors
+
+
+def test_a_session_always_goes_to_the_same_worker_and_others_are_spread() -> None:
+    front = Front([1, 2, 3], Limits())
+    heads = [f"GET /s/{number:024d}/?a=b HTTP/1.1\r\n".encode() for number in range(300)]
+    chosen = [front.worker_of(head) for head in heads]
+    assert chosen == [front.worker_of(head.replace(b"/?a=b", b"")) for head in heads]
+    assert min(chosen.count(port) for port in (1, 2, 3)) > 60
+    assert {front.worker_of(b"GET / HTTP/1.1\r\n") for _ in range(3)} == {1, 2, 3}
+
+
+def test_a_stranger_cannot_say_where_a_request_comes_from() -> None:
+    head = b"GET / HTTP/1.1\r\nX-Schuler-Address: 1.2.3.4\r\nHost: a\r\nx-schuler-ADDRESS : 5.6.7.8\r\n\r\n"
+    told = _told(head, "10.0.0.9").decode()
+    assert told.lower().count("x-schuler-address") == 1 and "x-schuler-address: 10.0.0.9\r\n" in told
+    assert "Host: a\r\n" in told and told.endswith("\r\n\r\n")
+
+
+def test_workers_know_each_others_sessions(tmp_path: Path) -> None:
+    """Two processes on one folder: what one has written the other reads."""
+    first = open_store(tmp_path)
+    assert first is not None
+    first.write("a" * 24, {"id": "a" * 24})
+    assert session_key(tmp_path) == session_key(tmp_path)
+    code = (
+        "from pathlib import Path; from app.session.database import Database; import sys;"
+        "print(Database(Path(sys.argv[1])).has('a' * 24))"
+    )
+    told = subprocess.run(
+        [sys.executable, "-c", code, str(tmp_path)],
+        env=environment(),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    first.close()
+    assert told.stdout.strip() == "True"

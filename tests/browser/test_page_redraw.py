@@ -1,0 +1,86 @@
+"""A plotly figure whose numbers alone have changed is drawn in place, as if it were drawn anew."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.editing import edits
+from tests.browser.driver import Bench
+
+pytestmark = pytest.mark.browser
+
+_PLOT = "[...document.querySelectorAll('.js-plotly-plot')].find(p => p.offsetParent !== null)"
+# How often plotly has laid a figure out since, what is drawn, and what a drawing anew makes of it.
+_COUNT = f"() => {{ window.laidOut = 0; {_PLOT}.on('plotly_afterplot', () => {{ window.laidOut += 1; }}); }}"
+_PATHS = f"""() => [...{_PLOT}.querySelectorAll('.scatterlayer path.js-line')]
+  .map(line => line.getAttribute('d').match(/-?[0-9.]+/g).map(Number))"""
+_ANEW = f"() => Plotly.redraw({_PLOT})"
+_AXES = f"() => ['xaxis', 'yaxis', 'yaxis2', 'yaxis3', 'yaxis4'].map(name => {_PLOT}._fullLayout[name].range)"
+
+
+def test_a_slider_step_moves_the_curves_without_a_layout(bench: Bench) -> None:
+    bench.reset("sikuliaq-like", selected=2)
+    bench.tab("Frequency", "Errors", "Method")
+    bench.press("zeta")
+    bench.plotly()
+    page = bench.page
+    page.evaluate(_COUNT)
+    before = page.evaluate(_PATHS)
+    in_place = 0
+    for _ in range(4):
+        was = page.evaluate("window.laidOut")
+        bench.press("zeta")
+        bench.plotly()
+        in_place += page.evaluate("window.laidOut") == was
+    assert in_place >= 2, "an axis may be laid out anew now and then, not at each step"
+    moved = page.evaluate(_PATHS)
+    assert moved != before
+    held = bench.plotly()
+    page.evaluate(_ANEW)
+    for line, anew in zip(moved, page.evaluate(_PATHS), strict=True):
+        assert line == pytest.approx(anew, abs=0.02), "as plotly draws it"
+    assert bench.plotly() == held, "plotly holds the numbers that are drawn"
+    assert bench.faults == []
+
+
+def test_a_zoom_outlives_a_slider_step(bench: Bench) -> None:
+    bench.reset("sikuliaq-like", selected=2)
+    bench.tab("Frequency", "Errors", "Method")
+    bench.press("zeta")
+    bench.plotly()
+    page = bench.page
+    box = page.locator(".js-plotly-plot:visible .nsewdrag").first.bounding_box()
+    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.3 * box["height"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 0.7 * box["height"], steps=5)
+    page.mouse.up()
+    page.wait_for_timeout(500)
+    zoomed = page.evaluate(_AXES)
+    for _ in range(3):
+        bench.press("zeta")
+        bench.plotly()
+    assert page.evaluate(_AXES)[0] == pytest.approx(zoomed[0])
+    page.mouse.dblclick(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    page.wait_for_timeout(500)
+    assert page.evaluate(_AXES)[0] != pytest.approx(zoomed[0])
+    assert bench.faults == []
+
+
+def test_of_two_hundred_steps_none_is_lost_and_everything_follows_at_rest(bench: Bench) -> None:
+    bench.reset("sikuliaq-like", selected=2)
+    bench.tab("Frequency", "Errors", "Method")
+    bench.settle()
+    start, thumb = bench.value("zeta, exact"), bench.slider("zeta")
+    thumb.press("ArrowRight")
+    bench.settle()
+    step = bench.value("zeta, exact") - start
+    for key, count in (("ArrowRight", 119), ("ArrowLeft", 80)):
+        for _ in range(count):
+            thumb.press(key)
+    bench.settle()
+    assert bench.value("zeta, exact") == pytest.approx(start + 40 * step)
+    session = bench.session
+    assert edits.network_values(session.scenario, 2)["zeta"] == pytest.approx(start + 40 * step)
+    assert bench.run == session.run_number
+    assert {trace["name"] for trace in bench.plotly()}
+    assert "moves" not in bench.status

@@ -1,0 +1,38 @@
+"""Compiling a kernel never counts against a test's timeout: its clock stands while numba compiles."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from typing import Any
+
+from numba.core import event
+
+_COMPILING = "numba:compile"
+
+
+class Uncounted(event.Listener):
+    """Stops the timer of pytest-timeout (its method "signal") while any thread of the process compiles."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._depth, self._left = 0, 0.0
+
+    def listen(self) -> None:
+        """Hear of every compilation from now on."""
+        event.register(_COMPILING, self)
+
+    def on_start(self, event: Any) -> None:
+        """Take the timer out, remembering what was left of it."""
+        with self._lock:
+            self._depth += 1
+            if self._depth == 1 and hasattr(signal, "setitimer"):
+                self._left = signal.setitimer(signal.ITIMER_REAL, 0.0)[0]
+
+    def on_end(self, event: Any) -> None:
+        """Set the timer to what was left."""
+        with self._lock:
+            self._depth -= 1
+            if self._depth == 0 and self._left > 0.0:
+                signal.setitimer(signal.ITIMER_REAL, self._left)
+                self._left = 0.0

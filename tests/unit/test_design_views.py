@@ -1,0 +1,118 @@
+"""The budget's bars, the fields that a search may move, and the proposal of Tune in words."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from app.jobs.designer import Budgeter, Designer, TuningTask
+from app.session.requirements import Requirements
+from app.views.design.figure import QUANTITIES, budget_figure, parts
+from app.views.tune.proposal import proposal_html, sentences_about
+from app.views.tune.view import requirements_as_text
+from navcore.design.budget import budget
+from navcore.design.measures import read_requirement
+from navcore.design.tune import tune
+from navcore.design.vary import tunable_fields
+from navcore.scenario.file import load
+from navcore.scenario.model import Scenario
+
+
+@pytest.fixture(scope="module")
+def ship() -> Scenario:
+    return load("sikuliaq-like")
+
+
+@pytest.fixture(scope="module")
+def compass() -> Scenario:
+    network = {"id": "compass", "sigma": 0.0088, "xi": 0.7}
+    return Scenario.parse(
+        {
+            "imu": {"gyro_arw_dpsh": 0.003, "gyro_instability_dph": 0.003, "gyro_tau_s": 3600.0},
+            "reference": {"kind": "log", "noise_mps": 0.2},
+            "method": [{"name": "<b>compass</b>", "damping": "external", "network": network}],
+        }
+    )
+
+
+def test_the_parts_of_a_bar_add_up_to_its_height_and_divide_like_variances(ship):
+    found = budget(ship, steady=True)
+    method = found.methods[2]
+    heights = parts(method, "tilt_rad")
+    assert sum(heights.values()) == pytest.approx(method.total.rms.tilt_rad, rel=1e-12)
+    known = {name: entry.rms.tilt_rad or 0.0 for name, entry in method.sources.items()}
+    variance = sum(size**2 for size in known.values())
+    for name, size in known.items():
+        assert heights[name] == pytest.approx(sum(heights.values()) * size**2 / variance)
+
+
+def test_a_method_without_a_steady_state_has_no_bar_and_says_so(ship):
+    found = budget(ship, steady=True)
+    assert parts(found.methods[0], "tilt_rad") == {}
+    texts = [note["text"] for note in budget_figure(found)["layout"]["annotations"]]
+    assert texts.count("no steady state") == 2
+
+
+def test_every_quantity_has_its_bars_its_unit_and_the_floor(ship):
+    found = budget(ship)
+    made = budget_figure(found, 0.5)
+    layout = made["layout"]
+    for k, (key, title, unit_name, unit) in enumerate(QUANTITIES):
+        suffix = "" if k == 0 else str(k + 1)
+        assert layout[f"yaxis{suffix}"]["title"]["text"] == unit_name
+        assert f"<b>{title}</b>" in [note["text"] for note in layout["annotations"]]
+        bars = [trace for trace in made["data"] if trace["yaxis"] == f"y{suffix}"]
+        total = sum(trace["y"][1] for trace in bars)
+        # what is below half a per cent of every bar is left out
+        assert total == pytest.approx(getattr(found.methods[1].total.rms, key) / unit, rel=0.05)
+        lines = [shape for shape in layout["shapes"] if shape["yref"] == f"y{suffix}"]
+        assert [line["y0"] for line in lines] == [getattr(found.floor.rms, key) / unit]
+
+
+def test_a_name_with_markup_is_shown_as_text(compass):
+    assert "&lt;b&gt;compass" in budget_figure(budget(compass, steady=True)).to_json()
+
+
+def test_only_numbers_of_the_network_that_are_given_may_vary(ship, compass):
+    assert tunable_fields(ship, 0) == () == tunable_fields(ship, 1)
+    assert tunable_fields(ship, 2) == ("method.2.network.zeta", "method.2.network.eta")
+    assert tunable_fields(compass, 0) == ("method.0.network.sigma", "method.0.network.xi")
+
+
+def test_requirements_reach_the_search_in_si():
+    asked = Requirements(settling_min=60.0, damping_ratio=0.4, log_tilt_arcsec=3.0, position_rms_m=100.0)
+    limits = {one.name: one.limit for one in map(read_requirement, requirements_as_text(asked))}
+    assert limits == {
+        "settling_s": 3600.0,
+        "damping_ratio": 0.4,
+        "log_tilt": pytest.approx(3.0 * math.pi / 648000.0),
+        "position_rms": 100.0,
+    }
+
+
+def test_a_proposal_names_field_value_floor_and_what_holds_it(compass):
+    fields, limits = tunable_fields(compass, 0), ("settling_s<=600",)
+    found = tune(compass, "tilt_rms", fields, limits)
+    task = TuningTask(compass, "tilt_rms", fields, limits)
+    told = " ".join(sentences_about(task, found))
+    assert "times the floor" in told and "The requirement settling_s<=600 holds the optimum back" in told
+    html = proposal_html(task, found)
+    assert "network.sigma" in html and "arcsec" in html and "0.0088" in html
+
+
+def test_the_jobs_give_what_the_library_gives_and_forget_it(compass):
+    told: list[int] = []
+    designer, budgeter = Designer(lambda: told.append(1)), Budgeter(lambda: told.append(1))
+    try:
+        task = TuningTask(compass, "tilt_rms", ("method.0.network.xi",), ())
+        designer.begin(task)
+        budgeter.begin(compass)
+        assert designer.wait_idle(60.0) and budgeter.wait_idle(60.0)
+        assert designer.result is not None and designer.asked == task
+        assert budgeter.beside(compass) is not None and budgeter.beside(load("zha-fast")) is None
+        designer.discard()
+        assert designer.result is None and told
+    finally:
+        designer.stop()
+        budgeter.stop()

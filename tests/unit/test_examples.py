@@ -1,0 +1,39 @@
+"""The notebooks of examples/: every code cell runs from a clean start; none is kept with its output."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import pytest
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+NOTEBOOKS = sorted(EXAMPLES.glob("*.ipynb"))
+
+
+def code_cells(path: Path) -> list[dict[str, Any]]:
+    """Code cells of a notebook."""
+    return [c for c in json.loads(path.read_text("utf-8"))["cells"] if c["cell_type"] == "code"]
+
+
+def test_there_are_three_notebooks():
+    assert len(NOTEBOOKS) == 3
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_notebook_runs(path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.chdir(EXAMPLES)
+    names: dict[str, Any] = {"__name__": "__main__"}
+    figures = 0
+    for number, cell in enumerate(code_cells(path), start=1):
+        exec(compile("".join(cell["source"]), f"{path.name}, code cell {number}", "exec"), names)
+        figures += len(plt.get_fignums())
+        plt.close("all")
+    assert figures > 0
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_notebook_is_kept_without_output(path: Path):
+    assert all(cell["outputs"] == [] and cell["execution_count"] is None for cell in code_cells(path))

@@ -1,0 +1,147 @@
+"""The Kalman filter as a method: refused where it cannot work, its covariance true, its limits visible."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from navcore.design.floor import steady_floor
+from navcore.engine.drivers.kalman import NOTHING_RANDOM, filtered_linear, filtered_strapdown
+from navcore.engine.drivers.strapdown import settings_of
+from navcore.engine.environment import environment
+from navcore.engine.simulation import simulate
+from navcore.engine.strapdown_environment import strapdown_environment
+from navcore.foundation.errors import InputError
+from navcore.scenario.model import Scenario
+from navcore.scenario.stochastic import stochastic_model
+from navcore.studies.filter_consistency import consistency
+
+SET_A = {
+    "gyro_arw_dpsh": 0.003, "gyro_instability_dph": 0.003, "gyro_tau_s": 3600.0,
+    "accel_vrw_ugpshz": 10.0, "accel_instability_ug": 10.0, "accel_tau_s": 3600.0,
+}  # fmt: skip
+KALMAN = {"damping": "kalman"}
+
+
+def scenario(**blocks: Any) -> Scenario:
+    data: dict[str, Any] = {
+        "run": {"duration_h": 24.0, "step_s": 2.0, "earth": "sphere"},
+        "imu": SET_A,
+        "reference": {"kind": "log", "noise_mps": 0.2, "drift_mps": 0.1, "drift_tau_s": 600.0},
+        "method": [KALMAN],
+    }
+    for name, block in blocks.items():
+        data[name] = {**data[name], **block} if isinstance(block, dict) and name in data else block
+    return Scenario.parse(data)
+
+
+@pytest.mark.parametrize(
+    "blocks",
+    [
+        {"run": {"fidelity": "channel"}},
+        {"reference": {"kind": "none"}},
+    ],
+)
+def test_refused_where_the_filter_cannot_work(blocks: dict[str, Any]) -> None:
+    with pytest.raises(InputError) as refused:
+        scenario(**blocks)
+    assert "method.0.damping" in [fault.field for fault in refused.value.faults]
+
+
+def test_network_policy_and_switching_are_told_to_be_unused() -> None:
+    method = KALMAN | {"network": {"id": "classic2"}, "policy": {"id": "variation"}}
+    run = simulate(scenario(run={"duration_h": 0.1}, method=[method])).methods[0]
+    assert any("the network is not used" in text for text in run.warnings)
+    assert any("policy and switching are not used" in text for text in run.warnings)
+
+
+def test_without_random_errors_it_says_that_it_corrects_nothing() -> None:
+    quiet = scenario(run={"duration_h": 0.1}, imu={name: 0.0 for name in SET_A if "tau" not in name})
+    quiet = quiet.model_copy(update={"reference": quiet.reference.model_copy(update={"drift_mps": 0.0})})
+    assert NOTHING_RANDOM in simulate(quiet).methods[0].warnings
+
+
+def test_its_covariance_comes_to_the_floor() -> None:
+    """At rest the variance of the tilt after a day is that of the Riccati equation of one channel."""
+    found = scenario()
+    run, _ = filtered_linear(found, found.method[0], environment(found), np.zeros(7))
+    while not run.advance(100_000):
+        pass
+    floor = steady_floor(stochastic_model(found), found.omega_s)
+    P = run.filter.P
+    assert floor.tilt_rad is not None
+    assert floor.velocity_mps is not None
+    assert math.sqrt(P[4, 4]) == pytest.approx(floor.tilt_rad, rel=0.02)
+    assert math.sqrt(P[0, 0]) == pytest.approx(floor.velocity_mps, rel=0.02)
+    np.testing.assert_allclose(P, P.T, rtol=1e-12)
+    assert np.linalg.eigvalsh(P / np.sqrt(np.outer(np.diag(P), np.diag(P)))).min() > 0.0
+
+
+@pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
+def test_its_covariance_holds_over_seeds(fidelity: str) -> None:
+    """Normalised error of a moving ship with a log along its axes, biases and initial errors drawn."""
+    found = consistency(100, fidelity)
+    assert found.holds, found
+
+
+def test_it_wins_while_its_model_is_right_and_loses_to_an_event_it_was_not_told_of() -> None:
+    event = {"t_h": 12.0, "duration_s": 1000.0, "accel_mps2": [0.002, 0.002]}
+    others = [{"damping": "external", "network": {"id": name}} for name in ("unity2", "classic2", "classic3")]
+
+    def tilts(events: list[dict[str, Any]]) -> list[float]:
+        found = simulate(scenario(method=[method | {"event": events} for method in (KALMAN, *others)]))
+        errors = [method.errors for method in found.methods]
+        return [math.hypot(error["phi_e_rad"]["rms"], error["phi_n_rad"]["rms"]) for error in errors]
+
+    kalman, *damped = tilts([])
+    assert kalman < min(damped)
+    misled, *disturbed = tilts([event])
+    assert misled > 2.0 * max(disturbed)
+
+
+def test_the_log_out_of_service_lets_the_covariance_grow() -> None:
+    outage = scenario(reference={"outage": [{"t_h": 20.0, "duration_s": 14400.0}]})
+    with_log = scenario()
+    ends = []
+    for found in (with_log, outage):
+        run, _ = filtered_linear(found, found.method[0], environment(found), np.zeros(7))
+        while not run.advance(100_000):
+            pass
+        ends.append(run.filter.P[0, 0])
+    assert ends[1] > 2.0 * ends[0]
+
+
+def test_both_fidelities_agree() -> None:
+    """The same biases, start and log: the error model and the mechanization, which sees the second order."""
+    moving = {
+        "run": {"duration_h": 2.0, "step_s": 1.0, "rate_hz": 10.0},
+        "motion": {"kind": "legs", "leg": [{"duration_s": 1800.0, "speed_mps": 6.0}, {"duration_s": 90.0,
+                                            "turn_dps": 1.0}, {"duration_s": 9000.0}]},
+        "imu": {name: 0.0 for name in SET_A if "tau" not in name}
+        | {"gyro_bias_dph": [0.01, -0.02, 0.01], "accel_bias_ug": [20.0, -30.0, 0.0]},
+        "initial_error": {"attitude_arcmin": [0.5, -0.5, 3.0], "velocity_mps": [0.1, 0.0]},
+    }  # fmt: skip
+    linear, full = (
+        simulate(scenario(**(moving | {"run": moving["run"] | {"fidelity": fidelity}}))).methods[0]
+        for fidelity in ("error_model", "strapdown")
+    )
+    scale = np.abs(linear.rows[:, :7]).max(axis=0)
+    np.testing.assert_allclose(full.rows[:, :7] / scale, linear.rows[:, :7] / scale, atol=0.02)
+
+
+@pytest.mark.parametrize("chunk", [7, 1000])
+def test_the_length_of_the_chunks_changes_nothing(chunk: int) -> None:
+    found = scenario(run={"duration_h": 0.1, "fidelity": "strapdown", "rate_hz": 10.0})
+    env = strapdown_environment(found)
+    samples = np.concatenate([increments.copy() for increments, _ in env.imu.chunks()])
+    ends = []
+    for length in (len(samples), chunk):
+        run, _ = filtered_strapdown(found, found.method[0], env, settings_of(found, env.sampling))
+        for first in range(0, len(samples), length):
+            run.advance(samples[first : first + length])
+        ends.append((run.recorder.rows[-1], run.filter.P))
+    np.testing.assert_array_equal(ends[1][0], ends[0][0])
+    np.testing.assert_array_equal(ends[1][1], ends[0][1])

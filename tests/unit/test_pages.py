@@ -1,0 +1,107 @@
+"""Pages people read: links lead somewhere, the map names every room, the example of CONTRIBUTING works."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.session.display import Display
+from app.session.shown import Shown
+from app.shell.view import PictureView
+from docs.site.api import rooms
+from docs.site.stage import _settled, for_myst
+from navcore.analysis import analyse
+from navcore.engine.simulation import simulate
+from navcore.foundation.earth import SPHERE
+from navcore.scenario.model import Scenario
+from tests import theory
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *ROOT.glob("docs/*.md")])
+_LINK = re.compile(r"\]\(([^)#\s]*)(?:#([^)\s]+))?\)")
+_CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
+
+
+def slug(heading: str) -> str:
+    """Anchor that GitHub gives a heading."""
+    return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
+
+
+def targets(page: Path) -> set[str]:
+    """Anchors of a page: explicit ones, and those of its headings."""
+    text = page.read_text("utf-8")
+    return {*theory.anchors(text), *(slug(h) for h in re.findall(r"^#+ (.+)$", text, re.MULTILINE))}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path):
+    text = _CODE.sub("", page.read_text("utf-8"))
+    for place, anchor in _LINK.findall(text):
+        if place.startswith(("http:", "https:")):
+            continue
+        target = (page.parent / place).resolve() if place else page
+        assert target.exists(), f"{page.name}: {place}"
+        if anchor:
+            assert anchor in targets(target), f"{page.name}: {place}#{anchor}"
+
+
+def test_links_are_told_apart():
+    assert _LINK.findall("[a](b.md#c) [d](#e) [f](g.png)") == [("b.md", "c"), ("", "e"), ("g.png", "")]
+    assert slug("3.1 Velocity feedback: `compass`") == "31-velocity-feedback-compass"
+
+
+@pytest.mark.parametrize("package", ["navcore", "app"])
+def test_architecture_names_every_room(package: str):
+    text = (ROOT / "docs" / "architecture.md").read_text("utf-8")
+    found = {path.parent.name for path in (ROOT / package).glob("*/__init__.py")}
+    assert len(found) > 9
+    assert {room for room in found if f"`{room}`" not in text} == set()
+
+
+def test_every_room_says_what_it_is():
+    assert all(rooms(ROOT).values())
+
+
+def example_of_contributing(place: int) -> dict[str, Any]:
+    """Names that an example of CONTRIBUTING.md defines."""
+    found = re.findall(r"```python\n(.*?)```", (ROOT / "CONTRIBUTING.md").read_text("utf-8"), re.DOTALL)
+    assert len(found) == 2
+    # The module's own name: pydantic looks annotations up there.
+    names: dict[str, Any] = {"__name__": __name__}
+    exec(compile(found[place], "CONTRIBUTING.md", "exec"), names)
+    return names
+
+
+def test_the_network_of_contributing_works():
+    names = example_of_contributing(0)
+    names["LeadNetwork"].model_rebuild(_types_namespace=names)
+    network = names["LeadNetwork"](corner=0.5).transfer(SPHERE.schuler_frequency(0.0))
+    assert network.h0 == pytest.approx(1.0)
+    assert network.h_infinity == pytest.approx(10.0)
+    assert analyse(network).stable
+
+
+def test_the_tab_of_contributing_works():
+    view = example_of_contributing(1)["VIEW"]
+    run = simulate(Scenario.parse({"run": {"duration_h": 0.1}, "imu": {"gyro_bias_dph": [0.1, 0.2, 0.3]}}))
+    peak = run.methods[0].errors["position_m"]["max_abs"]
+    assert issubclass(view, PictureView) and view.title == "Peaks"
+    assert view.picture(None, Shown(run, 1, Display())) == f"<li>{peak:.6g} m</li>"
+
+
+def test_anchors_become_targets_of_the_site():
+    page = '<a id="s-3"></a>\n\n## 3 Network\n\nsee [3](theory.md#s-3) and [x](papers.md#liu-fig-3)\n'
+    assert for_myst(page) == "(s-3)=\n## 3 Network\n\nsee [3](#s-3) and [x](papers.md#liu-fig-3)\n"
+
+
+def test_what_a_page_links_to_comes_along(tmp_path: Path):
+    page = ROOT / "docs" / "theory.md"
+    text = (
+        "[code](../navcore) [top](../README.md#why) [schema](../assets/scenario.schema.json) [x](papers.md)"
+    )
+    settled = _settled(ROOT, tmp_path, page, text)
+    assert settled == ("code [top](../index.md#why) [schema](../assets/scenario.schema.json) [x](papers.md)")
+    assert [path.name for path in tmp_path.rglob("*.*")] == ["scenario.schema.json"]

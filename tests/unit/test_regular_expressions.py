@@ -1,0 +1,169 @@
+"""No regular expression of ours takes more than linear time, whatever it is fed.
+
+The expressions are collected from the source. For each, hostile texts are made from what it matches itself,
+and the time for twice the text is compared with the time for the text: 2 when linear, 4 when quadratic.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from re import _constants as codes  # pyright: ignore[reportAttributeAccessIssue]
+from re import _parser as parser  # pyright: ignore[reportAttributeAccessIssue]
+from typing import Any
+
+import pytest
+
+METHODS = ("search", "match", "fullmatch", "sub", "split", "findall", "finditer")
+SMALL, LARGEST = 1 << 13, 1 << 20
+"""Every text at the small size, the slowest of an expression at 1 MiB."""
+ENOUGH_S = 0.004
+"""Shorter times cannot be compared."""
+STEEPEST = 3.0
+
+
+def _expressions(root: Path) -> Iterator[tuple[str, str | bytes, int, tuple[str, ...]]]:
+    """Where, pattern, flags and the methods used, of every expression that is written out in the source."""
+    for path in sorted([*(root / "navcore").rglob("*.py"), *(root / "app").rglob("*.py")]):
+        text = path.read_text(encoding="utf-8")
+        for node in ast.walk(ast.parse(text)):
+            if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)):
+                continue
+            if not (isinstance(node.func.value, ast.Name) and node.func.value.id == "re" and node.args):
+                continue
+            name = node.func.attr
+            if name != "compile" and name not in METHODS:
+                continue
+            where = f"{path.relative_to(root)}:{node.lineno}"
+            if not (isinstance(node.args[0], ast.Constant) and isinstance(node.args[0].value, str | bytes)):
+                continue  # made at run time: the compiled ones of a module are found below
+            pattern = node.args[0].value
+            if name == "compile":
+                used = _methods_of(text, node)
+            else:
+                used = (name,)
+            yield where, pattern, 0, used
+
+
+def _methods_of(text: str, node: ast.Call) -> tuple[str, ...]:
+    """Methods that a module calls on the name an expression is bound to; all when it is not clear."""
+    line = text.splitlines()[node.lineno - 1]
+    name = re.match(r"\s{0,40}([A-Za-z_]\w{0,60})\s?=", line)
+    if name is None:
+        return METHODS
+    used = {m for m in METHODS if f"{name[1]}.{m}(" in text}
+    return tuple(sorted(used)) or METHODS
+
+
+def _compiled(root: Path) -> Iterator[tuple[str, str | bytes, int, tuple[str, ...]]]:
+    """Expressions that modules of files in put together when they are imported."""
+    from navcore.io import stamps
+
+    del root
+    for number, (pattern, _) in enumerate(stamps._FORMS):
+        yield f"navcore/io/stamps.py form {number}", pattern.pattern, pattern.flags & ~re.UNICODE, ("search",)
+
+
+def _sample(parsed: Any, most: bool) -> str:
+    """A text that the parsed expression matches, or nearly so: its shortest, or with repetitions."""
+    out = []
+    for op, argument in parsed:
+        if op in (codes.LITERAL,):
+            out.append(chr(argument))
+        elif op is codes.NOT_LITERAL or op is codes.ANY:
+            out.append("x")
+        elif op is codes.IN:
+            out.append(_member(argument))
+        elif op in (codes.MAX_REPEAT, codes.MIN_REPEAT, codes.POSSESSIVE_REPEAT):
+            least, largest, inner = argument
+            times = max(least, min(int(largest), 3)) if most else least
+            out.append(_sample(inner, most) * times)
+        elif op is codes.SUBPATTERN:
+            out.append(_sample(argument[3], most))
+        elif op is codes.ATOMIC_GROUP:
+            out.append(_sample(argument, most))
+        elif op is codes.BRANCH:
+            out.append(_sample(argument[1][0], most))
+    return "".join(out)
+
+
+def _member(members: Any) -> str:
+    op, argument = members[0]
+    if op is codes.LITERAL:
+        return chr(argument)
+    if op is codes.RANGE:
+        return chr(argument[0])
+    if op is codes.CATEGORY:
+        return {codes.CATEGORY_DIGIT: "1", codes.CATEGORY_SPACE: " "}.get(argument, "x")
+    return "~"
+
+
+def _units(pattern: str) -> list[str]:
+    """Texts that are repeated: what the expression matches, its beginnings, and single characters of it."""
+    parsed = parser.parse(pattern)
+    whole = [_sample(parsed, most) for most in (False, True)]
+    found = [*whole, *(text[: len(text) // 2] for text in whole), *(text[:-1] for text in whole)]
+    found += sorted({character for text in whole for character in text})[:12]
+    return [unit for unit in dict.fromkeys(found) if unit]
+
+
+def _steepness(run: Callable[[Any], object], unit: Any, tail: Any, size: int) -> float:
+    """How much longer twice the text takes; 1 where both take too little to be compared."""
+    half, whole = (unit * (n // len(unit) + 1) + tail for n in (size // 2, size))
+    before, taken = _timed(run, half), _timed(run, whole)
+    if taken < ENOUGH_S or taken < STEEPEST * before:
+        return 1.0
+    before = min(_timed(run, half) for _ in range(4))  # a second look: the machine may have been busy
+    return min(_timed(run, whole) for _ in range(4)) / max(before, 1e-9)
+
+
+def _timed(run: Callable[[Any], object], text: Any) -> float:
+    began = time.process_time()
+    run(text)
+    return time.process_time() - began
+
+
+def _run(compiled: re.Pattern[Any], method: str) -> Callable[[Any], object]:
+    empty = b"" if isinstance(compiled.pattern, bytes) else ""
+    if method == "sub":
+        return lambda text: compiled.sub(empty, text)
+    if method == "finditer":
+        return lambda text: sum(1 for _ in compiled.finditer(text))
+    return getattr(compiled, method)
+
+
+def _worst(pattern: str | bytes, flags: int, methods: tuple[str, ...]) -> tuple[float, str]:
+    """The steepest growth found for an expression, and what it was fed."""
+    compiled = re.compile(pattern, flags)
+    text = pattern.decode("latin-1") if isinstance(pattern, bytes) else pattern
+    tail: Any = "\n\x01" if isinstance(pattern, str) else b"\n\x01"
+    steepest, slowest = (1.0, ""), (0.0, None, None)
+    for unit in _units(text):
+        given: Any = unit if isinstance(pattern, str) else unit.encode("latin-1")
+        for method in methods:
+            run = _run(compiled, method)
+            steepest = max(steepest, (_steepness(run, given, tail, SMALL), f"{method} on {unit!r}"))
+            taken = _timed(run, given * (SMALL // len(given)) + tail)
+            slowest = max(slowest, (taken, given, run), key=lambda found: found[0])
+    if steepest[0] > STEEPEST or slowest[1] is None or slowest[2] is None:
+        return steepest
+    return max(steepest, (_steepness(slowest[2], slowest[1], tail, LARGEST), f"1 MiB of {slowest[1]!r}"))
+
+
+def test_every_expression_takes_linear_time(repo_root: Path) -> None:
+    found = [*_expressions(repo_root), *_compiled(repo_root)]
+    assert len(found) > 20
+    steep = []
+    for where, pattern, flags, methods in found:
+        ratio, fed = _worst(pattern, flags, methods)
+        if ratio > STEEPEST:
+            steep.append(f"{where}: {pattern!r}: {fed}: x {ratio:.1f}")
+    assert not steep, "\n".join(steep)
+
+
+@pytest.mark.parametrize("pattern", [r"\$..RMC,(\d{6}(?:\.\d+)?),A,[^*\n]*?,(\d\d)(\d\d)(\d\d),", r"\s+$"])
+def test_one_that_backtracks_is_found(pattern: str) -> None:
+    assert _worst(pattern, 0, ("search",))[0] > STEEPEST

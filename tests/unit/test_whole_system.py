@@ -1,0 +1,121 @@
+"""Eigenvalues of both channels with heading and latitude."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from navcore.analysis.whole_system import (
+    EARTH_MODE,
+    SCHULER_MODE,
+    duration,
+    feedback_gains,
+    growth_over_latitude,
+    system_matrix,
+    whole_system,
+)
+from navcore.foundation.earth import EARTH_RATE, SEMI_MAJOR_AXIS, SPHERE, WGS84
+from navcore.foundation.units import DEG
+from navcore.mechanization.error_model import system_matrix as error_model_matrix
+from navcore.networks import NETWORKS, parse_network
+from navcore.networks.compass import CompassNetwork
+
+OMEGA_S = SPHERE.schuler_frequency(0.0)
+
+
+def network(text):
+    return parse_network(text).transfer(OMEGA_S)
+
+
+@pytest.mark.parametrize("lat_deg", [-60.0, 0.0, 32.06, 85.0])
+def test_the_free_system_is_that_of_the_error_model(lat_deg):
+    lat = lat_deg * DEG
+    seven = error_model_matrix(lat, SEMI_MAJOR_AXIS, SPHERE.gravity(lat), EARTH_RATE)
+    six = np.delete(np.delete(seven, 3, axis=0), 3, axis=1)
+    unit = np.array([SPHERE.gravity(lat) / OMEGA_S] * 2 + [1.0] * 4)
+    normalised = six * unit / unit[:, None] / OMEGA_S
+    np.testing.assert_allclose(system_matrix(network('id = "none"'), "free", lat), normalised, atol=1e-15)
+
+
+@pytest.mark.parametrize("lat_deg", [-75.0, 32.06, 60.0])
+def test_the_free_modes_have_the_known_frequencies(lat_deg):
+    """+-j Omega and +-j(omega_s' -+ Omega sin L) (theory.md 2)."""
+    whole = whole_system(network('id = "none"'), "free", lat_deg * DEG)
+    wz = abs(EARTH_RATE * math.sin(lat_deg * DEG))
+    split = math.hypot(OMEGA_S, wz)
+    found = [mode.eigenvalue.imag for mode in whole.modes]
+    assert found == pytest.approx([EARTH_RATE, split - wz, split + wz], rel=1e-9)
+    assert [mode.name for mode in whole.modes] == [EARTH_MODE, SCHULER_MODE, SCHULER_MODE]
+    assert whole.stable
+    assert whole.warnings == ()
+
+
+@pytest.mark.parametrize("name", NETWORKS)
+@pytest.mark.parametrize("damping", ["external", "internal"])
+def test_every_network_has_its_modes_named(name, damping):
+    whole = whole_system(network(f'id = "{name}"'), damping, 45.0 * DEG)
+    assert whole.modes[0].name == EARTH_MODE
+    # one pair, or two real eigenvalues
+    assert len(whole.named(EARTH_MODE)) in (1, 2)
+    assert len(whole.named(SCHULER_MODE)) == 2
+    growing = [mode for mode in whole.modes if mode.growth > 1e-9]
+    assert whole.stable == (not growing)
+    assert len(whole.warnings) == len(growing)
+
+
+def test_internal_and_external_damping_have_the_same_eigenvalues():
+    h = network('id = "classic3"')
+    external, internal = (whole_system(h, d, 0.7, WGS84) for d in ("external", "internal"))
+    assert external.modes == internal.modes
+
+
+def test_feedback_counts_under_external_damping_only():
+    h = network('id = "compass", sigma = 0.0015')
+    assert whole_system(h, "external", 0.7).earth_growth == 0.0
+    assert whole_system(h, "internal", 0.7).earth_growth > 0.0
+    assert whole_system(h, "averaging", 0.7).modes == whole_system(network('id = "none"'), "free", 0.7).modes
+
+
+def test_the_gains_are_read_back_from_the_network():
+    parameters = CompassNetwork(sigma=0.003, xi=0.6)
+    k1, k2, k3 = parameters.gains(OMEGA_S)
+    found = feedback_gains(parameters.transfer(OMEGA_S))
+    assert found == pytest.approx((k1 / OMEGA_S, k2, k3 / OMEGA_S), rel=1e-12)
+    alone = parse_network('id = "compass", k1 = 0.0, k2 = 0.5, k3 = 0.0').transfer(OMEGA_S)
+    assert feedback_gains(alone) == pytest.approx((0.0, 0.5, 0.0))
+    assert feedback_gains(parse_network('id = "compass", k1 = 0.1, k2 = -1.0, k3 = 1.0').transfer(OMEGA_S))[
+        1
+    ] == pytest.approx(-1.0)
+
+
+def test_north_and_south_are_the_same():
+    h = network('id = "classic2"')
+    lats = np.array([-75.0, -45.0, 0.0, 45.0, 75.0]) * DEG
+    rates = growth_over_latitude(h, "external", lats)
+    np.testing.assert_allclose(rates, rates[::-1], rtol=1e-9)
+    assert np.all(np.diff(rates[2:]) > 0.0)
+
+
+@pytest.mark.parametrize("name", NETWORKS)
+def test_the_slope_is_the_derivative_of_h(name):
+    h = network(f'id = "{name}"')
+    s = 1e-4 * OMEGA_S
+    difference = (
+        np.polyval(h.num, s) / np.polyval(h.den, s) - np.polyval(h.num, -s) / np.polyval(h.den, -s)
+    ) / (2.0 * s)
+    assert h.h_slope == pytest.approx(difference, rel=1e-5, abs=1e-6)
+
+
+def test_a_pole_at_zero_has_no_slope():
+    h = network('id = "custom", zeros = [-1], poles = [0]')
+    assert math.isnan(whole_system(h, "external", 0.7).h_slope)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [(3.09 * 86400, "3.1 days"), (-40 * 86400, "40 days"), (9000, "2.5 h"), (3180, "53 min"), (12, "12 s")],
+)
+def test_a_duration_is_written_in_its_unit(seconds, text):
+    assert duration(seconds) == text
