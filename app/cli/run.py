@@ -45,11 +45,16 @@ class RunCommand:
         """Run, write, print; 0 when every method went through, else 3."""
         from navcore.engine.measures import metrics
         from navcore.engine.results import require_replaceable, write_results
+        from navcore.foundation.errors import InputError
         from navcore.scenario.file import load
 
         if self.out is not None:
             require_replaceable(self.out)
-        run = _simulate(load(self.scenario, self.set), show=on_terminal() and not self.quiet)
+        scenario = load(self.scenario, self.set)
+        try:
+            run = _simulate(scenario, show=on_terminal() and not self.quiet)
+        except InputError as error:
+            raise error.located(self.scenario) from None
         if self.out is not None:
             write_results(run, self.out, self.format)
         if self.json:

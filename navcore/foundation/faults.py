@@ -130,7 +130,8 @@ def _allowed(item: Any, path: list[str], place: Any, info: FieldInfo | None) -> 
 
 
 def _unknown_field(name: str, place: Any) -> str:
-    known = list(place.model_fields) if _is_model(place) else []
+    fields = place.model_fields if _is_model(place) else {}
+    known = [info.alias or own for own, info in fields.items()]
     close = difflib.get_close_matches(name[:_LONGEST_NAME], known, n=1)
     hint = f"did you mean {close[0]}? " if close else ""
     return f"is not a field here; {hint}known: {', '.join(known) or 'none'}"

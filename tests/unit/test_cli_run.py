@@ -200,6 +200,21 @@ def test_a_diverging_method_is_written_marked_and_exit_3(tmp_path, capsys):
     assert last["unstable"] < last["free"] == 180000.0
 
 
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("foo = 1", "foo = 1: is not a field here; known: schema, title"),
+        ('[motion]\nkind = "track"\nfile = []', "motion.file: name at least one file"),
+        ('[motion]\nkind = "track"\nfile = "none.csv"', "motion.file = "),
+    ],
+)
+def test_a_fault_names_the_file_and_the_field_as_the_file_spells_it(text, told, tmp_path, capsys):
+    file = tmp_path / "ship.toml"
+    file.write_text(f"schema = 1\n{text}\n", "utf-8")
+    assert main(["run", str(file)]) == 2
+    assert capsys.readouterr().err.startswith(f"{file}: {told}")
+
+
 def test_ctrl_c_keeps_what_was_computed_and_marks_it(tmp_path, capsys, monkeypatch):
     asked = []
 
