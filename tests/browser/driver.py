@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import re
+from itertools import count
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
 
     from app.session.session import Session
     from app.session.sessions import Sessions
+    from navcore.scenario.model import Scenario
 
 THROTTLE_MS = 80
 """The page sends one value in 50 ms, whichever control it comes from."""
@@ -82,6 +85,8 @@ class Bench:
         self.url = url
         self.sessions = sessions
         self.faults: list[str] = []
+        self._marks: WeakKeyDictionary[Any, Any] = WeakKeyDictionary()
+        self._mark_numbers = count(1)
         page.on("pageerror", lambda error: self._note(str(error)))
         page.on("console", lambda m: self._note(m.text) if m.type == "error" else None)
 
@@ -196,22 +201,44 @@ class Bench:
             ) from None
 
     def reset(self, preset: str, selected: int = 0) -> None:
-        """Let the visitor's session begin anew with a preset, without a click."""
-        scenario, session = load(preset), self.session
+        """Begin the visitor's session anew with a preset, without a click; wait until the page shows it."""
+        self.put(load(preset), origin=preset, selected=selected)
+
+    def put(self, scenario: Scenario, *, origin: str | None = None, selected: int = 0) -> None:
+        """Give the visitor's session a scenario, without a click; wait until the page shows it."""
+        session = self.session
         with session.lock:
-            number = session.run_number
-            fresh = session.change(scenario, None, origin=preset, selected=selected)
+            session.change(scenario, None, origin=origin, selected=selected)
             session.select(selected, None)
-        if fresh:
-            self.wait_for_run(number)
+        self.catch_up()
         self.close_notices()
 
+    def show(self, **choices: object) -> None:
+        """Change how the session's pictures are shown, without a click; wait until the page shows it."""
+        self.session.show(None, **choices)
+        self.catch_up()
+
     def settle(self) -> None:
-        """Wait until what was done has been sent, run and shown."""
+        """Wait until what was done on the page has been sent, run and shown."""
         self.page.wait_for_timeout(2 * THROTTLE_MS)
-        assert self.session.wait_idle(20.0)
+        self.catch_up()
+
+    def catch_up(self) -> None:
+        """Wait until the page shows the last run, and all that the server has sent.
+
+        The page takes messages in their order, changes of widgets at the end of a frame: once it shows a mark
+        that was sent last, by a change, it shows what was sent before.
+        """
+        assert self.session.wait_idle(60.0)
         shown = "n => Number(document.querySelector('#sb-run').dataset.run) === n"
-        self.page.wait_for_function(shown, arg=self.session.run_number, timeout=20_000)
+        self.page.wait_for_function(shown, arg=self.session.run_number)
+        number = next(self._mark_numbers)
+        for view in list(self.session._views):
+            if view not in self._marks:
+                self._marks[view] = view.gui.add_html("", order=1000)
+            self._marks[view].content = f'<div hidden data-mark="{id(self)} {number}"></div>'
+            view.client.flush()
+        self.page.wait_for_selector(f'[data-mark="{id(self)} {number}"]', state="attached")
 
     @property
     def metrics(self) -> dict[str, Any]:

@@ -29,7 +29,7 @@ _CUT = """() => [...document.querySelectorAll('.mantine-ScrollArea-viewport')]
 def asked(bench: Bench) -> Bench:
     """The shared page with no requirement, the tab in front."""
     bench.reset("sikuliaq-like", selected=1)
-    bench.session.show(None, requirements=Requirements(), locus="")
+    bench.show(requirements=Requirements(), locus="")
     bench.tab("Requirements")
     bench.page.wait_for_function("() => document.querySelectorAll('.sb-verdicts [data-measure]').length > 0")
     return bench

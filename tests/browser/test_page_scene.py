@@ -14,21 +14,21 @@ from tests.browser.test_page_playback import command, now, wait_for
 pytestmark = pytest.mark.browser
 
 _COLOR = "() => window.__viserSceneTree.getState()['/computed/hull'].message.props.color"
-_BOXES = """() => Object.fromEntries(['.sb-pendulum', '.sb-readout', '.sb-bar', '.sb-shown'].map(name => {
-  const box = document.querySelector(`#sb-stage ${name}`).getBoundingClientRect();
-  return [name, [box.left, box.top, box.right, box.bottom]];
-}))"""
 _VIEW = """() => {
   const box = document.querySelector('canvas[data-engine]').getBoundingClientRect();
   return [box.left, box.top, box.right, box.bottom];
 }"""
-
-
-_PLACED = """left => {
+# The view and what stands over it, read in one moment; false until both stand where the layout puts them.
+_PLACED = """([left, width]) => {
   const view = document.querySelector('canvas[data-engine]').getBoundingClientRect();
   const stage = document.querySelector('#sb-stage').getBoundingClientRect();
-  return Math.abs(view.left - left) < 12 && Math.abs(view.left - stage.left) < 2
+  const there = Math.abs(view.left - left) < 12 && Math.abs(view.width - width) < 24
+    && Math.abs(view.left - stage.left) < 2 && Math.abs(view.top - stage.top) < 2
     && Math.abs(view.width - stage.width) < 2 && Math.abs(view.height - stage.height) < 2;
+  const sides = box => [box.left, box.top, box.right, box.bottom];
+  const parts = ['.sb-pendulum', '.sb-readout', '.sb-bar', '.sb-shown'].map(
+    name => [name, sides(document.querySelector(`#sb-stage ${name}`).getBoundingClientRect())]);
+  return there && [sides(view), Object.fromEntries(parts)];
 }"""
 
 
@@ -92,8 +92,9 @@ def test_instruments_and_bar_fit_the_view(moving: Bench) -> None:
     try:
         for size in SIZES:
             resize(moving, size)
-            moving.page.wait_for_function(_PLACED, arg=layout_for(*size).left_px, timeout=15_000)
-            view, boxes = moving.page.evaluate(_VIEW), moving.page.evaluate(_BOXES)
+            layout = layout_for(*size)
+            place = [layout.left_px, size[0] - layout.left_px - layout.right_px]
+            view, boxes = moving.page.wait_for_function(_PLACED, arg=place).json_value()
             names = [name for name, box in boxes.items() if box[2] > box[0]]
             assert ".sb-bar" in names and ".sb-pendulum" in names
             for name in names:
