@@ -112,6 +112,7 @@ class Session:
         self.uploads = Uploads(folder)
         self._before = self.state
         self._views: list[View] = []
+        self._after_run: list[Callable[[], None]] = []
         self._simulate = simulate or self._simulate_again
         self._worker: Worker[State] = Worker(
             self._work, visitor=name, load=lambda state: run_load(state.scenario)
@@ -298,6 +299,14 @@ class Session:
         with self.lock:
             self._worker.submit(self.state)
 
+    def after_run(self, act: Callable[[], None]) -> None:
+        """Do something once the run of the present scenario is there: at once if none is under way."""
+        with self.lock:
+            if self.outdated and self._worker.busy:
+                self._after_run.append(act)
+                return
+        act()
+
     def cancel_run(self) -> None:
         """Stop the running run; the last good picture stays."""
         self._worker.cancel()
@@ -335,9 +344,11 @@ class Session:
             refuse_too_large(scenario)
             run = self._simulate(scenario, progress, watch.cancelled)
         except InputError as error:
+            self._after_run = []
             self._refuse(state, error)
             return
         except Exception as error:
+            self._after_run = []
             _log.exception("a run failed")
             failure = error
             self._tell(lambda view: view.run_failed(failure))
@@ -346,6 +357,7 @@ class Session:
             if runs_on_demand(self.scenario) and scenario != self.scenario:
                 self._tell(lambda view: view.run_waits())
             elif not watch.superseded():
+                self._after_run = []
                 self._tell(lambda view: view.run_stopped())
             return
         with self.lock:
@@ -353,8 +365,13 @@ class Session:
             self.outdated = scenario != self.scenario
             self._before = state
             self.envelopes.follow(scenario, self.display.envelope == "seeds")
+            waiting: list[Callable[[], None]] = []
+            if not self.outdated:
+                waiting, self._after_run = self._after_run, []
         self.searches.ran(run)
         self._tell(lambda view: view.run_ended())
+        for act in waiting:
+            act()
         self.on_answer(time.monotonic() - watch.asked_s)
 
     def _simulate_again(

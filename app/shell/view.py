@@ -149,7 +149,7 @@ class View:
         """The tab is in front."""
 
     def figures(self, found: Shown, plot: str) -> Figures:
-        """Figures of one of `plots`, to be saved."""
+        """Figures of one of `plots`, to be saved; raises LookupError, in words, where there are none."""
         raise NotImplementedError(plot)
 
     def close(self) -> None:

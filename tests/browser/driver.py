@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable
 from itertools import count
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
@@ -199,6 +200,14 @@ class Bench:
                 f"no run after {after}: shown {shown}, made {made}, {self.status!r}; focus {focus}; "
                 f"{self.faults}"
             ) from None
+
+    def wait_until(self, holds: Callable[[], bool], seconds: float = 20.0) -> None:
+        """Wait, letting the page go on, until something holds on the server."""
+        for _ in range(round(10 * seconds)):
+            if holds():
+                return
+            self.page.wait_for_timeout(100)
+        raise AssertionError(f"not within {seconds:g} s; {self.status!r}; {self.faults}")
 
     def reset(self, preset: str, selected: int = 0) -> None:
         """Begin the visitor's session anew with a preset, without a click; wait until the page shows it."""

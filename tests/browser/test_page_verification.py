@@ -44,7 +44,13 @@ def test_the_strapdown_is_drawn_dashed_and_becomes_old(short: Bench) -> None:
     short.choose("curves", "Verification")
     short.page.wait_for_function(f"() => ({_DASHED})().some(lines => lines.length === 3)")
     assert not short.page.get_by_role("button", name=STOP).is_visible()
-    short.tab("Metrics")
+    short.tab("View")
+    short.choose("export plot", "Verification: Tilt about east φE, difference")
+    with short.page.expect_download(timeout=20_000) as download:
+        short.page.get_by_text("CSV", exact=True).click()
+    saved = download.value.path().read_text()
+    assert "strapdown minus linear model" in saved and len(saved.splitlines()) > 300
+    short.tab("Method", "Metrics")
     table = short.page.locator(".sb-table")
     table.get_by_text("Full strapdown minus linear model").wait_for()
     result = short.session.verifier.result

@@ -52,6 +52,9 @@
 
   // ------------------------------------------------------------ keys
 
+  // A number box takes no letters: there they stay keys, so that P pins while a value is being typed.
+  const NUMBER = ".mantine-NumberInput-input";
+  const LETTER = /^[a-z?]$/i;
   const TYPED = "input:not([type=checkbox]):not([type=radio]):not([type=button]), textarea, select, [contenteditable]";
   let keys = {};
   let read = "";
@@ -69,7 +72,8 @@
   // Before viser's own listener, on the document, which moves the camera by letters and arrows.
   document.documentElement.addEventListener("keydown", (event) => {
     const target = event.target instanceof Element ? event.target : document.body;
-    if (event.defaultPrevented || target.closest(TYPED) || target.closest("[role=dialog], dialog")) return;
+    const letter = target.closest(NUMBER) && LETTER.test(event.key) && !event.ctrlKey && !event.metaKey && !event.altKey;
+    if (event.defaultPrevented || (target.closest(TYPED) && !letter) || target.closest("[role=dialog], dialog")) return;
     // These two keys press what has the focus.
     if ([" ", "Enter"].includes(event.key) && target.closest("button, a, summary, [role=button], [role=tab]")) return;
     const name = command(event);

@@ -51,10 +51,10 @@ class Export:
             )
             self._client.flush()
             return
-        content = _content(view, found, title, format)
-        if content is None:
-            lines = ["No method of this scenario switches."]
-            notices.tell(self._client, "Nothing to save", lines, "warning")
+        try:
+            content = _content(view, found, title, format)
+        except LookupError as error:
+            notices.tell(self._client, "Nothing to save", [str(error)], "warning")
             return
         self._client.send_file_download(f"{name}.{format.lower()}", content, save_immediately=True)
         self._client.flush()
@@ -65,13 +65,11 @@ class Export:
         notices.tell(self._client, "Not saved", lines, "warning")
 
 
-def _content(view: View, found: Shown, title: str, format: str) -> bytes | None:
+def _content(view: View, found: Shown, title: str, format: str) -> bytes:
     about = (f"Schuler Bench: {title}", f"scenario_sha256 {scenario_hash(found.run.scenario)}")
     plotly, plots = view.figures(found, title)
     if plotly is not None:
         return plotly_csv(plotly, about)
-    if not plots:
-        return None
     if format == "CSV":
         return time_csv(plots, about)
     return time_picture(plots, format.lower(), f"{title}, {about[1][:26]}")

@@ -39,7 +39,10 @@ class Comparing:
         commands.register("flip", lambda _: self.flip(), "Flip between this run and the baseline", "B")
 
     def pin(self) -> None:
-        """Pin the present run."""
+        """Pin the present run; one that is still under way as soon as it is there."""
+        self.session.after_run(self._pin)
+
+    def _pin(self) -> None:
         session = self.session
         with session.lock:
             run, origin = session.run, session.origin

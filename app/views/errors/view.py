@@ -14,6 +14,7 @@ from app.shell import notices
 from app.shell.stack import Stack, room_px
 from app.shell.view import Figures, PictureView, Tab, if_user
 from app.views.errors.figure import GROUPS, QUANTITIES, Overlay, error_plots, legend_html, legend_names
+from app.views.errors.verified import KEYS as VERIFIED
 from app.views.errors.verified import verification_plots
 
 OVERVIEW = "Overview"
@@ -27,6 +28,11 @@ _OVERVIEW_KEYS = ("phi_e", "dve", "phi_n", "dvn", "phi_u", "position")
 """Two abreast: attitude left, velocity and position right."""
 _TWO = '<div class="sb-two"></div>'
 _KEYS = {f"Errors: {title}": key for key, title in QUANTITIES.items()}
+_VERIFIED_KEYS = {
+    f"{VERIFICATION}: {QUANTITIES[key]}{part}": f"{which}_{key}"
+    for key in VERIFIED
+    for which, part in (("both", ""), ("difference", ", difference"))
+}
 
 
 @dataclass(frozen=True)
@@ -57,7 +63,7 @@ class ErrorsView(PictureView[ErrorCurves]):
     title = "Errors"
     place = "lower"
     focus = "errors"
-    plots = tuple(_KEYS)
+    plots = (*_KEYS, *_VERIFIED_KEYS)
 
     def build(self, tab: Tab) -> None:
         """Make chooser and legend."""
@@ -91,7 +97,11 @@ class ErrorsView(PictureView[ErrorCurves]):
         self._stack.show(plots, heights, labelled=abreast)
 
     def figures(self, found: Shown, plot: str) -> Figures:
-        """Make the plot of one quantity."""
+        """Make the plot of one quantity: of the run, or of its verification."""
+        if plot in _VERIFIED_KEYS:
+            if found.verified is None:
+                raise LookupError(NOT_VERIFIED)
+            return None, [_verified_curves(found.verified, found.display).plots[_VERIFIED_KEYS[plot]]]
         return None, [error_curves(found).plots[_KEYS[plot]]]
 
 

@@ -82,9 +82,11 @@ class SwitchingView(PictureView[Switching]):
         self._stack.show(figures, stack_heights(room, len(figures), _LEAST_PX), labelled=1)
 
     def figures(self, found: Shown, plot: str) -> Figures:
-        """Make the plots below the error curve; none where no method switches."""
+        """Make the plots below the error curve."""
         del plot
-        return None, list(self.picture(found).plots) if self.stands(found.run) else []
+        if not self.stands(found.run):
+            raise LookupError("No method of this scenario switches.")
+        return None, list(self.picture(found).plots)
 
 
 VIEW = SwitchingView
