@@ -78,7 +78,8 @@ def test_p_pins_after_a_typed_value(bench: Bench, ends: str) -> None:
     bench.reset("zha-fast", selected=2)
     bench.tab("Method")
     box = bench.box("xi, exact")
-    box.fill("0.53")
+    box.press("Control+a")
+    bench.page.keyboard.type("0.53", delay=THROTTLE_MS)
     if ends:
         box.press(ends)
         bench.page.wait_for_function("() => document.activeElement === document.body")
