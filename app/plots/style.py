@@ -35,6 +35,10 @@ GRID_FINE = "#F1F4F7"
 REFERENCE = "#9AA9B8"
 """Reference lines: natural frequencies, damping rays, zero."""
 DANGER = "#B42318"
+PASSED = "#146C43"
+"""What meets a requirement."""
+BEST = "best of all"
+"""Said of the best number of a table's row or column, which ``class="sb-best"`` marks."""
 SEA = "#F4F7FA"
 
 # The page's own font stack, so that a plot's text is the page's text.

@@ -144,6 +144,34 @@ def number(value: float, digits: int = 5) -> str:
     return f"{value:.{digits}g}"
 
 
+def rounded(value: float, digits: int = 3) -> str:
+    """Number with ``digits`` significant digits, trailing zeros included, without an exponent where readable.
+
+    Examples
+    --------
+    >>> rounded(2820.2), rounded(9.558), rounded(0.91542), rounded(0.0), rounded(1.5e-7)
+    ('2820', '9.56', '0.915', '0', '1.50e-07')
+    """
+    if not math.isfinite(value) or value == 0.0:
+        return number(value)
+    text = f"{value:.{digits - 1}e}"
+    size = abs(float(text))
+    if not 1e-4 <= size < 1e7:
+        return text
+    return f"{float(text):.{max(0, digits - 1 - math.floor(math.log10(size)))}f}"
+
+
+def settling(seconds: float | None) -> str:
+    """Time to settle, in minutes wherever the page tells it; "never" for None or inf.
+
+    Examples
+    --------
+    >>> settling(11982.0), settling(None)
+    ('200 min', 'never')
+    """
+    return "never" if seconds is None or math.isinf(seconds) else f"{rounded(seconds / MINUTE)} min"
+
+
 def duration(seconds: float, digits: int = 3) -> str:
     """Period or duration in the unit a navigator would use.
 

@@ -46,6 +46,8 @@ class Display(BaseModel):
         Quantity whose spectrum is shown: a key of `app.views.errors.figure.error_plots`.
     baseline : int or None
         Pin with which numbers are compared; None: the first one.
+    pins_by : str
+        Column by which the table of pins is sorted, with a minus sign for the other way round.
     delta : str
         Which number of each error is compared with the baseline's.
     window : str
@@ -79,6 +81,7 @@ class Display(BaseModel):
     envelope: Literal["none", "seeds"] = "none"
     spectrum: Literal["phi_e", "phi_n", "phi_u", "dve", "dvn", "dlat", "dlon", "position"] = "dve"
     baseline: Annotated[int | None, Field(ge=1)] = None
+    pins_by: Annotated[str, Field(pattern=r"^-?[a-z]{1,20}$")] = "pinned"
     delta: Literal["rms", "max_abs", "final"] = "rms"
     window: Literal["whole", "settled", "hours"] = "whole"
     window_from_h: Annotated[float, Field(ge=0.0, le=1e5)] = 0.0

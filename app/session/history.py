@@ -169,7 +169,7 @@ class History:
 
 def changed_fields(before: Scenario, after: Scenario) -> tuple[str, ...]:
     """Dotted paths of the fields that differ, e.g. ``method.0.network.xi``, sorted."""
-    old, new = _fields(before), _fields(after)
+    old, new = fields_of(before), fields_of(after)
     return tuple(sorted(path for path in old.keys() | new.keys() if old.get(path) != new.get(path)))
 
 
@@ -191,7 +191,7 @@ def change_name(before: State, after: State) -> str:
         blocks = {field.rsplit(".", 1)[0] for field in fields}
         return f"change of {blocks.pop()}" if len(blocks) == 1 else f"change of {len(fields)} fields"
     (field,) = fields
-    old, new = _fields(before.scenario).get(field), _fields(after.scenario).get(field)
+    old, new = fields_of(before.scenario).get(field), fields_of(after.scenario).get(field)
     return f"{_named(field, after.scenario)}: {_short(old)} → {_short(new)}"
 
 
@@ -204,7 +204,8 @@ def _named(field: str, scenario: Scenario) -> str:
     return f"{inner.removeprefix('network.')} of {_short(scenario.method[int(index)].name)}"
 
 
-def _fields(scenario: Scenario) -> dict[str, Any]:
+def fields_of(scenario: Scenario) -> dict[str, Any]:
+    """Values of all fields by dotted path, e.g. ``method.0.network.xi``."""
     return _flat(scenario.canonical())
 
 

@@ -54,6 +54,8 @@ class Pin:
         Preset it came from.
     run : Run or None
         The run, with few output rows; None until it has been computed again after a restart.
+    method : str
+        Name of the method that was edited when the run was pinned; empty where that is unknown.
     """
 
     id: int
@@ -64,6 +66,12 @@ class Pin:
     scenario: Scenario
     origin: str
     run: Run | None
+    method: str = ""
+
+    @property
+    def unnamed(self) -> bool:
+        """Whether the user has given it no name: it is called by what differs (`app.session.laid`)."""
+        return self.name == _made_name(self.id)
 
     @property
     def hex(self) -> str:
@@ -117,8 +125,19 @@ class Pins:
 
     # ------------------------------------------------------------ changing
 
-    def add(self, run: Run, origin: str, name: str = "") -> Pin:
+    def add(self, run: Run, origin: str, name: str = "", method: str = "") -> Pin:
         """Pin a run.
+
+        Parameters
+        ----------
+        run : Run
+            What is kept.
+        origin : str
+            Preset it came from.
+        name : str
+            As the user calls it.
+        method : str
+            Name of the method that is edited at present.
 
         Raises
         ------
@@ -132,7 +151,8 @@ class Pins:
             id, self._next = self._next, self._next + 1
             taken = {pin.color for pin in self._pins}
             color = next((color for color in COLORS if color not in taken), next(iter(COLORS)))
-            pin = Pin(id, _short(name) or f"pin {id}", "", color, True, run.scenario, origin, few_rows(run))
+            title = _short(name) or _made_name(id)
+            pin = Pin(id, title, "", color, True, run.scenario, origin, few_rows(run), method)
             self._pins = (*self._pins, pin)
         self._changed()
         return pin
@@ -146,7 +166,7 @@ class Pins:
             The colour is not one of `COLORS`.
         """
         if "name" in changes:
-            changes["name"] = _short(changes["name"]) or f"pin {id}"
+            changes["name"] = _short(changes["name"]) or _made_name(id)
         if "note" in changes:
             changes["note"] = str(changes["note"]).strip()[:LONGEST_NOTE]
         if changes.get("color", next(iter(COLORS))) not in COLORS:
@@ -188,6 +208,7 @@ class Pins:
                 "color": pin.color,
                 "shown": pin.shown,
                 "origin": pin.origin,
+                "method": pin.method,
                 "scenario": pin.scenario.canonical(),
             }
             for pin in self._pins
@@ -235,14 +256,19 @@ def _read(id: int, entry: Any) -> Pin:
         raise ValueError(f"no such colour: {entry['color']!r}")
     return Pin(
         id=id,
-        name=_short(entry["name"]) or f"pin {id}",
+        name=_short(entry["name"]) or _made_name(id),
         note=str(entry["note"])[:LONGEST_NOTE],
         color=entry["color"],
         shown=bool(entry["shown"]),
         scenario=Scenario.parse(entry["scenario"]),
         origin=str(entry["origin"])[:60],
         run=None,
+        method=str(entry.get("method", ""))[:200],
     )
+
+
+def _made_name(id: int) -> str:
+    return f"pin {id}"
 
 
 def _short(name: object) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from app.jobs.verifier import Verified
 from app.plots.envelope import Envelope
 from app.session.display import Display
+from app.session.laid import laid, titled
 from app.session.pins import Pin
 from navcore.engine.run import Run
 
@@ -28,7 +29,7 @@ class Shown:
     display : Display
         How it is shown.
     pins : tuple of Pin
-        Laid over it.
+        Laid over it, named by what differs from it, with the methods that do (`app.session.laid`).
     baseline : Pin or None
         What the table's numbers are compared with.
     flipped : Pin or None
@@ -62,14 +63,16 @@ def shown(session: Session) -> Shown | None:
         return None
     pins = session.pins.shown
     baseline = session.pins.baseline(display.baseline)
+    if baseline is not None:
+        baseline = next(pin for pin in titled(session.pins.all, run.scenario) if pin.id == baseline.id)
     if display.flipped and baseline is not None and baseline.run is not None:
-        others = tuple(pin for pin in pins if pin.id != baseline.id)
+        others = laid([pin for pin in pins if pin.id != baseline.id], baseline.scenario)
         return Shown(baseline.run, number, display, others, flipped=baseline, selected=selected)
     return Shown(
         run,
         number,
         display,
-        pins,
+        laid(pins, run.scenario),
         baseline,
         None,
         session.verifier.beside(run.scenario),

@@ -9,7 +9,7 @@ import pytest
 
 from app.editing import edits
 from app.session.pins import MOST_PINS
-from app.views.scene.track import LINE_WIDTH
+from app.session.requirements import Requirements
 from tests.browser.driver import Bench
 from tests.browser.test_page_layout import _CUT, SIZES, resize
 
@@ -34,11 +34,18 @@ def pinned(bench: Bench) -> Iterator[Bench]:
     bench.page.locator("#sb-status").click()
     bench.page.keyboard.press("p")
     bench.page.wait_for_function(
-        f"() => ({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('pin 1: ')))"
+        f"() => ({_UPLOT_NAMES})().some(names => names.includes('pin 1: complementary'))"
     )
+    before = edits.value_at(session.scenario, ZETA)
     for _ in range(4):
         bench.press("zeta")
     bench.settle()
+    assert bench.session.pins.all[0].method == "complementary"
+    # it is called by what differs
+    bench.page.wait_for_function(
+        f"label => ({_UPLOT_NAMES})().some(names => names.includes(label))",
+        arg=f"zeta {before:g}: complementary",
+    )
     yield bench
     for pin in session.pins.all:
         session.pins.remove(pin.id)
@@ -61,25 +68,21 @@ def test_a_pin_lies_over_every_view(pinned: Bench) -> None:
     (pin,) = session.pins.all
     assert pin.run is not None and session.run is not None
     assert edits.value_at(pin.scenario, ZETA) != edits.value_at(session.scenario, ZETA)
-    methods = [f"pin 1: {m.method.name}" for m in pin.run.methods]
+    # only the method that was edited is laid over: the others are as they were
+    label = f"zeta {edits.value_at(pin.scenario, ZETA):g}: complementary"
+    count = len(pin.run.methods)
     for plot in names(pinned):
-        assert plot[len(methods) :] == methods
-    count = len(methods)
+        assert plot[count:] == [label]
     curves = {chart["label"]: chart["data"] for chart in pinned.curves()}
-    label, data = next((label, data) for label, data in curves.items() if label.startswith("δVE"))
-    assert len(data) == 1 + 2 * count
-    assert data[1] == pytest.approx(data[1 + count]), "the free method is as it was"
-    assert data[3] != pytest.approx(data[3 + count], rel=1e-3), label
-    lines = [pinned.line(f"/track/pinned{number}") or [] for number in range(count)]
-    free = pinned.line("/track/method0")
-    assert lines[0] == pytest.approx(free, abs=LINE_WIDTH), "on the map too"
-    assert lines[2] and lines[2] != pytest.approx(pinned.line("/track/method2"), abs=1e-3)
-    for tab in ("Frequency", "Poles", "Step"):
+    axis, data = next((axis, data) for axis, data in curves.items() if axis.startswith("δVE"))
+    assert len(data) == 1 + count + 1
+    assert data[3] != pytest.approx(data[4], rel=1e-3), axis
+    line = pinned.line("/track/pinned0")
+    assert line and line != pytest.approx(pinned.line("/track/method2"), abs=1e-3), "on the map too"
+    assert pinned.line("/track/pinned1") is None
+    for tab in ("Frequency", "Poles", "Step", "Spectrum"):
         pinned.tab(tab)
-        assert set(methods) <= {trace["name"] for trace in pinned.plotly()}, tab
-    pinned.tab("Spectrum")
-    shown = [trace["name"] for trace in pinned.plotly()]
-    assert shown.count(methods[2]) >= 1
+        assert label in {trace["name"] for trace in pinned.plotly()}, tab
     pinned.tab("Frequency", "Errors")
     assert pinned.faults == []
 
@@ -108,10 +111,8 @@ def test_b_flips_between_the_present_run_and_the_pin(pinned: Bench) -> None:
     page.locator("#sb-status").click()
     page.keyboard.press("b")
     page.wait_for_selector("#sb-flip", state="attached")
-    assert "pin 1" in page.evaluate(_BANNER)
-    page.wait_for_function(
-        f"() => !({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('pin 1: ')))"
-    )
+    assert "zeta" in page.evaluate(_BANNER)
+    page.wait_for_function(f"() => !({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('zeta')))")
     (pin,) = session.pins.all
     assert pin.run is not None
     peak = pin.run.methods[2].errors["position_m"]["max_abs"]
@@ -122,9 +123,7 @@ def test_b_flips_between_the_present_run_and_the_pin(pinned: Bench) -> None:
     assert page.evaluate(outlined) == "solid"
     page.keyboard.press("b")
     page.wait_for_selector("#sb-flip", state="detached")
-    page.wait_for_function(
-        f"() => ({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('pin 1: ')))"
-    )
+    page.wait_for_function(f"() => ({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('zeta')))")
     assert page.evaluate(_BANNER) in ("none", "normal")
     assert pinned.curves() == before
 
@@ -152,6 +151,26 @@ def test_a_pin_is_renamed_hidden_gone_back_to_and_removed(pinned: Bench) -> None
     page.get_by_role("button", name="Remove this pin").click()
     page.get_by_text("Nothing is pinned yet").wait_for()
     assert len(session.pins) == 0 and pinned.faults == []
+
+
+def test_the_pins_are_sorted_and_judged(pinned: Bench) -> None:
+    page, session = pinned.page, pinned.session
+    pinned.show(requirements=Requirements(settling_min=1.0))
+    pinned.tab("Compare")
+    runs = "() => [...document.querySelectorAll('.sb-pins tbody tr b')].map(b => b.textContent)"
+    page.wait_for_function(f"() => ({runs})().length === 2")
+    (pin,) = session.pins.all
+    assert pin.run is not None and session.run is not None
+    names = {"present run": session.run, next(n for n in page.evaluate(runs) if n != "present run"): pin.run}
+    settles = {name: run.methods[2].loop.settling_s for name, run in names.items()}
+    for turned in (False, True):
+        page.get_by_role("button", name="settles to 2 %").click()
+        wanted = sorted(settles, key=lambda name: settles[name], reverse=turned)
+        page.wait_for_function(f"wanted => String(({runs})()) === String(wanted)", arg=wanted)
+    assert page.locator(".sb-pins").get_by_text("✗ misses 1 of 1").count() == 2
+    pinned.tab("Requirements")
+    page.locator(".sb-verdicts th", has_text="zeta").wait_for()
+    pinned.show(requirements=Requirements(), pins_by="pinned")
 
 
 def test_more_pins_than_the_most_are_refused_in_words(pinned: Bench) -> None:

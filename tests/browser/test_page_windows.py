@@ -70,14 +70,14 @@ def test_a_run_is_pinned_compared_and_flipped(window: Bench) -> None:
     try:
         window.press("zeta")
         window.tab("Errors")
-        window.page.wait_for_function(_SHOWS, arg=["position", 6])
+        window.page.wait_for_function(_SHOWS, arg=["position", 4])
         away_from_text(window)
         window.page.keyboard.press("b")
         window.page.wait_for_selector("#sb-flip", state="attached")
         window.page.keyboard.press("b")
         window.page.wait_for_selector("#sb-flip", state="detached")
         window.tab("Metrics")
-        window.page.locator(".sb-table", has_text="this run minus pin 1").first.wait_for()
+        window.page.locator(".sb-table", has_text="this run minus zeta").first.wait_for()
         within(window, ".sb-table table")
     finally:
         for pin in window.session.pins.all:
@@ -85,7 +85,7 @@ def test_a_run_is_pinned_compared_and_flipped(window: Bench) -> None:
         window.session.pins._next = 1
     window.tab("Errors")
     window.page.wait_for_function(
-        f"() => !({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('pin 1: ')))"
+        f"() => !({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('zeta')))"
     )
 
 

@@ -45,12 +45,13 @@ class Comparing:
     def _pin(self) -> None:
         session = self.session
         with session.lock:
-            run, origin = session.run, session.origin
+            run, origin, place = session.run, session.origin, session.selected
         if run is None:
             notices.tell(self._client, "Nothing to pin", ["there is no run yet"], "warning")
             return
         try:
-            session.pins.add(run, origin)
+            edited = run.methods[min(place, len(run.methods) - 1)].method.name
+            session.pins.add(run, origin, method=edited)
         except InputError:
             lines = [f"There are {MOST_PINS} pins, which is the most. Remove one in the tab Compare."]
             notices.tell(self._client, "Not pinned", lines, "warning")

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from html import escape
 from typing import Any
 
-from app.plots import style
-from app.plots.units import number
+from app.session.laid import titled
 from app.session.pins import COLORS, Pin
 from app.session.shown import Shown
+from app.session.window import window_of
 from app.shell import notices
-from app.shell.view import Frame, Tab, View, if_user
+from app.shell.view import Frame, PictureView, Tab, if_user
 from app.views.compare.comparing import Comparing
+from app.views.compare.table import COLUMNS, lines_of, pins_html
 
 PIN, FLIP = "Pin this run", "Flip to the baseline"
 CHOSEN, NAME, NOTE, COLOR, SHOWN = "pin", "pin name", "pin note", "pin colour", "pin shown"
@@ -26,8 +26,8 @@ _EMPTY = (
 )
 
 
-class CompareView(View):
-    """List of the pins, and controls of the one that is chosen."""
+class CompareView(PictureView[str]):
+    """Table of the pins, and controls of the one that is chosen."""
 
     title = "Compare"
     place = "lower"
@@ -36,6 +36,7 @@ class CompareView(View):
         super().__init__(frame)
         self._comparing = Comparing(frame.client, frame.session)
         self._comparing.register(frame.commands)
+        frame.commands.register("sort-pins", self._sort)
 
     def build(self, tab: Tab) -> None:
         """Make the widgets."""
@@ -91,13 +92,41 @@ class CompareView(View):
         """Show the session's pins."""
         self._show()
 
+    @property
+    def of_selected(self) -> bool:
+        """The present run stands there with the method that the controls edit."""
+        return True
+
+    def picture(self, found: Shown) -> str:
+        """Make the table of the pins and the present run, HTML."""
+        session = self.session
+        pins = titled(session.pins.all, found.run.scenario)
+        if not pins:
+            return f'<div class="sb-no-pins">{notices.small(_EMPTY)}</div>'
+        window = window_of(found.run, found.display)
+        lines = lines_of(window, found.selected, pins, found.display.requirements)
+        baseline = session.pins.baseline(found.display.baseline)
+        told = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
+        return told + pins_html(lines, found.display.pins_by, None if baseline is None else baseline.id)
+
+    def show(self, picture: str) -> None:
+        """Show the table, and the pins' present names in the choosers."""
+        self._list.content = picture
+        self._show()
+
+    def _sort(self, column: str) -> None:
+        """Sort the table by a column; by the same one again, the other way round."""
+        if column in COLUMNS:
+            self.frame.show(pins_by=f"-{column}" if self.session.display.pins_by == column else column)
+
     def draw(self, found: Shown) -> None:
         """Mark whether a pin is drawn in place of the run."""
         self._comparing.mark(found.flipped)
 
     def _show(self) -> None:
         session = self.session
-        pins, display = session.pins.all, session.display
+        display = session.display
+        pins = titled(session.pins.all, session.scenario if session.run is None else session.run.scenario)
         options = {_title(pin): pin.id for pin in pins}
         names = tuple(options) or ("",)
         chosen = next(
@@ -109,7 +138,6 @@ class CompareView(View):
         baseline = next((title for title, id in options.items() if id == display.baseline), _FIRST)
         _offer(self._baseline, (_FIRST, *options), baseline)
         self._delta.value = next(word for word, key in _STATISTICS.items() if key == display.delta)
-        self._list.content = _list_html(pins, session.pins.baseline(display.baseline))
         for handle in self._details:
             handle.visible = bool(pins)
         pin = self._pin
@@ -145,48 +173,6 @@ def _offer(handle: Any, options: tuple[str, ...], value: str) -> None:
 
 def _title(pin: Pin) -> str:
     return f"{pin.id}: {pin.name}"
-
-
-_CELL = "padding:3px 10px 3px 2px;vertical-align:top"
-
-
-def _list_html(pins: tuple[Pin, ...], baseline: Pin | None) -> str:
-    """Table of the pins: what they are of, and their position errors."""
-    if not pins:
-        return f'<div class="sb-no-pins">{notices.small(_EMPTY)}</div>'
-    head = "".join(
-        f'<th style="{_CELL};text-align:left;font-weight:600">{title}</th>'
-        for title in ("pin", "of", "largest position error (m)", "note")
-    )
-    return (
-        '<div class="sb-pins" style="margin:4px 10px 8px;overflow-x:auto">'
-        f'<table style="border-collapse:collapse;width:100%;'
-        f'font-size:{style.FONT_SIZE}px;color:{style.INK}"><thead><tr>{head}</tr></thead>'
-        f"<tbody>{''.join(_row_html(pin, pin is baseline) for pin in pins)}</tbody></table></div>"
-    )
-
-
-def _row_html(pin: Pin, is_baseline: bool) -> str:
-    bar = (
-        f'<span style="display:inline-block;width:18px;border-top:3px dashed {pin.hex};margin-right:6px;'
-        'vertical-align:middle"></span>'
-    )
-    marks = (", baseline" if is_baseline else "") + ("" if pin.shown else ", hidden")
-    if pin.run is None:
-        worst = "being computed"
-    else:
-        worst = ", ".join(
-            f"{method.method.name} {number(method.errors['position_m']['max_abs'], 4)}"
-            for method in pin.run.methods
-        )
-    cells = (
-        f"{bar}<b>{escape(pin.name)}</b>{marks}",
-        escape(pin.origin),
-        escape(worst),
-        escape(pin.note),
-    )
-    line = "".join(f'<td style="{_CELL}">{cell}</td>' for cell in cells)
-    return f'<tr style="border-top:1px solid {style.GRID}">{line}</tr>'
 
 
 VIEW = CompareView

@@ -10,7 +10,7 @@ from app.editing import edits, form
 from app.editing.form import FieldSpec, Path
 from app.plots import style
 from app.plots.earth_mode import earth_mode_text
-from app.plots.units import duration, number
+from app.plots.units import number, settling
 from app.plots.warnings import severity, warnings_for
 from app.session.shown import Shown
 from app.shell import notices
@@ -180,7 +180,7 @@ def loop_text(method: MethodRun, lat_deg: float) -> str:
     loop = method.loop
     if not loop.stable:
         return ""
-    settles = "never settles" if loop.settling_s is None else f"settles to 2 % in {duration(loop.settling_s)}"
+    settles = "never settles" if loop.settling_s is None else f"settles to 2 % in {settling(loop.settling_s)}"
     earth_mode = earth_mode_text(method.whole.earth_growth)
     return (
         f"One channel: least damping ratio {number(loop.damping_ratio, 3)}, {settles}. "

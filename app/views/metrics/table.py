@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from html import escape
@@ -20,8 +21,9 @@ from app.plots.units import (
     NAMED,
     NAUTICAL_MILES,
     Unit,
-    duration,
     number,
+    rounded,
+    settling,
 )
 from app.session.display import Display
 from navcore.engine.run import LawInForce, MethodRun, Run
@@ -31,7 +33,6 @@ if TYPE_CHECKING:
 
 STATISTICS = ("rms", "max_abs", "final")
 _HEADINGS = ("rms", "max", "final")
-_DIGITS = 5
 
 # Fixed units: numbers of two runs can be compared at a glance.
 _QUANTITIES: tuple[tuple[str, str, Unit], ...] = (
@@ -64,12 +65,15 @@ class Row:
         For every method either one text or one for each of `STATISTICS`.
     deltas : tuple of str
         For every method what has changed against the baseline; empty without one.
+    best : tuple of tuple of bool
+        For every method, which of its cells are the best of all methods; empty where there is no best.
     """
 
     label: str
     unit: str
     cells: tuple[tuple[str, ...], ...]
     deltas: tuple[str, ...] = ()
+    best: tuple[tuple[bool, ...], ...] = ()
 
 
 def metrics_rows(run: Run, display: Display | None = None, baseline: Pinned | None = None) -> tuple[Row, ...]:
@@ -144,15 +148,28 @@ def verdict(verification: Verification) -> str:
 
 
 def _loop_rows(run: Run) -> list[Row]:
-    shown = {
-        "damping ratio": lambda m: number(m.loop.damping_ratio, _DIGITS),
-        "settles to 2 %": _settling,
-        "H(0)": lambda m: number(m.loop.h0, _DIGITS),
-    }
-    rows = [Row(label, "", tuple((text(m),) for m in run.methods)) for label, text in shown.items()]
+    settles = tuple((_settling(method),) for method in run.methods)
+    times = [m.loop.settling_s if m.loop.stable else None for m in run.methods]
+    best = _best([[math.inf if time is None else time] for time in times])
+    rows = [
+        Row("damping ratio", "", tuple((rounded(m.loop.damping_ratio),) for m in run.methods)),
+        Row("settles to 2 %", "", settles, best=best),
+        # How far it is from 1 is what counts: three digits would hide it.
+        Row("H(0)", "", tuple((number(m.loop.h0),) for m in run.methods)),
+    ]
     if run.status != "ok":
         rows.insert(0, Row("run", "", tuple((m.status,) for m in run.methods)))
     return rows
+
+
+def _best(sizes: Sequence[Sequence[float]]) -> tuple[tuple[bool, ...], ...]:
+    """Mark the smallest size of each column; none where all are alike."""
+    marks = []
+    for column in zip(*sizes, strict=True):
+        found = [size for size in column if math.isfinite(size)]
+        least = min(found, default=math.nan)
+        marks.append(tuple(size == least and min(column) < max(column) for size in column))
+    return tuple(zip(*marks, strict=True))
 
 
 def system_html(run: Run) -> str:
@@ -199,16 +216,16 @@ def _coefficient(law: LawInForce) -> str:
 def _settling(method: MethodRun) -> str:
     if not method.loop.stable:
         return "unstable"
-    settles = method.loop.settling_s
-    return "never" if settles is None else duration(settles, _DIGITS)
+    return settling(method.loop.settling_s)
 
 
 def _error_row(run: Run, label: str, name: str, unit: Unit) -> Row:
     cells = tuple(
-        tuple(number(method.errors[name][statistic] / unit.si, _DIGITS) for statistic in STATISTICS)
+        tuple(rounded(method.errors[name][statistic] / unit.si) for statistic in STATISTICS)
         for method in run.methods
     )
-    return Row(label, unit.name, cells)
+    sizes = [[abs(method.errors[name][statistic]) for statistic in STATISTICS] for method in run.methods]
+    return Row(label, unit.name, cells, best=_best(sizes))
 
 
 def metrics_markdown(run: Run) -> str:
@@ -268,7 +285,8 @@ def metrics_html(
         headings.append(f"Δ {_HEADINGS[STATISTICS.index((display or Display()).delta)]}")
     below = "".join(f'<th style="{_NUMBER};{_MUTED}">{name}</th>' for name in headings) * len(shown)
     rows = metrics_rows(run, display, baseline)
-    body = "".join(_html_row(_part(row, shown)) for row in rows)
+    decimals = _decimals(rows)
+    body = "".join(_html_row(_part(row, shown), decimals=decimals) for row in rows)
     if compares and baseline is not None:
         body += (
             f'<tr style="{_LINE}"><td colspan="{2 + columns * len(shown)}" style="padding:6px 2px;{_MUTED}">'
@@ -294,7 +312,34 @@ def metrics_html(
 
 def _part(row: Row, methods: Sequence[int]) -> Row:
     deltas = tuple(row.deltas[i] for i in methods) if row.deltas else ()
-    return replace(row, cells=tuple(row.cells[i] for i in methods), deltas=deltas)
+    best = tuple(row.best[i] for i in methods) if row.best else ()
+    return replace(row, cells=tuple(row.cells[i] for i in methods), deltas=deltas, best=best)
+
+
+def _decimals(rows: Sequence[Row]) -> int:
+    """Most decimals of the numbers that stand below each other."""
+    numbers = (text for row in rows for cell in row.cells if len(cell) > 1 for text in cell)
+    return max((len(text.partition(".")[2]) for text in numbers if "e" not in text), default=0)
+
+
+def method_px(rows: Sequence[Row], letter_px: float, padding_px: float) -> float:
+    """Width that a method's columns need, its differences left out.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        The table.
+    letter_px, padding_px : float
+        Width of a digit, and left and right of a number together.
+    """
+    places = _decimals(rows)
+    widths = [0] * len(STATISTICS)
+    for row in rows:
+        for cell in row.cells:
+            if len(cell) == len(widths):
+                whole = (len(text.partition(".")[0]) + 1 + places for text in cell)
+                widths = [max(pair) for pair in zip(widths, whole, strict=True)]
+    return sum(letter_px * max(width, len("final")) + padding_px for width in widths)
 
 
 _TABLE = (
@@ -309,17 +354,35 @@ _DELTA = f"background:{style.SEA}"
 _LINE = f"border-top:1px solid {style.GRID}"
 
 
-def _html_row(row: Row, columns: int = 3) -> str:
+def _html_row(row: Row, columns: int = 3, decimals: int = 0) -> str:
     cells = ""
     for place, cell in enumerate(row.cells):
+        best = row.best[place] if row.best else (False,) * len(cell)
         if len(cell) == 1:
             span = columns + bool(row.deltas)
-            cells += f'<td colspan="{span}" style="text-align:center;padding:1px 8px">{escape(cell[0])}</td>'
+            text = _marked(escape(cell[0]), best[0])
+            cells += f'<td colspan="{span}" style="text-align:center;padding:1px 8px">{text}</td>'
             continue
-        cells += "".join(f'<td style="{_NUMBER}">{escape(value)}</td>' for value in cell)
+        for value, mark in zip(cell, best, strict=True):
+            cells += f'<td style="{_NUMBER}">{_marked(escape(value), mark)}{_filled(value, decimals)}</td>'
         if row.deltas:
             cells += f'<td class="sb-delta" style="{_NUMBER};{_DELTA}">{escape(row.deltas[place])}</td>'
     return (
         f'<tr style="{_LINE}"><td style="padding:1px 8px 1px 2px;white-space:nowrap">{escape(row.label)}</td>'
         f'<td style="{_MUTED};padding:1px 8px 1px 0">{escape(row.unit)}</td>{cells}</tr>'
+    )
+
+
+def _marked(text: str, best: bool) -> str:
+    return f'<span class="sb-best" title="{style.BEST}">{text}</span>' if best else text
+
+
+def _filled(text: str, decimals: int) -> str:
+    """Unseen figures behind a number, so that the points of a column stand below each other."""
+    _, point, fraction = text.partition(".")
+    rest = ("" if point or decimals == 0 else ".") + "0" * (decimals - len(fraction))
+    return (
+        f'<span style="visibility:hidden" aria-hidden="true">{rest}</span>'
+        if rest and "e" not in text
+        else ""
     )

@@ -12,14 +12,15 @@ from app.session.shown import Shown
 from app.session.window import window_of
 from app.shell import notices
 from app.shell.view import PictureView, Tab, if_user
-from app.views.metrics.table import metrics_html, system_html, verdict
+from app.views.metrics.table import method_px, metrics_html, metrics_rows, system_html, verdict
 from app.views.metrics.why import why_html
 from navcore.engine.run import Run
 
-_METHOD_PX = {True: 215, False: 187}
-"""Width of a method in the table: in the large print of a wide window, in the small one."""
+_LETTER_PX, _PADDING_PX = {True: 7.3, False: 6.7}, {True: 16, False: 8}
+"""Of a number in the table: in the large print of a wide window, in the small one."""
 _DELTA_PX = {True: 150, False: 125}
-_ROW_NAME_PX = 110
+_ROW_NAME_PX = 120
+_MARGINS_PX = 20
 OVER = "errors over"
 _WINDOWS = {"the whole run": "whole", "after settling": "settled", "chosen hours": "hours"}
 _ENDS = {
@@ -97,8 +98,10 @@ class MetricsView(PictureView[tuple[str, str]]):
         baseline = found.baseline
         if baseline is not None and baseline.run is not None:
             baseline = replace(baseline, run=window.of(baseline.run))
-        each_px = _METHOD_PX[layout.wide] + (0 if found.baseline is None else _DELTA_PX[layout.wide])
-        most = max((layout.plot_px - _ROW_NAME_PX) // each_px, 1)
+        rows = metrics_rows(run, found.display)
+        each_px = method_px(rows, _LETTER_PX[layout.wide], _PADDING_PX[layout.wide])
+        each_px += 0 if found.baseline is None else _DELTA_PX[layout.wide]
+        most = max(int((layout.plot_px - _ROW_NAME_PX - _MARGINS_PX) / each_px), 1)
         count = len(run.methods)
         tables = -(-count // most)
         each = -(-count // tables)

@@ -3,27 +3,42 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from html import escape
 
 from app.plots import style
-from app.plots.units import number
+from app.plots.pinned import Pinned, pinned_methods, together
+from app.plots.units import number, rounded
 from app.session.requirements import Requirements, Verdict, sign_of, verdicts
 from navcore.engine.run import Run
 from navcore.foundation.parameters import extra_of
 
-PASSED, FAILED = "#146C43", style.DANGER
+PASSED, FAILED = style.PASSED, style.DANGER
 _DIGITS = 4
 
 
-def requirements_html(run: Run, requirements: Requirements) -> str:
-    """Return a row a requirement and a column a method: measured value, and whether it meets the limit."""
-    found = verdicts(run, requirements)
+def requirements_html(run: Run, requirements: Requirements, pins: Sequence[Pinned] = ()) -> str:
+    """Return a row a requirement and a column a method: measured value, and whether it meets the limit.
+
+    Parameters
+    ----------
+    run : Run
+        Result.
+    requirements : Requirements
+        Limits.
+    pins : sequence of Pinned
+        Runs that are judged beside it.
+    """
+    judged = together(run, pins)
+    found = verdicts(judged, requirements)
+    lines = [f"solid {style.method_color(i)}" for i in range(len(run.methods))]
+    lines += [f"dashed {pinned.color}" for pinned in pinned_methods(pins)]
     head = "".join(
-        f'<th style="{_HEAD};border-bottom:3px solid {style.method_color(i)}">{escape(m.method.name)}</th>'
-        for i, m in enumerate(run.methods)
+        f'<th style="{_HEAD};border-bottom:3px {line}">{escape(method.method.name)}</th>'
+        for line, method in zip(lines, judged.methods, strict=True)
     )
     body = "".join(_row(verdict) for verdict in found)
-    foot = "".join(f'<td style="{_CELL}">{_overall(found, i)}</td>' for i in range(len(run.methods)))
+    foot = "".join(f'<td style="{_CELL}">{_overall(found, i)}</td>' for i in range(len(judged.methods)))
     return (
         f'<div style="overflow-x:auto"><table style="{_TABLE}"><thead><tr>'
         f'<th style="{_LEFT}">requirement</th><th style="{_CELL}">limit</th>{head}</tr></thead>'
@@ -54,7 +69,7 @@ def _number(value: float) -> str:
 
 
 def _measured(value: float) -> str:
-    return "never" if math.isinf(value) else number(value, _DIGITS)
+    return "never" if math.isinf(value) else rounded(value)
 
 
 def _word(verdict: Verdict, passed: bool) -> str:

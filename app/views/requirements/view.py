@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 from typing import Any
 
 from app.session.requirements import Requirements, label_of, read_limit
@@ -61,7 +62,8 @@ class RequirementsView(PictureView[str]):
         """Make the table of verdicts, HTML."""
         window = window_of(found.run, found.display)
         told = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
-        return told + requirements_html(window.run, found.display.requirements)
+        pins = [replace(pin, run=window.of(pin.run)) for pin in found.pins if pin.run is not None]
+        return told + requirements_html(window.run, found.display.requirements, pins)
 
     def show(self, picture: str) -> None:
         """Show the verdicts."""
