@@ -1,37 +1,43 @@
-"""Computes the envelope of a scenario over many seeds in the background, once the user's hands are still."""
+"""Computes the bands of a scenario's error curves in the background, once the user's hands are still."""
 
 from __future__ import annotations
 
 import logging
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from app.jobs.load import spare_load
 from app.jobs.rows import few_rows
 from app.jobs.words import for_a_page
 from app.jobs.worker import Watch, Worker
-from app.plots.envelope import Envelope, envelope
+from app.plots.envelope import BandKind, Envelope, covariance_envelope, envelope
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
 from navcore.scenario.model import Scenario
 
 SEEDS = 20
 STILL_S = 0.7
-"""A scenario must stand still for so long before its envelope is begun."""
+"""A scenario must stand still for so long before its bands are begun."""
 _log = logging.getLogger("schuler.envelopes")
 
 Simulate = Callable[[Scenario, Callable[[float], None], Callable[[], bool]], Run]
 
 
 @dataclass(frozen=True)
-class _Found:
+class _Asked:
     scenario: Scenario
+    kind: BandKind
+
+
+@dataclass(frozen=True)
+class _Found:
+    asked: _Asked
     envelope: Envelope
 
 
 class Envelopes:
-    """The envelope of one session's scenario; a change of the scenario stops it.
+    """The bands of one session's scenario; a change of the scenario stops what is under way.
 
     Parameters
     ----------
@@ -58,28 +64,31 @@ class Envelopes:
     ) -> None:
         self._simulate, self._came_further, self._ended = simulate, came_further, ended
         self._lock = threading.Lock()
-        self._worker: Worker[Scenario] = Worker(self._work, visitor=visitor, load=spare_load, still_s=still_s)
+        self._worker: Worker[_Asked] = Worker(
+            self._work, visitor=visitor, load=lambda asked: spare_load(asked.scenario), still_s=still_s
+        )
         self._found: _Found | None = None
         self.fraction: float | None = None
         self.words = ""
 
-    def follow(self, scenario: Scenario, wanted: bool) -> None:
-        """Make the envelope of this scenario, if it is wanted and is not there yet."""
-        if not wanted:
+    def follow(self, scenario: Scenario, kind: BandKind) -> None:
+        """Make the bands of this scenario, if any are wanted and they are not there yet."""
+        asked, found = _Asked(scenario, kind), self._found
+        if kind == "none" or (found is not None and found.asked == asked):
             self.cancel()
             with self._lock:
-                self._found, self.words = None, ""
+                self.words = ""
+                self._found = None if kind == "none" else found
             return
-        if self.beside(scenario) is not None:
-            return
-        if scenario.strapdown:
+        if kind == "seeds" and scenario.strapdown:
+            self.cancel()
             with self._lock:
                 self.words = f"Not for strapdown runs: it would take {SEEDS} of them."
             self._came_further()
             return
         with self._lock:
             self.fraction, self.words = 0.0, ""
-        self._worker.submit(scenario)
+        self._worker.submit(asked)
 
     def cancel(self) -> None:
         """Stop one that is under way."""
@@ -87,10 +96,14 @@ class Envelopes:
             self.fraction = None
         self._worker.cancel()
 
-    def beside(self, scenario: Scenario) -> Envelope | None:
-        """The envelope of exactly this scenario; None when there is none."""
+    def beside(self, scenario: Scenario, kind: BandKind) -> Envelope | None:
+        """The bands of this scenario, or those of an earlier one with the same methods, marked as old."""
         found = self._found
-        return found.envelope if found is not None and found.scenario == scenario else None
+        if found is None or found.asked.kind != kind:
+            return None
+        if found.asked.scenario == scenario:
+            return found.envelope
+        return replace(found.envelope, old=True) if _alike(found.asked.scenario, scenario) else None
 
     def stop(self) -> None:
         """End the thread."""
@@ -100,17 +113,9 @@ class Envelopes:
         """Block until none is under way; False after the timeout."""
         return self._worker.wait_idle(timeout_s)
 
-    def _work(self, scenario: Scenario, watch: Watch) -> None:
-        runs: list[Run] = []
+    def _work(self, asked: _Asked, watch: Watch) -> None:
         try:
-            for number in range(1, SEEDS + 1):
-                run = self._simulate(with_seed(scenario, scenario.run.seed + number), _silent, watch.unwanted)
-                if watch.unwanted() or run.status == "stopped":
-                    return
-                runs.append(few_rows(run, 2))
-                with self._lock:
-                    self.fraction = number / SEEDS
-                self._came_further()
+            made = self._over_seeds(asked, watch) if asked.kind == "seeds" else self._covariance(asked, watch)
         except InputError as error:
             self._give_up(str(for_a_page(error).faults[0]))
             return
@@ -118,15 +123,43 @@ class Envelopes:
             _log.exception("an envelope failed")
             self._give_up(f"Something went wrong: {type(error).__name__}: {error}")
             return
-        found = _Found(scenario, envelope(runs))
+        if made is None:
+            return
         with self._lock:
-            self.fraction, self._found = None, found
+            self.fraction, self._found = None, _Found(asked, made)
         self._ended()
+
+    def _over_seeds(self, asked: _Asked, watch: Watch) -> Envelope | None:
+        scenario, runs = asked.scenario, []
+        for number in range(1, SEEDS + 1):
+            run = self._simulate(with_seed(scenario, scenario.run.seed + number), _silent, watch.unwanted)
+            if watch.unwanted() or run.status == "stopped":
+                return None
+            runs.append(few_rows(run, 2))
+            self._tell(number / SEEDS)
+        return envelope(runs)
+
+    def _covariance(self, asked: _Asked, watch: Watch) -> Envelope | None:
+        from navcore.design.bands import covariance_bands
+
+        found = covariance_bands(asked.scenario, self._tell, watch.unwanted)
+        return None if found is None or watch.unwanted() else covariance_envelope(asked.scenario, found)
+
+    def _tell(self, fraction: float) -> None:
+        with self._lock:
+            self.fraction = fraction
+        self._came_further()
 
     def _give_up(self, words: str) -> None:
         with self._lock:
             self.fraction, self.words = None, words
         self._came_further()
+
+
+def _alike(one: Scenario, other: Scenario) -> bool:
+    """Whether bands of the one may stay behind the curves of the other until its own are there."""
+    names = ([method.name for method in scenario.method] for scenario in (one, other))
+    return one.run.duration_h == other.run.duration_h and next(names) == next(names)
 
 
 def with_seed(scenario: Scenario, seed: int) -> Scenario:

@@ -1,16 +1,25 @@
-"""Envelope of the error curves over many seeds: where 90 % of all noises let them run."""
+"""Bands behind the error curves: over many seeds, or one standard deviation by covariance."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from navcore.engine.run import Run
 
+if TYPE_CHECKING:
+    from navcore.design.bands import Bands
+    from navcore.scenario.model import Scenario
+
+BandKind = Literal["none", "covariance", "seeds"]
+"""Bands that can be shown."""
+
 LOWEST, HIGHEST = 5.0, 95.0
 """Per cent of the runs that lie below the lower and the upper edge."""
+OLD = " (of an earlier setting)"
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,21 +30,28 @@ class Envelope:
     ----------
     t_s : ndarray, shape (m,)
         Times, s.
-    low, high : tuple of ndarray, each shape (m, 8)
-        For every method the edges of the quantities of `navcore.mechanization.recorder.NAMES`, SI.
-    count : int
-        Number of seeds.
+    low, high : tuple of ndarray, each shape (m, 8), or None
+        For every method the edges of the quantities of `navcore.mechanization.recorder.NAMES`, SI; None for a
+        method without a band.
+    words : str
+        What the band is.
+    details : tuple of str
+        What it covers and what it does not.
+    old : bool
+        It is of an earlier scenario.
     """
 
     t_s: np.ndarray
-    low: tuple[np.ndarray, ...]
-    high: tuple[np.ndarray, ...]
-    count: int
+    low: tuple[np.ndarray | None, ...]
+    high: tuple[np.ndarray | None, ...]
+    words: str
+    details: tuple[str, ...] = ()
+    old: bool = False
 
     @property
     def label(self) -> str:
-        """What the band is, in words."""
-        return f"band: {LOWEST:g} to {HIGHEST:g} % of {self.count} seeds"
+        """What the band is, in words, and whether it is older than the curves."""
+        return f"band: {self.words}{OLD if self.old else ''}"
 
 
 def envelope(runs: Sequence[Run]) -> Envelope:
@@ -60,6 +76,43 @@ def envelope(runs: Sequence[Run]) -> Envelope:
         times.append(series[0].t_s[: bins * pairs].reshape(bins, pairs).mean(axis=1))
     count = min((len(each) for each in times), default=0)
     shortest = times[0][:count] if times else np.empty(0)
-    return Envelope(
-        shortest, tuple(each[:count] for each in low), tuple(each[:count] for each in high), len(runs)
-    )
+    words = f"{LOWEST:g} to {HIGHEST:g} % of {len(runs)} seeds"
+    lower, upper = (tuple(each[:count] for each in edges) for edges in (low, high))
+    return Envelope(shortest, lower, upper, words, ("Each seed is another draw of all random errors.",))
+
+
+_COVERS = (
+    "One standard deviation of the errors, by covariance along the motion: random errors of IMU and log, and "
+    "biases and initial errors with their standard deviations."
+)
+_MOST_NAMED = 2
+
+
+def covariance_envelope(scenario: Scenario, found: Bands) -> Envelope:
+    """Bands of one standard deviation on both sides of zero; of the position from zero up.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What the bands are of.
+    found : Bands
+        Of `navcore.design.bands.covariance_bands`.
+    """
+    low: list[np.ndarray | None] = []
+    high: list[np.ndarray | None] = []
+    missing, details = [], [_COVERS]
+    for method, band in zip(scenario.method, found.methods, strict=True):
+        if band.sigma is None:
+            missing.append(method.name)
+            details.append(f"{method.name}: no band, {band.reason}.")
+            low.append(None)
+            high.append(None)
+            continue
+        if band.kind == "filter":
+            details.append(f"{method.name}: the covariance that the Kalman filter computes for itself.")
+        distance = np.hypot(band.sigma[:, 5], band.sigma[:, 6])
+        high.append(np.column_stack([band.sigma, distance]))
+        low.append(np.column_stack([-band.sigma, np.zeros_like(distance)]))
+    names = ", ".join(missing) if len(missing) <= _MOST_NAMED else f"{len(missing)} methods"
+    words = "±1σ by covariance" + (f"; no covariance: {names}" if missing else "")
+    return Envelope(found.t_s, tuple(low), tuple(high), words, tuple(details))

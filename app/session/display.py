@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
+from app.plots.envelope import BandKind
 from app.session.requirements import Requirements
 
 FIRST_TRANSFER = "phi/dv_r"
@@ -41,7 +42,7 @@ class Display(BaseModel):
     scale : str
         Axis of the errors over time.
     envelope : str
-        Bands behind the error curves: over the seeds of 20 runs, or none.
+        Bands behind the error curves: one standard deviation by covariance, over 20 seeds, or none.
     spectrum : str
         Quantity whose spectrum is shown: a key of `app.views.errors.figure.error_plots`.
     baseline : int or None
@@ -78,7 +79,7 @@ class Display(BaseModel):
     speed: Literal["auto", "m/s", "kn"] = "auto"
     time: Literal["auto", "min", "h"] = "auto"
     scale: Literal["linear", "log"] = "linear"
-    envelope: Literal["none", "seeds"] = "none"
+    envelope: BandKind = "none"
     spectrum: Literal["phi_e", "phi_n", "phi_u", "dve", "dvn", "dlat", "dlon", "position"] = "dve"
     baseline: Annotated[int | None, Field(ge=1)] = None
     pins_by: Annotated[str, Field(pattern=r"^-?[a-z]{1,20}$")] = "pinned"

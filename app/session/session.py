@@ -81,7 +81,7 @@ class Session:
     pins : Pins
         Runs that were pinned.
     envelopes : Envelopes
-        Bands of the error curves over many seeds.
+        Bands behind the error curves.
     """
 
     def __init__(
@@ -137,6 +137,8 @@ class Session:
                 self._tell(lambda other: other.presenter_changed())
             if self.run is None:
                 self._worker.submit(self.state)
+            else:
+                self.envelopes.follow(self.run.scenario, self.display.envelope)
 
     def detach(self, view: View) -> None:
         """Remove a closed page; without any page nothing runs on."""
@@ -277,7 +279,7 @@ class Session:
                 return
             self.display = display
             if self.run is not None:
-                self.envelopes.follow(self.run.scenario, display.envelope == "seeds")
+                self.envelopes.follow(self.run.scenario, display.envelope)
             for view in list(self._views):
                 view.display_changed(by)
             self.on_change()
@@ -364,7 +366,7 @@ class Session:
             self.run, self.run_number = run, self.run_number + 1
             self.outdated = scenario != self.scenario
             self._before = state
-            self.envelopes.follow(scenario, self.display.envelope == "seeds")
+            self.envelopes.follow(scenario, self.display.envelope)
             waiting: list[Callable[[], None]] = []
             if not self.outdated:
                 waiting, self._after_run = self._after_run, []

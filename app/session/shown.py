@@ -37,7 +37,7 @@ class Shown:
     verified : Verified or None
         Verification of the same methods.
     envelope : Envelope or None
-        Over many seeds.
+        Bands behind the error curves.
     selected : int
         Method that the controls edit.
     """
@@ -76,6 +76,6 @@ def shown(session: Session) -> Shown | None:
         baseline,
         None,
         session.verifier.beside(run.scenario),
-        session.envelopes.beside(run.scenario) if display.envelope == "seeds" else None,
+        session.envelopes.beside(run.scenario, display.envelope),
         selected,
     )

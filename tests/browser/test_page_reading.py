@@ -7,12 +7,14 @@ from pathlib import Path
 
 import pytest
 
+from app.views.appearance.view import BANDS
 from tests.browser.driver import Bench
 
 pytestmark = pytest.mark.browser
 
 _CHART = """label => Object.values(window.__viserTestpoints.uplots).map(e => e.chart)
   .find(c => c.axes[1].label.startsWith(label))"""
+_LEGEND = "() => document.body.innerText.match(/band: .*/)?.[0] ?? ''"
 _DEFAULT = {
     "angle": "auto",
     "length": "auto",
@@ -72,18 +74,20 @@ def test_logarithmic_axis_shows_magnitudes(reading: Bench) -> None:
 
 
 def test_envelope_of_twenty_seeds_is_drawn_and_goes_with_the_scenario(reading: Bench) -> None:
-    reading.choose("envelope", "20 seeds, 5 to 95 %")
+    reading.choose(BANDS, "20 seeds, 5 to 95 %")
     bands = f"() => ({_CHART})('δVE')?.bands?.length ?? 0"
     reading.page.wait_for_function(f"() => ({bands})() === 3", timeout=60_000)
     assert "5 to 95 % of 20 seeds" in reading.page.locator("body").inner_text()
     reading.tab("Method")
     reading.press("zeta")
     reading.settle()
-    # the band of the earlier scenario is not there, or it is that of the new one already
     session = reading.session
     assert session.run is not None
-    reading.page.wait_for_function(f"() => ({bands})() === 3", timeout=60_000)
-    assert session.envelopes.beside(session.run.scenario) is not None
+    # the band of the earlier scenario stays, marked, until that of the new one is there
+    reading.page.wait_for_function(f"() => !({_LEGEND})().includes('earlier')", timeout=60_000)
+    assert reading.page.evaluate(f"() => ({bands})()") == 3
+    found = session.envelopes.beside(session.run.scenario, "seeds")
+    assert found is not None and not found.old
     assert reading.faults == []
 
 

@@ -104,7 +104,7 @@ def runs() -> list[Run]:
 
 def test_envelope_holds_most_of_the_runs(runs: list[Run]) -> None:
     found = envelope(runs)
-    assert found.count == SEEDS and "5 to 95 %" in found.label and "20 seeds" in found.label
+    assert "5 to 95 %" in found.label and "20 seeds" in found.label
     low, high = found.low[0][:, DV_E], found.high[0][:, DV_E]
     inside = []
     for run in runs:
@@ -156,20 +156,24 @@ class Watched:
 def test_envelope_is_made_over_other_seeds_and_belongs_to_one_scenario(runs: list[Run]) -> None:
     watched = Watched(runs[0])
     one = runs[0].scenario
-    watched.all.follow(one, True)
+    watched.all.follow(one, "seeds")
     assert watched.all.wait_idle(20.0)
     assert watched.seeds == [one.run.seed + number for number in range(1, SEEDS + 1)]
-    assert isinstance(watched.all.beside(one), Envelope) and watched.told[-1] == "ended"
-    assert watched.all.beside(with_seed(one, 99)) is None
-    watched.all.follow(one, True)
+    assert isinstance(watched.all.beside(one, "seeds"), Envelope) and watched.told[-1] == "ended"
+    found, earlier = watched.all.beside(one, "seeds"), watched.all.beside(with_seed(one, 99), "seeds")
+    assert found is not None and not found.old and "earlier" not in found.label
+    assert earlier is not None and earlier.old and "of an earlier setting" in earlier.label
+    longer = one.model_copy(update={"run": one.run.model_copy(update={"duration_h": 2.0})})
+    assert watched.all.beside(longer, "seeds") is None and watched.all.beside(one, "covariance") is None
+    watched.all.follow(one, "seeds")
     assert len(watched.seeds) == SEEDS, "made twice"
-    watched.all.follow(one, False)
-    assert watched.all.beside(one) is None and watched.all.fraction is None
+    watched.all.follow(one, "none")
+    assert watched.all.beside(one, "seeds") is None and watched.all.fraction is None
 
 
 def test_strapdown_scenarios_are_told_that_they_have_none(runs: list[Run]) -> None:
     watched = Watched(runs[0])
-    watched.all.follow(scenario(run={"duration_h": 1.0, "fidelity": "strapdown"}), True)
+    watched.all.follow(scenario(run={"duration_h": 1.0, "fidelity": "strapdown"}), "seeds")
     assert "strapdown" in watched.all.words and watched.seeds == []
 
 

@@ -1,4 +1,4 @@
-"""Tab "View": units, axes and envelope of the plots over time, export of any plot, light or dark page."""
+"""Tab "View": units, axes and bands of the plots over time, export of any plot, light or dark page."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ _CHOICES = {
         "log: magnitudes of the errors, on an axis of decades. Linear: with their signs.",
     ),
 }
-ENVELOPE = "envelope"
-_ENVELOPES = {"none": "none", f"{SEEDS} seeds, 5 to 95 %": "seeds"}
+BANDS = "bands"
+_BANDS = {"off": "none", "±1σ by covariance": "covariance", f"{SEEDS} seeds, 5 to 95 %": "seeds"}
 EXPORT, FORMAT = "export plot", "export as"
 
 
@@ -41,10 +41,12 @@ class AppearanceView(View):
             gui.add_html(notices.heading("Units and axes"), order=0)
             for order, (label, (field, hint)) in enumerate(_CHOICES.items(), start=1):
                 self._choosers[field] = self._chooser(label, field, hint, order)
-            gui.add_html(notices.heading("Envelope of the error curves"), order=10)
-            self._envelope: Any = gui.add_dropdown(
-                ENVELOPE, tuple(_ENVELOPES), order=11,
-                hint=f"Runs the scenario with {SEEDS} other seeds, and fills where 90 % of them lie.",
+            gui.add_html(notices.heading("Bands behind the error curves"), order=10)
+            self._bands: Any = gui.add_dropdown(
+                BANDS, tuple(_BANDS), order=11,
+                hint="Covariance: one standard deviation of all modelled errors together, for laws that do "
+                f"not look at the data. Seeds: runs the scenario with {SEEDS} other seeds, and fills where "
+                "90 % of them lie.",
             )  # fmt: skip
             self._progress = gui.add_progress_bar(0.0, visible=False, order=12)
             self._words = gui.add_html("", visible=False, order=13)
@@ -59,7 +61,7 @@ class AppearanceView(View):
                 FORMAT, FORMATS, order=22, hint="CSV: the plotted numbers in full. SVG, PNG: the picture."
             )
             self._dark.build()
-        self._envelope.on_update(if_user(lambda: self.frame.show(envelope=_ENVELOPES[self._envelope.value])))
+        self._bands.on_update(if_user(lambda: self.frame.show(envelope=_BANDS[self._bands.value])))
         format.on_click(
             lambda event: export.save(plot.value, event.target.value) if event.client is not None else None
         )
@@ -75,12 +77,12 @@ class AppearanceView(View):
         display = self.session.display
         for field, chooser in self._choosers.items():
             chooser.value = getattr(display, field)
-        self._envelope.value = next(word for word, key in _ENVELOPES.items() if key == display.envelope)
+        self._bands.value = next(word for word, key in _BANDS.items() if key == display.envelope)
         self._dark.show(display)
         self.follow_jobs()
 
     def follow_jobs(self) -> None:
-        """Show how far the envelope is, or why there is none."""
+        """Show how far the bands are, or why there are none."""
         fraction, words = self.session.envelopes.fraction, self.session.envelopes.words
         self._progress.visible = fraction is not None
         self._progress.value = round(100.0 * (fraction or 0.0), 1)

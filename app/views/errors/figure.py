@@ -204,8 +204,10 @@ def _with_band(
 ) -> UplotFigure:
     """Put the envelope's edges behind all curves, and a band between each pair."""
     names, colors, edges, bands = list(plot.names), list(plot.colors), [], []
-    for index in range(min(count, len(envelope.low))):
-        for word, values in (("upper", envelope.high[index]), ("lower", envelope.low[index])):
+    for index, (low, high) in enumerate(zip(envelope.low[:count], envelope.high[:count], strict=True)):
+        if low is None or high is None:
+            continue
+        for word, values in (("upper", high), ("lower", low)):
             edges.append(np.interp(time_s, envelope.t_s, values[:, column]) / plot.unit.si)
             names.append(f"band, {word}: {plot.names[index]}")
             colors.append("rgba(0,0,0,0)")
@@ -346,7 +348,8 @@ def legend_html(
         items.append(_legend_item(f"{STRAPDOWN}{old}", f"border-top:3px dashed {style.MUTED}"))
     items += [_legend_item(found.label, css_dash(found.dash, found.color)) for found in pinned_methods(pins)]
     if envelope is not None:
-        items.append(_legend_item(envelope.label, f"height:10px;background:{style.MUTED}55"))
+        bar = f"height:10px;background:{style.MUTED}{'22' if envelope.old else '55'}"
+        items.append(_legend_item(envelope.label, bar, " ".join(envelope.details)))
     return (
         f'<div style="display:flex;flex-wrap:wrap;gap:2px 18px;padding:2px 8px 2px {Y_SIZE + LABEL_SIZE}px;'
         f'font-size:{style.FONT_SIZE}px;color:{style.INK}">{"".join(items)}</div>'
@@ -364,7 +367,8 @@ def legend_names(
     if overlay is not None:
         names.append("full strapdown of an earlier scenario")
     names += [found.label for found in pinned_methods(pins)]
-    return names if envelope is None else [*names, envelope.label]
+    # with the longest words: the plots keep their height while the band is an old one
+    return names if envelope is None else [*names, replace(envelope, old=True).label]
 
 
 def css_dash(dash: Dash, color: str) -> str:
@@ -377,8 +381,9 @@ def css_dash(dash: Dash, color: str) -> str:
     return f"height:2px;background:repeating-linear-gradient(90deg,{','.join(stops)})"
 
 
-def _legend_item(name: str, bar: str) -> str:
+def _legend_item(name: str, bar: str, title: str = "") -> str:
+    more = f' title="{escape(title)}"' if title else ""
     return (
-        f'<span style="display:inline-flex;align-items:center;gap:6px;white-space:nowrap">'
+        f'<span{more} style="display:inline-flex;align-items:center;gap:6px;white-space:nowrap">'
         f'<span style="width:18px;border-radius:2px;{bar}"></span>{escape(name)}</span>'
     )

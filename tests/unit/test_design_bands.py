@@ -1,0 +1,87 @@
+"""Bands by covariance: those of the budget, the Kalman filter's own, none where the law looks at the data."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.jobs.envelopes import Envelopes
+from app.plots.envelope import covariance_envelope
+from app.views.errors.figure import error_plots, legend_html
+from navcore.design.bands import Bands, covariance_bands
+from navcore.design.budget import budget
+from navcore.engine.simulation import simulate
+from navcore.mechanization.recorder import PHI_E, POSITION
+from navcore.scenario.model import Scenario
+from navcore.studies.filter_consistency import SHIP, final_error
+
+_SHORT = SHIP["run"] | {"duration_h": 1.0}
+_METHODS = [
+    {"name": "free", "damping": "free"},
+    {"name": "classic2", "damping": "external", "network": {"id": "classic2"}},
+    {"name": "turns", "damping": "external", "network": {"id": "classic2"}, "policy": {"id": "yaw_rate"}},
+    {"name": "filter", "damping": "kalman"},
+]
+
+
+@pytest.fixture(scope="module")
+def ship() -> Scenario:
+    return Scenario.parse(SHIP | {"run": _SHORT, "method": _METHODS})
+
+
+@pytest.fixture(scope="module")
+def found(ship: Scenario) -> Bands:
+    bands = covariance_bands(ship)
+    assert bands is not None
+    return bands
+
+
+def test_a_band_is_the_square_root_of_the_budgets_variance(ship: Scenario, found: Bands) -> None:
+    known = budget(ship.model_copy(update={"method": ship.method[:2]}))
+    for band, method in zip(found.methods[:2], known.methods, strict=True):
+        assert method.series is not None and band.kind == "covariance"
+        np.testing.assert_allclose(band.sigma, np.sqrt(method.series.total), rtol=1e-12)
+    assert found.methods[2].sigma is None and "looks at the data" in found.methods[2].reason
+
+
+def test_the_filters_band_is_what_the_running_filter_says_of_itself(found: Bands) -> None:
+    _, P = final_error(Scenario.parse(SHIP | {"run": _SHORT}))
+    own = np.sqrt(np.diag(P))[[4, 5, 6, 0, 1]]
+    assert found.methods[3].kind == "filter" and found.methods[3].sigma is not None
+    np.testing.assert_allclose(found.methods[3].sigma[-1, :5], own, rtol=0.02)
+
+
+def test_what_is_cancelled_gives_no_bands(ship: Scenario) -> None:
+    assert covariance_bands(ship, cancelled=lambda: True) is None
+
+
+def test_the_legend_says_what_the_band_is_and_which_method_has_none(ship: Scenario, found: Bands) -> None:
+    made, run = covariance_envelope(ship, found), simulate(ship)
+    plots = error_plots(run, envelope=made)
+    assert [len(plot.bands) for plot in plots.values()] == [3] * len(plots)
+    upper, lower, _ = plots["phi_e"].bands[1]
+    np.testing.assert_array_equal(plots["phi_e"].data[1 + upper], -plots["phi_e"].data[1 + lower])
+    assert made.high[1] is not None and made.low[1] is not None and found.methods[1].sigma is not None
+    np.testing.assert_array_equal(made.high[1][:, PHI_E], found.methods[1].sigma[:, 0])
+    assert np.all(made.low[1][:, POSITION] == 0.0) and np.all(made.high[1][:, POSITION] >= 0.0)
+    html = legend_html(run, envelope=made)
+    assert "±1σ by covariance; no covariance: turns" in html
+    assert "turns: no band, policy &quot;yaw_rate&quot; looks at the data" in html
+    assert "Kalman filter computes for itself" in html
+
+
+def test_the_job_makes_them_in_the_background(ship: Scenario) -> None:
+    told: list[str] = []
+    jobs = Envelopes(
+        lambda *_: pytest.fail("runs nothing"),
+        lambda: told.append("further"),
+        lambda: told.append("ended"),
+        0.0,
+    )
+    try:
+        jobs.follow(ship, "covariance")
+        assert jobs.wait_idle(60.0) and told[-1] == "ended" and told.count("further") == len(_METHODS)
+        band = jobs.beside(ship, "covariance")
+        assert band is not None and not band.old and jobs.fraction is None
+    finally:
+        jobs.stop()
