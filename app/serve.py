@@ -25,7 +25,19 @@ if TYPE_CHECKING:
     from app.shell.page import Page
 
 _STATIC = Path(__file__).parent / "shell" / "static"
-_SCRIPTS = ("redraw", "widgets", "drawn", "marks", "page", "commands", "access", "cursor", "place", "lost")
+_SCRIPTS = (
+    "redraw",
+    "widgets",
+    "drawn",
+    "marks",
+    "page",
+    "commands",
+    "access",
+    "cursor",
+    "pick",
+    "place",
+    "lost",
+)
 _log = logging.getLogger("schuler.serve")
 _READERS = (
     "app.session.uploads",

@@ -67,6 +67,11 @@ class Search(Generic[Asked, Found]):
         self.asked: Asked | None = None
         self.words: tuple[str, ...] = ()
 
+    @property
+    def under_way(self) -> Asked | None:
+        """What is being computed now."""
+        return self._under_way
+
     def begin(self, asked: Asked) -> None:
         """Compute this, in place of what is under way."""
         with self._lock:

@@ -6,7 +6,7 @@ import logging
 import threading
 from collections.abc import Callable
 
-from app.jobs.designer import Budgeter, Designer
+from app.jobs.designer import Budgeter, Designer, Fronts
 from app.jobs.tuner import Tuner
 from app.jobs.why import Explainer
 from navcore.engine.run import Run
@@ -32,6 +32,8 @@ class Searches:
         Error budget along the run.
     designer : Designer
         Best setting of a method.
+    fronts : Fronts
+        Pareto fronts of all networks.
     """
 
     def __init__(self, name: str) -> None:
@@ -41,6 +43,7 @@ class Searches:
         self.tuner = Tuner(self._tell, name=name)
         self.budgeter = Budgeter(self._tell, name=name)
         self.designer = Designer(self._tell, name=name)
+        self.fronts = Fronts(self._tell, name=name)
 
     def watch(self, changed: Callable[[], None], run: Run | None) -> None:
         """Tell an open page whenever there is something new; ``run`` is what it shows."""
@@ -59,6 +62,7 @@ class Searches:
             self.tuner.cancel()
             self.budgeter.cancel()
             self.designer.cancel()
+            self.fronts.cancel()
 
     def changed(self) -> None:
         """The scenario has changed: the processors belong to its run."""
@@ -77,6 +81,7 @@ class Searches:
         self.tuner.stop()
         self.budgeter.stop()
         self.designer.stop()
+        self.fronts.stop()
 
     def _tell(self) -> None:
         with self._lock:

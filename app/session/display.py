@@ -10,6 +10,7 @@ from app.plots.envelope import BandKind
 from app.session.requirements import Requirements
 
 FIRST_TRANSFER = "phi/dv_r"
+FrontAxis = Literal["tilt_rms", "velocity_rms", "settling_s", "log_tilt", "overshoot"]
 
 
 def _known_transfer(id: str) -> str:
@@ -64,6 +65,10 @@ class Display(BaseModel):
         The error budget shown: of the steady state of one level channel, or of the whole run.
     objective : str
         What a method is tuned for: a name of `navcore.design.measures.MEASURES`.
+    search : str
+        What the tab "Tune" looks for: the best setting of one method, or the Pareto fronts of all networks.
+    front_x, front_y : str
+        Objectives on the axes of the Pareto fronts: names of `navcore.design.measures.MEASURES`.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -91,6 +96,10 @@ class Display(BaseModel):
     theme: Literal["light", "dark"] = "light"
     budget: Literal["steady", "run"] = "steady"
     objective: Literal["tilt_rms", "velocity_rms", "position_rms", "heading_rms", "settling_s"] = "tilt_rms"
+
+    search: Literal["setting", "fronts"] = "setting"
+    front_x: FrontAxis = "tilt_rms"
+    front_y: FrontAxis = "velocity_rms"
 
     def with_(self, **changes: object) -> Display:
         """Give a checked copy with other choices; raises `pydantic.ValidationError`."""

@@ -147,10 +147,14 @@ def pareto(
     fronts: dict[str, tuple[Point, ...]] = {}
     stopped = False
     for k, name in enumerate(ids):
-        seen, stopped = _front(scenario, method, name, objectives, along, cancelled)
+
+        def report(fraction: float, done: int = k) -> None:
+            if progress is not None:
+                progress((done + fraction) / len(ids))
+
+        seen, stopped = _front(scenario, method, name, objectives, along, report, cancelled)
         fronts[name] = _best(seen)
-        if progress is not None:
-            progress((k + 1) / len(ids))
+        report(1.0)
         if stopped:
             break
     least = ship.floor()
@@ -158,10 +162,24 @@ def pareto(
     return Pareto(
         objectives=objectives,
         fronts={name: points for name, points in fronts.items() if points},
-        present=_both(Setting(ship, scenario.method[method]), objectives),
+        present=measured(scenario, objectives, method, along=along),
         floor=(floors[0], floors[1]),
         stopped=stopped,
     )
+
+
+def measured(
+    scenario: Scenario, objectives: tuple[str, str], method: int = 0, *, along: bool = False
+) -> tuple[float, float] | None:
+    """Both objectives of a method as it is, SI; None where they are not finite and above 0.
+
+    Parameters
+    ----------
+    scenario, objectives, method, along
+        As of `pareto`.
+    """
+    along = along or any(name in ALONG_ONLY for name in objectives)
+    return _both(Setting(Ship(scenario, along), scenario.method[method]), objectives)
 
 
 def _both(setting: Setting, names: tuple[str, str]) -> tuple[float, float] | None:
@@ -178,6 +196,7 @@ def _front(
     network: str,
     names: tuple[str, str],
     along: bool,
+    report: Callable[[float], None],
     cancelled: Callable[[], bool] | None,
 ) -> tuple[list[tuple[tuple[float, float], dict[str, Any]]], bool]:
     """Every setting of a network that a few weighted searches saw, and whether they were stopped."""
@@ -200,7 +219,8 @@ def _front(
     varied = read_varied(other, [f"method.{index}.network.{field}" for field in fields])
     search = _Weighed(ship, varied, names)
     search.cancelled = cancelled
-    for weight in _WEIGHTS:
+    for k, weight in enumerate(_WEIGHTS):
+        report(k / len(_WEIGHTS))
         search.weight = float(weight)
         start = None if search.best is None else search.best[1]
         if search.run(_EFFORT_ALONG if along else _EFFORT, start):

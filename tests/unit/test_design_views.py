@@ -10,7 +10,7 @@ from app.jobs.designer import Budgeter, Designer, TuningTask
 from app.session.requirements import Requirements
 from app.views.design.figure import QUANTITIES, budget_figure, parts
 from app.views.tune.proposal import proposal_html, sentences_about
-from app.views.tune.view import requirements_as_text
+from app.views.tune.setting import requirements_as_text
 from navcore.design.budget import budget
 from navcore.design.measures import read_requirement
 from navcore.design.tune import tune
@@ -96,9 +96,9 @@ def test_a_proposal_names_field_value_floor_and_what_holds_it(compass):
     found = tune(compass, "tilt_rms", fields, limits)
     task = TuningTask(compass, "tilt_rms", fields, limits)
     told = " ".join(sentences_about(task, found))
-    assert "times the floor" in told and "The requirement settling_s<=600 holds the optimum back" in told
+    assert "times the floor" in told and "The requirement settling ≤ 10 min holds the optimum back" in told
     html = proposal_html(task, found)
-    assert "network.sigma" in html and "arcsec" in html and "0.0088" in html
+    assert ">sigma<" in html and "arcsec" in html and "0.0088" in html
 
 
 def test_the_jobs_give_what_the_library_gives_and_forget_it(compass):

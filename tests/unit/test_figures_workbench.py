@@ -205,7 +205,7 @@ class TestPoleMap:
 
     def test_says_where_it_takes_clicks(self) -> None:
         layout = poles(static_run())["layout"]
-        assert all(axis in layout for pair in layout["meta"]["pick"] for axis in pair)
+        assert all(axis in layout for pair in layout["meta"]["pick"]["panels"] for axis in pair)
 
 
 class TestStepRegions:

@@ -79,9 +79,9 @@ class DesignView(PlotlyView):
         return budget_figure(shown, self.aspect, width_px=self.width_px, note=note)
 
     def _ask(self, scenario: Scenario) -> None:
-        wanted = self.session.display.budget == "run"
-        under_way = self._budgeter.fraction is not None
-        if wanted and not under_way and self._budgeter.beside(scenario) is None:
+        if self.session.display.budget != "run" or self._budgeter.beside(scenario) is not None:
+            return
+        if self._budgeter.under_way != scenario:
             self._budgeter.begin(scenario)
 
 

@@ -24,6 +24,7 @@ from app.views.poles.grid import (
     settling_shapes,
 )
 from app.views.poles.locus import NO_LOCUS, locus_note, locus_traces
+from app.views.poles.placing import COMMAND
 from navcore.engine.run import MethodRun, Run
 
 ZOOM = 1.7
@@ -33,8 +34,8 @@ _RIGHT_SHARE = 0.14
 """Part of a panel's width that shows the right half plane."""
 _MARGIN = {"l": 58, "r": 16, "t": 32}
 _GAP = 0.09
-_PICKED = (("xaxis", "yaxis"), ("xaxis2", "yaxis2"))
-"""Panels of which pick.js takes a click as a wanted pole."""
+_PICK = {"command": COMMAND, "panels": (("xaxis", "yaxis"), ("xaxis2", "yaxis2"))}
+"""What pick.js does with a click: it is a wanted pole, in units of the Schuler frequency."""
 _KEYS = ("closed-loop pole", "zero of H")
 
 
@@ -191,7 +192,7 @@ def _layout(
     panels: dict[str, tuple[Interval, Interval]], margin: dict[str, int], aspect: float, locus: str
 ) -> dict[str, Any]:
     made = style.layout(
-        margin=margin, hovermode="closest", legend=style.legend(), meta={"aspect": aspect, "pick": _PICKED}
+        margin=margin, hovermode="closest", legend=style.legend(), meta={"aspect": aspect, "pick": _PICK}
     )
     titles = {"": "All closed-loop poles (┊ settling time)", "2": "Near the Schuler frequency"}
     half = 0.5 * (1.0 - _GAP)

@@ -13,6 +13,7 @@ from app.shell.view import Frame, if_user
 from app.views.poles.figure import allowed_poles, poles
 from app.views.poles.locus import NO_LOCUS, locus_fields
 from app.views.poles.placer import Placer
+from app.views.poles.placing import COMMAND
 from app.views.poles.whole import whole_system_figure
 from navcore.engine.run import Run
 from navcore.scenario.model import Method
@@ -35,7 +36,7 @@ class PolesView(PlotlyView):
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
         self._placer = Placer(frame.client, frame.session)
-        frame.commands.register("place", self._placer.picked)
+        frame.commands.register(COMMAND, self._placer.picked)
 
     def build_tools(self) -> None:
         """Make the chooser, the boxes and the button."""

@@ -1,1 +1,1 @@
-"""Tab "Tune": the best setting of the method in hand, proposed beside the present one."""
+"""Tab "Tune": the best setting of the method in hand, or the Pareto fronts of all networks."""

@@ -5,7 +5,9 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
+from app.plots import style
 from app.plots.units import number
+from navcore.design.measures import read_requirement
 from navcore.foundation.units import ARCMIN, ARCSEC, MINUTE
 
 if TYPE_CHECKING:
@@ -22,6 +24,21 @@ OBJECTIVES = {
 """What a method can be tuned for: label, unit, and the unit's size in SI."""
 
 
+_REQUIREMENTS = {
+    "settling_s": ("settling", "min", MINUTE),
+    "damping_ratio": ("damping ratio", "", 1.0),
+    "h0_deviation": ("|H(0) - 1|", "", 1.0),
+    "log_tilt": ("tilt after log step", "arcsec", ARCSEC),
+    "position_rms": ("position RMS", "m", 1.0),
+}
+_TABLE = (
+    f"border-collapse:collapse;font-size:{style.FONT_SIZE}px;color:{style.INK};line-height:1.3;"
+    "font-variant-numeric:tabular-nums;max-width:46rem;width:100%"
+)
+_CELL = "padding:3px 8px 3px 2px"
+_LIST = f"margin:6px 0 0;padding-left:18px;font-size:{style.FONT_SIZE}px;line-height:1.4;color:{style.INK}"
+
+
 def proposal_html(task: TuningTask, found: Tuned) -> str:
     """Table of the present and the proposed setting, the objective, and sentences about the optimum."""
     label, unit, size = OBJECTIVES[task.objective]
@@ -32,23 +49,25 @@ def proposal_html(task: TuningTask, found: Tuned) -> str:
         now = _value(data, field)
         rows.append(
             (
-                field.split(".", 2)[-1],
+                field.rsplit(".", 1)[-1],
                 "default" if now is None else number(now, 4),
                 number(value, 4),
                 f"{number(low, 3)} to {number(high, 3)}",
             )
         )
     objective = [
-        f"{label}, {unit}",
+        f"{label} ({unit})",
         "none" if found.before is None else number(found.before / size, 4),
         number(found.objective / size, 4),
         "" if found.floor is None else f"floor {number(found.floor / size, 4)}",
     ]
-    head = ("", "now", "proposed", "within 5 % of the best")
+    method = task.scenario.method[int(task.vary[0].split(".")[1])].name
+    head = (f"Proposal for {method}", "now", "proposed", "range within 5 % of the best")
     cells = "".join(_row(row) for row in (*rows, objective))
-    table = f"<table><thead>{_row(head, 'th')}</thead><tbody>{cells}</tbody></table>"
-    sentences = "".join(f"<p>{escape(text)}</p>" for text in sentences_about(task, found))
-    return f'<div class="sb-table sb-proposal" style="padding:4px 10px">{table}{sentences}</div>'
+    table = f"<table style='{_TABLE}'><thead>{_row(head, 'th')}</thead><tbody>{cells}</tbody></table>"
+    sentences = "".join(f"<li>{escape(text)}</li>" for text in sentences_about(task, found))
+    listed = f'<ul style="{_LIST}">{sentences}</ul>' if sentences else ""
+    return f'<div class="sb-table sb-proposal" style="padding:4px 10px">{table}{listed}</div>'
 
 
 def sentences_about(task: TuningTask, found: Tuned) -> list[str]:
@@ -60,12 +79,27 @@ def sentences_about(task: TuningTask, found: Tuned) -> list[str]:
     if found.floor:
         told.append(f"The proposed setting is {number(found.objective / found.floor, 3)} times the floor.")
     for field in found.at_end_of_range:
-        told.append(f"{field} stands at the end of its range: the true optimum may lie outside.")
+        name = field.rsplit(".", 1)[-1]
+        told.append(f"{name} stands at the end of its range: the true optimum may lie outside.")
     for text in found.active:
         without = found.cost.get(text)
         more = "" if without is None else f" Without it the objective is {number(without / size, 4)} {unit}."
-        told.append(f"The requirement {text} holds the optimum back.{more}")
+        told.append(f"The requirement {requirement_words(text)} holds the optimum back.{more}")
     return told
+
+
+def requirement_words(text: str) -> str:
+    """Limit as the tab Requirements has it.
+
+    Examples
+    --------
+    >>> requirement_words("settling_s<=3600")
+    'settling ≤ 60 min'
+    """
+    limit = read_requirement(text)
+    label, unit, size = _REQUIREMENTS.get(limit.name, (limit.name, "", 1.0))
+    sign = "≤" if limit.sense == "<=" else "≥"
+    return f"{label} {sign} {number(limit.limit / size, 4)} {unit}".rstrip()
 
 
 def _value(data: object, field: str) -> float | None:
@@ -78,4 +112,10 @@ def _value(data: object, field: str) -> float | None:
 
 
 def _row(cells: tuple[str, ...] | list[str], tag: str = "td") -> str:
-    return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>"
+    weight = 600 if tag == "th" else 400
+    row = "".join(
+        f'<{tag} style="{_CELL};font-weight:{weight};text-align:{"right" if k else "left"}">'
+        f"{escape(cell)}</{tag}>"
+        for k, cell in enumerate(cells)
+    )
+    return f'<tr style="border-bottom:1px solid {style.GRID}">{row}</tr>'

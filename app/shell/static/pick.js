@@ -1,5 +1,6 @@
-// A click into the pole map is a wanted pole: its place, in units of the Schuler frequency, goes to the server as the
-// command "place re im". viser's plots send no click. A figure says by layout.meta.pick that it takes one.
+// A click into a plotly figure goes to the server as a command with the place that was clicked, "place x y", in the
+// numbers of the axes. viser's plots send no click. A figure says by layout.meta.pick that it takes one: the command's
+// name, and the panels, each by the names of its axes.
 (() => {
   const SLOP_PX = 4;
   const DOUBLE_MS = 300;
@@ -12,7 +13,7 @@
     const frame = plot.getBoundingClientRect();
     const x = event.clientX - frame.left;
     const y = event.clientY - frame.top;
-    for (const [xName, yName] of layout.meta.pick) {
+    for (const [xName, yName] of layout.meta.pick.panels) {
       const [xaxis, yaxis] = [layout[xName], layout[yName]];
       const [left, top] = [x - xaxis._offset, y - yaxis._offset];
       if (left < 0 || left > xaxis._length || top < 0 || top > yaxis._length) continue;
@@ -54,7 +55,7 @@
       const words = found.map((value) => value.toPrecision(6));
       waiting = setTimeout(() => {
         waiting = 0;
-        window.schuler.command("place", ...words);
+        window.schuler.command(was.plot._fullLayout.meta.pick.command, ...words);
       }, DOUBLE_MS);
     },
     true,

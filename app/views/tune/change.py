@@ -1,0 +1,50 @@
+"""A proposed network takes the place of a method's own: one step of undo."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from app.shell import notices
+from app.shell.view import Frame
+from navcore.foundation.errors import Fault, InputError
+from navcore.scenario.model import Scenario
+
+
+def change_network(frame: Frame, index: int, network: dict[str, Any], name: str) -> bool:
+    """Put a network into a method of the present scenario; False, with a notification, where it cannot be.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of the page.
+    index : int
+        Of the method.
+    network : dict
+        Block as in a scenario file.
+    name : str
+        Of the step in the history.
+    """
+    session = frame.session
+    with session.lock:
+        try:
+            changed = with_network(session.scenario, index, network)
+            session.change(changed, None, name=name, selected=index)
+        except InputError as error:
+            notices.tell(frame.client, "The proposal cannot be used", notices.fault_lines(error))
+            return False
+    return True
+
+
+def with_network(scenario: Scenario, index: int, network: dict[str, Any]) -> Scenario:
+    """Return a scenario with another network in one method.
+
+    Raises
+    ------
+    InputError
+        There is no such method any more, or the network does not go with it.
+    """
+    if not 0 <= index < len(scenario.method) or scenario.method[index].undamped:
+        raise InputError(Fault("", f"method.{index}", None, "is no method with a network any more"))
+    data = scenario.canonical()
+    data["method"][index]["network"] = dict(network)
+    return Scenario.parse(data)

@@ -1,0 +1,144 @@
+"""Controls of the Pareto fronts: the two objectives, begin and stop, and what a click on a point does."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from app.jobs.designer import FrontsTask
+from app.shell import notices
+from app.shell.view import Frame, if_user
+from app.views.tune.change import change_network
+from app.views.tune.fronts import AXES, COMMAND, nearest, setting_text
+from navcore.design.pareto import Pareto
+from navcore.foundation.errors import Fault, InputError
+
+ACROSS, UP = "across", "up"
+FIND, STOP = "Find the fronts", "Stop finding"
+_OLD = "of an earlier scenario: find the fronts again"
+_CLICK = "Click a point to put it into the method; undo takes it back."
+
+
+class FrontsPanel:
+    """Two choosers, a button, and the click on a point.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of the page.
+    """
+
+    def __init__(self, frame: Frame) -> None:
+        self.frame, self.session = frame, frame.session
+        self._fronts = frame.session.searches.fronts
+        frame.commands.register(COMMAND, self._pick)
+
+    def build(self) -> None:
+        """Make the controls."""
+        gui, words = self.frame.gui, {label: name for name, (label, _, _) in AXES.items()}
+        self._axes: dict[str, Any] = {
+            "front_x": gui.add_dropdown(ACROSS, tuple(words), hint="Objective on the horizontal axis."),
+            "front_y": gui.add_dropdown(UP, tuple(words), hint="Objective on the vertical axis."),
+        }
+        for field, box in self._axes.items():
+            box.on_update(
+                if_user(lambda field=field, box=box: self.frame.show(**{field: words[str(box.value)]}))
+            )
+        self._start = gui.add_button(
+            FIND, hint="Searches all networks in place of that of the method in hand, in the steady state."
+        )
+        self._stop = gui.add_button(STOP, color="orange", visible=False)
+        self._progress = gui.add_progress_bar(0.0, visible=False)
+        self._words = gui.add_html("", visible=False)
+        self._start.on_click(if_user(self.begin))
+        self._stop.on_click(if_user(self._fronts.cancel))
+
+    @property
+    def objectives(self) -> tuple[str, str]:
+        """What the display asks for on the axes."""
+        return self.session.display.front_x, self.session.display.front_y
+
+    @property
+    def found(self) -> Pareto | None:
+        """The last fronts, if they are of these objectives."""
+        result = self._fronts.result
+        return result if result is not None and result.objectives == self.objectives else None
+
+    @property
+    def note(self) -> str:
+        """What is to be heeded about the fronts that are shown."""
+        task = self._fronts.asked
+        old = self.found is not None and task is not None and not task.fits(self.session.scenario)
+        return _OLD if old else ""
+
+    @property
+    def method(self) -> int:
+        """Index of the method whose network the fronts would replace."""
+        task = self._fronts.asked
+        if self.found is None or task is None or task.method >= len(self.session.scenario.method):
+            return self.session.selected
+        return task.method
+
+    def show(self, *, chosen: bool) -> None:
+        """Show how far the search is; nothing while something else is chosen."""
+        fraction = self._fronts.fraction
+        for field, box in self._axes.items():
+            label = AXES[getattr(self.session.display, field)][0]
+            if box.value != label:
+                box.value = label
+        if fraction is not None:
+            self._progress.value = round(100.0 * fraction, 1)
+        html = notices.note(self._fronts.words, "warning")
+        if not html and self.found is not None:
+            html = notices.small(_CLICK)
+        html = f'<div class="sb-wide">{html}</div>' if html else ""
+        if self._words.content != html:
+            self._words.content = html
+        for handle, wanted in (
+            *((box, True) for box in self._axes.values()),
+            (self._start, fraction is None),
+            (self._stop, fraction is not None),
+            (self._progress, fraction is not None),
+            (self._words, bool(html)),
+        ):
+            if handle.visible != (chosen and wanted):
+                handle.visible = chosen and wanted
+
+    def begin(self) -> None:
+        """Find the fronts of the method in hand."""
+        session = self.session
+        if self.objectives[0] == self.objectives[1]:
+            told = [f"{AXES[self.objectives[0]][0]} is on both axes: choose two objectives."]
+            notices.tell(self.frame.client, "Nothing to weigh", told)
+            return
+        with session.lock:
+            task = FrontsTask(session.scenario, session.selected, self.objectives)
+        self._fronts.begin(task)
+
+    def _pick(self, text: str) -> None:
+        """Put the point that was clicked into the method."""
+        found, task = self.found, self._fronts.asked
+        if found is None or task is None:
+            return
+        name, point = nearest(found, *read_place(text))
+        told = f"{name} from the Pareto fronts"
+        if change_network(self.frame, task.method, point.network, told):
+            notices.tell(self.frame.client, told, [setting_text(point.network)], "info")
+
+
+def read_place(text: str) -> tuple[float, float]:
+    """Read ``x y``, two positive numbers.
+
+    Raises
+    ------
+    InputError
+        It is something else.
+    """
+    words = text.split()
+    try:
+        x, y = (float(word) for word in words)
+    except ValueError:
+        raise InputError(Fault("", "point", text[:60], "must be two numbers")) from None
+    if not (0.0 < x < math.inf and 0.0 < y < math.inf):
+        raise InputError(Fault("", "point", text[:60], "must be two positive numbers"))
+    return x, y

@@ -1,0 +1,227 @@
+"""Pareto fronts of all networks in one picture: the present design as a star, the floor shaded."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from app.plots import style
+from app.plots.plotly_data import PlotlyFigure, figure
+from app.plots.units import number
+from navcore.design.pareto import Pareto, Point
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.units import ARCSEC, MINUTE
+
+COMMAND = "front-point"
+"""Command with which a click asks for a point: ``front-point x y``, in the units of the axes."""
+AXES = {
+    "tilt_rms": ("tilt, RMS in the steady state", "arcsec", ARCSEC),
+    "velocity_rms": ("velocity, RMS in the steady state", "m/s", 1.0),
+    "settling_s": ("settling time", "min", MINUTE),
+    "log_tilt": ("largest tilt after a 1 m/s step of the log", "arcsec", ARCSEC),
+    "overshoot": ("largest velocity error after a 1 m/s step of the log", "m/s", 1.0),
+}
+"""Objectives that can be on an axis: label, unit, and the unit's size in SI."""
+_SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "pentagon", "hexagon", "triangle-down")
+_NEAR = 0.05
+"""A click takes the nearest point within this part of both axes."""
+_PAD = 0.06
+_LEFT_PX, _RIGHT_PX, _TOP_PX, _TICKS_PX, _LEGEND_ROW_PX = 66, 14, 30, 48, 21
+_EMPTY = "Each network in place of the selected method's: what is the least velocity error for a given tilt?"
+_NETWORK_COLORS = 1
+"""The first colour of the methods that a network has."""
+Pair = tuple[float, float]
+
+
+def setting_text(network: dict[str, Any]) -> str:
+    """Parameters of a network block, short.
+
+    Examples
+    --------
+    >>> setting_text({"id": "compass", "sigma": 0.002945, "xi": 2.79, "realisation": "network"})
+    'sigma = 0.002945, xi = 2.79'
+    """
+    numbers = (f"{k} = {number(v, 4)}" for k, v in network.items() if isinstance(v, int | float))
+    return ", ".join(numbers) or "no parameter"
+
+
+def fronts_figure(
+    found: Pareto | None,
+    objectives: tuple[str, str],
+    present: Pair | None,
+    method: str,
+    aspect: float = 0.46,
+    *,
+    width_px: float = 940.0,
+    note: str = "",
+) -> PlotlyFigure:
+    """Fronts on logarithmic axes.
+
+    Parameters
+    ----------
+    found : Pareto or None
+        Fronts; None before a search.
+    objectives : (str, str)
+        On the axes: keys of `AXES`.
+    present : (float, float) or None
+        Both objectives of the present design, SI.
+    method : str
+        Name of the method.
+    aspect, width_px : float
+        Height over width of the figure, and its expected width on screen.
+    note : str
+        What is to be heeded, above the plot.
+    """
+    (across, x_unit, x_size), (up, y_unit, y_size) = (AXES[name] for name in objectives)
+    fronts = {} if found is None else found.fronts
+    data = [
+        _front(name, points, k, (x_size, y_size))
+        for k, (name, points) in enumerate(fronts.items(), start=_NETWORK_COLORS)
+    ]
+    now = style.plain(f"now: {method}")
+    if present is not None:
+        data.append(_present(now, present, (x_size, y_size)))
+    ranges = _ranges(found, present, (x_size, y_size))
+    names = [*fronts, *([now] if present is not None else [])]
+    legend_px = _LEGEND_ROW_PX * style.legend_rows(names, width_px)
+    layout = style.layout(
+        meta={"aspect": aspect, "pick": {"command": COMMAND, "panels": (("xaxis", "yaxis"),)}},
+        hovermode="closest",
+        margin={"l": _LEFT_PX, "r": _RIGHT_PX, "t": _TOP_PX, "b": _TICKS_PX + legend_px},
+        legend=style.legend(traceorder="normal"),
+        xaxis=style.axis(f"{across} ({x_unit})", type="log", range=_log(ranges[0])),
+        yaxis=style.axis(f"{up} ({y_unit})", type="log", range=_log(ranges[1])),
+        annotations=[_above(note)] if note else [],
+        shapes=[],
+    )
+    if found is None:
+        layout["annotations"].append(_middle(_EMPTY))
+    else:
+        _add_floor(layout, found, ranges, (x_size, y_size))
+    return figure(data, layout)
+
+
+def nearest(found: Pareto, x: float, y: float) -> tuple[str, Point]:
+    """Network and point next to a place of the picture, given in the units of the axes.
+
+    Raises
+    ------
+    InputError
+        There is no point near it.
+    """
+    sizes = (AXES[found.objectives[0]][2], AXES[found.objectives[1]][2])
+    spans = [
+        math.log10(high / low) if high > low else 1.0 for low, high in _ranges(found, found.present, sizes)
+    ]
+    best: tuple[float, str, Point] | None = None
+    for name, points in found.fronts.items():
+        for point in points:
+            place = zip(point.values, (x, y), sizes, spans, strict=True)
+            away = max(
+                abs(math.log10(value / size / at)) / span if at > 0.0 else math.inf
+                for value, at, size, span in place
+            )
+            if best is None or away < best[0]:
+                best = away, name, point
+    if best is None or best[0] > _NEAR:
+        raise InputError(Fault("", "point", f"{x:.4g} {y:.4g}", "must be near a point of a front"))
+    return best[1], best[2]
+
+
+def _front(name: str, points: tuple[Point, ...], index: int, sizes: Pair) -> dict[str, Any]:
+    color = style.method_color(index)
+    return {
+        "type": "scatter",
+        "mode": "lines+markers",
+        "name": name,
+        "x": [point.values[0] / sizes[0] for point in points],
+        "y": [point.values[1] / sizes[1] for point in points],
+        "text": [f"{name}: {setting_text(point.network)}" for point in points],
+        "hovertemplate": "%{text}<br>%{x:.4g}, %{y:.4g}<extra></extra>",
+        "line": {"color": color, "width": 1.2},
+        "marker": {"color": color, "size": 9, "symbol": _SYMBOLS[index % len(_SYMBOLS)]},
+    }
+
+
+def _present(name: str, present: Pair, sizes: Pair) -> dict[str, Any]:
+    return {
+        "type": "scatter",
+        "mode": "markers",
+        "name": name,
+        "x": [present[0] / sizes[0]],
+        "y": [present[1] / sizes[1]],
+        "hovertemplate": f"{name}<br>%{{x:.4g}}, %{{y:.4g}}<extra></extra>",
+        "marker": {
+            "color": "white",
+            "size": 17,
+            "symbol": "star",
+            "line": {"color": style.INK, "width": 2},
+        },
+    }
+
+
+def _ranges(found: Pareto | None, present: Pair | None, sizes: Pair) -> tuple[Pair, Pair]:
+    """Ends of both axes, in their units: all points, the present design and the floor."""
+    ends = []
+    for axis in (0, 1):
+        values = [] if present is None else [present[axis]]
+        if found is not None:
+            values += [point.values[axis] for points in found.fronts.values() for point in points]
+            floor = found.floor[axis]
+            values += [floor] if floor else []
+        logs = [math.log10(value / sizes[axis]) for value in values] or [0.0, 1.0]
+        low, high = min(logs), max(logs)
+        pad = max(_PAD * (high - low), 0.03)
+        ends.append((10.0 ** (low - pad), 10.0 ** (high + pad)))
+    return ends[0], ends[1]
+
+
+def _log(ends: Pair) -> list[float]:
+    return [math.log10(ends[0]), math.log10(ends[1])]
+
+
+def _add_floor(layout: dict[str, Any], found: Pareto, ranges: tuple[Pair, Pair], sizes: Pair) -> None:
+    """Shade what no causal linear damping can reach."""
+    for axis, name in enumerate("xy"):
+        floor = found.floor[axis]
+        if not floor:
+            continue
+        other = "y" if name == "x" else "x"
+        level = floor / sizes[axis]
+        layout["shapes"] += [
+            {
+                "type": "rect",
+                **{f"{name}ref": name, f"{name}0": ranges[axis][0] / 10.0, f"{name}1": level},
+                **{f"{other}ref": f"{other} domain", f"{other}0": 0.0, f"{other}1": 1.0},
+                "fillcolor": style.GRID,
+                "line": {"width": 0},
+                "layer": "below",
+            },
+            {
+                "type": "line",
+                **{f"{name}ref": name, f"{name}0": level, f"{name}1": level},
+                **{f"{other}ref": f"{other} domain", f"{other}0": 0.0, f"{other}1": 1.0},
+                "line": {"color": style.INK, "width": 1.5, "dash": "dash"},
+                "layer": "below",
+            },
+        ]
+    if any(found.floor):
+        muted = {"size": style.FONT_SIZE - 1, "color": style.MUTED}
+        layout["annotations"].append(
+            style.text(
+                1.0, 1.0, "grey: below the floor, out of reach of any causal linear damping",
+                xref="x domain", yref="paper", xanchor="right", yanchor="bottom", font=muted,
+            )
+        )  # fmt: skip
+
+
+def _above(note: str) -> dict[str, Any]:
+    font = {"size": style.FONT_SIZE - 1, "color": style.DANGER}
+    return style.text(
+        0.0, 1.0, style.plain(note), xref="paper", yref="paper", xanchor="left", yanchor="bottom", font=font
+    )
+
+
+def _middle(words: str) -> dict[str, Any]:
+    font = {"size": style.FONT_SIZE, "color": style.MUTED}
+    return style.text(0.5, 0.5, words, xref="paper", yref="paper", font=font)

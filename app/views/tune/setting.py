@@ -1,0 +1,161 @@
+"""Search for the best setting of the method in hand, and accept or discard what comes out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from app.jobs.designer import TuningTask
+from app.session.requirements import Requirements, label_of
+from app.shell import notices
+from app.shell.view import Frame, if_user
+from app.views.tune.change import change_network
+from app.views.tune.proposal import OBJECTIVES, proposal_html
+from navcore.design.vary import tunable_fields
+from navcore.foundation.units import ARCSEC, MINUTE
+from navcore.scenario.model import Scenario
+
+OBJECTIVE, VARY, TUNE, STOP = "tune for", "what may vary", "Tune", "Stop tuning"
+ACCEPT, DISCARD = "Accept the proposal", "Discard"
+ALL = "all parameters of the network"
+_MEASURED = {
+    "settling_min": ("settling_s<=", MINUTE),
+    "damping_ratio": ("damping_ratio>=", 1.0),
+    "h0_deviation": ("h0_deviation<=", 1.0),
+    "log_tilt_arcsec": ("log_tilt<=", ARCSEC),
+    "position_rms_m": ("position_rms<=", 1.0),
+}
+"""Requirements that a search can measure, as `navcore.design.measures.read_requirement` reads them."""
+
+
+class SettingPanel:
+    """Objective, fields, progress and the proposal.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of the page.
+    """
+
+    def __init__(self, frame: Frame) -> None:
+        self.frame, self.session = frame, frame.session
+        self._designer = frame.session.searches.designer
+        self._fields: dict[str, tuple[str, ...]] = {}
+
+    def build(self) -> None:
+        """Make the controls."""
+        gui = self.frame.gui
+        self._fields = {}
+        self._objective: Any = gui.add_dropdown(
+            OBJECTIVE, tuple(label for label, _, _ in OBJECTIVES.values()), hint="What is to be least."
+        )
+        self._vary: Any = gui.add_dropdown(
+            VARY, (ALL,), hint="Fields of the method in hand that the search may move."
+        )
+        self._start = gui.add_button(
+            TUNE, hint="Searches for the setting that makes the objective least and keeps the requirements."
+        )
+        self._stop = gui.add_button(STOP, color="orange", visible=False)
+        self._progress = gui.add_progress_bar(0.0, visible=False)
+        self._told = gui.add_html("", visible=False)
+        self._found = gui.add_html("", visible=False)
+        self._accept = gui.add_button(ACCEPT, visible=False, hint="One step of undo takes it back.")
+        self._discard = gui.add_button(DISCARD, color="gray", visible=False)
+        words = {label: name for name, (label, _, _) in OBJECTIVES.items()}
+        self._objective.on_update(if_user(lambda: self.frame.show(objective=words[self._objective.value])))
+        self._start.on_click(if_user(self.begin))
+        self._stop.on_click(if_user(self._designer.cancel))
+        self._accept.on_click(if_user(self._take))
+        self._discard.on_click(if_user(self._designer.discard))
+
+    def show(self, *, chosen: bool) -> None:
+        """Show how far the search is, or its proposal; nothing while something else is ``chosen``."""
+        designer, scenario = self._designer, self.session.scenario
+        self._offer(scenario)
+        label = OBJECTIVES[self.session.display.objective][0]
+        if self._objective.value != label:
+            self._objective.value = label
+        running, result, task = designer.fraction is not None, designer.result, designer.asked
+        if designer.fraction is not None:
+            self._progress.value = round(100.0 * designer.fraction, 1)
+        proposed = not running and result is not None and task is not None
+        html = notices.note(designer.words, "warning")
+        if proposed and result is not None and task is not None:
+            if task.scenario != scenario:
+                html += notices.note(["The scenario has changed since this proposal was made."], "warning")
+            html += proposal_html(task, result)
+        _say(self._told, notices.small(requirements_told(self.session.display.requirements)))
+        _say(self._found, f'<div class="sb-wide">{html}</div>' if html else "")
+        for handle, wanted in (
+            (self._objective, True),
+            (self._vary, True),
+            (self._told, True),
+            (self._start, not running),
+            (self._progress, running),
+            (self._stop, running),
+            (self._found, bool(html)),
+            (self._accept, proposed),
+            (self._discard, proposed),
+        ):
+            if handle.visible != (chosen and wanted):
+                handle.visible = chosen and wanted
+
+    def _offer(self, scenario: Scenario) -> None:
+        """Offer the numeric fields of the network in hand."""
+        fields = tunable_fields(scenario, self.session.selected)
+        choices = {ALL: fields} | {field.rsplit(".", 1)[-1]: (field,) for field in fields}
+        if choices != self._fields:
+            self._fields = choices
+            self._vary.options = tuple(choices)
+            self._vary.value = ALL
+
+    def begin(self) -> None:
+        """Search for the best setting of the method in hand."""
+        session = self.session
+        with session.lock:
+            scenario, display = session.scenario, session.display
+            fields = self._fields.get(self._vary.value, ())
+        if not fields:
+            told = ["The network of this method has no parameter to vary."]
+            notices.tell(self.frame.client, "Nothing to tune", told)
+            return
+        self._designer.begin(
+            TuningTask(scenario, display.objective, fields, requirements_as_text(display.requirements))
+        )
+
+    def _take(self) -> None:
+        """Put the proposal into the present scenario."""
+        result, task = self._designer.result, self._designer.asked
+        if result is None or task is None:
+            return
+        index = int(task.vary[0].split(".")[1])
+        network = result.scenario.method[index].network.model_dump(mode="json", exclude_none=True)
+        if change_network(self.frame, index, network, "proposal of Tune"):
+            self._designer.discard()
+
+
+def _say(handle: Any, html: str) -> None:
+    if handle.content != html:
+        handle.content = html
+
+
+def requirements_as_text(requirements: Requirements) -> tuple[str, ...]:
+    """Limits of the tab Requirements as `navcore.design.measures.read_requirement` reads them, SI."""
+    return tuple(
+        f"{name}{limit * unit:.12g}"
+        for field, (name, unit) in _MEASURED.items()
+        if (limit := getattr(requirements, field)) is not None
+    )
+
+
+def requirements_told(requirements: Requirements) -> str:
+    """Which limits of the tab Requirements a search keeps, and which it cannot."""
+    given = [name for name in type(requirements).model_fields if getattr(requirements, name) is not None]
+    kept = [_limit(requirements, name) for name in given if name in _MEASURED]
+    other = [_limit(requirements, name) for name in given if name not in _MEASURED]
+    told = f"Requirements that are kept: {', '.join(kept)}." if kept else "No requirement is to be kept."
+    return f"{told} Not measured by a search: {', '.join(other)}." if other else told
+
+
+def _limit(requirements: Requirements, name: str) -> str:
+    label, _, unit = label_of(name).partition(" (")
+    return f"{label} {getattr(requirements, name):g} {unit.rstrip(')')}".rstrip()

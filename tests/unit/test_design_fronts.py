@@ -1,0 +1,82 @@
+"""Pareto fronts: the picture, which point a click means, and what the point does to the scenario."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from app.jobs.designer import FrontsTask
+from app.session.requirements import Requirements
+from app.views.tune.change import with_network
+from app.views.tune.finder import read_place
+from app.views.tune.fronts import fronts_figure, nearest
+from app.views.tune.setting import requirements_told
+from navcore.design.pareto import Pareto, measured, pareto
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import ARCSEC
+from navcore.scenario.file import load
+from navcore.scenario.model import Scenario
+
+OBJECTIVES = ("tilt_rms", "velocity_rms")
+
+
+@pytest.fixture(scope="module")
+def ship() -> Scenario:
+    return load("sikuliaq-like")
+
+
+@pytest.fixture(scope="module")
+def found(ship: Scenario) -> Pareto:
+    return pareto(ship, OBJECTIVES, 2, networks=("classic2", "classic3"))
+
+
+def test_the_picture_has_a_curve_a_network_the_star_and_the_floor(ship: Scenario, found: Pareto) -> None:
+    present = measured(ship, OBJECTIVES, 2)
+    assert present is not None and present == found.present
+    made = fronts_figure(found, OBJECTIVES, present, "complementary")
+    traces = {trace["name"]: trace for trace in made["data"]}
+    assert set(traces) == {"classic2", "classic3", "now: complementary"}
+    assert traces["now: complementary"]["x"] == [pytest.approx(present[0] / ARCSEC)]
+    assert traces["classic2"]["x"] == [pytest.approx(found.fronts["classic2"][0].values[0] / ARCSEC)]
+    layout = made["layout"]
+    dashed = [shape for shape in layout["shapes"] if shape["type"] == "line"]
+    assert [line["x0"] for line in dashed[:1]] == [pytest.approx(found.floor[0] / ARCSEC)]
+    for trace in made["data"]:
+        for axis in "xy":
+            low, high = layout[f"{axis}axis"]["range"]
+            assert all(low < math.log10(value) < high for value in trace[axis])
+    assert layout["meta"]["pick"]["panels"] == (("xaxis", "yaxis"),)
+
+
+def test_a_click_means_the_nearest_point_and_nothing_far_from_all(found: Pareto) -> None:
+    (point,) = found.fronts["classic3"]
+    x, y = point.values[0] / ARCSEC, point.values[1]
+    assert nearest(found, 1.01 * x, 0.99 * y) == ("classic3", point)
+    with pytest.raises(InputError, match="near a point"):
+        nearest(found, 10.0 * x, 10.0 * y)
+    assert read_place("3.5 0.1") == (3.5, 0.1)
+    for bad in ("", "1", "1 -2", "nan 1", "a b", "1 2 3", "0 1", "1e999 1"):
+        with pytest.raises(InputError):
+            read_place(bad)
+
+
+def test_a_point_changes_one_network_and_the_fronts_still_fit(ship: Scenario, found: Pareto) -> None:
+    task = FrontsTask(ship, 2, OBJECTIVES)
+    (point,) = found.fronts["classic3"]
+    changed = with_network(ship, 2, point.network)
+    assert changed.method[2].network.id == "classic3" and changed.method[:2] == ship.method[:2]
+    assert measured(changed, OBJECTIVES, 2) == pytest.approx(point.values)
+    assert task.fits(changed) and task.fits(ship)
+    louder = ship.model_copy(update={"reference": ship.reference.model_copy(update={"noise_mps": 1.0})})
+    assert not task.fits(louder)
+    with pytest.raises(InputError, match="no method with a network"):
+        with_network(ship, 0, point.network)
+
+
+def test_it_is_told_which_requirements_a_search_keeps() -> None:
+    told = requirements_told(Requirements(settling_min=60.0, overshoot_percent=20.0))
+    assert (
+        told == "Requirements that are kept: settling ≤ 60 min. Not measured by a search: overshoot ≤ 20 %."
+    )
+    assert requirements_told(Requirements()) == "No requirement is to be kept."
