@@ -30,6 +30,8 @@ class Display(BaseModel):
         What the frequency side shows: a key of `app.plots.transfer_views.SHOWN`.
     discrete : bool
         The measured gain and phase of the running filters are drawn on H.
+    optimal : bool
+        The optimal network for the scenario's sensors is drawn beside H.
     poles : str
         Whose poles the tab "Poles" shows: one level channel's, or the whole system's.
     locus : str
@@ -75,6 +77,7 @@ class Display(BaseModel):
 
     transfer: Annotated[str, AfterValidator(_known_transfer)] = FIRST_TRANSFER
     discrete: bool = False
+    optimal: bool = False
     poles: Literal["channel", "whole"] = "channel"
     locus: Annotated[str, Field(max_length=40)] = ""
     requirements: Requirements = Requirements()

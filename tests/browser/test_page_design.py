@@ -1,4 +1,4 @@
-"""Bands, Design and Tune in three windows: bars follow a slider, a proposal and a point are taken and undone."""
+"""Bands, Design and Tune in three windows: bars follow a slider; proposals and points are taken, undone."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ _SPOT = """name => {
   const trace = plot?._fullData?.find(t => t.name === name);
   if (!trace) return null;
   const frame = plot.getBoundingClientRect();
-  const {xaxis, yaxis} = plot._fullLayout;
-  return [frame.left + xaxis._offset + xaxis.d2p(trace.x[0]), frame.top + yaxis._offset + yaxis.d2p(trace.y[0])];
+  const {xaxis: x, yaxis: y} = plot._fullLayout;
+  return [frame.left + x._offset + x.d2p(trace.x[0]), frame.top + y._offset + y.d2p(trace.y[0])];
 }"""
 _PANELS = """() => [...document.querySelectorAll('.js-plotly-plot')]
   .filter(p => p.offsetParent !== null && p._fullLayout?.meta?.view === 'Design')

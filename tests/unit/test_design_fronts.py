@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
 from app.jobs.designer import FrontsTask
+from app.plots.plotly_data import values_of
 from app.session.requirements import Requirements
+from app.views.frequency.figure import bode, omega_grid
+from app.views.frequency.reference import optimal_reference
 from app.views.tune.change import with_network
 from app.views.tune.finder import read_place
 from app.views.tune.fronts import fronts_figure, nearest
 from app.views.tune.setting import requirements_told
 from navcore.design.pareto import Pareto, measured, pareto
+from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
+from navcore.networks.optimal import OptimalNetwork
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 
@@ -80,3 +86,20 @@ def test_it_is_told_which_requirements_a_search_keeps() -> None:
         told == "Requirements that are kept: settling ≤ 60 min. Not measured by a search: overshoot ≤ 20 %."
     )
     assert requirements_told(Requirements()) == "No requirement is to be kept."
+
+
+def test_the_optimal_network_is_a_dashed_reference_or_it_is_said_why_not(ship: Scenario) -> None:
+    run = simulate(ship)
+    reference = optimal_reference(ship)
+    assert reference.network is not None and "optimal for these sensors" in reference.label
+    traces = [t for t in bode(run, reference=reference)["data"] if t["legendgroup"] == "reference"]
+    assert {trace["yaxis"] for trace in traces} == {"y", "y2", "y3", "y4"}
+    h = reference.network.response(omega_grid(ship.omega_s))
+    np.testing.assert_allclose(values_of(traces[0]["y"]), 20.0 * np.log10(np.abs(h)), atol=1e-4)
+    figures = OptimalNetwork().with_sensors(ship.figures())
+    np.testing.assert_allclose(reference.network.num, figures.transfer(ship.omega_s).num)
+    silent = optimal_reference(load("zha-fast"))
+    assert silent.network is None
+    assert silent.label == "no optimal H: no random error of gyros and accelerometers and log"
+    (name,) = {t["name"] for t in bode(run, reference=silent)["data"] if t["legendgroup"] == "reference"}
+    assert name == silent.label

@@ -16,8 +16,11 @@ from app.plots.transfer_views import SHOWN as SHOWN
 from app.plots.transfer_views import TRANSFERS as TRANSFERS
 from app.plots.transfer_views import VIEWS, TransferView
 from app.plots.units import duration
+from app.views.frequency.curves import decibel, pair, phase
 from app.views.frequency.discrete import law_step_s, measured_gain
 from app.views.frequency.nyquist import nyquist
+from app.views.frequency.reference import Reference
+from navcore.analysis import frequency_response
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.units import DEG
@@ -28,12 +31,15 @@ _PLAIN_POINTS = 240
 _CLUSTER = np.logspace(-3.5, -0.5, 24)
 _NEAR = 0.02
 _MOST_DECADES = 8.0
-_NOTHING = packed(np.array([]))
 _BOLD_PX = 7.8
 """Mean width of a letter in a title."""
 _LONGEST_SILENCE = 22
 _COLUMN = 0.44
 _LEAST_COLUMN_PX = 240.0
+_REFERENCE = {
+    "legendgroup": "reference",
+    "line": {"color": style.INK, "width": style.LINE_WIDTH, "dash": "dash", "simplify": False},
+}
 _MUTED_FONT = {"size": style.FONT_SIZE, "color": style.MUTED}
 
 
@@ -62,7 +68,13 @@ def natural_frequencies(run: Run) -> dict[str, float]:
 
 
 def frequency_view(
-    run: Run, shown: str, aspect: float = 0.46, *, width_px: float = 940.0, discrete: bool = False
+    run: Run,
+    shown: str,
+    aspect: float = 0.46,
+    *,
+    width_px: float = 940.0,
+    discrete: bool = False,
+    reference: Reference | None = None,
 ) -> PlotlyFigure:
     """What the chooser of the frequency side asks for: `bode` with a transfer, or `nyquist`.
 
@@ -72,12 +84,12 @@ def frequency_view(
         Result.
     shown : str
         Key of `SHOWN`.
-    aspect, width_px, discrete
+    aspect, width_px, discrete, reference
         See `bode`.
     """
     if shown == OPEN_LOOP:
         return nyquist(run, aspect, width_px=width_px)
-    return bode(run, shown, aspect, width_px=width_px, discrete=discrete)
+    return bode(run, shown, aspect, width_px=width_px, discrete=discrete, reference=reference)
 
 
 def bode(
@@ -87,6 +99,7 @@ def bode(
     *,
     width_px: float = 940.0,
     discrete: bool = False,
+    reference: Reference | None = None,
 ) -> PlotlyFigure:
     """Bode plots of H and of one transfer for all methods.
 
@@ -102,6 +115,8 @@ def bode(
         Height / width of the figure.
     width_px : float
         Expected width on screen, for room for the legend.
+    reference : Reference, optional
+        A network that is drawn dashed beside those of the methods, as if it damped with the log.
     """
     view = VIEWS[transfer_id]
     omega_s = run.scenario.omega_s
@@ -109,27 +124,65 @@ def bode(
     smooth = np.abs(omega / omega_s - 1.0) > _NEAR
     data: list[dict[str, Any]] = []
     seen: dict[str, list[np.ndarray]] = {"y": [], "y2": [], "y3": [], "y4": []}
-    silent: list[str] = []
-    for i, method in enumerate(run.methods):
-        h = effective_network(method).response(omega)
-        level, angle = _decibel(h), _phase(h)
-        seen["y"].append(level[smooth])
-        seen["y2"].append(angle)
-        data += _pair(method, i, x, (level, angle), "x", ("y", "y2"), "%{y:.2f} dB")
-        value = frequency(method, view.source, view.output, omega)
-        if value is None:
-            silent.append(method.method.name)
-            data += _pair(method, i, _NOTHING, None, "x2", ("y3", "y4"), "")
-            continue
-        size = _decibel(value * view.scale) if _in_decibel(view) else np.abs(value) * view.scale
-        angle = _phase(value)
-        seen["y3"].append(size[smooth])
-        seen["y4"].append(angle)
+    also = [] if reference is None else [reference.label]
+    lines = [(_line(method, i), *_responses(method, view, omega)) for i, method in enumerate(run.methods)]
+    pairs = zip(run.methods, lines, strict=True)
+    silent = [method.method.name for method, (_, _, value) in pairs if value is None]
+    if reference is not None:
+        lines.append((_REFERENCE | {"name": reference.label}, *_of_reference(reference, view, omega)))
+    for line, h, value in lines:
+        curves = None if h is None else (decibel(h), phase(h))
+        _see(seen, curves, ("y", "y2"), smooth)
+        data += pair(line, x, curves, "x", ("y", "y2"), "%{y:.2f} dB")
         hover = "%{y:.2f} dB" if _in_decibel(view) else "%{y:.4g} " + view.unit
-        data += _pair(method, i, x, (size, angle), "x2", ("y3", "y4"), hover)
+        curves = None if value is None else (_magnitude(value, view), phase(value))
+        _see(seen, curves, ("y3", "y4"), smooth)
+        data += pair(line, x, curves, "x2", ("y3", "y4"), hover)
     if discrete:
         data += [dots for i, method in enumerate(run.methods) for dots in _discrete_dots(run, method, i)]
-    return figure(data, _layout(run, view, seen, silent, aspect, width_px))
+    return figure(data, _layout(run, view, seen, silent, also, aspect, width_px))
+
+
+_Responses = tuple[np.ndarray | None, np.ndarray | None]
+
+
+def _line(method: MethodRun, index: int) -> dict[str, Any]:
+    return {
+        "name": style.plain(method.method.name),
+        "legendgroup": str(index),
+        "line": {"color": style.method_color(index), "width": style.LINE_WIDTH, "simplify": False},
+    }
+
+
+def _responses(method: MethodRun, view: TransferView, omega: np.ndarray) -> _Responses:
+    h = effective_network(method).response(omega)
+    return h, frequency(method, view.source, view.output, omega)
+
+
+def _of_reference(reference: Reference, view: TransferView, omega: np.ndarray) -> _Responses:
+    """H and the transfer under external damping; none of them where there is no network."""
+    network = reference.network
+    if network is None:
+        return None, None
+    enters = view.source != "acceleration"
+    value = frequency_response(network, view.source, view.output, omega) if enters else None
+    return network.response(omega), value
+
+
+def _magnitude(value: np.ndarray, view: TransferView) -> np.ndarray:
+    return decibel(value * view.scale) if _in_decibel(view) else np.abs(value) * view.scale
+
+
+def _see(
+    seen: dict[str, list[np.ndarray]],
+    curves: tuple[np.ndarray, np.ndarray] | None,
+    yaxes: tuple[str, str],
+    smooth: np.ndarray,
+) -> None:
+    """Note what the axes have to hold; a resonance may leave them."""
+    if curves is not None:
+        seen[yaxes[0]].append(curves[0][smooth])
+        seen[yaxes[1]].append(curves[1])
 
 
 def _discrete_dots(run: Run, method: MethodRun, index: int) -> list[dict[str, Any]]:
@@ -140,7 +193,7 @@ def _discrete_dots(run: Run, method: MethodRun, index: int) -> list[dict[str, An
     omega, gain = measured
     grid = omega_grid(run.scenario.omega_s)
     network = effective_network(method)
-    beside = np.interp(np.log(omega), np.log(grid), _phase(network.response(grid)))
+    beside = np.interp(np.log(omega), np.log(grid), phase(network.response(grid)))
     angle = beside + np.rad2deg(np.angle(gain * np.exp(-1j * np.deg2rad(beside))))
     name = style.plain(method.method.name)
     common: dict[str, Any] = {
@@ -159,7 +212,7 @@ def _discrete_dots(run: Run, method: MethodRun, index: int) -> list[dict[str, An
         },
     }
     return [
-        common | {"y": packed(_decibel(gain)), "yaxis": "y", "hovertemplate": "%{y:.3f} dB measured"},
+        common | {"y": packed(decibel(gain)), "yaxis": "y", "hovertemplate": "%{y:.3f} dB measured"},
         common | {"y": packed(angle), "yaxis": "y2", "hovertemplate": "%{y:.2f}° measured"},
     ]
 
@@ -168,56 +221,17 @@ def _in_decibel(view: TransferView) -> bool:
     return view.unit.startswith("dB")
 
 
-def _decibel(value: np.ndarray) -> np.ndarray:
-    size = np.abs(value)
-    return 20.0 * np.log10(size, out=np.full(size.shape, -np.inf), where=size > 0.0)
-
-
-def _phase(value: np.ndarray) -> np.ndarray:
-    """Continuous phase in deg that starts within (-180, 180]; numpy's unwrap takes five times as long."""
-    turns = np.angle(value) / (2.0 * math.pi)
-    turns[1:] -= np.cumsum(np.rint(np.diff(turns)))
-    return 360.0 * turns
-
-
-def _pair(
-    method: MethodRun,
-    index: int,
-    x: dict[str, str],
-    curves: tuple[np.ndarray, np.ndarray] | None,
-    xaxis: str,
-    yaxes: tuple[str, str],
-    hover: str,
-) -> list[dict[str, Any]]:
-    """Magnitude and phase traces of one method in one column; empty ones keep its place in the legend."""
-    name = method.method.name
-    common: dict[str, Any] = {
-        "type": "scatter",
-        "mode": "lines",
-        "x": x,
-        "xaxis": xaxis,
-        "name": style.plain(name),
-        "legendgroup": str(index),
-        "line": {"color": style.method_color(index), "width": style.LINE_WIDTH, "simplify": False},
-    }
-    hovers = (hover, "%{y:.1f}°")
-    ys = (_NOTHING, _NOTHING) if curves is None else tuple(packed(curve) for curve in curves)
-    return [
-        common | {"y": y, "yaxis": yaxis, "hovertemplate": text, "showlegend": yaxis == "y"}
-        for y, yaxis, text in zip(ys, yaxes, hovers, strict=True)
-    ]
-
-
 def _layout(
     run: Run,
     view: TransferView,
     seen: dict[str, list[np.ndarray]],
     silent: list[str],
+    also: list[str],
     aspect: float,
     width_px: float,
 ) -> dict[str, Any]:
     names = [m.method.name for m in run.methods]
-    rows = style.legend_rows(names, width_px - 84.0)
+    rows = style.legend_rows([*names, *also], width_px - 84.0)
     column_px = _COLUMN * (width_px - 84.0)
     annotations = [
         _title("x domain", "<b>Damping network H(jω)</b>"),

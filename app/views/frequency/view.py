@@ -9,9 +9,10 @@ from app.shell.layout import TOOLS
 from app.shell.plotly_view import PlotlyView
 from app.shell.view import if_user
 from app.views.frequency.figure import frequency_view
+from app.views.frequency.reference import optimal_reference
 from navcore.engine.run import Run
 
-DISCRETE = "measured filter"
+DISCRETE, OPTIMAL = "measured filter", "optimal H"
 _IDS = {label: id for id, label in SHOWN.items()}
 
 
@@ -36,20 +37,31 @@ class FrequencyView(PlotlyView):
             hint="Dots on H: gain (dB) and phase (deg) of the filter that runs, at the step of the run, "
             "measured by driving it with sines. Gains that act as velocity feedback have no filter.",
         )  # fmt: skip
+        self._optimal = gui.add_checkbox(
+            OPTIMAL, display.optimal,
+            hint="Dashed: the network that is best for the sensors and the log of this scenario (LQG).",
+        )  # fmt: skip
         self._transfer.on_update(if_user(lambda: self.frame.show(transfer=_IDS[self._transfer.value])))
         self._discrete.on_update(if_user(lambda: self.frame.show(discrete=self._discrete.value)))
+        self._optimal.on_update(if_user(lambda: self.frame.show(optimal=self._optimal.value)))
 
     def follow_display(self) -> None:
         """Show the display's choices."""
         display = self.session.display
         self._transfer.value = SHOWN[display.transfer]
         self._discrete.value = display.discrete
+        self._optimal.value = display.optimal
 
     def figure(self, both: Run, found: Shown) -> PlotlyFigure:
         """Bode plots, or Nyquist plot."""
         display = found.display
         return frequency_view(
-            both, display.transfer, self.aspect, width_px=self.width_px, discrete=display.discrete
+            both,
+            display.transfer,
+            self.aspect,
+            width_px=self.width_px,
+            discrete=display.discrete,
+            reference=optimal_reference(found.run.scenario) if display.optimal else None,
         )
 
 

@@ -1,0 +1,53 @@
+"""The optimal network for the scenario's own sensors, as a reference curve beside the methods' H."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+from navcore.foundation.errors import InputError
+from navcore.networks.base import LinearNetwork
+from navcore.networks.lqg import SensorFigures
+from navcore.networks.optimal import OptimalNetwork
+from navcore.scenario.model import Scenario
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """What is drawn, or why there is nothing.
+
+    Attributes
+    ----------
+    label : str
+        In the legend.
+    network : LinearNetwork or None
+        None where these sensors have no optimal network.
+    """
+
+    label: str
+    network: LinearNetwork | None = None
+
+
+def optimal_reference(scenario: Scenario) -> Reference:
+    """Optimal network (theory.md 17) with its default weights, for the scenario's own sensors and log."""
+    return _reference(scenario.figures(), scenario.reference.kind, scenario.omega_s)
+
+
+@lru_cache(maxsize=16)
+def _reference(figures: SensorFigures, log: str, omega_s: float) -> Reference:
+    if log == "none":
+        return Reference("no optimal H: the scenario has no log")
+    missing = [
+        what
+        for what, there in (("gyros and accelerometers", figures.inertial), ("log", figures.log))
+        if not there
+    ]
+    if missing:
+        return Reference(f"no optimal H: no random error of {' and '.join(missing)}")
+    try:
+        found = OptimalNetwork().with_sensors(figures)
+        network = found.transfer(omega_s)
+    except InputError as error:
+        return Reference(f"no optimal H: {error.faults[0].allowed}")
+    fragile = ", fragile" if network.warnings else ""
+    return Reference(f"optimal for these sensors (ρ = {found.rho:g}{fragile})", network)
