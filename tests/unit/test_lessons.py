@@ -49,8 +49,8 @@ def run_of(lesson: str, index: int) -> Run:
     return simulate(next(other for other in LESSONS if other.id == lesson).scenario_of(index))
 
 
-def test_there_are_the_eight_lessons_with_questions_and_actions() -> None:
-    assert [lesson.id[0] for lesson in LESSONS] == list("12345678")
+def test_there_are_the_nine_lessons_with_questions_and_actions() -> None:
+    assert [lesson.id[0] for lesson in LESSONS] == list("123456789")
     for lesson in LESSONS:
         assert sum(step.question is not None for step in lesson.steps) >= 3, lesson.id
         assert all(step.action is not None for step in lesson.steps), lesson.id
@@ -112,6 +112,11 @@ def test_the_numbers_are_those_of_the_physics() -> None:
     assert beat_h == pytest.approx(named("foucault.quarter", run).value * 2.0, rel=1e-9)
     assert named("averaging.left", run).value == pytest.approx(6.6, abs=0.05)
     assert named("day.period", run).value == pytest.approx(23.934, abs=1e-3)
+    # the example ship of theory.md 20
+    run = run_of(LESSONS[8].id, 0)
+    assert named("floor.tilt", run).value == pytest.approx(4.699, rel=0.005)
+    assert named("budget.0.tilt", run).value == pytest.approx(13.26, rel=0.005)
+    assert named("budget.0.log_drift", run).value == pytest.approx(100.0 * (11.29 / 13.26) ** 2, rel=0.01)
     run = run_of(LESSONS[3].id, 1)
     assert named("loop.1.h0", run).value == pytest.approx(0.648, abs=1e-3)
     assert named("error.1.dvn.final", run).value == pytest.approx(-0.543 * 0.5, abs=1e-3)
@@ -130,7 +135,7 @@ def test_numbers_are_written_to_be_read(value: float, unit: str, text: str) -> N
     "name",
     ["", "schuler", "schuler.x", "error.9.phi_e.max", "error.0.phi_e.x", "error.-1.phi_e.max",
      "loop.0.__class__", "setting.__class__.x", "setting.method.0.name", "setting.run.earth",
-     "setting.method.7.x", "curve.0.phi_e.x"],
+     "setting.method.7.x", "curve.0.phi_e.x", "floor.x", "budget.9.tilt", "budget.x.tilt", "budget.0.x"],
 )  # fmt: skip
 def test_what_is_no_name_is_refused(name: str) -> None:
     with pytest.raises(KeyError):

@@ -67,7 +67,7 @@ class Action(_Part):
 
     set: tuple[str, ...] = ()
     tabs: tuple[str, ...] = ()
-    display: dict[str, str | float] = Field(default_factory=dict)
+    display: dict[str, bool | str | float] = Field(default_factory=dict)
     method: int | None = Field(default=None, ge=0)
     sliders: tuple[str, ...] = ()
 

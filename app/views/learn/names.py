@@ -16,6 +16,10 @@ number, and nothing in a lesson is evaluated as code. ``N`` stands for the numbe
 ``whole.N.days``, ``.slope``         e-folding time of the 24 h mode (days), growing or not; H'(0) (s)
 ``error.N.Q.S``                     statistics of a quantity: Q of `QUANTITIES`, S of `STATISTICS`
 ``curve.N.Q.period``                twice the mean distance of its zero crossings (min)
+``floor.tilt``, ``.velocity``       least steady error that any damping can reach (arcsec, m/s)
+``budget.N.tilt``, ``.velocity``    steady error of one level channel at rest (arcsec, m/s)
+``budget.N.tilt_times``             the same over the floor; ``velocity_times`` too
+``budget.N.SOURCE``                 part of a source in the variance of the tilt (%)
 ``setting.PATH``                    a number of the scenario, in the unit of its field
 ==================================  ====================================================================
 """
@@ -189,6 +193,33 @@ def _curve(rest: str, run: Run) -> Named:
     return Named(2.0 * float(np.mean(np.diff(times))) / _MIN, "min", _LINE_DIGITS)
 
 
+_BUDGETED = {"tilt": ("tilt_rad", ARCSEC, '"'), "velocity": ("velocity_mps", 1.0, "m/s")}
+
+
+def _floor(rest: str, run: Run) -> Named:
+    from app.plots.budgets import steady_budget
+
+    field, unit, unit_name = _BUDGETED[rest]
+    return Named(getattr(steady_budget(run.scenario).floor.rms, field) / unit, unit_name)
+
+
+def _budget(rest: str, run: Run) -> Named:
+    from app.plots.budgets import steady_budget
+
+    number, _, what = rest.partition(".")
+    found = steady_budget(run.scenario)
+    if not number.isdigit():
+        raise KeyError(number)
+    method = found.methods[int(number)]
+    if what in _BUDGETED:
+        field, unit, unit_name = _BUDGETED[what]
+        return Named(getattr(method.total.rms, field) / unit, unit_name)
+    if what.endswith("_times"):
+        return Named(float(found.times_floor(method)[what.removesuffix("_times")] or math.inf), "")
+    own, total = method.sources[what].rms.tilt_rad, method.total.rms.tilt_rad
+    return Named(100.0 * (own / total) ** 2, "%")
+
+
 def _setting(rest: str, run: Run) -> Named:
     place: Any = run.scenario
     unit = ""
@@ -212,6 +243,8 @@ _FINDERS = {
     "whole": _whole,
     "error": _error,
     "curve": _curve,
+    "floor": _floor,
+    "budget": _budget,
     "setting": _setting,
 }
 
