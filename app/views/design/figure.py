@@ -40,6 +40,8 @@ QUANTITIES = (
     ("position_m", "Position", "m", 1.0),
 )
 _HEADROOM = 1.2
+_CLEAR_PX = 12
+"""Words in the place of a bar keep clear of a low floor."""
 _LEFT_PX, _RIGHT_PX, _TOP_PX = 62, 12, 34
 _TICKS_PX, _LEGEND_ROW_PX = 34, 21
 
@@ -152,6 +154,7 @@ def _tops(budget: Budget, key: str, unit: float, suffix: str) -> list[dict[str, 
                 xref=f"x{suffix}",
                 yref=f"y{suffix}",
                 yanchor="bottom",
+                yshift=_CLEAR_PX if total is None else 0,
                 font={"size": style.FONT_SIZE - 1, "color": style.INK},
             )
         )
