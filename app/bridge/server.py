@@ -28,12 +28,6 @@ VISER_VERSION = "1.1.1"
 SOCKET_SCRIPT = Path(__file__).parent / "socket.js"
 """Script for the page, to run before viser's: ``schuler.tell(control, value)`` past viser's throttle."""
 
-PAGE_SCRIPT_HASHES = (
-    # The loader that stands in the page, and the program it unpacks and inserts.
-    "sha256-5iRcjB7VnwnYpbUpHa15FmjNIRu22hIQnvWuocHMxJw=",
-    "sha256-o/BTEGoB4UnTxqb+3RxwUFQZkWXpqUxouHkbDNrAkqE=",
-)
-
 FRAME_TYPES: dict[str, type] = {
     # What a browser may send: every message viser has a handler for, except the share tunnel (opens a public
     # address) and forms (repeated to all visitors and kept for ever under any name the sender invents).
@@ -73,11 +67,6 @@ def require_pinned_version() -> None:
     if viser.__version__ != VISER_VERSION:
         wanted = f"must be {VISER_VERSION}: make setup"
         raise InputError([Fault("installation", "viser", viser.__version__, wanted)])
-
-
-def page_html() -> str:
-    """Return viser's page, which viser serves only under ``/`` and with no place for scripts of ours."""
-    return (Path(viser.__file__).parent / "client" / "build" / "index.html").read_text(encoding="utf-8")
 
 
 def make_server(serve: Callable[..., Any], label: str) -> viser.ViserServer:

@@ -150,7 +150,7 @@ def _answer(status: int, phrase: str, body: bytes, kind: str = "text/plain; char
         "Content-Length": str(len(body)),
         "Cache-Control": "no-store",
         "Connection": "close",
-        **security_headers((), ""),
+        **security_headers(""),
     }
     lines = [f"HTTP/1.1 {status} {phrase}", *(f"{name}: {value}" for name, value in headers.items()), "", ""]
     return "\r\n".join(lines).encode() + body

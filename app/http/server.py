@@ -188,7 +188,6 @@ def start(
             forwarded=inner is not None,
             throttle=Throttle(limits.token_guesses, limits.token_refill_s),
             version=__version__,
-            script_hashes=bridge.PAGE_SCRIPT_HASHES,
             load_page=lambda: build_page([*FIRST_SCRIPTS, *page_scripts], [plotly_script()], _TITLE),
         )
         door = Door(limits)

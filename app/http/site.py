@@ -49,8 +49,6 @@ class Site:
         Of guesses of the token.
     version : str
         For ``/healthz``.
-    script_hashes : tuple of str
-        Of the page's inline scripts.
     load_page : callable
         Makes the page at the first request for it.
     forwarded : bool
@@ -64,7 +62,6 @@ class Site:
     places: Places
     throttle: Throttle
     version: str
-    script_hashes: tuple[str, ...]
     load_page: Callable[[], Page]
     forwarded: bool = False
     metrics: Callable[[], bytes] | None = None
@@ -124,7 +121,7 @@ class Site:
             return
         host = request.headers.get_all("Host")
         known = host[0].lower() if len(host) == 1 and host[0].lower() in self.access.hosts else ""
-        for name, value in security_headers(self.script_hashes, known).items():
+        for name, value in security_headers(known).items():
             response.headers[name] = value
 
     def _open(self, connection: Connection, path: str) -> Response | None:
@@ -160,9 +157,9 @@ class Site:
         if path == "/metrics" and self.metrics is not None:
             return _respond(HTTPStatus.OK, await asyncio.to_thread(self.metrics), _METRICS)
         if path.startswith("/static/"):
-            script = (await self._loaded()).scripts.get(path.removeprefix("/static/"))
-            if script is not None:
-                return await _serve(script, headers, _FOR_EVER)
+            file = (await self._loaded()).files.get(path.removeprefix("/static/"))
+            if file is not None:
+                return await _serve(file, headers, _FOR_EVER)
         return _not_found()
 
     def _come_back(self, id: str) -> Response:

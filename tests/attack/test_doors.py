@@ -144,11 +144,16 @@ def test_page_and_its_scripts_are_served_plain_and_compressed(bench: Bench) -> N
     assert zipped.headers["Content-Encoding"] == "gzip"
     assert gzip.decompress(zipped.body) == plain.body
     assert b"<title>Schuler Bench</title>" in plain.body
-    scripts = re.findall(rb'<script src="\.\./\.\./(static/[^"]+)">', plain.body)
-    assert [name.split(b".")[0] for name in scripts] == [b"static/first", b"static/plotly"]
-    for name in scripts:
+    assert b"<script>" not in plain.body and b"javascript:" not in plain.body
+    named = re.findall(rb'(?:src|href)="\.\./\.\./(static/[^"]+)"', plain.body)
+    kinds = dict(js="text/javascript", css="text/css", wasm="application/wasm")
+    assert {name.split(b".")[0] for name in named} == {
+        b"static/bench", b"static/viser", b"static/zstd", b"static/start", b"static/plotly",
+    }  # fmt: skip
+    for name in named:
         answer = ask(bench.port, "/" + name.decode())
-        assert answer.status == 200 and answer.headers["Content-Type"].startswith("text/javascript")
+        suffix = name.decode().rpartition(".")[2]
+        assert answer.status == 200 and answer.headers["Content-Type"].startswith(kinds[suffix])
         assert "immutable" in answer.headers["Cache-Control"]
 
 

@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import asyncio
-import base64
-import hashlib
 import inspect
 import re
 import threading
 import types
 from collections import deque
 from collections.abc import Callable
+from pathlib import Path
 
 import msgspec
 import numpy as np
 import pytest
 import viser
-import zstandard
 from viser import _messages, infra
 from viser.infra import _infra
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
-from app.bridge import controls, mends, server
+from app.bridge import controls, mends, program, server
 from app.bridge.pool import FairPool
 from app.http.page import FIRST_SCRIPTS, build_page, plotly_script
 from navcore.foundation.errors import InputError
@@ -29,24 +27,6 @@ from tests.attack.conftest import Bench, eventually
 from tests.attack.wire import visit
 
 pytestmark = pytest.mark.attack
-
-BASE_88 = "".join(chr(code) for code in range(0x21, 0x7F) if chr(code) not in "\"&<>'`")
-
-
-def unpack(text: str) -> bytes:
-    """The packing of viser's page: five characters to the base 88 are four bytes."""
-    digits = {character: value for value, character in enumerate(BASE_88)}
-    out = bytearray()
-    for start in range(0, len(text), 5):
-        group, number = text[start : start + 5], 0
-        for character in group:
-            number = number * 88 + digits[character]
-        out += number.to_bytes(len(group) - 1, "big")
-    return bytes(out)
-
-
-def digest(content: bytes) -> str:
-    return "sha256-" + base64.b64encode(hashlib.sha256(content).digest()).decode()
 
 
 def test_pinned_version(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -56,16 +36,41 @@ def test_pinned_version(monkeypatch: pytest.MonkeyPatch) -> None:
         server.require_pinned_version()
 
 
-def test_hashes_are_those_of_the_scripts_in_the_page() -> None:
-    page = server.page_html()
-    ((attributes, loader),) = re.findall(r"<script ([^>]*)>(.*?)</script>", page, re.DOTALL)
+def test_page_is_unpacked_as_its_own_loader_does_it() -> None:
+    page = (Path(viser.__file__).parent / "client" / "build" / "index.html").read_text(encoding="utf-8")
+    ((attributes, _),) = re.findall(r"<script ([^>]*)>(.*?)</script>", page, re.DOTALL)
     data = dict(re.findall(r'data-(\w+)="([^"]*)"', attributes))
-    whole = zstandard.ZstdDecompressor().decompress(unpack(data["p"]), max_output_size=1 << 25)
-    style = int(data["ss"])
-    program = whole[style : style + int(data["cs"])]
-    assert server.PAGE_SCRIPT_HASHES == (digest(loader.encode()), digest(program))
+    last = data["p"][len(data["p"]) // 5 * 5 - 4000 :]
+    assert program.unpack(last) == unpacked_slowly(last)
+    found = program.viser_program()
+    longer = sum(len(after) - len(before) for before, after in program.MENDS)
+    assert (len(found.style), len(found.program)) == (int(data["ss"]), int(data["cs"]) + longer)
+    assert found.style.decode() and found.program.decode()
+    assert found.zstd[:4] == b"\0asm" and b"ZSTD_decompress" in found.zstd
     # What socket.js says to the worker that holds viser's websocket, and how it knows it.
-    assert b"type:`set_server`" in program and b"type:`send`" in program
+    assert b"type:`set_server`" in found.program and b"type:`send`" in found.program
+    assert b"globalThis.__viserZstdWasm" in found.program
+
+
+def unpacked_slowly(text: str) -> bytes:
+    """The packing of viser's page: five characters to the base 88 are four bytes."""
+    digits = [chr(code) for code in range(0x21, 0x7F) if chr(code) not in "\"&<>'`"]
+    out = bytearray()
+    for start in range(0, len(text), 5):
+        group, number = text[start : start + 5], 0
+        for character in group:
+            number = number * 88 + digits.index(character)
+        out += number.to_bytes(len(group) - 1, "big")
+    return bytes(out)
+
+
+def test_a_page_that_cannot_be_mended_is_refused() -> None:
+    before, after = zip(*program.MENDS, strict=True)
+    assert program.mended("|".join(before).encode()) == "|".join(after).encode()
+    with pytest.raises(InputError, match="Bfe=250"):
+        program.mended("|".join(before[1:]).encode())
+    with pytest.raises(InputError, match="Bfe=250"):
+        program.mended("|".join([*before, before[0]]).encode())
 
 
 def test_numbers_of_a_plot_are_sent_once_in_single_precision(bench: Bench) -> None:
@@ -86,13 +91,13 @@ def test_numbers_of_a_plot_are_sent_once_in_single_precision(bench: Bench) -> No
 
 
 def test_page_has_one_title_and_our_scripts_come_first() -> None:
-    assert server.page_html().count("<title>Viser</title>") == 1
+    assert program.viser_program().html.count("<title>Viser</title>") == 1
     page = build_page(FIRST_SCRIPTS, [plotly_script()], "Bench")
     html = page.html.plain.decode()
-    assert 0 < html.index("../../static/first") < html.index("data-p=")
+    assert 0 < html.index("../../static/bench") < html.index("../../static/start")
     assert re.search(r'<link [^>]*data-later href="../../static/plotly.min[^"]*">', html)
-    *_, script = page.scripts.values()
-    assert b"plotly.js v" in script.plain[:200]
+    (plotly,) = (file for name, file in page.files.items() if name.startswith("plotly.min"))
+    assert b"plotly.js v" in plotly.plain[:200]
 
 
 def test_messages_a_browser_sends_are_all_known() -> None:

@@ -1,0 +1,112 @@
+"""viser's page, unpacked into files of its own, and mended in what makes it draw late or too often.
+
+viser serves one page with its program packed into an attribute: every visit decodes and decompresses it
+before anything can run, 2.5 MB, and the browser can keep neither the file nor what it has compiled. Here the
+server unpacks it once, so that the browser loads it beside our scripts and keeps it.
+"""
+
+from __future__ import annotations
+
+import gzip
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import viser
+import zstandard
+
+from navcore.foundation.errors import Fault, InputError
+
+_DIGITS = "".join(chr(code) for code in range(0x21, 0x7F) if chr(code) not in "\"&<>'`")
+_LARGEST = 1 << 25
+
+MENDS = (
+    # After each change the 3D view is drawn for 250 ms, whether or not anything moves any more: some 15
+    # frames, and each costs 30 ms without a graphics card. What is made late asks for its own frames.
+    ("Bfe=250,", "Bfe=40,"),
+    # Messages that follow each other within 100 ms are held back, so that they are shown as evenly as they
+    # were sent. Our server sends a picture when the page has painted the one before: waiting delays it.
+    ("void 0||p>100||d-l.jsTimeMinusPythonTime", "void 0||p>=0||d-l.jsTimeMinusPythonTime"),
+)
+"""Text of viser's program and what stands in its place."""
+
+
+@dataclass(frozen=True)
+class Program:
+    """What viser's page consists of.
+
+    Attributes
+    ----------
+    html : str
+        The page, without program and style.
+    program : bytes
+        JavaScript module, mended.
+    style : bytes
+        Style sheet.
+    zstd : bytes
+        WebAssembly with which the program decompresses messages: it looks for the compiled module in
+        ``globalThis.__viserZstdWasm``.
+    """
+
+    html: str
+    program: bytes
+    style: bytes
+    zstd: bytes
+
+
+def viser_program() -> Program:
+    """Unpack and mend the page of the installed viser.
+
+    Raises
+    ------
+    InputError
+        The page is not as it was when this was written.
+    """
+    page = (Path(viser.__file__).parent / "client" / "build" / "index.html").read_text(encoding="utf-8")
+    found = re.search(r"<script ([^>]*)>(.*?)</script>", page, re.DOTALL)
+    wasm = found and re.search(r'gzWasm="([^"]*)"', found[2])
+    packed = dict(re.findall(r'data-(\w+)="([^"]*)"', found[1])) if found else {}
+    if found is None or not wasm or not {"p", "ss", "cs"} <= packed.keys():
+        raise _changed("the packed program")
+    whole = zstandard.ZstdDecompressor().decompress(unpack(packed["p"]), max_output_size=_LARGEST)
+    style, program = int(packed["ss"]), int(packed["cs"])
+    return Program(
+        html=page[: found.start()] + page[found.end() :],
+        program=mended(whole[style : style + program]),
+        style=whole[:style],
+        zstd=gzip.decompress(unpack(wasm[1].replace("\\\\", "\\"))),
+    )
+
+
+def mended(program: bytes) -> bytes:
+    """Put `MENDS` into viser's program.
+
+    Raises
+    ------
+    InputError
+        A text is not there exactly once.
+    """
+    for before, after in MENDS:
+        if program.count(before.encode()) != 1:
+            raise _changed(before)
+        program = program.replace(before.encode(), after.encode())
+    return program
+
+
+def unpack(text: str) -> bytes:
+    """Undo viser's packing: five digits to the base 88 are four bytes, the most significant first."""
+    value = np.zeros(128, dtype=np.uint64)
+    value[[ord(digit) for digit in _DIGITS]] = np.arange(len(_DIGITS), dtype=np.uint64)
+    digits = value[np.frombuffer(text.encode("ascii"), dtype=np.uint8)]
+    whole = len(digits) // 5 * 5
+    powers = np.array([88**4, 88**3, 88**2, 88, 1], dtype=np.uint64)
+    content = (digits[:whole].reshape(-1, 5) @ powers).astype(">u4").tobytes()
+    rest = 0
+    for digit in digits[whole:]:
+        rest = 88 * rest + int(digit)
+    return content + rest.to_bytes(max(len(digits) - whole - 1, 0), "big")
+
+
+def _changed(what: str) -> InputError:
+    return InputError([Fault("installation", "viser's page", what, "not as in viser 1.1.1: make setup")])
