@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import types
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel
@@ -153,11 +154,17 @@ def fields(model: type[BaseModel], path: Path, prefix: str = "") -> list[FieldSp
     prefix : str
         Put before each label, so that labels stay unique on the page.
     """
-    found: list[FieldSpec] = []
-    for name, info in model.model_fields.items():
-        if name not in _LEFT_OUT:
-            found += _field(name, info, (*path, name), prefix)
-    return found
+    return list(_fields(model, path, prefix))
+
+
+@lru_cache(maxsize=256)
+def _fields(model: type[BaseModel], path: Path, prefix: str) -> tuple[FieldSpec, ...]:
+    return tuple(
+        spec
+        for name, info in model.model_fields.items()
+        if name not in _LEFT_OUT
+        for spec in _field(name, info, (*path, name), prefix)
+    )
 
 
 def choice(model: type[BaseModel], name: str, path: Path, label: str = "") -> FieldSpec:

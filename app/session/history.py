@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from navcore.scenario.model import Scenario
@@ -204,8 +205,9 @@ def _named(field: str, scenario: Scenario) -> str:
     return f"{inner.removeprefix('network.')} of {_short(scenario.method[int(index)].name)}"
 
 
-def fields_of(scenario: Scenario) -> dict[str, Any]:
-    """Values of all fields by dotted path, e.g. ``method.0.network.xi``."""
+@lru_cache(maxsize=32)
+def fields_of(scenario: Scenario) -> Mapping[str, Any]:
+    """Values of all fields by dotted path, e.g. ``method.0.network.xi``; kept for the last few scenarios."""
     return _flat(scenario.canonical())
 
 

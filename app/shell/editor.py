@@ -55,6 +55,8 @@ class Editor:
     ) -> None:
         self.moved: Control | None = None
         """The control the user has in hand."""
+        self.by_slider = False
+        """It is moved by its slider, so that its field keeps its place among the others."""
         self._client, self._session, self._by = client, session, by
         self._controls = controls
         self._closed = False
@@ -69,6 +71,7 @@ class Editor:
                 return
             shown = control.take(by_slider)
             self._touched(control)
+            self.by_slider = by_slider
             try:
                 value = control.read(shown)
                 changed = self._changed(control, value)

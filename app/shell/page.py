@@ -26,6 +26,7 @@ from app.shell import notices
 from app.shell.column import Column
 from app.shell.commands import Commands
 from app.shell.editor import Editor
+from app.shell.following import Following
 from app.shell.header import HeaderPanel
 from app.shell.layout import layout_for, read_state
 from app.shell.opening import Opening, as_json
@@ -75,6 +76,7 @@ class Page:
         self._front: frozenset[str] = frozenset()
         self._views: list[View] = []
         self._pace = Pace(self._draw)
+        self._follow = Following(self._refresh_late)
         self._build(kinds)
 
     # ------------------------------------------------------------ building
@@ -152,6 +154,7 @@ class Page:
             self._closed = True
         self.editor.close()
         self._pace.close()
+        self._follow.close()
         self.commands.close()
         for view in self._views:
             view.close()
@@ -169,6 +172,10 @@ class Page:
         """Show the session's scenario in all controls."""
         if by is not self:
             self.editor.moved = None
+        elif self.editor.by_slider:
+            # The other controls follow with the picture: a slider gives twenty values in a second.
+            self._follow.ask()
+            return
         with self.client.atomic():
             self.refresh()
         if self._selected != self.session.selected:
@@ -178,12 +185,12 @@ class Page:
 
     def refresh(self) -> None:
         """Let every view show the session's scenario; the control in hand stays as it is."""
+        self._follow.done()
         self.header.show_scenario()
         for view in self._views:
             view.follow_scenario()
             view.follow_jobs()
-        if not self._pace.moving:
-            self.palette.show()
+        self.palette.show()
 
     def display_changed(self, by: object) -> None:
         """Draw the pictures in front as the session's display says."""
@@ -295,7 +302,10 @@ class Page:
             self.column.mark_stale()
             self.column.show(found, pictures, wanted)
             if whole:
-                self.palette.show()
+                if self._follow.due:
+                    self.refresh()
+                else:
+                    self.palette.show()
                 for view in self._views:
                     view.draw(found)
                     view.follow_jobs()
@@ -313,6 +323,17 @@ class Page:
     def _again(self) -> None:
         with self.session.lock, self.client.atomic():
             self.refresh()
+
+    def _refresh_late(self) -> None:
+        """Let the controls follow a slider whose picture takes its time; while it moves they wait for it."""
+        if self._pace.moving:
+            self._follow.ask()
+            return
+        with self.session.lock, self.client.atomic():
+            if self._closed or not self._follow.due:
+                return
+            self.refresh()
+        self.client.flush()
 
     def _again_pictures(self) -> None:
         """Make the pictures in front anew, from the run there is."""

@@ -49,7 +49,7 @@ class SceneDrawer:
     def __init__(self, scene: viser.SceneApi) -> None:
         self._scene = scene
         self._nodes: dict[str, Any] = {}
-        self._labels: dict[str, tuple[SceneLabel, ...]] = {}
+        self._labels: dict[str, SceneLabel] = {}
         self._drawn: TrackScene | None = None
         self._selected = 0
         self._past: dict[str, tuple[object, int]] = {}
@@ -225,6 +225,9 @@ class SceneDrawer:
         self, name: str, label: SceneLabel, size: float = _LABEL, anchor: Anchor = "top-center"
     ) -> None:
         node = self._nodes.get(name)
+        if node is not None and self._labels.get(name) == label:
+            return
+        self._labels[name] = label
         if node is None:
             self._nodes[name] = self._scene.add_label(
                 name, label.text, position=label.position, font_screen_scale=size, anchor=anchor
