@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -100,21 +100,28 @@ class Dashboard:
             sessions = self.sessions
         return sessions.knows(session_id)
 
-    def warm_up(self) -> threading.Thread:
-        """Import what a page needs and load the compiled kernels, in the background."""
-        thread = threading.Thread(target=self._warm_up, name="warm-up", daemon=True)
+    def warm_up(self, prepare: Callable[[], None]) -> threading.Thread:
+        """Do in the background what the first page would have to wait for.
+
+        Import what it needs, load the compiled kernels, run the scenario that a new visitor sees, and
+        ``prepare()`` the files that browsers load.
+        """
+        thread = threading.Thread(target=self._warm_up, args=(prepare,), name="warm-up", daemon=True)
         thread.start()
         return thread
 
-    def _warm_up(self) -> None:
+    def _warm_up(self, prepare: Callable[[], None]) -> None:
         try:
+            prepare()
             import app.shell.page  # noqa: F401
             from app.session.sessions import first_scenario
             from navcore.engine.simulation import simulate
 
             load(self._views)
             guarded.warm()
-            simulate(first_scenario()[0])
+            with self._lock:
+                sessions = self.sessions
+            sessions.prepared = simulate(first_scenario()[0])
         except Exception:
             _log.exception("warming up failed")
 
@@ -192,7 +199,7 @@ def open_dashboard(
     )
     # No axes cross in the middle of the map; they belong to the server's scene.
     server.viser.scene.world_axes.visible = False
-    dashboard.warm_up()
+    dashboard.warm_up(server.prepare)
     return server, dashboard
 
 

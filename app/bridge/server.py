@@ -142,7 +142,7 @@ def pool_of(server: viser.ViserServer) -> Any:
 def plotly_is_on_the_page(owner: viser.ViserServer | viser.ClientHandle) -> None:
     """Tell viser not to send plotly.js: the page loads it as a file.
 
-    viser queues the 4.8 MB source for every client and has it run by ``eval``; as a file it is sent once,
+    viser queues the source, 4.8 MB, for every client and has it run by ``eval``; as a file it is sent once,
     cached by the browser, and the page needs no permission to ``eval``.
     """
     owner.gui._setup_plotly_js = True

@@ -7,7 +7,10 @@
 
   window.Worker = class extends Plain {
     postMessage(data, ...rest) {
-      if (data?.type === "set_server") socket = this;
+      if (data?.type === "set_server") {
+        socket = this;
+        window.dispatchEvent(new Event("connecting"));
+      }
       super.postMessage(data, ...rest);
     }
   };

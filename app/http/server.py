@@ -72,12 +72,15 @@ class DashboardServer:
         The port that was bound.
     url : str
         Where to open it, without the token.
+    prepare : callable
+        Makes the page's files before they are asked for; from any thread.
     """
 
     viser: viser.ViserServer
     host: str
     port: int
     url: str
+    prepare: Callable[[], None]
     _callbacks: ThreadPoolExecutor
     _stopping: threading.Lock = field(default_factory=threading.Lock)
     _stopped: bool = False
@@ -172,7 +175,7 @@ def start(
         # Only now: what is refused above is refused without the half second that importing viser takes.
         from app.bridge import server as bridge
         from app.http.ids import SessionIds
-        from app.http.page import FIRST_SCRIPTS, build_page, plotly_script
+        from app.http.page import FIRST_SCRIPTS, PLOTLY, build_page
         from app.http.places import Door, Places
         from app.http.site import Site
         from app.http.throttle import Throttle
@@ -188,7 +191,7 @@ def start(
             forwarded=inner is not None,
             throttle=Throttle(limits.token_guesses, limits.token_refill_s),
             version=__version__,
-            load_page=lambda: build_page([*FIRST_SCRIPTS, *page_scripts], [plotly_script()], _TITLE),
+            load_page=lambda: build_page([*FIRST_SCRIPTS, *page_scripts], [PLOTLY], _TITLE),
         )
         door = Door(limits)
         serve = partial(_serve, listener=listener, site=site, limits=limits, door=door, places=places)
@@ -205,7 +208,9 @@ def start(
     server.gui.configure_theme(show_share_button=False)
     site.ready.set()
     shown = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
-    return DashboardServer(server, host, bound_port, f"http://{authority(shown, bound_port)}/", callbacks)
+    return DashboardServer(
+        server, host, bound_port, f"http://{authority(shown, bound_port)}/", site.prepare, callbacks
+    )
 
 
 def _serve(

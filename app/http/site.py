@@ -169,6 +169,13 @@ class Site:
         self.places.invite(id)
         return _respond(HTTPStatus.NO_CONTENT, "")
 
+    def prepare(self) -> None:
+        """Make the page and compress its files before they are asked for; from any thread."""
+        page = self._page or self.load_page()
+        for file in (page.html, *page.files.values()):
+            _ = file.zipped
+        self._page = self._page or page
+
     async def _loaded(self) -> Page:
         async with self._loading:
             if self._page is None:

@@ -70,6 +70,8 @@ class Session:
         The page that drives; the others watch.
     run : Run or None
         The last good one.
+    prepared : Run or None
+        Computed before anybody asked for it; what the first run has in common with it is taken from it.
     run_number : int
         Counts the runs shown.
     outdated : bool
@@ -106,6 +108,7 @@ class Session:
         self.share: Callable[[], str] = lambda: self.id
         self.presenter: View | None = None
         self.run: Run | None = None
+        self.prepared: Run | None = None
         self.run_number = 0
         self.outdated = True
         self.display = Display()
@@ -379,10 +382,10 @@ class Session:
     def _simulate_again(
         self, scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]
     ) -> Run:
-        """Run a scenario; what the run that is shown has computed already is taken from it."""
+        """Run a scenario; what the run that is shown, or the prepared one, has computed is taken from it."""
         from navcore.engine.simulation import simulate
 
-        return simulate(scenario, progress, cancelled, self.run)
+        return simulate(scenario, progress, cancelled, self.run or self.prepared)
 
     def _refuse(self, state: State, error: InputError) -> None:
         """Go back to the last scenario that ran, unless the user has gone on already."""

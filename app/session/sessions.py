@@ -17,6 +17,7 @@ from app.session.content import link_files
 from app.session.document import Document, Unreadable, restore, to_document
 from app.session.session import Session
 from app.session.store import Store
+from navcore.engine.run import Run
 from navcore.scenario.model import Scenario
 
 MOST_SESSIONS = 64
@@ -54,6 +55,8 @@ class Sessions:
         self._made: dict[str, threading.Lock] = {}
         self._shared: OrderedDict[str, Document] = OrderedDict()
         self._folder: Path | None = None
+        self.prepared: Run | None = None
+        """Run of the scenario that a new visitor sees; its first picture need not wait for it."""
         atexit.register(self.close)
 
     def get(self, id: str) -> Session:
@@ -111,6 +114,7 @@ class Sessions:
     def _make(self, id: str) -> Session:
         scenario, origin = self._first()
         session = Session(id, scenario, origin, self._files_folder(id))
+        session.prepared = self.prepared
         document, source = self._kept(id), id
         shared = copied_from(id)
         if document is None and shared is not None:

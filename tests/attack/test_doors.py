@@ -148,7 +148,7 @@ def test_page_and_its_scripts_are_served_plain_and_compressed(bench: Bench) -> N
     named = re.findall(rb'(?:src|href)="\.\./\.\./(static/[^"]+)"', plain.body)
     kinds = dict(js="text/javascript", css="text/css", wasm="application/wasm")
     assert {name.split(b".")[0] for name in named} == {
-        b"static/bench", b"static/viser", b"static/zstd", b"static/start", b"static/plotly",
+        b"static/bench", b"static/viser", b"static/zstd", b"static/start", b"static/plotly-basic",
     }  # fmt: skip
     for name in named:
         answer = ask(bench.port, "/" + name.decode())

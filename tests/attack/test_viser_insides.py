@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import importlib.util
 import inspect
 import re
 import threading
@@ -21,7 +22,7 @@ from viser.infra._async_message_buffer import AsyncMessageBuffer
 
 from app.bridge import controls, mends, program, server
 from app.bridge.pool import FairPool
-from app.http.page import FIRST_SCRIPTS, build_page, plotly_script
+from app.http.page import FIRST_SCRIPTS, PLOTLY, build_page
 from navcore.foundation.errors import InputError
 from tests.attack.conftest import Bench, eventually
 from tests.attack.wire import visit
@@ -92,12 +93,15 @@ def test_numbers_of_a_plot_are_sent_once_in_single_precision(bench: Bench) -> No
 
 def test_page_has_one_title_and_our_scripts_come_first() -> None:
     assert program.viser_program().html.count("<title>Viser</title>") == 1
-    page = build_page(FIRST_SCRIPTS, [plotly_script()], "Bench")
+    page = build_page(FIRST_SCRIPTS, [PLOTLY], "Bench")
     html = page.html.plain.decode()
     assert 0 < html.index("../../static/bench") < html.index("../../static/start")
-    assert re.search(r'<link [^>]*data-later href="../../static/plotly.min[^"]*">', html)
-    (plotly,) = (file for name, file in page.files.items() if name.startswith("plotly.min"))
-    assert b"plotly.js v" in plotly.plain[:200]
+    assert re.search(r'<link [^>]*data-later href="../../static/plotly-basic.min[^"]*">', html)
+    # The same version as the plotly of Python, against whose figures and insides the tests were written.
+    (plotly,) = (file for name, file in page.files.items() if name.startswith("plotly-basic.min"))
+    whole = Path(importlib.util.find_spec("plotly").origin).parent / "package_data" / "plotly.min.js"
+    version = re.search(rb"plotly\.js v([0-9.]+)", whole.read_bytes()[:200])[1]
+    assert b"plotly.js (basic - minified) v" + version in plotly.plain[:200]
 
 
 def test_messages_a_browser_sends_are_all_known() -> None:

@@ -14,7 +14,9 @@ from app.editing import edits
 from app.session import sessions
 from app.session.session import Session, first_editable, runs_on_demand
 from app.session.sessions import Sessions, first_scenario
+from navcore.engine import simulation
 from navcore.foundation.errors import Fault, InputError
+from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 
 DURATION = ("run", "duration_h")
@@ -306,3 +308,18 @@ def test_every_preset_says_what_it_shows_and_where_it_comes_from() -> None:
     for name in presets():
         opened = load(name)
         assert opened.title and opened.source, name
+
+
+def test_the_first_picture_of_a_new_visitor_is_computed_before_they_come() -> None:
+    scenario = load("liu-overshoot", ["run.duration_h=1"])
+    visitors = Sessions(lambda: (scenario, "preset"))
+    visitors.prepared = prepared = simulation.simulate(scenario)
+    session, page = visitors.get("new"), Watcher()
+    session.attach(page)
+    assert session.wait_idle(10.0) and session.run is not None
+    assert [a is b for a, b in zip(session.run.methods, prepared.methods, strict=True)] == [True] * 5
+    changed = edits.with_value(scenario, DURATION, 0.5)
+    session.change(changed, page)
+    assert session.wait_idle(10.0)
+    assert session.run.scenario == changed and session.run.t_s[-1] == 1800.0
+    visitors.close()
