@@ -35,7 +35,7 @@ class FrontsPanel:
 
     def build(self) -> None:
         """Make the controls."""
-        gui, words = self.frame.gui, {label: name for name, (label, _, _) in AXES.items()}
+        gui, words = self.frame.gui, {label: name for name, (label, *_) in AXES.items()}
         self._axes: dict[str, Any] = {
             "front_x": gui.add_dropdown(ACROSS, tuple(words), hint="Objective on the horizontal axis."),
             "front_y": gui.add_dropdown(UP, tuple(words), hint="Objective on the vertical axis."),

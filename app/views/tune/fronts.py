@@ -15,19 +15,26 @@ from navcore.foundation.units import ARCSEC, MINUTE
 COMMAND = "front-point"
 """Command with which a click asks for a point: ``front-point x y``, in the units of the axes."""
 AXES = {
-    "tilt_rms": ("tilt, RMS in the steady state", "arcsec", ARCSEC),
-    "velocity_rms": ("velocity, RMS in the steady state", "m/s", 1.0),
-    "settling_s": ("settling time", "min", MINUTE),
-    "log_tilt": ("largest tilt after a 1 m/s step of the log", "arcsec", ARCSEC),
-    "overshoot": ("largest velocity error after a 1 m/s step of the log", "m/s", 1.0),
-}
-"""Objectives that can be on an axis: label, unit, and the unit's size in SI."""
+    "tilt_rms": ("tilt RMS", "tilt RMS in the steady state", "arcsec", ARCSEC),
+    "velocity_rms": ("velocity RMS", "velocity RMS in the steady state", "m/s", 1.0),
+    "settling_s": ("settling time", "settling time", "min", MINUTE),
+    "log_tilt": ("tilt after log step", "largest tilt after a 1 m/s step of the log", "arcsec", ARCSEC),
+    "overshoot": (
+        "velocity after log step", "largest velocity error after a 1 m/s step of the log", "m/s", 1.0,
+    ),
+}  # fmt: skip
+"""Objectives that can be on an axis: name, title of the axis, unit, and the unit's size in SI."""
 _SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "pentagon", "hexagon", "triangle-down")
 _NEAR = 0.05
 """A click takes the nearest point within this part of both axes."""
 _PAD = 0.06
 _LEFT_PX, _RIGHT_PX, _TOP_PX, _TICKS_PX, _LEGEND_ROW_PX = 66, 14, 30, 48, 21
-_EMPTY = "Each network in place of the selected method's: what is the least velocity error for a given tilt?"
+_EMPTY = "Find the fronts: the best of every network in place of this one."
+_FEW_TICKS, _MANY_TICKS = (1.0, 2.0, 5.0), (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+_FINEST_DECADES = 0.12
+"""Below this range plotly's own, even ticks are finer."""
+_ALONE = 0.5
+"""Decades on both sides of a present design that stands alone."""
 _NETWORK_COLORS = 1
 """The first colour of the methods that a network has."""
 Pair = tuple[float, float]
@@ -72,7 +79,7 @@ def fronts_figure(
     note : str
         What is to be heeded, above the plot.
     """
-    (across, x_unit, x_size), (up, y_unit, y_size) = (AXES[name] for name in objectives)
+    (_, across, x_unit, x_size), (_, up, y_unit, y_size) = (AXES[name] for name in objectives)
     fronts = {} if found is None else found.fronts
     data = [
         _front(name, points, k, (x_size, y_size))
@@ -89,8 +96,9 @@ def fronts_figure(
         hovermode="closest",
         margin={"l": _LEFT_PX, "r": _RIGHT_PX, "t": _TOP_PX, "b": _TICKS_PX + legend_px},
         legend=style.legend(traceorder="normal"),
-        xaxis=style.axis(f"{across} ({x_unit})", type="log", range=_log(ranges[0])),
-        yaxis=style.axis(f"{up} ({y_unit})", type="log", range=_log(ranges[1])),
+        showlegend=True,
+        xaxis=_axis(f"{across} ({x_unit})", ranges[0]),
+        yaxis=_axis(f"{up} ({y_unit})", ranges[1]),
         annotations=[_above(note)] if note else [],
         shapes=[],
     )
@@ -109,7 +117,7 @@ def nearest(found: Pareto, x: float, y: float) -> tuple[str, Point]:
     InputError
         There is no point near it.
     """
-    sizes = (AXES[found.objectives[0]][2], AXES[found.objectives[1]][2])
+    sizes = (AXES[found.objectives[0]][3], AXES[found.objectives[1]][3])
     spans = [
         math.log10(high / low) if high > low else 1.0 for low, high in _ranges(found, found.present, sizes)
     ]
@@ -171,13 +179,20 @@ def _ranges(found: Pareto | None, present: Pair | None, sizes: Pair) -> tuple[Pa
             values += [floor] if floor else []
         logs = [math.log10(value / sizes[axis]) for value in values] or [0.0, 1.0]
         low, high = min(logs), max(logs)
-        pad = max(_PAD * (high - low), 0.03)
+        pad = max(_PAD * (high - low), 0.03 if found is not None else _ALONE)
         ends.append((10.0 ** (low - pad), 10.0 ** (high + pad)))
     return ends[0], ends[1]
 
 
-def _log(ends: Pair) -> list[float]:
-    return [math.log10(ends[0]), math.log10(ends[1])]
+def _axis(title: str, ends: Pair) -> dict[str, Any]:
+    """Logarithmic axis; its ticks are written in full, where plotly leaves out the power of ten."""
+    low, high = (math.log10(end) for end in ends)
+    made = style.axis(title, type="log", range=[low, high])
+    steps = _FEW_TICKS if high - low > 1.0 else _MANY_TICKS
+    ticks = [step * 10.0**k for k in range(math.floor(low), math.ceil(high) + 1) for step in steps]
+    if high - low > _FINEST_DECADES:
+        made |= {"tickvals": ticks, "ticktext": [f"{tick:.6g}" for tick in ticks]}
+    return made
 
 
 def _add_floor(layout: dict[str, Any], found: Pareto, ranges: tuple[Pair, Pair], sizes: Pair) -> None:
@@ -224,4 +239,4 @@ def _above(note: str) -> dict[str, Any]:
 
 def _middle(words: str) -> dict[str, Any]:
     font = {"size": style.FONT_SIZE, "color": style.MUTED}
-    return style.text(0.5, 0.5, words, xref="paper", yref="paper", font=font)
+    return style.text(0.5, 0.85, words, xref="paper", yref="paper", font=font)

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from navcore.design.tune import Tuned
 
 OBJECTIVES = {
-    "tilt_rms": ("tilt, RMS in the steady state", "arcsec", ARCSEC),
-    "velocity_rms": ("velocity, RMS in the steady state", "m/s", 1.0),
-    "position_rms": ("position, RMS over the run", "m", 1.0),
-    "heading_rms": ("heading, RMS over the run", "arcmin", ARCMIN),
+    "tilt_rms": ("tilt RMS, steady", "arcsec", ARCSEC),
+    "velocity_rms": ("velocity RMS, steady", "m/s", 1.0),
+    "position_rms": ("position RMS, run", "m", 1.0),
+    "heading_rms": ("heading RMS, run", "arcmin", ARCMIN),
     "settling_s": ("settling time", "min", MINUTE),
 }
 """What a method can be tuned for: label, unit, and the unit's size in SI."""

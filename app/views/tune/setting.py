@@ -16,7 +16,7 @@ from navcore.scenario.model import Scenario
 
 OBJECTIVE, VARY, TUNE, STOP = "tune for", "what may vary", "Tune", "Stop tuning"
 ACCEPT, DISCARD = "Accept the proposal", "Discard"
-ALL = "all parameters of the network"
+ALL = "all parameters"
 _MEASURED = {
     "settling_min": ("settling_s<=", MINUTE),
     "damping_ratio": ("damping_ratio>=", 1.0),
