@@ -46,6 +46,7 @@ def test_the_picture_has_a_curve_a_network_the_star_and_the_floor(ship: Scenario
     assert traces["now: complementary"]["x"] == [pytest.approx(present[0] / ARCSEC)]
     assert traces["classic2"]["x"] == [pytest.approx(found.fronts["classic2"][0].values[0] / ARCSEC)]
     layout = made["layout"]
+    assert found.floor[0] is not None
     dashed = [shape for shape in layout["shapes"] if shape["type"] == "line"]
     assert [line["x0"] for line in dashed[:1]] == [pytest.approx(found.floor[0] / ARCSEC)]
     for trace in made["data"]:
@@ -95,7 +96,8 @@ def test_the_optimal_network_is_a_dashed_reference_or_it_is_said_why_not(ship: S
     traces = [t for t in bode(run, reference=reference)["data"] if t["legendgroup"] == "reference"]
     assert {trace["yaxis"] for trace in traces} == {"y", "y2", "y3", "y4"}
     h = reference.network.response(omega_grid(ship.omega_s))
-    np.testing.assert_allclose(values_of(traces[0]["y"]), 20.0 * np.log10(np.abs(h)), atol=1e-4)
+    drawn = np.array(values_of(traces[0]["y"]), dtype=float)
+    np.testing.assert_allclose(drawn, 20.0 * np.log10(np.abs(h)), atol=1e-4)
     figures = OptimalNetwork().with_sensors(ship.figures())
     np.testing.assert_allclose(reference.network.num, figures.transfer(ship.omega_s).num)
     silent = optimal_reference(load("zha-fast"))

@@ -217,6 +217,8 @@ def _budget(rest: str, run: Run) -> Named:
     if what.endswith("_times"):
         return Named(float(found.times_floor(method)[what.removesuffix("_times")] or math.inf), "")
     own, total = method.sources[what].rms.tilt_rad, method.total.rms.tilt_rad
+    if own is None or not total:
+        raise KeyError(rest)
     return Named(100.0 * (own / total) ** 2, "%")
 
 
