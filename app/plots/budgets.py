@@ -1,7 +1,8 @@
-"""The steady error budget that several views show, computed once a scenario."""
+"""The steady error budget that several views show, computed once for each method of a scenario."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -12,19 +13,19 @@ from navcore.scenario.model import Scenario
 
 
 def steady_budget(scenario: Scenario) -> Budget:
-    """Steady budget of a scenario.
+    """Steady budget of a scenario; a method that is as it was is not computed again.
 
     Raises
     ------
     InputError
         A method has no loop of its own.
     """
-    key: Any = scenario  # frozen, and so hashable, which its type does not say
-    return _kept(key)
+    alone = [_kept(scenario.model_copy(update={"method": (method,)})) for method in scenario.method]
+    return replace(alone[0], methods=tuple(found.methods[0] for found in alone))
 
 
-@lru_cache(maxsize=32)
-def _kept(scenario: Any) -> Budget:
+@lru_cache(maxsize=64)
+def _kept(scenario: Any) -> Budget:  # frozen, and so hashable, which its type does not say
     return budget(scenario, steady=True)
 
 
@@ -44,7 +45,10 @@ def times_the_floor(scenario: Scenario) -> list[str]:
     if found.floor_reason:
         return ["no floor"] * len(scenario.method)
     texts = []
-    for method in found.methods:
+    for method, given in zip(found.methods, scenario.method, strict=True):
+        if given.damping == "kalman":
+            texts.append("the floor itself")
+            continue
         times = [value for value in found.times_floor(method).values() if value is not None]
         texts.append(", ".join(number(value, 3) for value in times) or "no steady state")
     return texts

@@ -7,6 +7,7 @@ import math
 import pytest
 
 from app.jobs.designer import Budgeter, Designer, TuningTask
+from app.plots.budgets import steady_budget
 from app.session.requirements import Requirements
 from app.views.design.figure import QUANTITIES, budget_figure, parts
 from app.views.tune.proposal import proposal_html, sentences_about
@@ -116,3 +117,8 @@ def test_the_jobs_give_what_the_library_gives_and_forget_it(compass):
     finally:
         designer.stop()
         budgeter.stop()
+
+
+def test_the_kept_steady_budget_is_that_of_the_whole_scenario(ship):
+    kept, whole = steady_budget(ship), budget(ship, steady=True)
+    assert kept.as_dict() == whole.as_dict()

@@ -141,7 +141,7 @@ def _tops(budget: Budget, key: str, unit: float, suffix: str) -> list[dict[str, 
         total = getattr(method.total.rms, key)
         times = budget.times_floor(method).get(key.rsplit("_", 1)[0])
         if total is None:
-            text = "no steady state" if budget.steady else "none"
+            text = "no steady state" if method.shown == "steady" else "not in this budget"
         elif times is None:
             text = _short(total / unit)
         else:
