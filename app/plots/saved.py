@@ -130,7 +130,7 @@ def _draw(axis: Any, figure: UplotFigure) -> None:
             time, figure.data[1 + lower], figure.data[1 + upper], color=shade[0], alpha=shade[1], linewidth=0
         )
     for place, (name, color) in enumerate(zip(figure.names, figure.colors, strict=True)):
-        if place in edges:
+        if place in edges or figure.state(place) == "hidden":
             continue
         dash = figure.dashes[place] if place < len(figure.dashes) else ()
         width = figure.widths[place] if place < len(figure.widths) else style.CURVE_WIDTH

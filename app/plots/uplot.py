@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from app.plots import style
+from app.plots.legend import FAINT, State
 from app.plots.units import Unit
 from navcore.foundation.units import HOUR
 
@@ -47,6 +48,12 @@ _TIME_STEPS = (
 _MINUTE_STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 120.0)
 
 Dash = tuple[int, ...]
+_FLAGS: dict[State, dict[str, bool]] = {
+    "shown": {},
+    "unscaled": {"auto": False},
+    "dimmed": {},
+    "hidden": {"show": False, "auto": False},
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +90,8 @@ class UplotFigure:
         The y axis is logarithmic, from and to these powers of ten.
     bands : tuple of (int, int, str)
         Filled areas: places of the upper and the lower curve in ``names``, colour. Their edges are not drawn.
+    states : tuple of State
+        How each curve is shown (`app.plots.legend`); one beyond its end is simply shown.
     """
 
     key: str
@@ -100,6 +109,11 @@ class UplotFigure:
     widths: tuple[float, ...] = ()
     decades: tuple[int, int] | None = None
     bands: tuple[tuple[int, int, str], ...] = ()
+    states: tuple[State, ...] = ()
+
+    def state(self, place: int) -> State:
+        """How the curve at a place in ``names`` is shown."""
+        return self.states[place] if place < len(self.states) else "shown"
 
     @property
     def edges(self) -> frozenset[int]:
@@ -116,10 +130,18 @@ class UplotFigure:
         for place in self.edges:
             widths[place] = 0.0
         lines = (
-            common | {"label": name, "stroke": color, "width": width} | ({"dash": dash} if dash else {})
-            for name, color, dash, width in zip(self.names, self.colors, dashes, widths, strict=True)
+            common
+            | {"label": name, "stroke": self._stroke(place, color), "width": width}
+            | ({"dash": dash} if dash else {})
+            | _FLAGS[self.state(place)]
+            for place, (name, color, dash, width) in enumerate(
+                zip(self.names, self.colors, dashes, widths, strict=True)
+            )
         )
         return ({"label": f"time ({self.time_unit.name})"}, *lines)
+
+    def _stroke(self, place: int, color: str) -> str:
+        return color[:7] + FAINT if self.state(place) == "dimmed" else color
 
     def axes(self, *, time_axis: bool = True, low: bool = False) -> tuple[dict[str, Any], ...]:
         """Axes for uPlot.
@@ -243,7 +265,7 @@ class UplotFigure:
     def config_key(self) -> tuple[Any, ...]:
         """Compare equal while only the numbers changed: then sending ``data`` alone is enough."""
         shown = self.symbol, self.unit.name, self.time_unit.name, self.names, self.colors, self.dashes
-        return self.key, self.floor, self.ticks, self.widths, self.decades, self.bands, *shown
+        return self.key, self.floor, self.ticks, self.widths, self.decades, self.bands, self.states, *shown
 
 
 def stack_heights(available_px: int, count: int, least_px: int = 84) -> tuple[int, ...]:

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from app.plots.envelope import BandKind
+from app.plots.legend import State, after
 from app.session.requirements import Requirements
 
 FIRST_TRANSFER = "phi/dv_r"
@@ -50,6 +51,8 @@ class Display(BaseModel):
         Quantity whose spectrum is shown: a key of `app.views.errors.figure.error_plots`.
     baseline : int or None
         Pin with which numbers are compared; None: the first one.
+    legend : tuple of (str, str)
+        Curves that are not simply shown: key (a method's name, or a pin's label) and state.
     pins_by : str
         Column by which the table of pins is sorted, with a minus sign for the other way round.
     delta : str
@@ -90,6 +93,9 @@ class Display(BaseModel):
     envelope: BandKind = "none"
     spectrum: Literal["phi_e", "phi_n", "phi_u", "dve", "dvn", "dlat", "dlon", "position"] = "dve"
     baseline: Annotated[int | None, Field(ge=1)] = None
+    legend: Annotated[
+        tuple[tuple[Annotated[str, Field(max_length=300)], State], ...], Field(max_length=60)
+    ] = ()
     pins_by: Annotated[str, Field(pattern=r"^-?[a-z]{1,20}$")] = "pinned"
     delta: Literal["rms", "max_abs", "final"] = "rms"
     window: Literal["whole", "settled", "hours"] = "whole"
@@ -103,6 +109,16 @@ class Display(BaseModel):
     search: Literal["setting", "fronts"] = "setting"
     front_x: FrontAxis = "tilt_rms"
     front_y: FrontAxis = "velocity_rms"
+
+    def state_of(self, key: str) -> State:
+        """How a curve is shown."""
+        return dict(self.legend).get(key, "shown")
+
+    def clicked(self, key: str) -> tuple[tuple[str, State], ...]:
+        """`legend` after a click on a curve's entry: the last 60 choices count."""
+        others = tuple(entry for entry in self.legend if entry[0] != key)
+        state = after(self.state_of(key))
+        return others if state == "shown" else (*others, (key, state))[-60:]
 
     def with_(self, **changes: object) -> Display:
         """Give a checked copy with other choices; raises `pydantic.ValidationError`."""

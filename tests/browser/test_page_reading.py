@@ -152,3 +152,29 @@ def test_a_plot_that_is_not_in_front_is_asked_for_in_words(reading: Bench) -> No
     reading.page.get_by_text("SVG", exact=True).click()
     assert "Poles" in reading.notice("Not saved")
     reading.close_notices()
+
+
+def test_a_click_on_the_legend_takes_a_method_out_of_the_scale_and_hides_it(reading: Bench) -> None:
+    page, run = reading.page, reading.session.run
+    assert run is not None
+    peaks = [method.errors["position_m"]["max_abs"] for method in run.methods]
+    place = peaks.index(max(peaks))
+    name = run.methods[place].method.name
+    top = f"""() => Object.values(window.__viserTestpoints.uplots).map(e => e.chart)
+      .filter(c => c.axes[1].label.startsWith('position'))
+      .map(c => [c.scales.y.max, c.series[{1 + place}].show])[0]"""
+    drawn = page.evaluate(top)
+    try:
+        for state in ("unscaled", "dimmed", "hidden"):
+            page.locator(".sb-legend").get_by_role("button", name=name).click()
+            page.wait_for_selector(f".sb-legend button[data-state={state}]")
+            reading.catch_up()
+            page.wait_for_function(f"state => ({top})()?.[1] === (state !== 'hidden')", arg=state)
+            assert reading.session.display.state_of(name) == state
+            if state == "dimmed":
+                page.wait_for_function(f"top => ({top})()?.[0] === top", arg=drawn[0])
+            else:
+                page.wait_for_function(f"top => ({top})()?.[0] < top", arg=drawn[0])
+    finally:
+        reading.show(legend=())
+    assert reading.faults == []

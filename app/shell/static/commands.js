@@ -181,12 +181,14 @@
     }
   }, 100);
 
-  // ------------------------------------------------------------ the row of buttons
+  // ------------------------------------------------------------ buttons in HTML of ours
 
-  // Its HTML is replaced when what can be undone changes: the focus goes to the new button of the same name.
+  // The HTML is replaced when what it says changes: the focus goes to the new button of the same command.
+  const KEEPS = [".sb-row", ".sb-legend", ".sb-pins"];
   let focused = "";
   addEventListener("focusin", (event) => {
-    const inside = event.target instanceof Element && event.target.closest(".sb-row [data-command]");
+    const inside = event.target instanceof Element && KEEPS.some((where) => event.target.closest(where)) &&
+      event.target.closest("[data-command]");
     focused = inside ? inside.dataset.command : "";
   });
   addEventListener("focusout", (event) => {
@@ -194,7 +196,8 @@
   });
   setInterval(() => {
     if (focused === "" || document.activeElement !== document.body) return;
-    document.querySelector(`.sb-row [data-command="${CSS.escape(focused)}"]`)?.focus();
+    const wanted = KEEPS.map((where) => `${where} [data-command="${CSS.escape(focused)}"]`).join();
+    document.querySelector(wanted)?.focus();
   }, 100);
 
   addEventListener("click", (event) => {

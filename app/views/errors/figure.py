@@ -11,6 +11,7 @@ import numpy as np
 
 from app.plots import style
 from app.plots.envelope import Envelope
+from app.plots.legend import State, counts, entry
 from app.plots.pinned import PIN_WIDTH, Pinned, pinned_methods
 from app.plots.units import (
     AUTO,
@@ -100,6 +101,8 @@ class _Line:
     ----------
     own : bool
         It is one of the run's own methods, whose times all curves share.
+    state : State
+        How it is shown.
     """
 
     method: MethodRun
@@ -108,6 +111,7 @@ class _Line:
     dash: Dash
     width: float
     own: bool
+    state: State
 
 
 def error_plots(
@@ -143,10 +147,11 @@ def error_plots(
     longest = _time_axis(run)
     unit_of_time = time_unit(float(longest[-1]) if len(longest) else 0.0, shown.time)
     time = np.ascontiguousarray(longest / unit_of_time.si)
-    lines = _lines(run, overlay, pins)
-    deciding = [line.method for line in lines if line.method.status != "diverged"]
-    cut = len(deciding) < len(lines)
-    deciding = deciding or [line.method for line in lines]
+    lines = _lines(run, overlay, pins, shown)
+    counted = [line for line in lines if counts(line.state)] or lines
+    deciding = [line.method for line in counted if line.method.status != "diverged"]
+    cut = len(deciding) < len(counted)
+    deciding = deciding or [line.method for line in counted]
     peaks = {key: _peak(deciding, column) for key, (column, *_) in _QUANTITIES.items()}
     units = _units(peaks, shown)
     count = len(run.methods)
@@ -172,6 +177,7 @@ def error_plots(
             dashes=tuple(line.dash for line in lines),
             widths=tuple(line.width for line in lines),
             floor=0.0 if key == "position" else None,
+            states=tuple(line.state for line in lines),
         )
         if envelope is not None and len(envelope.t_s):
             made = _with_band(made, envelope, column, longest, count)
@@ -181,19 +187,37 @@ def error_plots(
     return plots
 
 
-def _lines(run: Run, overlay: Overlay | None, pins: Sequence[Pinned]) -> list[_Line]:
+def _lines(run: Run, overlay: Overlay | None, pins: Sequence[Pinned], display: Display) -> list[_Line]:
     width = style.CURVE_WIDTH
+    states = [display.state_of(m.method.name) for m in run.methods]
     lines = [
-        _Line(m, _legend_name(m), style.method_color(i), (), width, True) for i, m in enumerate(run.methods)
+        _Line(m, _legend_name(m), style.method_color(i), (), width, True, states[i])
+        for i, m in enumerate(run.methods)
     ]
     if overlay is not None:
         faint = _FAINT if overlay.old else ""
         lines += [
-            _Line(m, f"{_legend_name(m)}: {STRAPDOWN}", style.method_color(i) + faint, _DASH, width, False)
+            _Line(
+                m,
+                f"{_legend_name(m)}: {STRAPDOWN}",
+                style.method_color(i) + faint,
+                _DASH,
+                width,
+                False,
+                states[i],
+            )
             for i, m in enumerate(overlay.run.methods)
         ]
     lines += [
-        _Line(found.method, found.label, found.color, found.dash, PIN_WIDTH, False)
+        _Line(
+            found.method,
+            found.label,
+            found.color,
+            found.dash,
+            PIN_WIDTH,
+            False,
+            display.state_of(found.label),
+        )
         for found in pinned_methods(pins)
     ]
     return lines
@@ -205,7 +229,7 @@ def _with_band(
     """Put the envelope's edges behind all curves, and a band between each pair."""
     names, colors, edges, bands = list(plot.names), list(plot.colors), [], []
     for index, (low, high) in enumerate(zip(envelope.low[:count], envelope.high[:count], strict=True)):
-        if low is None or high is None:
+        if low is None or high is None or plot.state(index) == "hidden":
             continue
         for word, values in (("upper", high), ("lower", low)):
             edges.append(np.interp(time_s, envelope.t_s, values[:, column]) / plot.unit.si)
@@ -245,7 +269,8 @@ def _logarithmic(plot: UplotFigure) -> UplotFigure:
             np.maximum(sizes[upper], sizes[lower]),
             np.where(across, 0.0, np.minimum(sizes[upper], sizes[lower])),
         )
-    peaks = [float(np.nanmax(size, initial=0.0)) for i, size in enumerate(sizes) if i not in edges]
+    counted = [i for i in range(len(sizes)) if i not in edges and counts(plot.state(i))]
+    peaks = [float(np.nanmax(sizes[i], initial=0.0)) for i in counted]
     peaks = [peak for peak in peaks if peak > 0.0] or [1.0]
     last = math.ceil(math.log10(max(peaks)))
     first = min(last - _FEWEST_DECADES, math.floor(math.log10(min(peaks))) - 1)
@@ -337,22 +362,33 @@ def legend_html(
     overlay: Overlay | None = None,
     pins: Sequence[Pinned] = (),
     envelope: Envelope | None = None,
+    display: Display | None = None,
 ) -> str:
-    """One legend for a stack of plots: a coloured bar and the name of every method."""
+    """One legend for a stack of plots: a bar and the name of every method; a click dims or hides it."""
+    shown = display or Display()
     items = [
-        _legend_item(_legend_name(method), f"height:3px;background:{style.method_color(i)}")
+        entry(
+            method.method.name,
+            _legend_name(method),
+            f"height:3px;background:{style.method_color(i)}",
+            shown.state_of(method.method.name),
+        )
         for i, method in enumerate(run.methods)
     ]
     if overlay is not None:
         old = " of an earlier scenario" if overlay.old else ""
         items.append(_legend_item(f"{STRAPDOWN}{old}", f"border-top:3px dashed {style.MUTED}"))
-    items += [_legend_item(found.label, css_dash(found.dash, found.color)) for found in pinned_methods(pins)]
+    items += [
+        entry(found.label, found.label, css_dash(found.dash, found.color), shown.state_of(found.label))
+        for found in pinned_methods(pins)
+    ]
     if envelope is not None:
         bar = f"height:10px;background:{style.MUTED}{'22' if envelope.old else '55'}"
         items.append(_legend_item(envelope.label, bar, " ".join(envelope.details)))
     return (
-        f'<div style="display:flex;flex-wrap:wrap;gap:2px 18px;padding:2px 8px 2px {Y_SIZE + LABEL_SIZE}px;'
-        f'font-size:{style.FONT_SIZE}px;color:{style.INK}">{"".join(items)}</div>'
+        '<div class="sb-legend" role="group" aria-label="legend" '
+        f'style="padding-left:{Y_SIZE + LABEL_SIZE}px">'
+        f"{''.join(items)}</div>"
     )
 
 
@@ -383,7 +419,4 @@ def css_dash(dash: Dash, color: str) -> str:
 
 def _legend_item(name: str, bar: str, title: str = "") -> str:
     more = f' title="{escape(title)}"' if title else ""
-    return (
-        f'<span{more} style="display:inline-flex;align-items:center;gap:6px;white-space:nowrap">'
-        f'<span style="width:18px;border-radius:2px;{bar}"></span>{escape(name)}</span>'
-    )
+    return f'<span class="sb-entry"{more}><span class="sb-line" style="{bar}"></span>{escape(name)}</span>'

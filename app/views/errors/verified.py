@@ -67,5 +67,6 @@ def _difference(verification: Verification, key: str, beside: UplotFigure, displ
         time_unit=beside.time_unit,
         names=tuple(method.method.name for method, _ in pairs),
         colors=tuple(style.method_color(i) for i in range(len(pairs))),
+        states=tuple(display.state_of(method.method.name) for method, _ in pairs),
         data=(np.ascontiguousarray(time_s / beside.time_unit.si), *(values / unit.si for values in curves)),
     )

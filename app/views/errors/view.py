@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from app.jobs.verifier import Verified
+from app.plots.legend import COMMAND
 from app.plots.uplot import UplotFigure, stack_heights
 from app.session.display import Display
 from app.session.requirements import error_limits
 from app.session.shown import Shown
 from app.shell import notices
 from app.shell.stack import Stack, room_px
-from app.shell.view import Figures, PictureView, Tab, if_user
+from app.shell.view import Figures, Frame, PictureView, Tab, if_user
 from app.views.errors.figure import GROUPS, QUANTITIES, Overlay, error_plots, legend_html, legend_names
 from app.views.errors.verified import KEYS as VERIFIED
 from app.views.errors.verified import verification_plots
@@ -64,6 +65,14 @@ class ErrorsView(PictureView[ErrorCurves]):
     place = "lower"
     focus = "errors"
     plots = (*_KEYS, *_VERIFIED_KEYS)
+
+    def __init__(self, frame: Frame) -> None:
+        super().__init__(frame)
+        frame.commands.register(COMMAND, self._clicked)
+
+    def _clicked(self, key: str) -> None:
+        """Show a curve otherwise: its entry in a legend was clicked."""
+        self.frame.show(legend=self.session.display.clicked(key))
 
     def build(self, tab: Tab) -> None:
         """Make chooser and legend."""
@@ -118,7 +127,7 @@ def error_curves(
     )
     described = found.run, None, found.pins, found.envelope
     chosen = {key: plots[key] for key in keys}
-    return ErrorCurves(chosen, legend_html(*described), legend_names(*described), two_abreast)
+    return ErrorCurves(chosen, legend_html(*described, found.display), legend_names(*described), two_abreast)
 
 
 def _verified_curves(verified: Verified | None, display: Display) -> ErrorCurves:
@@ -129,7 +138,7 @@ def _verified_curves(verified: Verified | None, display: Display) -> ErrorCurves
     described = verification.linear, Overlay(verification.strapdown, verified.old)
     return ErrorCurves(
         verification_plots(verification, old=verified.old, display=display),
-        notices.note([OWN_NOISE], "info") + legend_html(*described),
+        notices.note([OWN_NOISE], "info") + legend_html(*described, display=display),
         [OWN_NOISE, *legend_names(*described)],
         two_abreast=True,
     )

@@ -1,0 +1,68 @@
+"""Legend entries that a click dims, hides or leaves out of the scale: one look and one order everywhere."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import Literal
+
+State = Literal["shown", "unscaled", "dimmed", "hidden"]
+STATES: tuple[State, ...] = ("shown", "unscaled", "dimmed", "hidden")
+"""In the order in which clicks go through them."""
+COMMAND = "legend"
+"""Name of the command that a click asks for, with the entry's key."""
+_WORDS: dict[State, str] = {
+    "shown": "",
+    "unscaled": "off scale",
+    "dimmed": "dimmed",
+    "hidden": "hidden",
+}
+_NEXT_WORDS: dict[State, str] = {
+    "shown": "show it again",
+    "unscaled": "leave it out of the scale",
+    "dimmed": "dim it",
+    "hidden": "hide it",
+}
+FAINT = "59"
+"""Opacity of what is dimmed, as colours carry it."""
+
+
+def after(state: State) -> State:
+    """State to which a click leads."""
+    return STATES[(STATES.index(state) + 1) % len(STATES)]
+
+
+def counts(state: State) -> bool:
+    """Whether scales and units are chosen with a curve in mind."""
+    return state in ("shown", "dimmed")
+
+
+def word(state: State) -> str:
+    """What the legend says of a state; empty for "shown"."""
+    return _WORDS[state]
+
+
+def hint(state: State) -> str:
+    """What a click does."""
+    return f"Click: {_NEXT_WORDS[after(state)]}"
+
+
+def entry(key: str, name: str, bar: str, state: State) -> str:
+    """HTML of an entry: a bar, the name, and what was done to it; a button.
+
+    Parameters
+    ----------
+    key : str
+        Of the curve, in `app.session.display.Display.legend`.
+    name : str
+        As written.
+    bar : str
+        Style of the bar before it.
+    state : State
+        Of the curve.
+    """
+    told = f'<small class="sb-said">{_WORDS[state]}</small>' if state != "shown" else ""
+    return (
+        f'<button class="sb-entry" data-command="{COMMAND} {escape(key)}" data-state="{state}" '
+        f'title="{hint(state)}"><span class="sb-line" style="{bar}"></span>'
+        f"<span>{escape(name)}</span>{told}</button>"
+    )
