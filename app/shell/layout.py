@@ -37,8 +37,8 @@ class Layout:
         Width of a plot.
     room_px : int
         Height for a panel's content.
-    view_aspect : float
-        Width / height of the 3D view between the columns.
+    view_px : (int, int)
+        Width and height of the 3D view between the columns.
     """
 
     wide: bool
@@ -46,7 +46,7 @@ class Layout:
     right_px: int
     plot_px: int
     room_px: int
-    view_aspect: float
+    view_px: tuple[int, int]
 
     def aspect(self, taken_px: int = 0) -> float:
         """Height / width of a plot that fills the panel, ``taken_px`` being used by something else."""
@@ -65,7 +65,7 @@ def layout_for(width: int, height: int) -> Layout:
     left = 360 if width >= 1500 else 340 if width >= 1300 else 320
     right = width // 2 if wide else max(360, min(round(0.5 * width), width - left - 260))
     room = (height // 2 if wide else height) - _CHROME_PX[wide] - _MARGIN_PX
-    view = max(width - left - right, 120) / height
+    view = max(width - left - right, 120), height
     return Layout(wide, left, right, right - _COLUMN_PADDING_PX, max(room, 200), view)
 
 

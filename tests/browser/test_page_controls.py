@@ -165,12 +165,12 @@ def test_ship_and_exaggeration_move_in_3d(damped: Bench) -> None:
     vector = f"({_LINE})('/error/method0')"
     damped.page.wait_for_function(f"end => String({vector}) !== String(end)", arg=at_end)
     before = damped.line("/track/method0")
-    damped.choose("errors in 3D drawn (x)", "50")
+    damped.choose("enlarge errors in 3D", "50")
     damped.page.wait_for_timeout(300)
     assert damped.line("/track/method0") != before
     caption = "() => window.__viserSceneTree.getState()['/map/caption0'].message.props.text"
     assert "x 50" in damped.page.evaluate(caption)
-    damped.choose("errors in 3D drawn (x)", "fit")
+    damped.choose("enlarge errors in 3D", "fit")
     assert damped.run == number
 
 

@@ -110,3 +110,22 @@ def test_instruments_and_bar_fit_the_view(moving: Bench) -> None:
         resize(moving, SIZES[0])
     assert now(moving)["span"] > 0.0
     assert moving.faults == []
+
+
+def test_the_key_below_the_map_hides_a_track(moving: Bench) -> None:
+    page = moving.page
+    entries = page.locator("#sb-stage .sb-entry")
+    names = [method.method.name for method in moving.session.scenario.method]
+    page.wait_for_function(f"() => document.querySelectorAll('#sb-stage .sb-entry').length === {len(names)}")
+    assert [text.split("\n")[0] for text in entries.all_inner_texts()] == names
+    assert moving.line("/track/method0")
+    try:
+        for state in ("unscaled", "dimmed", "hidden"):
+            entries.first.click()
+            page.wait_for_selector(f"#sb-stage .sb-entry[data-state={state}]")
+        moving.catch_up()
+        assert moving.line("/track/method0") is None and moving.line("/track/method1")
+    finally:
+        moving.show(legend=())
+    assert moving.line("/track/method0")
+    assert moving.faults == []

@@ -8,20 +8,57 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING
 
+from app.plots import legend
 from app.session.display import Display
 from app.views.scene.cameras import CAMERAS
 from app.views.scene.moment import moment, readout_html
 from app.views.scene.pendulum import caption_of, pendulum, pendulum_svg
 from app.views.scene.playback import SPEEDS, Playback, PlayState
+from app.views.scene.track import Place, TrackScene
 from navcore.engine.run import Run
 
 if TYPE_CHECKING:
     import viser
 
     from app.shell.commands import Commands
+
+
+@dataclass(frozen=True)
+class MapKey:
+    """What stands below the map.
+
+    Attributes
+    ----------
+    caption : str
+        What is drawn.
+    entries : tuple of dict
+        For each method: key, name, colour, present error, and how it is shown.
+    """
+
+    caption: str = ""
+    entries: tuple[dict[str, str], ...] = ()
+
+
+def map_key(track: TrackScene, place: Place) -> MapKey:
+    """Key of a map with the errors that the ships have where they are."""
+    return MapKey(
+        track.caption,
+        tuple(
+            {
+                "key": method.name,
+                "color": "#{:02x}{:02x}{:02x}".format(*method.color),
+                "error": method.error_text(place.index),
+                "state": method.state,
+                "said": legend.word(method.state),
+                "hint": legend.hint(method.state),
+            }
+            for method in track.methods
+        ),
+    )
 
 
 class PlaybackPanel:
@@ -65,8 +102,10 @@ class PlaybackPanel:
     def _heard(self, count: float) -> None:
         self._playback.heard(self._count - int(count))
 
-    def show(self, state: PlayState, run: Run, selected: int, camera: str, display: Display) -> None:
-        """Show a time of a run."""
+    def show(
+        self, state: PlayState, run: Run, selected: int, camera: str, display: Display, key: MapKey
+    ) -> None:
+        """Show a time of a run, and below the map its key."""
         swung = pendulum(run, state.time_s)
         readout = readout_html(moment(run, state.time_s), selected, display)
         self._count += 1
@@ -80,6 +119,8 @@ class PlaybackPanel:
             "speeds": SPEEDS,
             "camera": camera,
             "cameras": CAMERAS,
+            "caption": key.caption,
+            "key": key.entries,
         }
         self._now.content = (
             f'<div id="sb-playback" hidden data-now="{escape(json.dumps(told))}">'

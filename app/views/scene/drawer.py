@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,8 +16,6 @@ from app.views.scene.track import HALF_WIDTH, LINE_WIDTH, SHIP_LENGTH, MethodTra
 if TYPE_CHECKING:
     import viser
 
-Anchor = Literal["top-center", "center-left"]
-
 _GRID_LINE = 0.02
 _PINNED_LINE = 0.5 * LINE_WIDTH
 _FAINT = 0.6
@@ -25,7 +23,6 @@ _FAINT = 0.6
 _TIP_POINTS = 60
 _HEADING_LENGTH = 1.6
 _LABEL = 0.9
-_LEGEND_ROWS = 5
 
 
 _BAR_SHIFT = np.array([0.0, -0.55, 0.0], dtype=np.float32)
@@ -44,13 +41,15 @@ class SceneDrawer:
     ----------
     place : Place or None
         Where the ships are.
+    drawn : TrackScene or None
+        What is shown.
     """
 
     def __init__(self, scene: viser.SceneApi) -> None:
         self._scene = scene
         self._nodes: dict[str, Any] = {}
         self._labels: dict[str, SceneLabel] = {}
-        self._drawn: TrackScene | None = None
+        self.drawn: TrackScene | None = None
         self._selected = 0
         self._past: dict[str, tuple[object, int]] = {}
         self._ghost: tuple[int, int, int] | None = None
@@ -66,22 +65,21 @@ class SceneDrawer:
         """Show a run's map, the ships where they are at ``time_s``; ``selected`` has a computed one."""
         self._lines("/map/grid", track.graticule.segments, style.rgb("#FFFFFF"), _GRID_LINE)
         self._lines("/map/bar", track.bar + _BAR_SHIFT, style.rgb(style.INK), 2 * _GRID_LINE)
-        caption = SceneLabel(track.caption, (0.0, -HALF_WIDTH - 2.3, 0.0))
         south = (replace(label, position=_shifted(label)) for label in track.labels[:1])
         self._texts("/map/labels", (*track.graticule.labels, *south, *track.labels[1:]))
-        self._texts("/map/caption", (caption,), size=1.0)
         self._lines("/track/truth", track.truth_dashes(), style.rgb(style.TRUTH_COLOR), LINE_WIDTH)
         for number, pinned in enumerate(track.pinned):
-            self._lines(f"/track/pinned{number}", pinned.segments, pinned.color, _PINNED_LINE)
+            color = _paler(pinned.color) if pinned.state == "dimmed" else pinned.color
+            self._lines(f"/track/pinned{number}", pinned.segments, color, _PINNED_LINE)
         self._drop_beyond("/track/pinned", len(track.pinned))
-        self._drawn, self._selected = track, min(selected, len(track.methods) - 1)
+        self.drawn, self._selected = track, min(selected, len(track.methods) - 1)
         self._past.clear()
         self.move_ship(time_s)
         self._drop_beyond("/track/method", len(track.methods))
 
     def move_ship(self, time_s: float) -> None:
         """Put ships, error vectors and trails where they are at a time."""
-        track = self._drawn
+        track = self.drawn
         if track is None:
             return
         place = self.place = track.place(time_s)
@@ -92,56 +90,47 @@ class SceneDrawer:
         for number, (vector, method) in enumerate(zip(place.error_vectors(), track.methods, strict=True)):
             self._whole(number, method, faint=under_way)
             self._trail(number, method, place, shown=under_way)
-            self._lines(f"/error/method{number}", vector[None], method.color, 0.6 * LINE_WIDTH)
-            self._legend_row(number, len(track.methods), method.color, method.error_text(place.index))
-        for name in ("/error/method", "/legend/line", "/legend/text", "/trail/past", "/trail/tip"):
+            seen = method.visible(vector[None])
+            self._lines(f"/error/method{number}", seen, _color(method), 0.6 * LINE_WIDTH)
+        for name in ("/error/method", "/trail/past", "/trail/tip"):
             self._drop_beyond(name, len(track.methods))
 
     def select(self, method: int) -> bool:
         """Let another method have the computed ship; False when it has it already."""
-        if self._drawn is None or self.place is None:
+        if self.drawn is None or self.place is None:
             return False
-        method = min(method, len(self._drawn.methods) - 1)
+        method = min(method, len(self.drawn.methods) - 1)
         if method == self._selected:
             return False
         self._selected = method
-        computed = self._computed_ship(self._drawn.methods[method].color)
+        computed = self._computed_ship(self.drawn.methods[method].color)
         computed.position, computed.wxyz = self.place.computed[method], self.place.wxyz
         return True
 
     def _whole(self, number: int, method: MethodTrack, *, faint: bool) -> None:
         """The whole computed track; pale while what lies ahead is not yet past."""
-        color = _paler(method.color) if faint else method.color
+        color = _paler(method.color) if faint else _color(method)
         name = f"/track/method{number}"
-        if self._past.get(name) != (color, id(self._drawn)):
+        if self._past.get(name) != (color, id(self.drawn)):
             self._lines(name, method.drawn(), color, (_FAINT if faint else 1.0) * LINE_WIDTH)
-            self._past[name] = color, id(self._drawn)
+            self._past[name] = color, id(self.drawn)
 
     def _trail(self, number: int, method: MethodTrack, place: Place, *, shown: bool) -> None:
         """The part of a track that is past: only its last few points are sent anew at each moment."""
         past, tip = f"/trail/past{number}", f"/trail/tip{number}"
         if not shown:
             none = np.empty((0, 2, 3), dtype=np.float32)
-            self._lines(past, none, method.color, LINE_WIDTH)
-            self._lines(tip, none, method.color, LINE_WIDTH)
+            self._lines(past, none, _color(method), LINE_WIDTH)
+            self._lines(tip, none, _color(method), LINE_WIDTH)
             self._past.pop(past, None)
             return
         whole = place.index // _TIP_POINTS * _TIP_POINTS
-        if self._past.get(past) != (whole, id(self._drawn)):
-            self._lines(past, method.drawn(whole), method.color, LINE_WIDTH)
-            self._past[past] = whole, id(self._drawn)
+        if self._past.get(past) != (whole, id(self.drawn)):
+            self._lines(past, method.drawn(whole), _color(method), LINE_WIDTH)
+            self._past[past] = whole, id(self.drawn)
         recent = method.points[whole : place.index + 1]
         here = place.computed[number][None] if place.index < len(method.points) else recent[:0]
-        self._lines(tip, segments(np.concatenate([recent, here])), method.color, LINE_WIDTH)
-
-    def _legend_row(self, number: int, count: int, color: tuple[int, int, int], text: str) -> None:
-        """A method's line, name and present error, south of the map; many stand in two columns."""
-        rows = count if count <= _LEGEND_ROWS else -(-count // 2)
-        x = -HALF_WIDTH + (HALF_WIDTH + 0.4) * (number // rows)
-        y = -HALF_WIDTH - 3.3 - 0.75 * (number % rows)
-        line = np.array([[[x, y, 0.0], [x + 0.7, y, 0.0]]], dtype=np.float32)
-        self._lines(f"/legend/line{number}", line, color, LINE_WIDTH)
-        self._text(f"/legend/text{number}", SceneLabel(text, (x + 0.9, y, 0.0)), anchor="center-left")
+        self._lines(tip, method.visible(segments(np.concatenate([recent, here]))), _color(method), LINE_WIDTH)
 
     # ------------------------------------------------------------ nodes
 
@@ -221,16 +210,14 @@ class SceneDrawer:
             self._text(f"{name}{index}", label, size)
         self._drop_beyond(name, len(labels))
 
-    def _text(
-        self, name: str, label: SceneLabel, size: float = _LABEL, anchor: Anchor = "top-center"
-    ) -> None:
+    def _text(self, name: str, label: SceneLabel, size: float = _LABEL) -> None:
         node = self._nodes.get(name)
         if node is not None and self._labels.get(name) == label:
             return
         self._labels[name] = label
         if node is None:
             self._nodes[name] = self._scene.add_label(
-                name, label.text, position=label.position, font_screen_scale=size, anchor=anchor
+                name, label.text, position=label.position, font_screen_scale=size, anchor="top-center"
             )
             return
         if node.text != label.text:
@@ -241,6 +228,10 @@ class SceneDrawer:
         while (node := self._nodes.pop(f"{name}{count}", None)) is not None:
             node.remove()
             count += 1
+
+
+def _color(method: MethodTrack) -> tuple[int, int, int]:
+    return _paler(method.color) if method.state == "dimmed" else method.color
 
 
 def _paler(color: tuple[int, int, int]) -> tuple[int, int, int]:

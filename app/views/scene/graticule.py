@@ -39,8 +39,8 @@ _STEPS_ARCSEC = (
     162000.0,
 )
 _MOST_LINES = 7
-_MOST_BESIDE = 4
-"""Labels that fit beside each other in a small view: of more meridians every second has one."""
+MOST_BESIDE = 4
+"""Labels of meridians that fit beside each other in a small view: where there are more, some have none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,13 +96,13 @@ class LocalMap:
     metres_per_unit: float
 
 
-def graticule(area: LocalMap, half_width: float) -> Graticule:
+def graticule(area: LocalMap, half_width: float, beside: int = MOST_BESIDE) -> Graticule:
     """Lines over the square of +-``half_width`` scene units; in metres where an arc-second is too coarse."""
     half_m = half_width * area.metres_per_unit
     lat_step = _step(2.0 * half_m / area.metres_per_lat)
     lon_step = _step(2.0 * half_m / area.metres_per_lon)
     if lat_step is None or lon_step is None:
-        return _metre_grid(area, half_width)
+        return _metre_grid(area, half_width, beside)
     norths = _multiples(area.lat0, half_m / area.metres_per_lat, lat_step)
     norths = norths[np.abs(norths) < 0.5 * math.pi]
     easts = _multiples(area.lon0, min(half_m / area.metres_per_lon, math.pi), lon_step)
@@ -110,7 +110,7 @@ def graticule(area: LocalMap, half_width: float) -> Graticule:
     x = (easts - area.lon0) * area.metres_per_lon / area.metres_per_unit
     lat_texts = [angle_text(value, lat_step, "NS") for value in norths]
     lon_texts = [angle_text(math.remainder(value, 2.0 * math.pi), lon_step, "EW") for value in easts]
-    return _assemble(x, lon_texts, y, lat_texts, half_width)
+    return _assemble(x, lon_texts, y, lat_texts, half_width, beside)
 
 
 def scale_bar(metres_per_unit: float, half_width: float) -> tuple[np.ndarray, SceneLabel]:
@@ -165,25 +165,25 @@ def _multiples(centre: float, half: float, step: float) -> np.ndarray:
     return np.arange(first, last + 1) * step
 
 
-def _metre_grid(area: LocalMap, half_width: float) -> Graticule:
+def _metre_grid(area: LocalMap, half_width: float, beside: int) -> Graticule:
     half_m = half_width * area.metres_per_unit
     step = round_up(2.0 * half_m / _MOST_LINES)
     offsets = _multiples(0.0, half_m, step)
     unit = length_unit(half_m)
     at = offsets / area.metres_per_unit
     values = [f"{number(offset / unit.si, 4)} {unit.name}" for offset in offsets]
-    return _assemble(at, [f"E {v}" for v in values], at, [f"N {v}" for v in values], half_width)
+    return _assemble(at, [f"E {v}" for v in values], at, [f"N {v}" for v in values], half_width, beside)
 
 
 def _assemble(
-    x: np.ndarray, x_texts: list[str], y: np.ndarray, y_texts: list[str], half_width: float
+    x: np.ndarray, x_texts: list[str], y: np.ndarray, y_texts: list[str], half_width: float, beside: int
 ) -> Graticule:
     segments = np.zeros((len(x) + len(y), 2, 3), dtype=np.float32)
     segments[: len(x), :, 0] = x[:, None]
     segments[: len(x), :, 1] = (-half_width, half_width)
     segments[len(x) :, :, 0] = (-half_width, half_width)
     segments[len(x) :, :, 1] = y[:, None]
-    apart = max(1, -(-len(x) // _MOST_BESIDE))
+    apart = max(1, -(-len(x) // beside))
     south = [
         SceneLabel(text, (float(at), -half_width - 0.12, 0.0))
         for text, at in list(zip(x_texts, x, strict=True))[::apart]

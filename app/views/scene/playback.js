@@ -38,6 +38,8 @@
         </div>
         <div class="sb-pendulum" data-is="pendulum"></div><div class="sb-readout" data-is="readout"></div>
       </div>
+      <div class="sb-foot"><div class="sb-key"><p data-is="caption"></p>
+        <div class="sb-entries" data-is="key" role="group" aria-label="tracks and their position errors"></div></div>
       <div class="sb-bar"><div>
         <button type="button" class="sb-play" data-command="play" data-is="play"></button>
         <input type="range" min="0" max="1000" step="1" data-is="time" aria-label="time in the run">
@@ -45,7 +47,7 @@
         <select data-is="speed" aria-label="speed of the playback" title="time of the run in a second">${speeds.join("")}</select>
         <button type="button" data-is="loop" aria-label="begin anew at the end" title="begin anew at the end">⟲</button>
         <span class="sb-cameras" role="group" aria-label="camera">${cameras.join("")}</span>
-      </div></div></section>`);
+      </div></div></div></section>`);
     document.body.append(stage);
     find("time").addEventListener("input", (event) => {
       scrubbed = performance.now();
@@ -75,6 +77,44 @@
 
   const set = (target, name, value) => target.getAttribute(name) !== value && target.setAttribute(name, value);
 
+  // viser tells of software rendering in a notice that lies over the pendulum: one line below the map says it too.
+  let soft = false;
+  const SOFT = "Software WebGL rendering detected";
+  const titles = document.getElementsByClassName("mantine-Notification-title");
+  const watch = new MutationObserver(() => {
+    const told = [...titles].find((title) => title.textContent === SOFT)?.closest(".mantine-Notification-root");
+    if (!told) return;
+    soft = true;
+    watch.disconnect();
+    told.style.display = "none";
+    told.querySelector(".mantine-Notification-closeButton")?.click();
+  });
+  watch.observe(document.documentElement, { childList: true, subtree: true });
+  setTimeout(() => watch.disconnect(), 60_000);
+
+  // The entries stay what they are while only their errors change: a click ends on the button on which it began.
+  function showKey() {
+    find("caption").textContent = now.caption + (soft ? "; 3D drawn in software" : "");
+    const box = find("key");
+    const names = now.key.map((each) => each.key).join("\n");
+    if (box.dataset.names !== names) {
+      box.dataset.names = names;
+      const rows = now.key.map(() =>
+        element('<button type="button" class="sb-entry"><span class="sb-line"></span><span></span><small></small></button>'));
+      box.replaceChildren(...rows);
+    }
+    for (const [place, each] of now.key.entries()) {
+      const row = box.children[place];
+      const [line, name, error] = row.children;
+      set(row, "data-command", `legend ${each.key}`);
+      set(row, "data-state", each.state);
+      set(row, "title", each.hint);
+      set(line, "style", `height:3px;background:${each.color}`);
+      name.textContent = each.key;
+      error.textContent = each.said === "" ? each.error : `${each.error}, ${each.said}`;
+    }
+  }
+
   // A range's value, and its words for who hears it.
   function update(source) {
     const scrubbing = performance.now() - scrubbed < AFTER_SCRUB_MS;
@@ -94,6 +134,7 @@
     for (const part of ["pendulum", "readout"]) {
       find(part).innerHTML = source.querySelector(`[data-part="${part}"]`)?.innerHTML ?? "";
     }
+    showKey();
     if (!scrubbing) mark(now.time);
   }
 

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from app.plots import style
+from app.plots.legend import State, counts
 from app.plots.pinned import Pinned, pinned_methods
 from app.plots.rounding import round_down, round_up
-from app.plots.units import length_unit, number
-from app.views.scene.graticule import Graticule, LocalMap, SceneLabel, graticule, scale_bar
+from app.plots.units import length_unit, number, rounded
+from app.views.scene.graticule import MOST_BESIDE, Graticule, LocalMap, SceneLabel, graticule, scale_bar
 from app.views.scene.polyline import dashes, needed, segments
 from navcore.engine.run import MethodRun, Run
 from navcore.mechanization.recorder import D_LAT, D_LON
@@ -54,6 +55,8 @@ class MethodTrack:
         True size of the error at these points, east and north, m.
     line : ndarray of int, shape (n,)
         Indices of the points that drawing the line needs.
+    state : State
+        How it is shown; what is off the scale ends at the map's edge.
     """
 
     name: str
@@ -61,19 +64,28 @@ class MethodTrack:
     points: np.ndarray
     error_m: np.ndarray
     line: np.ndarray
+    state: State = "shown"
 
     def drawn(self, before: int | None = None) -> np.ndarray:
         """Segments of the line, float32, shape (n, 2, 3): all, or as far as the point ``before``."""
         if before is None:
-            return segments(self.points[self.line])
+            return self.visible(segments(self.points[self.line]))
         last = min(before, len(self.points) - 1)
-        return segments(self.points[[*self.line[self.line < last], last]])
+        return self.visible(segments(self.points[[*self.line[self.line < last], last]]))
+
+    def visible(self, parts: np.ndarray) -> np.ndarray:
+        """Those of some segments that are to be seen: none of what is hidden."""
+        if self.state == "hidden":
+            return parts[:0]
+        if self.state == "unscaled":
+            return parts[(np.abs(parts[:, :, :2]) <= HALF_WIDTH).all(axis=(1, 2))]
+        return parts
 
     def error_text(self, index: int) -> str:
-        """Name and error at a point, e.g. ``free 3.21 km``."""
+        """Size of the error at a point, e.g. ``3.21 km``."""
         size = math.hypot(*self.error_m[min(index, len(self.error_m) - 1)])
         unit = length_unit(size)
-        return f"{self.name} {number(float(f'{size / unit.si:.3g}'))} {unit.name}"
+        return f"{rounded(size / unit.si)} {unit.name}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,11 +100,14 @@ class PinnedTrack:
         The pin's.
     segments : ndarray of float32, shape (n, 2, 3)
         The line, its error exaggerated like all others, scene units.
+    state : State
+        How it is shown.
     """
 
     label: str
     color: tuple[int, int, int]
     segments: np.ndarray
+    state: State = "shown"
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,7 +206,13 @@ class TrackScene:
         return dashes(self.truth[needed(self.truth, _UNSEEN)], _DASH)
 
 
-def track(run: Run, exaggeration: float | None = None, pins: Sequence[Pinned] = ()) -> TrackScene:
+def track(
+    run: Run,
+    exaggeration: float | None = None,
+    pins: Sequence[Pinned] = (),
+    state_of: Callable[[str], State] = lambda _: "shown",
+    beside: int = MOST_BESIDE,
+) -> TrackScene:
     """Map of the run.
 
     Parameters
@@ -202,8 +223,15 @@ def track(run: Run, exaggeration: float | None = None, pins: Sequence[Pinned] = 
         Factor on the position errors; chosen from 1, 2, 5, 10, ... so that they show when None.
     pins : sequence of Pinned
         Runs whose position errors are laid over it.
+    state_of : callable
+        ``state_of(key)``: how a method, or a pin by its label, is shown.
+    beside : int
+        Longitudes whose labels have room beside each other.
     """
-    pinned = pinned_methods(pins)
+    pinned = [other for other in pinned_methods(pins) if state_of(other.label) != "hidden"]
+    states = [state_of(method.method.name) for method in run.methods]
+    every = [counts(state) for state in states]
+    framed = [found for found, counted in zip(run.methods, every, strict=True) if counted] or run.methods
     chosen = _chosen(len(run.t_s))
     t_s, rows = run.t_s[chosen], run.truth[chosen]
     lat, lon = rows[:, LAT], np.unwrap(rows[:, LON])
@@ -214,14 +242,17 @@ def track(run: Run, exaggeration: float | None = None, pins: Sequence[Pinned] = 
     true_m = np.column_stack([(lon - lon0) * per_lon, (lat - lat0) * (meridian + height)])
     half_m = float(np.max(np.abs(true_m), initial=0.0))
     static = half_m < _STATIC_M
-    peak = _peak([*run.methods, *(other.method for other in pinned)])
+    counted = [other for other in pinned if counts(state_of(other.label))]
+    peak = _peak([*framed, *(other.method for other in counted)])
     errors = [_errors(method, t_s, peak) for method in run.methods]
     others = [_errors(other.method, t_s, peak) for other in pinned]
     factor = exaggeration or (1.0 if static else _exaggeration(half_m, peak))
     computed_m, pinned_m = (
         [true_m[: len(error)] + factor * error for error in found] for found in (errors, others)
     )
-    middle, metres = _frame([true_m, *computed_m, *pinned_m], static)
+    within = [points for points, count in zip(computed_m, every, strict=True) if count or not any(every)]
+    within += [points for other, points in zip(pinned, pinned_m, strict=True) if other in counted]
+    middle, metres = _frame([true_m, *within], static)
     area = LocalMap(
         lat0=float(lat0 + middle[1] / meridian),
         lon0=float(lon0 + middle[0] / per_lon),
@@ -233,7 +264,7 @@ def track(run: Run, exaggeration: float | None = None, pins: Sequence[Pinned] = 
     north = SceneLabel("▲ N", (-HALF_WIDTH, HALF_WIDTH + 0.45, 0.0))
     lines = [_scene(computed, middle, metres, _LIFT) for computed in computed_m]
     tracks = tuple(
-        MethodTrack(m.method.name, style.method_rgb(i), points, error, needed(points, _UNSEEN))
+        MethodTrack(m.method.name, style.method_rgb(i), points, error, needed(points, _UNSEEN), states[i])
         for i, (m, points, error) in enumerate(zip(run.methods, lines, errors, strict=True))
     )
     return TrackScene(
@@ -242,13 +273,18 @@ def track(run: Run, exaggeration: float | None = None, pins: Sequence[Pinned] = 
         wxyz=attitude_quaternions(rows[:, PITCH], rows[:, ROLL], rows[:, HEADING]),
         methods=tracks,
         pinned=tuple(
-            PinnedTrack(other.label, style.rgb(other.color), _thinned(_scene(points, middle, metres, _LIFT)))
+            PinnedTrack(
+                other.label,
+                style.rgb(other.color),
+                _thinned(_scene(points, middle, metres, _LIFT)),
+                state_of(other.label),
+            )
             for other, points in zip(pinned, pinned_m, strict=True)
         ),
         exaggeration=factor,
         metres_per_unit=metres,
         static=static,
-        graticule=graticule(area, HALF_WIDTH),
+        graticule=graticule(area, HALF_WIDTH, beside),
         bar=bar,
         labels=(bar_label, north),
         caption=_caption(factor, static),

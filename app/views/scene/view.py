@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from app.session.shown import Shown
 from app.shell.view import Frame, Tab, View, if_user
-from app.views.scene.bar import PlaybackPanel
-from app.views.scene.cameras import Cameras
+from app.views.scene.bar import MapKey, PlaybackPanel, map_key
+from app.views.scene.cameras import Cameras, Window
 from app.views.scene.drawer import SceneDrawer
 from app.views.scene.playback import Playback, PlayState
 from app.views.scene.track import track
 from navcore.engine.run import Run
 
 _FIT = "fit"
+# What stands over the view (playback.css, playback.js), px.
+_PENDULUM_PX, _READOUT_PX, _TALL_PX = 195, 285, 900
+_BAR_PX, _CAPTION_PX, _KEY_ROW_PX, _KEY_ROWS = 88, 22, 22, 5
+_SMALL_PX = 480
+_MAP_SHARE, _LABEL_PX = 0.8, 62
+"""Part of the view's width that the map's southern edge takes; width of a longitude with some room."""
 _FACTORS: tuple[str, ...] = (
     _FIT,
     "1",
@@ -51,7 +57,7 @@ class SceneView(View):
         gui = self.frame.gui
         with tab:
             self._factor = gui.add_dropdown(
-                "errors in 3D drawn (x)", _FACTORS, order=18,
+                "enlarge errors in 3D", _FACTORS, order=18,
                 hint="Factor by which the 3D view enlarges the position errors; fit: chosen so that they "
                 "show.",
             )  # fmt: skip
@@ -73,12 +79,15 @@ class SceneView(View):
         self._run = run = found.run
         self.playback.follow(float(run.t_s[-1]) if len(run.t_s) else 0.0)
         state, selected = self.playback.state, self.session.selected
-        self._scene.draw(track(run, found.display.exaggeration, found.pins), state.time_s, selected)
+        display, layout = found.display, self.frame.layout()
+        beside = max(2, int(_MAP_SHARE * layout.view_px[0] / _LABEL_PX))
+        made = track(run, display.exaggeration, found.pins, display.state_of, beside)
+        self._scene.draw(made, state.time_s, selected)
         self._tell(state)
 
     def resize(self) -> None:
         """Fit the map into the view between the columns."""
-        self._cameras.choose(self._cameras.chosen, self._aspect, self._scene.place)
+        self._cameras.choose(self._cameras.chosen, self._window, self._scene.place)
 
     def close(self) -> None:
         """End the playback."""
@@ -86,8 +95,13 @@ class SceneView(View):
         self.playback.close()
 
     @property
-    def _aspect(self) -> float:
-        return self.frame.layout().view_aspect
+    def _window(self) -> Window:
+        """The view, and what of its height the instruments above and the key below the map take."""
+        width, height = self.frame.layout().view_px
+        methods = 0 if self._run is None else len(self._run.methods)
+        abreast = 1 if width < _SMALL_PX else 2
+        below = _BAR_PX + _CAPTION_PX + _KEY_ROW_PX * min(-(-methods // abreast), _KEY_ROWS)
+        return Window(width, height, _READOUT_PX if height >= _TALL_PX else _PENDULUM_PX, below)
 
     def _show(self, state: PlayState) -> None:
         with self.session.lock, self.frame.client.atomic():
@@ -101,7 +115,7 @@ class SceneView(View):
         with self.session.lock, self.frame.client.atomic():
             if self._closed:
                 return
-            self._cameras.choose(camera, self._aspect, self._scene.place)
+            self._cameras.choose(camera, self._window, self._scene.place)
             self._tell(self.playback.state)
         self.frame.client.flush()
 
@@ -110,7 +124,10 @@ class SceneView(View):
             self._cameras.follow(self._scene.place)
         if self._run is not None:
             display, selected = self.session.display, self.session.selected
-            self._panel.show(state, self._run, selected, self._cameras.chosen, display)
+            key = MapKey()
+            if self._scene.drawn is not None and self._scene.place is not None:
+                key = map_key(self._scene.drawn, self._scene.place)
+            self._panel.show(state, self._run, selected, self._cameras.chosen, display, key)
 
 
 def _factor(chosen: str) -> float | None:
