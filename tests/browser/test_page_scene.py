@@ -115,7 +115,7 @@ def test_instruments_and_bar_fit_the_view(moving: Bench) -> None:
 def test_the_key_below_the_map_hides_a_track(moving: Bench) -> None:
     page = moving.page
     entries = page.locator("#sb-stage .sb-entry")
-    names = [method.method.name for method in moving.session.scenario.method]
+    names = [method.name for method in moving.session.scenario.method]
     page.wait_for_function(f"() => document.querySelectorAll('#sb-stage .sb-entry').length === {len(names)}")
     assert [text.split("\n")[0] for text in entries.all_inner_texts()] == names
     assert moving.line("/track/method0")
