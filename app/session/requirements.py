@@ -42,7 +42,8 @@ class Requirements(BaseModel):
 
     Attributes
     ----------
-    settling_min, overshoot_percent, damping_ratio, h0_deviation, log_tilt_arcsec : float or None
+    settling_min, overshoot_percent, damping_ratio : float or None
+    h0_deviation, h_slope_s, log_tilt_arcsec : float or None
         Of the linear loop.
     tilt_max_arcsec, velocity_rms_mps, position_rms_m : float or None
         Of the run.
@@ -73,6 +74,15 @@ class Requirements(BaseModel):
         "<=",
         "How far the network's gain for constant errors is from 1: beyond it the loop is not Schuler-tuned.",
         le=1e3,
+    )
+    h_slope_s: float | None = _limit(
+        "H'(0)",
+        "s",
+        "<=",
+        "Slope of the network at s = 0. With H(0) = 1 and a slope of 0 or less the 24 h mode of the whole "
+        "system does not grow; a negative slope damps it. The placement in the tab Poles keeps to it.",
+        ge=-1e6,
+        le=1e6,
     )
     log_tilt_arcsec: float | None = _limit(
         "tilt after log step",
@@ -201,11 +211,17 @@ def _velocity_rms(method: MethodRun) -> float:
     return _of_run(method, math.hypot(*(method.errors[name]["rms"] for name in ("dve_mps", "dvn_mps"))))
 
 
+def _h_slope(method: MethodRun) -> float:
+    slope = effective_network(method).h_slope
+    return slope if math.isfinite(slope) else math.inf
+
+
 MEASURES: dict[str, Callable[[MethodRun], float]] = {
     "settling_min": _settling_min,
     "overshoot_percent": _overshoot_percent,
     "damping_ratio": lambda m: loop_of(m).damping_ratio,
     "h0_deviation": lambda m: abs(effective_network(m).h0 - 1.0),
+    "h_slope_s": _h_slope,
     "log_tilt_arcsec": _log_tilt_arcsec,
     "tilt_max_arcsec": _largest_tilt,
     "velocity_rms_mps": _velocity_rms,

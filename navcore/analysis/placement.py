@@ -20,7 +20,7 @@ def place(
     frequency: float,
     omega_s: float,
     *,
-    earth_mode_decays: bool = False,
+    h_slope_limit_s: float | None = None,
 ) -> Placement:
     """Set a network's parameters so that its main closed-loop pair lies where it is wanted.
 
@@ -34,14 +34,15 @@ def place(
         Wanted natural frequency |p|, rad/s.
     omega_s : float
         Schuler frequency, rad/s.
-    earth_mode_decays : bool
-        Ask for H(0) = 1 and H'(0) <= 0 as well, so that the 24 h mode does not grow (theory.md 10).
+    h_slope_limit_s : float, optional
+        Ask for H(0) = 1 and H'(0) no larger than this as well, s; with 0 the 24 h mode does not grow
+        (theory.md 10).
 
     Raises
     ------
     InputError
-        The network has no parameter for it, the wanted value lies outside what the parameter allows, or the
-        network with that pair would let the 24 h mode grow although it must not.
+        The network has no parameter for it, the wanted value lies outside what the parameter allows, or H(0)
+        or H'(0) of the network with that pair is not what is asked for.
     """
     if not LEAST_DAMPING <= damping_ratio <= LARGEST_DAMPING:
         allowed = f"must be >= {LEAST_DAMPING} and <= {LARGEST_DAMPING:g}"
@@ -52,19 +53,23 @@ def place(
     if placed is None:
         allowed = f"cannot be placed by a pole: use {placeable()}"
         raise InputError(Fault("", "network", parameters.id, allowed))
-    if earth_mode_decays:
-        _require_decay(placed, omega_s)
+    if h_slope_limit_s is not None:
+        _require_slope(placed, h_slope_limit_s, omega_s)
     return placed
 
 
-def _require_decay(placed: Placement, omega_s: float) -> None:
-    """Refuse a pair with which the 24 h mode grows."""
+def _require_slope(placed: Placement, limit_s: float, omega_s: float) -> None:
+    """Refuse a pair whose network does not have H(0) = 1 and a slope H'(0) within the limit."""
     network = placed.parameters.transfer(omega_s)
-    if abs(network.h0 - 1.0) <= H0_TOLERANCE and network.h_slope <= 0.0:
-        return
-    found = f"H(0) = {network.h0:.4g}, H'(0) = {network.h_slope:+.4g} s"
-    allowed = f"lets the 24 h mode grow ({found}): use complementary, or unity2 below omega_s"
-    raise InputError(Fault("", "network", placed.parameters.id, allowed))
+    instead = "use complementary, or unity2 with a pair below omega_s"
+    if not abs(network.h0 - 1.0) <= H0_TOLERANCE:
+        allowed = f"must be 1 when H'(0) is limited, and is not with this pair: {instead}"
+        raise InputError(Fault("", "H(0)", float(f"{network.h0:.4g}"), allowed))
+    if not network.h_slope <= limit_s:
+        allowed = f"must be <= {limit_s:.4g} (s)"
+        if limit_s <= 0.0 < network.h_slope:
+            allowed += ": with this pair the 24 h mode grows"
+        raise InputError(Fault("", "H'(0)", float(f"{network.h_slope:.4g}"), f"{allowed}; {instead}"))
 
 
 def placeable() -> str:

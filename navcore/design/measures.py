@@ -180,6 +180,8 @@ MEASURES: dict[str, tuple[Callable[[Setting], float], str, str]] = {
     "h_slope_s": (lambda s: s.network.h_slope, "s", "H'(0): negative damps the 24 h mode"),
 }
 """How a number is measured, its unit and what it is."""
+_TYPICAL = {"h_slope_s": 100.0}
+"""Sizes of measures whose limit is 0 as a rule, SI."""
 ALONG_ONLY = ("heading_rms", "position_rms")
 FLOORED = {
     "tilt_rms": "tilt_rad",
@@ -251,12 +253,17 @@ class Requirement:
         miss = value - self.limit if self.sense == "<=" else self.limit - value
         if math.isnan(miss):
             return math.inf
-        return max(0.0, miss / max(abs(self.limit), 1e-12))
+        return max(0.0, miss / self._scale)
 
     def active(self, setting: Setting) -> bool:
         """Whether a setting stands at the limit, to 1 %."""
         value = MEASURES[self.name][0](setting)
-        return abs(value - self.limit) <= 0.01 * max(abs(self.limit), 1e-12)
+        return abs(value - self.limit) <= 0.01 * self._scale
+
+    @property
+    def _scale(self) -> float:
+        """What a miss is counted against: the limit; where that may be 0, at least a typical value."""
+        return max(abs(self.limit), _TYPICAL.get(self.name, 1e-12))
 
 
 def read_objective(text: str) -> Objective:

@@ -95,15 +95,17 @@ def test_the_running_law_re_tunes_it_below_omega_s_too(more: dict[str, float]) -
 
 def test_a_pair_can_be_asked_not_to_let_the_24_h_mode_grow() -> None:
     parameters = parse_network('id = "unity2", zeta2 = 0.3')
-    below = place(parameters, 0.5, 0.8 * OMEGA_S, OMEGA_S, earth_mode_decays=True)
+    below = place(parameters, 0.5, 0.8 * OMEGA_S, OMEGA_S, h_slope_limit_s=0.0)
     assert below.parameters.transfer(OMEGA_S).h_slope < 0.0
-    with pytest.raises(InputError, match="lets the 24 h mode grow"):
-        place(parameters, 0.5, 1.2 * OMEGA_S, OMEGA_S, earth_mode_decays=True)
-    with pytest.raises(InputError, match="lets the 24 h mode grow"):
-        place(parse_network('id = "compass"'), 0.5, 1.2 * OMEGA_S, OMEGA_S, earth_mode_decays=True)
-    complementary = place(
-        parse_network('id = "complementary"'), 0.7, OMEGA_S, OMEGA_S, earth_mode_decays=True
-    )
+    with pytest.raises(InputError, match=r"H'\(0\) = [\d.]+: must be <= 0 .* the 24 h mode grows"):
+        place(parameters, 0.5, 1.2 * OMEGA_S, OMEGA_S, h_slope_limit_s=0.0)
+    with pytest.raises(InputError, match=r"H\(0\) = [\d.]+: must be 1"):
+        place(parse_network('id = "compass"'), 0.5, 1.2 * OMEGA_S, OMEGA_S, h_slope_limit_s=0.0)
+    complementary = place(parse_network('id = "complementary"'), 0.7, OMEGA_S, OMEGA_S, h_slope_limit_s=0.0)
+    slope = complementary.parameters.transfer(OMEGA_S).h_slope
+    place(parse_network('id = "complementary"'), 0.7, OMEGA_S, OMEGA_S, h_slope_limit_s=slope)
+    with pytest.raises(InputError, match=r"H'\(0\)"):
+        place(parse_network('id = "complementary"'), 0.7, OMEGA_S, OMEGA_S, h_slope_limit_s=slope - 1.0)
     assert complementary.parameters.damping_coefficient() == 0.7
 
 

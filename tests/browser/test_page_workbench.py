@@ -118,18 +118,18 @@ def test_measured_filter_lies_on_h(workbench: Bench) -> None:
 
 def test_locus_over_each_parameter_of_the_network_in_hand(workbench: Bench) -> None:
     workbench.tab("Poles")
-    workbench.choose("locus over", "zeta")
+    workbench.choose("locus", "zeta")
     locus = trace(workbench, "placed locus")
     points = np.array(locus["x"], float) + 1j * np.array(locus["y"], float)
     for pole in poles_of(workbench, 1):
         assert np.nanmin(np.abs(points - pole)) < 0.1
     assert workbench.page.get_by_text("over zeta: ○ 0.02 … □ 1.5, ✕ 0.5").count() == 1
-    workbench.choose("locus over", "r")
+    workbench.choose("locus", "r")
     workbench.page.get_by_text("over r: ○ 0.5").wait_for()
     # a network without parameters has no locus
     workbench.session.select(0, None)
     workbench.page.wait_for_function(_HAS_NO_TRACE, arg="placed locus")
-    assert workbench.box("locus over").input_value() == "nothing"
+    assert workbench.box("locus").input_value() == "nothing"
     assert workbench.faults == []
 
 
@@ -230,7 +230,7 @@ def test_tools_stand_in_one_row_in_every_window(workbench: Bench) -> None:
 
 def test_the_whole_system_stands_beside_the_channel(workbench: Bench) -> None:
     workbench.tab("Poles")
-    workbench.choose("poles of", "whole system")
+    workbench.choose("poles of", "system")
     growth = trace(workbench, "placed growth")
     run = workbench.session.run
     assert run is not None
@@ -244,6 +244,6 @@ def test_the_whole_system_stands_beside_the_channel(workbench: Bench) -> None:
     workbench.tab("Method")
     workbench.page.get_by_text("Whole system: 24 h mode").first.wait_for()
     workbench.tab("Poles")
-    workbench.choose("poles of", "one channel")
+    workbench.choose("poles of", "channel")
     workbench.page.wait_for_function(_HAS_NO_TRACE, arg="placed growth")
     assert workbench.faults == []

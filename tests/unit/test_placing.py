@@ -62,6 +62,19 @@ def test_what_cannot_be_placed_says_why_and_where_the_pair_is(index: int, said: 
     assert said in str(refused.value)
 
 
+def test_a_limit_of_the_slope_refuses_what_lets_the_24_h_mode_grow() -> None:
+    made = with_network({"id": "unity2", "zeta2": 0.3})
+    with pytest.raises(InputError) as refused:
+        with_pair(made, 3, 0.5, 1.2, 0.0)
+    told = str(refused.value)
+    assert "m, H'(0) = " in told and "must be <= 0 (s)" in told and "the 24 h mode grows" in told
+    assert "use complementary, or unity2 with a pair below omega_s" in told
+    placed = with_pair(made, 3, 0.5, 0.8, 0.0)
+    assert placed.scenario.method[3].network.transfer(made.omega_s).h_slope < 0.0
+    with pytest.raises(InputError, match=r"m, H\(0\) = "):
+        with_pair(with_network({"id": "compass"}), 3, 0.5, 1.2, 0.0)
+
+
 def test_out_of_the_parameters_range_is_said_with_the_range() -> None:
     with pytest.raises(InputError) as refused:
         with_pair(scenario(), 2, 0.5, 4e4)

@@ -21,6 +21,8 @@ from app.session.requirements import (
 from app.views.poles.figure import allowed_poles
 from app.views.requirements.table import requirements_html
 from app.views.step.figure import step_limits
+from app.views.tune.setting import requirements_as_text
+from navcore.design.measures import read_requirement
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
 from tests.unit.figures_runs import INTERNAL, THREE, UNSTABLE, diverging, run_of, static_run
@@ -64,9 +66,24 @@ def test_overshoot_of_the_compass_is_that_of_its_three_poles() -> None:
 
 def test_log_tilt_of_an_internal_and_a_free_method_is_zero() -> None:
     run = run_of(method=[*THREE, INTERNAL])
-    values = verdicts(run, Requirements())[4].measured
+    values = {v.name: v.measured for v in verdicts(run, Requirements())}["log_tilt_arcsec"]
     assert values[0] == values[3] == 0.0
     assert values[1] > 10.0
+
+
+def test_slope_at_0_is_that_of_the_network_and_its_limit_may_be_negative() -> None:
+    """theory.md 10: classic2 +962.1 s, complementary 0.5, 0.5 -806.5 s; a free method has H = 1."""
+    methods = [
+        {"name": id, "damping": "external", "network": {"id": id, **more}}
+        for id, more in (("classic2", {}), ("complementary", {"zeta": 0.5, "eta": 0.5}))
+    ]
+    run = run_of(method=[{"name": "free"}, *methods])
+    found = {v.name: v for v in verdicts(run, Requirements(h_slope_s=0.0))}["h_slope_s"]
+    assert found.measured == (0.0, pytest.approx(962.1, rel=0.03), pytest.approx(-806.5, rel=0.03))
+    assert found.passed == (True, False, True)
+    assert read_limit("h_slope_s", "-500") == -500.0
+    assert requirements_as_text(Requirements(h_slope_s=-500.0)) == ("h_slope_s<=-500",)
+    assert read_requirement("h_slope_s<=-500").limit == -500.0
 
 
 def test_run_measures_are_the_runs_errors() -> None:

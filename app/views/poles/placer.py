@@ -40,7 +40,8 @@ class Placer:
         session = self._session
         with session.lock:
             try:
-                placed = with_pair(session.scenario, session.selected, *wanted())
+                limit = session.display.requirements.h_slope_s
+                placed = with_pair(session.scenario, session.selected, *wanted(), limit)
             except InputError as error:
                 notices.tell(self._client, "The pair was not placed", notices.fault_lines(error), "warning")
                 return

@@ -77,7 +77,9 @@ def pair_at(point: complex) -> tuple[float, float]:
     return ratio, size
 
 
-def with_pair(scenario: Scenario, index: int, damping_ratio: float, ratio: float) -> Placed:
+def with_pair(
+    scenario: Scenario, index: int, damping_ratio: float, ratio: float, h_slope_limit_s: float | None = None
+) -> Placed:
     """Give a method's network the closed-loop pair that is wanted.
 
     Parameters
@@ -88,6 +90,8 @@ def with_pair(scenario: Scenario, index: int, damping_ratio: float, ratio: float
         Which method.
     damping_ratio, ratio : float
         Of the pair: xi, and |p| / omega_s.
+    h_slope_limit_s : float, optional
+        H(0) must be 1 and H'(0) no larger than this, s.
 
     Raises
     ------
@@ -101,7 +105,9 @@ def with_pair(scenario: Scenario, index: int, damping_ratio: float, ratio: float
     omega_s = scenario.omega_s
     wanted = f"ξ = {number(damping_ratio, 3)}, ω = {number(ratio, 3)} ω_s"
     try:
-        placed = place(method.network, damping_ratio, ratio * omega_s, omega_s)
+        placed = place(
+            method.network, damping_ratio, ratio * omega_s, omega_s, h_slope_limit_s=h_slope_limit_s
+        )
     except InputError as error:
         raise _why_not(method, wanted, omega_s, error) from None
     changed = _with_network(scenario, index, placed.parameters)

@@ -18,10 +18,11 @@ from app.views.poles.whole import whole_system_figure
 from navcore.engine.run import Run
 from navcore.scenario.model import Method
 
-LOCUS = "locus over"
+LOCUS = "locus"
+DECAYS = "H'(0) ≤ 0"
 PAIR_XI, PAIR_OMEGA, PLACE = "pair ξ", "pair ω/ωs", "Place"
 POLES_OF = "poles of"
-SYSTEMS = {"one channel": "channel", "whole system": "whole"}
+SYSTEMS = {"channel": "channel", "system": "whole"}
 _NONE = "nothing"
 
 
@@ -45,7 +46,7 @@ class PolesView(PlotlyView):
         gui.add_html(TOOLS)
         self._system: Any = gui.add_dropdown(
             POLES_OF, tuple(SYSTEMS), initial_value=_system(display),
-            hint="One channel: the closed loop of one level channel. Whole system: both channels with "
+            hint="Channel: the closed loop of one level channel. System: the whole one, both channels with "
             "heading and latitude, whose 24 h mode most networks let grow, and its growth over latitude.",
         )  # fmt: skip
         self._system.on_update(if_user(lambda: self.frame.show(poles=SYSTEMS[self._system.value])))
@@ -63,6 +64,12 @@ class PolesView(PlotlyView):
             PAIR_OMEGA, 1.2, step=0.1,
             hint="Frequency wanted of the pair, in units of the Schuler frequency (above 0).",
         )  # fmt: skip
+        self._decays: Any = gui.add_checkbox(
+            DECAYS, _decays(display),
+            hint="A pair is only placed when H(0) = 1 and the slope H'(0) is at most 0, so that the 24 h "
+            "mode of the whole system does not grow. The same limit as H'(0) in the tab Requirements.",
+        )  # fmt: skip
+        self._decays.on_update(if_user(self._limit_slope))
         button = gui.add_button(
             PLACE,
             hint="Sets the parameters of the selected method's network that give this pair, where it can.",
@@ -77,6 +84,12 @@ class PolesView(PlotlyView):
     def _choose(self) -> None:
         self.frame.show(locus=self._fields.get(self._locus.value, NO_LOCUS))
 
+    def _limit_slope(self) -> None:
+        wanted = self.session.display.requirements.model_copy(
+            update={"h_slope_s": 0.0 if self._decays.value else None}
+        )
+        self.frame.show(requirements=wanted)
+
     def follow_scenario(self) -> None:
         """Offer the parameters of the selected method's network, and show which is chosen."""
         offered = _offered(self._method)
@@ -90,6 +103,7 @@ class PolesView(PlotlyView):
     def follow_display(self) -> None:
         """Show whose poles and which parameter are chosen."""
         self._system.value = _system(self.session.display)
+        self._decays.value = _decays(self.session.display)
         self.follow_scenario()
 
     @property
@@ -119,6 +133,12 @@ def _offered(method: Method) -> dict[str, str]:
 
 def _system(display: Display) -> str:
     return next(label for label, name in SYSTEMS.items() if name == display.poles)
+
+
+def _decays(display: Display) -> bool:
+    """A limit of H'(0) above 0 lets the 24 h mode grow."""
+    limit = display.requirements.h_slope_s
+    return limit is not None and limit <= 0.0
 
 
 def _chosen(offered: dict[str, str], display: Display) -> str:

@@ -45,11 +45,12 @@ def whole_system_figure(run: Run, aspect: float = 0.46, *, width_px: float = 940
     rows = style.legend_rows([*names, *(f"{kind} mode" for kind in _SYMBOLS)], width_px - 84.0)
     margin = _MARGIN | {"b": 56 + 22 * rows}
     data: list[dict[str, Any]] = []
+    rates = [_rates(run, method) for method in run.methods]
     for index, method in enumerate(run.methods):
         data += _marks(method, index)
-        data += _growth(run, method, index)
+        data += _growth(run, method, index, rates[index])
     data += [_key(name) for name in _SYMBOLS]
-    return figure(data, _layout(run, margin, aspect))
+    return figure(data, _layout(run, margin, aspect, _growth_range(rates)))
 
 
 def _marks(method: MethodRun, index: int) -> list[dict[str, Any]]:
@@ -72,7 +73,8 @@ def _marks(method: MethodRun, index: int) -> list[dict[str, Any]]:
                 "hovertemplate": f"<b>{name}</b><br>%{{text}}<extra></extra>",
                 "marker": {
                     "symbol": symbol,
-                    "size": 11,
+                    # The 24 h modes of all methods lie next to each other: the later ones are smaller.
+                    "size": max(15 - 4 * index, 5) if kind == EARTH_MODE else 11,
                     "color": color,
                     "line": {"color": color, "width": 2.4},
                 },
@@ -90,11 +92,25 @@ def _about(mode: Mode) -> str:
     return "<br>".join(lines)
 
 
-def _growth(run: Run, method: MethodRun, index: int) -> list[dict[str, Any]]:
+def _rates(run: Run, method: MethodRun) -> np.ndarray:
+    """Growth of the 24 h mode at each of `LATITUDES`, 1/day."""
+    return _DAY * growth_over_latitude(
+        method.network, method.method.damping, LATITUDES * DEG, run.scenario.earth
+    )
+
+
+def _growth_range(rates: list[np.ndarray]) -> list[float]:
+    """Range of the axis: all curves and 0, with a margin."""
+    found = np.concatenate(rates)
+    found = found[np.isfinite(found)]
+    low, high = min(0.0, *found), max(0.0, *found)
+    margin = max(0.08 * (high - low), 0.01)
+    return [low - margin, high + margin]
+
+
+def _growth(run: Run, method: MethodRun, index: int, rates: np.ndarray) -> list[dict[str, Any]]:
     """Curve of the growth over the latitude, and the point of the site."""
     color, name = style.method_color(index), style.plain(method.method.name)
-    damping, earth = method.method.damping, run.scenario.earth
-    rates = growth_over_latitude(method.network, damping, LATITUDES * DEG, earth) * _DAY
     here = method.whole.earth_growth
     common: dict[str, Any] = {
         "type": "scatter",
@@ -135,13 +151,13 @@ def _key(name: str) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _layout(run: Run, margin: dict[str, int], aspect: float) -> dict[str, Any]:
+def _layout(run: Run, margin: dict[str, int], aspect: float, growth: list[float]) -> dict[str, Any]:
     made = style.layout(margin=margin, hovermode="closest", legend=style.legend(), meta={"aspect": aspect})
     half = 0.5 * (1.0 - _GAP)
     made["xaxis"] = style.axis("Re s / ω<sub>s</sub>", domain=[0.0, half], range=list(_RE), anchor="y")
     made["yaxis"] = style.axis("Im s / ω<sub>s</sub>", range=list(_IM), anchor="x")
     made["xaxis2"] = style.axis("latitude, deg", domain=[1.0 - half, 1.0], range=[0.0, 90.0], anchor="y2")
-    made["yaxis2"] = style.axis("1/day", anchor="x2")
+    made["yaxis2"] = style.axis("growth, 1/day", anchor="x2", range=growth)
     line = {"type": "line", "line": {"color": style.DANGER, "width": 1.4}, "layer": "below"}
     shapes = [
         line | {"xref": "x", "yref": "y domain", "x0": 0.0, "x1": 0.0, "y0": 0.0, "y1": 1.0},

@@ -21,6 +21,7 @@ _MEASURED = {
     "settling_min": ("settling_s<=", MINUTE),
     "damping_ratio": ("damping_ratio>=", 1.0),
     "h0_deviation": ("h0_deviation<=", 1.0),
+    "h_slope_s": ("h_slope_s<=", 1.0),
     "log_tilt_arcsec": ("log_tilt<=", ARCSEC),
     "position_rms_m": ("position_rms<=", 1.0),
 }

@@ -1,0 +1,140 @@
+"""The changes that a mutation run makes: one node of a file's syntax tree at a time.
+
+Left out by rule, because no number of a run depends on it: type annotations, docstrings, texts, and the fields of a
+parameter that only the page shows (slider, label, help, unit).
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+_OPERATORS: dict[type[ast.AST], type[ast.AST]] = {
+    ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult,
+    ast.FloorDiv: ast.Mult, ast.Mod: ast.Mult, ast.MatMult: ast.Mult,
+    ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
+    ast.And: ast.Or, ast.Or: ast.And,
+}  # fmt: skip
+_CALLS = {"min": "max", "max": "min", "sin": "cos", "cos": "sin"}
+_SHOWN_ONLY = {"slider", "label", "help", "unit", "description", "title", "json_schema_extra", "elements"}
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One change: the ``place``-th node of a file that can be changed."""
+
+    file: str
+    place: int
+    line: int
+    what: str
+
+    @property
+    def name(self) -> str:
+        """Name that stays as long as the file does."""
+        return f"{self.file}#{self.place}"
+
+
+def mutants_of(path: Path, root: Path) -> list[Mutant]:
+    """Every change of a file.
+
+    Parameters
+    ----------
+    path : Path
+        The source file.
+    root : Path
+        Folder that the name of the file is told from.
+    """
+    name = str(path.relative_to(root))
+    nodes = _changeable(ast.parse(path.read_text("utf-8")))
+    return [Mutant(name, i, node.lineno, _words(node)) for i, node in enumerate(nodes)]
+
+
+def changed(source: str, place: int) -> str:
+    """Source text with the ``place``-th changeable node changed."""
+    tree = ast.parse(source)
+    _change(_changeable(tree)[place])
+    return ast.unparse(tree)
+
+
+def _change(node: ast.expr) -> None:
+    if isinstance(node, ast.BinOp | ast.BoolOp):
+        node.op = _OPERATORS[type(node.op)]()  # pyright: ignore[reportAttributeAccessIssue]
+    elif isinstance(node, ast.Compare):
+        node.ops[0] = _OPERATORS[type(node.ops[0])]()  # pyright: ignore[reportArgumentType, reportCallIssue]
+    elif isinstance(node, ast.UnaryOp):
+        node.op = ast.UAdd()
+    elif isinstance(node, ast.Call):
+        if isinstance(node.func, ast.Name):
+            node.func.id = _CALLS[node.func.id]
+        elif isinstance(node.func, ast.Attribute):
+            node.func.attr = _CALLS[node.func.attr]
+    elif isinstance(node, ast.Constant):
+        value = node.value
+        if isinstance(value, bool):
+            node.value = not value
+        elif isinstance(value, int):
+            node.value = value + 1
+        elif isinstance(value, float):
+            node.value = 1.1 * value or 0.1
+
+
+def _changeable(tree: ast.AST) -> list[ast.expr]:
+    return [node for node in _code(tree) if _can_change(node)]
+
+
+def _code(node: ast.AST, parent: ast.AST | None = None) -> Iterator[ast.expr]:
+    """Yield every expression whose value decides what the code does, parents first."""
+    if isinstance(node, ast.JoinedStr | ast.arg):
+        return
+    if isinstance(node, ast.keyword) and node.arg in _SHOWN_ONLY:
+        return
+    if isinstance(node, ast.expr) and not (isinstance(node, ast.Constant) and not _counts(node, parent)):
+        yield node
+    for name, value in ast.iter_fields(node):
+        if name in ("annotation", "returns", "decorator_list"):
+            continue
+        for child in value if isinstance(value, list) else [value]:
+            if isinstance(child, ast.AST):
+                yield from _code(child, node)
+
+
+def _counts(node: ast.Constant, parent: ast.AST | None) -> bool:
+    """Whether a constant is a number of the computation: not an index, not an axis, not a text."""
+    if isinstance(node.value, float):
+        return True
+    return type(node.value) is int and isinstance(parent, ast.BinOp | ast.Compare)
+
+
+def _can_change(node: ast.expr) -> bool:
+    if isinstance(node, ast.BinOp):
+        texts = any(
+            isinstance(side, ast.JoinedStr)
+            or (isinstance(side, ast.Constant) and isinstance(side.value, str))
+            for side in (node.left, node.right)
+        )
+        return type(node.op) in _OPERATORS and not texts
+    if isinstance(node, ast.BoolOp):
+        return True
+    if isinstance(node, ast.Compare):
+        return type(node.ops[0]) in _OPERATORS
+    if isinstance(node, ast.UnaryOp):
+        return isinstance(node.op, ast.USub)
+    if isinstance(node, ast.Call):
+        name = getattr(node.func, "id", getattr(node.func, "attr", ""))
+        return name in _CALLS
+    return isinstance(node, ast.Constant)
+
+
+def _words(node: ast.expr) -> str:
+    text = ast.unparse(node)
+    text = text if len(text) <= 70 else text[:67] + "..."
+    if isinstance(node, ast.Constant):
+        return f"{text} + 1" if isinstance(node.value, int) else f"{text} x 1.1"
+    if isinstance(node, ast.UnaryOp):
+        return f"minus dropped in {text}"
+    if isinstance(node, ast.Call):
+        return f"min/max or sin/cos exchanged in {text}"
+    op = node.ops[0] if isinstance(node, ast.Compare) else node.op  # pyright: ignore[reportAttributeAccessIssue]
+    return f"{type(op).__name__} -> {_OPERATORS[type(op)].__name__} in {text}"

@@ -1,0 +1,51 @@
+"""Which tests judge the changes of which room.
+
+Only tests that run within the process: what starts another one would compile every kernel of the changed tree.
+"""
+
+from __future__ import annotations
+
+ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "law": (
+        ("test_control_*", "test_mutants_law"),
+        (
+            "test_scenario_guide", "test_history", "test_filters", "test_tuning", "test_unchanged_methods",
+            "test_switching_*", "test_liu_*", "test_sun_*", "test_zha_*", "test_signs_and_sizes",
+        ),
+    ),
+    "mechanization": (
+        (
+            "test_error_model", "test_strapdown_kernel", "test_strapdown_every_sample", "test_kalman_method",
+            "test_signs_and_sizes", "test_mutants_mechanization",
+        ),
+        (
+            "test_scenario_guide", "test_strapdown_*", "test_control_twin", "test_control_strapdown",
+            "test_averaging_*", "test_alignment", "test_results", "test_simulation", "test_zhao_free",
+            "test_presets_golden",
+        ),
+    ),
+    "sensors": (
+        ("test_imu*", "test_noise", "test_reference_*", "test_mutants_sensors"),
+        (
+            "test_scenario_guide", "test_recorded_*", "test_log_fit", "test_strapdown_simulation",
+            "test_strapdown_scenario", "test_sources", "test_signs_and_sizes", "test_own_recordings",
+            "test_sikuliaq_*", "test_presets_golden", "test_strapdown_recorded_imu",
+        ),
+    ),
+    "analysis": (
+        (
+            "test_loop_*", "test_whole_system*", "test_held_log", "test_network_report", "test_mutants_analysis",
+        ),
+        (
+            "test_network_*", "test_pages", "test_placing", "test_any_network", "test_figures_whole_system",
+            "test_figures_workbench", "test_closed_loop_values", "test_liu_networks", "test_zha_transient",
+        ),
+    ),
+}  # fmt: skip
+"""Tests of each room of navcore, as patterns of modules: those that are run first, and the others."""
+
+INTERPRETED = ("navcore/law/",)
+"""Where a changed kernel runs as Python: compiling the whole law anew takes a minute, its tests need few steps."""
+
+LEFT_OUT = ("test_kernel_cache", "test_cli")
+"""Tests that start another process."""
