@@ -14,6 +14,7 @@ from navcore.foundation.units import DEG
 from navcore.scenario.model import Scenario
 from tests.browser.driver import Bench
 from tests.browser.test_page_layout import SIZES, resize
+from tests.browser.test_page_requirements import box
 
 pytestmark = pytest.mark.browser
 
@@ -84,8 +85,9 @@ def test_a_pair_that_lets_the_24_h_mode_grow_is_not_placed_when_it_must_not(whol
     assert whole.session.run.methods[1].whole.earth_growth < 0.0
     # one limit: the tab Requirements has it too, and emptied there it is gone here
     whole.tab("Requirements")
-    assert whole.box("H'(0) ≤ (s)").input_value() == "0"
-    whole.box("H'(0) ≤ (s)").fill("")
+    limit = box(whole, "H'(0) ≤ (s)")
+    assert limit.input_value() == "0"
+    limit.fill("")
     ticked = "id => document.getElementById(id).checked"
     whole.page.wait_for_function(f"id => !({ticked})(id)", arg=whole.id("H'(0) ≤ 0"))
     assert whole.faults == []

@@ -1,7 +1,7 @@
 """Mutation run (`make mutation`): draw changes of a room at random, and see which no test notices.
 
-What became of each change is appended to ``build/mutation/results.jsonl``; a change that stands there is not made
-again unless ``--again`` asks for the survivors. Not part of `make test`: a change takes 5 to 60 s.
+What became of each change is appended to ``build/mutation/results.jsonl``; a change that stands there is not
+made again unless ``--again`` asks for the survivors. Not part of `make test`: a change takes 5 to 60 s.
 
     python -m tests.mutation --sample 40 --seed 1 analysis law
 """
@@ -40,7 +40,7 @@ from tests.mutation.rooms import INTERPRETED, LEFT_OUT, ROOMS  # noqa: E402
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = ROOT / "build" / "mutation"
 _TEST_S, _RUN_S = 1.5, 300.0
-"""A test that takes longer on the unchanged tree is left out; a run on a change that takes longer is "timeout"."""
+"""A slower test on the unchanged tree is left out; a slower run on a change is "timeout"."""
 
 
 def main() -> None:
@@ -152,7 +152,7 @@ class _Room:
         return ("survived", "") if code == 0 else ("killed", bad[0] if bad else "import or collection")
 
     def _order(self, seconds: dict[str, float]) -> list[str]:
-        """Tests that noticed a change before, then a first case of each test, then the rest; the quick ones first."""
+        """Tests that noticed a change before, a first case of each test, the rest; the quick ones first."""
         cases: Counter[str] = Counter()
         rank: dict[str, tuple[int, bool, float]] = {}
         for name in sorted(seconds, key=seconds.__getitem__):

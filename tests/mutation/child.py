@@ -86,7 +86,7 @@ def run_tests(
 
 
 def in_fork(work: Callable[[Any], None], limit_s: float) -> str:
-    """Do work in a fork and return what it wrote; after ``limit_s`` it is ended, and the answer is "timeout"."""
+    """Do work in a fork and return what it wrote, or "timeout" when it took longer than ``limit_s``."""
     read, write = os.pipe()
     pid = os.fork()
     if pid == 0:

@@ -1,6 +1,6 @@
 """Kernels of a changed tree without compiling all of them anew.
 
-A changed kernel, and each that calls it, is run as Python (``interpret``) or compiled for this process alone; every
+A changed kernel, and each that calls it, is run as Python (``interpret``) or compiled for this process; every
 other kernel is loaded from the machine code of the unchanged tree. A small inlined function that a test or an
 interpreted kernel calls runs as Python. To be used before anything of navcore is imported.
 """

@@ -1,7 +1,7 @@
 """The changes that a mutation run makes: one node of a file's syntax tree at a time.
 
-Left out by rule, because no number of a run depends on it: type annotations, docstrings, texts, and the fields of a
-parameter that only the page shows (slider, label, help, unit).
+Left out by rule, as no number of a run depends on it: type annotations, docstrings, texts, and what of a
+parameter only the page shows (slider, label, help, unit).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Which tests judge the changes of which room.
 
-Only tests that run within the process: what starts another one would compile every kernel of the changed tree.
+Only tests that run within the process: what starts another would compile every kernel of the changed tree.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     ),
     "analysis": (
         (
-            "test_loop_*", "test_whole_system*", "test_held_log", "test_network_report", "test_mutants_analysis",
+            "test_loop_*", "test_whole_system*", "test_held_log", "test_network_report",
+            "test_mutants_analysis",
         ),
         (
             "test_network_*", "test_pages", "test_placing", "test_any_network", "test_figures_whole_system",
@@ -45,7 +46,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 """Tests of each room of navcore, as patterns of modules: those that are run first, and the others."""
 
 INTERPRETED = ("navcore/law/",)
-"""Where a changed kernel runs as Python: compiling the whole law anew takes a minute, its tests need few steps."""
+"""Where a changed kernel runs as Python: compiling the law takes a minute, its tests need few steps."""
 
 LEFT_OUT = ("test_kernel_cache", "test_cli")
 """Tests that start another process."""
