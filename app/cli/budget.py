@@ -40,7 +40,7 @@ class BudgetCommand:
     quiet: bool = False
 
     def execute(self) -> int:
-        """Compute and print; 3 when it was stopped."""
+        """Compute and print; 3 when it was stopped or a method diverged."""
         from app.cli.progress import Bar
         from app.cli.stop import stop_on_signal
         from navcore.design.budget import budget
@@ -60,7 +60,7 @@ class BudgetCommand:
             emit_json(found.as_dict())
         else:
             emit("\n".join(budget_text(found)))
-        return 0
+        return 3 if any(method.diverged for method in found.methods) else 0
 
 
 def budget_text(budget: Budget) -> list[str]:
@@ -105,7 +105,8 @@ def _floor(budget: Budget) -> list[str]:
     ]
     if budget.floor.final is not None:
         rows.append(["  at the end", *_cells(budget, budget.floor.final)])
-    return columns(rows)
+    lines = columns(rows)
+    return [*lines, f"note: {budget.floor_note}"] if budget.floor_note else lines
 
 
 def _head(budget: Budget, name: str) -> list[str]:

@@ -94,14 +94,13 @@ def pareto_text(found: Pareto) -> list[str]:
 
 
 def _unit(name: str) -> str:
-    from navcore.design.measures import MEASURES
+    from navcore.design.measures import in_display_unit
 
-    unit = MEASURES[name][1]
-    return "arcsec" if unit == "rad" else unit
+    return in_display_unit(name, None)[1]
 
 
 def _values(found: Pareto, values: tuple[float | None, float | None]) -> list[str]:
-    from navcore.foundation.units import ARCSEC
+    from navcore.design.measures import in_display_unit
 
-    sizes = [ARCSEC if _unit(name) == "arcsec" else 1.0 for name in found.objectives]
-    return [number(None if v is None else v / size) for v, size in zip(values, sizes, strict=True)]
+    pairs = zip(found.objectives, values, strict=True)
+    return [number(in_display_unit(name, value)[0]) for name, value in pairs]

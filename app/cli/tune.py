@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 class TuneCommand:
     """Find the parameters of a method that make an objective least while requirements are kept.
 
-    Objectives and requirements: tilt_rms, velocity_rms, heading_rms, position_rms, settling_s, overshoot,
-    log_tilt, damping_ratio, h0_deviation, h_slope_s; an objective may be a sum, tilt_rms + 0.5*velocity_rms.
+    Objectives: tilt_rms, velocity_rms, heading_rms, position_rms, settling_s, overshoot, log_tilt,
+    h0_deviation, h_slope_s, or a sum, tilt_rms + 0.5*velocity_rms. Requirements: the same, damping_ratio.
 
     Attributes
     ----------
@@ -119,10 +119,7 @@ def tune_text(objective: str, found: Tuned) -> list[str]:
 
 
 def _shown(objective: str, value: float | None) -> tuple[str, str]:
-    from navcore.design.measures import MEASURES
-    from navcore.foundation.units import ARCSEC
+    from navcore.design.measures import in_display_unit
 
-    unit = MEASURES[objective][1] if objective in MEASURES else ""
-    if unit == "rad":
-        return number(None if value is None else value / ARCSEC), "arcsec"
-    return number(value), unit
+    shown, unit = in_display_unit(objective, value)
+    return number(shown), unit

@@ -37,6 +37,10 @@ _INITIAL = {
 }
 
 
+UNTOLD = (*_COUPLINGS, "log_scale", "log_current", "log_events", "log_delay", "log_tide")
+"""Sources that the Kalman filter is not told of."""
+
+
 @dataclass(frozen=True, eq=False)
 class Column:
     """One response.

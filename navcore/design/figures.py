@@ -88,7 +88,9 @@ def entry_of(t_s: np.ndarray, variance: np.ndarray) -> Entry:
 def mean_figures(t_s: np.ndarray, variance: np.ndarray) -> Figures:
     """Root mean squares over a run of variances for `navcore.design.along.QUANTITIES`, shape (m, 7)."""
     span = t_s[-1] - t_s[0]
-    return _figures(np.trapezoid(variance, t_s, axis=0) / span if span > 0.0 else variance[-1])
+    with np.errstate(over="ignore", invalid="ignore"):  # of an unstable loop
+        mean = np.trapezoid(variance, t_s, axis=0) / span if span > 0.0 else variance[-1]
+    return _figures(mean)
 
 
 def _figures(variance: np.ndarray) -> Figures:

@@ -183,6 +183,9 @@ MEASURES: dict[str, tuple[Callable[[Setting], float], str, str]] = {
 _TYPICAL = {"h_slope_s": 100.0}
 """Sizes of measures whose limit is 0 as a rule, SI."""
 ALONG_ONLY = ("heading_rms", "position_rms")
+NO_OBJECTIVES = ("damping_ratio",)
+"""Measures of which more is better: to be required, not to be made small."""
+OBJECTIVES = tuple(name for name in MEASURES if name not in NO_OBJECTIVES)
 FLOORED = {
     "tilt_rms": "tilt_rad",
     "velocity_rms": "velocity_mps",
@@ -266,21 +269,46 @@ class Requirement:
         return max(abs(self.limit), _TYPICAL.get(self.name, 1e-12))
 
 
+def in_display_unit(name: str, value: float | None) -> tuple[float | None, str]:
+    """Value of a measure in the unit in which it is shown, and that unit; of a sum it has none."""
+    unit = MEASURES[name][1] if name in MEASURES else ""
+    if unit == "rad":
+        return None if value is None else value / ARCSEC, "arcsec"
+    return value, unit
+
+
+def in_words(name: str, value: float) -> str:
+    """Value of a measure with its unit."""
+    if not math.isfinite(value):
+        return "no finite value"
+    shown, unit = in_display_unit(name, value)
+    return f"{shown:.4g} {unit}".rstrip()
+
+
 def read_objective(text: str) -> Objective:
     """Read ``tilt_rms`` or ``tilt_rms + 0.5 * velocity_rms``.
 
     Raises
     ------
     InputError
-        A name is not known.
+        A name is not known, is there only to be required, or a weight is no number above 0.
     """
     terms = []
     for part in text.split("+"):
         found = _TERM.match(part.strip())
         if found is None or found["name"] not in MEASURES:
-            allowed = f"must be one of {', '.join(MEASURES)}, or a sum such as tilt_rms + 0.5*velocity_rms"
+            allowed = f"must be one of {', '.join(OBJECTIVES)}, or a sum such as tilt_rms + 0.5*velocity_rms"
             raise InputError(Fault("", "--objective", text, allowed))
-        terms.append((found["name"], float(found["weight"] or 1.0)))
+        if found["name"] in NO_OBJECTIVES:
+            allowed = f"is better when larger: ask for it as a requirement, {found['name']}>=0.5"
+            raise InputError(Fault("", "--objective", text, allowed))
+        try:
+            weight = float(found["weight"] or 1.0)
+        except ValueError:
+            weight = 0.0
+        if not 0.0 < weight < math.inf:
+            raise InputError(Fault("", "--objective", text, "weights must be numbers > 0"))
+        terms.append((found["name"], weight))
     return Objective(text, tuple(terms))
 
 

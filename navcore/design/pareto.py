@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from navcore.design.measures import ALONG_ONLY, FLOORED, MEASURES, Setting, Ship, read_objective
+from navcore.design.measures import ALONG_ONLY, FLOORED, MEASURES, OBJECTIVES, Setting, Ship, read_objective
 from navcore.design.search import MISSED, Effort, Search
 from navcore.design.vary import read_varied
 from navcore.foundation.errors import Fault, InputError
@@ -18,6 +18,10 @@ from navcore.scenario.model import Method, Scenario
 
 LEFT_OUT = ("none", "custom")
 """Networks without parameters of a design of their own."""
+_SIGNED = ("h_slope_s",)
+"""Measures that may be negative, of which there is no ratio."""
+_LEAST = 1e-12
+"""Value that stands for 0 where ratios are compared."""
 _WEIGHTS = np.linspace(0.0, 1.0, 7)
 _EFFORT = Effort(6, 8, 40)
 _EFFORT_ALONG = Effort(5, 3, 14)
@@ -95,7 +99,8 @@ class _Weighed(Search):
             return math.inf
         self.seen.append((both, settings[0].method.network.model_dump(mode="json", exclude_none=True)))
         # above zero, or the clipping of missed requirements would take it
-        return 100.0 + self.weight * math.log(both[0]) + (1.0 - self.weight) * math.log(both[1])
+        first, second = (math.log(max(value, _LEAST)) for value in both)
+        return 100.0 + self.weight * first + (1.0 - self.weight) * second
 
 
 def pareto(
@@ -130,16 +135,13 @@ def pareto(
     InputError
         An objective or method is not known, or the method is not damped.
     """
-    for name in objectives:
-        if name not in MEASURES:
-            raise InputError(Fault("", "objectives", name, f"must be one of {', '.join(MEASURES)}"))
+    ids = _checked(objectives, networks)
     if not 0 <= method < len(scenario.method):
         raise InputError(Fault("", "method", method, f"must be 0 to {len(scenario.method) - 1}"))
     if scenario.method[method].undamped:
         told = f'damping = "{scenario.method[method].damping}" uses no network'
         raise InputError(Fault("", f"method.{method}.damping", None, told))
     along = along or any(name in ALONG_ONLY for name in objectives)
-    ids = [name for name in NETWORKS if name not in LEFT_OUT] if networks is None else list(networks)
     ship = Ship(scenario, along)
     if ship.model.silent and not along:
         told = "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
@@ -182,12 +184,27 @@ def measured(
     return _both(Setting(Ship(scenario, along), scenario.method[method]), objectives)
 
 
+def _checked(objectives: tuple[str, str], networks: Sequence[str] | None) -> list[str]:
+    """Ids of the networks to search; raises InputError for a word that is not known."""
+    known = [name for name in OBJECTIVES if name not in _SIGNED]
+    for name in objectives:
+        if name not in known:
+            raise InputError(Fault("", "objectives", name, f"must be one of {', '.join(known)}"))
+    if objectives[0] == objectives[1]:
+        raise InputError(Fault("", "objectives", objectives[1], "must be two different ones"))
+    ids = [name for name in NETWORKS if name not in LEFT_OUT]
+    for name in networks or ():
+        if name not in ids:
+            raise InputError(Fault("", "networks", name, f"must be one of {', '.join(ids)}"))
+    return ids if networks is None else list(dict.fromkeys(networks))
+
+
 def _both(setting: Setting, names: tuple[str, str]) -> tuple[float, float] | None:
     try:
         first, second = (float(MEASURES[name][0](setting)) for name in names)
     except (InputError, np.linalg.LinAlgError):
         return None
-    return (first, second) if all(math.isfinite(v) and v > 0.0 for v in (first, second)) else None
+    return (first, second) if all(math.isfinite(v) and v >= 0.0 for v in (first, second)) else None
 
 
 def _front(
@@ -239,7 +256,7 @@ def _best(seen: Sequence[tuple[tuple[float, float], dict[str, Any]]]) -> tuple[P
             front.append(Point(values, network))
     if len(front) <= _POINTS:
         return tuple(front)
-    places = np.log([[p.values[0], p.values[1]] for p in front])
+    places = np.log(np.maximum([p.values for p in front], _LEAST))
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(places, axis=0), axis=1))])
     chosen = np.unique(np.searchsorted(way, np.linspace(0.0, way[-1], _POINTS)))
     return tuple(front[i] for i in np.minimum(chosen, len(front) - 1))

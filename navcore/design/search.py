@@ -12,9 +12,11 @@ from navcore.design.measures import Objective, Requirement, Setting, Ship
 from navcore.design.vary import Varied, changed
 from navcore.foundation.errors import InputError
 
-MISSED = 1e3
+MISSED = 1e12
 """Cost of a setting that misses a requirement, above every one that meets all."""
-REFUSED = 1e9
+BOUNDLESS = 0.9 * MISSED
+"""Cost of a setting that meets them and whose objective has no finite value."""
+REFUSED = 1e18
 """Cost of a setting that makes no method at all."""
 _SEED = 1
 
@@ -78,6 +80,7 @@ class Search:
         self.reference: dict[str, float] = {}
         self.scale = 1.0
         self.best: tuple[float, np.ndarray] | None = None
+        self.refused: InputError | None = None
 
     def settings(self, places: np.ndarray) -> list[Setting]:
         """Return the method at a place of the ranges, on each ship; raises InputError where there is none."""
@@ -110,11 +113,13 @@ class Search:
             if missed > 0.0:
                 found = MISSED * (1.0 + min(missed, 1e5))
             else:
-                found = min(self.value(settings) / self.scale, 0.9 * MISSED)
-        except (InputError, np.linalg.LinAlgError):
+                found = min(self.value(settings) / self.scale, BOUNDLESS)
+        except InputError as error:
+            self.refused, found = error, REFUSED
+        except np.linalg.LinAlgError:
             found = REFUSED
         if not math.isfinite(found):
-            found = 0.95 * MISSED
+            found = BOUNDLESS
         if self.best is None or found < self.best[0]:
             self.best = (found, places.copy())
         return found

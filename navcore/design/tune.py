@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,15 +17,18 @@ from navcore.design.measures import (
     Requirement,
     Setting,
     Ship,
+    in_words,
     read_objective,
     read_requirement,
 )
-from navcore.design.search import ALONG, MISSED, REFUSED, STEADY, Effort, Search
+from navcore.design.search import ALONG, BOUNDLESS, MISSED, REFUSED, STEADY, Effort, Search
 from navcore.design.vary import Varied, present, read_varied
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.model import Scenario
 
 _FLAT = 1.05
+_GAIN = 1e-4
+"""Relative gain without a requirement from which it counts as holding the optimum back."""
 
 
 @dataclass(frozen=True)
@@ -128,34 +131,44 @@ def tune(
     along = along or any(name in ALONG_ONLY for name in (*wanted.names, *(one.name for one in limits)))
     varied = read_varied(scenario, vary)
     ships = [Ship(one, along) for one in (scenario, *worst_of)]
-    _check_method(ships, varied, wanted)
+    _check(ships, varied, wanted)
     search = Search(ships, varied, wanted, limits, progress, cancelled)
     start, before = _begin(search)
+    if before == 0.0 and set(wanted.names) <= set(FLOORED):
+        told = "is 0 as it is: the scenario has no error that a setting could make smaller"
+        raise InputError(Fault("", "--objective", wanted.text, told))
     effort = ALONG if along else STEADY
     stopped = search.run(effort, start)
     best = search.best
     if best is None or best[0] >= REFUSED:
         if stopped:
             raise InputError(Fault("", "--vary", None, "the search was stopped before it found a setting"))
-        raise InputError(Fault("", "--vary", ", ".join(vary), "no value within these ranges makes a method"))
+        raise InputError(list(_no_method(search, ", ".join(vary))))
     if best[0] >= MISSED:
         raise InputError(list(_nothing_meets(search, effort, start)))
     return _result(search, best[1], before, effort, stopped)
 
 
-def _check_method(ships: Sequence[Ship], varied: Sequence[Varied], objective: Objective) -> None:
-    index = varied[0].method
-    for ship in ships:
-        if index >= len(ship.scenario.method):
-            raise InputError(Fault("", "--vary", varied[0].field, f"another scenario has no method.{index}"))
-    method = ships[0].scenario.method[index]
-    if method.undamped:
-        told = f'must not vary: damping = "{method.damping}" uses no network'
-        raise InputError(Fault("", "--vary", varied[0].field, told))
+def _check(ships: Sequence[Ship], varied: Sequence[Varied], objective: Objective) -> None:
+    """Refuse a further scenario without the same parameters, and sensors that make every setting alike."""
+    for number, ship in enumerate(ships[1:], 1):
+        for one in varied:
+            try:
+                read_varied(ship.scenario, [f"{one.field}={one.low!r}:{one.high!r}"])
+            except InputError as error:
+                told = "; ".join(f"{fault.value} {fault.allowed}" for fault in error.faults)
+                raise InputError(Fault("", "--worst-of", f"scenario {number}", told)) from None
     names = set(objective.names) & set(FLOORED)
     if names and not ships[0].along_run and ships[0].model.silent:
         told = "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
         raise InputError(Fault("", "--objective", objective.text, told))
+
+
+def _no_method(search: Search, vary: str) -> Iterator[Fault]:
+    """Say why no value within the ranges can be run."""
+    yield Fault("", "--vary", vary, "no value within these ranges makes a method")
+    if search.refused is not None:
+        yield from search.refused.faults
 
 
 def _begin(search: Search) -> tuple[np.ndarray | None, float | None]:
@@ -188,6 +201,10 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
         for one in active:
             rest = [other for other in search.requirements if other is not one]
             cost[one.text] = _without(search, rest, effort, places)
+        # at its limit by chance: without it the optimum would stay where it is
+        holding = [one for one in active if cost[one.text] < objective - _GAIN * abs(objective)]
+        active = holding or active
+        cost = {one.text: cost[one.text] for one in active}
     name = search.objective.names[0]
     floor = None
     if len(search.objective.terms) == 1 and name in FLOORED:
@@ -247,7 +264,7 @@ def _flat(search: Search, places: np.ndarray, objective: float) -> dict[str, tup
     return found
 
 
-def _nothing_meets(search: Search, effort: Effort, start: np.ndarray | None) -> Any:
+def _nothing_meets(search: Search, effort: Effort, start: np.ndarray | None) -> Iterator[Fault]:
     """Yield a fault for each requirement: what is the best of it alone, and what it costs."""
     for one in search.requirements:
         sense = 1.0 if one.sense == "<=" else -1.0
@@ -255,7 +272,7 @@ def _nothing_meets(search: Search, effort: Effort, start: np.ndarray | None) -> 
         if sense > 0.0:
             alone.run(effort, start)
             assert alone.best is not None
-            reach = alone.best[0]
+            reach = alone.best[0] if alone.best[0] < BOUNDLESS else math.inf
         else:
             reach = _largest(alone, effort, start)
         rest = [other for other in search.requirements if other is not one]
@@ -263,15 +280,13 @@ def _nothing_meets(search: Search, effort: Effort, start: np.ndarray | None) -> 
         without.reference, without.scale = search.reference, search.scale
         without.run(effort, start)
         assert without.best is not None
-        unit = MEASURES[one.name][1]
         if without.best[0] < MISSED:
-            left = f"; without it {search.objective.text} comes to {without.best[0] * without.scale:.4g}"
+            least = in_words(search.objective.text, without.best[0] * without.scale)
+            left = f"without it {search.objective.text} comes to {least}"
         else:
-            left = "; without it the others are not met either"
-        told = (
-            f"nothing within these ranges meets all requirements: alone it comes to {reach:.4g} {unit}{left}"
-        )
-        yield Fault("", "--require", one.text, " ".join(told.split()))
+            left = "without it the others are not met either"
+        told = f"nothing within these ranges meets all requirements: alone {one.name} comes to"
+        yield Fault("", "--require", one.text, f"{told} {in_words(one.name, reach)}; {left}")
 
 
 def _largest(search: Search, effort: Effort, start: np.ndarray | None) -> float:

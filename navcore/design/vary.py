@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args, get_origin
 
 import numpy as np
@@ -51,7 +51,8 @@ class Varied:
 
     def value(self, place: float) -> float:
         """Value at a place 0..1 of the range."""
-        place = min(max(place, 0.0), 1.0)
+        if not 0.0 < place < 1.0:
+            return self.low if place <= 0.0 else self.high
         if self.log:
             value = self.low * (self.high / self.low) ** place
         else:
@@ -149,12 +150,15 @@ def _read_one(scenario: Scenario, text: str) -> Varied:
     if index >= len(scenario.method):
         raise refuse(f"there is no method.{index}: must be 0 to {len(scenario.method) - 1}")
     model: Any = scenario.method[index]
+    if model.undamped:
+        raise refuse(f'must not vary: damping = "{model.damping}" uses no network')
     for name in names[2:-1]:
         model = getattr(model, name, None) if isinstance(model, BaseModel) else None
-    info = type(model).model_fields.get(names[-1]) if isinstance(model, BaseModel) else None
+    fields = type(model).model_fields if isinstance(model, BaseModel) else {}
+    info = fields.get(names[-1])
     if info is None:
-        known = ", ".join(type(model).model_fields) if isinstance(model, BaseModel) else "none"
-        raise refuse(f"is no field of this method; known there: {known}")
+        numbers = ", ".join(name for name, one in fields.items() if _is_number(one))
+        raise refuse(f"is no field of this method; numbers there: {numbers or 'none'}")
     if not _is_number(info):
         raise refuse("must not vary: it is not a number")
     allowed = _allowed(info)
@@ -226,7 +230,9 @@ def changed(scenario: Scenario, varied: Sequence[Varied], values: Sequence[float
     try:
         found = Method.model_validate(data)
     except ValidationError as error:
-        raise InputError(faults_from(error, Method, data, f"method.{varied[0].method}")) from None
+        at = f"method.{varied[0].method}"
+        faults = faults_from(error, Method, data, "")
+        raise InputError([replace(fault, field=f"{at}.{fault.field}") for fault in faults]) from None
     network = found.network.with_sensors(scenario.figures())
     return found.model_copy(update={"network": network})
 

@@ -15,7 +15,7 @@ DV, PHI, GYRO, ACCEL, LOG = range(5)
 _LEAST_NOISE = 1e-7
 """Density of a log without white noise, relative to that of its drift: the equation needs some noise."""
 _QUIET_LOG = 1e-8
-"""Density of a log without any error, (m/s)^2/Hz."""
+"""Density of a log without any error for which a network is designed, (m/s)^2/Hz."""
 
 _RESIDUAL = 1e-11
 """Of a Riccati equation, relative to its terms, up to which the fast solution is good."""
@@ -87,9 +87,14 @@ class Plant:
     W: np.ndarray
     V: float
 
+    @property
+    def kept(self) -> list[int]:
+        """States of the plant that is left of it without drifts that nothing drives."""
+        return [DV, PHI, *(i for i in (GYRO, ACCEL, LOG) if self.W[i, i] > 0.0)]
+
     def excited(self) -> Plant:
         """Return the same plant without drifts that nothing drives."""
-        keep = [DV, PHI, *(i for i in (GYRO, ACCEL, LOG) if self.W[i, i] > 0.0)]
+        keep = self.kept
         return Plant(self.A[np.ix_(keep, keep)], self.C[:, keep], self.W[np.ix_(keep, keep)], self.V)
 
 
@@ -119,7 +124,7 @@ def plant(figures: SensorFigures, omega_s: float) -> Plant:
         rate = 1.0 / (tau * omega_s)
         A[i, i], W[i, i] = -rate, 2.0 * (unit * sigma) ** 2 * rate
     least = _LEAST_NOISE * 2.0 * figures.log_drift**2 * figures.log_tau_s or _QUIET_LOG
-    return Plant(A, np.array([[1.0, 0.0, 0.0, 0.0, -1.0]]), W, max(figures.log_density, least) * omega_s)
+    return Plant(A, np.array([[1.0, 0.0, 0.0, 0.0, -1.0]]), W, (figures.log_density or least) * omega_s)
 
 
 def filter_covariance(system: Plant) -> np.ndarray:
@@ -164,7 +169,10 @@ def riccati(A: np.ndarray, B: np.ndarray, Q: np.ndarray, r: float) -> np.ndarray
         size = np.linalg.norm(A.T @ X) + np.linalg.norm(Q) + np.linalg.norm(X @ weight @ X)
         if np.linalg.norm(A.T @ X + X @ A - X @ weight @ X + Q) < _RESIDUAL * size:
             return X
-    return solve_continuous_are(A, B, Q, r * np.eye(B.shape[1]))
+    try:
+        return solve_continuous_are(A, B, Q, r * np.eye(B.shape[1]))
+    except ValueError as error:  # scipy's own word for a pencil that cannot be reordered
+        raise np.linalg.LinAlgError(str(error)) from None
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,6 @@ from navcore.design.budget import budget
 from navcore.design.course import course
 from navcore.design.seeds import no_covariance
 from navcore.engine.simulation import simulate
-from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCMIN, DEG_PER_HOUR, MICRO_G
 from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import stochastic_model
@@ -252,12 +251,18 @@ def test_without_a_log_there_is_no_floor() -> None:
 
 
 def test_an_unstable_loop_has_no_budget() -> None:
-    """Steady: a warning with the time in which it grows; along a run: a fault once it overflows."""
+    """Steady: a warning with the time in which it grows; along a run: marked once it overflows."""
     unstable = {"damping": "external", "network": {"id": "custom", "num": [1.0, -0.1], "den": [1.0, 0.1]}}
     steady = budget(scenario(method=[unstable]), steady=True).methods[0]
     assert steady.total.rms.tilt_rad is None and "unstable" in steady.warnings[0]
-    with pytest.raises(InputError, match="has no budget: the loop is unstable"):
-        budget(scenario(run={"duration_h": 400.0, "output_step_s": 3600.0}, method=[unstable]))
+    stable = {"damping": "external", "network": {"id": "classic2"}}
+    short = budget(scenario(method=[unstable]))
+    assert "unstable" in short.methods[0].warnings[0] and not short.methods[0].diverged
+    long = {"duration_h": 400.0, "output_step_s": 3600.0}
+    found = budget(scenario(run=long, method=[stable, unstable]))
+    assert [method.diverged for method in found.methods] == [False, True]
+    assert found.methods[1].total.rms.tilt_rad is None and "unstable" in found.methods[1].warnings[0]
+    assert found.methods[0].total.rms.tilt_rad and found.as_dict()["methods"][1]["status"] == "diverged"
 
 
 def test_command_prints_the_contract(capsys: pytest.CaptureFixture[str]) -> None:

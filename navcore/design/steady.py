@@ -1,0 +1,99 @@
+"""The steady error budget: one level channel at rest, every method by source (theory.md 15, 16)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from navcore.design.figures import Entry, Figures
+from navcore.design.floor import Floor, steady_floor
+from navcore.design.form import law_form
+from navcore.design.level import Level, constant_part, level, line_part, steady_parts
+from navcore.design.result import Budget, MethodBudget
+from navcore.foundation.units import HOUR
+from navcore.scenario.model import Method, Scenario
+from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
+
+_MARGINAL = 1e-9
+"""Growth over omega_s above which a loop counts as unstable."""
+
+
+def steady_budget(scenario: Scenario, model: StochasticModel) -> Budget:
+    """Steady state of one level channel at rest; ``model`` may differ from that of the scenario."""
+    found = steady_floor(model, scenario.omega_s)
+    return Budget(
+        steady=True,
+        floor=Entry(Figures(found.tilt_rad, found.velocity_mps)),
+        floor_reason=found.reason,
+        floor_series=None,
+        methods=tuple(_steady_method(scenario, method, model, found) for method in scenario.method),
+    )
+
+
+def _steady_method(scenario: Scenario, method: Method, model: StochasticModel, floor: Floor) -> MethodBudget:
+    if method.damping == "averaging":
+        warning = "averaging combines several navigations: it has no steady state of one channel"
+        return MethodBudget(method.name, "none", Entry(Figures()), {}, warnings=(warning,))
+    if method.damping == "kalman":
+        return _steady_filter(method, model, floor)
+    channel = level(law_form(method, scenario.omega_s), model, scenario.omega_s)
+    parts = steady_parts(channel)
+    if model.tide.any():
+        amplitude = float(np.sqrt(np.mean(model.tide**2)))
+        parts["log_tide"] = line_part(channel, amplitude, 2.0 * math.pi / model.tide_period_s)
+    warnings = []
+    if method.damping != "free" and method.policy.id not in ("constant", "schedule"):
+        warnings.append(
+            f'policy "{method.policy.id}" looks at the data: shown is the loop while it is damped'
+        )
+    missing = [name for name, part in parts.items() if part.tilt_rad is None or part.velocity_mps is None]
+    unstable = instability(channel)
+    if missing and unstable:
+        warnings.append(f"{unstable}: no source has a steady state")
+    elif missing:
+        warnings.append(f"no steady state: {', '.join(missing)} drive a mode without decay")
+    sources = {
+        name: Entry(
+            Figures(part.tilt_rad, part.velocity_mps),
+            growth=None
+            if part.tilt_growth is None and part.velocity_growth is None
+            else Figures(part.tilt_growth, part.velocity_growth),
+        )
+        for name, part in parts.items()
+    }
+    total = Figures(
+        _root_sum([part.tilt_rad for part in parts.values()]),
+        _root_sum([part.velocity_mps for part in parts.values()]),
+    )
+    sizes = {"gyro_bias": model.gyro_bias[:2], "accel_bias": model.accel_bias[:2], "log_bias": model.log_bias}
+    constants = {}
+    for name, values in sizes.items():
+        part = constant_part(channel, name.split("_")[0], float(np.sqrt(np.mean(values**2))))
+        constants[name] = Entry(Figures(part.tilt_rad, part.velocity_mps))
+    return MethodBudget(method.name, "steady", Entry(total), sources, constants, tuple(warnings))
+
+
+def _steady_filter(method: Method, model: StochasticModel, floor: Floor) -> MethodBudget:
+    """Steady state of the Kalman filter: the floor itself."""
+    if floor.tilt_rad is None:
+        return MethodBudget(method.name, "none", Entry(Figures()), {}, warnings=(floor.reason,))
+    sources = {name: Entry(Figures(*floor.sources.get(name, (0.0, 0.0)))) for name in RANDOM_SOURCES}
+    warnings = ["the steady state of the Kalman filter is the floor itself"]
+    if model.tide.any():
+        warnings.append("the filter is not told of the tide, which is not in these figures")
+    total = Entry(Figures(floor.tilt_rad, floor.velocity_mps))
+    return MethodBudget(method.name, "steady", total, sources, warnings=tuple(warnings))
+
+
+def instability(channel: Level) -> str:
+    """Say how fast the loop of a channel grows; empty where it does not."""
+    growth = channel.growth_per_s()
+    if growth <= _MARGINAL * channel.omega_s:
+        return ""
+    return f"the loop is unstable (e-folding {1.0 / growth / (24.0 * HOUR):.3g} days)"
+
+
+def _root_sum(values: list[float | None]) -> float | None:
+    known = [value for value in values if value is not None]
+    return math.sqrt(sum(value * value for value in known)) if len(known) == len(values) else None
