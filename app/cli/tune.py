@@ -20,7 +20,8 @@ class TuneCommand:
     """Find the parameters of a method that make an objective least while requirements are kept.
 
     Objectives: tilt_rms, velocity_rms, heading_rms, position_rms, settling_s, overshoot, log_tilt,
-    h0_deviation, h_slope_s, or a sum, tilt_rms + 0.5*velocity_rms. Requirements: the same, damping_ratio.
+    h0_deviation, h_slope_s, earth_mode_growth_per_s, or a sum, tilt_rms + 0.5*velocity_rms. Requirements:
+    the same, and damping_ratio.
 
     Attributes
     ----------

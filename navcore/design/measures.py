@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from navcore.analysis import Loop, analyse, time_response
+from navcore.analysis.whole_system import WholeSystem, whole_system
 from navcore.design.along import along
 from navcore.design.constants import Column, shared_columns
 from navcore.design.course import Course, course
@@ -114,6 +115,13 @@ class Setting:
         return analyse(self.network)
 
     @cached_property
+    def whole(self) -> WholeSystem:
+        """Both channels with heading and latitude at the site."""
+        scenario = self.ship.scenario
+        place = scenario.site.lat_deg * DEG, scenario.earth, scenario.site.height_m
+        return whole_system(self.network, self.method.damping, *place)
+
+    @cached_property
     def figures(self) -> Figures:
         """Root mean squares of the errors; infinite where there is none."""
         ship = self.ship
@@ -177,7 +185,16 @@ MEASURES: dict[str, tuple[Callable[[Setting], float], str, str]] = {
     "log_tilt": (lambda s: s.log_step[1], "rad", "largest tilt after a log step of 1 m/s"),
     "damping_ratio": (lambda s: s.loop.damping_ratio, "", "smallest damping ratio of the closed loop"),
     "h0_deviation": (lambda s: abs(s.network.h0 - 1.0), "", "distance of H(0) from 1"),
-    "h_slope_s": (lambda s: s.network.h_slope, "s", "H'(0): negative damps the 24 h mode"),
+    "h_slope_s": (
+        lambda s: s.network.h_slope,
+        "s",
+        "H'(0): negative damps the 24 h mode of a network with H(0) = 1",
+    ),
+    "earth_mode_growth_per_s": (
+        lambda s: s.whole.earth_growth,
+        "1/s",
+        "growth of the 24 h mode of the whole system at the site; negative when it decays",
+    ),
 }
 """How a number is measured, its unit and what it is."""
 _TYPICAL = {"h_slope_s": 100.0}

@@ -18,7 +18,7 @@ from navcore.scenario.model import Method, Scenario
 
 LEFT_OUT = ("none", "custom")
 """Networks without parameters of a design of their own."""
-_SIGNED = ("h_slope_s",)
+_SIGNED = ("h_slope_s", "earth_mode_growth_per_s")
 """Measures that may be negative, of which there is no ratio."""
 _LEAST = 1e-12
 """Value that stands for 0 where ratios are compared."""

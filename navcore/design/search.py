@@ -41,6 +41,8 @@ class Effort:
 STEADY = Effort(10, 22, 160)
 ALONG = Effort(7, 9, 50)
 """A run of a day takes some 30 ms an evaluation."""
+EXPLAIN = Effort(6, 8, 60)
+"""To tell what is in reach, to three digits or so."""
 
 
 class _Stopped(Exception):

@@ -21,7 +21,7 @@ from navcore.design.measures import (
     read_objective,
     read_requirement,
 )
-from navcore.design.search import ALONG, BOUNDLESS, MISSED, REFUSED, STEADY, Effort, Search
+from navcore.design.search import ALONG, BOUNDLESS, EXPLAIN, MISSED, REFUSED, STEADY, Effort, Search
 from navcore.design.vary import Varied, present, read_varied
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.model import Scenario
@@ -145,7 +145,7 @@ def tune(
             raise InputError(Fault("", "--vary", None, "the search was stopped before it found a setting"))
         raise InputError(list(_no_method(search, ", ".join(vary))))
     if best[0] >= MISSED:
-        raise InputError(list(_nothing_meets(search, effort, start)))
+        raise InputError(list(_nothing_meets(search, ALONG if along else EXPLAIN, start)))
     return _result(search, best[1], before, effort, stopped)
 
 

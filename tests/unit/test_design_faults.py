@@ -118,7 +118,7 @@ def test_what_is_in_reach_is_told_however_large_it_is() -> None:
         tune(ship(), "tilt_rms", slow, ["settling_s<=60"])
     reached = float(str(caught.value).split("settling_s comes to ")[1].split(" s;")[0])
     found = tune(ship(), "settling_s", slow)
-    assert reached == pytest.approx(found.objective, rel=1e-3)
+    assert reached == pytest.approx(found.objective, rel=1e-2)
     assert reached > 5000.0
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from app.cli import main
 from navcore.design.budget import budget
-from navcore.design.measures import read_objective, read_requirement
+from navcore.design.measures import Setting, Ship, read_objective, read_requirement
 from navcore.design.pareto import pareto
 from navcore.design.tune import tune
 from navcore.design.vary import read_varied
@@ -193,6 +193,24 @@ def test_pareto_fronts_cannot_be_beaten_by_the_known_optimum() -> None:
     assert found.present[0] / ARCSEC == pytest.approx(5.36, rel=5e-3)
     with pytest.raises(InputError, match="must be one of"):
         pareto(set_a({"id": "classic2"}), ("tilt_rms", "speed"))
+
+
+@pytest.mark.parametrize(
+    ("q", "tilt", "velocity", "days"), [(0.0, 1.037, 3.385, 1.0 / 5.226), (1.0, 1.107, 1.407, -1.0 / 0.0207)]
+)
+def test_what_the_24_h_mode_of_optimal_costs(q: float, tilt: float, velocity: float, days: float) -> None:
+    """docs/design.md: with q = 0 it grows within hours, with q = 1 it decays for a tenth of the tilt."""
+    plain = set_a({"id": "optimal", "rho": 0.01, "q": q})
+    scenario = plain.model_copy(update={"site": plain.site.model_copy(update={"lat_deg": 45.0})})
+    found = budget(scenario, steady=True)
+    times = found.times_floor(found.methods[0])
+    assert times["tilt"] == pytest.approx(tilt, rel=1e-3)
+    assert times["velocity"] == pytest.approx(velocity, rel=1e-3)
+    growth = Setting(Ship(scenario, along_run=False), scenario.method[0]).whole.earth_growth
+    assert 1.0 / growth == pytest.approx(days * 86400.0, rel=5e-3)
+    requirement = read_requirement("earth_mode_growth_per_s<=0")
+    setting = Setting(Ship(scenario, along_run=False), scenario.method[0])
+    assert (requirement.excess(setting) > 0.0) is (q == 0.0)
 
 
 def test_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
