@@ -20,7 +20,7 @@ import websockets.asyncio.server
 from viser import _messages as messages
 from viser.infra import _infra
 
-from app.bridge.mends import mend_queues, share_threads_fairly
+from app.bridge.mends import mend_queues, share_hints, share_threads_fairly
 from navcore.foundation.errors import Fault, InputError
 
 VISER_VERSION = "1.1.1"
@@ -86,6 +86,7 @@ def make_server(serve: Callable[..., Any], label: str) -> viser.ViserServer:
     """
     rich.reconfigure(quiet=True)
     mend_queues()
+    share_hints()
     # Host and port only appear in what viser would print: `serve` holds the bound socket.
     with _one_start_at_a_time, _serve_replaced(serve):
         server = viser.ViserServer(host="127.0.0.1", port=0, label=label, verbose=False)

@@ -52,13 +52,12 @@ def frequency(method: MethodRun, source: Source, output: Output, omega: np.ndarr
     """Frequency response of a method at ``omega`` (rad/s), SI; None when the source does not enter it."""
     if not reacts(method, source):
         return None
-    network, form = effective_network(method), realisation(method)
-    return frequency_response(network, source, output, omega, realisation=form)
+    return _at_frequencies(_question(method, source, output, 0.0, len(omega)), omega.tobytes())
 
 
 @dataclass(frozen=True)
 class _Question:
-    """What a time response depends on; two runs with the same loop ask the same question."""
+    """What a response depends on; two runs with the same loop ask the same question."""
 
     num: bytes
     den: bytes
@@ -106,7 +105,15 @@ def _question(method: MethodRun, source: str, output: str, span_s: float, count:
     )
 
 
-# A slider of one method leaves the loops of the others as they were: half of the time of a step figure.
+# A slider of one method leaves the loops of the others as they were: half of the time of a figure.
+@lru_cache(maxsize=256)
+def _at_frequencies(q: _Question, omega: bytes) -> np.ndarray:
+    source, output = cast(Source, q.source), cast(Output, q.output)
+    values = frequency_response(q.network, source, output, np.frombuffer(omega), realisation=q.form)
+    values.setflags(write=False)
+    return values
+
+
 @lru_cache(maxsize=256)
 def _answer(q: _Question) -> np.ndarray:
     time_s = time_grid(q.span_s, q.count)

@@ -326,6 +326,8 @@ def complete_scenario(text: str, name: str) -> dict[str, Any]:
 
 def with_plain_names(scenario: Scenario) -> Scenario:
     """For a download: files by their names alone, to be put beside the scenario."""
+    if all(getattr(getattr(scenario, block), "file", None) is None for block in _WITH_FILES):
+        return scenario
     return Scenario.parse(plain_names(scenario.canonical()))
 
 

@@ -41,11 +41,19 @@ class _Widget:
         self.known = self.handle.value
         return self.known
 
+    @property
+    def awaited(self) -> bool:
+        """Whether the user has given another value that is still to be dealt with."""
+        return self.handle.value != self.known
+
     def show(self, value: Any) -> None:
         """Show a value, unless the user has just given another one."""
-        if self.handle.value == self.known:
+        if not self.awaited:
             self.handle.value = value
             self.known = self.handle.value
+
+
+_UNKNOWN = object()
 
 
 class Control:
@@ -70,6 +78,7 @@ class Control:
         self.value = value
         self._slider: _Widget | None = None
         self._slider_moved = False
+        self._shown: Any = _UNKNOWN
         self.removed = False
         make = {
             "choice": self._make_choice,
@@ -136,22 +145,28 @@ class Control:
 
     def show(self, value: Any) -> None:
         """Show a value; widgets that show it already send nothing. None leaves what is shown."""
-        if value is None and self.spec.kind == "number":
+        if (value is None and self.spec.kind == "number") or value == self._shown:
             return
         self.value = value
         self._box.show(self._as_shown(value))
         self._show_on_slider(value)
+        self._shown = _UNKNOWN if self._awaited else value
+
+    @property
+    def _awaited(self) -> bool:
+        """Whether a widget has a value that is still to be dealt with."""
+        return any(widget.awaited for widget in (self._box, self._slider) if widget is not None)
 
     def take(self, by_slider: bool) -> Any:
         """What the user has given: a number, a choice, or text as typed."""
-        self._slider_moved = by_slider
+        self._slider_moved, self._shown = by_slider, _UNKNOWN
         if by_slider and self._slider is not None and self.spec.slider is not None:
             return self.spec.slider.value(self._slider.take())
         return self._box.take()
 
     def follow(self, value: Any) -> None:
         """Take over the value the user has just given, leaving the widget in hand alone."""
-        self.value = value
+        self.value, self._shown = value, _UNKNOWN
         if self._slider_moved:
             self._box.show(self._as_shown(value))
         else:
@@ -185,7 +200,7 @@ class Control:
     def moving(self) -> bool:
         """Whether the user has given another value that is still to be dealt with."""
         widget = self._slider if self._slider_moved and self._slider is not None else self._box
-        return widget.handle.value != widget.known
+        return widget.awaited
 
     @property
     def typed(self) -> bool:

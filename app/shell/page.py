@@ -398,8 +398,7 @@ class Page:
 def _run_element(run: Run, number: int) -> str:
     digest = hashlib.blake2b(digest_size=16)
     for method in run.methods:
-        digest.update(method.plot.values.tobytes())
-        digest.update(method.rows.tobytes())
+        digest.update(method.fingerprint)
     return (
         f'<div id="sb-run" hidden data-run="{number}" data-status="{run.status}" '
         f'data-digest="{digest.hexdigest()}">{escape(as_json(metrics(run)).decode())}</div>'

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterable
 from functools import lru_cache
 
@@ -34,6 +35,7 @@ class Palette:
         self._toolbar = Toolbar(frame.gui, order=5)
         self._register(frame.opening)
         self._offer_tabs(kind.title for kind in frame.kinds if kind.title and kind.always)
+        self._shown: tuple[object, ...] = ()
         self._resets = Resets(self._commands, frame.editor.put)
 
     def _register(self, opening: Opening) -> None:
@@ -65,8 +67,17 @@ class Palette:
 
     def show(self) -> None:
         """Show what can be undone and reset now."""
+        self._lock.apply()
         session, history = self._session, self._session.history
-        self._resets.show(session.opened, session.scenario, self._frame.controls())
+        controls = list(self._frame.controls())
+        state = (
+            session.opened, session.scenario, session.origin, history.undo_name, history.redo_name,
+            self._frame.editor.moved, self._lock.drives, self._lock.watches, *controls,
+        )  # fmt: skip
+        if len(state) == len(self._shown) and all(map(operator.is_, state, self._shown)):
+            return
+        self._shown = state
+        self._resets.show(session.opened, session.scenario, controls)
         changed = len(changed_fields(session.opened, session.scenario))
         self._toolbar.show(history, session.origin, changed, self._lock.drives, self._lock.watches)
         control = None if self._lock.watches else self._frame.editor.moved
@@ -76,7 +87,6 @@ class Palette:
         self._commands.rename(UNDO, _titled("Undo", history.undo_name))
         self._commands.rename(REDO, _titled("Redo", history.redo_name))
         self._commands.rename(RESET_ALL, f"Reset all: back to {session.origin} as opened")
-        self._lock.apply()
 
     def show_presenter(self) -> None:
         """Show who presents."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -100,6 +102,13 @@ class MethodRun:
     plot: PlotSeries
     law_series: np.ndarray
     navigation: np.ndarray | None = None
+
+    @cached_property
+    def fingerprint(self) -> bytes:
+        """Digest of curves and output rows: equal results have equal ones."""
+        made = hashlib.blake2b(self.plot.values.tobytes(), digest_size=16)
+        made.update(self.rows.tobytes())
+        return made.digest()
 
     @property
     def law_in_force(self) -> LawInForce:

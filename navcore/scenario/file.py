@@ -6,7 +6,8 @@ import difflib
 import hashlib
 import json
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -182,9 +183,40 @@ def _set(data: Any, path: list[str], value: Any) -> str:
 
 def to_toml(scenario: Scenario) -> str:
     """Complete, resolved scenario as TOML text."""
+    return "\n".join(_part_as_toml(json.dumps(part)) for part in _parts(scenario.canonical()))
+
+
+def _parts(data: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """A scenario in pieces, each a mapping of its own; their texts one after the other are the whole."""
+    yield {key: value for key, value in data.items() if not _is_table(value) and key != "method"}
+    for key, value in data.items():
+        if key != "method" and _is_table(value):
+            yield {key: value}
+        for method in value if key == "method" else ():
+            yield {key: [{name: inner for name, inner in method.items() if not _is_table(inner)}]}
+            tables = [(name, inner) for name, inner in method.items() if _is_table(inner)]
+            tables.sort(key=lambda table: isinstance(table[1], list))
+            yield from ({key: {name: inner}} for name, inner in tables)
+
+
+def _is_table(value: Any) -> bool:
+    """Whether TOML writes it under a heading of its own."""
+    return isinstance(value, dict) or (isinstance(value, list) and any(isinstance(v, dict) for v in value))
+
+
+def _part_as_toml(part: str) -> str:
+    """One piece, given as JSON, as text; short ones are kept, for a slider changes one of them."""
+    return _kept_as_toml(part) if len(part) <= _LONGEST_KEPT else _as_toml(part)
+
+
+def _as_toml(part: str) -> str:
     import tomlkit
 
-    return tomlkit.dumps(scenario.canonical())
+    return tomlkit.dumps(json.loads(part))
+
+
+_LONGEST_KEPT = 8192
+_kept_as_toml = lru_cache(maxsize=512)(_as_toml)
 
 
 def scenario_hash(scenario: Scenario) -> str:
