@@ -18,6 +18,7 @@ from navcore.averaging.lines import line_phases
 from navcore.engine.run import MethodRun, Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import EARTH_RATE
+from navcore.foundation.stage_cache import file_state, kept
 from navcore.mechanization.recorder import NAMES
 from navcore.motion.base import LAT
 from navcore.scenario.model import Scenario
@@ -170,7 +171,7 @@ def _causes(run: Run, method: MethodRun, parts: Apart | None) -> tuple[Cause, ..
     for quantity, names in _QUANTITIES.items():
         if quantity == HEADING and run.scenario.run.fidelity == "channel":
             continue
-        moved = swing(run, method, names)
+        moved = _swing_once(run, method, names)
         if moved is None:
             continue
         source, share = "", 0.0
@@ -179,6 +180,14 @@ def _causes(run: Run, method: MethodRun, parts: Apart | None) -> tuple[Cause, ..
             source, share = shares[0] if shares else ("", 0.0)
         causes.append(Cause(quantity, source, share, moved))
     return tuple(causes)
+
+
+def _swing_once(run: Run, method: MethodRun, names: tuple[str, ...]) -> Swing | None:
+    """`swing`, kept: a slider of one method leaves the curves of the others as they were."""
+    scenario = run.scenario
+    files = file_state(getattr(scenario.motion, "file", None))
+    key = ("swing", scenario.motion, files, scenario.site, scenario.run, method.fingerprint, names)
+    return kept(key, lambda: swing(run, method, names))
 
 
 def swing(run: Run, method: MethodRun, names: tuple[str, ...]) -> Swing | None:

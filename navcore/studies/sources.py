@@ -8,18 +8,19 @@ that is left over says how far.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator
+import threading
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from cachetools import LRUCache
 
 from navcore.engine.run import Run
-from navcore.engine.simulation import simulate
 from navcore.mechanization.recorder import NAMES
-from navcore.scenario.model import InitialError, Scenario
+from navcore.scenario.model import InitialError, Method, Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import Reference
+from navcore.studies.alone import Alone
 
 _IMU_SOURCES = {
     "gyro bias": ("gyro_bias_dph",),
@@ -40,6 +41,7 @@ _LOG_SOURCES = {
 }
 _apart: LRUCache[Hashable, tuple[Contribution, ...]] = LRUCache(512)
 """Contributions by scenario and method: methods do not see each other, an unchanged one is not run again."""
+_lock = threading.Lock()
 RECORDED_LOG = "recorded log"
 INITIAL = "initial error"
 
@@ -184,18 +186,17 @@ def apart(
     shared = scenario.model_copy(update={"method": (), "title": "", "source": ""})
     files = scenario.reference.file is not None or hasattr(scenario.motion, "file")
     names = active_sources(scenario)
-    keys = [(shared, names, method) for method in scenario.method]
-    known = [None if files else _apart.get(key) for key in keys]
-    new = tuple(method for method, found in zip(scenario.method, known, strict=True) if found is None)
-    runs = _run_apart(scenario.model_copy(update={"method": new}), names, progress, cancelled) if new else []
+    keys = [None if files else (shared, names, method) for method in scenario.method]
+    with _lock:
+        known = [None if key is None else _apart.get(key) for key in keys]
+    new = [method for method, found in zip(scenario.method, known, strict=True) if found is None]
+    made = _run_apart(scenario, new, names, None if files else shared, progress, cancelled) if new else {}
     ended = not cancelled()
-    parts, at = [], 0
+    parts = []
     for key, found, method in zip(keys, known, whole.methods, strict=True):
-        contributions = found
-        if contributions is None:
-            contributions = tuple(Contribution(name, _rms(run.methods[at].errors)) for name, run in runs)
-            at += 1
-            if ended and not files:
+        contributions = made[method.method.name] if found is None else found
+        if found is None and ended and key is not None:
+            with _lock:
                 _apart[key] = contributions
         parts.append(Apart(method.method.name, contributions, _rms(method.errors)))
     return tuple(parts)
@@ -203,17 +204,27 @@ def apart(
 
 def _run_apart(
     scenario: Scenario,
+    methods: Sequence[Method],
     names: tuple[str, ...],
+    shared: Scenario | None,
     progress: Callable[[float], None],
     cancelled: Callable[[], bool],
-) -> list[tuple[str, Run]]:
-    runs: list[tuple[str, Run]] = []
+) -> dict[str, tuple[Contribution, ...]]:
+    """Contributions to some methods of a scenario: name -> one for each source that came to its end."""
+    alone = [Alone(scenario, method) for method in methods]
+    found: dict[str, list[Contribution]] = {method.name: [] for method in methods}
     for index, name in enumerate(names):
         if cancelled():
             break
-        runs.append((name, simulate(only(scenario, name), cancelled=cancelled)))
+        part = only(scenario, name)
+        key = None if shared is None else (shared, name)
+        rms = [one.rms(part, key, cancelled) for one in alone]
+        if cancelled():  # what was under way may have been stopped half-way
+            break
+        for method, value in zip(methods, rms, strict=True):
+            found[method.name].append(Contribution(name, value))
         progress((index + 1) / len(names))
-    return runs[:-1] if cancelled() else runs  # the last one may have been stopped half-way
+    return {name: tuple(contributions) for name, contributions in found.items()}
 
 
 def _rms(errors: dict[str, dict[str, float]]) -> np.ndarray:

@@ -7,7 +7,8 @@ import pytest
 
 from navcore.engine.simulation import simulate
 from navcore.scenario.file import load
-from navcore.scenario.model import Scenario
+from navcore.scenario.model import Method, Scenario
+from navcore.studies import alone
 from navcore.studies.sources import active_sources, apart, only
 
 SCENARIO = {
@@ -53,6 +54,32 @@ def test_the_largest_source_comes_first():
     assert share + rest == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize("preset", ["sikuliaq-like", "liu-networks", "zha-external", "liu-switching"])
+def test_shares_at_the_pace_of_the_loop_are_those_of_every_step(preset: str, monkeypatch: pytest.MonkeyPatch):
+    from navcore.studies import sources
+
+    scenario = load(preset, ["run.duration_h=5"])
+    whole = simulate(scenario)
+    sources._apart.clear()
+    quick = apart(scenario, whole)
+    monkeypatch.setattr(alone, "_LONGEST_STRIDE", 1)
+    sources._apart.clear()
+    exact = apart(scenario, whole)
+    for one, other in zip(quick, exact, strict=True):
+        assert [c.source for c in one.contributions] == [c.source for c in other.contributions]
+        for quantities in (("dlat_m", "dlon_m"), ("phi_e_rad", "phi_n_rad"), ("phi_u_rad",)):
+            found, right = dict(one.shares(*quantities)), dict(other.shares(*quantities))
+            assert found == pytest.approx(right, abs=0.01)
+
+
+def test_a_method_that_switches_is_run_at_every_step():
+    scenario = load("liu-switching")
+    switching = [m for m in scenario.method if m.policy.id != "constant"]
+    assert switching and all(alone.Alone(scenario, m)._stride == 1 for m in switching)
+    constant = load("sikuliaq-like")
+    assert all(alone.Alone(constant, m)._stride > 1 for m in constant.method)
+
+
 def test_a_recorded_log_is_a_source(tmp_path):
     log = tmp_path / "log.csv"
     log.write_text("t_s,speed_mps,speed_starboard_mps\n" + "".join(f"{t},0.3,0\n" for t in range(0, 400)))
@@ -79,21 +106,22 @@ def test_an_unchanged_method_is_not_run_apart_again(monkeypatch: pytest.MonkeyPa
     from navcore.studies import sources
 
     scenario = Scenario.parse(SCENARIO | {"run": {"duration_h": 2.5, "step_s": 5.0}})
-    ran: list[tuple[str, ...]] = []
+    ran: list[str] = []
+    made = sources.Alone
 
-    def noted(one: Scenario, **options: object):
-        ran.append(tuple(method.name for method in one.method))
-        return simulate(one, **options)
+    def noted(one: Scenario, method: Method):
+        ran.append(method.name)
+        return made(one, method)
 
-    monkeypatch.setattr(sources, "simulate", noted)
+    monkeypatch.setattr(sources, "Alone", noted)
     first = apart(scenario, simulate(scenario))
-    assert set(ran) == {("free", "damped")}
+    assert ran == ["free", "damped"]
     data = scenario.canonical()
     data["method"][1]["network"] = {"id": "compass"}
     moved = Scenario.parse(data)
     ran.clear()
     second = apart(moved, simulate(moved))
-    assert set(ran) == {("damped",)} and len(ran) == len(ALL)
+    assert ran == ["damped"]
     assert (
         [c.source for c in second[1].contributions] == [c.source for c in first[1].contributions] == list(ALL)
     )
