@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import gc
 import threading
+from collections.abc import Callable
 
 _ARENA_MAX = -8
 _ARENAS = 2
@@ -27,10 +28,18 @@ def bound_arenas() -> None:
 
 
 class GiveBack:
-    """Gives freed memory back to the system, some time after it was asked to; asked often, once."""
+    """Gives freed memory back to the system, some time after it was asked to; asked often, once.
 
-    def __init__(self, after_s: float = _AFTER_S) -> None:
-        self._after_s = after_s
+    Parameters
+    ----------
+    forget : callable
+        ``forget()`` drops what nobody needs any more, before.
+    after_s : float
+        Time to wait, s.
+    """
+
+    def __init__(self, forget: Callable[[], None], after_s: float = _AFTER_S) -> None:
+        self._forget, self._after_s = forget, after_s
         self._lock = threading.Lock()
         self._timer: threading.Timer | None = None
 
@@ -46,6 +55,7 @@ class GiveBack:
     def _now(self) -> None:
         with self._lock:
             self._timer = None
+        self._forget()
         gc.collect()
         libc = _glibc()
         if libc is not None:

@@ -66,7 +66,7 @@ class Dashboard:
 
     def __init__(self, state: Path | None = None, views: Sequence[str] = VIEWS) -> None:
         self._state, self._views = state, views
-        self._memory = GiveBack()
+        self._memory = GiveBack(self._forget)
         self._pages: dict[int, Page] = {}
         self._lock = threading.Lock()
 
@@ -143,6 +143,15 @@ class Dashboard:
         if page is not None:
             page.close()
         self._memory.soon()
+
+    def _forget(self) -> None:
+        """Drop what was computed for visitors who have gone."""
+        with self._lock:
+            sessions = self.__dict__.get("sessions")
+        if sessions is not None:
+            from navcore.foundation.stage_cache import keep_only
+
+            keep_only(sessions.names_with_pages)
 
     def close(self) -> None:
         """End all sessions and remove what was uploaded and is not kept."""

@@ -90,6 +90,11 @@ class Server:
         fields = status.read_text().rpartition(") ")[2].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
+    def threads(self) -> int:
+        """Threads of the process; 0 where the system does not tell."""
+        folder = Path(f"/proc/{self._process.pid}/task")
+        return len(list(folder.iterdir())) if folder.exists() else 0
+
     def _wait_for_page(self, seconds: float = 30.0) -> None:
         until = time.monotonic() + seconds
         while time.monotonic() < until:

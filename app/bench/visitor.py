@@ -6,10 +6,12 @@ import re
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
+from html import unescape
 from types import TracebackType
 from typing import Any, Self
 
 _RUN = re.compile(r'data-run="(\d+)"')
+_PICTURE = re.compile(r'data-number="(\d+)"')
 _CAMERA = {
     "type": "ViewerCameraMessage",
     "wxyz": [1, 0, 0, 0],
@@ -22,6 +24,7 @@ _CAMERA = {
     "look_at": [0, 0, 0],
     "up_direction": [0, 0, 1],
 }
+PAGE_PAINTED, PAGE_COMMAND = "page painted", "page command"
 PAGE_STATE = "page state"
 """Label of the control through which a browser reports its size and front tabs (app.shell.page)."""
 
@@ -44,7 +47,8 @@ class Visitor:
         self.controls: dict[str, dict[str, Any]] = {}
         """Newest control of each label, as the server described it."""
         self._held: dict[str, Any] = {}
-        self.run_number = 0
+        self.run_number = self.picture_number = 0
+        self._told = ""
         self.text = ""
         """Newest text with a scenario in it, from the tab Scenario."""
         self.arrived_s = 0.0
@@ -88,6 +92,13 @@ class Visitor:
     def held(self, label: str) -> Any:
         """Value that the server last showed in a control."""
         return self._held.get(self.control(label)["uuid"])
+
+    @property
+    def metrics(self) -> dict[str, Any]:
+        """Metrics that came with the newest run."""
+        import json
+
+        return json.loads(unescape(self._told.partition(">")[2].removesuffix("</div>")))
 
     def wait_for_run(self, number: int) -> float:
         """Wait until the figures of this or a later run are there; return when their last byte came."""
@@ -140,7 +151,9 @@ class Visitor:
                 self.text = content
             found = _RUN.search(content[:200])
             if found is not None and int(found[1]) > self.run_number:
-                self.run_number, self.arrived_s = int(found[1]), came
+                self.run_number, self.arrived_s, self._told = int(found[1]), came, content
+            elif "sb-picture" in content[:40] and (found := _PICTURE.search(content)) is not None:
+                self.picture_number = int(found[1])
 
 
 def _decoded(raw: bytes) -> list[dict[str, Any]]:

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import Generic, TypeVar
 
 from app.jobs.scheduler import Load, Scheduler, Ticket, scheduler
+from navcore.foundation.stage_cache import working_for
 
 Job = TypeVar("Job")
 
@@ -159,7 +160,8 @@ class Worker(Generic[Job]):
             )
             watch.asked_s = self._asked_s
         try:
-            self._work(job, watch)
+            with working_for(self._visitor):
+                self._work(job, watch)
         except Exception:  # the thread must outlive any fault of a job; jobs report their own
             _log.exception("a job failed")
         finally:

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from app.http.ids import copied_from, new_shared_id
+from app.http.ids import copied_from, log_name, new_shared_id
 from app.session.content import link_files
 from app.session.document import Document, Unreadable, restore, to_document
 from app.session.session import Session
@@ -81,6 +81,12 @@ class Sessions:
         with self._lock:
             held = id in self._by_id or id in self._shared
         return held or (self._store is not None and self._store.has(id))
+
+    @property
+    def names_with_pages(self) -> set[str]:
+        """Names (`app.http.ids.log_name`) of the sessions that are open in a browser."""
+        with self._lock:
+            return {log_name(id) for id, session in self._by_id.items() if session.open_pages}
 
     def figures(self) -> dict[str, float]:
         """What is held and kept, for ``/metrics``."""

@@ -1,21 +1,25 @@
 """A cache for what is large and slow to make: recordings, truth, sensor errors; within 300 MB in all.
 
 Its limit is a number of bytes. `functools.lru_cache` serves small results of pure functions, where a number
-of entries is limit enough.
+of entries is limit enough. Where several people share the process, each entry belongs to whom it was made
+for, and what is dropped is the oldest of whoever holds most: one visitor's large runs do not displace what
+all others need at their next step.
 """
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Hashable
+from collections import Counter, OrderedDict
+from collections.abc import Callable, Hashable, Iterator, Set
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from cachetools import LRUCache
 
 _CACHE_BYTES = 300 * 1024 * 1024
-_lock = threading.Lock()
+_owner: ContextVar[Hashable] = ContextVar("owner", default=None)
 
 
 def _size(value: Any) -> int:
@@ -33,18 +37,92 @@ def _array_bytes(value: Any) -> int:
     return sum(map(_array_bytes, vars(value).values())) if hasattr(value, "__dict__") else 0
 
 
-_cache: LRUCache[Hashable, Any] = LRUCache(_CACHE_BYTES, getsizeof=_size)
+class _Entry(NamedTuple):
+    value: Any
+    size: int
+    owner: Hashable
+
+
+class SharedCache:
+    """Entries of several owners within one number of bytes.
+
+    Parameters
+    ----------
+    most_bytes : int
+        What all entries may take together; a larger one is not kept.
+    """
+
+    def __init__(self, most_bytes: int) -> None:
+        self._most_bytes = most_bytes
+        self._lock = threading.Lock()
+        self._entries: OrderedDict[Hashable, _Entry] = OrderedDict()
+        self._held: Counter[Hashable] = Counter()
+
+    def get(self, key: Hashable) -> _Entry | None:
+        """Return an entry, which counts as used now; None when there is none."""
+        with self._lock:
+            found = self._entries.get(key)
+            if found is not None:
+                self._entries.move_to_end(key)
+            return found
+
+    def put(self, key: Hashable, value: Any, owner: Hashable) -> None:
+        """Keep a value; beyond the limit the oldest entries of whoever holds most are dropped."""
+        size = _size(value)
+        with self._lock:
+            self._drop(key)
+            if size > self._most_bytes:
+                return
+            self._entries[key] = _Entry(value, size, owner)
+            self._held[owner] += size
+            while self.bytes > self._most_bytes:
+                most = max(self._held, key=self._held.__getitem__)
+                self._drop(next(key for key, entry in self._entries.items() if entry.owner == most))
+
+    def keep_only(self, owners: Set[Hashable]) -> None:
+        """Drop the entries of all other owners."""
+        with self._lock:
+            for key in [key for key, entry in self._entries.items() if entry.owner not in owners]:
+                self._drop(key)
+
+    @property
+    def bytes(self) -> int:
+        """What the entries take."""
+        return self._held.total()
+
+    def _drop(self, key: Hashable) -> None:
+        found = self._entries.pop(key, None)
+        if found is not None:
+            self._held[found.owner] -= found.size
+            if self._held[found.owner] <= 0:
+                del self._held[found.owner]
+
+
+_cache = SharedCache(_CACHE_BYTES)
+
+
+@contextmanager
+def working_for(owner: Hashable) -> Iterator[None]:
+    """Let what is made in this thread meanwhile belong to somebody."""
+    before = _owner.set(owner)
+    try:
+        yield
+    finally:
+        _owner.reset(before)
+
+
+def keep_only(owners: Set[Hashable]) -> None:
+    """Forget what was made for anybody else; what belongs to nobody stays."""
+    _cache.keep_only(owners | {None})
 
 
 def kept(key: Hashable, make: Callable[[], Any]) -> Any:
-    """Return what was made under this key, or make it; the least recently used are dropped beyond 300 MB."""
-    with _lock:
-        if key in _cache:
-            return _cache[key]
+    """Return what was made under this key, or make it and keep it."""
+    found = _cache.get(key)
+    if found is not None:
+        return found.value
     value = make()
-    with _lock:
-        if _size(value) <= _CACHE_BYTES:
-            _cache[key] = value
+    _cache.put(key, value, _owner.get())
     return value
 
 
