@@ -62,7 +62,7 @@ class Limits:
     all_uploads_bytes: int = 128 * MIB
     upload_stall_s: float = 30.0
     text_characters: int = 20_000
-    frames_per_second: int = 200
+    frames_per_second: int = 100
     token_guesses: int = 30
     token_refill_s: float = 1.0
     ping_s: float = 20.0

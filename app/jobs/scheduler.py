@@ -27,6 +27,8 @@ _PATIENCE_S = {"long": 0.8, "spare": 2.0}
 """So long one stands still at most before it gets a turn."""
 _LOOK_S = 0.05
 _MOST_REMEMBERED = 4096
+_ABOUT_S, _LONGEST_PAUSE_S = 3.0, 0.3
+"""So long after an answer a visitor counts as about; no pause is longer than that."""
 
 
 class Lane(Enum):
@@ -87,10 +89,16 @@ class Scheduler:
         Answers that are under way at once; of the other lanes one less, but at least one.
     memory_bytes : float
         What all jobs under way may hold together, by estimate; one job alone is always admitted.
+    pause : float
+        While others are about, a visitor's next answer is begun only after this many times the time that
+        the last one took. Answers share the interpreter: whoever asks for the next one without a pause, by
+        hand or by a script, would otherwise take half of it from the one who asks now and then.
     """
 
-    def __init__(self, cores: int, memory_bytes: float) -> None:
-        self.cores, self.memory_bytes = cores, memory_bytes
+    def __init__(self, cores: int, memory_bytes: float, pause: float = 0.0) -> None:
+        self.cores, self.memory_bytes, self.pause = cores, memory_bytes, pause
+        self._paused_s: dict[object, float] = {}
+        self._last_answer_s: dict[object, float] = {}
         self._changed = threading.Condition()
         self._waiting: list[Ticket] = []
         self._running: list[Ticket] = []
@@ -176,7 +184,7 @@ class Scheduler:
             t
             for t in self._waiting
             if t.load.lane is lane
-            and t.due_s <= now_s
+            and self._due_s(t) <= now_s
             and (not self._running or held + t.load.bytes <= self.memory_bytes)
         ]
         if not free or (lane is Lane.SPARE and self._must_wait(free[0])):
@@ -190,6 +198,21 @@ class Scheduler:
             del self._served[next(iter(self._served))]
         return chosen
 
+    def _due_s(self, ticket: Ticket) -> float:
+        """When a job may begin, monotonic."""
+        if ticket.load.lane is not Lane.ANSWER:
+            return ticket.due_s
+        return max(ticket.due_s, self._paused_s.get(ticket.visitor, 0.0))
+
+    def _answered(self, visitor: object, took_s: float) -> None:
+        """Let a visitor pause who has just been answered, if others have been of late."""
+        now_s = time.monotonic()
+        self._last_answer_s = {v: s for v, s in self._last_answer_s.items() if now_s - s < _ABOUT_S}
+        self._paused_s = {v: s for v, s in self._paused_s.items() if s > now_s}
+        if self._last_answer_s.keys() - {visitor}:
+            self._paused_s[visitor] = now_s + min(self.pause * took_s, _LONGEST_PAUSE_S)
+        self._last_answer_s[visitor] = now_s
+
     def _loop(self, lane: Lane) -> None:
         while True:
             with self._changed:
@@ -197,18 +220,20 @@ class Scheduler:
                 while (ticket := self._next(lane)) is None:
                     self._changed.wait(self._until_due_s(lane))
                 self._idle[lane] -= 1
-                ticket._since_s = time.monotonic()
+                ticket._since_s = began_s = time.monotonic()
                 self._running.append(ticket)
             try:
                 ticket.call()
             finally:
                 with self._changed:
                     self._running.remove(ticket)
+                    if lane is Lane.ANSWER:
+                        self._answered(ticket.visitor, time.monotonic() - began_s)
                     self._changed.notify_all()
                 del ticket
 
     def _until_due_s(self, lane: Lane) -> float | None:
-        dues = [t.due_s for t in self._waiting if t.load.lane is lane]
+        dues = [self._due_s(t) for t in self._waiting if t.load.lane is lane]
         if not dues:
             return None
         left_s = min(dues) - time.monotonic()
@@ -248,7 +273,7 @@ def scheduler() -> Scheduler:
         if not _one:
             workers = int(os.environ.get(WORKERS, "1"))
             cores = cores_of_machine() if workers == 1 else max(1, cores_of_machine() // workers)
-            _one.append(Scheduler(cores, _PART_FOR_RUNS * memory_of_machine() / workers))
+            _one.append(Scheduler(cores, _PART_FOR_RUNS * memory_of_machine() / workers, pause=1.0))
         return _one[0]
 
 

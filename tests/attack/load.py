@@ -22,7 +22,7 @@ WINDOW = "1920x1080|Method|Frequency|Errors|Scenario"
 ANSWER_S = 30.0
 LONG_RUN_H = 800.0
 _PER_PROCESS = 8
-_CHECKED_EVERY = 25
+_CHECKED_EVERY, _CHECKED_FIRST = 25, 7
 _ZETA = re.compile(r"zeta = ([0-9.]+)")
 _PRE = re.compile(r"<pre[^>]*>(.*)</pre>", re.DOTALL)
 _spawn = multiprocessing.get_context("spawn")
@@ -125,7 +125,7 @@ def person(order: Order, number: int, ready: Callable[[], Any], seen: Seen) -> N
             shown = {float(text) for text in _ZETA.findall(visitor.text)}
             seen.compared += bool(shown)
             seen.wrong += bool(shown) and value not in shown
-            if step % _CHECKED_EVERY == 1:
+            if step % _CHECKED_EVERY == _CHECKED_FIRST:
                 seen.recomputed += 1
                 seen.other_numbers += not same_numbers(visitor.text, visitor.metrics)
         seen.seconds = time.monotonic() - began
@@ -166,7 +166,7 @@ def browser(order: Order, number: int, ready: Callable[[], Any], seen: Seen) -> 
                 seen.lost += 1
                 continue
             seen.answers_s.append(time.perf_counter() - sent)
-            if step % _CHECKED_EVERY == 1:
+            if step % _CHECKED_EVERY == _CHECKED_FIRST:
                 seen.recomputed += 1
                 own = measured(simulate(load("sikuliaq-like", [f"method.2.network.zeta={value}"])))
                 shown = bench.metrics

@@ -66,6 +66,36 @@ def test_visitors_take_turns() -> None:
     assert line.began == ["first", "b0", "c0", "a0", "b1", "a1", "a2", "a3"]
 
 
+def test_who_asks_without_a_pause_pauses_while_others_are_about() -> None:
+    turns, ends, began = Scheduler(2, 100.0, pause=1.0), dict[str, float](), dict[str, float]()
+    all_ended = threading.Event()
+
+    def put(name: str, visitor: str, seconds: float) -> None:
+        def call() -> None:
+            began[name] = time.monotonic()
+            time.sleep(seconds)
+            ends[name] = time.monotonic()
+            if len(ends) == 5:
+                all_ended.set()
+
+        turns.put(Ticket(visitor, call, Load()))
+
+    put("alone 1", "a", 0.1)
+    until(lambda: "alone 1" in ends)
+    put("alone 2", "a", 0.0)
+    until(lambda: "alone 2" in ends)
+    put("other", "b", 0.0)
+    until(lambda: "other" in ends)
+    put("beside 1", "a", 0.1)
+    until(lambda: "beside 1" in ends)
+    assert turns._due_s(Ticket("a", lambda: None, Load())) >= ends["beside 1"] + 0.1
+    assert turns._due_s(Ticket("b", lambda: None, Load())) <= time.monotonic()
+    assert turns._due_s(Ticket("a", lambda: None, Load(Lane.LONG))) == 0.0
+    put("beside 2", "a", 0.0)
+    assert all_ended.wait(5.0)
+    assert began["beside 2"] >= ends["beside 1"] + 0.1
+
+
 def test_no_more_threads_than_cores_in_a_lane() -> None:
     line, before = Line(cores=2), threading.active_count()
     for number in range(20):
