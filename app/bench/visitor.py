@@ -12,6 +12,7 @@ from typing import Any, Self
 
 _RUN = re.compile(r'data-run="(\d+)"')
 _PICTURE = re.compile(r'data-number="(\d+)"')
+_PIECE = 512 * 1024
 _CAMERA = {
     "type": "ViewerCameraMessage",
     "wxyz": [1, 0, 0, 0],
@@ -49,6 +50,8 @@ class Visitor:
         self._held: dict[str, Any] = {}
         self.run_number = self.picture_number = 0
         self._told = ""
+        self.notices: list[tuple[str, str]] = []
+        """Title and text of every notification that came."""
         self.text = ""
         """Newest text with a scenario in it, from the tab Scenario."""
         self.arrived_s = 0.0
@@ -83,6 +86,17 @@ class Visitor:
         self._held[uuid] = value
         self._send({"type": "GuiUpdateMessage", "uuid": uuid, "updates": {"value": value}})
         return time.perf_counter()
+
+    def upload(self, label: str, name: str, content: bytes) -> None:
+        """Send a file to the upload button with this label, in pieces, as the page does."""
+        component, transfer = self.control(label)["uuid"], f"{name}-{time.monotonic_ns()}"
+        parts = [content[at : at + _PIECE] for at in range(0, len(content), _PIECE)]
+        shared = {"source_component_uuid": component, "transfer_uuid": transfer}
+        start = {"filename": name, "mime_type": "application/octet-stream", "part_count": len(parts)}
+        size = {"size_bytes": len(content)}
+        self._send({"type": "FileTransferStartUpload", **shared, **start, **size})
+        for index, part in enumerate(parts):
+            self._send({"type": "FileTransferPart", **shared, "part_index": index, "content": part})
 
     def control(self, label: str) -> dict[str, Any]:
         """Wait for a control; return the message that made it."""
@@ -147,6 +161,8 @@ class Visitor:
                 self._held[message["uuid"]] = message.get("value")
             elif "value" in props:
                 self._held[message["uuid"]] = props["value"]
+            if message.get("type") == "NotificationShowMessage":
+                self.notices.append((str(props.get("title")), str(props.get("body"))))
             if "[[method]]" in (content := str(props.get("content", ""))):
                 self.text = content
             found = _RUN.search(content[:200])

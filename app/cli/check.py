@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Annotated
 
 from tyro.conf import Positional, arg
@@ -11,6 +12,14 @@ from app.cli.terminal import emit, emit_json, say
 
 if TYPE_CHECKING:
     from navcore.checks.file import FileReport
+
+
+_READERS = (
+    "app.cli.check_scenario", "navcore.checks.file", "navcore.checks.imu", "navcore.io.csv",
+    "navcore.io.tables", "navcore.scenario.file", "pynmea2",
+)  # fmt: skip
+_BY_ENDING = {".parquet": ("pyarrow.parquet",), ".mat": ("scipy.io",)}
+"""What reads the file is imported before the bounds are set: a child can write no file, not even a cache."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +39,7 @@ class CheckCommand:
 
     def execute(self) -> int:
         """Print the report; 0 when the file was understood, else 2."""
-        report = check(self.file)
+        report = guarded_check(self.file)
         if self.json:
             emit_json(report.as_dict())
         elif report.ok:
@@ -40,8 +49,24 @@ class CheckCommand:
         return 0 if report.ok else 2
 
 
+def guarded_check(file: str) -> FileReport:
+    """Check a file in a child process with bounds on memory and time: it may come from anywhere."""
+    from navcore.checks.file import FileReport
+    from navcore.foundation import guarded
+    from navcore.foundation.errors import InputError
+
+    ending = PurePath(file).suffix.lower()
+    guarded.start((*_READERS, *_BY_ENDING.get(ending, ())), guarded.Limits(2 << 30, cpu_s=120, wall_s=600.0))
+    try:
+        return guarded.call(file, check, file)
+    except InputError as error:
+        return FileReport(file, "", faults=error.faults)
+    finally:
+        guarded.stop()
+
+
 def check(file: str) -> FileReport:
-    """Check a file, or a preset by its name."""
+    """Check a file, or a preset by its name, in this process."""
     from pathlib import Path
 
     from app.cli.check_scenario import SCENARIO_CHECKER, check_scenario
