@@ -36,6 +36,7 @@ class Palette:
         self._register(frame.opening)
         self._offer_tabs(kind.title for kind in frame.kinds if kind.title and kind.always)
         self._shown: tuple[object, ...] = ()
+        self._values: list[object] = []
         self._resets = Resets(self._commands, frame.editor.put)
 
     def _register(self, opening: Opening) -> None:
@@ -70,13 +71,15 @@ class Palette:
         self._lock.apply()
         session, history = self._session, self._session.history
         controls = list(self._frame.controls())
+        values = [control.value for control in controls]
         state = (
             session.opened, session.scenario, session.origin, history.undo_name, history.redo_name,
             self._frame.editor.moved, self._lock.drives, self._lock.watches, *controls,
         )  # fmt: skip
-        if len(state) == len(self._shown) and all(map(operator.is_, state, self._shown)):
+        same = len(state) == len(self._shown) and all(map(operator.is_, state, self._shown))
+        if same and values == self._values:
             return
-        self._shown = state
+        self._shown, self._values = state, values
         self._resets.show(session.opened, session.scenario, controls)
         changed = len(changed_fields(session.opened, session.scenario))
         self._toolbar.show(history, session.origin, changed, self._lock.drives, self._lock.watches)
