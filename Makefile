@@ -15,7 +15,7 @@ endif
 
 KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
-.PHONY: help setup run test check docs format unit paint soak tour accuracy covariance consistency design benchmarks papers guide lock clean REMAKE
+.PHONY: help setup run test check docs format unit paint soak tour accuracy covariance consistency design benchmarks papers guide sbom audit lock clean REMAKE
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'
@@ -36,6 +36,8 @@ help:
 	@echo 'make tour     film the README pictures in Chromium: docs/tour.webp, docs/dashboard.png'
 	@echo 'make format   lay the code out'
 	@echo 'make guide    write docs/scenario.md, docs/networks.md and the JSON Schema anew from the parameter models'
+	@echo 'make sbom     write build/sbom.json (CycloneDX) from the lock: what an installation holds; needs no network'
+	@echo 'make audit    look the locked packages up among the published vulnerabilities; needs the network'
 	@echo 'make lock     resolve the locked requirements again (UPGRADE=--upgrade: to the newest versions)'
 	@echo 'make clean    remove .venv and everything that was made'
 	@echo 'PYTHON=...    the Python to make .venv with (3.11 or newer)'
@@ -136,6 +138,9 @@ $(STAMPS)/docs: requirements-docs.lock $(STAMPS)/project
 	@echo '== installing the locked packages of the site'
 	@$(PIP) $(LOCKED) -r requirements-docs.lock && touch $@
 
+$(STAMPS)/supply: requirements-supply.lock $(STAMPS)/project
+	@$(PIP) $(LOCKED) -r requirements-supply.lock && touch $@
+
 # What it needs itself is in requirements.lock.
 $(STAMPS)/benchmarks: requirements-benchmarks.lock $(STAMPS)/project
 	@$(PIP) $(LOCKED) --no-deps -r requirements-benchmarks.lock && touch $@
@@ -150,6 +155,13 @@ guide: $(STAMPS)/project
 	@$(BIN)/python -m navcore.scenario.schema_file
 	@$(BIN)/python -m navcore.analysis.network_table
 
+sbom: $(STAMPS)/supply
+	@$(BIN)/python -m tests.supply sbom
+
+# Exit code 1: something is known to be vulnerable; 3: the service cannot be reached, nothing was looked up.
+audit: $(STAMPS)/supply
+	@$(BIN)/python -m tests.supply audit
+
 # One resolution for every platform and Python, with hashes and without any address.
 UV_COMPILE = $(BIN)/python -m uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
 	--generate-hashes --no-emit-index-url --no-emit-find-links --no-annotate --no-header $(UPGRADE)
@@ -162,6 +174,8 @@ lock: $(STAMPS)/python
 	  --output-file requirements-test.lock
 	@$(UV_COMPILE) --group docs --constraints requirements.lock --constraints requirements-test.lock \
 	  --output-file requirements-docs.lock
+	@$(UV_COMPILE) --group supply --constraints requirements.lock --constraints requirements-test.lock \
+	  --output-file requirements-supply.lock
 	@$(BIN)/python -c 'import tomllib; \
 	  print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["benchmarks"], sep="\n")' \
 	  | $(UV_COMPILE) --no-deps - --output-file requirements-benchmarks.lock

@@ -11,12 +11,14 @@ import types
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
+from typing import get_type_hints
 
 import msgspec
 import numpy as np
 import pytest
 import viser
 from viser import _messages, infra
+from viser._assignable_props_api import AssignablePropsBase
 from viser.infra import _infra
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
@@ -227,6 +229,20 @@ def test_mended_queue_and_fair_pool_are_the_ones_in_use(bench: Bench) -> None:
         assert isinstance(buffer.message_event, mends._LoopEvent)
         for api in (client.gui, client.scene, bench.server.viser.gui, bench.server.viser):
             assert isinstance(api._thread_executor, FairPool)
+
+
+def test_handles_of_a_kind_share_their_types_and_convert_as_viser_does(bench: Bench) -> None:
+    with visit(bench.port, "shared-types") as visitor:
+        visitor.control("last")
+        handles = bench.of("shared-types")
+        gain, frozen = handles["gain"], handles["frozen"]
+        assert gain._prop_hints is frozen._prop_hints
+        assert gain._prop_hints == get_type_hints(type(gain._impl.props))
+        assert "_prop_hints" not in vars(gain), "nothing is kept with the handle"
+        own = getattr(AssignablePropsBase, mends._CAST)
+        for name, value in (("label", "text"), ("visible", False), ("order", 3.0), ("min", 0.25)):
+            hint = gain._prop_hints[name]
+            assert gain._cast_value_recursive(hint, value, name) == own(gain, hint, value, name)
 
 
 def test_slider_messages_that_wait_are_read_once(bench: Bench) -> None:
