@@ -26,10 +26,11 @@ from playwright.sync_api import sync_playwright
 
 from app.bench.dashboard import median_and_p95
 from app.bench.process import free_port
+from tests.browser.cpu import browser_cpu_ms
 from tests.chromium import FLAGS, find_chromium
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, CDPSession, Page
+    from playwright.sync_api import Browser, Page
 
 HERE = Path(__file__).parents[2]
 SLIDER = "zeta"
@@ -37,6 +38,8 @@ SIZES: dict[str, tuple[Any, tuple[str, ...]]] = {
     "Frequency, Errors, 3D": ({"width": 1920, "height": 1080}, ("Method", "Frequency", "Errors")),
     "Errors alone": ({"width": 1366, "height": 768}, ("Method", "Errors")),
 }
+_THREADS = ("main thread", "painting")
+"""What `browser_cpu_ms` tells apart."""
 _MOVES = 60
 _WARM_S = 5.0
 """So long the kernels may take that are loaded behind the page."""
@@ -81,6 +84,8 @@ _FIRST_PICTURE = """() => {
 }"""
 _CLOSE_NOTICES = """() =>
   document.querySelectorAll('.mantine-Notification-closeButton').forEach(button => button.click())"""
+_SERIES = """() => Math.max(...Object.values(window.__viserTestpoints?.uplots ?? {})
+  .map(entry => entry.chart.series.length))"""
 _SHOWN_RUN = "Number(document.querySelector('#sb-run').dataset.run)"
 _EVERYTHING = """() => {
   const run = document.querySelector('#sb-run')?.dataset.run;
@@ -174,14 +179,18 @@ def drag(page: Page, seconds: float, what: str, seen: Followed) -> None:
     page.mouse.move(x, y)
     page.mouse.down()
     page.evaluate(_WATCH)
-    began = time.monotonic()
+    began, began_cpu = time.monotonic(), browser_cpu_ms()
     there = False
     while time.monotonic() - began < seconds:
         there = not there
         page.mouse.move(x + _SWING_PX * there, y, steps=_MOVES)  # each waits until the page has heard it
     seconds = time.monotonic() - began
     found = page.evaluate("() => window.stopWatch()")
+    painted = browser_cpu_ms()
     page.mouse.up()
+    pictures = max(len(found["curves"]), 1)
+    for thread, before, after in zip(_THREADS, began_cpu, painted, strict=True):
+        seen.note(f"drag, {what}: {thread}, CPU a picture (ms)", (after - before) / pictures)
     seen.note(f"drag, {what}: curves/s", len(found["curves"]) / seconds)
     if found["figures"]:
         seen.note(f"drag, {what}: plotly figures/s", len(found["figures"]) / seconds)
@@ -191,11 +200,11 @@ def drag(page: Page, seconds: float, what: str, seen: Followed) -> None:
     page.wait_for_timeout(1500)
 
 
-def steps(page: Page, count: int, cdp: CDPSession, pid: int, seen: Followed, what: str) -> None:
+def steps(page: Page, count: int, pid: int, seen: Followed, what: str) -> None:
     """Single steps of the slider by a key: time to the last paint, and what they cost."""
     thumb = _thumb(page)
     taken = []
-    cpu, busy = _server_cpu_ms(pid), _task_ms(cdp)
+    cpu, painting = _server_cpu_ms(pid), browser_cpu_ms()
     for step in range(count):
         thumb.focus()
         page.evaluate(f"window.paint = ({_STEP})({_SHOWN_RUN}); null")
@@ -204,13 +213,22 @@ def steps(page: Page, count: int, cdp: CDPSession, pid: int, seen: Followed, wha
         taken.append(page.evaluate("() => window.painted"))
         page.wait_for_timeout(300)
     seen.note(f"step{what} to last paint (ms)", *taken[1:])
-    seen.note(f"step{what}: main thread (ms)", (_task_ms(cdp) - busy) / count)
-    seen.note(f"step{what}: server (ms)", (_server_cpu_ms(pid) - cpu) / count)
+    for thread, before, after in zip(_THREADS, painting, browser_cpu_ms(), strict=True):
+        seen.note(f"step{what}: {thread}, CPU (ms)", (after - before) / count)
+    seen.note(f"step{what}: server, CPU (ms)", (_server_cpu_ms(pid) - cpu) / count)
 
 
-def _task_ms(cdp: CDPSession) -> float:
-    metrics = cdp.send("Performance.getMetrics")["metrics"]
-    return 1e3 * next(entry["value"] for entry in metrics if entry["name"] == "TaskDuration")
+def pin(page: Page) -> None:
+    """Pin the present run and move on from it, until its curves are laid over those of the run."""
+    before = page.evaluate(_SERIES)
+    page.locator("#sb-status").click()
+    page.keyboard.press("p")
+    page.wait_for_timeout(1000)
+    for _ in range(3):
+        _thumb(page).press("ArrowRight")
+        page.wait_for_timeout(300)
+    page.wait_for_function(f"before => ({_SERIES})() > before", arg=before)
+    page.wait_for_timeout(1500)
 
 
 def _server_cpu_ms(pid: int) -> float:
@@ -230,20 +248,14 @@ def measure(browser: Browser, url: str, options: Any, seen: Followed) -> None:
         if options.only and options.only not in what:
             continue
         page = open_page(browser, url, size, tabs, seen)
-        cdp = page.context.new_cdp_session(page)
-        cdp.send("Performance.enable")
         drag(page, options.seconds, what, seen)
         if "3D" in what:
-            steps(page, options.steps, cdp, _listener(url), seen, "")
+            steps(page, options.steps, _listener(url), seen, "")
             if options.pins:
                 for _ in range(2):
-                    page.locator("#sb-status").click()
-                    page.keyboard.press("p")
-                    page.wait_for_timeout(2500)
-                    _thumb(page).press("ArrowRight")
-                    page.wait_for_timeout(1500)
+                    pin(page)
                 drag(page, options.seconds, "two pins", seen)
-                steps(page, options.steps, cdp, _listener(url), seen, ", two pins,")
+                steps(page, options.steps, _listener(url), seen, ", two pins,")
         page.context.close()
 
 
@@ -269,7 +281,7 @@ def main() -> int:
     for name in followed[-1].figures:
         told = [_told(name, seen) for seen in followed if name in seen.figures]
         ratio = ""
-        if len(told) == 2:
+        if len(told) == 2 and followed[0].median(name) > 0.0:
             ratio = f"   ratio {followed[1].median(name) / followed[0].median(name):.2f}"
         print(f"{name:62s} {'  ->  '.join(told)}{ratio}", flush=True)
     return 0

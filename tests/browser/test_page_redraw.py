@@ -84,3 +84,33 @@ def test_of_two_hundred_steps_none_is_lost_and_everything_follows_at_rest(bench:
     assert bench.run == session.run_number
     assert {trace["name"] for trace in bench.plotly()}
     assert "moves" not in bench.status
+
+
+_INK = """width => {
+  const wrap = Object.assign(document.createElement('div'), {className: 'u-wrap'});
+  const plain = document.createElement('div');
+  document.body.append(wrap, plain);
+  const ink = [wrap, plain].map(parent => {
+    const canvas = Object.assign(document.createElement('canvas'), {width: 300, height: 120});
+    parent.append(canvas);
+    const context = canvas.getContext('2d'), curve = new Path2D();
+    for (let x = 0; x <= 300; x++) curve.lineTo(x, 60 + 45 * Math.sin(x / 18));
+    [context.lineWidth, context.strokeStyle] = [width, '#1a6fb5'];
+    context.stroke(curve);
+    const shades = context.getImageData(0, 0, 300, 120).data.filter((_, place) => place % 4 === 3);
+    return [shades.reduce((sum, shade) => sum + shade, 0), context.lineWidth, shades.join()];
+  });
+  wrap.remove();
+  plain.remove();
+  const [[hairlines, left, one], [line, , other]] = ink;
+  return {ratio: hairlines / line, left, same: one === other};
+}"""
+
+
+def test_a_curve_of_hairlines_is_as_wide_as_its_line(bench: Bench) -> None:
+    for width in (1.5, 2.0):
+        found = bench.page.evaluate(_INK, width)
+        assert found["left"] == width, "for the next curve"
+        assert not found["same"] and 0.8 < found["ratio"] < 1.1
+    for width in (1.0, 3.0):
+        assert bench.page.evaluate(_INK, width)["same"], "drawn as it is"
