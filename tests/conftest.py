@@ -44,15 +44,6 @@ def repo_root() -> Path:
 
 
 @pytest.fixture(scope="session")
-def shared_data() -> Path:
-    """Folder of the recorded data, which is not part of the repository."""
-    folder = Path(os.environ.get("SCHULER_SHARED_DATA") or REPO_ROOT.parent / "shared" / "data")
-    if not folder.is_dir():
-        pytest.skip(f"the recorded data is not at {folder} (SCHULER_SHARED_DATA names another folder)")
-    return folder
-
-
-@pytest.fixture(scope="session")
 def chromium() -> Path:
     """Executable of a Chromium."""
     path = find_chromium()

@@ -17,6 +17,7 @@ from app.views.scene.track import HALF_WIDTH
 from navcore.networks.compass import gains_from_sigma_xi
 from navcore.scenario.file import load
 from tests.browser.driver import THROTTLE_MS, Bench
+from tests.recordings import ship
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -249,16 +250,17 @@ def test_text_of_a_user_is_text_everywhere(fresh: Bench) -> None:
 # ------------------------------------------------------------ files
 
 
-def test_a_ships_recording_is_uploaded_and_run(fresh: Bench, session: Session, shared_data: Path) -> None:
+def test_a_ships_recording_is_uploaded_and_run(fresh: Bench, session: Session) -> None:
     fresh.tab("Files")
-    ship = shared_data / "ship"
+    files = ship()
+    kind = "NMEA 0183 log" if files.raw else "CSV table"
     number = fresh.run
-    fresh.upload(ship / "SKQ_speedlog.txt")
-    fresh.notice("SKQ_speedlog.txt: NMEA 0183 log")
+    fresh.upload(files.log)
+    fresh.notice(f"{Path(files.log).name}: {kind}")
     fresh.wait_for_run(number)
-    for name in ("SKQ_gnss_cnav.txt", "SKQ_gyro_1.txt"):
-        fresh.upload(ship / name)
-        fresh.notice(f"{name}: NMEA 0183 log")
+    for file in files.track:
+        fresh.upload(file)
+        fresh.notice(f"{Path(file).name}: {kind}")
     assert "714 s that all uploaded streams share" in fresh.notice("714 s")
     fresh.settle()
     assert (session.scenario.motion.kind, session.scenario.reference.kind) == ("track", "file")
@@ -276,7 +278,7 @@ def test_a_ships_recording_is_uploaded_and_run(fresh: Bench, session: Session, s
     fresh.upload({"name": "junk.txt", "mimeType": "text/plain", "buffer": bytes(range(256)) * 9})
     assert "junk.txt" in fresh.notice("The file cannot be used; nothing was changed")
     assert session.scenario == before
-    assert list(session.uploads.files) == ["SKQ_speedlog.txt", "SKQ_gnss_cnav.txt", "SKQ_gyro_1.txt"]
+    assert list(session.uploads.files) == [Path(file).name for file in (files.log, *files.track)]
 
     # the files stay while they are in use, and go afterwards
     fresh.page.get_by_role("button", name="Remove the files").click()
