@@ -15,7 +15,7 @@ endif
 
 KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
-.PHONY: help setup run test check docs format unit paint soak tour accuracy covariance consistency design benchmarks papers guide sbom audit lock clean REMAKE
+.PHONY: help setup run test check docs format unit paint soak tour accuracy covariance consistency design benchmarks papers guide languages sbom audit lock clean REMAKE
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'
@@ -35,6 +35,7 @@ help:
 	@echo 'make consistency  the covariance of the Kalman filter against 500 seeds (SEEDS=)'
 	@echo 'make tour     film the README pictures in Chromium: docs/tour.webp, docs/dashboard.png'
 	@echo 'make format   lay the code out'
+	@echo 'make languages  collect the texts of the page, and compile their translations'
 	@echo 'make guide    write docs/scenario.md, docs/networks.md and the JSON Schema anew from the parameter models'
 	@echo 'make sbom     write build/sbom.json (CycloneDX) from the lock: what an installation holds; needs no network'
 	@echo 'make audit    look the locked packages up among the published vulnerabilities; needs the network'
@@ -161,6 +162,9 @@ sbom: $(STAMPS)/supply
 # Exit code 1: something is known to be vulnerable; 3: the service cannot be reached, nothing was looked up.
 audit: $(STAMPS)/supply
 	@$(BIN)/python -m tests.supply audit
+
+languages: setup $(STAMPS)/test
+	@$(BIN)/python -m tests.translating
 
 # One resolution for every platform and Python, with hashes and without any address.
 UV_COMPILE = $(BIN)/python -m uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \

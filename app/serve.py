@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
+from app.languages import LANGUAGE_SCRIPTS
 from app.logs import begin_logging
 from app.memory import GiveBack, bound_arenas
 from app.views import VIEWS, load, scripts
@@ -201,7 +202,12 @@ def open_dashboard(
         allow_origins=allow_origins,
         on_connect=dashboard.on_connect,
         on_disconnect=dashboard.on_disconnect,
-        page_scripts=[SOCKET_SCRIPT, *(_STATIC / f"{name}.js" for name in _SCRIPTS), *scripts(views)],
+        page_scripts=[
+            SOCKET_SCRIPT,
+            *LANGUAGE_SCRIPTS,
+            *(_STATIC / f"{name}.js" for name in _SCRIPTS),
+            *scripts(views),
+        ],
         limits=limits,
         inner=inner,
         metrics=lambda: dashboard.metrics,

@@ -1,4 +1,4 @@
-"""What viser is mended in: the queue of each page, the threads in which callbacks run, the handles' types."""
+"""What viser is mended in: a page's queue and language, the callbacks' threads, the handles' types."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from viser.infra import _infra
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
 from app.bridge.pool import FairPool
+from app.bridge.texts import Translator
 
 _CALLBACK_THREADS = 16
 _CAST = "_schuler_cast"
@@ -40,9 +41,16 @@ class MendedBuffer(AsyncMessageBuffer):
     whatever is pushed or ends an atomic block has the event loop set the event.
     """
 
+    translator: Translator | None = None
+    """Translates what the page is sent; None: it reads English."""
+
     def __post_init__(self) -> None:
         """Exchange the event."""
         self.message_event = _LoopEvent()
+
+    def push(self, message: Any) -> None:
+        """Queue a message, in the page's language."""
+        super().push(message if self.translator is None else self.translator.message(message))
 
 
 def mend_queues() -> None:

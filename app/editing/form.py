@@ -234,10 +234,15 @@ def _is_row(annotation: Any) -> bool:
 
 def _label(name: str, info: FieldInfo, prefix: str, part: str = "") -> str:
     extra = extra_of(info)
-    plain = name.removesuffix(f"_{extra.get('unit')}").replace("_", " ")
-    words = [prefix, extra.get("label") or plain, part]
+    words = [prefix, plain_label(name, info), part]
     unit = f"({extra['unit']})" if extra.get("unit") not in (None, "", "1") else ""
     return " ".join(word for word in (*words, unit) if word)
+
+
+def plain_label(name: str, info: FieldInfo) -> str:
+    """Label of a field without unit and element: its own, else its name."""
+    extra = extra_of(info)
+    return extra.get("label") or name.removesuffix(f"_{extra.get('unit')}").replace("_", " ")
 
 
 def _hint(info: FieldInfo, allowed: str) -> str:

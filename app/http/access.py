@@ -153,7 +153,7 @@ def refuse_unknown(access: Access, headers: RequestHeaders) -> Refusal | None:
     """Judge the token, shown by cookie or ``Authorization: Bearer``; None lets the request pass."""
     if access.token is None:
         return None
-    offered = [value.strip() for value in _cookies(headers, access.cookie_name)]
+    offered = [value.strip() for value in cookies(headers, access.cookie_name)]
     derived = _derived(access.token)
     authorizations = headers.get_all("Authorization")
     bearer = [value[7:].strip() for value in authorizations if value[:7].lower() == "bearer "]
@@ -170,7 +170,8 @@ def offers_token(headers: RequestHeaders) -> bool:
     return any(value[:7].lower() == "bearer " for value in headers.get_all("Authorization"))
 
 
-def _cookies(headers: RequestHeaders, name: str) -> list[str]:
+def cookies(headers: RequestHeaders, name: str) -> list[str]:
+    """Values that a request has for a cookie."""
     # Not http.cookies: it drops everything after a cookie it cannot read, and other services share this host.
     pairs = (part.partition("=") for line in headers.get_all("Cookie") for part in line.split(";"))
     return [value for key, _, value in pairs if key.strip() == name]

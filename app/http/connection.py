@@ -11,7 +11,7 @@ import viser
 from websockets.asyncio.server import ServerConnection
 from websockets.frames import CloseCode
 
-from app.bridge import controls
+from app.bridge import controls, texts
 from app.http.frames import BadFrame, Gate
 from app.http.limits import Limits
 from app.http.places import Door, Places
@@ -137,6 +137,10 @@ class Guest:
     def control(self, uuid: str) -> controls.Control | None:
         """Return the control with that id, if the visitor has it."""
         return controls.find_control(self.server, self.client_id, uuid)
+
+    def meant(self, uuid: str, value: object) -> object:
+        """Return an option that was chosen in the page's language as the server offers it."""
+        return texts.meant(self.server, self.client_id, uuid, value)
 
     def restore(self, uuid: str) -> None:
         """Show the server's value of a control again."""

@@ -37,6 +37,10 @@ class Visitor(Protocol):
         """Return the control with that id, if the visitor has it."""
         ...
 
+    def meant(self, uuid: str, value: object) -> object:
+        """Return an option that was chosen in the page's language as the server offers it."""
+        ...
+
     def restore(self, uuid: str) -> None:
         """Show the server's value of a control again."""
         ...
@@ -175,7 +179,10 @@ class Gate:
         if control.disabled:
             self.visitor.restore(fields["uuid"])
             return None
-        reason = why_not(control, updates["value"], self.limits.text_characters)
+        value = self.visitor.meant(fields["uuid"], updates["value"])
+        reason = why_not(control, value, self.limits.text_characters)
+        if reason is None and value is not updates["value"]:
+            return msgspec.msgpack.encode({**fields, "type": "GuiUpdateMessage", "updates": {"value": value}})
         if reason is None:
             return frame
         self.visitor.restore(fields["uuid"])

@@ -287,8 +287,11 @@ def _follow_visits(
 ) -> None:
     from app.bridge import server as bridge
     from app.bridge.mends import forget_callbacks
+    from app.bridge.texts import speak
     from app.http.connection import Guest
     from app.http.frames import Gate, Uploading
+    from app.http.language import language_of
+    from app.languages.wording import wording
 
     visits: dict[int, _Visit] = {}
     gates: dict[int, Gate] = {}
@@ -297,6 +300,8 @@ def _follow_visits(
     def opened(client_id: int, connection: Connection) -> None:
         visits[client_id] = _Visit(connection.session_id)
         connection.gate = gates[client_id] = Gate(Guest(server, client_id), limits, uploading)
+        if connection.request is not None:
+            speak(server, client_id, wording(language_of(connection.request.headers)))
 
     # The page is shown once viser knows its camera; viser calls this in the event loop, before `closed`.
     @server.on_client_connect

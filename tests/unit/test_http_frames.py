@@ -33,6 +33,9 @@ class Guest:
     def control(self, uuid: str) -> Control | None:
         return self.controls.get(uuid)
 
+    def meant(self, uuid: str, value: object) -> object:
+        return "east" if value == "东" else value
+
     def restore(self, uuid: str) -> None:
         self.restored.append(uuid)
 

@@ -17,7 +17,7 @@
 
   // What a slider stands at, as its exact box says it: on a logarithmic slider its own value is the logarithm.
   function valueOf(label) {
-    const boxes = [...document.querySelectorAll("label[for]")].filter((other) => other.textContent === `${label}, exact`);
+    const boxes = [...document.querySelectorAll("label[for]")].filter((other) => other.textContent === `${label}${window.schuler.say(", exact")}`);
     return boxes.length ? document.getElementById(boxes[0].htmlFor)?.value ?? "" : "";
   }
 

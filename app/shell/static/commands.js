@@ -166,7 +166,7 @@
   // The tabs of who presents come to the front without taking the focus.
   const follow = (names) => names.split("|").forEach((name) => window.schuler.open(window.schuler.tab(name)));
 
-  const ACTIONS = { tab: openTab, front: follow, upload, keys: showKeys, link: showLink };
+  const ACTIONS = { language: window.schuler.switchLanguage, tab: openTab, front: follow, upload, keys: showKeys, link: showLink };
   let answered = 0;
   let seen = "[]";
 

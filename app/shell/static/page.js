@@ -6,7 +6,7 @@
   let waiting = 0;
 
   function state() {
-    const front = [...document.querySelectorAll('[role="tab"][aria-selected="true"]')].map((tab) => tab.textContent);
+    const front = [...document.querySelectorAll('[role="tab"][aria-selected="true"]')].map((tab) => window.schuler.english(tab.textContent));
     return [`${innerWidth}x${innerHeight}`, ...front].join("|");
   }
 

@@ -27,7 +27,8 @@
       input.dispatchEvent(new Event("input", { bubbles: true }));
     },
 
-    tab: (name) => [...document.querySelectorAll('[role="tab"]')].find((tab) => tab.textContent === name),
+    // The tab with this title, in English.
+    tab: (name) => [...document.querySelectorAll('[role="tab"]')].find((tab) => window.schuler.english(tab.textContent) === name),
 
     // viser's tabs react to a pointer's whole way, or to a key; a click alone does nothing.
     open(tab) {

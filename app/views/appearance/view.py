@@ -1,4 +1,4 @@
-"""Tab "View": units, axes and bands of the plots over time, export of any plot, light or dark page."""
+"""Tab "View": units, axes and bands of the plots, export of any plot, language, light or dark page."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from app.shell import notices
 from app.shell.view import Tab, View, if_user
 from app.views.appearance.dark import DarkPage
 from app.views.appearance.export import FORMATS, Export
+from app.views.appearance.language import PageLanguage
 
 _CHOICES = {
     "angles in": ("angle", "Unit of tilts and headings in the plots over time, the spectrum and the table."),
@@ -35,7 +36,7 @@ class AppearanceView(View):
     def build(self, tab: Tab) -> None:
         """Make the widgets."""
         gui, export = self.frame.gui, Export(self.frame)
-        self._dark = DarkPage(self.frame)
+        self._dark, language = DarkPage(self.frame), PageLanguage(self.frame)
         self._choosers: dict[str, Any] = {}
         with tab:
             gui.add_html(notices.heading("Units and axes"), order=0)
@@ -60,6 +61,7 @@ class AppearanceView(View):
             format: Any = gui.add_button_group(
                 FORMAT, FORMATS, order=22, hint="CSV: the plotted numbers in full. SVG, PNG: the picture."
             )
+            language.build()
             self._dark.build()
         self._bands.on_update(if_user(lambda: self.frame.show(envelope=_BANDS[self._bands.value])))
         format.on_click(

@@ -88,12 +88,12 @@ def cause_text(cause: Cause, result: Why) -> str:
 
     Such as "position error mostly (83 %) from log bias, as a constant".
     """
-    source = ""
-    if cause.source:
-        how = "all" if cause.share > 0.995 else "mostly" if cause.share >= 0.5 else "most of all"
-        part = "" if cause.share > 0.995 else f" ({100.0 * cause.share:.0f} %)"
-        source = f" {how}{part} from {cause.source},"
-    return f"{cause.quantity}{source} {_period(cause, result)}"
+    period = _period(cause, result)
+    if not cause.source:
+        return f"{cause.quantity} {period}"
+    how = "all" if cause.share > 0.995 else "mostly" if cause.share >= 0.5 else "most of all"
+    part = "" if cause.share > 0.995 else f" ({100.0 * cause.share:.0f} %)"
+    return f"{cause.quantity} {how}{part} from {cause.source}, {period}"
 
 
 def _period(cause: Cause, result: Why) -> str:

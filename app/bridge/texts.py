@@ -1,0 +1,159 @@
+"""The texts in viser's messages: each page is sent them in its language, and what it chooses is read back.
+
+The program writes English and knows nothing of a page's language. viser has no hook for what it sends; a
+page's queue of messages is ours (`app.bridge.mends`), and every message of the page passes it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
+
+import msgspec
+from viser import _messages as messages
+
+Say = Callable[[str], str]
+
+
+class Language(Protocol):
+    """A language as a page needs it."""
+
+    name: str
+
+    def text(self, text: str) -> str:
+        """Translate a text, HTML or not."""
+        ...
+
+
+_TEXTS = frozenset({"label", "hint", "title", "body", "description", "text", "content", "_markdown"})
+"""Fields of viser's messages that hold a text."""
+_LISTS = frozenset({"options", "_tab_labels"})
+_PLOTLY, _UPLOT = "_plotly_json_str", frozenset({"series", "axes"})
+_PLOTLY_TEXTS = frozenset({"text", "name", "title", "hovertext", "hovertemplate", "ticktext", "label"})
+_UPLOT_TEXTS = frozenset({"label", "values"})
+
+
+class Translator:
+    """Translates the messages to one page.
+
+    Parameters
+    ----------
+    language : Language
+        Of the page.
+    """
+
+    def __init__(self, language: Language) -> None:
+        self.name, self._say = language.name, language.text
+        self._meant: dict[str, dict[str, str]] = {}
+
+    def message(self, message: messages.Message) -> messages.Message:
+        """Return a message to the page with its texts translated; the message itself stays as it is.
+
+        viser's handles hold the same objects as its messages.
+        """
+        props = getattr(message, "props", None)
+        if props is None:
+            if not isinstance(message, (messages.GuiUpdateMessage, messages.SceneNodeUpdateMessage,
+                                        messages.CommandUpdateMessage)):  # fmt: skip
+                return message
+            updates = self._fields(getattr(message, "uuid", ""), message.updates)
+            return (
+                dataclasses.replace(message, updates={**message.updates, **updates}) if updates else message
+            )
+        held = {name: getattr(props, name) for name in _names(type(props))}
+        changed = self._fields(getattr(message, "uuid", ""), held)
+        fresh = {"props": dataclasses.replace(props, **changed)} if changed else {}
+        value = getattr(message, "value", None)
+        if "options" in held and isinstance(value, str):
+            fresh["value"] = self._shown(message.uuid, value)  # pyright: ignore[reportAttributeAccessIssue]
+        return dataclasses.replace(message, **fresh) if fresh else message
+
+    def meant(self, uuid: str, value: object) -> object:
+        """Return the English option behind what was chosen on the page; any other value as it is."""
+        options = self._meant.get(uuid)
+        return options.get(value, value) if options is not None and isinstance(value, str) else value
+
+    def _shown(self, uuid: str, value: str) -> str:
+        return next((shown for shown, meant in self._meant.get(uuid, {}).items() if meant == value), value)
+
+    def _fields(self, uuid: str, fields: Mapping[str, Any]) -> dict[str, Any]:
+        """Translate those fields that hold texts; only what has changed is returned."""
+        changed: dict[str, Any] = {}
+        for name, value in fields.items():
+            if not value:
+                continue
+            if name in _TEXTS and isinstance(value, str):
+                changed[name] = self._say(value)
+            elif name == "options":
+                changed[name] = self._offer(uuid, value)
+            elif name in _LISTS:
+                changed[name] = tuple(self._say(text) for text in value)
+            elif name == _PLOTLY:
+                changed[name] = self._plotly(value)
+            elif name in _UPLOT:
+                changed[name] = tuple(self._uplot(part) for part in value)
+        if "value" in fields and "options" not in fields and uuid in self._meant:
+            changed["value"] = self._shown(uuid, fields["value"])
+        elif "value" in fields and "options" in fields:
+            changed["value"] = self._shown(uuid, fields["value"])
+        return {name: value for name, value in changed.items() if value != fields[name]}
+
+    def _offer(self, uuid: str, options: tuple[str, ...]) -> tuple[str, ...]:
+        meant: dict[str, str] = {}
+        for option in options:
+            said = self._say(option)
+            meant[option if said in meant else said] = option
+        self._meant[uuid] = meant
+        return tuple(meant)
+
+    def _plotly(self, figure: str) -> str:
+        told = msgspec.json.decode(figure)
+        return msgspec.json.encode(self._walk(told)).decode()
+
+    def _walk(self, part: Any, is_text: bool = False) -> Any:
+        if isinstance(part, dict):
+            return {
+                name: self._walk(value, name in _PLOTLY_TEXTS or (is_text and name == "text"))
+                if name != "meta"
+                else value
+                for name, value in part.items()
+            }
+        if isinstance(part, list):
+            if part and isinstance(part[0], (int, float)):
+                return part
+            return [self._walk(one, is_text) for one in part]
+        return self._say(part) if is_text and isinstance(part, str) else part
+
+    def _uplot(self, part: Mapping[str, Any]) -> dict[str, Any]:
+        told = {name: part[name] for name in _UPLOT_TEXTS & part.keys()}
+        said = {
+            name: self._say(value) if isinstance(value, str) else tuple(map(self._say, value))
+            for name, value in told.items()
+            if isinstance(value, str) or all(isinstance(one, str) for one in value)
+        }
+        return {**part, **said}
+
+
+def _names(kind: type) -> tuple[str, ...]:
+    known = _TEXTS | _LISTS | _UPLOT | {_PLOTLY}
+    return tuple(entry.name for entry in dataclasses.fields(kind) if entry.name in known)
+
+
+def speak(server: Any, client_id: int, language: Language | None) -> None:
+    """Translate all that goes to a page from now on; None: it reads English."""
+    buffer = server._websock_server._client_state_from_id[client_id].message_buffer
+    buffer.translator = None if language is None else Translator(language)
+
+
+def meant(server: Any, client_id: int, uuid: str, value: object) -> object:
+    """Return what a page's value for a control means in English (`Translator.meant`)."""
+    state = server._websock_server._client_state_from_id.get(client_id)
+    translator: Translator | None = None if state is None else state.message_buffer.translator
+    return value if translator is None else translator.meant(uuid, value)
+
+
+def language_of(client: Any) -> str:
+    """Language of a page, as a browser tells it."""
+    translator: Translator | None = client._websock_connection.get_message_buffer().translator
+    return "en" if translator is None else translator.name

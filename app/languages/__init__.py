@@ -1,0 +1,12 @@
+"""The page in other languages: English is written in the code, a gettext catalogue holds what others read.
+
+Nothing is marked in the code. `app.languages.extract` finds the texts that a page can show, ``make
+languages`` writes them into ``<language>/LC_MESSAGES/schuler.po`` and compiles that, and
+`app.bridge.texts` translates what goes to a page on its way there (`app.languages.wording`).
+"""
+
+from pathlib import Path
+
+_STATIC = Path(__file__).parent / "static"
+LANGUAGE_SCRIPTS = (*sorted(_STATIC.glob("*-*.js")), _STATIC / "language.js")
+"""Scripts of the page: the words of each language, then what uses them; before all that writes texts."""

@@ -1,0 +1,159 @@
+"""Texts in HTML: which pieces a reader takes as one, so that each is translated as a whole.
+
+A piece lies between two block elements. Inline elements (``<b>``, ``<code>``, ``<a>``) belong to it and
+stand in its key without their attributes; formulas and the live numbers of a lesson count as a value.
+Texts of plotly are read in the same way: they know a little HTML, and ``%{y:.3g}`` stands for a value there.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from html import escape, unescape
+
+OPEN, CLOSE = "\ue000", "\ue001"
+"""Around the number of a value while a text is looked up; no text has these letters."""
+_OPAQUE = re.compile(
+    r"<math\b.*?</math>|<span class=.sb-(?:live|formula)\b[^>]*>(?:<math\b.*?</math>|[^<]*)</span>|"
+    r"%\{[^}]*\}|"
+    r"<[a-z]+ [^>]*translate=.no.[^>]*>[^<]*</[a-z]+>",
+    re.DOTALL,
+)
+_HIDDEN = (
+    r"<pre\b.*?</pre>|<style\b.*?</style>|<script\b.*?</script>|<div id=.sb-[a-z]+. hidden\b[^>]*>.*?</div>"
+)
+_TOKEN = re.compile(rf"({_HIDDEN}|</?[a-zA-Z][^<>]*>|<!--.*?-->)", re.DOTALL)
+_INLINE = re.compile(r"<(/?)(b|i|em|strong|code|sub|sup|a|span|kbd|small|var)\b([^>]*)>")
+_ATTRIBUTE = re.compile(r'\b(title|aria-label|aria-valuetext|alt|placeholder|data-told)="([^"]*)"')
+_TAG = re.compile(r"</?[a-z]+>")
+_PARTS = re.compile(r"(</?[a-z]+>)")
+_AROUND = re.compile(r"<([a-z]+)>(.*)</\1>", re.DOTALL)
+_BLANKS = re.compile(r"\s+")
+
+Say = Callable[[str], str]
+"""``say(key)``: the translation of a plain text or of a piece."""
+
+
+def has_markup(text: str) -> bool:
+    """Whether a text must be read as HTML, or has values in the manner of plotly."""
+    return "%{" in text or ("<" in text and _TOKEN.search(text) is not None)
+
+
+def in_pieces(html: str) -> list[str]:
+    """Keys of the texts in some HTML, with those in attributes; values are ``OPEN number CLOSE``.
+
+    Examples
+    --------
+    >>> in_pieces('<p title="a hint">See <b class="x">this</b> &amp; that</p><p>42</p>')
+    ['a hint', 'See <b>this</b> & that', '42']
+    """
+    found: list[str] = []
+
+    def keep(key: str) -> str:
+        found.append(key)
+        return f"{key} "  # another text: what is the same counts as unknown, and is looked up piece by piece
+
+    translate(html, keep)
+    return found
+
+
+def translate(html: str, say: Say) -> str:
+    """Exchange the texts in some HTML; its elements stay.
+
+    Parameters
+    ----------
+    html : str
+        HTML, or a text of plotly.
+    say : callable
+        Translates a piece; its inline elements and values are to stand in the translation as well.
+    """
+    values: list[str] = []
+
+    def hide(found: re.Match[str]) -> str:
+        values.append(found[0])
+        return f"{OPEN}{len(values) - 1}{CLOSE}"
+
+    out: list[str] = []
+    piece: list[str] = []
+    for token in _TOKEN.split(_OPAQUE.sub(hide, html)):
+        if not token.startswith("<") or _INLINE.fullmatch(token):
+            piece.append(token)
+        elif _TOKEN.fullmatch(token):
+            out += [_translate_piece("".join(piece), say), _attributes(token, say)]
+            piece = []
+        else:
+            piece.append(token)
+    out.append(_translate_piece("".join(piece), say))
+    return re.sub(f"{OPEN}([0-9]+){CLOSE}", lambda found: values[int(found[1])], "".join(out))
+
+
+def _translate_piece(piece: str, say: Say) -> str:
+    if not piece.strip():
+        return piece
+    tags: dict[str, list[str]] = {}
+    key = ""
+    for token in _TOKEN.split(piece):
+        found = _INLINE.fullmatch(token)
+        if found is None:
+            key += unescape(token)
+        else:
+            short = f"<{found[1]}{found[2]}>"
+            tags.setdefault(short, []).append(_attributes(token, say))
+            key += short
+    key = _BLANKS.sub(" ", key)
+    lead, tail = key[: len(key) - len(key.lstrip())], key[len(key.rstrip()) :]
+    said = _say_inside(key.strip(), say) if tags else say(key.strip())
+    if said == key.strip():
+        return _with_attributes(piece, say)
+    return lead + _with_tags(said, tags) + tail
+
+
+def _say_inside(key: str, say: Say) -> str:
+    """Translate a piece with elements in it: without those around all of it, else part by part."""
+    found = _AROUND.fullmatch(key)
+    if found is not None and f"<{found[1]}>" not in found[2]:
+        inner = found[2].strip()
+        said = _say_inside(inner, say) if _TAG.search(inner) else say(inner)
+        return f"<{found[1]}>{found[2].replace(inner, said)}</{found[1]}>" if inner else key
+    said = say(key)
+    if said == key:
+        said = "".join(part if _TAG.fullmatch(part) else _around(part, say) for part in _PARTS.split(key))
+    return said
+
+
+def _around(text: str, say: Say) -> str:
+    """Translate a text between its blanks."""
+    bare = text.strip()
+    return text.replace(bare, say(bare)) if bare else text
+
+
+def _with_tags(said: str, tags: dict[str, list[str]]) -> str:
+    queues = {short: list(full) for short, full in tags.items()}
+    parts = _PARTS.split(said)
+    return "".join(queues[part].pop(0) if queues.get(part) else escape(part, quote=False) for part in parts)
+
+
+def _with_attributes(piece: str, say: Say) -> str:
+    return "".join(
+        _attributes(token, say) if token.startswith("<") else token for token in _TOKEN.split(piece)
+    )
+
+
+def _attributes(tag: str, say: Say) -> str:
+    if "=" not in tag or tag.startswith(("<style", "<script")):
+        return tag
+
+    def change(found: re.Match[str]) -> str:
+        name, text = found[1], unescape(found[2])
+        told = name == "data-told" and text.startswith("[")  # a list of texts
+        said = json.dumps(_walk(json.loads(text), say)) if told else say(text)
+        return found[0] if said == text else f'{name}="{escape(said)}"'
+
+    return _ATTRIBUTE.sub(change, tag)
+
+
+def _walk(told: object, say: Say) -> object:
+    if isinstance(told, list):
+        return [_walk(one, say) for one in told]
+    return say(told) if isinstance(told, str) else told

@@ -1,0 +1,282 @@
+"""One language: what its catalogue says for a text, with values in it or not, and for several in one.
+
+A text of the catalogue may have values in it, ``Run {0}: {1} methods``. What a page is sent has them
+filled in, so that the text is recognised by what stands between them; the values themselves are translated
+too. A text that is made of several, such as a help text and the range after it, is taken apart at its
+punctuation.
+"""
+
+from __future__ import annotations
+
+import gettext
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+from app.languages import markup
+
+FOLDER = Path(__file__).parent
+DOMAIN = "schuler"
+NAMES = {"en": "English", "zh-CN": "中文（简体）"}
+"""Languages of the page, each by its own name."""
+_VALUE = re.compile(r"\{[0-9]+\}")
+_TAGS = re.compile(r"</?([a-z]+)>")
+_WORD = re.compile(r"[^\W\d_]{2,}")
+_LETTERS = re.compile(r"[A-Za-z]{2,}")
+_SEPARATORS = tuple(
+    re.compile(separator)
+    for separator in (
+        r"(\n+)",
+        r"( ┊ | · | \| | – | — )",
+        r"(?<=[.!?])( )(?=[A-Z0-9(])",
+        r"(; )",
+        r"(: )",
+        r"(, (?:and |or )?)",
+        r"( \(|\))",
+        r"( / |/(?=[a-z]{3})| -> | → )",
+        r"( and | or )",
+    )
+)
+_JOINTS = {"; ": "；", ": ": "：", ", ": "，", ", and ": "和", ", or ": "或", " and ": " 且 ", " or ": " 或 "}
+_LONGEST = 6000
+_DEEPEST = 12
+_MOST_PARTS = 15
+_WEAK = 12
+_LONGEST_VALUE = 40
+_ENDED = re.compile(r"[.;:] ")
+_MOST_KEPT = 20_000
+
+
+@dataclass(frozen=True)
+class _Pattern:
+    """A text of the catalogue with values in it.
+
+    Attributes
+    ----------
+    pattern : re.Pattern
+        Matches the text with its values.
+    said : str
+        Its translation, with the values as ``{0}``.
+    weight : int
+        Letters of the text itself: of two texts that match, the one that says more is meant.
+    """
+
+    pattern: re.Pattern[str]
+    said: str
+    weight: int
+
+    def values(self, text: str) -> tuple[str, ...] | None:
+        """Values in a text; None when it is another one."""
+        found = self.pattern.fullmatch(text)
+        if found is None:
+            return None
+        values = found.groups(default="")
+        if values and values[-1].endswith(".") and text.endswith(values[-1]):  # the sentence's own
+            return None
+        # A text of few letters fits much by chance: then its values must be words, not sentences.
+        weak = self.weight < _WEAK and any(len(v) > _LONGEST_VALUE or _ENDED.search(v) for v in values)
+        return None if weak or any(_is_torn(value) for value in values) else values
+
+
+class Wording:
+    """What a language says.
+
+    Parameters
+    ----------
+    texts : dict of str to str
+        English and its translation; values as ``{0}``, literal braces nowhere.
+    name : str
+        Of the language, as a browser tells it.
+    missed : callable, optional
+        Is told each text without a translation.
+    """
+
+    def __init__(
+        self, texts: dict[str, str], name: str = "", missed: Callable[[str], None] | None = None
+    ) -> None:
+        self.name = name
+        self._exact = {key: said for key, said in texts.items() if _VALUE.search(key) is None}
+        self._missed = missed
+        self._by_word: dict[str, list[_Pattern]] = {}
+        patterns = {key: said for key, said in texts.items() if key not in self._exact}
+        often: dict[str, int] = {}
+        for key in patterns:
+            for word in words_of(key):
+                often[word] = often.get(word, 0) + 1
+        for key, said in patterns.items():
+            rarest = min(words_of(key), key=lambda word: often[word], default=None)
+            if rarest is not None:
+                self._by_word.setdefault(rarest, []).append(_pattern(key, said))
+        self.say = lru_cache(maxsize=_MOST_KEPT)(self._say)
+        self.markup = lru_cache(maxsize=_MOST_KEPT // 8)(self._markup)
+
+    def _markup(self, html: str) -> str:
+        if "<br>" in html:  # a long text of a figure, broken into lines
+            lines = html.split("<br>")
+            said = self._whole(" ".join(" ".join(lines).split()), 0)
+            if said is not None:
+                width = -(-len(said) // len(lines))
+                return "<br>".join(said[at : at + width] for at in range(0, len(said), width))
+        return markup.translate(html, self.say)
+
+    def text(self, text: str) -> str:
+        """Translate a text of the page, HTML or not; what has no translation stays as it is."""
+        if len(text) < 2 or _LETTERS.search(text) is None:
+            return text
+        return self.markup(text) if markup.has_markup(text) else self.say(text)
+
+    def _say(self, text: str) -> str:
+        found = self._look_up(text)
+        if found is None and _LETTERS.search(text) is not None and self._missed is not None:
+            self._missed(text)
+        return text if found is None else found
+
+    def _look_up(self, text: str, depth: int = 0) -> str | None:
+        """Return the translation, None when not even a part of it is known."""
+        bare = text.strip()
+        if depth > _DEEPEST or not bare or len(bare) > _LONGEST or _LETTERS.search(bare) is None:
+            return None
+        key = " ".join(bare.split()) if "\n" not in bare else bare
+        said = self._whole(key, depth) or self._take_apart(key, depth)
+        if said is None:
+            return None
+        lead, tail = text[: len(text) - len(text.lstrip())], text[len(text.rstrip()) :]
+        return f"{lead}{said}{tail}"
+
+    def _whole(self, key: str, depth: int) -> str | None:
+        """Return the translation of one text of the catalogue, with or without values."""
+        for text, end in ((key, ""), (key[:-1], "。") if key[-1:] == "." else (key, "")):
+            for form in dict.fromkeys((text, text[:1].lower() + text[1:])):  # a label may begin a sentence
+                said = self._exact.get(form) or self._match(form, depth)
+                if said is not None:
+                    return said + end
+        return None
+
+    def _match(self, text: str, depth: int) -> str | None:
+        words = dict.fromkeys(_WORD.findall(text))
+        near = [pattern for word in words for pattern in self._by_word.get(word, ())]
+        for one in sorted(near, key=lambda one: -one.weight):
+            found = one.values(text)
+            if found is not None:
+                return _filled(one.said, [self._value(value, depth) for value in found])
+        return None
+
+    def _value(self, value: str, depth: int) -> str:
+        found = self._look_up(value, depth + 1)
+        return value if found is None else found
+
+    def _take_apart(self, text: str, depth: int) -> str | None:
+        for separator in _SEPARATORS:
+            parts = separator.split(text)
+            if len(parts) > 1:
+                said = self._part_by_part(parts, depth)
+                if said is not None:
+                    return said
+        return self._begin(text, depth)
+
+    def _begin(self, text: str, depth: int) -> str | None:
+        """Translate a label before the name of an axis: "gyro bias x"."""
+        words = text.split(" ")
+        for count in range(len(words) - 1, max(0, len(words) - 4), -1):
+            said = self._exact.get(" ".join(words[:count]))
+            if said is not None:
+                rest = " ".join(words[count:])
+                return f"{said} {self._value(rest, depth)}"
+        return None
+
+    def _part_by_part(self, parts: list[str], depth: int) -> str | None:
+        """Translate parts and the separators between them: as many parts at once as are one text."""
+        said: list[str] = []
+        place, known = 0, False
+        while place < len(parts):
+            ends = range(min(len(parts), place + _MOST_PARTS), place, -2) if len(parts) > place + 2 else ()
+            for end in ends:
+                found = (
+                    self._whole("".join(parts[place:end]), depth + 1) if end - place < len(parts) else None
+                )
+                if found is not None:
+                    break
+            else:
+                end, found = place + 1, self._look_up(parts[place], depth + 1)
+            known = known or found is not None
+            if found is None and self._missed is not None and _LETTERS.search(parts[place]):
+                self._missed(parts[place].strip())
+            said += ["".join(parts[place:end]) if found is None else found, *parts[end : end + 1]]
+            place = end + 1
+        return _joined(said) if known else None
+
+
+def _filled(said: str, values: list[str]) -> str:
+    return _VALUE.sub(lambda at: values[int(at[0][1:-1])], said)
+
+
+def _joined(parts: list[str]) -> str:
+    out = parts[0]
+    for joint, part in zip(parts[1::2], parts[2::2], strict=True):
+        chinese = _is_wide(out[-1:]) or _is_wide(part[:1])
+        if joint == " " and _is_wide(out[-1:]):
+            joint = ""
+        elif joint == " and " and chinese:
+            joint = "和"
+        elif chinese or joint in (" and ", " or "):
+            joint = _JOINTS.get(joint, joint)
+        out += joint + part
+    return out
+
+
+def _is_torn(value: str) -> bool:
+    """Whether an element begins or ends in a value, but not both."""
+    return "<" in value and any(
+        value.count(f"<{tag}>") != value.count(f"</{tag}>") for tag in _TAGS.findall(value)
+    )
+
+
+def _is_wide(letter: str) -> bool:
+    return letter >= "\u3000" and not "\ue000" <= letter <= "\ue001"
+
+
+def words_of(text: str) -> list[str]:
+    """Words that stand whole in a text of the catalogue, none of them touching a value.
+
+    Examples
+    --------
+    >>> words_of("Run {0}: {1} method{2}")
+    ['Run']
+    """
+    bare = _VALUE.sub("\0", text)
+    return [
+        found[0]
+        for found in _WORD.finditer(bare)
+        if "\0" not in bare[max(found.start() - 1, 0) : found.end() + 1]
+    ]
+
+
+def _pattern(key: str, said: str) -> _Pattern:
+    parts = _VALUE.split(key)
+    order = [int(found[0][1:-1]) for found in _VALUE.finditer(key)]
+    pattern = re.escape(parts[0])
+    for number, part in zip(order, parts[1:], strict=True):
+        again = f"(?P=v{number})" if f"(?P<v{number}>" in pattern else f"(?P<v{number}>.*?)"
+        pattern += again + re.escape(part)
+    return _Pattern(re.compile(pattern, re.DOTALL), said, sum(map(len, parts)))
+
+
+def read_texts(language: str) -> dict[str, str]:
+    """All texts of a language's catalogue with their translations.
+
+    Raises
+    ------
+    FileNotFoundError
+        There is none.
+    """
+    found = gettext.translation(DOMAIN, FOLDER, [language.replace("-", "_")])
+    texts: dict[str, str] = getattr(found, "_catalog")  # noqa: B009 - the standard library lists them nowhere else
+    return {key: said for key, said in texts.items() if key and said}
+
+
+@lru_cache(maxsize=8)
+def wording(language: str) -> Wording | None:
+    """What a language says; None for English, and for one that there is no catalogue for."""
+    return Wording(read_texts(language), language) if language in NAMES and language != "en" else None
