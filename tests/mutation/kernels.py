@@ -26,7 +26,8 @@ class _Record:
         object.__setattr__(self, "_of", of)
 
     def __getattr__(self, name: str) -> Any:
-        return _seen(self._of[name])
+        own = self._of.dtype.names
+        return _seen(self._of[name]) if name in own else getattr(self._of, name)
 
     def __getitem__(self, place: Any) -> Any:
         return _seen(self._of[place])

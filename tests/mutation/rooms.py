@@ -7,16 +7,13 @@ from __future__ import annotations
 
 ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "law": (
-        ("test_control_*", "test_mutants_law"),
-        (
-            "test_scenario_guide", "test_history", "test_filters", "test_tuning", "test_unchanged_methods",
-            "test_switching_*", "test_liu_*", "test_sun_*", "test_zha_*", "test_signs_and_sizes",
-        ),
+        ("test_control_*", "test_scenario_guide"),
+        ("test_history", "test_tuning", "test_sun_table_1", "test_sun_step"),
     ),
     "mechanization": (
         (
             "test_error_model", "test_strapdown_kernel", "test_strapdown_every_sample", "test_kalman_method",
-            "test_signs_and_sizes", "test_mutants_mechanization",
+            "test_signs_and_sizes",
         ),
         (
             "test_scenario_guide", "test_strapdown_*", "test_control_twin", "test_control_strapdown",
@@ -25,7 +22,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ),
     ),
     "sensors": (
-        ("test_imu*", "test_noise", "test_reference_*", "test_mutants_sensors"),
+        ("test_imu*", "test_noise", "test_reference_*"),
         (
             "test_scenario_guide", "test_recorded_*", "test_log_fit", "test_strapdown_simulation",
             "test_strapdown_scenario", "test_sources", "test_signs_and_sizes", "test_own_recordings",
@@ -34,8 +31,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     ),
     "analysis": (
         (
-            "test_loop_*", "test_whole_system*", "test_held_log", "test_network_report",
-            "test_mutants_analysis",
+            "test_loop_*", "test_whole_system*", "test_held_log", "test_network_report", "test_sun_step",
         ),
         (
             "test_network_*", "test_pages", "test_placing", "test_any_network", "test_figures_whole_system",

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from navcore.analysis.held_log import held_log, period_map
-from navcore.analysis.whole_system import whole_system
+from navcore.analysis.whole_system import duration, whole_system
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import SPHERE, WGS84
 from navcore.foundation.units import DEG
@@ -101,3 +101,9 @@ def test_a_law_too_slow_for_its_gains_is_reported_before_it_diverges():
     [method] = simulate(Scenario.parse(given)).methods
     assert method.status == "diverged"
     assert any("the law runs every 1 s" in text for text in method.warnings)
+
+
+def test_the_warning_tells_the_e_folding_time() -> None:
+    found = held_log(network('id = "compass", sigma = 0.0088, xi = 0.7'), "external", 100.0, 1.0, 0.8)
+    radius = np.abs(np.linalg.eigvals(period_map(network('id = "compass"'), "external", 1.0, 100, 0.8))).max()
+    assert f"grow by e every {duration(100.0 / math.log(radius))}" in found.warnings[0]

@@ -13,6 +13,7 @@ from navcore.analysis.whole_system import (
     duration,
     feedback_gains,
     growth_over_latitude,
+    inputs_of_law,
     system_matrix,
     whole_system,
 )
@@ -119,3 +120,21 @@ def test_a_pole_at_zero_has_no_slope():
 )
 def test_a_duration_is_written_in_its_unit(seconds, text):
     assert duration(seconds) == text
+
+
+def test_stiffness_falls_with_height_by_gravity_and_radius() -> None:
+    """c_N turns the platform by c_N/(M + h), c_E by c_E/(N + h), in units where omega_s is 1."""
+    lat, height = 0.8, 10_000.0
+    b = inputs_of_law(lat, OMEGA_S, WGS84, height)
+    m, n = WGS84.radii(lat)
+    g = WGS84.gravity(lat, height)
+    assert b[4, 0] == pytest.approx(g / (n + height) / OMEGA_S**2, rel=1e-12)
+    assert b[3, 1] == pytest.approx(-g / (m + height) / OMEGA_S**2, rel=1e-12)
+
+
+def test_only_the_24_h_mode_is_explained_by_the_slope() -> None:
+    grows = whole_system(network('id = "classic2"'), "external", 0.8)
+    assert "H'(0) = +" in grows.warnings[0]
+    unstable = whole_system(network('id = "pole2", xi = 0.05, variant = "as_printed"'), "external", 0.8)
+    others = [text for text in unstable.warnings if "24 h mode" not in text]
+    assert others and all("H'(0)" not in text for text in others)

@@ -1,0 +1,94 @@
+"""The filter of `bridge` against the channel that it models, and gains in force against the network's own."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from navcore.foundation.compiled import plain
+from navcore.law.switching.bridge import _amplitude
+from navcore.networks import parse_network
+from navcore.networks.discrete import discretise
+from tests.law_run import OMEGA_S, LawRun
+
+LATEST = 900
+BIAS = (0.5, -0.3)
+
+
+def bridged_for(calls: int) -> tuple[LawRun, np.ndarray, list[bool]]:
+    """A channel that swings with 1 m/s, without noise: law, true v and w (2, 2), level known at each call."""
+    run = LawRun({"id": "complementary", "zeta": 0.5}, {"id": "constant"}, {"id": "bridge"})
+    cos, sin = math.cos(OMEGA_S), math.sin(OMEGA_S)
+    true, known = np.array([[1.0, 0.2], [-0.4, 0.7]]), []
+    for call in range(calls):
+        c = run.step(BIAS[0] - true[0, 0], BIAS[1] - true[1, 0])[:2]
+        known.append(bool(run.value("switchings.bridge.known")))
+        if call + 1 < calls:
+            v, w = true[:, 0] + c, true[:, 1]
+            true = np.column_stack([cos * v + sin * w - c, cos * w - sin * v])
+    return run, true, known
+
+
+@pytest.fixture(scope="module")
+def bridged() -> tuple[LawRun, np.ndarray, list[bool]]:
+    return bridged_for(1500)
+
+
+def test_the_filter_finds_velocity_tilt_and_level_of_its_own_channel(bridged) -> None:
+    run, true, _ = bridged
+    z = run.s["switchings"]["bridge"]["z"]
+    assert z[:, :2] == pytest.approx(true, abs=0.01)
+    assert z[:, 2] == pytest.approx(BIAS, abs=0.01)
+    P = run.s["switchings"]["bridge"]["P"]
+    assert np.all(np.linalg.eigvalsh(P) > 0.0) and np.abs(P - P.T).max() < 1e-12
+    assert 0.0 < P[2, 2] < 0.01
+
+
+def test_the_level_is_taken_after_fifteen_minutes_of_a_trusted_log(bridged) -> None:
+    run, _, known = bridged
+    assert known.index(True) == LATEST - 1 and all(known[LATEST - 1 :])
+    assert run.s["switchings"]["bridge"]["level"] == pytest.approx(BIAS, abs=0.05)
+
+
+def test_the_swing_is_damped() -> None:
+    _, true, _ = bridged_for(6000)
+    assert np.hypot(*true[0]) < 0.7 * np.hypot(1.0, 0.2)
+
+
+def test_the_weight_grows_from_12_to_24_times_the_variance() -> None:
+    """theory.md 12: a = clip(q/12 - 1, 0, 1)."""
+    P = np.diag([0.01, 0.03, 1.0])  # mean variance of v and w: 0.02
+    for square, expected in ((0.2, 0.0), (0.24, 0.0), (0.36, 0.5), (0.48, 1.0), (5.0, 1.0)):
+        z = math.sqrt(square / 4.0) * np.array([[-1.0, 1.0, 9.0], [1.0, -1.0, 9.0]])
+        assert plain(_amplitude)(z, P) == pytest.approx(expected, abs=1e-9)
+
+
+def test_the_compass_in_network_form_runs_the_network() -> None:
+    network = {"id": "compass", "realisation": "network"}
+    run = LawRun(network, {"id": "constant"}, {"id": "hard"})
+    discrete = discretise(parse_network(network).transfer(OMEGA_S), 1.0)
+    assert run.s["network"]["D"] == pytest.approx(1.0 - discrete.D, rel=1e-12)
+    assert run.s["network"]["B"][0] == pytest.approx(discrete.B[0], rel=1e-12)
+    assert run.law.p["feedback_k1"] == 0.0
+
+
+def test_the_schedule_ends_with_the_feedback_of_its_last_gains() -> None:
+    """c = -K2 d + P, P' = -K3 d: over a held step the mean of P is half a step behind."""
+    k1, k2, k3 = 7.68e-3, 6.68, 0.4
+    run = LawRun(
+        {"id": "compass"}, {"id": "schedule", "to": [k1, k2, k3], "duration_s": 10.0}, {"id": "hard"}
+    )
+    for _ in range(20):
+        run.step(0.1)
+    assert run.value("network.D") == pytest.approx(-k2 - 0.5 * k3, rel=1e-12)
+    assert run.value("network.B") == pytest.approx(-k3, rel=1e-12)
+    assert run.value("feedback_gain") == pytest.approx(k1, rel=1e-12)
+
+
+def test_at_a_constant_velocity_no_acceleration_is_measured() -> None:
+    run = LawRun({"id": "classic2"}, {"id": "acceleration"}, {"id": "hard"})
+    for _ in range(40):
+        run.step(0.1, v_c=(3.0, 4.0))
+    assert run.value("measure") == 0.0
