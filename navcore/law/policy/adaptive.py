@@ -107,7 +107,9 @@ def _decide(own, memory, law, sensed):
 
 
 class Adaptive(PolicyParameters):
-    """Always damped, with a damping coefficient that follows the low-passed |V_r - V_c| (Sun 2017, 8-18).
+    """Always damped, with a damping coefficient that follows |low-passed V_r - V_c| (Sun 2017, 8-18).
+
+    The east and the north difference are low-passed, and the norm is taken afterwards (theory.md 11).
 
     ``table`` holds pairs [difference in kn, xi]; between them the curve is monotone where they are (PCHIP),
     beyond them it stays. Either law is held within 0.04 and 0.99, and above what the network needs to be
@@ -127,7 +129,7 @@ class Adaptive(PolicyParameters):
     needs_reference: ClassVar[bool] = True
     keeps_time: ClassVar[bool] = True
     tunes: ClassVar[bool] = True
-    measure: ClassVar[Measure | None] = Measure("low-passed |V_r - V_c|", "kn", KNOT)
+    measure: ClassVar[Measure | None] = Measure("|low-passed V_r - V_c|", "kn", KNOT)
     id: Literal["adaptive"] = "adaptive"
     law: Literal["table", "quadratic"] = choice(
         "table",
@@ -153,7 +155,8 @@ class Adaptive(PolicyParameters):
         slider=(1.0, 1000.0),
         log=True,
         label="low-pass",
-        help="Time constant of the low-pass on the difference: above waves, below 806 s = 1/omega_s.",
+        help="Time constant of the low-pass on each component of the difference: above waves, below 806 s = "
+        "1/omega_s.",
     )
 
     @model_validator(mode="after")
