@@ -11,7 +11,7 @@ STARTS = 5
 STEPS = 40
 _WARM_UP = 5
 _PAUSE_S = 0.12
-"""Between two steps of the slider, so that each is answered by itself; browsers send one in 50 ms at most."""
+"""Between two steps of the slider, so that each is answered by itself; browsers send one in 30 ms at most."""
 _WINDOW = "1920x1080|Method|Frequency|Errors"
 """Window and front tabs: Bode plots and all error curves are sent, and the ship's track in 3D."""
 _ALL_VIEWS = "1920x1080|Method|Frequency|Poles|Step|Errors|Metrics|Compare|Spectrum|Requirements|Scenario"

@@ -28,6 +28,8 @@ MENDS = (
     # Messages that follow each other within 100 ms are held back, so that they are shown as evenly as they
     # were sent. Our server sends a picture when the page has painted the one before: waiting delays it.
     ("void 0||p>100||d-l.jsTimeMinusPythonTime", "void 0||p>=0||d-l.jsTimeMinusPythonTime"),
+    # One value in 50 ms, whichever control it comes from: a slider is followed 20 times a second at most.
+    ("n=LL(50).send,r=b.useMemo(()=>({folderDepth:0", "n=LL(30).send,r=b.useMemo(()=>({folderDepth:0"),
     # A command's new title ("Undo ...") counts as a change of the 3D view.
     ("new Set([`GuiUpdateMessage`,", "new Set([`CommandUpdateMessage`,`GuiUpdateMessage`,"),
 )

@@ -1,4 +1,4 @@
-// A way past viser's throttle: its page sends at most one value in 50 ms, whichever control it comes from. Its websocket
+// A way past viser's throttle: its page sends at most one value in 30 ms, whichever control it comes from. Its websocket
 // lives in a worker, which takes what it is to send as messages; here the worker is found when viser makes it. Leans on
 // viser's page, as pinned: tests/attack/test_viser_insides.py looks for both messages in it.
 (() => {

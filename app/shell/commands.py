@@ -1,7 +1,7 @@
 """What a page can be asked for by name: one list for scripts, keys, buttons in our HTML and the palette.
 
 viser has no event for a key, a click in a plot or a click in HTML, and its page sends at most one value in
-50 ms: static/commands.js writes what it asks for, with a running number, into one hidden control, and repeats
+30 ms: static/commands.js writes what it asks for, with a running number, into one hidden control, and repeats
 what has not been heard.
 """
 

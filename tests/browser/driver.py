@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from navcore.scenario.model import Scenario
 
 THROTTLE_MS = 80
-"""The page sends one value in 50 ms, whichever control it comes from."""
+"""The page sends one value in 30 ms, whichever control it comes from."""
 
 _GONE = ("Tried to update non-existent component", "_redrawFromAutoMarginCount")
 """What viser and plotly say of a plot that goes while it is drawn; nothing is lost.

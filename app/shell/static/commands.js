@@ -1,6 +1,6 @@
 // What the page asks the server for: `schuler.command("name", "argument", ...)`, from any script of ours, from keys and
 // from elements with data-command="name argument". It is written, with a running number, into the control labelled
-// "page command", which the page's style hides (app/shell/commands.py). viser sends at most one value in 50 ms, whichever
+// "page command", which the page's style hides (app/shell/commands.py). viser sends at most one value in 30 ms, whichever
 // control it comes from: everything that the server has not heard is written again.
 (() => {
   const LABEL = "page command";

@@ -20,7 +20,7 @@
     window.schuler.write(input, text);
   }
 
-  // viser sends at most one value in 50 ms: a report made together with another change may be dropped.
+  // viser sends at most one value in 30 ms: a report made together with another change may be dropped.
   function soon(delay = 60) {
     clearTimeout(waiting);
     waiting = setTimeout(report, delay);
