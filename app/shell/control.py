@@ -9,6 +9,7 @@ from app.bridge.controls import id_of
 from app.editing import form
 from app.editing.form import FieldSpec
 from app.shell import notices
+from app.shell.widget import Widget
 
 if TYPE_CHECKING:
     import viser
@@ -23,34 +24,6 @@ EXACT = ", exact"
 
 Edit = Callable[["Control", bool], None]
 """``edit(control, by_slider)``: the user has moved the slider, or filled the box."""
-
-
-class _Widget:
-    """A viser widget, and the value in it that has been dealt with.
-
-    viser stores what a browser sends before it calls back, and calls back concurrently: a value other than
-    the known one belongs to an event that is still to come, and must not be overwritten by an older one.
-    """
-
-    def __init__(self, handle: Any) -> None:
-        self.handle = handle
-        self.known = handle.value
-
-    def take(self) -> Any:
-        """Value the user has given; it counts as dealt with."""
-        self.known = self.handle.value
-        return self.known
-
-    @property
-    def awaited(self) -> bool:
-        """Whether the user has given another value that is still to be dealt with."""
-        return self.handle.value != self.known
-
-    def show(self, value: Any) -> None:
-        """Show a value, unless the user has just given another one."""
-        if not self.awaited:
-            self.handle.value = value
-            self.known = self.handle.value
 
 
 _UNKNOWN = object()
@@ -76,7 +49,7 @@ class Control:
     def __init__(self, gui: viser.GuiApi, spec: FieldSpec, edit: Edit, order: float, value: Any) -> None:
         self.spec = spec
         self.value = value
-        self._slider: _Widget | None = None
+        self._slider: Widget | None = None
         self._slider_moved = False
         self._shown: Any = _UNKNOWN
         self.removed = False
@@ -86,7 +59,7 @@ class Control:
             "integer": self._make_integer,
             "number": self._make_number,
         }
-        self._box = _Widget(make.get(spec.kind, self._make_text)(gui, order, value))
+        self._box = Widget(make.get(spec.kind, self._make_text)(gui, order, value))
         self._box.handle.on_update(lambda event: edit(self, False) if event.client is not None else None)
         if self._slider is not None:
             self._slider.handle.on_update(
@@ -120,7 +93,7 @@ class Control:
         low, high = slider.ends
         marks = ((low, f"{slider.low:g}"), (high, f"{slider.high:g}"))
         position = slider.position(0.0 if value is None else float(value))
-        self._slider = _Widget(
+        self._slider = Widget(
             gui.add_slider(
                 spec.label, low, high, slider.step, position, marks=marks, hint=spec.hint or None, order=order
             )

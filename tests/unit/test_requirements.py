@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 import math
+import threading
+from collections.abc import Callable
+from contextlib import nullcontext
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,6 +25,7 @@ from app.session.requirements import (
 )
 from app.views.poles.figure import allowed_poles
 from app.views.requirements.table import requirements_html
+from app.views.requirements.view import RequirementsView
 from app.views.step.figure import step_limits
 from app.views.tune.setting import requirements_as_text
 from navcore.design.measures import read_requirement
@@ -162,3 +168,49 @@ def test_table_says_in_words_who_meets_what() -> None:
     assert "&lt;b&gt;free" in html and "<b>free" not in html
     assert "nothing asked" in requirements_html(run, Requirements())
     assert "✓ meets it" in requirements_html(run, Requirements(overshoot_percent=150.0))
+
+
+# ------------------------------------------------------------ the boxes
+
+
+class _Box:
+    """A text box of viser: its value, and what is called when the browser has sent one."""
+
+    def __init__(self, value: str) -> None:
+        self.value = value
+
+    def on_update(self, act: Callable[[Any], None]) -> None:
+        self.call = act
+
+    def typed(self, text: str) -> None:
+        """What viser does first when the browser sends a value."""
+        self.value = text
+
+
+def test_a_limit_that_is_being_typed_is_not_overwritten() -> None:
+    """viser stores a typed value before it calls back; other work may bring the boxes up to date between."""
+    boxes: dict[str, _Box] = {}
+
+    def add_text(label: str, value: str, hint: str) -> _Box:
+        assert hint
+        return boxes.setdefault(label, _Box(value))
+
+    session: Any = SimpleNamespace(lock=threading.RLock(), display=Display())
+
+    def show(**choices: Any) -> None:
+        session.display = session.display.with_(**choices)
+        view.follow_display()
+
+    gui = SimpleNamespace(add_text=add_text, add_html=lambda text: SimpleNamespace(content=text))
+    frame: Any = SimpleNamespace(gui=gui, session=session, show=show)
+    view = RequirementsView(frame)
+    view.build(nullcontext())
+    settling, overshoot = (boxes[label_of(name)] for name in ("settling_min", "overshoot_percent"))
+    user: Any = SimpleNamespace(client=object())
+    settling.typed("90")
+    show(requirements=Requirements(settling_min=30.0, overshoot_percent=20.0))  # by another page
+    assert (settling.value, overshoot.value) == ("90", "20")
+    settling.call(user)
+    assert session.display.requirements == Requirements(settling_min=90.0, overshoot_percent=20.0)
+    show(requirements=Requirements())
+    assert (settling.value, overshoot.value) == ("", "")

@@ -12,6 +12,7 @@ from app.session.shown import Shown
 from app.session.window import window_of
 from app.shell import notices
 from app.shell.view import PictureView, Tab, if_user
+from app.shell.widget import Widget
 from app.views.metrics.table import method_px, metrics_html, metrics_rows, system_html, verdict
 from app.views.metrics.why import why_html
 from navcore.engine.run import Run
@@ -42,7 +43,9 @@ class MetricsView(PictureView[tuple[str, str]]):
                 OVER, tuple(_WINDOWS), hint="Part of the run over which errors and requirements are measured."
             )
             self._ends = {
-                field: self.frame.gui.add_number(label, 0.0, min=0.0, max=1e5, visible=False, hint=hint)
+                field: Widget(
+                    self.frame.gui.add_number(label, 0.0, min=0.0, max=1e5, visible=False, hint=hint)
+                )
                 for field, (label, hint) in _ENDS.items()
             }
             self._table = self.frame.gui.add_html("")
@@ -51,7 +54,7 @@ class MetricsView(PictureView[tuple[str, str]]):
 
         self._over.on_update(if_user(self._choose))
         for field, box in self._ends.items():
-            box.on_update(if_user(lambda field=field, box=box: self.frame.show(**{field: float(box.value)})))
+            box.handle.on_update(if_user(lambda field=field, box=box: self._end(field, box)))
 
     def _choose(self) -> None:
         """Measure over another part of the run; hours begin as those of the whole run."""
@@ -61,14 +64,18 @@ class MetricsView(PictureView[tuple[str, str]]):
             to_h = self.session.scenario.run.duration_h
         self.frame.show(window=window, window_to_h=to_h)
 
+    def _end(self, field: str, box: Widget) -> None:
+        with self.session.lock:
+            self.frame.show(**{field: float(box.take())})
+
     def follow_display(self) -> None:
         """Show what the errors are measured over."""
         display = self.session.display
         self._over.value = next(word for word, key in _WINDOWS.items() if key == display.window)
         for field, box in self._ends.items():
             value = getattr(display, field)
-            box.value = self.session.scenario.run.duration_h if value is None else value
-            box.visible = display.window == "hours"
+            box.show(self.session.scenario.run.duration_h if value is None else value)
+            box.handle.visible = display.window == "hours"
 
     def follow_jobs(self) -> None:
         """Tell what dominates the run, as far as it is known."""

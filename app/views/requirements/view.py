@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import threading
 from dataclasses import replace
-from typing import Any
 
 from app.session.requirements import Requirements, label_of, read_limit
 from app.session.shown import Shown
 from app.session.window import window_of
 from app.shell import notices
 from app.shell.view import Frame, PictureView, Tab, if_user
+from app.shell.widget import Widget
 from app.views.requirements.table import requirements_html
 from navcore.foundation.errors import InputError
 from navcore.foundation.parameters import allowed_range
@@ -28,35 +28,29 @@ class RequirementsView(PictureView[str]):
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
-        self._lock = threading.Lock()
         self._doubts: dict[str, threading.Timer] = {}
 
     def build(self, tab: Tab) -> None:
         """Make the boxes."""
         gui = self.frame.gui
         self._held = self.session.display.requirements
-        self._boxes: dict[str, Any] = {}
+        self._boxes: dict[str, Widget] = {}
         with tab:
             gui.add_html(_GRID)
             for name, info in Requirements.model_fields.items():
                 hint = f"{info.description} A number, {allowed_range(info)}; empty: no requirement."
                 box = gui.add_text(label_of(name), _text(getattr(self._held, name)), hint=hint)
                 box.on_update(if_user(lambda name=name: self._typed(name)))
-                self._boxes[name] = box
+                self._boxes[name] = Widget(box)
             self._note = gui.add_html("")
             self._table = gui.add_html("")
 
     def follow_display(self) -> None:
         """Show the display's limits where they have changed; what is being typed stays as it is."""
-        with self._lock:
-            before, self._held = self._held, self.session.display.requirements
-            fresh = [
-                name
-                for name in self._boxes
-                if name not in self._doubts and getattr(before, name) != getattr(self._held, name)
-            ]
-        for name in fresh:
-            self._boxes[name].value = _text(getattr(self._held, name))
+        before, self._held = self._held, self.session.display.requirements
+        for name, box in self._boxes.items():
+            if name not in self._doubts and getattr(before, name) != getattr(self._held, name):
+                box.show(_text(getattr(self._held, name)))
 
     def picture(self, found: Shown) -> str:
         """Make the table of verdicts, HTML."""
@@ -73,11 +67,11 @@ class RequirementsView(PictureView[str]):
         )
 
     def _typed(self, name: str) -> None:
-        with self._lock:
+        with self.session.lock:
             timer = self._doubts.pop(name, None)
             if timer is not None:
                 timer.cancel()
-            text = self._boxes[name].value
+            text = self._boxes[name].take()
             try:
                 value = read_limit(name, text)
             except InputError as error:
@@ -85,19 +79,18 @@ class RequirementsView(PictureView[str]):
                 timer.daemon = True
                 timer.start()
                 return
-            changed = Requirements.model_validate(self._held.model_dump() | {name: value})
-            self._held = changed
-        self._note.content = ""
-        self.frame.show(requirements=changed)
+            self._note.content = ""
+            self._held = Requirements.model_validate(self._held.model_dump() | {name: value})
+            self.frame.show(requirements=self._held)
 
     def _refuse(self, name: str, text: str, error: InputError) -> None:
-        with self._lock:
-            if self._doubts.pop(name, None) is None or self._boxes[name].value != text:
+        with self.session.lock:
+            if self._doubts.pop(name, None) is None or self._boxes[name].handle.value != text:
                 return
-        kept = _text(getattr(self._held, name)) or "no requirement"
-        self._boxes[name].value = _text(getattr(self._held, name))
-        lines = [f"{label_of(name)}: {notices.refusal(fault, kept)}" for fault in error.faults]
-        self._note.content = notices.note(lines, "error")
+            self._boxes[name].show(_text(getattr(self._held, name)))
+            kept = _text(getattr(self._held, name)) or "no requirement"
+            lines = [f"{label_of(name)}: {notices.refusal(fault, kept)}" for fault in error.faults]
+            self._note.content = notices.note(lines, "error")
 
 
 def _text(value: float | None) -> str:
