@@ -1,5 +1,6 @@
 """Runs all checks and tests in stages and sums them up: ``python -m tests.stages [lint | unit]``.
 
+Stages that keep one core busy each run side by side; what they print is shown when each ends.
 The last line printed is ``N passed, N failed, N skipped`` over all stages; a check (ruff, basedpyright)
 counts as one test. The exit code is 1 when anything failed or when a test stage ran no test at all.
 """
@@ -9,11 +10,14 @@ from __future__ import annotations
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from typing import IO
 
 from tests.chromium import provide_chromium
 
@@ -53,6 +57,9 @@ STAGES = {
     "browser": ["tests/browser", "-n2", "--dist=loadfile"],
 }
 
+BESIDE = (("container",), ("basedpyright", "attack"))
+"""Lanes that run side by side; each keeps one core busy, the stages of a lane one after the other."""
+
 
 def read_counts(stage: str, report: Path, exit_code: int, seconds: float) -> Count:
     """Read a JUnit report; a run that died, wrote none or held no test counts as one failure."""
@@ -86,28 +93,50 @@ def table(counts: Iterable[Count]) -> str:
     return "\n".join(rows)
 
 
-def run_check(name: str) -> Count:
-    """Run one linter."""
-    print(f"== {name}", flush=True)
+def run_check(name: str, out: IO[str] | None = None) -> Count:
+    """Run one linter; what it prints goes to ``out``, by default to the standard output."""
+    print(f"== {name}", file=out, flush=True)
     start = time.perf_counter()
-    bad = int(subprocess.run([sys.executable, "-m", *CHECKS[name]], cwd=ROOT).returncode != 0)
+    command = [sys.executable, "-m", *CHECKS[name]]
+    done = subprocess.run(command, cwd=ROOT, stdout=out, stderr=out and subprocess.STDOUT)
+    bad = int(done.returncode != 0)
     return Count(name, 1 - bad, bad, 0, time.perf_counter() - start)
 
 
-def run_stage(name: str) -> Count:
-    """Run the tests of one stage."""
+def run_stage(name: str, out: IO[str] | None = None) -> Count:
+    """Run the tests of one stage; what they print goes to ``out``, by default to the standard output."""
     if name == "browser":
         path, how = provide_chromium()
-        print(
-            f"== Chromium: {path} ({how})" if path else f"== tests/browser will be skipped: {how}", flush=True
-        )
-    print(f"== {name}", flush=True)
+        found = f"== Chromium: {path} ({how})" if path else f"== tests/browser will be skipped: {how}"
+        print(found, file=out, flush=True)
+    print(f"== {name}", file=out, flush=True)
     start = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
         command = [sys.executable, "-m", "pytest", "-q", f"--junitxml={report}", *STAGES[name]]
-        exit_code = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL).returncode
-        return read_counts(name, report, exit_code, time.perf_counter() - start)
+        done = subprocess.run(
+            command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=out, stderr=out and subprocess.STDOUT
+        )
+        return read_counts(name, report, done.returncode, time.perf_counter() - start)
+
+
+def run_beside(lanes: Iterable[Iterable[str]] = BESIDE) -> list[Count]:
+    """Run lanes of checks and stages side by side; what each of them prints stays together."""
+    printing = threading.Lock()
+
+    def run_lane(names: Iterable[str]) -> list[Count]:
+        counts = []
+        for name in names:
+            with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as out:
+                counts.append(run_check(name, out) if name in CHECKS else run_stage(name, out))
+                out.seek(0)
+                with printing:
+                    print(out.read(), end="", flush=True)
+        return counts
+
+    lanes = list(lanes)
+    with ThreadPoolExecutor(len(lanes)) as pool:
+        return [count for counts in pool.map(run_lane, lanes) for count in counts]
 
 
 def setup_times() -> str:
@@ -126,13 +155,22 @@ def main(arguments: list[str]) -> int:
     if wanted not in ("all", "lint", "unit"):
         print(f"stages: {wanted}: all, lint or unit", file=sys.stderr)
         return 2
-    counts = [run_check(name) for name in CHECKS] if wanted != "unit" else []
-    if wanted != "lint":
+    start = time.perf_counter()
+    counts: list[Count] = []
+    if wanted == "lint":
+        counts = [run_check(name) for name in CHECKS]
+    else:
         # Compiled before the first test, and once for all its processes.
         subprocess.run([sys.executable, "-m", "navcore.warm"], cwd=ROOT, check=True)
-        stages = list(STAGES) if wanted == "all" else list(STAGES)[:1]
-        counts += [run_stage(name) for name in stages]
-    print(f"\n{setup_times()}\n{table(counts)}\n\n{closing_line(counts)}", flush=True)
+        first, *others = STAGES
+        if wanted == "all":
+            taken = {name for lane in BESIDE for name in lane}
+            counts += [run_check(name) for name in CHECKS if name not in taken]
+            counts += run_beside()
+            others = [name for name in others if name not in taken]
+        counts += [run_stage(name) for name in [first, *(others if wanted == "all" else [])]]
+    whole = f"{'all, from first to last':<28} {time.perf_counter() - start:8.1f} s"
+    print(f"\n{setup_times()}\n{table(counts)}\n{whole}\n\n{closing_line(counts)}", flush=True)
     return int(any(count.failed for count in counts))
 
 

@@ -11,6 +11,10 @@ from weakref import WeakKeyDictionary
 
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
+from app.session.display import Display
+from app.session.session import first_editable
+from app.session.sessions import first_scenario
+from app.shell.layout import layout_for
 from navcore.scenario.file import load
 
 if TYPE_CHECKING:
@@ -62,6 +66,18 @@ _SUMS = """count => {
     track: lines.map(points => sum(points)),
   };
 }"""
+# The server has heard of the window's size and of the tabs in front (app/shell/static/page.js).
+_HEARD = """() => {
+  const front = [...document.querySelectorAll('[role=tab][aria-selected=true]')].map(tab => tab.textContent);
+  const state = [`${innerWidth}x${innerHeight}`, ...front].join('|');
+  return document.querySelector('#sb-heard')?.dataset.state === state;
+}"""
+# The tab in which a new scenario opens is in front.
+_OPENED = """() => {
+  const wanted = document.querySelector('#sb-focus')?.dataset ?? {};
+  return !wanted.scenario || schuler.tab(wanted.tab) === undefined
+    || document.documentElement.dataset.opened === wanted.scenario;
+}"""
 _LINE = """name => {
   const node = window.__viserSceneTree.getState()[name];
   return node ? Array.from(node.message.props.points) : null;
@@ -77,11 +93,11 @@ class Bench:
         Not yet opened.
     url : str
         Of the dashboard.
-    sessions : Sessions
-        Of the dashboard, which runs in this process.
+    sessions : Sessions or None
+        Of the dashboard; None when it does not run in this process.
     """
 
-    def __init__(self, page: Page, url: str, sessions: Sessions) -> None:
+    def __init__(self, page: Page, url: str, sessions: Sessions | None) -> None:
         self.page = page
         self.url = url
         self.sessions = sessions
@@ -111,17 +127,18 @@ class Bench:
     @property
     def session(self) -> Session:
         """What the server keeps of this visitor."""
+        assert self.sessions is not None
         return self.sessions.get(self.session_id)
 
     # ------------------------------------------------------------ acting
 
     def tab(self, *names: str) -> None:
-        """Bring tabs to the front."""
+        """Bring tabs to the front; wait until the page holds what they show."""
         for name in names:
             tab = self.page.get_by_role("tab", name=name, exact=True)
             if tab.get_attribute("aria-selected") != "true":
                 tab.click()
-                self.page.wait_for_timeout(THROTTLE_MS)
+                self.heard()
 
     def id(self, label: str) -> str:
         """Id of the control with exactly this label."""
@@ -220,12 +237,39 @@ class Bench:
             session.change(scenario, None, origin=origin, selected=selected)
             session.select(selected, None)
         self.catch_up()
+        self.page.wait_for_function(_OPENED)
+        self.heard()
         self.close_notices()
 
     def show(self, **choices: object) -> None:
         """Change how the session's pictures are shown, without a click; wait until the page shows it."""
         self.session.show(None, **choices)
         self.catch_up()
+
+    def select(self, index: int) -> None:
+        """Take a method in hand, without a click; wait until the page shows it."""
+        self.session.select(index, None)
+        self.catch_up()
+
+    def begin(self) -> None:
+        """Put the page back to what a new visitor finds, for the tests of another file."""
+        page, session = self.page, self.session
+        page.keyboard.press("Escape")
+        page.set_viewport_size({"width": 1920, "height": 1080})
+        session.present(None)
+        session.verifier.forget()
+        for pin in session.pins.all:
+            session.pins.remove(pin.id)
+        session.pins._next = 1
+        plain = Display()
+        session.show(None, **{name: getattr(plain, name) for name in Display.model_fields})
+        scenario, origin = first_scenario()
+        self.put(scenario, origin=origin, selected=first_editable(scenario))
+        for tabs in page.get_by_role("tablist").all():
+            tabs.get_by_role("tab").first.click()
+        self.heard()
+        for shows in page.locator("#sb-stage [data-shows][aria-pressed=false]").all():
+            shows.click()
 
     def settle(self) -> None:
         """Wait until what was done on the page has been sent, run and shown."""
@@ -241,13 +285,35 @@ class Bench:
         assert self.session.wait_idle(60.0)
         shown = "n => Number(document.querySelector('#sb-run').dataset.run) === n"
         self.page.wait_for_function(shown, arg=self.session.run_number)
-        number = next(self._mark_numbers)
-        for view in list(self.session._views):
-            if view not in self._marks:
-                self._marks[view] = view.gui.add_html("", order=1000)
-            self._marks[view].content = f'<div hidden data-mark="{id(self)} {number}"></div>'
-            view.client.flush()
-        self.page.wait_for_selector(f'[data-mark="{id(self)} {number}"]', state="attached")
+        self._receive()
+
+    def heard(self) -> None:
+        """Wait until the server knows window and front tabs, and the page holds what it sent for them."""
+        self.page.wait_for_function(_HEARD)
+        if self.sessions is None:  # a server in another process
+            return
+        views = [view for view in self.session._views if view._front]
+        for _ in range(3000):
+            if all(
+                view._layout == layout_for(*view._window) and not view.column.stale(view._front)
+                for view in views
+            ):
+                break
+            self.page.wait_for_timeout(10)
+        else:
+            stale = [view.column.stale(view._front) for view in views]
+            raise AssertionError(f"not made: pictures of {stale}; {self.status!r}; {self.faults}")
+        self._receive()
+
+    def _receive(self) -> None:
+        number, session = f"{id(self)} {next(self._mark_numbers)}", self.session
+        with session.lock:
+            for view in list(session._views):
+                if view not in self._marks:
+                    self._marks[view] = view.gui.add_html("", order=1000)
+                self._marks[view].content = f'<div hidden data-mark="{number}"></div>'
+                view.client.flush()
+        self.page.wait_for_selector(f'[data-mark="{number}"]', state="attached")
 
     @property
     def metrics(self) -> dict[str, Any]:

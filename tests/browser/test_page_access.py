@@ -14,6 +14,7 @@ from app.plots.style import INK, method_color
 from app.views.appearance import theme
 from app.views.appearance.dark import DARK
 from tests.browser.driver import THROTTLE_MS, Bench
+from tests.browser.test_page_layout import SIZES, resize
 
 pytestmark = pytest.mark.browser
 
@@ -34,7 +35,7 @@ def light(bench: Bench) -> Iterator[Bench]:
     bench.reset("sikuliaq-like", selected=2)
     bench.tab("Method", "Frequency", "Errors")
     yield bench
-    bench.session.show(None, theme="light")
+    bench.show(theme="light")
     bench.page.wait_for_selector("#sb-theme[data-theme=light]", state="attached")
     bench.page.keyboard.press("Escape")
 
@@ -68,15 +69,15 @@ def test_axe_finds_nothing_wrong(light: Bench, axe: str, tabs: tuple[str, ...]) 
 def test_a_slider_says_its_name_and_its_value_with_the_box(light: Bench) -> None:
     light.tab("Sensors")
     slider = light.page.get_by_role("slider", name="angular random walk (deg/sqrt(h))", exact=True)
-    light.page.wait_for_timeout(900)
-    assert (
-        slider.get_attribute("aria-valuetext")
-        == light.box("angular random walk (deg/sqrt(h)), exact").input_value()
+    box = light.box("angular random walk (deg/sqrt(h)), exact")
+    light.page.wait_for_function(
+        "([slider, box]) => slider.getAttribute('aria-valuetext') === box.value",
+        arg=[slider.element_handle(), box.element_handle()],
     )
 
 
 def test_plots_say_what_they_show(light: Bench) -> None:
-    light.page.wait_for_timeout(900)
+    light.page.wait_for_function(_NAMED)
     names = light.page.evaluate("() => [...document.querySelectorAll('[role=figure]')].map(f => f.ariaLabel)")
     assert any("Damping network H" in name and "complementary" in name for name in names)
     assert any(name.startswith("Plot over time: δVE (m/s)") and "classic2" in name for name in names)
@@ -206,12 +207,11 @@ def test_a_control_that_is_no_field_is_explained_by_its_hint(light: Bench) -> No
     light.page.locator("#sb-explain").wait_for(state="detached")
 
 
-@pytest.mark.parametrize("size", [(1920, 1080), (1366, 768), (1280, 720)], ids=str)
+@pytest.mark.parametrize("size", SIZES, ids=str)
 def test_lesson_and_explanation_fit_the_window(light: Bench, size: tuple[int, int]) -> None:
     page = light.page
-    page.set_viewport_size({"width": size[0], "height": size[1]})
     try:
-        page.wait_for_timeout(1200)
+        resize(light, size)
         light.tab("Learn")
         if page.locator("[data-command='lesson list']").count():
             page.locator("[data-command='lesson list']").click()
@@ -238,5 +238,4 @@ def test_lesson_and_explanation_fit_the_window(light: Bench, size: tuple[int, in
         assert box["y"] + box["height"] <= size[1] - 60, "it leaves the playback free"
     finally:
         page.keyboard.press("Escape")
-        page.set_viewport_size({"width": 1920, "height": 1080})
-        page.wait_for_timeout(1200)
+        resize(light, SIZES[0])

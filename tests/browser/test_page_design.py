@@ -56,10 +56,10 @@ def resized(request: pytest.FixtureRequest, opened: Bench) -> Iterator[Bench]:
 def window(resized: Bench) -> Iterator[Bench]:
     resized.faults.clear()
     resized.reset("sikuliaq-like", selected=2)
-    resized.session.show(None, **_AT_FIRST)
+    resized.show(**_AT_FIRST)
     resized.tab("Method", "Design")
     yield resized
-    resized.session.show(None, **_AT_FIRST)
+    resized.show(**_AT_FIRST)
     assert resized.faults == []
 
 
@@ -71,7 +71,7 @@ def test_a_band_of_one_sigma_follows_the_scenario_and_says_what_it_is(window: Be
     assert page.evaluate(_LEGEND).startswith("band: ±1σ by covariance")
     before = page.evaluate(_BAND)[1]
     window.tab("Method")
-    session.select(2, None)
+    window.select(2)
     window.press("zeta")
     fresh = f"old => !({_LEGEND})().includes('earlier') && ({_BAND})()[1] !== old"
     page.wait_for_function(fresh, arg=before, timeout=60_000)

@@ -30,7 +30,7 @@ def reading(bench: Bench) -> Iterator[Bench]:
     bench.reset("liu-networks", selected=2)
     bench.tab("Frequency", "Errors", "View")
     yield bench
-    bench.session.show(None, **_DEFAULT)
+    bench.show(**_DEFAULT)
     bench.tab("Errors")
     bench.page.wait_for_function(f"() => ({_CHART})('δVE (m/s)') !== undefined")
 

@@ -250,7 +250,7 @@ def test_a_link_opens_the_state_as_it_was_shared_for_everyone(
 ) -> None:
     fresh.type(XI, "0.55")
     fresh.settle()
-    session.show(None, scale="log")
+    fresh.show(scale="log")
     button(fresh, "Share").click()
     dialog = fresh.page.get_by_role("dialog", name="Share this state")
     link = dialog.get_by_label("Link to this state").input_value()
@@ -260,7 +260,7 @@ def test_a_link_opens_the_state_as_it_was_shared_for_everyone(
     fresh.page.keyboard.press("Escape")
     digest = fresh.digest
     fresh.type(XI, "0.65")
-    session.show(None, scale="linear")
+    fresh.show(scale="linear")
     first = another(link.removeprefix(fresh.url))
     assert first.session_id not in (fresh.session_id, link.rstrip("/").rpartition("/")[2])
     assert (first.digest, first.value(XI)) == (digest, 0.55)
@@ -367,7 +367,7 @@ def test_the_work_survives_the_death_of_the_server(browser: Browser, tmp_path: P
     try:
         page = context.new_page()
         page.set_default_timeout(90_000)
-        mine = Bench(page, f"http://127.0.0.1:{port}/", None)  # pyright: ignore[reportArgumentType]
+        mine = Bench(page, f"http://127.0.0.1:{port}/", None)
         mine.open()
         mine.choose_and_run("scenario", "zha-fast")
         mine.tab("Method")

@@ -70,18 +70,13 @@ def scenario(policy: dict[str, Any], network: dict[str, Any]) -> Scenario:
 
 def opened(bench: Bench, made: Scenario) -> None:
     """Begin anew with a scenario; the second method in hand, the switching view in front."""
-    with bench.session.lock:
-        number = bench.session.run_number
-        bench.session.change(made, None, origin=f"test {number}", selected=1)
-    bench.wait_for_run(number)
-    # A newly opened scenario brings its own tab to the front.
-    bench.page.wait_for_function("o => document.documentElement.dataset.opened === o", arg=f"test {number}")
+    bench.put(made, origin=f"test {bench.session.run_number}", selected=1)
     bench.tab("Switching", "Method")
 
 
 def view(bench: Bench) -> dict[str, Any]:
     """Label and sums of each plot of the switching view, those of the errors left out."""
-    bench.page.wait_for_timeout(150)
+    bench.settle()
     sums = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({chart}) => [
       chart.axes[1].label,
       chart.data.map(line => line.reduce((sum, v, i) => sum + (v ?? 0) * (1 + (i % 97)), 0)),

@@ -59,14 +59,17 @@ def test_a_refused_file_is_not_called_a_success(bench: Bench) -> None:
           window.told = new Set();
           const read = () => document.querySelectorAll('.mantine-Notification-root')
             .forEach(e => window.told.add(e.textContent));
-          setInterval(read, 10);
+          window.telling = setInterval(read, 10);
         }"""
     )
     bench.tab("Files")
     bench.upload({"name": "junk.txt", "mimeType": "text/plain", "buffer": bytes(range(256)) * 9})
     bench.notice("The file cannot be used; nothing was changed")
-    bench.page.wait_for_timeout(300)
-    told = bench.page.evaluate("() => [...window.told]")
+    bench.catch_up()
+    bench.page.wait_for_function(
+        "() => [...window.told].some(text => text.includes('The file has arrived and is being read.'))"
+    )
+    told = bench.page.evaluate("() => { clearInterval(window.telling); return [...window.told]; }")
     assert any("The file has arrived and is being read." in text for text in told)
     assert not any("successfully" in text for text in told)
     bench.close_notices()

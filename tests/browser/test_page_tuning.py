@@ -26,12 +26,7 @@ def adaptive(bench: Bench) -> Bench:
     network = {"id": "unity2", "zeta": 0.5}
     switched = {"name": "sun", "damping": "external", "network": network, "policy": {"id": "adaptive"}}
     data["method"] = [{"name": "free"}, switched]
-    with bench.session.lock:
-        number = bench.session.run_number
-        bench.session.change(Scenario.parse(data), None, origin=f"test {number}", selected=1)
-    bench.wait_for_run(number)
-    bench.page.wait_for_function("o => document.documentElement.dataset.opened === o", arg=f"test {number}")
-    bench.close_notices()
+    bench.put(Scenario.parse(data), origin=f"test {bench.session.run_number}", selected=1)
     bench.tab("Method", "Errors")
     folder = bench.page.get_by_text("Table by Sun's double loop", exact=True)
     folder.wait_for()
@@ -63,6 +58,7 @@ def test_a_table_is_found_and_taken_over_as_one_step(adaptive: Bench) -> None:
     number = adaptive.run
     session.undo()
     adaptive.wait_for_run(number)
+    adaptive.catch_up()
     assert table(adaptive) == before
     # a wrong setting is refused beside its box, and not used
     adaptive.box("coefficient step").fill("7")

@@ -23,11 +23,7 @@ _DASHED = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({c
 def short(bench: Bench) -> Iterator[Bench]:
     """An hour of the moving preset."""
     scenario = load("sikuliaq-like", ["run.duration_h=1.0"])
-    with bench.session.lock:
-        number = bench.session.run_number
-        bench.session.change(scenario, None, origin=f"test {number}", selected=2)
-    bench.wait_for_run(number)
-    bench.close_notices()
+    bench.put(scenario, origin=f"test {bench.session.run_number}", selected=2)
     bench.tab("Method", "Errors")
     yield bench
     bench.session.verifier.cancel()
@@ -109,10 +105,7 @@ def test_why_a_scenario_cannot_be_verified_is_said(bench: Bench) -> None:
 
 def test_a_strapdown_scenario_runs_when_short_and_waits_when_long(bench: Bench) -> None:
     scenario = load("sikuliaq-like", ["run.duration_h=0.2", 'run.fidelity="strapdown"', "run.rate_hz=50"])
-    with bench.session.lock:
-        number = bench.session.run_number
-        bench.session.change(scenario, None, origin=f"test {number}", selected=2)
-    bench.wait_for_run(number)
+    bench.put(scenario, origin=f"test {bench.session.run_number}", selected=2)
     bench.tab("Method", "Errors")
     bench.press("zeta")
     assert bench.metrics["methods"][2]["status"] == "ok"

@@ -144,7 +144,7 @@ def test_a_requirement_is_judged(window: Bench) -> None:
         wait_for(window, "settling_min", ["missed", "met", "missed"])
         within(window, ".sb-verdicts [data-measure]")
     finally:
-        window.session.show(None, requirements=Requirements())
+        window.show(requirements=Requirements())
 
 
 def test_the_ship_plays_and_is_seen_from_above(window: Bench) -> None:

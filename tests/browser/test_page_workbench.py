@@ -56,16 +56,8 @@ def scenario() -> Scenario:
 @pytest.fixture
 def workbench(bench: Bench) -> Bench:
     """The shared page on a scenario of its own; its second method in hand, all choices as at first."""
-    session = bench.session
-    with session.lock:
-        number = session.run_number
-        session.change(scenario(), None, origin=f"workbench {number}", selected=1)
-        session.show(None, transfer="phi/dv_r", discrete=False, locus="")
-    bench.wait_for_run(number)
-    bench.page.wait_for_function(
-        "o => document.documentElement.dataset.opened === o", arg=f"workbench {number}"
-    )
-    bench.close_notices()
+    bench.put(scenario(), origin=f"workbench {bench.session.run_number}", selected=1)
+    bench.show(transfer="phi/dv_r", discrete=False, locus="")
     return bench
 
 
@@ -127,7 +119,7 @@ def test_locus_over_each_parameter_of_the_network_in_hand(workbench: Bench) -> N
     workbench.choose("locus", "r")
     workbench.page.get_by_text("over r: ○ 0.5").wait_for()
     # a network without parameters has no locus
-    workbench.session.select(0, None)
+    workbench.select(0)
     workbench.page.wait_for_function(_HAS_NO_TRACE, arg="placed locus")
     assert workbench.box("locus").input_value() == "nothing"
     assert workbench.faults == []
@@ -172,7 +164,7 @@ def test_what_cannot_be_placed_is_said(workbench: Bench) -> None:
     workbench.page.mouse.click(x, y)
     assert "nearest possible" in workbench.notice("The pair was not placed")
     workbench.close_notices()
-    workbench.session.select(0, None)
+    workbench.select(0)
     workbench.page.get_by_role("button", name="Place", exact=True).click()
     assert "no parameter" in workbench.notice("The pair was not placed")
     assert workbench.session.scenario == before
@@ -197,10 +189,7 @@ def test_a_typed_pair_is_placed(workbench: Bench) -> None:
 def test_margin_of_a_law_over_time_stands_in_the_switching_view(workbench: Bench) -> None:
     data = scenario().canonical()
     data["method"][1]["policy"] = {"id": "adaptive"}
-    session = workbench.session
-    number = session.run_number
-    session.change(Scenario.parse(data), None)
-    workbench.wait_for_run(number)
+    workbench.put(Scenario.parse(data), selected=1)
     workbench.tab("Switching")
     label = """() => Object.values(window.__viserTestpoints?.uplots ?? {})
       .some(entry => entry.chart.axes[1].label.startsWith('least ζ'))"""

@@ -12,7 +12,7 @@ import pytest
 
 from navcore.foundation.stage_cache import _size
 from tests import stages
-from tests.stages import CODE, STAGES, Count, closing_line, read_counts, run_stage
+from tests.stages import BESIDE, CHECKS, CODE, STAGES, Count, closing_line, read_counts, run_beside
 
 
 def report(folder: Path, tests: int, failures: int = 0, errors: int = 0, skipped: int = 0) -> Path:
@@ -57,14 +57,23 @@ def test_every_folder_of_tests_is_in_exactly_one_stage():
     assert set(CODE) <= set(first)
 
 
-def test_a_stage_whose_files_are_gone_fails(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setitem(stages.STAGES, "lost", ["tests/no-such-folder"])
-    assert run_stage("lost").failed == 1
+def test_lanes_name_checks_and_stages_once():
+    named = [name for lane in BESIDE for name in lane]
+    assert len(set(named)) == len(named)
+    assert set(named) <= {*CHECKS, *STAGES}
 
 
-def test_a_stage_of_a_file_runs_it(monkeypatch: pytest.MonkeyPatch):
+def test_stages_side_by_side_run_their_files_and_fail_where_these_are_gone(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
     monkeypatch.setitem(stages.STAGES, "one file", ["tests/unit/test_chromium.py"])
-    assert run_stage("one file").failed == 0
+    monkeypatch.setitem(stages.STAGES, "lost", ["tests/no-such-folder"])
+    monkeypatch.setitem(stages.CHECKS, "broken", ["no_such_module"])
+    counts = run_beside([["one file"], ["broken", "lost"]])
+    assert [(count.stage, count.failed) for count in counts] == [("one file", 0), ("broken", 1), ("lost", 1)]
+    printed = capsys.readouterr().out
+    assert "No module named no_such_module" in printed.partition("== broken\n")[2].partition("\n== ")[0]
+    assert counts[0].passed > 0
 
 
 @pytest.fixture
