@@ -17,6 +17,13 @@ if TYPE_CHECKING:
     from app.session.session import Session
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Let playwright give up on a page before the time of a test is over: that would end the browser for all."""
+    for item in items:
+        if "tests/browser/" in item.nodeid and item.get_closest_marker("timeout") is None:
+            item.add_marker(pytest.mark.timeout(400))
+
+
 @pytest.fixture(scope="session")
 def dashboard() -> Iterator[tuple[DashboardServer, Dashboard]]:
     """One server for all browser tests; every test has a session of its own."""

@@ -145,7 +145,7 @@ class Bench:
         script = (
             "l => [...document.querySelectorAll('label')].find(e => e.textContent === l)?.htmlFor ?? null"
         )
-        self.page.wait_for_function(f"l => ({script})(l) !== null", arg=label, timeout=5000)
+        self.page.wait_for_function(f"l => ({script})(l) !== null", arg=label)
         return self.page.evaluate(script, label)
 
     def slider(self, label: str) -> Locator:
@@ -209,7 +209,7 @@ class Bench:
         """Wait until a later run is shown."""
         later = "n => Number(document.querySelector('#sb-run').dataset.run) > n"
         try:
-            self.page.wait_for_function(later, arg=after, timeout=20_000)
+            self.page.wait_for_function(later, arg=after)
         except PlaywrightTimeout:
             focus = self.page.evaluate("() => document.activeElement.outerHTML.slice(0, 300)")
             shown, made = self.run, self.session.run_number
@@ -337,17 +337,17 @@ class Bench:
     def notice(self, text: str) -> str:
         """Wait for a notice with this text; return all of it."""
         found = self.page.locator(".mantine-Notification-root").filter(has_text=text).first
-        found.wait_for(timeout=8000)
+        found.wait_for()
         return found.inner_text()
 
     def plotly(self) -> list[dict[str, Any]]:
         """Traces of the plotly figures in view, as plotly holds them, once they are those of the run."""
-        self.page.wait_for_function(_UP_TO_DATE, timeout=8000)
+        self.page.wait_for_function(_UP_TO_DATE)
         return self.page.evaluate(_PLOTLY)
 
     def sums(self, methods: int = 3) -> dict[str, Any]:
         """Sums over what plotly, uPlot and the 3D scene hold, once the plots in view are those of the run."""
-        self.page.wait_for_function(_UP_TO_DATE, timeout=8000)
+        self.page.wait_for_function(_UP_TO_DATE)
         return self.page.evaluate(_SUMS, methods)
 
     def curves(self) -> list[dict[str, Any]]:

@@ -82,10 +82,10 @@ def test_a_band_of_one_sigma_follows_the_scenario_and_says_what_it_is(window: Be
 
 def test_the_bars_follow_a_slider_and_the_run_has_four_panels(window: Bench) -> None:
     page = window.page
-    page.wait_for_function(f"() => ({_BARS})() > 0", timeout=20_000)
+    page.wait_for_function(f"() => ({_BARS})() > 0")
     before = page.evaluate(_BARS)
     window.press("zeta")
-    page.wait_for_function(f"old => Math.abs(({_BARS})() - old) > 1e-4 * old", arg=before, timeout=20_000)
+    page.wait_for_function(f"old => Math.abs(({_BARS})() - old) > 1e-4 * old", arg=before)
     window.choose(BUDGET_OF, CHOICES["run"])
     page.wait_for_function(f"() => ({_PANELS})() === 4", timeout=60_000)
 
@@ -99,13 +99,13 @@ def test_a_proposal_is_accepted_and_undone_or_discarded(window: Bench) -> None:
     assert "times the floor" in page.locator(".sb-proposal").inner_text()
     assert session.scenario == before
     page.get_by_role("button", name=ACCEPT, exact=True).click()
-    page.get_by_role("button", name=ACCEPT, exact=True).wait_for(state="hidden", timeout=20_000)
+    page.get_by_role("button", name=ACCEPT, exact=True).wait_for(state="hidden")
     assert session.scenario.method[2].network != before.method[2].network
     assert session.undo() and session.scenario == before
     page.get_by_role("button", name=TUNE, exact=True).click()
     page.get_by_role("button", name=DISCARD, exact=True).wait_for(timeout=90_000)
     page.get_by_role("button", name=DISCARD, exact=True).click()
-    page.locator(".sb-proposal").wait_for(state="hidden", timeout=20_000)
+    page.locator(".sb-proposal").wait_for(state="hidden")
     assert session.scenario == before
 
 

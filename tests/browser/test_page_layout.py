@@ -79,7 +79,6 @@ def resize(bench: Bench, size: tuple[int, int]) -> None:
           return beside.length === panels && wide;
         }""",
         arg=[panels(width), layout.right_px],
-        timeout=20_000,
     )
     bench.heard()
 
@@ -89,7 +88,7 @@ def wait_until_it_fits(bench: Bench, tab: str, *, scrolls: bool = False) -> None
     bench.page.wait_for_function(_DRAWN)
     fits = f"scrolls => ({_CUT})().every(([right, below]) => right <= 0 && (scrolls || below <= 0))"
     try:
-        bench.page.wait_for_function(fits, arg=scrolls, timeout=20_000)
+        bench.page.wait_for_function(fits, arg=scrolls)
     except PlaywrightTimeout:
         cut = bench.page.evaluate(_CUT)
         raise AssertionError(f"{tab}: px cut off at the right and below: {cut}") from None
@@ -99,7 +98,7 @@ def test_every_tab_fits_its_panel(sized: Bench) -> None:
     for tab in (kind.title for kind in load() if kind.place in ("upper", "lower") and kind.always):
         sized.tab(tab)
         if tab == "Misprints":  # computed only now; a plot that goes while it is drawn is plotly's fault
-            sized.page.wait_for_function(_MISPRINT_DRAWN, timeout=20_000)
+            sized.page.wait_for_function(_MISPRINT_DRAWN)
         wait_until_it_fits(sized, tab, scrolls=tab == "Scenario")
         if tab in ("Frequency", "Poles", "Step"):
             assert sized.plotly(), tab

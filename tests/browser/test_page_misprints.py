@@ -19,7 +19,7 @@ _DRAWN = """([id, shown]) => {
 
 
 def drawn(bench: Bench, id: str, shown: str) -> list[Any]:
-    bench.page.wait_for_function(_DRAWN, arg=[id, shown], timeout=20_000)
+    bench.page.wait_for_function(_DRAWN, arg=[id, shown])
     return bench.page.evaluate(_DRAWN, [id, shown])
 
 

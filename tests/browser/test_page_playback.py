@@ -34,7 +34,6 @@ def wait_for(bench: Bench, condition: str, arg: Any = None) -> None:
     bench.page.wait_for_function(
         f"arg => (n => {condition})(JSON.parse(document.getElementById('sb-playback').dataset.now))",
         arg=arg,
-        timeout=15_000,
     )
 
 
@@ -67,7 +66,7 @@ def test_a_scrubbed_time_is_shown_everywhere(still: Bench) -> None:
     page.wait_for_timeout(700)  # whoever scrubs is not disturbed by the server's word
     hours = now(still)["time"] / 3600.0
     page.wait_for_function(
-        f"h => ({_LINES})().every(at => at !== null && Math.abs(at - h) < 0.08)", arg=hours, timeout=8000
+        f"h => ({_LINES})().every(at => at !== null && Math.abs(at - h) < 0.08)", arg=hours
     )
     assert len(page.evaluate(_LINES)) >= 6
     # the whole track stays; the trail ends where the error vector from the true ship leads

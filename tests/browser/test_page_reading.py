@@ -37,7 +37,7 @@ def reading(bench: Bench) -> Iterator[Bench]:
 
 def labelled(bench: Bench, label: str) -> dict:
     """Error plot with this label, once it is there."""
-    bench.page.wait_for_function(f"l => ({_CHART})(l) !== undefined", arg=label, timeout=10_000)
+    bench.page.wait_for_function(f"l => ({_CHART})(l) !== undefined", arg=label)
     return next(chart for chart in bench.curves() if chart["label"].startswith(label))
 
 
@@ -107,7 +107,7 @@ def test_cursor_shows_values_in_all_plots_and_moves_the_ship(reading: Bench) -> 
     assert run is not None
     wanted = 0.4 * float(run.t_s[-1])
     now = "() => JSON.parse(document.getElementById('sb-playback').dataset.now).time"
-    page.wait_for_function(f"t => Math.abs(({now})() - t) < 0.02 * t", arg=wanted, timeout=8000)
+    page.wait_for_function(f"t => Math.abs(({now})() - t) < 0.02 * t", arg=wanted)
     values = page.locator(".sb-values").first.inner_text()
     assert "at" in values and len(values.split()) >= 5
     # a click holds the cursor, and the values, where they are
@@ -133,7 +133,7 @@ def test_cursor_shows_values_in_all_plots_and_moves_the_ship(reading: Bench) -> 
 )
 def test_a_plot_is_saved(reading: Bench, tmp_path: Path, plot: str, format: str, starts: str) -> None:
     reading.choose("export plot", plot)
-    with reading.page.expect_download(timeout=20_000) as download:
+    with reading.page.expect_download() as download:
         reading.page.get_by_text(format, exact=True).click()
     download.value.save_as(tmp_path / "saved")
     content = (tmp_path / "saved").read_bytes()

@@ -70,7 +70,6 @@ def wait_for_value(bench: Bench, label: str, value: float) -> None:
     bench.page.wait_for_function(
         "([id, value]) => Number(document.getElementById(id)?.value) === value",
         arg=[bench.id(label), value],
-        timeout=10_000,
     )
 
 
@@ -138,7 +137,7 @@ def test_undo_brings_the_scenario_and_the_method_in_hand_back(fresh: Bench, sess
     away_from_text(fresh)
     fresh.page.keyboard.press("Control+z")
     fresh.page.wait_for_function(
-        "id => document.getElementById(id)?.value === 'zha-fast'", arg=fresh.id("scenario"), timeout=10_000
+        "id => document.getElementById(id)?.value === 'zha-fast'", arg=fresh.id("scenario")
     )
     fresh.settle()
     assert (session.origin, session.selected, session.scenario) == ("zha-fast", 2, load("zha-fast"))
@@ -318,7 +317,6 @@ def test_one_presents_and_the_others_watch(
     other.page.wait_for_function(
         "() => [...document.querySelectorAll('input')].every(i => i.offsetParent === null || i.disabled"
         " || i.closest('.js-plotly-plot, #sb-stage'))",
-        timeout=8000,
     )
     assert enabled.count() == 0
     fresh.page.keyboard.press("Escape")
@@ -327,7 +325,7 @@ def test_one_presents_and_the_others_watch(
     away_from_text(other)
     other.page.keyboard.press("Control+z")
     fresh.page.wait_for_function(
-        "id => document.getElementById(id)?.value === 'compass'", arg=fresh.id("network"), timeout=10_000
+        "id => document.getElementById(id)?.value === 'compass'", arg=fresh.id("network")
     )
     # a presenter who leaves frees the others
     button(other, "Present").click()

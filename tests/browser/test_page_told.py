@@ -41,7 +41,7 @@ def test_a_page_says_that_its_server_is_lost(browser: Browser, server: Dashboard
     assert page.locator("#sb-lost").count() == 0
     server.stop()
     banner = page.get_by_role("alert").filter(has_text="The connection to the server is lost")
-    banner.wait_for(timeout=10_000)
+    banner.wait_for()
     page.close()
 
 

@@ -96,7 +96,7 @@ def test_why_is_said_once_the_run_stands_still(bench: Bench) -> None:
     bench.reset("zha-fast", selected=2)
     bench.tab("Metrics", "Method")
     page = bench.page
-    page.wait_for_function(_WHY, arg="1", timeout=20_000)
+    page.wait_for_function(_WHY, arg="1")
     text = page.locator("#sb-why").inner_text()
     assert "free: position error all from gyro bias" in text
     assert "tilt all from gyro bias, at the Schuler period (84.5 min)" in text
@@ -118,6 +118,6 @@ def test_why_is_said_once_the_run_stands_still(bench: Bench) -> None:
     finally:
         hold.set()
         explainer._find = find
-    page.wait_for_function(_WHY, arg="1", timeout=20_000)
+    page.wait_for_function(_WHY, arg="1")
     assert page.locator("#sb-why .sb-old").count() == 0
     assert bench.faults == []

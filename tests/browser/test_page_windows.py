@@ -51,12 +51,12 @@ def window(resized: Bench) -> Iterator[Bench]:
 
 def within(bench: Bench, selector: str) -> None:
     """Wait until what the selector finds lies in the window, cut at neither side."""
-    bench.page.wait_for_function(_WITHIN, arg=selector, timeout=10_000)
+    bench.page.wait_for_function(_WITHIN, arg=selector)
 
 
 def test_why_and_the_pendulum(window: Bench) -> None:
     window.tab("Metrics")
-    window.page.wait_for_selector("#sb-why[data-fits='1']", timeout=20_000)
+    window.page.wait_for_selector("#sb-why[data-fits='1']")
     why = window.page.locator("#sb-why")
     why.scroll_into_view_if_needed()
     assert "complementary: " in why.inner_text()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -219,17 +220,17 @@ def test_the_adaptive_law_never_leaves_the_stable_region(network, law, omega_s, 
 )
 @pytest.mark.parametrize("switching", ["hard", "step", "bumpless"])
 def test_a_wild_log_does_not_shake_an_adaptive_loop_to_pieces(network, switching):
-    """One channel closed by hand under a difference that drives xi through its range for two days."""
+    """One channel closed by hand under a difference that drives xi through its range for eleven hours."""
     run = LawRun(network, {"id": "adaptive"}, {"id": switching})
     rng = np.random.default_rng(8)
-    cos, sin = np.cos(OMEGA_S), np.sin(OMEGA_S)
-    log, v, w, largest = 0.0, 0.0, 0.0, 0.0
-    for k in range(40_000):
-        if k % 700 == 0:
-            log = rng.choice([0.0, 0.1, 0.4, 1.5])
-        c = run.step(log + rng.normal(0.0, 0.1) - v)[0]
-        v, w = cos * (v + c) - c + sin * w, cos * w - sin * (v + c)
-        largest = max(largest, abs(v))
-        assert 0.04 <= run.value("xi") <= 0.99 or switching == "bumpless"
+    cos, sin = math.cos(OMEGA_S), math.sin(OMEGA_S)
+    v, w, largest = 0.0, 0.0, 0.0
+    for _ in range(57):
+        log = rng.choice([0.0, 0.1, 0.4, 1.5])
+        for noise in rng.normal(0.0, 0.1, 700).tolist():
+            c = float(run.step(log + noise - v)[0])
+            v, w = cos * (v + c) - c + sin * w, cos * w - sin * (v + c)
+            largest = max(largest, abs(v))
+            assert switching == "bumpless" or 0.04 <= run.value("xi") <= 0.99
     assert largest < 3.0
     assert np.all(np.isfinite(run.s["x"][0]))
