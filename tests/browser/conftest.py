@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Let playwright give up on a page before the time of a test is over: that would end the browser for all."""
+    """Let playwright give up before a test's time is over, for that would end the browser of all tests."""
     for item in items:
         if "tests/browser/" in item.nodeid and item.get_closest_marker("timeout") is None:
             item.add_marker(pytest.mark.timeout(400))
