@@ -23,7 +23,7 @@ from tests.chromium import provide_chromium
 
 ROOT = Path(__file__).resolve().parent.parent
 STAMPS = ROOT / ".venv" / ".stamps"
-CODE = ["app", "navcore", "tests"]
+CODE = ["tests", "app", "navcore"]
 
 
 @dataclass(frozen=True)
@@ -48,16 +48,19 @@ STAGES = {
     "unit, acceptance, doctests": [
         *CODE,
         "README.md",
-        *(f"--ignore=tests/{own}" for own in ("attack", "browser", "docker")),
-        "-n2",
+        *(f"--ignore=tests/{own}" for own in ("attack", "browser", "docker", "extension")),
+        # A file stays in one process, so that what its tests share is made once; the longest come first.
+        *("-n2", "--dist=loadfile", "--no-loadscope-reorder"),
         "-mnot browser and not attack",
     ],
     "container": ["tests/docker"],
+    "extension": ["tests/extension"],
     "attack": ["tests/attack"],
-    "browser": ["tests/browser", "-n2", "--dist=loadfile"],
+    # All tests of a process share a page; a process that has no tests left takes half of the other's.
+    "browser": ["tests/browser", "-n2", "--dist=worksteal"],
 }
 
-BESIDE = (("container",), ("basedpyright", "attack"))
+BESIDE = (("container", "basedpyright"), ("extension", "attack"))
 """Lanes that run side by side; each keeps one core busy, the stages of a lane one after the other."""
 
 
