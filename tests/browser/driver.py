@@ -9,6 +9,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
+from playwright.sync_api import Error as PlaywrightError
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
 from app.session.display import Display
@@ -77,6 +78,21 @@ _OPENED = """() => {
   const wanted = document.querySelector('#sb-focus')?.dataset ?? {};
   return !wanted.scenario || schuler.tab(wanted.tab) === undefined
     || document.documentElement.dataset.opened === wanted.scenario;
+}"""
+# What a report of a failed test says of the page.
+_ACCOUNT = """() => {
+  const texts = selector => [...document.querySelectorAll(selector)]
+    .filter(e => e.offsetParent !== null).map(e => e.innerText.trim());
+  return {
+    window: `${innerWidth}x${innerHeight}`,
+    'tabs in front': texts('[role=tab][aria-selected=true]'),
+    'server has heard': document.querySelector('#sb-heard')?.dataset.state,
+    'run shown': document.querySelector('#sb-run')?.dataset.run,
+    status: document.querySelector('#sb-status')?.textContent,
+    notices: texts('.mantine-Notification-root'),
+    notes: texts('.sb-note'),
+    focus: document.activeElement?.outerHTML.slice(0, 200),
+  };
 }"""
 _LINE = """name => {
   const node = window.__viserSceneTree.getState()[name];
@@ -314,6 +330,24 @@ class Bench:
                 self._marks[view].content = f'<div hidden data-mark="{number}"></div>'
                 view.client.flush()
         self.page.wait_for_selector(f'[data-mark="{number}"]', state="attached")
+
+    def account(self) -> str:
+        """What page and server hold, in lines: for the report of a failed test."""
+        try:
+            told = {"address": self.page.url, **self.page.evaluate(_ACCOUNT)}
+        except PlaywrightError as error:
+            told = {"page": str(error).strip()}
+        told["faults in the console"] = self.faults
+        if self.sessions is not None and "/s/" in self.page.url:
+            session, plain = self.session, Display()
+            chosen = {name: value for name, value in session.display if value != getattr(plain, name)}
+            told |= {
+                "server: scenario": f"{session.origin}, methods {[m.name for m in session.scenario.method]}",
+                "server: method in hand": session.selected,
+                "server: runs made": f"{session.run_number}{', one under way' * session.outdated}",
+                "server: display": chosen,
+            }
+        return "\n".join(f"{name}: {value}" for name, value in told.items())
 
     @property
     def metrics(self) -> dict[str, Any]:
