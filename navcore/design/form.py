@@ -9,7 +9,6 @@ import numpy as np
 
 from navcore.law.combination import network_in_force, realisation_of
 from navcore.networks.base import NetworkParameters
-from navcore.networks.compass import CompassNetwork
 from navcore.networks.state_space import state_space
 from navcore.scenario.model import Method
 
@@ -67,8 +66,9 @@ def law_form(method: Method, omega_s: float) -> LawForm:
     if damping == "free":
         empty = np.zeros(0)
         return LawForm("free", np.zeros((0, 0)), empty, empty, 0.0, empty, 0.0)
-    if realisation != "network" and isinstance(parameters, CompassNetwork):
-        return feedback_form(parameters.gains(omega_s), omega_s, realisation == "as_printed")
+    gains = parameters.feedback_gains(omega_s)
+    if realisation != "network" and gains is not None:
+        return feedback_form(gains, omega_s, realisation == "as_printed")
     return _network_form(damping, parameters, omega_s)
 
 

@@ -8,7 +8,6 @@ from navcore.foundation.errors import Fault
 from navcore.law.policy.base import PolicyParameters
 from navcore.law.switching.base import SwitchingParameters
 from navcore.networks.base import NetworkParameters
-from navcore.networks.compass import CompassNetwork
 from navcore.networks.undamped import UndampedNetwork
 
 LONGEST_HISTORY = 100_000
@@ -22,9 +21,7 @@ def network_in_force(damping: str, network: NetworkParameters, policy: PolicyPar
 
 def realisation_of(damping: str, parameters: NetworkParameters) -> str:
     """Realisation in force: internal damping always uses the network form (theory.md 3)."""
-    if damping == "external" and isinstance(parameters, CompassNetwork):
-        return parameters.realisation
-    return "network"
+    return parameters.external_form if damping == "external" else "network"
 
 
 def combination_faults(

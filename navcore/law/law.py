@@ -36,7 +36,6 @@ from navcore.law.step import law_step
 from navcore.law.switching import SWITCHINGS, SwitchingParameters
 from navcore.law.tuned_network import tune
 from navcore.networks.base import LinearNetwork, NetworkParameters
-from navcore.networks.compass import CompassNetwork
 from navcore.networks.discrete import discretise
 
 __all__ = ["Law", "law_step", "network_in_force", "prepare_law", "realisation_of"]
@@ -159,9 +158,9 @@ def _fill_form(
         if policy.tunes:
             p["nominal_xi"] = s["xi_target"] = max(float(p["nominal_xi"]), low)
         tune(p, s, float(s["xi_target"]))
-    elif p["realisation"] != NETWORK and isinstance(parameters, CompassNetwork):
-        p["order"], p["feedback_k1"] = 1, parameters.gains(omega_s)[0]
-        fill_record(s["network"], _feedback(parameters.gains(omega_s), law_step_s))
+    elif p["realisation"] != NETWORK and (gains := parameters.feedback_gains(omega_s)) is not None:
+        p["order"], p["feedback_k1"] = 1, gains[0]
+        fill_record(s["network"], _feedback(gains, law_step_s))
     else:
         p["order"] = network.order
         fill_record(s["network"], _complement(network, law_step_s))

@@ -275,6 +275,16 @@ class NetworkParameters(Entry):
         """Return the values of the `alternatives`, computed from the network that the parameters make."""
         return {}
 
+    @property
+    def external_form(self) -> str:
+        """Realisation with external damping: ``"network"``, or one of velocity feedback (theory.md 3.1)."""
+        return "network"
+
+    def feedback_gains(self, omega_s: float) -> tuple[float, float, float] | None:
+        """Return K1 (1/s), K2, K3 (1/s) of the velocity feedback; None for a network that is none."""
+        del omega_s
+        return None
+
     def least_coefficient(self) -> float:
         """Return the damping coefficient above which the loop is stable; 0 where all are."""
         return 0.0

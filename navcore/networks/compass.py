@@ -119,6 +119,15 @@ class CompassNetwork(NetworkParameters):
         assert self.sigma is not None and self.xi is not None
         return gains_from_sigma_xi(self.sigma, self.xi, omega_s)
 
+    @property
+    def external_form(self) -> str:
+        """The realisation that was chosen."""
+        return self.realisation
+
+    def feedback_gains(self, omega_s: float) -> tuple[float, float, float]:
+        """Return the gains."""
+        return self.gains(omega_s)
+
     def transfer(self, omega_s: float) -> LinearNetwork:
         """Return H(s) = ((1+K2)s + K3)/(s + K1) for a Schuler frequency in rad/s."""
         k1, k2, k3 = self.gains(omega_s)
