@@ -21,12 +21,10 @@ _WRITE = {"roots": form.write_roots, "numbers": form.write_numbers, "pairs": for
 _AS_THEY_ARE = ("integer", "choice", "flag")
 EXACT = ", exact"
 """Ends the label of a number box that stands beside a slider."""
+_UNKNOWN = object()
 
 Edit = Callable[["Control", bool], None]
 """``edit(control, by_slider)``: the user has moved the slider, or filled the box."""
-
-
-_UNKNOWN = object()
 
 
 class Control:
