@@ -42,7 +42,9 @@ QUANTITIES = (
 _HEADROOM = 1.2
 _CLEAR_PX = 12
 """Words in the place of a bar keep clear of a low floor."""
-_LEFT_PX, _RIGHT_PX, _TOP_PX = 62, 12, 34
+_LEFT_PX, _RIGHT_PX, _TOP_PX = 62, 12, 52
+_NOTE_PX = 26
+"""Of the line about the whole figure above the panels, so that it stands clear of their titles."""
 _TICKS_PX, _LEGEND_ROW_PX = 34, 21
 
 
@@ -240,6 +242,7 @@ def _layout(
             yref="paper",
             xanchor="right",
             yanchor="bottom",
+            yshift=_NOTE_PX,
             font={"size": style.FONT_SIZE - 1, "color": style.MUTED},
         )
     )

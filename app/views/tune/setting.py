@@ -84,7 +84,8 @@ class SettingPanel:
             if task.scenario != scenario:
                 html += notices.note(["The scenario has changed since this proposal was made."], "warning")
             html += proposal_html(task, result)
-        _say(self._told, notices.small(requirements_told(self.session.display.requirements)))
+        told = notices.small(requirements_told(self.session.display.requirements))
+        _say(self._told, f'<div class="sb-wide">{told}</div>')
         _say(self._found, f'<div class="sb-wide">{html}</div>' if html else "")
         for handle, wanted in (
             (self._objective, True),
