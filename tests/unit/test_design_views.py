@@ -122,3 +122,12 @@ def test_the_jobs_give_what_the_library_gives_and_forget_it(compass):
 def test_the_kept_steady_budget_is_that_of_the_whole_scenario(ship):
     kept, whole = steady_budget(ship), budget(ship, steady=True)
     assert kept.as_dict() == whole.as_dict()
+
+
+def test_the_legend_has_room_for_its_rows_in_a_narrow_window(ship):
+    found = budget(ship)
+    narrow, wide = (
+        budget_figure(found, 0.9, width_px=width)["layout"]["margin"]["b"] for width in (628.0, 948.0)
+    )
+    # three to a row: seven sources stand in three rows of 20 px below the ticks
+    assert narrow >= 30 + 3 * 20 and wide < narrow

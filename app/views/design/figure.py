@@ -39,13 +39,15 @@ QUANTITIES = (
     ("heading_rad", "Heading", "arcmin", ARCMIN),
     ("position_m", "Position", "m", 1.0),
 )
-_HEADROOM = 1.2
-_CLEAR_PX = 12
-"""Words in the place of a bar keep clear of a low floor."""
+_HEADROOM = {1: 1.2, 2: 1.4}
+"""Height of an axis over that of its bars, by the lines of text above a bar."""
+_ONE_LINE_PX = 112
+"""Room a bar needs for its text in one line."""
 _LEFT_PX, _RIGHT_PX, _TOP_PX = 62, 12, 52
 _NOTE_PX = 26
 """Of the line about the whole figure above the panels, so that it stands clear of their titles."""
 _TICKS_PX, _LEGEND_ROW_PX = 34, 21
+_LEGEND_KEY_PX, _LETTER_PX = 52.0, 7.2
 
 
 def budget_figure(
@@ -75,11 +77,24 @@ def budget_figure(
         suffix = "" if k == 0 else str(k + 1)
         for name in names:
             data.append(_bars(budget.methods, key, unit, name, suffix, legend=k == 0))
-        layout["annotations"] += _tops(budget, key, unit, suffix)
+        layout["annotations"] += _tops(budget, key, unit, suffix, _lines(budget, width_px))
         floor = getattr(budget.floor.rms, key)
         if floor is not None:
             layout["shapes"].append(_floor_line(floor / unit, suffix))
     return figure(data, layout)
+
+
+def _lines(budget: Budget, width_px: float) -> int:
+    """Lines of the text above a bar: two where the bars stand close."""
+    return 1 if 0.43 * width_px >= _ONE_LINE_PX * len(budget.methods) else 2
+
+
+def _legend_rows(words: Sequence[str], width_px: float) -> int:
+    """Rows of the legend: plotly sets what does not fit in one row in columns as wide as the longest word."""
+    if not words or style.legend_rows(list(words), width_px) == 1:
+        return 1
+    a_row = max(1, int(width_px // (_LEGEND_KEY_PX + _LETTER_PX * max(len(word) for word in words))))
+    return -(-len(words) // a_row)
 
 
 def _names(budget: Budget, keys: Sequence[str]) -> list[str]:
@@ -136,9 +151,9 @@ def _bars(
     }
 
 
-def _tops(budget: Budget, key: str, unit: float, suffix: str) -> list[dict[str, Any]]:
-    """Text above each bar: its height and how many times the floor that is."""
-    found = []
+def _tops(budget: Budget, key: str, unit: float, suffix: str, lines: int) -> list[dict[str, Any]]:
+    """Text above each bar: its height and how many times the floor that is; without a bar above the floor."""
+    found, floor = [], getattr(budget.floor.rms, key) or 0.0
     for i, method in enumerate(budget.methods):
         total = getattr(method.total.rms, key)
         times = budget.times_floor(method).get(key.rsplit("_", 1)[0])
@@ -147,16 +162,15 @@ def _tops(budget: Budget, key: str, unit: float, suffix: str) -> list[dict[str, 
         elif times is None:
             text = _short(total / unit)
         else:
-            text = f"{_short(total / unit)} = {_short(times)} × floor"
+            text = f"{_short(total / unit)}{' = ' if lines == 1 else '<br>'}{_short(times)} × floor"
         found.append(
             style.text(
                 i,
-                0.0 if total is None else total / unit,
+                (floor if total is None else total) / unit,
                 text,
                 xref=f"x{suffix}",
                 yref=f"y{suffix}",
                 yanchor="bottom",
-                yshift=_CLEAR_PX if total is None else 0,
                 font={"size": style.FONT_SIZE - 1, "color": style.INK},
             )
         )
@@ -197,7 +211,7 @@ def _layout(
     )
     what += "; dashed: floor" if budget.floor.rms.tilt_rad is not None else ""
     columns, rows = 2, (len(shown) + 1) // 2
-    legend_px = _LEGEND_ROW_PX * style.legend_rows([_words(name) for name in names], width_px)
+    legend_px = _LEGEND_ROW_PX * _legend_rows([_words(name) for name in names], width_px - _LEFT_PX)
     bottom_px = _TICKS_PX + legend_px
     height_px = aspect * width_px - _TOP_PX - bottom_px
     made = style.layout(
@@ -230,7 +244,7 @@ def _layout(
             unit_name,
             domain=[max(top - high, 0.0), top],
             anchor=f"x{suffix}",
-            range=[0.0, _HEADROOM * peak if peak > 0.0 else 1.0],
+            range=[0.0, _HEADROOM[_lines(budget, width_px)] * peak if peak > 0.0 else 1.0],
         )
         made["annotations"].append(style.panel_title(title, suffix))
     made["annotations"].append(
