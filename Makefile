@@ -15,7 +15,7 @@ endif
 
 KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
-.PHONY: help setup run test check docs format unit paint soak tour accuracy covariance consistency design benchmarks papers guide languages sbom audit lock clean REMAKE
+.PHONY: help setup run test check docs format unit paint soak tour accuracy covariance tuning consistency design benchmarks papers guide languages sbom audit lock clean REMAKE
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'
@@ -31,6 +31,7 @@ help:
 	@echo 'make mutation  change the code of navcore at random, and see which changes no test notices'
 	@echo 'make accuracy  what the strapdown engine is accurate to, figure by figure'
 	@echo 'make covariance  the error budget beside 2,000 seeds; SEEDS=... for another number'
+	@echo 'make tuning   the tuning from several starts beside a fine grid, with its times'
 	@echo 'make design   write docs/design.md with its table over the presets anew'
 	@echo 'make consistency  the covariance of the Kalman filter against 500 seeds (SEEDS=)'
 	@echo 'make tour     film the README pictures in Chromium: docs/tour.webp, docs/dashboard.png'
@@ -81,6 +82,9 @@ accuracy: setup $(STAMPS)/test
 
 covariance: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.acceptance.covariance $(SEEDS)
+
+tuning: setup $(STAMPS)/test
+	@$(BIN)/python -m tests.acceptance.tuning
 
 design: setup
 	@$(BIN)/python -m app.design_table

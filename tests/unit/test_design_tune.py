@@ -20,6 +20,7 @@ from navcore.foundation.units import ARCSEC
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from tests.acceptance.test_design_values import SET_A, set_a
+from tests.acceptance.tuning import CASES, Case, best_of_grid
 
 SIGMA, XI = "method.0.network.sigma", "method.0.network.xi"
 COMPASS = [f"{SIGMA}=1e-4:0.1", f"{XI}=0.1:5"]
@@ -231,3 +232,12 @@ def test_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert json.loads(capsys.readouterr().out)["fronts"][0]["network"] == "classic2"
     assert main(["pareto", "sikuliaq-like", "--method", "1", "--network", "classic2"]) == 0
     assert "as it is" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("case", CASES, ids=[case.name for case in CASES])
+def test_any_start_comes_to_the_best_of_a_grid(case: Case) -> None:
+    """Corners of the ranges; `make tuning` takes more starts and a finer grid."""
+    least = best_of_grid(case, points=12)
+    ends = [tune(case.scenario(start), "tilt_rms", case.vary).objective for start in case.starts[1:3]]
+    assert max(ends) <= 1.001 * min(ends)
+    assert max(ends) <= 1.001 * least
