@@ -7,8 +7,9 @@
 # Published on another port or under another name, it is told so: -e SCHULER_ALLOW_ORIGIN=http://localhost:9000.
 # deploy/compose.yml puts a proxy with TLS before it.
 #
-# The base is pinned by tag. In production pin it by digest: `docker buildx imagetools inspect` tells it; write
-# @sha256:... behind both tags below.
+# NOT MET: the base is pinned by tag only. Its digest is read from the registry:
+#   docker buildx imagetools inspect python:3.11-slim-bookworm
+# Write it, @sha256:..., behind both tags below.
 # tests/docker carries these steps out without a Docker engine.
 
 FROM python:3.11-slim-bookworm AS builder

@@ -27,7 +27,7 @@ help:
 	@echo 'make benchmarks  time the strapdown engine beside python-ins, which it installs into .venv'
 	@echo 'make papers   run the presets of the five papers and write docs/papers.md with its pictures anew'
 	@echo 'make paint    time from a slider step to the last paint of it in Chromium'
-	@echo 'make soak     30 visitors for 30 minutes on one server: answers, losses, memory (CLIENTS=, MINUTES=)'
+	@echo 'make soak     30 visitors for 30 minutes on one server, then floods: one table (CLIENTS=, BROWSERS=, MINUTES=)'
 	@echo 'make mutation  change the code of navcore at random, and see which changes no test notices'
 	@echo 'make accuracy  what the strapdown engine is accurate to, figure by figure'
 	@echo 'make covariance  the error budget beside 2,000 seeds; SEEDS=... for another number'
@@ -60,9 +60,10 @@ paint: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.browser.last_paint
 	@$(BIN)/python -m tests.browser.hand $(if $(BEFORE),--before $(BEFORE))
 
-# CLIENTS=30 MINUTES=30: so many visitors for so long.
+# CLIENTS=30 BROWSERS=3 MINUTES=30: so many visitors, so many of them browsers, for so long.
 soak: setup $(STAMPS)/test
-	@$(BIN)/python -m tests.attack.soak --clients $(or $(CLIENTS),30) --minutes $(or $(MINUTES),30)
+	@$(BIN)/python -m tests.attack.soak --clients $(or $(CLIENTS),30) --browsers $(or $(BROWSERS),3) \
+	  --minutes $(or $(MINUTES),30)
 
 tour: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.browser.tour

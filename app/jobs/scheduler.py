@@ -237,7 +237,7 @@ class Scheduler:
         if not dues:
             return None
         left_s = min(dues) - time.monotonic()
-        return left_s if left_s > 0.0 else _LOOK_S if lane is Lane.SPARE else None
+        return left_s if left_s > 0.0 else _LOOK_S
 
 
 def memory_of_machine() -> float:

@@ -9,7 +9,8 @@ import re
 import statistics
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -328,6 +329,7 @@ def dragging(port: int, cpu_s: Callable[[], float], seconds: float) -> float:
             last = visitor.picture_number
             visitor.set("zeta", value_of(1, answers))
             visitor.wait(lambda last=last: visitor.picture_number > last, "a picture", ANSWER_S)
+            visitor.set(PAGE_PAINTED, f"{visitor.picture_number} 1")
         return 1e3 * (cpu_s() - before) / answers
 
 
@@ -346,13 +348,13 @@ def pausing(port: int, cpu_s: Callable[[], float], moves: int, pause_s: float = 
         return 1e3 * (cpu_s() - before - idle * (time.monotonic() - began)) / moves
 
 
-def _open(port: int, name: str) -> Visitor:
-    visitor = Visitor(port, f"soak-visitor-{name}")
-    visitor.__enter__()
-    visitor.set(PAGE_STATE, WINDOW)
-    visitor.wait(lambda: visitor.run_number >= 1, "its first run", 120.0)
-    visitor.control("zeta")
-    return visitor
+@contextmanager
+def _open(port: int, name: str) -> Iterator[Visitor]:
+    with Visitor(port, f"soak-visitor-{name}") as visitor:
+        visitor.set(PAGE_STATE, WINDOW)
+        visitor.wait(lambda: visitor.run_number >= 1, "its first run", 120.0)
+        visitor.control("zeta")
+        yield visitor
 
 
 def connects(port: int, count: int, at_once: Sequence[int] = range(20)) -> None:

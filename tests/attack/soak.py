@@ -15,6 +15,7 @@ import argparse
 import json
 import math
 import os
+import queue
 import statistics
 import sys
 import threading
@@ -221,7 +222,12 @@ def measure(arguments: argparse.Namespace) -> list[Row]:
             lambda: coming_and_going(server, arguments),
         ]
         for part in parts:
-            made = part()
+            try:
+                made = part()
+            except (TimeoutError, threading.BrokenBarrierError, queue.Empty, OSError) as error:
+                made = [
+                    Row(f"not ended: {type(error).__name__}: {error}"[:62], 1.0, "", most=0.0, strict=True)
+                ]
             rows += made
             for row in made:
                 print(row.line, flush=True)

@@ -27,6 +27,7 @@ LOCKS = (
     "requirements-build.lock",
     "requirements-test.lock",
     "requirements-docs.lock",
+    "requirements-supply.lock",
     "requirements-benchmarks.lock",
 )
 TOP_LEVEL = {
