@@ -337,10 +337,10 @@ def pausing(port: int, cpu_s: Callable[[], float], moves: int, pause_s: float = 
     """Processor time of an answer and of all that follows it in a pause, ms; less what an idle page takes."""
     with _open(port, "rest") as visitor:
         visitor.set("zeta", 0.4)
-        visitor.rest(4.0)
+        visitor.rest(8.0)
         before = cpu_s()
-        visitor.rest(4.0)
-        idle = (cpu_s() - before) / 4.0
+        visitor.rest(5.0)
+        idle = (cpu_s() - before) / 5.0
         before, began = cpu_s(), time.monotonic()
         for step in range(moves):
             visitor.set("zeta", value_of(2, step))
