@@ -20,12 +20,14 @@ def steady_budget(scenario: Scenario) -> Budget:
     InputError
         A method has no loop of its own.
     """
-    alone = [_kept(scenario.model_copy(update={"method": (method,)})) for method in scenario.method]
+    # frozen, and so hashable, which its type does not say
+    keys: list[Any] = [scenario.model_copy(update={"method": (method,)}) for method in scenario.method]
+    alone = [_kept(key) for key in keys]
     return replace(alone[0], methods=tuple(found.methods[0] for found in alone))
 
 
 @lru_cache(maxsize=64)
-def _kept(scenario: Any) -> Budget:  # frozen, and so hashable, which its type does not say
+def _kept(scenario: Any) -> Budget:
     return budget(scenario, steady=True)
 
 
