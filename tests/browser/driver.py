@@ -16,6 +16,7 @@ from app.session.display import Display
 from app.session.session import first_editable
 from app.session.sessions import first_scenario
 from app.shell.layout import layout_for
+from app.shell.page import Page as OpenPage
 from navcore.scenario.file import load
 
 if TYPE_CHECKING:
@@ -308,7 +309,7 @@ class Bench:
         self.page.wait_for_function(_HEARD)
         if self.sessions is None:  # a server in another process
             return
-        views = [view for view in self.session._views if view._front]
+        views = [view for view in self._pages if view._front]
         for _ in range(3000):
             if all(
                 view._layout == layout_for(*view._window) and not view.column.stale(view._front)
@@ -321,10 +322,15 @@ class Bench:
             raise AssertionError(f"not made: pictures of {stale}; {self.status!r}; {self.faults}")
         self._receive()
 
+    @property
+    def _pages(self) -> list[OpenPage]:
+        """The server's side of all open pages of the session."""
+        return [view for view in self.session._views if isinstance(view, OpenPage)]
+
     def _receive(self) -> None:
         number, session = f"{id(self)} {next(self._mark_numbers)}", self.session
         with session.lock:
-            for view in list(session._views):
+            for view in self._pages:
                 if view not in self._marks:
                     self._marks[view] = view.gui.add_html("", order=1000)
                 self._marks[view].content = f'<div hidden data-mark="{number}"></div>'

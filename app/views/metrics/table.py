@@ -228,24 +228,6 @@ def _error_row(run: Run, label: str, name: str, unit: Unit) -> Row:
     return Row(label, unit.name, cells, best=_best(sizes))
 
 
-def metrics_markdown(run: Run) -> str:
-    """Table in Markdown: a column a method, errors as rms / max / final over all steps of the run."""
-    names = [_plain(m.method.name) for m in run.methods]
-    lines = [
-        "| " + " | ".join(["errors: rms / max / final", *names]) + " |",
-        "|" + "---|" * (len(names) + 1),
-    ]
-    for row in metrics_rows(run):
-        label = f"{row.label} ({row.unit})" if row.unit else row.label
-        lines.append("| " + " | ".join([label, *(" / ".join(cell) for cell in row.cells)]) + " |")
-    return "\n".join(lines)
-
-
-def _plain(name: str) -> str:
-    """Name without what Markdown would read as markup."""
-    return "".join(f"\\{letter}" if letter in "|*_`[]<>\\#" else letter for letter in name)
-
-
 def metrics_html(
     run: Run,
     methods: Sequence[int] | None = None,
@@ -255,7 +237,7 @@ def metrics_html(
     display: Display | None = None,
     baseline: Pinned | None = None,
 ) -> str:
-    """Return the same table as HTML, with the methods' colours and aligned figures.
+    """Return the metrics of a run as an HTML table, with the methods' colours and aligned figures.
 
     Parameters
     ----------
