@@ -45,7 +45,7 @@ def _descendants(root: int) -> set[int]:
 
 
 def _kind(pid: int) -> str:
-    words = _text(_PROC / str(pid) / "cmdline").split("\0")
+    words = _text(_PROC / str(pid) / "cmdline").replace("\0", " ").split()  # Chromium's children: by spaces
     return next((word.removeprefix("--type=") for word in words if word.startswith("--type=")), "")
 
 
