@@ -67,10 +67,11 @@ def share_hints() -> None:
     viser works them out for each handle, at its first change, and keeps them with it: on a page of ours that
     is a tenth of a second and a megabyte.
     """
-    AssignablePropsBase._prop_hints = property(lambda handle: _hints_of(type(handle._impl.props)))
+    changed: Any = AssignablePropsBase
+    changed._prop_hints = property(lambda handle: _hints_of(type(handle._impl.props)))
     if not hasattr(AssignablePropsBase, _CAST):
-        setattr(AssignablePropsBase, _CAST, AssignablePropsBase._cast_value_recursive)
-        AssignablePropsBase._cast_value_recursive = _cast
+        setattr(changed, _CAST, changed._cast_value_recursive)
+        changed._cast_value_recursive = _cast
 
 
 def _cast(handle: Any, hint: Any, value: Any, name: str) -> Any:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Iterable
 from functools import lru_cache
+from typing import Any
 
 from app.session.history import changed_fields
 from app.shell import notices
@@ -36,7 +37,7 @@ class Palette:
         self._register(frame.opening)
         self._offer_tabs(kind.title for kind in frame.kinds if kind.title and kind.always)
         self._shown: tuple[object, ...] = ()
-        self._values: list[object] = []
+        self._values: list[Any] = []
         self._resets = Resets(self._commands, frame.editor.put)
 
     def _register(self, opening: Opening) -> None:
