@@ -156,6 +156,9 @@ $(STAMPS)/benchmarks: requirements-benchmarks.lock $(STAMPS)/project
 papers: setup
 	@$(BIN)/python -m app.papers
 
+cards: $(STAMPS)/project
+	@$(BIN)/python -m app.views.start.cards
+
 guide: $(STAMPS)/project
 	@$(BIN)/python -m navcore.scenario.guide
 	@$(BIN)/python -m navcore.scenario.schema_file

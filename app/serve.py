@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 _STATIC = Path(__file__).parent / "shell" / "static"
 _SCRIPTS = (
+    "veil",
     "redraw",
     "strokes",
     "widgets",

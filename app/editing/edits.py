@@ -104,7 +104,9 @@ def with_method(scenario: Scenario, like: int | None) -> tuple[Scenario, int]:
     else:
         made = dict(data["method"][like])
         where = like + 1
-    made["name"] = _free_name(made["name"], [m["name"] for m in data["method"]])
+    # The copy of "classic2 2" is "classic2 3".
+    plain = re.sub(r" \d+$", "", made["name"])
+    made["name"] = _free_name(plain, [m["name"] for m in data["method"]])
     data["method"].insert(where, made)
     return Scenario.parse(data), where
 

@@ -66,6 +66,8 @@ class Session:
         ``on_change()`` after every change that is to outlive the server.
     share : callable
         ``share()`` makes a copy for others and gives its id; OSError when there is no room.
+    restored : bool
+        It was kept, or is a copy of one that was: not a new visitor's.
     presenter : View or None
         The page that drives; the others watch.
     run : Run or None
@@ -107,6 +109,7 @@ class Session:
         self.on_answer: Callable[[float], None] = lambda _: None
         self.share: Callable[[], str] = lambda: self.id
         self.presenter: View | None = None
+        self.restored = False
         self.run: Run | None = None
         self.prepared: Run | None = None
         self.run_number = 0
@@ -213,7 +216,7 @@ class Session:
     def resume(self, history: History, display: Display) -> None:
         """Take over what was kept of this session, before any page is open."""
         with self.lock:
-            self.history, self.display = history, display
+            self.history, self.display, self.restored = history, display, True
             state = history.state
             self.scenario, self.origin = state.scenario, state.origin
             self.selected, self.opened = state.selected, state.opened

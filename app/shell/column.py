@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence, Set
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 from app.session.shown import Shown
@@ -51,6 +52,10 @@ class Column:
     def _add(self, view: View) -> None:
         panel = self._panels[0 if view.place == "upper" else -1]
         tab = self._tabs[view.title] = panel.add_tab(view.title)
+        if view.look_for:
+            with tab:
+                told = escape(view.look_for)
+                self._gui.add_html(f'<div class="sb-look" title="{told}">{told}</div>', order=-1)
         view.build(tab)
 
     # ------------------------------------------------------------ what is out of date

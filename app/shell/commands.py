@@ -158,7 +158,8 @@ class Commands:
         what : str
             "tab": bring the tab of that name to the front; "link": show a link to another session; "keys":
             list the keys; "upload": let the user choose a file; "front": bring the tabs of these names,
-            parted by "|", to the front without giving them the focus.
+            parted by "|", to the front without giving them the focus. A view's script may add more
+            (``schuler.act``).
         text : str
             What it is about.
         """

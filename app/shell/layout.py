@@ -17,6 +17,8 @@ _CHROME_PX = {True: 53, False: 58}
 """Handles and tabs above a panel's content: of one of two panels, of a single one."""
 _MARGIN_PX = 18
 """Above and below a panel's content."""
+_LOOK_PX = 21
+"""The line at the top of a tab that says what to look for."""
 CHOOSER_PX = 36
 """A chooser above a plot."""
 TOOLS = '<div class="sb-tools"></div>'
@@ -64,7 +66,7 @@ def layout_for(width: int, height: int) -> Layout:
     wide = width >= WIDE_FROM_PX
     left = 360 if width >= 1500 else 340 if width >= 1300 else 320
     right = width // 2 if wide else max(360, min(round(0.5 * width), width - left - 260))
-    room = (height // 2 if wide else height) - _CHROME_PX[wide] - _MARGIN_PX
+    room = (height // 2 if wide else height) - _CHROME_PX[wide] - _MARGIN_PX - _LOOK_PX
     view = max(width - left - right, 120), height
     return Layout(wide, left, right, right - _COLUMN_PADDING_PX, max(room, 200), view)
 

@@ -101,6 +101,8 @@ class View:
         Of its tab; "" for a view without one.
     place : Place
         Where it stands.
+    look_for : str
+        What to look for in it, in one line at the top of a tab of the right column.
     focus : str
         Name in a scenario's block ``view`` that brings its tab to the front.
     plots : tuple of str
@@ -111,6 +113,7 @@ class View:
 
     title: ClassVar[str] = ""
     place: ClassVar[Place] = "page"
+    look_for: ClassVar[str] = ""
     focus: ClassVar[str] = ""
     plots: ClassVar[tuple[str, ...]] = ()
     always: ClassVar[bool] = True

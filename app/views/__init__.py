@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 VIEWS: tuple[str, ...] = (
     "app.views.scene",
+    "app.views.start",
     "app.views.verification",
     "app.views.explain",
     "app.views.method",

@@ -128,8 +128,8 @@ class Bench:
         if not any(gone in text for gone in _GONE):
             self.faults.append(text)
 
-    def open(self, path: str = "", query: str = "?fixedDpr=0.25") -> Bench:
-        """Open the page (a new session without a path) and wait for its first run."""
+    def open(self, path: str = "", query: str = "?fixedDpr=0.25&start=no") -> Bench:
+        """Open the page (a new session without a path) without its start card, and wait for its first run."""
         self.page.goto(f"{self.url}{path}{query}")
         self.page.wait_for_selector("#sb-run[data-run]", state="attached")
         self.page.wait_for_selector(".uplot canvas, .js-plotly-plot .trace", state="attached")

@@ -148,7 +148,7 @@ def open_page(browser: Browser, url: str, size: Any, tabs: tuple[str, ...], seen
     page = browser.new_context(viewport=size).new_page()
     page.set_default_timeout(60_000)
     began = time.monotonic()
-    page.goto(f"{url}?fixedDpr=0.25", wait_until="commit")
+    page.goto(f"{url}?fixedDpr=0.25&start=no", wait_until="commit")
     page.wait_for_function(_FIRST_PICTURE, polling=20)
     seen.note("opening, first picture (ms)", 1e3 * (time.monotonic() - began))
     if size["width"] >= 1600:

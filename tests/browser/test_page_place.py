@@ -49,7 +49,7 @@ def server(open_now: list[str]) -> Iterator[DashboardServer]:
 def visited(browser: Browser, server: DashboardServer) -> tuple[BrowserContext, Page, str]:
     context = browser.new_context(viewport={"width": 900, "height": 600})
     page = context.new_page()
-    page.goto(f"{server.url}?fixedDpr=0.25")
+    page.goto(f"{server.url}?fixedDpr=0.25&start=no")
     return context, page, page.url.split("/s/")[1].split("/")[0]
 
 

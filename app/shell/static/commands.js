@@ -167,6 +167,12 @@
   const follow = (names) => names.split("|").forEach((name) => window.schuler.open(window.schuler.tab(name)));
 
   const ACTIONS = { language: window.schuler.switchLanguage, tab: openTab, front: follow, upload, keys: showKeys, link: showLink };
+  Object.assign(window.schuler, {
+    element,
+    dialog,
+    // Let the server ask for more: `run(text)` for what app/shell/commands.py calls ``ask_page``.
+    act: (what, run) => (ACTIONS[what] = run),
+  });
   let answered = 0;
   let seen = "[]";
 

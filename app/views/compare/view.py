@@ -31,6 +31,7 @@ class CompareView(PictureView[str]):
 
     title = "Compare"
     place = "lower"
+    look_for = "Pinned runs beside the present one: a heading sorts, B flips."
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)

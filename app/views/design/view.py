@@ -27,6 +27,7 @@ class DesignView(PlotlyView):
 
     title = "Design"
     place = "lower"
+    look_for = "Which source the error comes from, and how far it is from the best possible."
     plots = (title,)
 
     def __init__(self, frame: Frame) -> None:

@@ -63,6 +63,7 @@ class ErrorsView(PictureView[ErrorCurves]):
 
     title = "Errors"
     place = "lower"
+    look_for = "Look for curves that stay small, and for what the switch-on and the manoeuvres leave behind."
     focus = "errors"
     plots = (*_KEYS, *_VERIFIED_KEYS)
 

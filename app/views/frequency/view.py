@@ -21,6 +21,7 @@ class FrequencyView(PlotlyView):
 
     title = "Frequency"
     place = "upper"
+    look_for = "What comes through at each period: below 0 dB an error is damped, above it is amplified."
     focus = "bode"
     plots = (title,)
 

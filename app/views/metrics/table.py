@@ -326,7 +326,7 @@ def method_px(rows: Sequence[Row], letter_px: float, padding_px: float) -> float
 
 _TABLE = (
     f"border-collapse:collapse;font-size:{style.FONT_SIZE}px;color:{style.INK};width:100%;"
-    "font-variant-numeric:tabular-nums;line-height:1.19"
+    "font-variant-numeric:tabular-nums;line-height:1.1"
 )
 _SMALL = f"margin:0 10px;font-size:12.5px;color:{style.INK}"
 _HEAD = "text-align:center;padding:2px 8px;font-weight:600"

@@ -35,6 +35,7 @@ class MetricsView(PictureView[tuple[str, str]]):
 
     title = "Metrics"
     place = "lower"
+    look_for = "The best number of each row is marked; below, which error source it comes from."
 
     def build(self, tab: Tab) -> None:
         """Make the places of the texts."""

@@ -32,6 +32,7 @@ class MisprintsView(View):
 
     title = "Misprints"
     place = "upper"
+    look_for = "What a paper prints beside what its text and figures say: look where the curves part."
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)

@@ -31,6 +31,9 @@ class PolesView(PlotlyView):
 
     title = "Poles"
     place = "upper"
+    look_for = (
+        "Poles left of the axis die away: the farther left, the faster; the steeper, the more they swing."
+    )
     plots = (title,)
     above_px = CHOOSER_PX + 10
 

@@ -25,6 +25,7 @@ class RequirementsView(PictureView[str]):
 
     title = "Requirements"
     place = "lower"
+    look_for = "Give limits in the boxes: the table says who meets them, and the plots show the limits."
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)

@@ -14,6 +14,7 @@ class ScenarioTextView(PictureView[str]):
 
     title = "Scenario"
     place = "lower"
+    look_for = "The scenario as a file: what the command line and a colleague need to repeat this run."
 
     def build(self, tab: Tab) -> None:
         """Make the place of the text."""

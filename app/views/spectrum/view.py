@@ -21,6 +21,7 @@ class SpectrumView(PlotlyView):
 
     title = "Spectrum"
     place = "lower"
+    look_for = "Peaks at 84 min (Schuler), 24 h and the Foucault period: damping takes the first away."
     plots = (title,)
 
     def build_tools(self) -> None:

@@ -14,6 +14,9 @@ class StepView(PlotlyView):
 
     title = "Step"
     place = "upper"
+    look_for = (
+        "How long a step of an error is felt: look for the settling time and the swing to the other side."
+    )
     focus = "step"
     plots = (title,)
     above_px = 0

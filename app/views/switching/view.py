@@ -41,6 +41,7 @@ class SwitchingView(PictureView[Switching]):
 
     title = "Switching"
     place = "lower"
+    look_for = "When each method damps, and what its measure says; look for jumps of the error above."
     plots = (title,)
     always = False
 

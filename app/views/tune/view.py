@@ -25,6 +25,7 @@ class TuneView(PlotlyView):
 
     title = "Tune"
     place = "lower"
+    look_for = "Let the program search the best setting; accept or discard what it proposes."
     plots = (title,)
     above_px = 2 * CHOOSER_PX + _NOTE_PX
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from html import escape
+
 from app.jobs.verifier import Verifier
 from app.shell import notices
 from app.shell.view import Frame, Tab, View
@@ -30,11 +32,15 @@ class VerificationView(View):
         """Make the widgets."""
         gui = self.frame.gui
         with tab:
-            self._start = gui.add_button(VERIFY, color="gray", hint=_TOLD, order=_ORDER)
+            # A small one, as those at the top: it is not the first thing to press.
+            self._start = gui.add_html(
+                '<div class="sb-row"><button class="sb-do" data-command="verify" '
+                f'title="{escape(_TOLD)}">{VERIFY}</button></div>',
+                order=_ORDER,
+            )
             self._progress = gui.add_progress_bar(0.0, visible=False, order=_ORDER + 0.1)
             self._stop = gui.add_button(STOP, color="orange", visible=False, order=_ORDER + 0.2)
             self._verdict = gui.add_html("", visible=False, order=_ORDER + 0.3)
-        self._start.on_click(lambda _: self._verify())
         self._stop.on_click(lambda _: self.session.verifier.cancel())
 
     def _verify(self) -> None:

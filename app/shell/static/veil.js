@@ -1,0 +1,14 @@
+// Until the page has its tabs, viser shows its own empty panel and axes: this stands before them.
+(() => {
+  const LONGEST_MS = 20_000;
+  const veil = Object.assign(document.createElement("div"), { id: "sb-veil", textContent: "Schuler Bench is opening …" });
+  veil.setAttribute("role", "status");
+  veil.style.cssText = "position:fixed;inset:0;z-index:250;display:grid;place-items:center;background:#fff;color:#52667a;" +
+    "font:16px system-ui,sans-serif";
+  document.documentElement.append(veil);
+  const timer = setInterval(() => {
+    if (document.querySelector('[role="tab"]') === null && performance.now() < LONGEST_MS) return;
+    clearInterval(timer);
+    veil.remove();
+  }, 50);
+})();

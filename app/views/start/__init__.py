@@ -1,0 +1,1 @@
+"""The first five minutes: start card, guided tour, scenarios and networks with pictures."""
