@@ -35,6 +35,7 @@ _SCRIPTS = (
     "marks",
     "page",
     "commands",
+    "boxes",
     "access",
     "cursor",
     "pick",

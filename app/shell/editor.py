@@ -82,13 +82,17 @@ class Editor:
             control.follow(value)
             self._session.change(changed, self._by)
 
-    def put(self, control: Control, value: Any) -> None:
-        """Set a control's field to a value that the control does not hold yet; raises `InputError`."""
+    def put(self, control: Control, value: Any, name: str | None = None) -> None:
+        """Set a control's field to a value that the control does not hold yet; raises `InputError`.
+
+        ``name`` is what undo calls it: a reset, if None.
+        """
         with self._session.lock:
             if not self._closed and not control.removed:
                 self._trust(control)
                 changed = self._changed(control, value)
-                self._session.change(changed, None, name=f"reset {control.spec.label}")
+                said = f"reset {control.spec.label}" if name is None else name
+                self._session.change(changed, None, name=said)
 
     def close(self) -> None:
         """Let nothing follow any more."""

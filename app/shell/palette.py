@@ -13,6 +13,7 @@ from app.shell.opening import Opening
 from app.shell.presenter import PresenterLock
 from app.shell.reset import Resets
 from app.shell.toolbar import PRESENT, REDO, RESET_ALL, SHARE, UNDO, Toolbar
+from app.shell.typing import Typing
 from app.shell.view import Frame
 from navcore.scenario.file import load, presets
 
@@ -39,6 +40,12 @@ class Palette:
         self._shown: tuple[object, ...] = ()
         self._values: list[Any] = []
         self._resets = Resets(self._commands, frame.editor.put)
+        self._typing = Typing(
+            self._commands,
+            frame.controls,
+            lambda control, value: frame.editor.put(control, value, ""),
+            self._resets.take_back,
+        )
 
     def _register(self, opening: Opening) -> None:
         add, session, ask = self._commands.register, self._session, self._commands.ask_page

@@ -117,6 +117,10 @@ class Resets:
         found = self._changed.get(name)
         return None if found is None else (name, told(*found))
 
+    def take_back(self, control: Control) -> None:
+        """Reset the field of a control, if it has been changed."""
+        self._reset(name_of(control.spec.path))
+
     def _reset(self, name: str) -> None:
         found = self._changed.get(name.strip())
         if found is not None:

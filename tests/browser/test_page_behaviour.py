@@ -333,3 +333,33 @@ def test_a_reload_keeps_the_work_and_another_visitor_has_none_of_it(
     assert other.faults == []
     context.close()
     assert fresh.faults == []
+
+
+def test_a_unit_is_typed_a_wheel_steps_and_a_double_click_resets(fresh: Bench, session: Session) -> None:
+    page = fresh.page
+    fresh.tab("Run")
+    label = next(text for text in page.locator("label").all_inner_texts() if text.startswith("duration"))
+    before = session.scenario.run.duration_h
+    box, number = fresh.box(f"{label}, exact"), fresh.run
+    box.press("Control+a")
+    page.keyboard.type("90", delay=THROTTLE_MS)
+    page.keyboard.type(" min", delay=THROTTLE_MS)
+    page.locator(".sb-unit").press("Enter")
+    fresh.wait_until(lambda: session.scenario.run.duration_h == 1.5)
+    fresh.wait_for_run(number)
+    fresh.settle()
+    page.wait_for_function("box => Number(box.value) === 1.5", arg=box.element_handle())
+    box.focus()
+    box.hover()
+    page.mouse.wheel(0, -100)
+    fresh.wait_until(lambda: session.scenario.run.duration_h > 1.5)
+    fresh.settle()
+    box.press("Control+a")
+    page.keyboard.type("3 kn", delay=THROTTLE_MS)
+    page.locator(".sb-unit").press("Enter")
+    assert "one of s, min, h, d" in fresh.notice("That did not work")
+    fresh.close_notices()
+    page.locator("label", has_text=label).first.dblclick()
+    fresh.wait_until(lambda: session.scenario.run.duration_h == before)
+    fresh.settle()
+    assert fresh.faults == []

@@ -1,0 +1,84 @@
+// Number boxes by wheel, double click and unit. The arrow keys step a box by themselves; the wheel does the same over the
+// box that has the focus. A double click on a control's name takes the field back to how the scenario was opened. A letter
+// or a space behind typed digits opens a line for the unit: "30 min" (app/shell/typing.py reads it).
+(() => {
+  const BOX = ".mantine-NumberInput-input";
+  const UNIT = /^[smhdknarguµ° ]$/i;
+  let typed = null;
+
+  const labelOf = (inside) => {
+    const row = inside.closest(".mantine-Flex-root");
+    return row?.querySelector("label")?.textContent ?? "";
+  };
+
+  addEventListener(
+    "wheel",
+    (event) => {
+      const box = event.target instanceof Element && event.target.closest(BOX);
+      if (!box || box !== document.activeElement || event.deltaY === 0) return;
+      event.preventDefault();
+      const key = event.deltaY < 0 ? "ArrowUp" : "ArrowDown";
+      box.dispatchEvent(new KeyboardEvent("keydown", { key, code: key, bubbles: true, cancelable: true }));
+    },
+    { passive: false, capture: true },
+  );
+
+  addEventListener("dblclick", (event) => {
+    const label = event.target instanceof Element && event.target.closest("label, .mantine-Slider-root");
+    if (label && label.closest(".mantine-Flex-root")) window.schuler.command("reset-named", labelOf(label));
+  });
+
+  // ------------------------------------------------------------ units
+
+  addEventListener("focusin", () => (typed = null));
+  addEventListener("input", (event) => event.target.matches?.(BOX) && event.isTrusted && (typed = event.target), true);
+
+  // Before the keys of commands.js, which listens on the document's element.
+  addEventListener(
+    "keydown",
+    (event) => {
+      const box = event.target;
+      if (box !== typed || event.ctrlKey || event.metaKey || event.altKey || !UNIT.test(event.key)) return;
+      event.preventDefault();
+      event.stopPropagation();
+      open(box, `${box.value} ${event.key.trim()}`);
+    },
+    true,
+  );
+
+  addEventListener(
+    "paste",
+    (event) => {
+      const box = event.target instanceof Element && event.target.closest(BOX);
+      const text = event.clipboardData?.getData("text").trim() ?? "";
+      if (!box || text === "" || Number.isFinite(Number(text))) return;
+      event.preventDefault();
+      event.stopPropagation();
+      open(box, text);
+    },
+    true,
+  );
+
+  function open(box, text) {
+    const label = labelOf(box);
+    const at = box.getBoundingClientRect();
+    const line = document.createElement("input");
+    line.className = "sb-unit";
+    line.value = text;
+    line.setAttribute("aria-label", `${label}: value with its unit, Enter takes it over`);
+    line.style.cssText = `position:fixed;z-index:400;left:${at.left}px;top:${at.top}px;width:${Math.max(at.width, 96)}px;` +
+      `height:${at.height}px;box-sizing:border-box;padding:0 6px;border:2px solid #1c7ed6;border-radius:4px;font:12.5px system-ui`;
+    const close = () => line.isConnected && line.remove();
+    line.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") window.schuler.command("typed", label, "\t", line.value);
+      else if (event.key !== "Escape") return;
+      event.stopPropagation();
+      close();
+      box.focus();
+    });
+    line.addEventListener("blur", close);
+    document.body.append(line);
+    line.focus();
+    line.setSelectionRange(text.length, text.length);
+  }
+})();
