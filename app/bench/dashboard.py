@@ -63,7 +63,7 @@ def slider_to_frame_ms(port: int, window: str = _WINDOW, pins: int = 0, steps: i
         visitor.wait_for_run(1)
         _choose(visitor, "scenario", "sikuliaq-like")
         _choose(visitor, "duration (h), exact", 24.0)
-        visitor.set("method to edit", "complementary")
+        visitor.set("method", "complementary")
         visitor.control("zeta")
         visitor.rest(1.0)
         for pin in range(pins):

@@ -151,7 +151,7 @@ def browser(order: Order, number: int, ready: Callable[[], Any], seen: Seen) -> 
         page.set_default_timeout(120_000)
         sessions: Any = None
         bench = Bench(page, f"http://127.0.0.1:{order.port}/", sessions).open()
-        bench.choose("method to edit", "complementary")
+        bench.choose("method", "complementary")
         bench.box("zeta, exact").wait_for()
         ready()
         began, step = time.monotonic(), 0

@@ -109,7 +109,7 @@ def test_external_damping_without_reference_is_refused(fresh: Bench) -> None:
 
 def test_warnings_stand_beside_the_network(fresh: Bench) -> None:
     assert any("H(0)" in note for note in fresh.notes)
-    fresh.choose("method to edit", "free")
+    fresh.choose("method", "free")
     fresh.page.get_by_text("undamped", exact=True).first.wait_for()
     assert not any("H(0)" in note for note in fresh.notes)
 

@@ -67,7 +67,7 @@ def test_the_computed_ship_is_that_of_the_method_in_hand(moving: Bench) -> None:
 
     page, number = moving.page, moving.run
     assert tuple(page.evaluate(_COLOR)) == style.method_rgb(2)
-    moving.choose("method to edit", "classic2")
+    moving.choose("method", "classic2")
     page.wait_for_function(f"c => String(({_COLOR})()) === c", arg=",".join(map(str, style.method_rgb(1))))
     page.locator("#sb-stage table").get_by_text("classic2").wait_for()
     assert moving.run == number

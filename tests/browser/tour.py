@@ -100,7 +100,7 @@ def _preset(bench: Bench, take: Film) -> None:
     before = bench.run
     bench.page.get_by_role("option", name="zha-external", exact=True).click()
     bench.wait_for_run(before)
-    bench.choose("method to edit", "fast (compass)")
+    bench.choose("method", "fast (compass)")
     bench.tab("Errors")
     _rest(bench.page)
     take.shoot(1500)

@@ -55,7 +55,7 @@ class MethodView(View):
         gui, edit = self.frame.gui, self.frame.editor.edit
         with tab:
             self._chooser: Any = gui.add_dropdown(
-                "method to edit",
+                "method",
                 ("",),
                 hint="The controls below belong to this method.",
                 order=0,
