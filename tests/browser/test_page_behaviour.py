@@ -143,7 +143,7 @@ def test_two_sliders_moved_at_once_agree_with_the_server_in_the_end(fresh: Bench
 def test_methods_are_added_copied_renamed_and_removed(fresh: Bench, session: Session) -> None:
     for button, names in (
         ("add", ["free", "classic2", "fast (compass)", "classic2 2"]),
-        ("copy", ["free", "classic2", "fast (compass)", "classic2 2", "classic2 2 2"]),
+        ("copy", ["free", "classic2", "fast (compass)", "classic2 2", "classic2 3"]),
         ("remove", ["free", "classic2", "fast (compass)", "classic2 2"]),
     ):
         number = fresh.run

@@ -41,7 +41,7 @@
       if (box !== typed || event.ctrlKey || event.metaKey || event.altKey || !UNIT.test(event.key)) return;
       event.preventDefault();
       event.stopPropagation();
-      open(box, `${box.value} ${event.key.trim()}`);
+      ask(box, `${box.value} ${event.key.trim()}`);
     },
     true,
   );
@@ -54,12 +54,12 @@
       if (!box || text === "" || Number.isFinite(Number(text))) return;
       event.preventDefault();
       event.stopPropagation();
-      open(box, text);
+      ask(box, text);
     },
     true,
   );
 
-  function open(box, text) {
+  function ask(box, text) {
     const label = labelOf(box);
     const at = box.getBoundingClientRect();
     const line = document.createElement("input");
@@ -68,7 +68,13 @@
     line.setAttribute("aria-label", `${label}: value with its unit, Enter takes it over`);
     line.style.cssText = `position:fixed;z-index:400;left:${at.left}px;top:${at.top}px;width:${Math.max(at.width, 96)}px;` +
       `height:${at.height}px;box-sizing:border-box;padding:0 6px;border:2px solid #1c7ed6;border-radius:4px;font:12.5px system-ui`;
-    const close = () => line.isConnected && line.remove();
+    let open = true; // taking it off the page is a blur, too
+    const close = () => {
+      if (open) {
+        open = false;
+        line.remove();
+      }
+    };
     line.addEventListener("keydown", (event) => {
       if (event.key === "Enter") window.schuler.command("typed", label, "\t", line.value);
       else if (event.key !== "Escape") return;
