@@ -8,7 +8,7 @@
 
   const labelOf = (inside) => {
     const row = inside.closest(".mantine-Flex-root");
-    return row?.querySelector("label")?.textContent ?? "";
+    return window.schuler.english(row?.querySelector("label")?.textContent ?? "");
   };
 
   addEventListener(

@@ -31,11 +31,7 @@
   // ------------------------------------------------------------ the card
 
   function showCard() {
-    const doors = JSON.parse(source()?.dataset.doors ?? "[]").map(([command, title, text]) => {
-      const door = element("button", "", { type: "button", class: "sb-door", "data-command": command });
-      door.append(element("b", title), element("span", text));
-      return door;
-    });
+    const doors = [...(source()?.querySelectorAll(".sb-door") ?? [])].map((door) => door.cloneNode(true));
     const holder = element("div", "", { class: "sb-doors" });
     holder.append(...doors);
     const more = element("p", "", { class: "sb-more" });
@@ -74,8 +70,8 @@
   let tour = null;
 
   function target({ label, find }) {
-    if (find) return [...document.querySelectorAll(find)].find((each) => each.getClientRects().length > 0) ?? null;
-    const found = [...document.querySelectorAll("label")].find((each) => each.textContent === label);
+    if (find !== "") return [...document.querySelectorAll(find)].find((each) => each.getClientRects().length > 0) ?? null;
+    const found = [...document.querySelectorAll("label")].find((each) => window.schuler.english(each.textContent) === label);
     return found?.closest(".mantine-Flex-root") ?? null;
   }
 
@@ -87,17 +83,21 @@
 
   function showStep(place) {
     endTour();
-    const steps = JSON.parse(source()?.dataset.steps ?? "[]");
-    const step = steps[place];
+    const steps = [...(source()?.querySelectorAll("[data-step]") ?? [])];
+    const step = steps[place]?.dataset;
     if (step === undefined) return;
-    if (step.tab) window.schuler.open(window.schuler.tab(step.tab));
+    if (step.tab !== "") window.schuler.open(window.schuler.tab(step.tab));
     const card = element("section", "", { class: "sb-tour", role: "dialog", "aria-label": "Guided tour", tabindex: "-1" });
     const row = element("p", "", { class: "sb-more" });
     row.append(element("span", `Step ${place + 1} of ${steps.length}`, { class: "sb-said" }));
     if (place > 0) row.append(button("Back", () => showStep(place - 1)));
-    if (place + 1 < steps.length) row.append(button("Next", () => showStep(place + 1), { class: "sb-do sb-next" }));
+    if (place + 1 < steps.length) {
+      const next = button("Next", () => showStep(place + 1));
+      next.classList.add("sb-next");
+      row.append(next);
+    }
     row.append(button("Close", endTour));
-    card.append(element("h2", step.title), element("p", step.text), row);
+    card.append(...[...steps[place].children].map((part) => part.cloneNode(true)), row);
     card.addEventListener("keydown", (event) => {
       const to = { ArrowRight: place + 1, ArrowLeft: place - 1 }[event.key];
       if (event.key === "Escape") endTour();

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from functools import lru_cache
 from html import escape
 
@@ -108,9 +107,8 @@ class StartView(View):
         fresh = not session.restored and session.run is None
         with tab:
             gui.add_html(_LINKS, order=_ORDER)
-            steps, doors = escape(json.dumps(_STEPS)), escape(json.dumps(_DOORS))
-            told = f'data-fresh="{int(fresh)}" data-steps="{steps}" data-doors="{doors}"'
-            gui.add_html(f'<div id="sb-start" hidden {told}></div>', order=3)
+            content = _doors_html() + _steps_html()
+            gui.add_html(f'<div id="sb-start" hidden data-fresh="{int(fresh)}">{content}</div>', order=3)
             self._gallery = gui.add_html("", order=3)
 
     def _show(self, title: str, cards: str) -> None:
@@ -154,6 +152,23 @@ class StartView(View):
         self.frame.opening.choose_scenario("liu-networks")
         self.frame.commands.ask_page("tab", "Method")
         self.frame.commands.ask_page("tour", "1")
+
+
+def _doors_html() -> str:
+    return "".join(
+        f'<button class="sb-door" type="button" data-command="{command}"><b>{escape(title)}</b>'
+        f"<span>{escape(text)}</span></button>"
+        for command, title, text in _DOORS
+    )
+
+
+def _steps_html() -> str:
+    return "".join(
+        f'<div data-step="{number}" data-tab="{escape(step.get("tab", ""))}" '
+        f'data-label="{escape(step.get("label", ""))}" data-find="{escape(step.get("find", ""))}">'
+        f"<h2>{escape(step['title'])}</h2><p>{escape(step['text'])}</p></div>"
+        for number, step in enumerate(_STEPS)
+    )
 
 
 @lru_cache(maxsize=1)
