@@ -16,6 +16,7 @@ import json
 import math
 import os
 import queue
+import signal
 import statistics
 import sys
 import threading
@@ -247,8 +248,11 @@ def main() -> int:
     parser.add_argument("--rest", type=float, default=20.0, help="pause after all have left, s")
     parser.add_argument("--json", type=Path, help="file for the rows")
     arguments = parser.parse_args()
+    signal.signal(signal.SIGTERM, _end)
     until_s = 60.0 * arguments.minutes + 1500.0
-    threading.Timer(until_s, _give_up, [until_s]).start()
+    alarm = threading.Timer(until_s, _give_up, [until_s])
+    alarm.daemon = True
+    alarm.start()
     began = time.monotonic()
     rows = measure(arguments)
     print(
@@ -262,7 +266,13 @@ def main() -> int:
 
 def _give_up(after_s: float) -> None:
     print(f"not ended after {after_s:.0f} s: given up", flush=True)
-    os._exit(3)
+    os.kill(os.getpid(), signal.SIGTERM)
+
+
+def _end(number: int, frame: object) -> None:
+    """Leave by the way that ends the server and the visitors too."""
+    del number, frame
+    sys.exit(3)
 
 
 if __name__ == "__main__":
