@@ -10,7 +10,8 @@ import pytest
 from app.plots.pinned import deltas, pinned_methods, restyled, together
 from app.plots.plotly_data import unpacked
 from app.session.display import Display
-from app.views.errors.figure import error_plots, legend_html
+from app.views.errors.figure import error_plots
+from app.views.errors.legend import legend_html
 from app.views.frequency.figure import bode
 from app.views.metrics.table import metrics_html, metrics_rows
 from app.views.poles.figure import poles

@@ -8,7 +8,8 @@ import pytest
 
 from app.plots import style
 from app.plots.uplot import UplotFigure, stack_heights
-from app.views.errors.figure import GROUPS, Overlay, error_plots, legend_html
+from app.views.errors.figure import GROUPS, Overlay, error_plots
+from app.views.errors.legend import legend_html
 from navcore.mechanization.recorder import NAMES
 from tests.unit.figures_runs import diverging, run_of, static_run
 

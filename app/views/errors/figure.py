@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from html import escape
 
 import numpy as np
 
 from app.plots import style
 from app.plots.envelope import Envelope
-from app.plots.legend import State, counts, entry
+from app.plots.legend import State, counts
 from app.plots.pinned import PIN_WIDTH, Pinned, pinned_methods
 from app.plots.units import (
     AUTO,
@@ -23,7 +22,7 @@ from app.plots.units import (
     time_unit,
     wanted_unit,
 )
-from app.plots.uplot import LABEL_SIZE, Y_SIZE, Dash, UplotFigure
+from app.plots.uplot import Dash, UplotFigure
 from app.session.display import Display
 from navcore.engine.run import MethodRun, PlotSeries, Run
 from navcore.mechanization.recorder import (
@@ -191,7 +190,7 @@ def _lines(run: Run, overlay: Overlay | None, pins: Sequence[Pinned], display: D
     width = style.CURVE_WIDTH
     states = [display.state_of(m.method.name) for m in run.methods]
     lines = [
-        _Line(m, _legend_name(m), style.method_color(i), (), width, True, states[i])
+        _Line(m, legend_name(m), style.method_color(i), (), width, True, states[i])
         for i, m in enumerate(run.methods)
     ]
     if overlay is not None:
@@ -199,7 +198,7 @@ def _lines(run: Run, overlay: Overlay | None, pins: Sequence[Pinned], display: D
         lines += [
             _Line(
                 m,
-                f"{_legend_name(m)}: {STRAPDOWN}",
+                f"{legend_name(m)}: {STRAPDOWN}",
                 style.method_color(i) + faint,
                 _DASH,
                 width,
@@ -352,71 +351,7 @@ def _curve_on(time_s: np.ndarray, method: MethodRun, column: int, unit: Unit, li
     return values
 
 
-def _legend_name(method: MethodRun) -> str:
+def legend_name(method: MethodRun) -> str:
+    """Name of a method, with how it ended if that was not well."""
     name = method.method.name
     return name if method.status == "ok" else f"{name} ({method.status})"
-
-
-def legend_html(
-    run: Run,
-    overlay: Overlay | None = None,
-    pins: Sequence[Pinned] = (),
-    envelope: Envelope | None = None,
-    display: Display | None = None,
-) -> str:
-    """One legend for a stack of plots: a bar and the name of every method; a click dims or hides it."""
-    shown = display or Display()
-    items = [
-        entry(
-            method.method.name,
-            _legend_name(method),
-            f"height:3px;background:{style.method_color(i)}",
-            shown.state_of(method.method.name),
-        )
-        for i, method in enumerate(run.methods)
-    ]
-    if overlay is not None:
-        old = " of an earlier scenario" if overlay.old else ""
-        items.append(_legend_item(f"{STRAPDOWN}{old}", f"border-top:3px dashed {style.MUTED}"))
-    items += [
-        entry(found.label, found.label, css_dash(found.dash, found.color), shown.state_of(found.label))
-        for found in pinned_methods(pins)
-    ]
-    if envelope is not None:
-        bar = f"height:10px;background:{style.MUTED}{'22' if envelope.old else '55'}"
-        items.append(_legend_item(envelope.label, bar, " ".join(envelope.details)))
-    return (
-        '<div class="sb-legend" role="group" aria-label="legend" '
-        f'style="padding-left:{Y_SIZE + LABEL_SIZE}px">'
-        f"{''.join(items)}</div>"
-    )
-
-
-def legend_names(
-    run: Run,
-    overlay: Overlay | None = None,
-    pins: Sequence[Pinned] = (),
-    envelope: Envelope | None = None,
-) -> list[str]:
-    """Texts of `legend_html`, from which its height follows."""
-    names = [method.method.name for method in run.methods]
-    if overlay is not None:
-        names.append("full strapdown of an earlier scenario")
-    names += [found.label for found in pinned_methods(pins)]
-    # with the longest words: the plots keep their height while the band is an old one
-    return names if envelope is None else [*names, replace(envelope, old=True).label]
-
-
-def css_dash(dash: Dash, color: str) -> str:
-    """Style of a short bar that shows a dash pattern."""
-    stops, at = [], 0
-    for place, length in enumerate(dash):
-        shade = color if place % 2 == 0 else "transparent"
-        stops.append(f"{shade} {at}px {at + length}px")
-        at += length
-    return f"height:2px;background:repeating-linear-gradient(90deg,{','.join(stops)})"
-
-
-def _legend_item(name: str, bar: str, title: str = "") -> str:
-    more = f' title="{escape(title)}"' if title else ""
-    return f'<span class="sb-entry"{more}><span class="sb-line" style="{bar}"></span>{escape(name)}</span>'
