@@ -60,7 +60,7 @@ STAGES = {
     "browser": ["tests/browser", "-n2", "--dist=worksteal"],
 }
 
-BESIDE = (("container", "basedpyright"), ("extension", "attack"))
+BESIDE = (("container", "basedpyright"), ("extension",))
 """Lanes that run side by side; each keeps one core busy, the stages of a lane one after the other."""
 
 
