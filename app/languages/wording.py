@@ -45,6 +45,8 @@ _DEEPEST = 12
 _MOST_PARTS = 15
 _WEAK = 12
 _LONGEST_VALUE = 40
+_ENDS = {".": "。", ":": "："}
+_WITH_UNIT = re.compile(r"(.+?) (\([^()]*\))((?:, [a-z]+)?)")
 _ENDED = re.compile(r"[.;:] ")
 _MOST_KEPT = 20_000
 
@@ -76,8 +78,9 @@ class _Pattern:
         if values and values[-1].endswith(".") and text.endswith(values[-1]):  # the sentence's own
             return None
         # A text of few letters fits much by chance: then its values must be words, not sentences.
+        by_chance = self.weight < _WEAK and _TAGS.search(text) is not None
         weak = self.weight < _WEAK and any(len(v) > _LONGEST_VALUE or _ENDED.search(v) for v in values)
-        return None if weak or any(_is_torn(value) for value in values) else values
+        return None if by_chance or weak or any(_is_torn(value) for value in values) else values
 
 
 class Wording:
@@ -115,7 +118,8 @@ class Wording:
     def _markup(self, html: str) -> str:
         if "<br>" in html:  # a long text of a figure, broken into lines
             lines = html.split("<br>")
-            said = self._whole(" ".join(" ".join(lines).split()), 0)
+            whole = " ".join(" ".join(lines).split())
+            said = None if _TAGS.search(whole) or len(whole) < _WEAK * len(lines) else self._whole(whole, 0)
             if said is not None:
                 width = -(-len(said) // len(lines))
                 return "<br>".join(said[at : at + width] for at in range(0, len(said), width))
@@ -139,7 +143,9 @@ class Wording:
         if depth > _DEEPEST or not bare or len(bare) > _LONGEST or _LETTERS.search(bare) is None:
             return None
         key = " ".join(bare.split()) if "\n" not in bare else bare
-        said = self._whole(key, depth) or self._take_apart(key, depth)
+        said = self._whole(key, depth)
+        if said is None and _TAGS.search(key) is None:  # with elements in it, `markup` takes it apart
+            said = self._take_apart(key, depth)
         if said is None:
             return None
         lead, tail = text[: len(text) - len(text.lstrip())], text[len(text.rstrip()) :]
@@ -147,12 +153,18 @@ class Wording:
 
     def _whole(self, key: str, depth: int) -> str | None:
         """Return the translation of one text of the catalogue, with or without values."""
-        for text, end in ((key, ""), (key[:-1], "。") if key[-1:] == "." else (key, "")):
+        for text, end in ((key, ""), (key[:-1], _ENDS.get(key[-1:], ""))):
+            if text is not key and not end:
+                break
             for form in dict.fromkeys((text, text[:1].lower() + text[1:])):  # a label may begin a sentence
                 said = self._exact.get(form) or self._match(form, depth)
                 if said is not None:
                     return said + end
-        return None
+        label = _WITH_UNIT.fullmatch(key)
+        said = None if label is None else self._exact.get(label[1])
+        if label is None or said is None:
+            return None
+        return f"{said} {label[2]}{self._value(label[3], depth)}"
 
     def _match(self, text: str, depth: int) -> str | None:
         words = dict.fromkeys(_WORD.findall(text))

@@ -70,14 +70,16 @@ def _python() -> Iterator[Text]:
 
 
 def script_texts() -> Iterator[Text]:
-    """Texts that scripts write: their own, viser's, and those of the 3D view, which reach them as data."""
+    """Texts that scripts write: their own, viser's, and those of the 3D view and the legends, which
+    reach them as data."""
     for path in sorted((ROOT / "app").rglob("*.js")):
         name = path.relative_to(ROOT).as_posix()
         if not name.startswith("app/languages") and not name.endswith(".min.js"):
             yield from scripts.texts_in(path, name)
     for key in _OF_VISER:
         yield Text(key, "viser", True)
-    for path in sorted((ROOT / "app" / "views" / "scene").glob("*.py")):
+    as_data = [*sorted((ROOT / "app" / "views" / "scene").glob("*.py")), ROOT / "app" / "plots" / "legend.py"]
+    for path in as_data:
         yield from python.texts_in(path, path.relative_to(ROOT).as_posix())
 
 

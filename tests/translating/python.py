@@ -95,6 +95,9 @@ def texts_in(path: Path, name: str) -> Iterator[Text]:
                 key = numbered(piece)
                 if not re.search(r"[A-Za-z]{2,}", re.sub(r"\{\d+\}", "", key)):
                     continue
+                for part in re.split(r"</?[a-z]+>", key) if "<" in key else ():
+                    if re.search("[A-Za-z]{2,}", part):
+                        yield Text(numbered(re.sub(r"\{\d+\}", OPEN + CLOSE, part)), name, False)
                 yield Text(
                     key,
                     f"{name}:{getattr(node, 'lineno', 0)}",

@@ -12,7 +12,8 @@ from tests.translating.python import Text, is_prose, numbered
 _COMMENT = re.compile(r"^\s*//.*$|(?<=[;{},]) //.*$", re.MULTILINE)
 _LITERAL = re.compile(r'((?:"(?:[^"\\\n]|\\.)*"\s*\+\s*)*"(?:[^"\\\n]|\\.)*")|`((?:[^`\\]|\\.)*)`')
 _VALUE = re.compile(r"\$\{(?:[^{}`]|`[^`]*`|\{[^{}]*\})*\}")
-_SELECTOR = re.compile(r"[\[\]#=]|^\.|::|^[a-z-]+$|^\(")
+_SELECTOR = re.compile(r"[\[\]#=]|^\.|::|^\(")
+_WORD = re.compile(r"[a-z-]+")
 
 
 def texts_in(path: Path, name: str) -> Iterator[Text]:
@@ -33,4 +34,6 @@ def texts_in(path: Path, name: str) -> Iterator[Text]:
                 key = numbered(piece.replace("\\n", "\n"))
                 bare = re.sub(r"\{\d+\}", "", key)
                 if re.search("[A-Za-z]{3,}", bare) and _SELECTOR.search(key) is None:
+                    if "<" not in part and _WORD.fullmatch(key):
+                        continue
                     yield Text(key, name, is_prose(key) or "<" in part)
