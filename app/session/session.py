@@ -18,6 +18,7 @@ from app.jobs.worker import Watch, Worker
 from app.session.display import Display
 from app.session.history import History, State
 from app.session.pins import Pins
+from app.session.simulating import Simulate, first_editable, simulate_after
 from app.session.uploads import Uploads
 from app.session.view import View
 from navcore.engine.run import Run
@@ -26,8 +27,6 @@ from navcore.scenario.model import Scenario
 
 _REPORT_EVERY_S = 0.1
 _log = logging.getLogger("schuler.session")
-
-Simulate = Callable[[Scenario, Callable[[float], None], Callable[[], bool]], Run]
 
 
 class Session:
@@ -119,13 +118,13 @@ class Session:
         self._before = self.state
         self._views: list[View] = []
         self._after_run: list[Callable[[], None]] = []
-        self._simulate = simulate or self._simulate_again
+        self._simulate = simulate or simulate_after(lambda: self.run or self.prepared)
         self._worker: Worker[State] = Worker(
             self._work, visitor=name, load=lambda state: run_load(state.scenario)
         )
         self.verifier = Verifier(lambda: self._tell(lambda view: view.verification_changed()), verify, name)
         self.searches = Searches(name)
-        self.pins = Pins(self._pins_changed, self._simulate, name)
+        self.pins = Pins(lambda: (self.on_change(), self._pictures_changed())[1], self._simulate, name)
         self.envelopes = Envelopes(
             self._simulate,
             lambda: self._tell(lambda view: view.envelope_progressed()),
@@ -290,10 +289,6 @@ class Session:
                 view.display_changed(by)
             self.on_change()
 
-    def _pins_changed(self) -> None:
-        self.on_change()
-        self._pictures_changed()
-
     def _pictures_changed(self) -> None:
         self._tell(lambda view: view.display_changed(None))
 
@@ -373,22 +368,13 @@ class Session:
             self.outdated = scenario != self.scenario
             self._before = state
             self.envelopes.follow(scenario, self.display.envelope)
-            waiting: list[Callable[[], None]] = []
-            if not self.outdated:
-                waiting, self._after_run = self._after_run, []
+            waiting = [] if self.outdated else self._after_run
+            self._after_run = [act for act in self._after_run if act not in waiting]
         self.searches.ran(run)
         self._tell(lambda view: view.run_ended())
         for act in waiting:
             act()
         self.on_answer(time.monotonic() - watch.asked_s)
-
-    def _simulate_again(
-        self, scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]
-    ) -> Run:
-        """Run a scenario; what the run that is shown, or the prepared one, has computed is taken from it."""
-        from navcore.engine.simulation import simulate
-
-        return simulate(scenario, progress, cancelled, self.run or self.prepared)
 
     def _refuse(self, state: State, error: InputError) -> None:
         """Go back to the last scenario that ran, unless the user has gone on already."""
@@ -409,11 +395,3 @@ class Session:
             except Exception as error:
                 _log.exception("a page could not be brought up to date")
                 view.run_failed(error)
-
-
-def first_editable(scenario: Scenario) -> int:
-    """Index of the first method with something to tune; 0 if there is none."""
-    tunable = (
-        i for i, m in enumerate(scenario.method) if not m.undamped and len(type(m.network).model_fields) > 1
-    )
-    return next(tunable, 0)
