@@ -87,7 +87,7 @@ def test_nothing_is_left_in_english(browser: Browser, dashboard: tuple[Dashboard
     context = browser.new_context(viewport={"width": 1920, "height": 1080})
     page = context.new_page()
     page.set_default_timeout(60_000)
-    bench = Bench(page, dashboard[0].url, dashboard[1].sessions).open(query="?lang=zh&fixedDpr=0.25")
+    bench = Bench(page, dashboard[0].url, dashboard[1].sessions).open(query="?lang=zh&fixedDpr=0.25&start=no")
     assert page.evaluate("document.documentElement.lang") == "zh-CN"
     seen = set(page.evaluate(SEEN))
     for tab in page.get_by_role("tab").all():
