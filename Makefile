@@ -15,7 +15,7 @@ endif
 
 KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
-.PHONY: help setup run test check docs format unit paint soak tour accuracy covariance tuning consistency design benchmarks papers guide languages sbom audit lock clean REMAKE
+.PHONY: help setup run test check docs format unit paint soak tour accuracy covariance tuning consistency design benchmarks mutation papers cards guide languages sbom audit lock clean REMAKE
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'

@@ -42,10 +42,8 @@ class Session:
         Name of the preset it came from.
     folder : Path
         For uploads; need not exist.
-    simulate : callable, optional
-        In place of `navcore.engine.simulation.simulate`.
-    verify : callable, optional
-        In place of `navcore.engine.verification.verify`.
+    simulate, verify : callable, optional
+        In place of `navcore.engine.simulation.simulate` and `navcore.engine.verification.verify`.
 
     Attributes
     ----------
@@ -124,7 +122,7 @@ class Session:
         )
         self.verifier = Verifier(lambda: self._tell(lambda view: view.verification_changed()), verify, name)
         self.searches = Searches(name)
-        self.pins = Pins(lambda: (self.on_change(), self._pictures_changed())[1], self._simulate, name)
+        self.pins = Pins(self._pins_changed, self._simulate, name)
         self.envelopes = Envelopes(
             self._simulate,
             lambda: self._tell(lambda view: view.envelope_progressed()),
@@ -289,6 +287,10 @@ class Session:
                 view.display_changed(by)
             self.on_change()
 
+    def _pins_changed(self) -> None:
+        self.on_change()
+        self._pictures_changed()
+
     def _pictures_changed(self) -> None:
         self._tell(lambda view: view.display_changed(None))
 
@@ -305,10 +307,10 @@ class Session:
     def after_run(self, act: Callable[[], None]) -> None:
         """Do something once the run of the present scenario is there: at once if none is under way."""
         with self.lock:
-            if self.outdated and self._worker.busy:
+            if waits := self.outdated and self._worker.busy:
                 self._after_run.append(act)
-                return
-        act()
+        if not waits:
+            act()
 
     def cancel_run(self) -> None:
         """Stop the running run; the last good picture stays."""

@@ -7,7 +7,6 @@ thing sent for a run. A control is found by its label's exact text.
 
 from __future__ import annotations
 
-import hashlib
 import re
 import threading
 import time
@@ -29,13 +28,12 @@ from app.shell.editor import Editor
 from app.shell.following import Following
 from app.shell.header import HeaderPanel
 from app.shell.layout import layout_for, read_state
-from app.shell.opening import Opening, as_json
+from app.shell.opening import Opening
 from app.shell.pace import Pace
 from app.shell.palette import Palette
 from app.shell.presenter import PresenterLock
+from app.shell.run_element import run_element
 from app.shell.view import Frame, View, styles_of
-from navcore.engine.measures import metrics
-from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -297,7 +295,7 @@ class Page:
             return
         run, wanted = session.run, self.column.wanted(self._front)
         pictures = self.column.make(found, wanted)
-        content = _run_element(run, found.number) if whole else ""
+        content = run_element(run, found.number) if whole else ""
         with session.lock, self.client.atomic():
             self.column.mark_stale()
             self.column.show(found, pictures, wanted)
@@ -393,13 +391,3 @@ class Page:
         for view in self._views:
             view.resize()
         self.client.flush()
-
-
-def _run_element(run: Run, number: int) -> str:
-    digest = hashlib.blake2b(digest_size=16)
-    for method in run.methods:
-        digest.update(method.fingerprint)
-    return (
-        f'<div id="sb-run" hidden data-run="{number}" data-status="{run.status}" '
-        f'data-digest="{digest.hexdigest()}">{escape(as_json(metrics(run)).decode())}</div>'
-    )
