@@ -104,7 +104,7 @@ def test_nothing_is_left_in_english(browser: Browser, dashboard: tuple[Dashboard
     page.get_by_role("tab", name="视图", exact=True).click()
     bench.box("语言").click()
     page.get_by_role("option", name="English", exact=True).click()
-    page.wait_for_function("document.documentElement.lang === 'en'")
+    page.wait_for_selector("html[lang=en]", state="attached")
     page.wait_for_selector("#sb-run[data-run]", state="attached")
     page.get_by_role("tab", name="View", exact=True).wait_for()
     context.close()
