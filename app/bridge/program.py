@@ -68,15 +68,17 @@ def viser_program() -> Program:
         The page is not as it was when this was written.
     """
     page = (Path(viser.__file__).parent / "client" / "build" / "index.html").read_text(encoding="utf-8")
-    found = re.search(r"<script ([^>]*)>(.*?)</script>", page, re.DOTALL)
-    wasm = found and re.search(r'gzWasm="([^"]*)"', found[2])
-    packed = dict(re.findall(r'data-(\w+)="([^"]*)"', found[1])) if found else {}
-    if found is None or not wasm or not {"p", "ss", "cs"} <= packed.keys():
+    before, _, rest = page.partition("<script ")
+    attributes, _, rest = rest.partition(">")
+    loader, _, after = rest.partition("</script>")
+    wasm = re.search(r'gzWasm="([^"]*)"', loader)
+    packed = dict(re.findall(r'data-(\w+)="([^"]*)"', attributes))
+    if not wasm or not {"p", "ss", "cs"} <= packed.keys():
         raise _changed("the packed program")
     whole = zstandard.ZstdDecompressor().decompress(unpack(packed["p"]), max_output_size=_LARGEST)
     style, program = int(packed["ss"]), int(packed["cs"])
     return Program(
-        html=page[: found.start()] + page[found.end() :],
+        html=before + after,
         program=mended(whole[style : style + program]),
         style=whole[:style],
         zstd=gzip.decompress(unpack(wasm[1].replace("\\\\", "\\"))),

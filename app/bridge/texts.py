@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol
+from typing import Any, Protocol, cast
 
 import msgspec
 from viser import _messages as messages
@@ -67,7 +67,7 @@ class Translator:
         value = getattr(message, "value", None)
         if "options" in held and isinstance(value, str):
             fresh["value"] = self._shown(message.uuid, value)  # pyright: ignore[reportAttributeAccessIssue]
-        return dataclasses.replace(message, **fresh) if fresh else message
+        return dataclasses.replace(cast("Any", message), **fresh) if fresh else message
 
     def meant(self, uuid: str, value: object) -> object:
         """Return the English option behind what was chosen on the page; any other value as it is."""

@@ -14,16 +14,28 @@ from html import escape, unescape
 
 OPEN, CLOSE = "\ue000", "\ue001"
 """Around the number of a value while a text is looked up; no text has these letters."""
+
+
+def _element(name: str, attributes: str = r"\b[^<>]*>") -> str:
+    """Pattern of an element and all that it holds. It stops at its like: no text takes long to search."""
+    return rf"<{name}{attributes}(?:[^<]|<(?!{name}\b|/{name}>))*+</{name}>"
+
+
+_MATH = _element("math")
 _OPAQUE = re.compile(
-    r"<math\b.*?</math>|<span class=.sb-(?:live|formula)\b[^>]*>(?:<math\b.*?</math>|[^<]*)</span>|"
-    r"%\{[^}]*\}|"
-    r"<[a-z]+ [^>]*translate=.no.[^>]*>[^<]*</[a-z]+>",
-    re.DOTALL,
+    rf"{_MATH}|<span class=.sb-(?:live|formula)\b[^<>]*>(?:{_MATH}|[^<]*)</span>|"
+    r"%\{[^{}]*\}|"
+    r"<[a-z]++ (?>[^<>]*?translate=.no.)[^<>]*+>[^<]*</[a-z]+>"
 )
-_HIDDEN = (
-    r"<pre\b.*?</pre>|<style\b.*?</style>|<script\b.*?</script>|<div id=.sb-[a-z]+. hidden\b[^>]*>.*?</div>"
+_HIDDEN = "|".join(
+    (
+        _element("pre"),
+        _element("style"),
+        _element("script"),
+        _element("div", r" id=.sb-[a-z]+. hidden\b[^<>]*>"),
+    )
 )
-_TOKEN = re.compile(rf"({_HIDDEN}|</?[a-zA-Z][^<>]*>|<!--.*?-->)", re.DOTALL)
+_TOKEN = re.compile(rf"({_HIDDEN}|</?[a-zA-Z][^<>]*>|<!--(?:[^-<]|-(?!->)|<(?!!--))*+-->)")
 _INLINE = re.compile(r"<(/?)(b|i|em|strong|code|sub|sup|a|span|kbd|small|var)\b([^>]*)>")
 _ATTRIBUTE = re.compile(r'\b(title|aria-label|aria-valuetext|alt|placeholder|data-told)="([^"]*)"')
 _TAG = re.compile(r"</?[a-z]+>")

@@ -117,8 +117,8 @@ class Display(BaseModel):
     def clicked(self, key: str) -> tuple[tuple[str, State], ...]:
         """`legend` after a click on a curve's entry: the last 60 choices count."""
         others = tuple(entry for entry in self.legend if entry[0] != key)
-        state = after(self.state_of(key))
-        return others if state == "shown" else (*others, (key, state))[-60:]
+        entry: tuple[str, State] = key, after(self.state_of(key))
+        return others if entry[1] == "shown" else (*others[-59:], entry)
 
     def with_(self, **changes: object) -> Display:
         """Give a checked copy with other choices; raises `pydantic.ValidationError`."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, cast
 
 from navcore.scenario.model import Scenario
 
@@ -205,10 +205,14 @@ def _named(field: str, scenario: Scenario) -> str:
     return f"{inner.removeprefix('network.')} of {_short(scenario.method[int(index)].name)}"
 
 
-@lru_cache(maxsize=32)
 def fields_of(scenario: Scenario) -> Mapping[str, Any]:
     """Values of all fields by dotted path, e.g. ``method.0.network.xi``; kept for the last few scenarios."""
-    return _flat(scenario.canonical())
+    return _kept_fields(cast("Hashable", scenario))
+
+
+@lru_cache(maxsize=32)
+def _kept_fields(scenario: Hashable) -> Mapping[str, Any]:
+    return _flat(cast("Scenario", scenario).canonical())
 
 
 def _flat(value: Any, path: str = "") -> dict[str, Any]:

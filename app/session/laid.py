@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -86,7 +86,7 @@ def _parts(pin: Pin, scenario: Scenario) -> Iterator[str]:
     yield from _differing(_block(old, "", "method."), _block(new, "", "method."))
 
 
-def _block(fields: dict[str, Any], within: str, without: str = "\n") -> dict[str, Any]:
+def _block(fields: Mapping[str, Any], within: str, without: str = "\n") -> dict[str, Any]:
     return {
         path.removeprefix(within): value
         for path, value in fields.items()

@@ -92,7 +92,8 @@ def times(where: str, name: str, cells: Sequence[str], rows: Sequence[int]) -> t
 
 def unix_or_elapsed(values: np.ndarray) -> tuple[np.ndarray, bool]:
     """Numbers of time: Unix time in s, ms, us or ns by their size, or s since the file's own zero."""
-    size = float(np.nanmedian(np.abs(values))) if values.size else 0.0
+    known = values[~np.isnan(values)]
+    size = float(np.median(np.abs(known))) if known.size else 0.0
     if not size >= _UNIX_FROM:
         return values, False
     steps = 0

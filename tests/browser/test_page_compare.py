@@ -165,7 +165,7 @@ def test_the_pins_are_sorted_and_judged(pinned: Bench) -> None:
     settles = {name: run.methods[2].loop.settling_s for name, run in names.items()}
     for turned in (False, True):
         page.get_by_role("button", name="settles to 2 %").click()
-        wanted = sorted(settles, key=lambda name: settles[name], reverse=turned)
+        wanted = sorted(settles, key=lambda name: settles[name] or 0.0, reverse=turned)
         page.wait_for_function(f"wanted => String(({runs})()) === String(wanted)", arg=wanted)
     assert page.locator(".sb-pins").get_by_text("✗ misses 1 of 1").count() == 2
     pinned.tab("Requirements")
@@ -229,9 +229,9 @@ def test_two_hundred_slider_steps_in_twenty_seconds_end_in_agreement(pinned: Ben
     assert float(pinned.slider("zeta").get_attribute("aria-valuenow") or "nan") == pytest.approx(
         zeta, abs=0.006
     )
-    from app.shell.page import _run_element
+    from app.shell.run_element import run_element
 
-    assert f'data-digest="{pinned.digest}"' in _run_element(session.run, session.run_number)
+    assert f'data-digest="{pinned.digest}"' in run_element(session.run, session.run_number)
     assert pinned.metrics["methods"][2]["errors"] == _metrics(session.run)
     assert pinned.faults == []
 

@@ -126,6 +126,7 @@ class _Room:
         interpret = mutant.file.startswith(INTERPRETED)
         seconds = self._baseline(interpret)
         order = self._order(seconds)
+        fate, by = "survived", ""
         try:
             path.write_text(changed(before, mutant.place), "utf-8")
             for files in self.tiers:

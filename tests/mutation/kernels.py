@@ -65,7 +65,7 @@ def _given(value: Any) -> Any:
 class _Interpreted(CPUDispatcher):
     """A compiled function that runs as Python when Python calls it."""
 
-    def __call__(self, *args: Any) -> Any:
+    def __call__(self, *args: Any) -> Any:  # pyright: ignore[reportIncompatibleMethodOverride]
         with np.errstate(all="ignore"):
             return self.py_func(*(_seen(each) for each in args))
 
@@ -73,7 +73,7 @@ class _Interpreted(CPUDispatcher):
 class _Compiled(CPUDispatcher):
     """A kernel that takes what an interpreted one hands it."""
 
-    def __call__(self, *args: Any) -> Any:
+    def __call__(self, *args: Any) -> Any:  # pyright: ignore[reportIncompatibleMethodOverride]
         return super().__call__(*(_given(each) for each in args))
 
 
@@ -102,7 +102,7 @@ def install(digest: str, closures: Closures, interpret: bool) -> None:
     changed = {name for name, found in now.items() if closures.get(name, ("", []))[0] != found[0]}
 
     def inlined(function: Callable[..., Any]) -> Any:
-        made = numba.njit(nogil=True, error_model="numpy", forceinline=True, _nrt=False)(function)
+        made = numba.njit(nogil=True, error_model="numpy", forceinline=True, _nrt=False)(function)  # pyright: ignore[reportCallIssue]
         made.__class__ = _Interpreted
         return made
 

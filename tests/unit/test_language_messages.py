@@ -80,7 +80,8 @@ def test_what_a_visitor_types_is_never_translated(page: Translator) -> None:
     )
     shown: Any = page.message(messages.GuiTextMessage("t", "Hello", "root", props))
     assert (shown.value, shown.props.label) == ("Hello", "阻尼")
-    assert page.message(messages.GuiUpdateMessage("t", {"value": "Hello"})).updates == {"value": "Hello"}
+    typed: Any = page.message(messages.GuiUpdateMessage("t", {"value": "Hello"}))
+    assert typed.updates == {"value": "Hello"}
 
 
 def test_texts_of_figures(page: Translator) -> None:
@@ -100,7 +101,8 @@ def test_texts_of_figures(page: Translator) -> None:
     update = messages.GuiUpdateMessage(
         "u", {"series": ({"label": "time (h)"}, {"label": "Tilt", "stroke": "none"})}
     )
-    assert page.message(update).updates["series"] == (
+    sent: Any = page.message(update)
+    assert sent.updates["series"] == (
         {"label": "时间 (h)"},
         {"label": "失准角", "stroke": "none"},
     )
@@ -108,7 +110,8 @@ def test_texts_of_figures(page: Translator) -> None:
 
 def test_tabs_and_notifications(page: Translator) -> None:
     update = messages.GuiUpdateMessage("g", {"_tab_labels": ("Errors", "x"), "visible": True})
-    assert page.message(update).updates == {"_tab_labels": ("误差", "x"), "visible": True}
+    sent: Any = page.message(update)
+    assert sent.updates == {"_tab_labels": ("误差", "x"), "visible": True}
     props = messages.NotificationProps("Hello", "Errors", False, True, 3.0, None)
     shown: Any = page.message(messages.NotificationShowMessage("n", props))
     assert (shown.props.title, shown.props.body) == ("您好", "误差")

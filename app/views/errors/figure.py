@@ -188,7 +188,7 @@ def error_plots(
 
 def _lines(run: Run, overlay: Overlay | None, pins: Sequence[Pinned], display: Display) -> list[_Line]:
     width = style.CURVE_WIDTH
-    states = [display.state_of(m.method.name) for m in run.methods]
+    states: list[State] = [display.state_of(m.method.name) for m in run.methods]
     lines = [
         _Line(m, legend_name(m), style.method_color(i), (), width, True, states[i])
         for i, m in enumerate(run.methods)

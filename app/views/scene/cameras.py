@@ -75,6 +75,7 @@ class Cameras:
                 self.follow(place)
             return
         half = math.tan(0.5 * self._camera.fov)
+        tilt = across = upright = 0.0
         for degrees in _TILT[name]:
             tilt = math.radians(degrees)
             # The southern edge is nearest to the camera and looks largest.

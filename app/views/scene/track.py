@@ -229,7 +229,7 @@ def track(
         Longitudes whose labels have room beside each other.
     """
     pinned = [other for other in pinned_methods(pins) if state_of(other.label) != "hidden"]
-    states = [state_of(method.method.name) for method in run.methods]
+    states: list[State] = [state_of(method.method.name) for method in run.methods]
     every = [counts(state) for state in states]
     framed = [found for found, counted in zip(run.methods, every, strict=True) if counted] or run.methods
     chosen = _chosen(len(run.t_s))

@@ -52,7 +52,7 @@ def _card(id: str, omega_s: float) -> NetworkCard:
     kind = NETWORKS[id]
     title = str(getattr(kind, "title", "") or id)
     try:
-        network = kind().transfer(omega_s)
+        network = kind.model_validate({"id": id}).transfer(omega_s)
     except (InputError, ValueError, NotImplementedError) as error:
         return NetworkCard(id, title, "", f"Needs parameters of its own: {error}.")
     power = np.linspace(_FIRST, _LAST, 120)
