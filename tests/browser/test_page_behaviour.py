@@ -181,7 +181,7 @@ def test_numbers_are_those_of_the_command_line(fresh: Bench, tmp_path: Path, rep
     fresh.tab("Metrics")
     rms = expected["methods"][0]["errors"]["phi_e_rad"]["rms"] * 180.0 / 3.141592653589793 * 3600.0
     # the tab is drawn once it is in front
-    fresh.page.locator(".sb-table").filter(has_text=f"{rms:.5g}").first.wait_for()
+    fresh.page.locator(".sb-table").filter(has_text=f"{rms:.3g}").first.wait_for()
     fresh.tab("Errors")
 
 

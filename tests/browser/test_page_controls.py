@@ -166,10 +166,8 @@ def test_ship_and_exaggeration_move_in_3d(damped: Bench) -> None:
     damped.page.wait_for_function(f"end => String({vector}) !== String(end)", arg=at_end)
     before = damped.line("/track/method0")
     damped.choose("enlarge errors in 3D", "50")
-    damped.page.wait_for_timeout(300)
-    assert damped.line("/track/method0") != before
-    caption = "() => window.__viserSceneTree.getState()['/map/caption0'].message.props.text"
-    assert "x 50" in damped.page.evaluate(caption)
+    damped.page.locator("#sb-stage .sb-key [data-is=caption]", has_text="x 50").wait_for()
+    damped.page.wait_for_function(f"old => String(({_LINE})('/track/method0')) !== String(old)", arg=before)
     damped.choose("enlarge errors in 3D", "fit")
     assert damped.run == number
 
