@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, cast
+from typing import Any
 
 from navcore.scenario.model import Scenario
 
@@ -207,12 +207,13 @@ def _named(field: str, scenario: Scenario) -> str:
 
 def fields_of(scenario: Scenario) -> Mapping[str, Any]:
     """Values of all fields by dotted path, e.g. ``method.0.network.xi``; kept for the last few scenarios."""
-    return _kept_fields(cast("Hashable", scenario))
+    key: Any = scenario  # frozen, and so hashable, which its type does not tell
+    return _kept_fields(key)
 
 
 @lru_cache(maxsize=32)
-def _kept_fields(scenario: Hashable) -> Mapping[str, Any]:
-    return _flat(cast("Scenario", scenario).canonical())
+def _kept_fields(scenario: Scenario) -> Mapping[str, Any]:
+    return _flat(scenario.canonical())
 
 
 def _flat(value: Any, path: str = "") -> dict[str, Any]:
