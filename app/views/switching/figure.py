@@ -185,30 +185,29 @@ def _state_ticks(base: list[float]) -> tuple[tuple[float, str], ...]:
 
 
 def _xi_plot(pairs: _Pairs, time: np.ndarray, unit_of_time: Unit) -> UplotFigure:
-    return UplotFigure(
-        key=XI,
-        quantity=XI,
-        title="Damping coefficient in force",
-        symbol="ξ",
-        unit=_NO_UNIT,
-        time_unit=unit_of_time,
-        names=tuple(m.run.method.name for m, _ in pairs),
-        colors=tuple(style.method_color(m.index) for m, _ in pairs),
-        data=(time, *(np.ascontiguousarray(values[:, _XI]) for _, values in pairs)),
-    )
+    title = "Damping coefficient in force"
+    return _column_plot(pairs, time, unit_of_time, _XI, key=XI, title=title, symbol="ξ")
 
 
 def _margin_plot(pairs: _Pairs, time: np.ndarray, unit_of_time: Unit) -> UplotFigure:
+    title = "Least damping ratio of the closed-loop poles in force"
+    return _column_plot(pairs, time, unit_of_time, _MARGIN, key=MARGIN, title=title, symbol="least ζ")
+
+
+def _column_plot(
+    pairs: _Pairs, time: np.ndarray, unit_of_time: Unit, column: int, *, key: str, title: str, symbol: str
+) -> UplotFigure:
+    """Plot one column of each method's values, a number without unit."""
     return UplotFigure(
-        key=MARGIN,
-        quantity=MARGIN,
-        title="Least damping ratio of the closed-loop poles in force",
-        symbol="least ζ",
+        key=key,
+        quantity=key,
+        title=title,
+        symbol=symbol,
         unit=_NO_UNIT,
         time_unit=unit_of_time,
         names=tuple(m.run.method.name for m, _ in pairs),
         colors=tuple(style.method_color(m.index) for m, _ in pairs),
-        data=(time, *(np.ascontiguousarray(values[:, _MARGIN]) for _, values in pairs)),
+        data=(time, *(np.ascontiguousarray(values[:, column]) for _, values in pairs)),
     )
 
 
