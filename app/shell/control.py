@@ -196,8 +196,7 @@ class Control:
             if widget is not None:
                 widget.handle.remove()
 
-    def ids(self, *, but_box: bool = False, but_moved: bool = False) -> list[str]:
-        """Ids of the widgets in viser; without the box that is perhaps typed into, or the one moved last."""
-        slider = None if but_moved and self._slider_moved else self._slider
-        box = None if (but_box or but_moved) and not self._slider_moved else self._box
-        return [id_of(widget.handle) for widget in (slider, box) if widget is not None]
+    @property
+    def box_id(self) -> str:
+        """Id of the box in viser."""
+        return id_of(self._box.handle)

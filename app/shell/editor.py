@@ -24,11 +24,9 @@ _UNFINISHED_S = 1.2
 _PASSING_S = 0.25
 """The same for a slider, which may only pass a wrong value."""
 _BURST_OVER_S = 0.6
-"""After this long without an event the server's values are shown again: the browser drops some while several
-controls move at once."""
-_HAND_OFF_S = 2.0
-"""The same for the widget that was moved last: a step that its user makes just then would be counted from the
-value that is shown again, and be lost."""
+"""After this long without an event the server's values are shown again in the boxes: the browser drops some
+while several controls move at once. Where a slider has come to rest its page says itself (static/sliders.js):
+a value shown again would displace the steps that a busy page has not sent yet."""
 
 
 class Editor:
@@ -165,18 +163,6 @@ class Editor:
         with self._session.lock, self._client.atomic():
             if self._closed or self._quiet is not threading.current_thread():
                 return  # something has been moved again
-            for control in self._controls():
-                self._show_held(control.ids(but_moved=control is last))
-            self._quiet = timer(_HAND_OFF_S - _BURST_OVER_S, self._hand_off, last)
-            self._quiet.start()
+            boxes = [control.box_id for control in self._controls() if control is not last or self.by_slider]
+            show_held_values(self._client, boxes)
         self._client.flush()
-
-    def _hand_off(self, last: Control) -> None:
-        with self._session.lock, self._client.atomic():
-            if self._closed or last.removed or self._quiet is not threading.current_thread():
-                return
-            self._show_held(last.ids(but_box=True))
-        self._client.flush()
-
-    def _show_held(self, ids: Iterable[str]) -> None:
-        show_held_values(self._client, ids)

@@ -86,6 +86,35 @@ def test_of_two_hundred_steps_none_is_lost_and_everything_follows_at_rest(bench:
     assert "moves" not in bench.status
 
 
+# The page's thread has no time for three seconds; then come three steps before what the server has sent
+# meanwhile, and three after it.
+_BUSY = """async id => {
+  const thumb = document.getElementById(id).querySelector('[role=slider]');
+  const press = kind => thumb.dispatchEvent(
+    new KeyboardEvent(kind, {key: 'ArrowRight', code: 'ArrowRight', bubbles: true, cancelable: true}));
+  for (const end = performance.now() + 3000; performance.now() < end; );
+  for (let step = 1; step <= 6; step++) {
+    ['keydown', 'keyup'].forEach(press);
+    for (let turn = 0; turn < 100; turn++) await null; // React has taken it
+    if (step === 3) await new Promise(go => setTimeout(go, 300));
+  }
+}"""
+
+
+def test_steps_that_a_busy_page_takes_late_are_not_lost(bench: Bench) -> None:
+    bench.reset("sikuliaq-like", selected=2)
+    bench.tab("Frequency", "Errors", "Method")
+    bench.settle()
+    start = bench.value("zeta, exact")
+    bench.press("zeta")
+    step = bench.value("zeta, exact") - start
+    bench.page.evaluate(_BUSY, bench.id("zeta"))
+    bench.page.wait_for_timeout(1000)
+    bench.settle()
+    assert bench.value("zeta, exact") == pytest.approx(start + 7 * step)
+    assert edits.network_values(bench.session.scenario, 2)["zeta"] == pytest.approx(start + 7 * step)
+
+
 _INK = """width => {
   const wrap = Object.assign(document.createElement('div'), {className: 'u-wrap'});
   const plain = document.createElement('div');
