@@ -35,6 +35,7 @@ _SCRIPTS = (
     "marks",
     "page",
     "commands",
+    "front",
     "boxes",
     "access",
     "cursor",

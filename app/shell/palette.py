@@ -53,6 +53,8 @@ class Palette:
         add(REDO, lambda _: self._if(session.redo(), "Nothing to redo"), "Redo", ("Ctrl+Shift+Z", "Ctrl+Y"))
         add(RESET_ALL, lambda _: self._if(session.reset(None), "Nothing has been changed"), "Reset all")
         add(SHARE, lambda _: self._share(), "Share: a link that opens this state")
+        add("share-view", lambda _: self._share("link-view"), "Share this view: a link that opens these tabs")
+        add("no-tab", self._tell_no_tab, watcher=True)
         add(PRESENT, lambda _: self._present(), "Present: drive alone, others watch")
         add("run", lambda _: session.redo_run(), "Run again")
         add("stop", lambda _: session.cancel_run(), "Stop the run")
@@ -111,14 +113,27 @@ class Palette:
         if not done:
             notices.tell(self._client, otherwise, [], "info")
 
-    def _share(self) -> None:
+    def _share(self, what: str = "link") -> None:
         try:
             link = self._session.share()
         except OSError as error:
             why = f"{error.strerror or error}."
             notices.tell(self._client, "No link was made", [why[:1].upper() + why[1:]], "warning")
             return
-        self._commands.ask_page("link", link)
+        self._commands.ask_page(what, link)
+
+    def _tell_no_tab(self, names: str) -> None:
+        """Tell that the address names tabs that the page does not have (static/front.js)."""
+        titles = [kind.title for kind in self._frame.kinds if kind.title]
+        empty = {kind.title.lower(): kind.title for kind in self._frame.kinds if not kind.always}
+        lines = [
+            f"The tab {empty[name.lower()]} has nothing to show for this scenario."
+            if name.lower() in empty
+            else f"The address names the tab {name[:40]!r}, which this page does not have."
+            for name in names.split("|")[:5]
+        ]
+        lines.append(f"The tabs are: {', '.join(titles)}.")
+        notices.tell(self._client, "Not all tabs of the address are here", lines, "warning")
 
     def _present(self) -> None:
         if not self._lock.toggle():

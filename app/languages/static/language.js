@@ -59,7 +59,8 @@
       return english.get(text) ?? text;
     },
 
-    // The server builds the page anew in the other language; the session and the tabs in front stay.
+    // The server builds the page anew in the other language; the session and the tabs in front
+    // stay (app/shell/static/front.js).
     switchLanguage(wanted) {
       const next = ours(wanted);
       if (next === undefined || next === language) return;
@@ -105,16 +106,4 @@
       subtree: true, childList: true, characterData: true, attributeFilter: ATTRIBUTES,
     });
   }
-
-  const front = JSON.parse(sessionStorage.getItem(FRONT) ?? "[]");
-  sessionStorage.removeItem(FRONT);
-  let tries = 0;
-  const back = setInterval(() => {
-    const tabs = front.map((name) => window.schuler.tab?.(name));
-    const opened = document.documentElement.dataset.opened !== undefined;
-    if (++tries < 100 && (!opened || tabs.includes(undefined))) return;
-    clearInterval(back);
-    tabs.forEach((tab) => window.schuler.open?.(tab));
-  }, 100);
-  if (front.length === 0) clearInterval(back);
 })();

@@ -131,8 +131,14 @@
     dialog("Keys", element("p", "They act while no text box has the focus: Enter or Esc leaves one. Esc closes what is open."), table);
   }
 
-  function showLink(id) {
-    const link = new URL(`../${id}/`, location.origin + location.pathname).href;
+  // What brings the tabs to the front that are there now (front.js).
+  function tabsInFront() {
+    const front = [...document.querySelectorAll('[role="tab"][aria-selected="true"]')];
+    return `?tab=${front.map((tab) => encodeURIComponent(window.schuler.english(tab.textContent))).join()}`;
+  }
+
+  function showLink(id, query = "") {
+    const link = new URL(`../${id}/${query}`, location.origin + location.pathname).href;
     const input = element("input", "", { readonly: "", value: link, "aria-label": "Link to this state" });
     const copy = element("button", "Copy the link", { class: "sb-do" });
     const done = element("span", "", { role: "status" });
@@ -166,7 +172,15 @@
   // The tabs of who presents come to the front without taking the focus.
   const follow = (names) => names.split("|").forEach((name) => window.schuler.open(window.schuler.tab(name)));
 
-  const ACTIONS = { language: window.schuler.switchLanguage, tab: openTab, front: follow, upload, keys: showKeys, link: showLink };
+  const ACTIONS = {
+    language: window.schuler.switchLanguage,
+    tab: openTab,
+    front: follow,
+    upload,
+    keys: showKeys,
+    link: (id) => showLink(id),
+    "link-view": (id) => showLink(id, tabsInFront()),
+  };
   Object.assign(window.schuler, {
     element,
     dialog,
