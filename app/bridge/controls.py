@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import viser
+from viser import _gui_api as viser_gui
 from viser import _messages as messages
 
 _FREE, _GREYED = "_schuler_free", "_schuler_greyed"
@@ -160,6 +161,25 @@ def in_single(data: tuple[np.ndarray, ...]) -> tuple[np.ndarray, ...]:
 
 def _same(one: np.ndarray, other: np.ndarray) -> bool:
     return np.array_equal(one, other, equal_nan=True)
+
+
+def set_slider_range(
+    handle: Any, low: float, high: float, step: float, marks: tuple[tuple[float, str], ...]
+) -> None:
+    """Give a slider other ends; viser sets the marks below it, and its digits, only when it makes the slider.
+
+    Parameters
+    ----------
+    handle : viser.GuiSliderHandle
+        The slider.
+    low, high, step : float
+        In its positions.
+    marks : tuple of (float, str)
+        Position and text of what stands below it.
+    """
+    handle.min, handle.max, handle.step = low, high, step
+    handle.precision = viser_gui._compute_precision_digits_covering(handle.value, low, high, step)
+    handle._marks = tuple(messages.GuiSliderMark(at, text) for at, text in marks)
 
 
 def id_of(handle: Any) -> str:

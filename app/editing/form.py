@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import math
 import types
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from navcore.foundation.parameters import allowed_range, element_of, extra_of
+from navcore.foundation.parameters import allowed_range, bounds_of, element_of, extra_of
 
 Path = tuple[str | int, ...]
 Kind = Literal["number", "integer", "flag", "choice", "text", "roots", "numbers", "pairs"]
@@ -22,6 +22,9 @@ Kind = Literal["number", "integer", "flag", "choice", "text", "roots", "numbers"
 _AXES = {2: ("E", "N"), 3: ("x", "y", "z")}
 _SLIDER_STEPS = 200
 _SIGNIFICANT = 3
+_OUTSIDE = 1e-6
+"""Part of a slider's range by which a value may lie outside and still counts as its end: rounding."""
+_LEAST, _MOST = 1e-100, 1e100
 _LEFT_OUT = ("kind", "id", "file")
 """Discriminators, and files: a visitor must name none of the server's."""
 
@@ -56,6 +59,34 @@ class Slider:
         low, high = self.ends
         step = round_step((high - low) / _SLIDER_STEPS)
         return max(step, 1.0) if self.whole and not self.log else step
+
+    def reaching(self, value: float, allowed: tuple[float, float]) -> Slider:
+        """Slider whose range holds a value: this one, or a wider one that ends at 1, 2 or 5 times 10^n.
+
+        Parameters
+        ----------
+        value : float
+            To be shown. Nothing changes for a value that a logarithmic slider cannot show (0 and below), or
+            whose size nobody means (below 1e-100, above 1e100).
+        allowed : (float, float)
+            Least and largest value of the field: the range does not grow beyond them.
+
+        Examples
+        --------
+        >>> Slider(0.0, 1.0, False).reaching(3.4, (0.0, 100.0)).high
+        5.0
+        >>> Slider(1e-3, 1.0, True).reaching(4e-5, (0.0, 1.0)).low
+        2e-05
+        """
+        ends = self.ends
+        if (self.log and value <= 0.0) or (value != 0.0 and not _LEAST <= abs(value) <= _MOST):
+            return self
+        at, slack = (math.log10(value) if self.log else value), _OUTSIDE * (ends[1] - ends[0])
+        if at > ends[1] + slack:
+            return replace(self, high=max(value, min(_round_away(value, up=True), allowed[1])))
+        if at < ends[0] - slack:
+            return replace(self, low=min(value, max(_round_away(value, up=False), allowed[0])))
+        return self
 
     def position(self, value: float) -> float:
         """Nearest position to a value; values beyond the ends stand at the end."""
@@ -103,7 +134,9 @@ class FieldSpec:
     choices : tuple of str
         Allowed values of a "choice".
     slider : Slider or None
-        Range of the slider.
+        Range of the slider, which grows when a value lies outside it.
+    allowed : (float, float)
+        Least and largest value of a number.
     """
 
     path: Path
@@ -113,6 +146,7 @@ class FieldSpec:
     default: Any
     choices: tuple[str, ...] = ()
     slider: Slider | None = None
+    allowed: tuple[float, float] = (-math.inf, math.inf)
 
 
 def round_step(width: float) -> float:
@@ -127,6 +161,24 @@ def round_step(width: float) -> float:
     mantissa = width / 10.0**power
     factor = next(f for f in (5, 2, 1) if mantissa >= f - 1e-9)
     return float(f"{factor}e{power}")
+
+
+def _round_away(value: float, *, up: bool) -> float:
+    """Nearest of 0 and of 1, 2, 5 times a power of ten, of either sign: from a value upwards or downwards.
+
+    Examples
+    --------
+    >>> _round_away(3.4, up=True), _round_away(3.4, up=False), _round_away(-12.0, up=False)
+    (5.0, 2.0, -20.0)
+    """
+    size = abs(value)
+    if size == 0.0:
+        return 0.0
+    if up != (value > 0.0):
+        return math.copysign(round_step(size), value)
+    power = math.floor(math.log10(size))
+    larger = (float(f"{factor}e{power}") for factor in (1, 2, 5, 10))
+    return math.copysign(next(number for number in larger if number >= size * (1.0 - 1e-9)), value)
 
 
 def significant(value: float, digits: int) -> float:
@@ -187,7 +239,7 @@ def _field(name: str, info: FieldInfo, path: Path, prefix: str) -> list[FieldSpe
     if annotation in (int, float):
         kind: Kind = "integer" if annotation is int else "number"
         hint = _hint(info, allowed_range(info))
-        return [FieldSpec(path, label, hint, kind, info.default, slider=_slider(info))]
+        return [FieldSpec(path, label, hint, kind, info.default, (), _slider(info), bounds_of(info))]
     if annotation is str:
         return [FieldSpec(path, label, _hint(info, ""), "text", info.default)]
     return _sequence(info, annotation, path, prefix, label, name)
@@ -222,6 +274,7 @@ def _sequence(
             "number",
             info.default[i],
             slider=_slider(info),
+            allowed=(-math.inf, math.inf) if element is None else bounds_of(element),
         )
         for i, part in enumerate(names)
     ]

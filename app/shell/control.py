@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from app.bridge.controls import id_of
+from app.bridge.controls import id_of, set_slider_range
 from app.editing import form
-from app.editing.form import FieldSpec
+from app.editing.form import FieldSpec, Slider
 from app.shell import notices
 from app.shell.widget import Widget
 
@@ -47,6 +47,7 @@ class Control:
     def __init__(self, gui: viser.GuiApi, spec: FieldSpec, edit: Edit, order: float, value: Any) -> None:
         self.spec = spec
         self.value = value
+        self._range = spec.slider
         self._slider: Widget | None = None
         self._slider_moved = False
         self._shown: Any = _UNKNOWN
@@ -85,15 +86,22 @@ class Control:
 
     def _make_slider(self, gui: viser.GuiApi, order: float, value: Any) -> str:
         """Make the slider, if the field has one; return the label of the box beside it."""
-        spec, slider = self.spec, self.spec.slider
-        if slider is None:
+        spec = self.spec
+        if spec.slider is None:
             return spec.label
-        low, high = slider.ends
-        marks = ((low, f"{slider.low:g}"), (high, f"{slider.high:g}"))
-        position = slider.position(0.0 if value is None else float(value))
+        shown = 0.0 if value is None else float(value)
+        self._range = slider = spec.slider.reaching(shown, spec.allowed)
+        (low, high), position = slider.ends, slider.position(shown)
         self._slider = Widget(
             gui.add_slider(
-                spec.label, low, high, slider.step, position, marks=marks, hint=spec.hint or None, order=order
+                spec.label,
+                low,
+                high,
+                slider.step,
+                position,
+                marks=_marks(slider),
+                hint=spec.hint or None,
+                order=order,
             )
         )
         return spec.label + EXACT
@@ -131,8 +139,8 @@ class Control:
     def take(self, by_slider: bool) -> Any:
         """What the user has given: a number, a choice, or text as typed."""
         self._slider_moved, self._shown = by_slider, _UNKNOWN
-        if by_slider and self._slider is not None and self.spec.slider is not None:
-            return self.spec.slider.value(self._slider.take())
+        if by_slider and self._slider is not None and self._range is not None:
+            return self._range.value(self._slider.take())
         return self._box.take()
 
     def follow(self, value: Any) -> None:
@@ -144,8 +152,14 @@ class Control:
             self._show_on_slider(value)
 
     def _show_on_slider(self, value: Any) -> None:
-        if self._slider is not None and self.spec.slider is not None:
-            self._slider.show(self.spec.slider.position(value))
+        """Show a value that did not come from the slider; the range grows where it must hold the value."""
+        if self._slider is None or self.spec.slider is None or self._slider.awaited:
+            return
+        slider = self.spec.slider.reaching(float(value), self.spec.allowed)
+        if slider != self._range:
+            self._range = slider
+            set_slider_range(self._slider.handle, *slider.ends, slider.step, _marks(slider))
+        self._slider.show(slider.position(value))
 
     def _as_shown(self, value: Any) -> Any:
         if self.spec.kind == "number":
@@ -200,3 +214,9 @@ class Control:
     def box_id(self) -> str:
         """Id of the box in viser."""
         return id_of(self._box.handle)
+
+
+def _marks(slider: Slider) -> tuple[tuple[float, str], tuple[float, str]]:
+    """Numbers below a slider's ends."""
+    low, high = slider.ends
+    return (low, f"{slider.low:g}"), (high, f"{slider.high:g}")

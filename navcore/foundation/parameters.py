@@ -6,6 +6,7 @@ descriptions and the error messages their allowed ranges from the same declarati
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, get_args, get_origin
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
@@ -175,6 +176,21 @@ def allowed_range(info: FieldInfo) -> str:
     ]
     unit = extra_of(info).get("unit", "")
     return ("must be " + " and ".join(parts) + (f" ({unit})" if unit else "")) if parts else ""
+
+
+def bounds_of(info: FieldInfo) -> tuple[float, float]:
+    """Least and largest number that a field takes; -inf and inf where it is open.
+
+    An excluded bound gives the number next to it.
+    """
+    least, most = -math.inf, math.inf
+    for rule in info.metadata:
+        gt, ge, lt, le = (getattr(rule, name, None) for name in ("gt", "ge", "lt", "le"))
+        least = least if ge is None else max(least, ge)
+        least = least if gt is None else max(least, math.nextafter(gt, math.inf))
+        most = most if le is None else min(most, le)
+        most = most if lt is None else min(most, math.nextafter(lt, -math.inf))
+    return least, most
 
 
 def extra_of(info: FieldInfo) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import subprocess
 import sys
 import time
@@ -362,4 +363,29 @@ def test_a_unit_is_typed_a_wheel_steps_and_a_double_click_resets(fresh: Bench, s
     page.locator("label", has_text=label).first.dblclick()
     fresh.wait_until(lambda: session.scenario.run.duration_h == before)
     fresh.settle()
+    assert fresh.faults == []
+
+
+def test_a_slider_grows_for_a_value_outside_its_range_and_goes_back(fresh: Bench, session: Session) -> None:
+    sigma, exact = "sigma (1/s)", "sigma (1/s), exact"
+
+    def stands(low: float, high: float, value: float) -> None:
+        """The slider has these ends and this value, and its marks say so; the box holds the value."""
+        fresh.settle()
+        slider = fresh.slider(sigma)
+        for name, number in (("min", low), ("max", high), ("now", value)):
+            found = float(slider.get_attribute(f"aria-value{name}") or "nan")
+            assert found == pytest.approx(math.log10(number), abs=1e-3), (name, found)
+        marks = fresh.page.locator(f"[id='{fresh.id(sigma)}'] .mantine-Slider-markLabel").all_inner_texts()
+        assert [float(mark) for mark in marks] == [low, high]
+        assert fresh.value(exact) == pytest.approx(value, rel=1e-6)
+
+    stands(5e-4, 0.2, 0.0088)
+    fresh.type(exact, "0.4")
+    stands(5e-4, 0.5, 0.4)
+    fresh.press(sigma)  # the server takes what lies beyond the old end
+    assert 0.4 < session.scenario.method[2].network.values(session.scenario.omega_s)["sigma"] < 0.5
+    for value, low in ((0.0088, 5e-4), (4e-5, 2e-5)):
+        fresh.put(edits.with_value(session.scenario, ("method", 2, "network", "sigma"), value), selected=2)
+        stands(low, 0.2, value)
     assert fresh.faults == []

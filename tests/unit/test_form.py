@@ -126,6 +126,35 @@ def test_values_beyond_a_slider_stand_at_its_end() -> None:
     assert slider.position(0.0) == slider.position(-3.0) == slider.position(1e-3)
 
 
+SLIDER_FIELDS = [f for model in BLOCKS for f in form.fields(model, ("x",)) if f.slider is not None]
+
+
+@given(st.sampled_from(SLIDER_FIELDS), st.data())
+def test_a_slider_grows_to_hold_every_allowed_value_and_no_farther_than_allowed(
+    field: form.FieldSpec, data: st.DataObject
+) -> None:
+    slider, (least, most) = field.slider, field.allowed
+    assert slider is not None and least <= slider.low < slider.high <= most
+    value = data.draw(st.floats(max(least, -1e12), min(most, 1e12)))
+    grown = slider.reaching(value, field.allowed)
+    assert least <= grown.low <= slider.low and slider.high <= grown.high <= most
+    if (slider.log and value <= 0.0) or 0.0 < abs(value) < 1e-100:
+        assert grown == slider
+        return
+    low, high = grown.ends
+    assert low < high and low <= grown.position(value) <= high
+    span = high - low
+    shown = 10.0 ** grown.position(value) if slider.log else grown.position(value)
+    assert math.isclose(shown, value, rel_tol=1e-5 * max(span, 1.0), abs_tol=1e-5 * span)
+
+
+def test_a_slider_stays_as_it_is_for_values_inside() -> None:
+    slider = Slider(0.0, 1.0, False)
+    assert slider.reaching(1.0 + 1e-9, (0.0, 10.0)) is slider
+    assert slider.reaching(7.0, (0.0, 9.0)).high == 9.0
+    assert slider.reaching(-0.3, (-1.0, 9.0)).low == -0.5
+
+
 @given(st.floats(1e-9, 1e9), st.integers(1, 9))
 def test_significant_keeps_the_digits_asked_for(value: float, digits: int) -> None:
     rounded = form.significant(value, digits)
