@@ -88,10 +88,11 @@ class Dashboard:
     def metrics(self) -> Metrics:
         """What the server is doing, for ``/metrics``."""
         from app.http.metrics import Metrics
+        from app.jobs.elsewhere import cluster_figures
         from app.jobs.scheduler import scheduler
 
         made = Metrics()
-        made.sources += [lambda: scheduler().figures(), self._figures]
+        made.sources += [lambda: scheduler().figures(), cluster_figures, self._figures]
         return made
 
     def _figures(self) -> dict[str, float]:
@@ -235,6 +236,7 @@ def serve(
     allow_origins: Iterable[str] = (),
     show_token: bool = False,
     open_browser: bool = False,
+    cluster: str | None = None,
 ) -> None:
     """Serve the dashboard until SIGINT or SIGTERM.
 
@@ -246,18 +248,24 @@ def serve(
         Print the address with the token in it, once: it was generated, and nobody knows it yet.
     open_browser : bool
         Open the page in the user's browser.
+    cluster : str or None
+        Address of the scheduler of a Dask cluster that computes heavy jobs.
 
     Raises
     ------
     InputError
-        The address cannot be served.
+        The address cannot be served; that of the cluster is none, or the extra it needs is not installed.
     """
+    from app.jobs.cluster import check_address
+    from app.jobs.elsewhere import leave_cluster, use_cluster
     from app.session.store import default_folder
 
     begin_logging()
+    check_address(cluster)
     bound_arenas()
     state = default_folder()
     server, dashboard = open_dashboard(host, port, token=token, allow_origins=allow_origins, state=state)
+    use_cluster(cluster)
     link = link_with(server.url, token)
     print(f"Schuler Bench: {link if show_token else server.url}  (Ctrl+C ends it)", flush=True)
     if open_browser:
@@ -266,4 +274,5 @@ def serve(
         address = link
         threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
     server.wait()
+    leave_cluster()
     dashboard.close()

@@ -21,6 +21,8 @@ from typing import TYPE_CHECKING
 from app.http.access import access_rules
 from app.http.address import authority, is_loopback, listen, parse_origins
 from app.http.limits import Limits
+from app.jobs.cluster import check_address
+from app.jobs.elsewhere import leave_cluster, use_cluster
 from app.jobs.scheduler import WORKERS
 from app.logs import begin_logging
 from app.memory import bound_arenas
@@ -58,6 +60,8 @@ class Settings:
         As of `app.http.server.start`.
     workers : int
         How many share the places.
+    cluster : str or None
+        See `app.serve.serve`.
     """
 
     host: str
@@ -67,6 +71,7 @@ class Settings:
     token: str | None
     origins: list[str]
     workers: int
+    cluster: str | None = None
 
 
 class Crew:
@@ -144,6 +149,7 @@ def serve_with_workers(
     token: str | None = None,
     show_token: bool = False,
     allow_origins: Iterable[str] = (),
+    cluster: str | None = None,
 ) -> None:
     """Serve until SIGINT or SIGTERM, with ``count`` processes behind one door.
 
@@ -153,7 +159,7 @@ def serve_with_workers(
         See `app.http.server.start`.
     count : int
         Of workers.
-    show_token : bool
+    show_token, cluster
         See `app.serve.serve`.
 
     Raises
@@ -171,12 +177,13 @@ def serve_with_workers(
     if os.name != "posix":
         raise InputError([Fault("serve", "--workers", count, "is for Linux and macOS")])
     origins = parse_origins(allow_origins)
+    check_address(cluster)
     with ExitStack() as held:
         listener = held.enter_context(listen(host, port))
         bound, loopback = listener.getsockname()[1], is_loopback(listener)
         access_rules(host, bound, loopback=loopback, token=token, origins=origins)
         held.enter_context(_claimed_folder(count))
-        crew = Crew(count, Settings(host, bound, loopback, -1, token, sorted(origins), count))
+        crew = Crew(count, Settings(host, bound, loopback, -1, token, sorted(origins), count, cluster))
         held.callback(crew.stop)
         shown = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
         url = f"http://{authority(shown, bound)}/"
@@ -231,12 +238,15 @@ def work() -> None:
         limits=Limits(visitors=max(_FEWEST_PLACES, _PLACES // settings.workers)),
     )
 
+    use_cluster(settings.cluster)
+
     def follow_door() -> None:
         sys.stdin.read()
         os.kill(os.getpid(), signal.SIGTERM)
 
     threading.Thread(target=follow_door, name="door", daemon=True).start()
     server.wait()
+    leave_cluster()
     dashboard.close()
 
 

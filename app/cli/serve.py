@@ -33,6 +33,9 @@ class ServeCommand:
     workers : int
         Processes behind one door, for many visitors: about one a core. Sessions stay with their worker; one
         that fails is started again.
+    cluster : str or None
+        Scheduler of a Dask cluster, tcp://HOST:PORT, that computes heavy jobs (verification, bands, budgets,
+        searches); also SCHULER_CLUSTER. Needs the extra: schuler-bench[cluster].
     open : bool
         Open the page in the browser.
     """
@@ -44,16 +47,19 @@ class ServeCommand:
     generate_token: bool = False
     allow_origin: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="URL")] = ()
     workers: Annotated[int, arg(metavar="N")] = 1
+    cluster: Annotated[str | None, arg(metavar="ADDRESS")] = None
     open: bool = False
 
     def execute(self) -> int:
         """Serve; 0 when asked to end."""
         from app.http.token import find_token
+        from app.jobs.elsewhere import CLUSTER
         from app.serve import serve
         from app.workers import serve_with_workers
 
         token = find_token(self.token, self.token_file, self.generate_token, os.environ)
         named = os.environ.get("SCHULER_ALLOW_ORIGIN", "").replace(",", " ").split()
+        cluster = self.cluster or os.environ.get(CLUSTER) or None
         if self.workers != 1:
             serve_with_workers(
                 self.host,
@@ -62,6 +68,7 @@ class ServeCommand:
                 token=token.value,
                 show_token=token.generated,
                 allow_origins=(*self.allow_origin, *named),
+                cluster=cluster,
             )
             return 0
         serve(
@@ -70,6 +77,7 @@ class ServeCommand:
             token=token.value,
             show_token=token.generated,
             allow_origins=(*self.allow_origin, *named),
+            cluster=cluster,
             open_browser=self.open,
         )
         return 0

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.jobs.load import spare_load
+from app.jobs.load import heavy_load
 from app.jobs.search import Search
 from navcore.scenario.model import Scenario
 
@@ -28,7 +28,7 @@ class Budgeter(Search[Scenario, "Budget"]):
     """
 
     def __init__(self, tell: Callable[[], None], name: str = "budgeter") -> None:
-        super().__init__(tell, _budget, lambda found: True, "Stopped: no budget.", name, spare_load)
+        super().__init__(tell, _budget, lambda found: True, "Stopped: no budget.", name, heavy_load)
 
     def beside(self, scenario: Scenario) -> Budget | None:
         """Budget of exactly this scenario; None when there is none."""
@@ -75,7 +75,7 @@ class Designer(Search[TuningTask, "Tuned"]):
             lambda found: True,
             "Stopped: there is no proposal.",
             name,
-            lambda task: spare_load(task.scenario),
+            lambda task: heavy_load(task.scenario),
         )
 
     def discard(self) -> None:
@@ -135,7 +135,7 @@ class Fronts(Search[FrontsTask, "Pareto"]):
             lambda found: not found.stopped,
             "Stopped: no fronts were found.",
             name,
-            lambda task: spare_load(task.scenario),
+            lambda task: heavy_load(task.scenario),
         )
 
 

@@ -7,10 +7,12 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from app.jobs.load import spare_load
+from app.jobs.elsewhere import LOST, carried_out, carried_out_all
+from app.jobs.load import heavy_load
 from app.jobs.rows import few_rows
+from app.jobs.scheduler import Lane
 from app.jobs.words import for_a_page
-from app.jobs.worker import Watch, Worker
+from app.jobs.worker import ElsewhereLost, Watch, Worker
 from app.plots.envelope import BandKind, Envelope, covariance_envelope, envelope
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
@@ -51,7 +53,7 @@ class Envelopes:
     fraction : float or None
         Part that is done while one is under way.
     words : str
-        Why there is none; empty otherwise.
+        Why there is none, or what is to be known while one is under way; empty otherwise.
     """
 
     def __init__(
@@ -65,7 +67,7 @@ class Envelopes:
         self._simulate, self._came_further, self._ended = simulate, came_further, ended
         self._lock = threading.Lock()
         self._worker: Worker[_Asked] = Worker(
-            self._work, visitor=visitor, load=lambda asked: spare_load(asked.scenario), still_s=still_s
+            self._work, visitor=visitor, load=lambda asked: heavy_load(asked.scenario), still_s=still_s
         )
         self._found: _Found | None = None
         self.fraction: float | None = None
@@ -116,6 +118,11 @@ class Envelopes:
     def _work(self, asked: _Asked, watch: Watch) -> None:
         try:
             made = self._over_seeds(asked, watch) if asked.kind == "seeds" else self._covariance(asked, watch)
+        except ElsewhereLost:
+            with self._lock:
+                self.fraction, self.words = 0.0, LOST
+            self._came_further()
+            raise
         except InputError as error:
             self._give_up(str(for_a_page(error).faults[0]))
             return
@@ -126,23 +133,30 @@ class Envelopes:
         if made is None:
             return
         with self._lock:
-            self.fraction, self._found = None, _Found(asked, made)
+            self.fraction, self.words, self._found = None, "", _Found(asked, made)
         self._ended()
 
     def _over_seeds(self, asked: _Asked, watch: Watch) -> Envelope | None:
-        scenario, runs = asked.scenario, []
-        for number in range(1, SEEDS + 1):
-            run = self._simulate(with_seed(scenario, scenario.run.seed + number), _silent, watch.unwanted)
-            if watch.unwanted() or run.status == "stopped":
-                return None
-            runs.append(few_rows(run, 2))
-            self._tell(number / SEEDS)
+        scenario = asked.scenario
+        seeds = [with_seed(scenario, scenario.run.seed + number) for number in range(1, SEEDS + 1)]
+        # On a cluster all of them side by side; here each takes over what the last one had in common with it.
+        one = _of_a_seed if watch.lane is Lane.CLUSTER else self._of_a_seed
+        runs = carried_out_all(one, seeds, self._tell, watch)
+        if runs is None or watch.unwanted() or any(run.status == "stopped" for run in runs):
+            return None
         return envelope(runs)
+
+    def _of_a_seed(
+        self, scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]
+    ) -> Run:
+        found = few_rows(self._simulate(scenario, _silent, cancelled), 2)
+        progress(1.0)
+        return found
 
     def _covariance(self, asked: _Asked, watch: Watch) -> Envelope | None:
         from navcore.design.bands import covariance_bands
 
-        found = covariance_bands(asked.scenario, self._tell, watch.unwanted)
+        found = carried_out(covariance_bands, asked.scenario, self._tell, watch)
         return None if found is None or watch.unwanted() else covariance_envelope(asked.scenario, found)
 
     def _tell(self, fraction: float) -> None:
@@ -154,6 +168,13 @@ class Envelopes:
         with self._lock:
             self.fraction, self.words = None, words
         self._came_further()
+
+
+def _of_a_seed(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Run:
+    """What a run with another seed needs for the bands; found by its name on a cluster."""
+    from navcore.engine.simulation import simulate
+
+    return few_rows(simulate(scenario, progress, cancelled), 2)
 
 
 def _alike(one: Scenario, other: Scenario) -> bool:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from app.jobs.elsewhere import cluster
 from app.jobs.scheduler import GIB, Lane, Load, largest_run_bytes
 from navcore.engine.load import estimated_bytes, estimated_seconds
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.units import HOUR
+from navcore.scenario.file import names_files
 from navcore.scenario.model import Scenario
 
 LONG_S = 0.6
@@ -24,6 +26,17 @@ def run_load(scenario: Scenario) -> Load:
 def spare_load(scenario: Scenario) -> Load:
     """Load of work on a scenario that nobody waits for."""
     return Load(Lane.SPARE, estimated_bytes(scenario))
+
+
+def heavy_load(scenario: Scenario) -> Load:
+    """Load of heavy work on a scenario, which a cluster does if there is one that can.
+
+    A scenario that names files is computed where they lie.
+    """
+    there = cluster()
+    if there is None or not there.ready or names_files(scenario):
+        return spare_load(scenario)
+    return Load(Lane.CLUSTER)
 
 
 def refuse_too_large(scenario: Scenario) -> None:

@@ -1,11 +1,14 @@
 """Whose turn it is: one scheduler for everything that is computed for the visitors of this process.
 
-Three lanes. *Answers* are the short runs that follow a control: one a core, the visitors in turn. *Long* runs
-are those that are estimated to take a while: one a core but for one core, and they stand still while answers
-want the cores. *Spare* work (what dominates a run, envelopes, verification, searches, pins after a restart)
-goes on only while nothing else does. A job stands still where it asks whether it is cancelled; so that none
-stands still for ever under lasting load, each gets a short turn after a while all the same. All jobs together
-are admitted by their estimated memory.
+Three lanes for what is computed here. *Answers* are the short runs that follow a control: one a core, the
+visitors in turn. *Long* runs are those that are estimated to take a while: one a core but for one core, and
+they stand still while answers want the cores. *Spare* work (what dominates a run, envelopes, verification,
+searches, pins after a restart) goes on only while nothing else does. A job stands still where it asks
+whether it is cancelled; so that none stands still for ever under lasting load, each gets a short turn after a
+while all the same. All jobs together are admitted by their estimated memory.
+
+A fourth lane is for heavy jobs that a Dask cluster computes (`app.jobs.cluster`): they take turns among
+themselves, and neither cores nor memory of this machine.
 """
 
 from __future__ import annotations
@@ -27,6 +30,8 @@ _PATIENCE_S = {"long": 0.8, "spare": 2.0}
 """So long one stands still at most before it gets a turn."""
 _LOOK_S = 0.05
 _MOST_REMEMBERED = 4096
+_MOST_ON_CLUSTER = 8
+"""Jobs sent to a cluster at once; each may be of several parts."""
 _ABOUT_S, _LONGEST_PAUSE_S = 3.0, 0.3
 """So long after an answer a visitor counts as about; no pause is longer than that."""
 
@@ -37,6 +42,7 @@ class Lane(Enum):
     ANSWER = "answer"
     LONG = "long"
     SPARE = "spare"
+    CLUSTER = "cluster"
 
 
 @dataclass(frozen=True)
@@ -122,6 +128,8 @@ class Scheduler:
 
     def _most(self, lane: Lane) -> int:
         """Jobs of a lane at once; where nobody waits for it at every step, a core stays free for answers."""
+        if lane is Lane.CLUSTER:
+            return _MOST_ON_CLUSTER
         return self.cores if lane is Lane.ANSWER else max(1, self.cores - 1)
 
     def take_back(self, ticket: Ticket) -> bool:
@@ -143,7 +151,7 @@ class Scheduler:
             Whether the job is to end anyway.
         """
         lane = ticket.load.lane
-        if lane is Lane.ANSWER:
+        if lane in (Lane.ANSWER, Lane.CLUSTER):
             return
         with self._changed:
             began_s = time.monotonic()
@@ -170,22 +178,24 @@ class Scheduler:
 
     def _must_wait(self, ticket: Ticket) -> bool:
         mine = ticket.load.lane
-        if any(t.load.lane is Lane.ANSWER or mine is Lane.SPARE is not t.load.lane for t in self._waiting):
+        waiting, running = _here(self._waiting), _here(self._running)
+        if any(t.load.lane is Lane.ANSWER or mine is Lane.SPARE is not t.load.lane for t in waiting):
             return True
-        active = [t for t in self._running if not t._still and t is not ticket]
+        active = [t for t in running if not t._still and t is not ticket]
         if mine is Lane.SPARE:
             return any(t.load.lane is not Lane.SPARE for t in active)
         return sum(t.load.lane is not Lane.SPARE for t in active) >= self.cores
 
     def _next(self, lane: Lane) -> Ticket | None:
         now_s = time.monotonic()
-        held = sum(t.load.bytes for t in self._running)
+        running = _here(self._running)
+        held = sum(t.load.bytes for t in running)
         free = [
             t
             for t in self._waiting
             if t.load.lane is lane
             and self._due_s(t) <= now_s
-            and (not self._running or held + t.load.bytes <= self.memory_bytes)
+            and (not running or held + t.load.bytes <= self.memory_bytes)
         ]
         if not free or (lane is Lane.SPARE and self._must_wait(free[0])):
             return None
@@ -238,6 +248,11 @@ class Scheduler:
             return None
         left_s = min(dues) - time.monotonic()
         return left_s if left_s > 0.0 else _LOOK_S
+
+
+def _here(tickets: list[Ticket]) -> list[Ticket]:
+    """Those that take cores and memory of this machine."""
+    return [t for t in tickets if t.load.lane is not Lane.CLUSTER]
 
 
 def memory_of_machine() -> float:

@@ -7,9 +7,10 @@ import threading
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
+from app.jobs.elsewhere import LOST, carried_out
 from app.jobs.scheduler import Load
 from app.jobs.words import for_a_page
-from app.jobs.worker import Watch, Worker
+from app.jobs.worker import ElsewhereLost, Watch, Worker
 from navcore.foundation.errors import InputError
 
 Asked = TypeVar("Asked")
@@ -26,7 +27,8 @@ class Search(Generic[Asked, Found]):
     tell : callable
         ``tell()`` whenever there is something new to show, from the thread that computes.
     compute : callable
-        ``compute(asked, progress, cancelled)``; raises `InputError` when it is refused.
+        ``compute(asked, progress, cancelled)``; raises `InputError` when it is refused. On a cluster it is
+        found by its name.
     complete : callable
         ``complete(found)``: it came to its end; else it was stopped.
     stopped : str
@@ -45,7 +47,7 @@ class Search(Generic[Asked, Found]):
     asked
         What that is of.
     words : tuple of str
-        Why there is no newer result: stopped, refused, failed.
+        Why there is no newer result: stopped, refused, failed. While one is under way: what is to be known.
     """
 
     def __init__(
@@ -112,7 +114,13 @@ class Search(Generic[Asked, Found]):
 
         found, words = None, ()
         try:
-            found = self._compute(asked, progress, watch.unwanted)
+            found = carried_out(self._compute, asked, progress, watch)
+        except ElsewhereLost:
+            with self._lock:
+                if self._under_way is asked:
+                    self.fraction, self.words = 0.0, (LOST,)
+            self._tell()
+            raise
         except InputError as error:
             words = tuple(str(fault) for fault in for_a_page(error).faults)
         except Exception as error:

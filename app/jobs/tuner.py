@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from app.jobs.load import spare_load
+from app.jobs.load import heavy_load
 from app.jobs.search import Search
 from navcore.scenario.model import Scenario
 
@@ -34,14 +34,13 @@ class Tuner(Search[tuple[Scenario, "TuningSettings"], "Tuning"]):
     """
 
     def __init__(self, tell: Callable[[], None], tune: Tune | None = None, name: str = "tuner") -> None:
-        self._tune = tune or _tune
         super().__init__(
             tell,
-            lambda asked, *watch: self._tune(*asked, *watch),
+            _tune if tune is None else lambda asked, *watch: tune(*asked, *watch),
             lambda found: found.status == "ok",
             STOPPED,
             name,
-            lambda asked: spare_load(asked[0]),
+            lambda asked: heavy_load(asked[0]),
         )
 
     @property
@@ -55,11 +54,10 @@ class Tuner(Search[tuple[Scenario, "TuningSettings"], "Tuning"]):
 
 
 def _tune(
-    scenario: Scenario,
-    settings: TuningSettings,
+    asked: tuple[Scenario, TuningSettings],
     progress: Callable[[float], None],
     cancelled: Callable[[], bool],
 ) -> Tuning:
     from navcore.studies.tuning import tune
 
-    return tune(scenario, settings, progress, cancelled)
+    return tune(*asked, progress, cancelled)

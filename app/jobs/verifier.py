@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.jobs.load import spare_load
+from app.jobs.load import heavy_load
 from app.jobs.search import Search
 from navcore.scenario.model import Scenario
 
@@ -51,14 +51,13 @@ class Verifier(Search[Scenario, "Verification"]):
     def __init__(
         self, tell: Callable[[], None], verify: Verify | None = None, name: str = "verifier"
     ) -> None:
-        self._verify = verify or _verify
         super().__init__(
             tell,
-            lambda scenario, *watch: self._verify(scenario, *watch),
+            verify or _verify,
             lambda found: found.complete,
             STOPPED,
             name,
-            spare_load,
+            heavy_load,
         )
 
     @property

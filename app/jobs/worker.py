@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-from app.jobs.scheduler import Load, Scheduler, Ticket, scheduler
+from app.jobs.scheduler import Lane, Load, Scheduler, Ticket, scheduler
 from navcore.foundation.stage_cache import working_for
 
 Job = TypeVar("Job")
@@ -20,6 +20,10 @@ than runs end, and cancelling each of them would show nothing until the drag end
 _log = logging.getLogger("schuler.worker")
 
 
+class ElsewhereLost(Exception):
+    """A job that was sent elsewhere was not done there: it stands in line again, for this machine."""
+
+
 class Watch:
     """What a running job asks: whether to stop, and how long it has run.
 
@@ -29,13 +33,17 @@ class Watch:
         Whether a newer job waits.
     give_way : callable, optional
         ``give_way(ended)`` stands still while more urgent jobs want the cores.
+    lane : Lane
+        In which the job was let on.
     """
 
     def __init__(
         self,
         newer_waits: Callable[[], bool],
         give_way: Callable[[Callable[[], bool]], None] = lambda _: None,
+        lane: Lane = Lane.ANSWER,
     ) -> None:
+        self.lane = lane
         self.began = self.asked_s = time.monotonic()
         self.stop_asked = threading.Event()
         self._newer_waits, self._give_way = newer_waits, give_way
@@ -69,7 +77,7 @@ class Worker(Generic[Job]):
     Parameters
     ----------
     work : callable
-        ``work(job, watch)``; polls ``watch.cancelled()``.
+        ``work(job, watch)``; polls ``watch.cancelled()``; raises `ElsewhereLost` to be called once more.
     visitor : object, optional
         Whose jobs these are: visitors take turns. By default the worker is a visitor of its own.
     load : callable, optional
@@ -156,12 +164,18 @@ class Worker(Generic[Job]):
             self._ticket = None
             job = self._slot.pop()
             self._watch = watch = Watch(
-                lambda: bool(self._slot), lambda ended: self._turns.give_way(ticket, ended)
+                lambda: bool(self._slot),
+                lambda ended: self._turns.give_way(ticket, ended),
+                ticket.load.lane,
             )
             watch.asked_s = self._asked_s
         try:
             with working_for(self._visitor):
                 self._work(job, watch)
+        except ElsewhereLost:
+            with self._changed:
+                if not self._slot and not self._stopped and not watch.stop_asked.is_set():
+                    self._slot = [job]
         except Exception:  # the thread must outlive any fault of a job; jobs report their own
             _log.exception("a job failed")
         finally:

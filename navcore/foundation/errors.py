@@ -73,6 +73,10 @@ class InputError(ValueError):
         self.faults: tuple[Fault, ...] = (faults,) if isinstance(faults, Fault) else tuple(faults)
         super().__init__("\n".join(str(fault) for fault in self.faults))
 
+    def __reduce__(self) -> tuple[type[InputError], tuple[tuple[Fault, ...]]]:
+        """Keep the faults when it goes from one process to another."""
+        return InputError, (self.faults,)
+
     def located(self, where: str, prefix: str = "") -> InputError:
         """Return the same error with the place filled in where it is still unknown.
 

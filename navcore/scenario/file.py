@@ -219,6 +219,11 @@ _LONGEST_KEPT = 8192
 _kept_as_toml = lru_cache(maxsize=512)(_as_toml)
 
 
+def names_files(scenario: Scenario) -> bool:
+    """Whether a scenario runs on recordings, which lie in files."""
+    return any(getattr(getattr(scenario, block), field, None) for block, field in _FILE_FIELDS)
+
+
 def scenario_hash(scenario: Scenario) -> str:
     """SHA-256 of the canonical scenario; a file counts by its name and content, not by its folder."""
     data = scenario.canonical()

@@ -74,7 +74,7 @@ def test_a_table_is_found_and_taken_over_as_one_step(adaptive: Bench) -> None:
 def test_a_search_is_stopped(adaptive: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     begun = threading.Event()
 
-    def endless(scenario: Any, settings: Any, progress: Any, cancelled: Any) -> Any:
+    def endless(asked: Any, progress: Any, cancelled: Any) -> Any:
         begun.set()
         while not cancelled():
             progress(0.25)
@@ -82,7 +82,7 @@ def test_a_search_is_stopped(adaptive: Bench, monkeypatch: pytest.MonkeyPatch) -
         raise AssertionError("its result is not asked for")
 
     tuner = adaptive.session.searches.tuner
-    monkeypatch.setattr(tuner, "_tune", endless)
+    monkeypatch.setattr(tuner, "_compute", endless)
     adaptive.page.get_by_role("button", name=FIND).click()
     assert begun.wait(10.0)
     stop = adaptive.page.get_by_role("button", name=STOP)

@@ -76,7 +76,7 @@ def test_a_verification_is_stopped(short: Bench, monkeypatch: pytest.MonkeyPatch
         raise AssertionError("its result is not asked for")
 
     verifier = short.session.verifier
-    monkeypatch.setattr(verifier, "_verify", endless)
+    monkeypatch.setattr(verifier, "_compute", endless)
     short.page.get_by_role("button", name=VERIFY).click()
     assert begun.wait(10.0)
     stop = short.page.get_by_role("button", name=STOP)

@@ -262,14 +262,15 @@ def test_locks_satisfy_what_the_project_asks_for(repo_root: Path, platform: tupl
 def test_what_is_imported_is_asked_for(repo_root: Path):
     """Nothing is used that only came along with another package."""
     project = tomllib.loads((repo_root / "pyproject.toml").read_text("utf-8"))
-    runtime = {Requirement(text).name for text in project["project"]["dependencies"]}
+    extra = project["project"]["optional-dependencies"]["cluster"]
+    runtime = {Requirement(text).name for text in (*project["project"]["dependencies"], *extra)}
     testing = runtime | {Requirement(text).name for text in project["dependency-groups"]["test"]}
     known = {*sys.stdlib_module_names, "app", "benchmarks", "docs", "navcore", "tests"}
     providers = packages_distributions()
     for packages, asked in ((("app", "benchmarks", "navcore", "examples"), runtime), (("tests",), testing)):
         for path in modules(repo_root, *packages):
             for name in set(imported(ast.parse(path.read_text("utf-8")))) - known:
-                assert asked & {canonicalize_name(found) for found in providers.get(name, ())}, (
+                assert asked & {canonicalize_name(found) for found in providers.get(name, (name,))}, (
                     f"{path.relative_to(repo_root)} imports {name}"
                 )
 

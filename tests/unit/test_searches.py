@@ -131,7 +131,7 @@ def tune(scenario: Any, settings: Any, progress: Any, cancelled: Any) -> Any:
 
 
 def test_a_table_is_found_stopped_refused_and_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tuner_module, "spare_load", lambda _: Load(Lane.SPARE))
+    monkeypatch.setattr(tuner_module, "heavy_load", lambda _: Load(Lane.SPARE))
     told: list[float | None] = []
     tuner = Tuner(lambda: told.append(tuner.fraction), tune)  # pyright: ignore[reportArgumentType]
     settings = TuningSettings()

@@ -65,7 +65,8 @@ class VerificationView(View):
 
 def _html(verifier: Verifier, scenario: Scenario) -> str:
     if verifier.fraction is not None:
-        return notices.note(["Verifying: the full strapdown and the linear model on its noise."], "info")
+        told = notices.note(["Verifying: the full strapdown and the linear model on its noise."], "info")
+        return told + notices.note(verifier.words, "warning")
     if verifier.words:
         return notices.note(verifier.words, "warning")
     result = verifier.result

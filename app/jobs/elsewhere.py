@@ -1,0 +1,79 @@
+"""Where heavy jobs are computed: on the Dask cluster of this process, if it has one that answers, or here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from app.jobs.cluster import Cluster, Compute, Found, Item
+from app.jobs.scheduler import Lane
+from app.jobs.worker import ElsewhereLost, Watch
+
+CLUSTER = "SCHULER_CLUSTER"
+"""In the environment: address of the scheduler of a Dask cluster."""
+LOST = "The Dask cluster does not answer: this is now computed on the server."
+
+_one: list[Cluster] = []
+
+
+def use_cluster(address: str | None) -> None:
+    """Send heavy jobs to this cluster from now on; None: to none.
+
+    Raises
+    ------
+    InputError
+        As `Cluster`.
+    """
+    made = [Cluster(address)] if address else []
+    before, _one[:] = list(_one), made
+    for one in before:
+        one.close()
+
+
+def leave_cluster() -> None:
+    """Send no more jobs to any cluster."""
+    use_cluster(None)
+
+
+def cluster_figures() -> dict[str, float]:
+    """For ``/metrics``: threads of the cluster's workers, 0 while none is used."""
+    return {} if not _one else {"cluster_threads": float(_one[0].threads)}
+
+
+def cluster() -> Cluster | None:
+    """The cluster of this process, if there is one."""
+    return _one[0] if _one else None
+
+
+def carried_out(
+    function: Compute[Item, Found], asked: Item, progress: Callable[[float], None], watch: Watch
+) -> Found | None:
+    """Carry a job out where its lane says: on the cluster, else here; None when it was cancelled there.
+
+    Raises
+    ------
+    ElsewhereLost
+        The cluster has not done it.
+    """
+    found = carried_out_all(function, [asked], progress, watch)
+    return None if found is None else found[0]
+
+
+def carried_out_all(
+    function: Compute[Item, Found], items: Sequence[Item], progress: Callable[[float], None], watch: Watch
+) -> list[Found] | None:
+    """The same for several items; on the cluster side by side, here one after the other."""
+    if watch.lane is Lane.CLUSTER:
+        there = cluster()
+        if there is None:
+            raise ElsewhereLost
+        return there.compute(function, items, progress, watch.unwanted)
+    found = []
+    for number, item in enumerate(items):
+
+        def partly(fraction: float, number: int = number) -> None:
+            progress((number + fraction) / len(items))
+
+        found.append(function(item, partly, watch.unwanted))
+        if watch.unwanted() and len(items) > 1:
+            return None
+    return found

@@ -1,0 +1,226 @@
+"""Heavy jobs on a Dask cluster of this machine: the same result, progress, cancel; a lost cluster is told."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.bench.process import Server, environment, free_port
+from app.jobs import cluster as module
+from app.jobs import envelopes
+from app.jobs.cluster import Cluster
+from app.jobs.designer import Budgeter
+from app.jobs.elsewhere import CLUSTER, LOST, cluster, use_cluster
+from app.jobs.envelopes import Envelopes
+from app.jobs.load import heavy_load
+from app.jobs.remote import nothing
+from app.jobs.scheduler import Lane, scheduler
+from app.jobs.search import Search
+from navcore.design.budget import budget
+from navcore.foundation.errors import Fault, InputError
+from navcore.scenario.file import load
+from navcore.scenario.model import Scenario
+from tests.attack.wire import ask
+
+pytest.importorskip("distributed", reason="the extra schuler-bench[cluster] is not installed")
+pytestmark = pytest.mark.attack
+
+SHORT = ("run.duration_h=1",)
+
+
+def until(true: Callable[[], Any], seconds: float = 60.0) -> None:
+    end = time.monotonic() + seconds
+    while not true():
+        assert time.monotonic() < end, "did not happen"
+        time.sleep(0.01)
+
+
+class Machines:
+    """A scheduler and one worker, each a process of its own."""
+
+    def __init__(self, folder: Path) -> None:
+        self.port, self._folder = free_port(), folder
+        self.address = f"tcp://127.0.0.1:{self.port}"
+        self.scheduler = self._start(
+            "distributed.cli.dask_scheduler", "--port", str(self.port), "--no-jupyter", "--no-show"
+        )
+        self.worker = self.start_worker()
+
+    def start_worker(self) -> subprocess.Popen[bytes]:
+        words = (self.address, "--no-nanny", "--nthreads", "1")
+        return self._start("distributed.cli.dask_worker", *words)
+
+    def _start(self, name: str, *words: str) -> subprocess.Popen[bytes]:
+        return subprocess.Popen(
+            [sys.executable, "-m", name, *words, "--host", "127.0.0.1", "--no-dashboard"],
+            cwd=self._folder,
+            env=environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+
+    def end(self) -> None:
+        for process in (self.worker, self.scheduler):
+            process.kill()
+            process.wait()
+
+
+@pytest.fixture(scope="module")
+def machines(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machines]:
+    made = Machines(tmp_path_factory.mktemp("cluster"))
+    yield made
+    made.end()
+
+
+@pytest.fixture
+def there(machines: Machines, monkeypatch: pytest.MonkeyPatch) -> Iterator[Cluster]:
+    monkeypatch.setattr(module, "_AGAIN_S", 0.5)
+    use_cluster(machines.address)
+    made = cluster()
+    assert made is not None
+    until(lambda: made.ready)
+    yield made
+    use_cluster(None)
+
+
+@pytest.fixture
+def scenario() -> Scenario:
+    return load("sikuliaq-like", SHORT)
+
+
+def endless(folder: str, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> None:
+    """Says where it is computed, and goes on until it is called back."""
+    (Path(folder) / "begun").write_text(str(os.getpid()))
+    while not cancelled():
+        progress(0.25)
+        time.sleep(0.01)
+    (Path(folder) / "called-back").touch()
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where the test itself runs, and the folder for notes."""
+
+    here: int
+    folder: str
+
+
+def ends_here_only(place: Place, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> int:
+    """Endless on a cluster; here done at once."""
+    if os.getpid() != place.here:
+        endless(place.folder, progress, cancelled)
+    return os.getpid()
+
+
+def refused(text: str, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> None:
+    raise InputError([Fault("", text, 1, "must be 2")])
+
+
+def test_a_heavy_job_is_done_there_with_the_same_result(there: Cluster, scenario: Scenario) -> None:
+    assert heavy_load(scenario).lane is Lane.CLUSTER
+    lanes: list[float] = []
+    budgeter = Budgeter(lambda: lanes.append(scheduler().figures()["running_cluster"]))
+    budgeter.begin(scenario)
+    assert budgeter.wait_idle(60.0)
+    assert budgeter.words == () and 1.0 in lanes
+    found, here = budgeter.result, budget(scenario)
+    assert found is not None and found.as_dict() == here.as_dict()
+    budgeter.stop()
+
+
+def test_bands_over_seeds_are_those_of_this_machine(
+    there: Cluster, scenario: Scenario, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from navcore.engine.simulation import simulate
+
+    monkeypatch.setattr(envelopes, "SEEDS", 4)
+    told: list[bool] = []
+    made = []
+    for on_cluster in (True, False):
+        if not on_cluster:
+            use_cluster(None)
+        bands = Envelopes(simulate, lambda: told.append(True), lambda: None, still_s=0.0)
+        bands.follow(scenario, "seeds")
+        assert bands.wait_idle(90.0)
+        made.append(bands.beside(scenario, "seeds"))
+        bands.stop()
+    one, other = made
+    assert one is not None and other is not None and told
+    np.testing.assert_equal(asdict(one), asdict(other))
+
+
+def test_progress_comes_and_a_cancelled_job_is_called_back(
+    there: Cluster, tmp_path: Path, machines: Machines
+) -> None:
+    seen: list[float] = []
+
+    def cancelled() -> bool:
+        return bool(seen)
+
+    assert there.compute(endless, [str(tmp_path)], seen.append, cancelled) is None
+    assert seen == [0.25] and int((tmp_path / "begun").read_text()) == machines.worker.pid
+    until((tmp_path / "called-back").exists)
+    # Nothing stays behind: the next job is done at once.
+    assert there.compute(nothing, [None], seen.append, lambda: False) == [None]
+
+
+def test_what_a_job_refuses_is_refused_as_here(there: Cluster) -> None:
+    with pytest.raises(InputError, match=r"run\.step_s = 1: must be 2"):
+        there.compute(refused, ["run.step_s"], lambda _: None, lambda: False)
+    assert there.ready
+
+
+def test_a_scenario_with_files_is_computed_where_they_lie(there: Cluster) -> None:
+    assert heavy_load(load("sikuliaq-recorded")).lane is Lane.SPARE
+
+
+def test_a_lost_cluster_is_told_and_the_work_done_here(
+    there: Cluster, scenario: Scenario, machines: Machines, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    told: list[tuple[str, ...]] = []
+    search: Search[Place, int] = Search(
+        lambda: told.append(search.words),
+        ends_here_only,
+        bool,
+        "Stopped.",
+        "x",
+        lambda _: heavy_load(scenario),
+    )
+    search.begin(Place(os.getpid(), str(tmp_path)))
+    until((tmp_path / "begun").exists)
+    machines.worker.kill()
+    machines.worker.wait()
+    assert search.wait_idle(60.0)
+    assert search.result == os.getpid() and search.words == () and (LOST,) in told
+    assert not there.ready and heavy_load(scenario).lane is Lane.SPARE
+    assert any("heavy jobs are done here" in record.getMessage() for record in caplog.records)
+    # It is used again once somebody works there.
+    machines.worker = machines.start_worker()
+    until(lambda: there.ready)
+    search.stop()
+
+
+def test_a_server_says_how_many_threads_its_cluster_has(
+    machines: Machines, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(CLUSTER, machines.address)
+    with Server() as server:
+        until(lambda: b"schuler_cluster_threads 1.0" in ask(server.port, "/metrics").body)
+
+
+def test_a_cluster_that_is_not_there_keeps_nobody_waiting(scenario: Scenario) -> None:
+    use_cluster(f"tcp://127.0.0.1:{free_port()}")
+    try:
+        assert heavy_load(scenario).lane is Lane.SPARE
+    finally:
+        use_cluster(None)
