@@ -130,7 +130,7 @@ def run_twin(
         v_c = t0[[VE, VN]] + x[:2]
         c = a = none
         if law is not None:
-            c, a = law.step(dv_r[k] - x[:2], bool(valid[k]), v_c, float(t0[HEADING]))
+            c, a = law.step(dv_r[k] - x[:2], bool(valid[k]), v_c, float(t0[HEADING] + x[6]))
         arguments = (eps[k], nabla[k], c, a, earth)
         k1 = model_rate(t0, x, *arguments)
         k2 = model_rate(t1, x + 0.5 * step_s * k1, *arguments)

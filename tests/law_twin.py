@@ -120,12 +120,16 @@ class TwinLaw:
                 self.correction = np.zeros(2)
             return self.correction, np.zeros(2)
         self.engaged = True
+        a = self.k1 * u
+        if self.form.second is not None:
+            row, direct = self.form.second
+            a = self.states @ row + direct * u
         c = self._feed(u)
         if self.realisation == "as_printed":
             c = c - (v_c + u)
         self.correction = c + self.offset
         self.offset = self.offset * math.exp(-self.step_s / 100.0)
-        return self.correction, self.k1 * u
+        return self.correction, a
 
     @property
     def now(self) -> float:

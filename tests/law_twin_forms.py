@@ -18,6 +18,7 @@ class Form:
     C: np.ndarray
     D: float
     continuous: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+    second: tuple[np.ndarray, float] | None = None  # row and direct term of the velocity feedback, 1/s
 
     @property
     def steady(self) -> np.ndarray:
@@ -43,14 +44,22 @@ def companion(network: LinearNetwork, a: float) -> Form:
     A = np.eye(n, k=1)
     if n:
         A[-1] = -network.den_p[:0:-1]
-    return bilinear(A, np.eye(n)[-1] if n else np.zeros(0), (rest - direct * network.den_p)[:0:-1], direct, a)
+    B = np.eye(n)[-1] if n else np.zeros(0)
+    form = bilinear(A, B, (rest - direct * network.den_p)[:0:-1], direct, a)
+    if network.feedback_p is not None:
+        row = np.concatenate([np.zeros(n - len(network.feedback_p)), network.feedback_p])[::-1]
+        pushed = bilinear(A, B, network.omega_s * row, 0.0, a)
+        form.second = (pushed.C, pushed.D)
+    return form
 
 
 def damping_ratio(network: LinearNetwork) -> float:
-    """Smallest -Re/|p| of the roots of p^2 D + N."""
+    """Smallest -Re/|p| of the roots of p^2 D + N + p G, with G = 0 for a network with one output."""
     n = network.order
     loop = np.concatenate([network.den_p, [0.0, 0.0]])
     loop[n + 3 - len(network.num_p) :] += network.num_p
+    if network.feedback_p is not None:
+        loop[n + 2 - len(network.feedback_p) : n + 2] += network.feedback_p
     poles = np.roots(loop)
     return float(np.min(-poles.real / np.abs(poles)))
 

@@ -62,6 +62,8 @@ def network_text(report: dict[str, Any]) -> list[str]:
         ["numerator", *(number(c, 6) for c in report["num"])],
         ["denominator", *(number(c, 6) for c in report["den"])],
     ]
+    if "feedback_num" in report:
+        rows.append(["velocity feedback", *(number(c, 6) for c in report["feedback_num"])])
     width = max(len(row) for row in rows)
     rows = [[row[0], *[""] * (width - len(row)), *row[1:]] for row in rows]
     facts = [

@@ -61,6 +61,7 @@ class _Question:
 
     num: bytes
     den: bytes
+    feedback: bytes
     omega_s: float
     form: str
     source: str
@@ -95,6 +96,7 @@ def _question(method: MethodRun, source: str, output: str, span_s: float, count:
     return _Question(
         num=network.num_p.tobytes(),
         den=network.den_p.tobytes(),
+        feedback=b"" if network.feedback_p is None else network.feedback_p.tobytes(),
         omega_s=network.omega_s,
         form=realisation(method),
         source=source,

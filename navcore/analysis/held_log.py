@@ -113,7 +113,7 @@ def period_map(
     InputError
         The network cannot run at this step.
     """
-    dA, B, C, D, k1 = _sampled_law(network, damping, law_step_s)
+    dA, B, C, D, E, k1 = _sampled_law(network, damping, law_step_s)
     n, omega_s = len(B), network.omega_s
     plant, forced = _held_plant(lat, omega_s, law_step_s, earth)
     held = STATES + 2 * n
@@ -121,7 +121,7 @@ def period_map(
     step[:STATES, :STATES] = plant
     for channel in range(2):
         z = slice(STATES + channel * n, STATES + (channel + 1) * n)
-        step[:STATES, z] = np.outer(forced[:, channel], C)
+        step[:STATES, z] = np.outer(forced[:, channel], C) + np.outer(forced[:, 2 + channel], E)
         step[:STATES, held + channel] = forced[:, channel] * D + forced[:, 2 + channel] * k1
         step[z, z] = np.eye(n) + dA
         step[z, held + channel] = B
@@ -135,14 +135,15 @@ def period_map(
 
 def _sampled_law(
     network: LinearNetwork, damping: str, step_s: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, float]:
-    """dA, B, C, D of c = C z + D d, z += dA z + B d, and k1/omega_s of a = k1 d, for d = V_r - V_c."""
-    if damping == "external" and network.realisation != "network":
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, np.ndarray, float]:
+    """dA, B, C, D, E, k1 of z += dA z + B d, c = C z + D d, a = omega_s (E z + k1 d), for d = V_r - V_c."""
+    if network.feedback_p is None and damping == "external" and network.realisation != "network":
         k1, k2, k3 = feedback_gains(network)
         tau = network.omega_s * step_s
-        return np.zeros((1, 1)), np.array([-k3 * tau]), np.ones(1), -k2 - 0.5 * k3 * tau, k1
+        return np.zeros((1, 1)), np.array([-k3 * tau]), np.ones(1), -k2 - 0.5 * k3 * tau, np.zeros(1), k1
     discrete = discretise(network, step_s)
-    return discrete.dA, discrete.B, -discrete.C, 1.0 - discrete.D, 0.0
+    E = np.zeros(discrete.order) if discrete.E is None else discrete.E / network.omega_s
+    return discrete.dA, discrete.B, -discrete.C, 1.0 - discrete.D, E, discrete.F / network.omega_s
 
 
 def _held_plant(lat: float, omega_s: float, step_s: float, earth: Earth) -> tuple[np.ndarray, np.ndarray]:

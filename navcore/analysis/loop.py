@@ -47,8 +47,8 @@ class Loop:
 
 
 def closed_loop_polynomial(network: LinearNetwork) -> np.ndarray:
-    """Coefficients of p^2 D(p) + N(p), p = s / omega_s, descending powers, monic."""
-    return np.polyadd(np.append(network.den_p, [0.0, 0.0]), network.num_p)
+    """Coefficients of p^2 D(p) + N(p), p = s / omega_s, descending powers, monic; with G: `loop_num_p`."""
+    return np.polyadd(np.append(network.den_p, [0.0, 0.0]), network.loop_num_p)
 
 
 def closed_loop_poles(network: LinearNetwork) -> ComplexArray:
@@ -120,8 +120,14 @@ def _repeated_on_axis(poles: ComplexArray) -> bool:
 
 
 def _settling(network: LinearNetwork, poles: ComplexArray, zero: np.ndarray) -> float | None:
-    # a closed-loop pole at zero (H(0) = 0) cancels against the s of s D/(s^2 D + omega_s^2 N)
-    numerator = network.den_p if np.any(zero) else np.append(network.den_p, 0.0)
+    numerator = np.append(network.den_p, 0.0)
+    if network.feedback_p is not None:
+        numerator = np.polyadd(numerator, network.feedback_p)
+    if np.any(zero):
+        # a closed-loop pole at zero (H(0) = 0) cancels against the s of s D/(s^2 D + omega_s^2 N)
+        if numerator[-1] != 0.0:
+            return None
+        numerator = numerator[:-1]
     moving = poles[~zero]
     tau = last_exceedance(state_space(numerator, moving), moving)
     return None if tau is None else float(tau / network.omega_s)

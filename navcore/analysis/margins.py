@@ -38,7 +38,10 @@ class Margins:
 
 
 def margins(network: LinearNetwork) -> Margins | None:
-    """Margins of the loop omega_s^2 H/s^2; None where they mean nothing (undamped or unstable loop)."""
+    """Margins of the loop omega_s^2 H/s^2; None where they mean nothing (undamped or unstable loop).
+
+    Of a network with two outputs the loop is (H + p G)/p^2, broken at V_c.
+    """
     loop = analyse(network)
     if not loop.stable or loop.settling_s is None:
         return None
@@ -48,7 +51,7 @@ def margins(network: LinearNetwork) -> Margins | None:
     if len(crossings) == 0:
         return Margins(_smallest(up), _largest(down), None, None, None)
     # -L = H omega_s^2/omega^2 has the phase of H
-    phases = np.angle(network.response(crossings * network.omega_s))
+    phases = np.angle(network.loop_response(crossings * network.omega_s))
     least = int(np.argmin(np.abs(phases)))
     # a delay turns the phase clockwise: only the way from each crossing down to -180 deg counts
     lag = np.mod(phases, 2.0 * math.pi)
@@ -63,18 +66,18 @@ def margins(network: LinearNetwork) -> Margins | None:
 
 def _gain_crossings(network: LinearNetwork) -> list[float]:
     """Frequencies over omega_s at which |L| = 1: |N|^2 = x^4 |D|^2, p = j x."""
-    n, d = network.num_p, network.den_p
+    n, d = network.loop_num_p, network.den_p
     size = np.polysub(np.polymul(n, _mirrored(n)), np.append(np.polymul(d, _mirrored(d)), np.zeros(4)))
     return _on_axis(size)
 
 
 def _phase_crossings(network: LinearNetwork) -> list[tuple[float, float]]:
     """Frequencies over omega_s at which H is real, and H there."""
-    n, d = network.num_p, network.den_p
+    n, d = network.loop_num_p, network.den_p
     turned = np.polymul(n, _mirrored(d))
     odd = np.polysub(turned, _mirrored(turned))
     crossings = _on_axis(odd[:-1])  # one factor p is omega = 0
-    return [(x, float(np.real(network.response(x * network.omega_s)))) for x in crossings]
+    return [(x, float(np.real(network.loop_response(x * network.omega_s)))) for x in crossings]
 
 
 def _mirrored(polynomial: np.ndarray) -> np.ndarray:

@@ -20,7 +20,7 @@ VARIANTS: dict[str, tuple[str, ...]] = {
     "complementary": ("zeta = 0.5, eta = 0.5", "zeta = 1.3, eta = 0.5"),
     "pole2": ('xi = 0.5, variant = "exact"', 'xi = 0.5, variant = "as_printed"'),
     "unity2": ("zeta = 0.5, r = 1.2", "zeta = 0.5, r = 0.8, zeta2 = 0.29"),
-    "optimal": ("rho = 0.01, q = 0", "rho = 0.01, q = 1"),
+    "optimal": ("rho = 0.01, q = 0", "rho = 0.01, q = 1", 'rho = 0.01, q = 1, realisation = "feedback"'),
 }
 """Parameters beside or in place of a network's defaults."""
 LEFT_OUT = ("custom",)
@@ -52,7 +52,8 @@ neither grows nor decays.
 To have both, choose `complementary`, or `unity2` with r < 1. Of those, `complementary` keeps all closed-loop
 pairs as well damped as asked; `unity2` with r < 1 has a second pair that is the less damped the nearer r is
 to 1. `optimal` is designed on one channel, which knows nothing of this mode: with q = 0 it grows within
-hours. With q = 1 it decays; [what that costs](design.md#the-optimal-network) is a tenth of the tilt.
+hours. With q = 1 it decays; [what that costs](design.md#the-optimal-network) is a tenth of the tilt, and with
+velocity feedback nothing.
 """
 
 

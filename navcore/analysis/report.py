@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
+
 from navcore.analysis import analyse, disk_margin, margins
 from navcore.analysis.held_log import held_log
 from navcore.analysis.whole_system import WholeSystem, whole_system
@@ -58,6 +60,7 @@ def network_report(
         "zeros": _pairs(network.zeros),
         "poles": _pairs(network.poles),
         "gain": network.gain,
+        **_feedback(network),
         "h0": _finite(network.h0),
         "closed_loop_poles": _pairs(loop.poles),
         "stable": loop.stable,
@@ -78,6 +81,15 @@ def whole_system_report(whole: WholeSystem) -> dict[str, Any]:
         "h_slope_s": _finite(whole.h_slope),
         "whole_system_stable": whole.stable,
     }
+
+
+def _feedback(network: LinearNetwork) -> dict[str, list[float]]:
+    """Numerator of a = G(s) (V_r - V_c) over the same denominator, 1/s; nothing where there is none."""
+    if network.feedback_p is None:
+        return {}
+    missing = network.order - len(network.feedback_p)
+    powers = 2.0 + missing + np.arange(len(network.feedback_p))
+    return {"feedback_num": [float(c) for c in network.feedback_p * network.omega_s**powers]}
 
 
 def _margins(network: LinearNetwork) -> dict[str, float | None] | None:

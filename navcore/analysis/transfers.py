@@ -2,7 +2,7 @@
 
 North channel: phi' = -[dV - Q (dV - dV_r)]/R - eps, dV' = g phi + nabla, Q = 1 - H. In the east channel
 (phi_N, dV_E) some signs change. With P = p^2 D + N and p = s / omega_s all transfers are ratios of
-polynomials without the cancellations that 1 - H would bring.
+polynomials without the cancellations that 1 - H would bring. A network with two outputs adds G dV to dV'.
 """
 
 from __future__ import annotations
@@ -110,7 +110,21 @@ def _formula(
         "acceleration": (1.0 / w, difference, 1),
         "initial_tilt": (radius, d, 0),
     }
-    if form in ("feedback", "as_printed"):
+    if network.feedback_p is not None:
+        # p dV = phi + nabla + G (dV_r - dV) and p phi = -(H dV + Q dV_r) - eps, times D
+        g = network.feedback_p
+        pushed, none = np.polyadd(np.polymul(p, d), g), np.zeros(1)
+        tilt |= {
+            "eps": (-1.0 / w, pushed, 0),
+            "dv_r": (-1.0 / (radius * w), np.polyadd(np.polymul(p, difference), g), 0),
+            "acceleration": (1.0 / gravity, none, 0),
+            "initial_tilt": (1.0 / w, pushed, 0),
+        }
+        velocity |= {
+            "dv_r": (1.0, np.polysub(np.polymul(p, g), difference), 0),
+            "acceleration": (1.0 / w, none, 0),
+        }
+    elif form in ("feedback", "as_printed"):
         # theory.md 3.1: K1 = D - p and K2 p + K3 = N - p, in units of omega_s
         pulled = np.polymul(np.polysub(d, p), p2)
         velocity |= {

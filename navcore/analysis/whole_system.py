@@ -18,7 +18,7 @@ from navcore.analysis.loop import closed_loop_poles
 from navcore.foundation.earth import EARTH_RATE, SPHERE, Earth
 from navcore.foundation.units import DEG
 from navcore.networks.base import ComplexArray, LinearNetwork, linear_network, sorted_roots
-from navcore.networks.state_space import state_space
+from navcore.networks.state_space import state_space, state_spaces
 
 DV_E, DV_N, LATITUDE, PHI_E, PHI_N, PHI_U = range(6)
 STATES = 6
@@ -96,14 +96,15 @@ class WholeSystem:
 class LawForm:
     """The damping law of one channel as it acts on the velocity error dV, in normalised time.
 
-    c = C z + D dV is the correction of the platform's velocity and a = -k1 dV the feedback into the velocity,
-    with z' = A z + B dV.
+    c = C z + D dV is the correction of the platform's velocity and a = E z - k1 dV the feedback into the
+    velocity, with z' = A z + B dV.
     """
 
     A: np.ndarray
     B: np.ndarray
     C: np.ndarray
     D: float
+    E: np.ndarray
     k1: float
 
 
@@ -125,11 +126,15 @@ def law_form(network: LinearNetwork, damping: str) -> LawForm:
         See `network_that_acts`.
     """
     network = network_that_acts(network, damping)
+    poles = network.poles / network.omega_s
+    if network.feedback_p is not None:
+        system, second = state_spaces([network.num_p, network.feedback_p], poles)
+        return LawForm(system.A, system.B, system.C, system.D - 1.0, -second.C, second.D)
     if damping == "external" and network.realisation != "network":
         k1, k2, k3 = feedback_gains(network)
-        return LawForm(np.zeros((1, 1)), np.array([k3]), np.ones(1), k2, k1)
-    system = state_space(network.num_p, network.poles / network.omega_s)
-    return LawForm(system.A, system.B, system.C, system.D - 1.0, 0.0)
+        return LawForm(np.zeros((1, 1)), np.array([k3]), np.ones(1), k2, np.zeros(1), k1)
+    system = state_space(network.num_p, poles)
+    return LawForm(system.A, system.B, system.C, system.D - 1.0, np.zeros(len(system.B)), 0.0)
 
 
 def feedback_gains(network: LinearNetwork) -> tuple[float, float, float]:
@@ -198,7 +203,7 @@ def system_matrix(
     for channel in (DV_E, DV_N):
         z = slice(STATES + channel * n, STATES + (channel + 1) * n)
         f[:STATES, channel] += act[:, channel] * law.D - act[:, 2 + channel] * law.k1
-        f[:STATES, z] = np.outer(act[:, channel], law.C)
+        f[:STATES, z] = np.outer(act[:, channel], law.C) + np.outer(act[:, 2 + channel], law.E)
         f[z, channel], f[z, z] = law.B, law.A
     return f
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from navcore.law.combination import network_in_force, realisation_of
 from navcore.networks.base import NetworkParameters
-from navcore.networks.state_space import state_space
+from navcore.networks.state_space import state_spaces
 from navcore.scenario.model import Method
 
 Damping = Literal["free", "internal", "external"]
@@ -93,5 +93,7 @@ def feedback_form(gains: tuple[float, float, float], omega_s: float, as_printed:
 
 def _network_form(damping: Damping, parameters: NetworkParameters, omega_s: float) -> LawForm:
     network = parameters.transfer(omega_s)
-    h = state_space(network.num_p, network.poles / omega_s)
-    return LawForm(damping, h.A, h.B, -h.C, 1.0 - h.D, np.zeros(len(h.B)), 0.0)
+    nums = [network.num_p] if network.feedback_p is None else [network.num_p, network.feedback_p]
+    h, *others = state_spaces(nums, network.poles / omega_s)
+    E, F = (others[0].C, others[0].D) if others else (np.zeros(len(h.B)), 0.0)
+    return LawForm(damping, h.A, h.B, -h.C, 1.0 - h.D, E, F)

@@ -87,7 +87,8 @@ def write_results(run: Run, folder: str | os.PathLike[str], format: Format = "pa
 def timeseries(run: Run) -> pyarrow.Table:
     """Output rows of all methods one after the other, columns as in interface.md; xi is 0 while undamped.
 
-    A strapdown run adds the navigation solution.
+    A strapdown run adds the navigation solution, a run with a Kalman filter the standard deviations that it
+    gives itself; they are empty for the other methods.
     """
     import numpy as np
     import pyarrow as pa
@@ -111,6 +112,14 @@ def timeseries(run: Run) -> pyarrow.Table:
 
         solution = np.concatenate(navigation)
         columns |= {name: solution[:, index] for index, name in enumerate(NAVIGATION)}
+    if any(m.sigma is not None for m in run.methods):
+        filtered = np.repeat([m.sigma is not None for m in run.methods], counts)
+        empty = [np.zeros((len(m.t_s), POSITION)) if m.sigma is None else m.sigma for m in run.methods]
+        sigma = np.concatenate(empty)
+        columns |= {
+            f"sigma_{name}": pa.array(sigma[:, index], mask=~filtered)
+            for index, name in enumerate(NAMES[:POSITION])
+        }
     return pa.table(columns)
 
 

@@ -87,6 +87,9 @@ class MethodRun:
     navigation : ndarray, shape (m, 11), or None
         The navigation solution of a strapdown run, columns
         `navcore.mechanization.strapdown.records.NAVIGATION`.
+    sigma : ndarray, shape (m, 7), or None
+        Standard deviations that a Kalman filter gives its own errors at the output rows, for the first seven
+        of `recorder.NAMES`; None for every other method.
     """
 
     method: Method
@@ -102,6 +105,7 @@ class MethodRun:
     plot: PlotSeries
     law_series: np.ndarray
     navigation: np.ndarray | None = None
+    sigma: np.ndarray | None = None
 
     @cached_property
     def fingerprint(self) -> bytes:

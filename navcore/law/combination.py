@@ -45,7 +45,8 @@ def combination_faults(
     if damping == "free":
         return
     running = policy.network_in_force(network)
-    found = [*policy.network_faults(network)]
+    found = [*running.damping_faults(damping)]
+    found += policy.network_faults(network)
     found += switching.network_faults(damping, running, realisation_of(damping, running), policy)
     for name, part in (("policy", policy), ("switching", switching)):
         rows = part.ring_rows(law_step_s)

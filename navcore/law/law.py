@@ -3,7 +3,8 @@
 What it returns for each channel: c (m/s), added to the computed velocity where the platform's transport rate
 is formed, V* = V_c + c, and a (m/s^2), fed back into the velocity integrator. Network form: c = Q(s) d with
 Q = 1 - H and d = V_r - V_c (external) or -V_c (internal), a = 0. Velocity feedback (`compass`, theory.md
-3.1): c = -K2 d + P with P' = -K3 d, a = K1 d. Both are the same state-space block.
+3.1): c = -K2 d + P with P' = -K3 d, a = K1 d. Both are the same state-space block. A network with two outputs
+(`optimal` with velocity feedback) has a = G(s) d beside it, from the same states.
 """
 
 from __future__ import annotations
@@ -163,11 +164,12 @@ def _fill_form(
         fill_record(s["network"], _feedback(gains, law_step_s))
     else:
         p["order"] = network.order
+        p["feeds_back"] = network.feedback_p is not None
         fill_record(s["network"], _complement(network, law_step_s))
 
 
 def _complement(network: LinearNetwork, law_step_s: float) -> dict[str, Any]:
-    """Q = 1 - H in discrete time: the same dA and B, C and the direct term reversed."""
+    """Q = 1 - H in discrete time: C and the direct term reversed; velocity feedback stays as it is."""
     discrete = discretise(network, law_step_s)
     room = (0, MAX_STATES - discrete.order)
     return {
@@ -175,6 +177,8 @@ def _complement(network: LinearNetwork, law_step_s: float) -> dict[str, Any]:
         "B": np.pad(discrete.B, room),
         "C": np.pad(-discrete.C, room),
         "D": 1.0 - discrete.D,
+        "E": 0.0 if discrete.E is None else np.pad(discrete.E, room),
+        "F": discrete.F,
         "steady": np.pad(discrete.steady_state(1.0), room),
     }
 

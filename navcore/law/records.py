@@ -46,6 +46,7 @@ PARAMETERS = {
     "law_step": REAL,  # s between two calls of the law
     "nominal_xi": REAL,  # damping coefficient of the network as configured
     "feedback_k1": REAL,  # velocity feedback of gains that stay, 1/s
+    "feeds_back": FLAG,  # the network has a second output, which is the velocity feedback
     "omega_s": REAL,  # rad/s
     "offset_decay": REAL,  # what a call leaves of the offset of a re-tuned network
     "tan_half": REAL,  # tan(omega_s T/2), the bilinear step in normalised time
@@ -58,9 +59,14 @@ DISCRETE_NETWORK = record_type(
     B=(REAL, (MAX_STATES,)),
     C=(REAL, (MAX_STATES,)),
     D=REAL,
+    E=(REAL, (MAX_STATES,)),  # output row of the velocity feedback, 1/s
+    F=REAL,
     steady=(REAL, (MAX_STATES,)),  # state for a constant unit input
 )
-"""Discrete state space of Q = 1 - H of one channel; what lies beyond the order is zero."""
+"""Discrete state space of Q = 1 - H of one channel; what lies beyond the order is zero.
+
+E and F are those of the velocity feedback a = E x + F u (m/s^2); zero unless ``feeds_back``.
+"""
 RETUNED_NETWORK = record_type(
     xi=REAL,  # damping coefficient of the coefficients in place
     last_row=(REAL, (MAX_STATES,)),  # of A, continuous and normalised

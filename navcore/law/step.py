@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from navcore.foundation.compiled import inlined, kernel
 from navcore.law.dispatch import Choice, dispatch
 from navcore.law.history import remember
-from navcore.law.network_state import advance_network, clear_network, rest
+from navcore.law.network_state import advance_network, channel_of, clear_network, fed_back, rest
 from navcore.law.policy import POLICIES
 from navcore.law.records import (
     AS_DECIDED,
@@ -104,6 +104,10 @@ def _make_step(decide: Any, switch: Any, full: bool) -> Any:
                 s.correction[E] = s.correction[N] = 0.0
             return Correction(s.correction[E], s.correction[N], 0.0, 0.0)
         s.engaged = True
+        a_e = a_n = 0.0
+        if p.feeds_back:
+            a_e = fed_back(s.network, channel_of(s, E), u_e)
+            a_n = fed_back(s.network, channel_of(s, N), u_n)
         c_e, c_n = advance_network(law, u_e, u_n)
         if p.realisation == AS_PRINTED:
             c_e, c_n = as_printed(c_e, c_n, sensed, u_e, u_n)
@@ -115,6 +119,8 @@ def _make_step(decide: Any, switch: Any, full: bool) -> Any:
             s.offset[E] *= p.offset_decay
             s.offset[N] *= p.offset_decay
         s.correction[E], s.correction[N] = c_e, c_n
+        if p.feeds_back:
+            return Correction(c_e, c_n, a_e, a_n)
         return Correction(c_e, c_n, k1 * u_e, k1 * u_n)
 
     return step

@@ -169,7 +169,8 @@ def _advance(first, last, final, h, half, law_input, gyro, accel, log, law, stat
         t = k * h
         told = law_input[k * law_stride]
         read_log(t, x, told.v_e, told.v_n, log, s)
-        c = law_step(law, Sensed(told.v_e + x.dv_e, told.v_n + x.dv_n, told.heading))
+        # the heading that the ship has is the computed one: level, it is off by phi_U (theory.md 2.3)
+        c = law_step(law, Sensed(told.v_e + x.dv_e, told.v_n + x.dv_n, told.heading + x.phi_u))
         begin = half[2 * k * half_stride]
         watched = Watched(float(s.wanted), 1.0 if s.damped else 0.0, s.xi, s.measure)
         record(k, given_out(x, s), begin.m, begin.n_cos, watched, recorder)

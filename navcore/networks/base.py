@@ -7,7 +7,7 @@ physical ones (rad/s, as low as 1e-12) are exact multiples of them.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
@@ -53,6 +53,10 @@ class LinearNetwork:
         What the user should know about these parameters.
     realisation : str
         How the mechanization carries it out under external damping: "network", "feedback" or "as_printed".
+    feedback_p : ndarray or None
+        Of a network with two outputs, velocity feedback beside Q = 1 - H: numerator over ``den_p`` of
+        G(p) = a/(omega_s u), of lower degree, with u = V_r - V_c (m/s) and a fed back into the velocity
+        (m/s^2). None where there is none, or where gains make it (`compass`).
     closed_loop_p : ndarray of complex or None
         Closed-loop poles / omega_s where the design gives them exactly (a repeated pole found as a root of
         the polynomial is right to 1e-5 only); None: to be computed.
@@ -69,6 +73,7 @@ class LinearNetwork:
     den_p: FloatArray
     warnings: tuple[str, ...] = ()
     realisation: str = "network"
+    feedback_p: FloatArray | None = field(default=None, repr=False)
     closed_loop_p: ComplexArray | None = field(default=None, repr=False)
 
     @property
@@ -99,6 +104,18 @@ class LinearNetwork:
     def h_infinity(self) -> float:
         """Gain H(inf) at high frequency."""
         return self.gain if len(self.num) == len(self.den) else 0.0
+
+    @property
+    def loop_num_p(self) -> FloatArray:
+        """Numerator over ``den_p`` of H + p G: the loop is p^2 + H + p G, with G = 0 but for two outputs."""
+        if self.feedback_p is None:
+            return self.num_p
+        return np.polyadd(self.num_p, np.append(self.feedback_p, 0.0))
+
+    def loop_response(self, omega: np.ndarray | float) -> ComplexArray:
+        """Return (H + p G)(j omega), shape of ``omega`` (rad/s): H, but for a network with two outputs."""
+        p = 1j * np.asarray(omega, dtype=float) / self.omega_s
+        return np.polyval(self.loop_num_p, p) / np.polyval(self.den_p, p)
 
     def response(self, omega: np.ndarray | float) -> ComplexArray:
         """Return the complex frequency response H(j omega).
@@ -285,6 +302,17 @@ class NetworkParameters(Entry):
         del omega_s
         return None
 
+    def damping_faults(self, damping: str) -> Iterator[Fault]:
+        """Say why the network cannot stand under this damping; fields relative to the method.
+
+        Parameters
+        ----------
+        damping : {"internal", "external"}
+            Kind of damping.
+        """
+        del damping
+        return iter(())
+
     def least_coefficient(self) -> float:
         """Return the damping coefficient above which the loop is stable; 0 where all are."""
         return 0.0
@@ -311,6 +339,7 @@ def linear_network(
     closed_loop_p: Sequence[complex] | np.ndarray | None = None,
     warnings: tuple[str, ...] = (),
     realisation: str = "network",
+    feedback_p: Sequence[float] | np.ndarray | None = None,
 ) -> LinearNetwork:
     """Make a `LinearNetwork` from polynomials in p = s / omega_s.
 
@@ -324,8 +353,8 @@ def linear_network(
         Coefficients, descending powers of p; leading zeros are removed, den is made monic.
     zeros_p, poles_p, closed_loop_p : array_like of complex, optional
         Roots where they are known exactly; else zeros and poles are computed.
-    warnings, realisation
-        See `LinearNetwork`.
+    warnings, realisation, feedback_p
+        See `LinearNetwork`; the denominator of ``feedback_p`` is ``den_p`` as given.
 
     Raises
     ------
@@ -342,6 +371,7 @@ def linear_network(
         raise refuse("", None, "H(s) must be proper: no more zeros than poles, or H(infinity) is not finite")
     if len(den) - 1 > MAX_ORDER:
         raise refuse("", None, f"H(s) has {len(den) - 1} poles: at most {MAX_ORDER} can run")
+    feedback = None if feedback_p is None else np.asarray(feedback_p, dtype=float) / den[0]
     num, den = num / den[0], den / den[0]
     while num[-1] == 0.0 and den[-1] == 0.0:  # a common root at s = 0 would make H(0) = 0/0
         num, den, zeros_p, poles_p = num[:-1], den[:-1], None, None
@@ -360,6 +390,7 @@ def linear_network(
         den_p=_fixed(den),
         warnings=warnings,
         realisation=realisation,
+        feedback_p=None if feedback is None else _fixed(feedback),
         closed_loop_p=None if closed_loop_p is None else _fixed(sorted_roots(np.asarray(closed_loop_p))),
     )
 

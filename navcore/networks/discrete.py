@@ -6,13 +6,13 @@ The direct form that Liu prints is never run: at Schuler scale its coefficients 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.networks.base import LinearNetwork
-from navcore.networks.state_space import state_space
+from navcore.networks.state_space import state_spaces
 
 _SINGULAR = 1e-6
 
@@ -29,6 +29,10 @@ class DiscreteNetwork:
     D : float
     step_s : float
         Step, s.
+    E : ndarray, shape (n,), or None
+        Output row of the velocity feedback a = E x + F u, 1/s; None for a network that has none.
+    F : float
+        1/s.
     """
 
     dA: np.ndarray
@@ -36,6 +40,8 @@ class DiscreteNetwork:
     C: np.ndarray
     D: float
     step_s: float
+    E: np.ndarray | None = None
+    F: float = 0.0
 
     @property
     def order(self) -> int:
@@ -95,16 +101,22 @@ def discretise(network: LinearNetwork, step_s: float) -> DiscreteNetwork:
         limit = math.pi / network.omega_s
         raise InputError(Fault("", "step_s", step_s, f"must be > 0 and < {limit:g} (s)"))
     poles = network.poles / network.omega_s
-    continuous = state_space(network.num_p, poles)
+    feedback = network.feedback_p
+    continuous, *others = state_spaces([p for p in (network.num_p, feedback) if p is not None], poles)
     a = math.tan(half_angle)
     if np.any(np.abs(1.0 - a * poles) < _SINGULAR):
         reason = f"an unstable pole at {network.omega_s / a:g} rad/s cannot run at this step"
         raise InputError(Fault("", "poles", None, reason))
     inverse = np.linalg.inv(np.eye(network.order) - a * continuous.A)
-    return DiscreteNetwork(
+    found = DiscreteNetwork(
         dA=2.0 * a * continuous.A @ inverse,
         B=2.0 * a * inverse @ continuous.B,
         C=continuous.C @ inverse,
         D=continuous.D + a * float(continuous.C @ inverse @ continuous.B),
         step_s=step_s,
     )
+    for second in others:
+        E = network.omega_s * second.C @ inverse
+        F = network.omega_s * (second.D + a * float(second.C @ inverse @ second.B))
+        found = replace(found, E=E, F=F)
+    return found

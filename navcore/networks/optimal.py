@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any, ClassVar, Literal
@@ -9,11 +10,12 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from pydantic import PrivateAttr
 
-from navcore.foundation.parameters import quantity
+from navcore.foundation.errors import Fault
+from navcore.foundation.parameters import choice, quantity
 from navcore.foundation.units import DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
 from navcore.networks.base import MAX_ORDER, LinearNetwork, NetworkParameters, linear_network, refuse
 from navcore.networks.lqg import Compensator, SensorFigures, compensator, plant
-from navcore.networks.state_space import state_space
+from navcore.networks.state_space import state_spaces
 
 EXAMPLE_SHIP = SensorFigures(
     gyro_white=0.003 * DEG_PER_SQRT_HOUR,
@@ -59,6 +61,8 @@ def _figure(
 class OptimalNetwork(NetworkParameters):
     """H = 1 - Q with Q the LQG law for the sensors at hand: filter and feedback of the same order.
 
+    With velocity feedback the same filter has a second output, which goes into the velocity itself.
+
     The figures of sensors and log are those of the scenario, as far as they are not given here; where the
     scenario has no random errors either, those of an example ship.
     """
@@ -83,6 +87,12 @@ class OptimalNetwork(NetworkParameters):
         slider=(0.0, 5.0),
         label="q",
         help="Weight of the velocity error beside that of the tilt (theory.md 17).",
+    )
+    realisation: Literal["network", "feedback"] = choice(
+        "network",
+        label="realisation",
+        help="network: the transport rate alone is corrected; feedback: the velocity too, as by K1 of "
+        "compass, which brings tilt and velocity near the floor; external damping only (theory.md 17).",
     )
     gyro_arw_dpsh: float | None = _figure("deg/sqrt(h)", "angular random walk", (0.0, 0.05), le=10.0)
     gyro_instability_dph: float | None = _figure("deg/h", "gyro instability", (0.0, 0.05), le=100.0)
@@ -142,7 +152,7 @@ class OptimalNetwork(NetworkParameters):
         """
         figures, warnings = self.figures()
         try:
-            law = _law(figures, self.rho, self.q, omega_s)
+            law = _law(figures, self.rho, self.q, self.realisation == "feedback", omega_s)
         except np.linalg.LinAlgError:
             raise refuse("rho", self.rho, "the Riccati equations of these figures have no solution") from None
         poles = np.linalg.eigvals(law.A)
@@ -154,41 +164,72 @@ class OptimalNetwork(NetworkParameters):
             np.real(np.poly(poles)),
             zeros_p=zeros,
             poles_p=poles,
+            realisation=self.realisation,
+            feedback_p=_second_output(law) if self.realisation == "feedback" else None,
         )
-        self._check(found)
+        self._check(found, law)
         margin = modulus_margin(found)
         if margin < FRAGILE:
             fragile = f"fragile: modulus margin {margin:.2g}, below {FRAGILE:g}; change rho or q"
             warnings = (*warnings, fragile)
         return replace(found, warnings=warnings)
 
-    def _check(self, network: LinearNetwork) -> None:
+    @property
+    def external_form(self) -> str:
+        """The realisation that was chosen."""
+        return self.realisation
+
+    def damping_faults(self, damping: str) -> Iterator[Fault]:
+        """Velocity feedback needs the reference: without it there is nothing to pull the velocity onto."""
+        if self.realisation == "feedback" and damping != "external":
+            allowed = f'must be "network" with damping = "{damping}": velocity feedback needs a reference'
+            yield Fault("", "network.realisation", self.realisation, allowed)
+
+    def _check(self, network: LinearNetwork, law: Compensator) -> None:
         """Refuse what cannot run: an unstable network or loop, or one too wide for double precision."""
         poles = network.poles / network.omega_s
-        loop = np.roots(np.polyadd(np.append(network.den_p, [0.0, 0.0]), network.num_p))
+        loop = np.roots(np.polyadd(np.append(network.den_p, [0.0, 0.0]), network.loop_num_p))
         if np.max(np.real(poles)) >= 0.0 or np.max(np.real(loop)) >= 0.0:
             raise refuse("rho", self.rho, "makes an unstable network with these figures: must be larger")
-        system = state_space(network.num_p, poles)
         p = 1j * np.geomspace(1e-2, 1e2, 40)
-        states = np.linalg.solve(p[:, None, None] * np.eye(len(poles)) - system.A, system.B[:, None])[..., 0]
-        exact = network.response(p.imag * network.omega_s)
-        if np.max(np.abs(states @ system.C + system.D - exact) / np.abs(exact)) > _ACCURACY:
+        exact = [network.response(p.imag * network.omega_s)]
+        nums = [network.num_p]
+        if network.feedback_p is not None:
+            exact.append(_responses(p, law.A, law.B) @ law.E)
+            nums.append(network.feedback_p)
+        systems = state_spaces(nums, poles)
+        states = _responses(p, systems[0].A, systems[0].B)
+        found = [states @ system.C + system.D for system in systems]
+        if any(np.max(np.abs(f - e) / np.abs(e)) > _ACCURACY for f, e in zip(found, exact, strict=True)):
             allowed = "makes a network too fast for these figures to run in double precision: must be larger"
             raise refuse("rho", self.rho, allowed)
 
 
 @lru_cache(maxsize=256)
-def _law(figures: SensorFigures, rho: float, q: float, omega_s: float) -> Compensator:
-    return compensator(plant(figures, omega_s).excited(), rho, q, feedback=False).reduced(MAX_ORDER)
+def _law(figures: SensorFigures, rho: float, q: float, feedback: bool, omega_s: float) -> Compensator:
+    return compensator(plant(figures, omega_s).excited(), rho, q, feedback).reduced(MAX_ORDER)
+
+
+def _second_output(law: Compensator) -> np.ndarray:
+    """Numerator of E (p - A)^-1 B over the characteristic polynomial of A."""
+    from scipy.signal import ss2tf
+
+    num, _ = ss2tf(law.A, law.B[:, None], law.E[None, :], np.zeros((1, 1)))
+    return num[0, 1:]
+
+
+def _responses(p: np.ndarray, A: np.ndarray, B: np.ndarray) -> np.ndarray:
+    """(p - A)^-1 B at each p, shape (len(p), n)."""
+    return np.linalg.solve(p[:, None, None] * np.eye(len(B)) - A, B[:, None])[..., 0]
 
 
 def modulus_margin(network: LinearNetwork) -> float:
-    """Least distance of the open loop omega_s^2 H/s^2 from -1: 1 is the best, 0 the limit of stability.
+    """Least distance of the open loop from -1: 1 is the best, 0 the limit of stability.
 
     Parameters
     ----------
     network : LinearNetwork
-        H(s).
+        H(s); the open loop is omega_s^2 H/s^2, and (H + p G)/p^2 with two outputs.
     """
     omega = network.omega_s * np.geomspace(1e-2, 1e5, 700)
-    return float(np.min(np.abs(1.0 - (network.omega_s / omega) ** 2 * network.response(omega))))
+    return float(np.min(np.abs(1.0 - (network.omega_s / omega) ** 2 * network.loop_response(omega))))

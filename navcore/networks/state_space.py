@@ -7,6 +7,7 @@ form loses; every block has unit DC gain, so all states have the size of the inp
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,9 +49,33 @@ def state_space(num: np.ndarray, poles: np.ndarray) -> StateSpace:
     poles : ndarray of complex, shape (n,)
         Complex ones with their conjugates.
     """
+    return state_spaces([num], poles)[0]
+
+
+def state_spaces(nums: Sequence[np.ndarray], poles: np.ndarray) -> tuple[StateSpace, ...]:
+    """Realise several outputs of the same states: as `state_space`, with one A and B for all.
+
+    Parameters
+    ----------
+    nums : sequence of ndarray
+        Numerators, as for `state_space`.
+    poles : ndarray of complex, shape (n,)
+        Complex ones with their conjugates.
+    """
     blocks = _blocks(np.asarray(poles).tolist())
+    chains = [_chain(num, blocks) for num in nums]
+    parallels = [_parallel(num, blocks, chain.D) for num, chain in zip(nums, chains, strict=True)]
+    good = [found for found in parallels if found is not None]
+    if len(good) < len(chains):
+        return tuple(chains)
+    near = all(_spread(c) < _SPREAD * _spread(p) for c, p in zip(chains, good, strict=True))
+    return tuple(chains if near else good)
+
+
+def _chain(num: np.ndarray, blocks: list[list[complex]]) -> StateSpace:
+    """Blocks in a row, each driven by the one before."""
     scales = [_scale(block) for block in blocks]
-    order = len(poles)
+    order = sum(len(block) for block in blocks)
     A, B, C = np.zeros((order, order)), np.zeros(order), np.zeros(order)
     remainder, end = [float(c) for c in num], order
     for k in range(len(blocks) - 1, -1, -1):
@@ -63,9 +88,7 @@ def state_space(num: np.ndarray, poles: np.ndarray) -> StateSpace:
         else:  # driven by the state of the block before whose transfer is 1/q: its first one
             A[end - 1, start - len(blocks[k - 1])] = gain
         end = start
-    chain = StateSpace(A, B, C, remainder[-1] if remainder else 0.0)
-    parallel = _parallel(num, blocks, chain.D)
-    return chain if parallel is None or _spread(chain) < _SPREAD * _spread(parallel) else parallel
+    return StateSpace(A, B, C, remainder[-1] if remainder else 0.0)
 
 
 def _spread(system: StateSpace) -> float:

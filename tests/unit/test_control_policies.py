@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from navcore.engine.simulation import simulate
 from navcore.foundation.compiled import inlined
 from navcore.foundation.records import REAL, new_record, record_type
 from navcore.foundation.units import DEG, KNOT
@@ -18,6 +19,7 @@ from navcore.law.policy.variation import Variation
 from navcore.law.records import Law, Watched
 from navcore.law.switching import SWITCHINGS
 from navcore.networks import parse_network
+from navcore.scenario.model import Scenario
 from tests.law_run import LawRun
 
 CLASSIC = {"id": "classic2"}
@@ -138,6 +140,20 @@ def test_yaw_rate_counts_turns_over_the_window_across_north():
     assert change == pytest.approx([0, 0, 0, 1, 2, 3, 4, 4, 4, 4, 4, 4, 4, 3, 2, 1, 0, 0, 0], abs=1e-9)
     # exactly 3 deg is left out: it lies on the limit to rounding
     assert damped[change < 2.5].all() and not damped[change > 3.5].any()
+
+
+@pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
+def test_yaw_rate_looks_at_the_heading_that_the_ship_has(fidelity):
+    """A gyro with 10 deg/h about the vertical turns the computed heading of a ship that lies still."""
+    method = {"damping": "external", "network": {"id": "classic2"},
+              "policy": {"id": "yaw_rate", "window_s": 600.0, "limit_deg": 1.0}}  # fmt: skip
+    run = {"duration_h": 0.5, "fidelity": fidelity, "output_step_s": 60.0, "rate_hz": 10.0}
+    for drift, share in ((10.0, (0.1, 0.5)), (0.0, (1.0, 1.0))):
+        data = {"run": run, "imu": {"gyro_bias_dph": [0.0, 0.0, drift]}, "reference": {"kind": "log"}}
+        found = simulate(Scenario.parse({**data, "method": [method]})).methods[0]
+        assert share[0] <= found.law_in_force.damped_share <= share[1]
+        turned = abs(found.rows[-1, 2] - found.rows[-11, 2])
+        assert found.law_series[-1, 3] == pytest.approx(turned, rel=1e-3, abs=1e-9)
 
 
 def test_yaw_rate_sees_a_whole_turn():

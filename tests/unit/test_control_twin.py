@@ -82,6 +82,28 @@ def test_kernel_equals_twin_sample_by_sample(damping, policy_id, switching_id):
     if list(combination_faults(damping, network, policy, switching, 1.0)):
         assert policy_id == "schedule", "only the schedule does not go with every switching method"
         return
+    damped = hold_against_the_twin(damping, network, policy, switching)
+    changes = np.count_nonzero(np.diff(damped[:, 0]))
+    moved = len(np.unique(damped[:, 1]))
+    assert changes >= 2 or moved >= 3 or damping == "internal", "nothing has happened"
+
+
+@pytest.mark.parametrize(
+    ("policy_id", "switching_id"),
+    [("constant", "hard"), ("threshold", "hard"), ("threshold", "keep"), ("variation", "hard")],
+)
+def test_a_network_with_two_outputs_equals_the_twin(policy_id, switching_id):
+    """Velocity feedback from the network's own states, while damped and after each gap."""
+    network = parse_network({"id": "optimal", "rho": 1e-4, "q": 1.0, "realisation": "feedback"})
+    policy = POLICIES[policy_id].model_validate({"id": policy_id, **POLICY.get(policy_id, {})})
+    switching = SWITCHINGS[switching_id].model_validate({"id": switching_id})
+    assert not list(combination_faults("external", network, policy, switching, 1.0))
+    damped = hold_against_the_twin("external", network, policy, switching)
+    assert np.count_nonzero(np.diff(damped[:, 0])) >= 2
+
+
+def hold_against_the_twin(damping, network, policy, switching):
+    """Run kernel and twin side by side; return damped and xi at each step, shape (STEPS, 2)."""
     law = prepare_law(damping, network, network.transfer(OMEGA_S), policy, switching, 1.0)
     eps, nabla, dv_r, valid, x0 = inputs()
     run = ErrorModelRun(
@@ -99,6 +121,4 @@ def test_kernel_equals_twin_sample_by_sample(damping, policy_id, switching_id):
     assert np.all(np.abs(np.array(states) - twin) <= 1e-10 * np.abs(twin).max(axis=0))
     assert law.s["damped"] == float(twin_law.damped)
     assert law.s["xi"] == pytest.approx(twin_law.xi, rel=1e-9)
-    changes = np.count_nonzero(np.diff(np.array(damped)[:, 0]))
-    moved = len(np.unique(np.array(damped)[:, 1]))
-    assert changes >= 2 or moved >= 3 or damping == "internal", "nothing has happened"
+    return np.array(damped)

@@ -11,8 +11,9 @@ from app.views.errors.figure import error_plots
 from app.views.errors.legend import legend_html
 from navcore.design.bands import Bands, covariance_bands
 from navcore.design.budget import budget
+from navcore.engine.results import timeseries
 from navcore.engine.simulation import simulate
-from navcore.mechanization.recorder import PHI_E, POSITION
+from navcore.mechanization.recorder import NAMES, PHI_E, POSITION
 from navcore.scenario.model import Scenario
 from navcore.studies.filter_consistency import SHIP, final_error
 
@@ -50,6 +51,50 @@ def test_the_filters_band_is_what_the_running_filter_says_of_itself(found: Bands
     own = np.sqrt(np.diag(P))[[4, 5, 6, 0, 1]]
     assert found.methods[3].kind == "filter" and found.methods[3].sigma is not None
     np.testing.assert_allclose(found.methods[3].sigma[-1, :5], own, rtol=0.02)
+
+
+def test_the_run_gives_what_the_filter_says_of_itself_at_every_output_row(
+    ship: Scenario, found: Bands
+) -> None:
+    """Equal to the band between two samples of the log, to the covariance itself at the end."""
+    run = simulate(ship)
+    assert [method.sigma is None for method in run.methods] == [True, True, True, False]
+    filtered, band = run.methods[3], found.methods[3].sigma
+    assert filtered.sigma is not None and band is not None
+    assert filtered.sigma.shape == (len(filtered.t_s), 7)
+    later = filtered.t_s > 300.0
+    for column in range(7):
+        expected = np.interp(filtered.t_s[later], found.t_s, band[:, column])
+        np.testing.assert_allclose(filtered.sigma[later, column], expected, rtol=0.05)
+    _, P = final_error(Scenario.parse(SHIP | {"run": _SHORT}))
+    np.testing.assert_allclose(filtered.sigma[-1, :5], np.sqrt(np.diag(P))[[4, 5, 6, 0, 1]], rtol=1e-12)
+
+
+@pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
+def test_the_time_series_holds_it_and_nothing_for_the_other_methods(fidelity: str) -> None:
+    run_block = _SHORT | {"duration_h": 0.25, "fidelity": fidelity, "rate_hz": 10.0}
+    run = simulate(Scenario.parse(SHIP | {"run": run_block, "method": _METHODS}))
+    table = timeseries(run)
+    filtered = run.methods[3].sigma
+    assert filtered is not None and np.all(filtered > 0.0)
+    rows = np.array(table["method"].to_pylist()) == "filter"
+    for index, name in enumerate(NAMES[:POSITION]):
+        column = np.array(table[f"sigma_{name}"].to_pylist(), dtype=float)
+        np.testing.assert_array_equal(column[rows], filtered[:, index])
+        assert np.all(np.isnan(column[~rows]))
+    alone = simulate(Scenario.parse(SHIP | {"run": run_block, "method": _METHODS[:1]}))
+    assert not any(name.startswith("sigma") for name in timeseries(alone).column_names)
+
+
+def test_both_fidelities_give_the_filter_the_same_deviations() -> None:
+    found = [
+        simulate(Scenario.parse(SHIP | {"run": _SHORT | {"fidelity": f, "rate_hz": 10.0}})).methods[0]
+        for f in ("error_model", "strapdown")
+    ]
+    linear, full = (method.sigma for method in found)
+    assert linear is not None and full is not None
+    # not at the start and the end, where the one is taken before and the other after a sample of the log
+    np.testing.assert_allclose(full[1:-1], linear[1:-1], rtol=0.03)
 
 
 def test_what_is_cancelled_gives_no_bands(ship: Scenario) -> None:

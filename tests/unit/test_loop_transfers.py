@@ -26,6 +26,8 @@ from navcore.foundation.earth import SEMI_MAJOR_AXIS, SPHERE
 from navcore.foundation.errors import InputError
 from navcore.networks import NETWORKS, parse_network
 from navcore.networks.base import LinearNetwork
+from navcore.networks.lqg import compensator, plant
+from navcore.networks.optimal import EXAMPLE_SHIP
 
 OMEGA_S = float(np.sqrt(9.80665 / 6378137.0))
 GRAVITY = 9.80665
@@ -124,6 +126,48 @@ def test_feedback_against_its_equations(source: Source, output: Output, realisat
         A, inputs, outputs = feedback_equations(k, realisation == "as_printed")
         expected = respond(A, inputs[source], outputs[output], OMEGA)
         np.testing.assert_allclose(frequency_response(network, source, output, OMEGA), expected, rtol=1e-8)
+
+
+def two_output_equations(sign: float) -> tuple[LinearNetwork, Equations]:
+    """x = [phi, dV, filter] of theory.md 17: the compensator itself, in SI, as `lqg` makes it."""
+    law = compensator(plant(EXAMPLE_SHIP, OMEGA_S).excited(), 1e-2, 1.0, feedback=True).reduced(4)
+    n = len(law.B)
+    phi, dv, z = 0, 1, slice(2, 2 + n)
+    A = np.zeros((2 + n, 2 + n))
+    A[phi, dv], A[phi, z] = -sign / RADIUS, -sign * law.C / RADIUS
+    A[dv, phi], A[dv, z] = sign * GRAVITY, OMEGA_S * law.E
+    A[z, dv], A[z, z] = -OMEGA_S * law.B, OMEGA_S * law.A
+    inputs = {source: np.zeros(2 + n) for source in SOURCES}
+    inputs["eps"][phi], inputs["nabla"][dv], inputs["initial_tilt"][phi] = -1.0, 1.0, 1.0
+    inputs["dv_r"][z] = OMEGA_S * law.B
+    network = parse_network({"id": "optimal", "rho": 1e-2, "q": 1.0, "realisation": "feedback"})
+    return network.transfer(OMEGA_S), (A, inputs, {"phi": np.eye(2 + n)[phi], "dv": np.eye(2 + n)[dv]})
+
+
+@pytest.mark.parametrize("channel", ["north", "east"])
+@pytest.mark.parametrize("output", OUTPUTS)
+@pytest.mark.parametrize("source", [source for source in SOURCES if source != "acceleration"])
+def test_two_outputs_against_their_equations(source: Source, output: Output, channel: Channel) -> None:
+    network, (A, inputs, outputs) = two_output_equations(1.0 if channel == "north" else -1.0)
+    expected = respond(A, inputs[source], outputs[output], OMEGA)
+    found = frequency_response(network, source, output, OMEGA, channel=channel)
+    np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-11 * np.max(np.abs(expected)))
+    loop = np.sort_complex(analyse(network).poles)
+    np.testing.assert_allclose(loop, np.sort_complex(np.linalg.eigvals(A)), rtol=1e-5)
+
+
+def test_margins_of_two_outputs_are_those_of_the_loop_broken_at_the_velocity() -> None:
+    """From V_c into the law back to V_c, both outputs closed: by its state space."""
+    network, (A, _, outputs) = two_output_equations(1.0)
+    cut = A.copy()
+    cut[:, 1] = 0.0
+    loop = -respond(cut, A[:, 1], outputs["dv"], OMEGA)
+    np.testing.assert_allclose(-network.loop_response(OMEGA) * (OMEGA_S / OMEGA) ** 2, loop, rtol=1e-6)
+    found = margins(network)
+    assert found is not None and found.crossover_rad_s is not None and found.phase_rad is not None
+    at = -network.loop_response(found.crossover_rad_s) * (OMEGA_S / found.crossover_rad_s) ** 2
+    assert abs(at) == pytest.approx(1.0, rel=1e-6)
+    assert abs(np.angle(-at)) == pytest.approx(abs(found.phase_rad), rel=1e-6)
 
 
 def test_feedback_has_the_tilt_of_the_network_form_but_pulls_the_velocity_onto_the_reference() -> None:

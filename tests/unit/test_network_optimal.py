@@ -10,8 +10,12 @@ import pytest
 
 from app.cli import main
 from navcore.analysis import analyse
+from navcore.analysis.held_log import held_log, period_map
 from navcore.analysis.locus import root_locus
+from navcore.analysis.whole_system import whole_system
+from navcore.design.budget import budget
 from navcore.engine.simulation import simulate
+from navcore.foundation.earth import SPHERE
 from navcore.foundation.errors import InputError
 from navcore.networks import MAX_ORDER, parse_network
 from navcore.networks.lqg import compensator, plant
@@ -136,6 +140,84 @@ def test_it_goes_with_switching_policies_and_internal_damping() -> None:
     assert simulate(scenario({}, method=[internal])).methods[0].status == "ok"
 
 
+FEEDBACK = {"id": "optimal", "rho": 1e-3, "q": 1.0, "realisation": "feedback"}
+
+
+@pytest.mark.parametrize("fidelity", ["channel", "error_model", "strapdown"])
+def test_velocity_feedback_runs_in_every_fidelity_and_halves_the_velocity_error(fidelity: str) -> None:
+    """Of an initial tilt and velocity error, with sensors that have none."""
+    errors = {"attitude_arcmin": [3.0, 0.0, 0.0], "velocity_mps": [0.0, 1.0]}
+    methods = [{"name": form, "damping": "external", "network": FEEDBACK | {"realisation": form}}
+               for form in ("feedback", "network")]  # fmt: skip
+    run = {"duration_h": 2.0, "fidelity": fidelity, "output_step_s": 60.0, "rate_hz": 50.0}
+    quiet = {"imu": {}, "reference": {"kind": "log"}}
+    both, alone = simulate(scenario({}, run=run, initial_error=errors, method=methods, **quiet)).methods
+    assert both.status == "ok"
+    assert abs(both.rows[-1, 0]) < 0.15 * both.rows[0, 0]
+    assert both.errors["dvn_mps"]["rms"] < 0.5 * alone.errors["dvn_mps"]["rms"]
+
+
+def test_velocity_feedback_is_damped_in_the_whole_system_and_as_sampled() -> None:
+    """Eigenvalues of both channels, and of the sampled law at a fast step, which are the same."""
+    network = parse_network(FEEDBACK).transfer(OMEGA_S)
+    whole = whole_system(network, "external", 0.8)
+    assert whole.stable and whole.earth_growth < 0.0
+    factors = np.linalg.eigvals(period_map(network, "external", 0.01, 1, 0.8))
+    rates = np.log(factors[np.abs(factors) > 1e-6].astype(complex)) / 0.01
+    for mode in whole.modes:
+        assert np.min(np.abs(rates - mode.eigenvalue)) < 2e-3 * abs(mode.eigenvalue) + 5e-8
+    assert held_log(network, "external", 1.0, 1.0, 0.8).stable
+    assert not held_log(network, "external", 400.0, 1.0, 0.8).stable
+
+
+def test_the_budget_along_a_run_knows_the_second_output() -> None:
+    """The covariance of the moving error model holds over seeds of the run itself."""
+    ship = scenario(FEEDBACK, run={"duration_h": 2.0, "step_s": 2.0})
+    shown = budget(ship).methods[0]
+    seeds = [
+        simulate(ship.model_copy(update={"run": ship.run.model_copy(update={"seed": seed})})).methods[0]
+        for seed in range(1, 41)
+    ]
+    measured = np.sqrt(np.mean([method.errors["phi_e_rad"]["rms"] ** 2 for method in seeds]))
+    assert measured == pytest.approx(shown.total.rms.tilt_rad, rel=0.25)
+    speed = np.sqrt(np.mean([method.errors["dve_mps"]["rms"] ** 2 for method in seeds]))
+    assert speed == pytest.approx(shown.total.rms.velocity_mps, rel=0.25)
+
+
+@pytest.mark.parametrize(
+    ("method", "line"),
+    [
+        (
+            {"damping": "internal"},
+            'network.realisation = \'feedback\': must be "network" with damping = "internal": velocity '
+            "feedback needs a reference",
+        ),
+        (
+            {"switching": {"id": "bumpless"}},
+            "switching.id = 'bumpless': needs a network that comes to rest with a standing difference: "
+            'network.realisation must be "network" with optimal',
+        ),
+        (
+            {"switching": {"id": "bridge"}},
+            "switching.id = 'bridge': works by the network alone: network.realisation must be \"network\" "
+            "with optimal",
+        ),
+    ],
+)
+def test_velocity_feedback_is_refused_where_it_cannot_stand(method: dict[str, Any], line: str) -> None:
+    with pytest.raises(InputError) as caught:
+        scenario({}, method=[{"damping": "external", "network": FEEDBACK, **method}])
+    assert str(caught.value) == f"method.0.{line}"
+
+
+def test_velocity_feedback_goes_with_what_clears_or_keeps_the_network() -> None:
+    """`hard` and `keep`, with a policy that looks at the data."""
+    for switching in ("hard", "keep"):
+        method = {"damping": "external", "network": FEEDBACK, "policy": {"id": "variation"},
+                  "switching": {"id": switching}}  # fmt: skip
+        assert simulate(scenario({}, method=[method])).methods[0].status == "ok"
+
+
 def test_figures_that_make_no_network_are_refused_with_the_field() -> None:
     """A huge random walk: poles too far apart for double precision."""
     with pytest.raises(InputError, match="rho = "):
@@ -150,3 +232,19 @@ def test_command_shows_it(capsys: pytest.CaptureFixture[str]) -> None:
     document = json.loads(capsys.readouterr().out)
     assert document["stable"] and 0.0 < document["h0"] < 0.1
     assert any("example ship" in text for text in document["warnings"])
+    assert "feedback_num" not in document
+
+
+def test_command_shows_the_second_output(capsys: pytest.CaptureFixture[str]) -> None:
+    """G(s) over the same denominator, 1/s: at rest and at the Schuler frequency as the network has it."""
+    text = 'id = "optimal", rho = 1e-3, q = 1, realisation = "feedback"'
+    assert main(["network", text, "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    network = parse_network(text).transfer(SPHERE.schuler_frequency(0.0))
+    for omega in (0.0, 1.24e-3):
+        found = np.polyval(document["feedback_num"], 1j * omega) / np.polyval(document["den"], 1j * omega)
+        p = 1j * omega / network.omega_s
+        exact = network.omega_s * np.polyval(network.feedback_p, p) / np.polyval(network.den_p, p)
+        assert found == pytest.approx(exact, rel=1e-9)
+    assert main(["network", text]) == 0
+    assert "velocity feedback" in capsys.readouterr().out

@@ -37,6 +37,7 @@ NETWORKS = {
     "two states": 'id = "classic2"',
     "three states": 'id = "classic3"',
     "four states": 'id = "complementary"',
+    "two outputs": 'id = "optimal", realisation = "feedback", q = 1.0',
 }
 
 
@@ -84,6 +85,9 @@ def _assert_equal(run: StrapdownRun, other: StrapdownRun) -> None:
 @pytest.mark.parametrize("damping", ["external", "internal"])
 def test_equals_the_general_loop(name: str, damping: str):
     network = parse_network(NETWORKS[name])
+    if list(network.damping_faults(damping)):
+        assert (name, damping) == ("two outputs", "internal")
+        return
     # Epochs between the recorded states, which the general loop serves.
     log = _log(0.3, body=False)
     run = _run(DENG_SWING, damping, network, Constant(), log)

@@ -19,6 +19,7 @@ from navcore.networks.base import NetworkParameters
 from navcore.networks.classic import Classic2Network
 from navcore.networks.compass import CompassNetwork
 from navcore.networks.complementary import ComplementaryNetwork
+from navcore.networks.optimal import OptimalNetwork
 from navcore.networks.undamped import UndampedNetwork
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
@@ -49,6 +50,7 @@ def _damping(damping: str, network: NetworkParameters, v_r: np.ndarray):
         ("external", ComplementaryNetwork()),
         ("internal", Classic2Network()),
         ("feedback", CompassNetwork(sigma=0.05, xi=0.7)),
+        ("feedback", OptimalNetwork(rho=1e-4, q=1.0, realisation="feedback")),
     ],
 )
 def test_kernel_equals_twin_sample_by_sample(motion, kind, network):

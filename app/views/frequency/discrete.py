@@ -39,7 +39,8 @@ def measured_gain(method: MethodRun, step_s: float) -> tuple[np.ndarray, Complex
     rest cannot be measured.
     """
     network = effective_network(method)
-    if network.order == 0 or realisation(method) != "network":
+    gains = realisation(method) != "network" and network.feedback_p is None
+    if network.order == 0 or gains:
         return None
     return _measure(
         _Question(network.num_p.tobytes(), network.den_p.tobytes(), network.omega_s, step_s, network)

@@ -43,7 +43,7 @@ def _margins(loop: _Loop) -> Margins | None:
 def margins_of(method: MethodRun) -> Margins | None:
     """Margins of what acts in a method; None where they mean nothing (undamped or unstable)."""
     network = effective_network(method)
-    return _margins(_Loop(network.num_p.tobytes(), network.den_p.tobytes(), network))
+    return _margins(_Loop(network.loop_num_p.tobytes(), network.den_p.tobytes(), network))
 
 
 @lru_cache(maxsize=1)
@@ -54,9 +54,9 @@ def _grid() -> np.ndarray:
 
 
 def open_loop(method: MethodRun, ratio: np.ndarray) -> np.ndarray:
-    """L = omega_s^2 H/s^2 at s = j ratio omega_s."""
+    """L = omega_s^2 H/s^2 at s = j ratio omega_s, (H + p G)/p^2 for a network with two outputs."""
     network = effective_network(method)
-    return -network.response(ratio * network.omega_s) / ratio**2
+    return -network.loop_response(ratio * network.omega_s) / ratio**2
 
 
 def nyquist(run: Run, aspect: float = 0.46, *, width_px: float = 940.0) -> PlotlyFigure:

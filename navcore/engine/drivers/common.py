@@ -131,6 +131,7 @@ def method_run(
     reached_s: float,
     navigation: np.ndarray | None = None,
     notices: tuple[str, ...] = (),
+    sigma: np.ndarray | None = None,
 ) -> MethodRun:
     """Make the result of one method from what was recorded.
 
@@ -155,6 +156,8 @@ def method_run(
         Navigation solution at the output rows (strapdown).
     notices : tuple of str
         Further warnings.
+    sigma : ndarray, shape (rows, 7), optional
+        Standard deviations that a Kalman filter gives itself at the output rows.
     """
     written = int(recorder.cursor["row"])
     network = network_on_average(method, network, recorder.rows[:written])
@@ -174,6 +177,7 @@ def method_run(
         plot=plot_series(recorder, step_s),
         law_series=recorder.rows[:written, LAW_COLUMNS],
         navigation=None if navigation is None else navigation[:written],
+        sigma=None if sigma is None else sigma[:written],
     )
 
 

@@ -9,11 +9,12 @@ import numpy as np
 
 from navcore.engine.drivers.common import law_of, network_of, seen_by
 from navcore.engine.environment import Environment
-from navcore.foundation.earth import attitude_matrix
+from navcore.foundation.earth import Earth, attitude_matrix
 from navcore.mechanization.kalman.error_model import FilteredErrorModel
-from navcore.mechanization.kalman.filter import ACCEL, GYRO, LOG, FilterModel, filter_state
+from navcore.mechanization.kalman.filter import ACCEL, GYRO, LOG, FilterModel, FilterState, filter_state
 from navcore.mechanization.recorder import make_recorder
-from navcore.motion.base import HEADING, PITCH, ROLL
+from navcore.mechanization.trajectory import coefficients
+from navcore.motion.base import HEADING, PITCH, ROLL, Truth
 from navcore.scenario.model import Method, Scenario
 from navcore.scenario.start import ERRORS, aligned_errors, independent_errors
 from navcore.scenario.stochastic import Drift, StochasticModel, stochastic_model
@@ -108,6 +109,7 @@ def filtered_linear(
     """Run of the filter on the error model, and what to tell the user."""
     run, truth = scenario.run, env.truth_half.values
     model, P, notices = filter_model(scenario, run.step_s, truth[0])
+    recorder = make_recorder(env.steps, run.step_s, run.output_step_s)
     filtered = FilteredErrorModel(
         step_s=run.step_s,
         steps=env.steps,
@@ -117,9 +119,9 @@ def filtered_linear(
         truth=truth,
         law=law_of(method, network_of(scenario, method), run.step_s),
         x=state.copy(),
-        recorder=make_recorder(env.steps, run.step_s, run.output_step_s),
+        recorder=recorder,
         model=model,
-        filter=filter_state(P),
+        filter=filter_state(P, len(recorder.row_steps)),
     )
     return filtered, notices
 
@@ -137,4 +139,27 @@ def filtered_strapdown(
     law = law_of(method, network_of(scenario, method), interval_s)
     free = start_run(env.start, settings, scenario.earth, law, truth, before=env.imu.before())
     log = velocity_reference(seen_by(method, env.reference), env.truth)
-    return filtered_run(free, log, model, filter_state(P)), notices
+    state = filter_state(P, len(free.recorder.row_steps))
+    return filtered_run(free, log, model, state), notices
+
+
+def own_sigma(state: FilterState, truth: np.ndarray, earth: Earth) -> np.ndarray:
+    """Standard deviations that a filter gives itself at the output rows.
+
+    Parameters
+    ----------
+    state : FilterState
+        Of a run that is over; rows that it did not reach are zero.
+    truth : ndarray, shape (rows, 15)
+        True motion at the output rows.
+    earth : Earth
+        Earth model.
+
+    Returns
+    -------
+    ndarray, shape (rows, 7)
+        In the order of `navcore.mechanization.recorder.NAMES`: rad, m/s, m.
+    """
+    half = coefficients(Truth(1.0, np.ascontiguousarray(truth)), earth, True).half
+    metres = np.column_stack([half["m"], half["n_cos"]])
+    return np.hstack([state.sigma[:, [4, 5, 6, 0, 1]], state.sigma[:, 2:4] * metres])

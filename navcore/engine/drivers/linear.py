@@ -137,14 +137,16 @@ def _run_method(
             method, network, judge, run.recorder, step_s, status, reason, reached_s, notices=notices
         )
     if method.damping == "kalman":
-        from navcore.engine.drivers.kalman import filtered_linear
+        from navcore.engine.drivers.kalman import filtered_linear, own_sigma
 
         run, notices = filtered_linear(scenario, method, env, state)
         status, reason = _carry_out(run, report, cancelled)
         report(1.0)
         reached_s = run.position * step_s
+        truth = truth_at(env.truth_half.values, 2 * run.recorder.row_steps)
+        sigma = own_sigma(run.filter, truth, scenario.earth)
         return method_run(
-            method, network, judge, run.recorder, step_s, status, reason, reached_s, notices=notices
+            method, network, judge, run.recorder, step_s, status, reason, reached_s, None, notices, sigma
         )
     recorder = make_recorder(env.steps, step_s, scenario.run.output_step_s)
     run = ErrorModelRun(

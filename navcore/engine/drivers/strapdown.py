@@ -139,4 +139,22 @@ def _finish(
         run.position / run.settings.rate_hz,
         run.navigation,
         notices,
+        _sigma(scenario, env, method, run),
     )
+
+
+def _sigma(
+    scenario: Scenario,
+    env: StrapdownEnvironment,
+    method: Method,
+    run: StrapdownRun | AveragedStrapdown,
+) -> np.ndarray | None:
+    """Standard deviations that a Kalman filter gives itself; None for any other method."""
+    if method.damping != "kalman":
+        return None
+    from navcore.engine.drivers.kalman import own_sigma
+    from navcore.mechanization.kalman.strapdown import FilteredStrapdown
+
+    filtered = cast(FilteredStrapdown, run)
+    truth = truth_at(env.truth.values, filtered.recorder.row_steps)
+    return own_sigma(filtered.filter, truth, scenario.earth)

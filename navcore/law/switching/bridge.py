@@ -317,5 +317,5 @@ class Bridge(SwitchingParameters):
             yield self._begins_anew(policy)
         elif realisation != "network":
             yield self._refused(
-                'works by the network alone: network.realisation must be "network" with compass'
+                f'works by the network alone: network.realisation must be "network" with {network.id}'
             )

@@ -135,5 +135,7 @@ class Bumpless(SwitchingParameters):
         if policy.follow is not None:
             yield self._begins_anew(policy)
         elif realisation != "network":
-            allowed = "needs a network that comes to rest with a standing difference"
-            yield self._refused(f'{allowed}: network.realisation must be "network" with compass')
+            yield self._refused(
+                "needs a network that comes to rest with a standing difference: network.realisation must be "
+                f'"network" with {network.id}'
+            )

@@ -24,6 +24,7 @@ from navcore.mechanization.kalman.filter import (
     FilterState,
     fill_transition,
     fill_turn,
+    keep_sigma,
     predict,
     sensed_errors,
     update,
@@ -51,10 +52,10 @@ def _advance(
             flush(k - 1, recorder)
             reached, code = k, DIVERGED
             break
-        told, row = law_input[k * law_stride], truth[2 * k * truth_stride]
+        told, true = law_input[k * law_stride], truth[2 * k * truth_stride]
         before = s.epoch
         read_log(k * h, x, told.v_e, told.v_n, log, s)
-        fill_turn(row[PITCH], row[ROLL], row[HEADING], f.turn)
+        fill_turn(true[PITCH], true[ROLL], true[HEADING], f.turn)
         if s.epoch != before and s.valid:
             update(model, s.difference[E], s.difference[N], told.v_e, told.v_n, f)
             d = f.found
@@ -62,8 +63,10 @@ def _advance(
                 x.dv_e - d[0], x.dv_n - d[1], x.d_lat - d[2], x.d_lon - d[3],
                 x.phi_e - d[4], x.phi_n - d[5], x.phi_u - d[6],
             )  # fmt: skip
-        begin = half[2 * k * half_stride]
+        begin, row = half[2 * k * half_stride], recorder.cursor.row
         record(k, x, begin.m, begin.n_cos, Watched(0.0, 0.0, 0.0, 0.0), recorder)
+        if recorder.cursor.row > row:
+            keep_sigma(f, row)
         if (k + 1) % recorder.bin_width == 0 or k + 1 == last:
             flush(k, recorder)
         if k == final:

@@ -66,6 +66,8 @@ class FilterState(NamedTuple):
         Transition of the seven errors over the present step.
     inputs : ndarray, shape (7, 5)
         Their response to sensor errors that are held over it.
+    sigma : ndarray, shape (rows, 7)
+        Standard deviations of the seven errors at the output rows, as the filter has them.
     scratch : ndarray, shape (n, n)
     found : ndarray, shape (n,)
         What the last sample of the log corrected.
@@ -76,16 +78,17 @@ class FilterState(NamedTuple):
     turn: np.ndarray
     moved: np.ndarray
     inputs: np.ndarray
+    sigma: np.ndarray
     scratch: np.ndarray
     found: np.ndarray
 
 
-def filter_state(P: np.ndarray) -> FilterState:
-    """State at t = 0 from the covariance, shape (n, n): nothing is estimated yet."""
+def filter_state(P: np.ndarray, rows: int) -> FilterState:
+    """State at t = 0 from the covariance, shape (n, n), of a run with so many output rows."""
     n = len(P)
     return FilterState(
         np.array(P, dtype=float), np.zeros(n - STATES), np.eye(3), np.zeros((STATES, n)),
-        np.zeros((STATES, INPUTS)), np.zeros((n, n)), np.zeros(n),
+        np.zeros((STATES, INPUTS)), np.zeros((rows, STATES)), np.zeros((n, n)), np.zeros(n),
     )  # fmt: skip
 
 
@@ -215,6 +218,13 @@ def update(model, d_e, d_n, v_e, v_n, f):
                 P[i, j] -= gain[i] * gain[j] / variance
     for i in range(n - STATES):
         f.sensors[i] += f.found[STATES + i]
+
+
+@inlined
+def keep_sigma(f, row):
+    """Put the standard deviations of the seven errors into an output row."""
+    for i in range(STATES):
+        f.sigma[row, i] = math.sqrt(max(f.P[i, i], 0.0))
 
 
 @inlined

@@ -22,6 +22,7 @@ from navcore.mechanization.kalman.filter import (
     FilterState,
     fill_transition,
     fill_turn,
+    keep_sigma,
     predict,
     update,
 )
@@ -34,7 +35,7 @@ from navcore.mechanization.strapdown.log import (
     newest_epoch,
     usable,
 )
-from navcore.mechanization.strapdown.records import UNDER_WAY
+from navcore.mechanization.strapdown.records import COMPLETE, UNDER_WAY
 from navcore.mechanization.strapdown.run import StrapdownRun
 
 PLACE = record_type(
@@ -147,9 +148,12 @@ def _advance(
                 freed[j, i] = increments[j, i] - offset[i]
             for i in range(3):
                 place.force[i] += freed[j, ACCEL + i]
+        row = recorder.cursor.row
         reached, code = advance_kernel(
             freed[a:b], k, pace, con, x, truth, heights, none, law, navigation, recorder
         )
+        if recorder.cursor.row > row:
+            keep_sigma(f, row)
         done = reached - k
         k = reached
         if k % every == 0 and done > 0:
@@ -165,6 +169,8 @@ def _advance(
             force[0] = force[1] = force[2] = 0.0
             fill_transition(span, c, c, c, f)
             predict(model, f)
+        if code == COMPLETE:
+            keep_sigma(f, recorder.row_steps.shape[0] - 1)
         if code != UNDER_WAY or k >= end:
             return k, code
 

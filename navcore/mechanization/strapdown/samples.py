@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from navcore.foundation.compiled import inlined, kernel
-from navcore.law.network_state import Channel, channel_of, feed, keep_channel
+from navcore.law.network_state import Channel, channel_of, fed_back, feed, keep_channel
 from navcore.law.records import AS_PRINTED, EXTERNAL, E, N, Sensed
 from navcore.law.step import as_printed
 from navcore.mechanization.strapdown.attitude import heading_of
@@ -98,6 +98,7 @@ class _Told(NamedTuple):
     as_printed: bool
     order: int
     feedback_k1: float
+    feeds_back: bool
 
 
 @inlined
@@ -122,11 +123,15 @@ def _newest_difference(t, nav, carried, log):
 def _fed(t, nav, carried, told, network):
     """Feed the network of both channels with the difference held."""
     u_e, u_n = (carried.d_e, carried.d_n) if told.external else (-nav.v_e, -nav.v_n)
+    if told.feeds_back:
+        a_e, a_n = fed_back(network, carried.east, u_e), fed_back(network, carried.north, u_n)
+    else:
+        a_e, a_n = told.feedback_k1 * u_e, told.feedback_k1 * u_n
     c_e, east = feed(told.order, network, carried.east, u_e)
     c_n, north = feed(told.order, network, carried.north, u_n)
     if told.as_printed:
         c_e, c_n = as_printed(c_e, c_n, Sensed(nav.v_e, nav.v_n, 0.0), u_e, u_n)
-    held = Held(c_e, c_n, told.feedback_k1 * u_e, told.feedback_k1 * u_n, 0.0, 0.0)
+    held = Held(c_e, c_n, a_e, a_n, 0.0, 0.0)
     return _Steady(held, east, north, carried.epoch, carried.d_e, carried.d_n, LastCall(t, nav.v_e, nav.v_n))
 
 
@@ -151,7 +156,7 @@ def run_steady(increments, first, last, start, con, x, log, law):
     """
     p, s, kept = law.p, law.s, x.last
     external, printed = p.damping == EXTERNAL, p.realisation == AS_PRINTED
-    told = _Told(start, con.dt, con.lat0, external, printed, p.order, p.feedback_k1)
+    told = _Told(start, con.dt, con.lat0, external, printed, p.order, p.feedback_k1, p.feeds_back)
     carried = _Steady(
         Held(x.c[E], x.c[N], x.a[E], x.a[N], 0.0, 0.0), channel_of(s, E), channel_of(s, N),
         s.epoch, s.difference[E], s.difference[N], LastCall(kept.time, kept.v_e, kept.v_n),
