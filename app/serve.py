@@ -192,7 +192,6 @@ def open_dashboard(
     InputError
         See `app.http.server.start`.
     """
-    from app.bridge.server import SOCKET_SCRIPT
     from app.http.ids import SessionIds
     from app.http.server import start
     from app.session.keys import session_key
@@ -207,7 +206,6 @@ def open_dashboard(
         on_connect=dashboard.on_connect,
         on_disconnect=dashboard.on_disconnect,
         page_scripts=[
-            SOCKET_SCRIPT,
             *LANGUAGE_SCRIPTS,
             *(_STATIC / f"{name}.js" for name in _SCRIPTS),
             *scripts(views),

@@ -6,7 +6,6 @@ the public interface lacks; `tests/attack/test_viser_insides.py` fails when an i
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -113,12 +112,6 @@ def show_held_value(server: viser.ViserServer, client_id: int, uuid: str) -> Non
 def end_upload(server: viser.ViserServer, client_id: int, component: str, transfer: str, size: int) -> None:
     """Let the page's progress bar end. Without it the button of a refused upload stays blocked."""
     _queue(server, client_id, messages.FileTransferPartAck(component, transfer, size, size))
-
-
-def show_held_values(client: viser.ClientHandle, ids: Iterable[str]) -> None:
-    """Send the held values of some controls to a page that may show others."""
-    for id in ids:
-        show_held_value(client._viser_server, client.client_id, id)
 
 
 def forget_upload(server: viser.ViserServer, client_id: int, transfer: str) -> None:

@@ -21,6 +21,9 @@ from navcore.foundation.errors import Fault, InputError
 _DIGITS = "".join(chr(code) for code in range(0x21, 0x7F) if chr(code) not in "\"&<>'`")
 _LARGEST = 1 << 25
 
+SOCKET_SCRIPT = Path(__file__).parent / "socket.js"
+"""Script for the page, to run before viser's program, which sends through it: ``schuler.send(message)``."""
+
 MENDS = (
     # After each change the 3D view is drawn for 250 ms, whether or not anything moves any more: some 15
     # frames, and each costs 30 ms without a graphics card. What is made late asks for its own frames.
@@ -28,8 +31,11 @@ MENDS = (
     # Messages that follow each other within 100 ms are held back, so that they are shown as evenly as they
     # were sent. Our server sends a picture when the page has painted the one before: waiting delays it.
     ("void 0||p>100||d-l.jsTimeMinusPythonTime", "void 0||p>=0||d-l.jsTimeMinusPythonTime"),
-    # One value in 50 ms, whichever control it comes from: a slider is followed 20 times a second at most.
-    ("n=LL(50).send,r=b.useMemo(()=>({folderDepth:0", "n=LL(30).send,r=b.useMemo(()=>({folderDepth:0"),
+    # One value in 50 ms, whichever control it comes from; what comes between is dropped. See socket.js.
+    (
+        "n=LL(50).send,r=b.useMemo(()=>({folderDepth:0",
+        "n=window.schuler.send,r=b.useMemo(()=>({folderDepth:0",
+    ),
     # A command's new title ("Undo ...") counts as a change of the 3D view.
     ("new Set([`GuiUpdateMessage`,", "new Set([`CommandUpdateMessage`,`GuiUpdateMessage`,"),
 )

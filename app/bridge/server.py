@@ -10,7 +10,6 @@ import threading
 import types
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import rich
@@ -24,9 +23,6 @@ from app.bridge.mends import mend_queues, share_hints, share_threads_fairly
 from navcore.foundation.errors import Fault, InputError
 
 VISER_VERSION = "1.1.1"
-
-SOCKET_SCRIPT = Path(__file__).parent / "socket.js"
-"""Script for the page, to run before viser's: ``schuler.tell(control, value)`` past viser's throttle."""
 
 FRAME_TYPES: dict[str, type] = {
     # What a browser may send: every message viser has a handler for, except the share tunnel (opens a public

@@ -1,8 +1,8 @@
 """What a page can be asked for by name: one list for scripts, keys, buttons in our HTML and the palette.
 
-viser has no event for a key, a click in a plot or a click in HTML, and its page sends at most one value in
-30 ms: static/commands.js writes what it asks for, with a running number, into one hidden control, and repeats
-what has not been heard.
+viser has no event for a key, a click in a plot or a click in HTML, and of a control's values its page sends
+the newest only: static/commands.js writes what it asks for, with a running number, into one hidden control,
+and repeats what has not been heard.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from app.bridge.controls import id_of, set_slider_range
+from app.bridge.controls import set_slider_range
 from app.editing import form
 from app.editing.form import FieldSpec, Slider
 from app.shell import notices
@@ -209,11 +209,6 @@ class Control:
         for widget in (self._slider, self._box):
             if widget is not None:
                 widget.handle.remove()
-
-    @property
-    def box_id(self) -> str:
-        """Id of the box in viser."""
-        return id_of(self._box.handle)
 
 
 def _marks(slider: Slider) -> tuple[tuple[float, str], tuple[float, str]]:

@@ -6,7 +6,6 @@ import threading
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from app.bridge.controls import show_held_values
 from app.editing import edits
 from app.editing.form import Path
 from app.session.session import Session
@@ -23,10 +22,6 @@ _UNFINISHED_S = 1.2
 """A typed value that is wrong is only refused when it stays: it may be on the way to a right one."""
 _PASSING_S = 0.25
 """The same for a slider, which may only pass a wrong value."""
-_BURST_OVER_S = 0.6
-"""After this long without an event the server's values are shown again in the boxes: the browser drops some
-while several controls move at once. Where a slider has come to rest its page says itself (static/sliders.js):
-a value shown again would displace the steps that a busy page has not sent yet."""
 
 
 class Editor:
@@ -60,7 +55,6 @@ class Editor:
         self._closed = False
         self._motions: dict[tuple[str, str, str], Mapping[str, Any]] = {}
         self._doubts: dict[Control, threading.Timer] = {}
-        self._quiet: threading.Timer | None = None
 
     def edit(self, control: Control, by_slider: bool) -> None:
         """Take over what a control holds, if the scenario allows it."""
@@ -68,8 +62,7 @@ class Editor:
             if control.removed or self._closed:
                 return
             shown = control.take(by_slider)
-            self._touched(control)
-            self.by_slider = by_slider
+            self.moved, self.by_slider = control, by_slider
             try:
                 value = control.read(shown)
                 changed = self._changed(control, value)
@@ -96,9 +89,8 @@ class Editor:
         """Let nothing follow any more."""
         with self._session.lock:
             self._closed = True
-            for waiting in (*self._doubts.values(), self._quiet):
-                if waiting is not None:
-                    waiting.cancel()
+            for waiting in self._doubts.values():
+                waiting.cancel()
 
     def _changed(self, control: Control, value: Any) -> Scenario:
         scenario, path = self._session.scenario, control.spec.path
@@ -148,21 +140,4 @@ class Editor:
                 lines = [f"{shown!r} was not taken over: cannot be read ({kept} is kept)"]
             control.refuse(lines)
         notices.tell(self._client, f"{control.spec.label}: not taken over", lines)
-        self._client.flush()
-
-    # ------------------------------------------------------------ bursts
-
-    def _touched(self, control: Control) -> None:
-        self.moved = control
-        if self._quiet is not None:
-            self._quiet.cancel()
-        self._quiet = timer(_BURST_OVER_S, self._burst_over, control)
-        self._quiet.start()
-
-    def _burst_over(self, last: Control) -> None:
-        with self._session.lock, self._client.atomic():
-            if self._closed or self._quiet is not threading.current_thread():
-                return  # something has been moved again
-            boxes = [control.box_id for control in self._controls() if control is not last or self.by_slider]
-            show_held_values(self._client, boxes)
         self._client.flush()

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Callable
 from itertools import count
-from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary
+from typing import TYPE_CHECKING, Any, TypeVar
+from weakref import WeakKeyDictionary, WeakSet
 
 from playwright.sync_api import Error as PlaywrightError
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
+from app.bridge.server import pool_of
 from app.session.display import Display
 from app.session.session import first_editable
 from app.session.sessions import first_scenario
@@ -26,8 +28,13 @@ if TYPE_CHECKING:
     from app.session.sessions import Sessions
     from navcore.scenario.model import Scenario
 
+T = TypeVar("T")
+
 THROTTLE_MS = 80
-"""The page sends one value in 30 ms, whichever control it comes from."""
+"""More than the 30 ms in which the page sends at most one value of a control."""
+
+SLOW = float(os.environ.get("SCHULER_BROWSER_SLOW", "1"))
+"""The page's processor is so many times slower: a test must not depend on its speed."""
 
 _GONE = ("Tried to update non-existent component", "_redrawFromAutoMarginCount")
 """What viser and plotly say of a plot that goes while it is drawn; nothing is lost.
@@ -95,10 +102,20 @@ _ACCOUNT = """() => {
     focus: document.activeElement?.outerHTML.slice(0, 200),
   };
 }"""
+_NO_NOTICES = """() => {
+  document.querySelectorAll('.mantine-Notification-closeButton').forEach(button => button.click());
+  return document.querySelector('.mantine-Notification-root') === null;
+}"""
 _LINE = """name => {
   const node = window.__viserSceneTree.getState()[name];
   return node ? Array.from(node.message.props.points) : null;
 }"""
+
+
+def _has_callbacks(view: OpenPage) -> bool:
+    """Whether something that a page has sent is still to be dealt with."""
+    pool, visitor = pool_of(view.client._viser_server), view.client.client_id
+    return visitor in pool._waiting or visitor in pool._running
 
 
 class Bench:
@@ -121,6 +138,10 @@ class Bench:
         self.faults: list[str] = []
         self._marks: WeakKeyDictionary[Any, Any] = WeakKeyDictionary()
         self._mark_numbers = count(1)
+        self._answering: WeakSet[OpenPage] = WeakSet()
+        if SLOW > 1.0:
+            tools = page.context.new_cdp_session(page)
+            tools.send("Emulation.setCPUThrottlingRate", {"rate": SLOW})
         page.on("pageerror", lambda error: self._note(str(error)))
         page.on("console", lambda m: self._note(m.text) if m.type == "error" else None)
 
@@ -180,40 +201,34 @@ class Bench:
         number = self.run
         self.slider(label).press(key)
         self.wait_for_run(number)
+        self.settle()
 
     def type(self, label: str, text: str) -> None:
         """Type into an exact box and wait for the run that follows."""
         number = self.run
         self.box(label).fill(text)
         self.wait_for_run(number)
+        self.settle()
 
     def choose(self, label: str, option: str) -> None:
-        """Choose in a dropdown; a run need not follow."""
-        self.page.wait_for_timeout(THROTTLE_MS)
+        """Choose in a dropdown and wait until what follows is shown; a run need not follow."""
         self.box(label).click()
         self.page.get_by_role("option", name=option, exact=True).click()
-        self.page.wait_for_timeout(THROTTLE_MS)
+        self.settle()
 
     def choose_and_run(self, label: str, option: str) -> None:
         number = self.run
         self.choose(label, option)
         self.wait_for_run(number)
+        self.settle()
 
     def upload(self, file: Any) -> None:
         """Upload a path, or a mapping of name, mimeType and buffer."""
         self.page.locator("input[type=file]").set_input_files(file)
 
     def close_notices(self) -> None:
-        # Not by the mouse: notices move while others close.
-        script = (
-            "() => document.querySelectorAll('.mantine-Notification-closeButton').forEach(b => b.click())"
-        )
-        shown = self.page.locator(".mantine-Notification-root")
-        for _ in range(50):  # closing some lets others come that waited for room
-            self.page.evaluate(script)
-            if shown.count() == 0:
-                return
-            self.page.wait_for_timeout(THROTTLE_MS)
+        # Not by the mouse: notices move while others close, which lets others come that waited for room.
+        self.page.wait_for_function(_NO_NOTICES, polling=THROTTLE_MS)
 
     # ------------------------------------------------------------ waiting and reading
 
@@ -235,12 +250,23 @@ class Bench:
                 f"{self.faults}"
             ) from None
 
-    def wait_until(self, holds: Callable[[], bool], seconds: float = 20.0) -> None:
+    def wait_for_change(self, look: Callable[[], T], *before: T) -> T:
+        """Wait until something stands still and differs from all that it was; return it."""
+        last: list[T] = []
+
+        def is_new() -> bool:
+            last[:] = [*last[-1:], look()]
+            return len(last) == 2 and last[0] == last[1] and last[0] not in before
+
+        self.wait_until(is_new)
+        return last[0]
+
+    def wait_until(self, holds: Callable[[], bool], seconds: float = 60.0) -> None:
         """Wait, letting the page go on, until something holds on the server."""
-        for _ in range(round(10 * seconds)):
+        for _ in range(round(50 * seconds)):
             if holds():
                 return
-            self.page.wait_for_timeout(100)
+            self.page.wait_for_timeout(20)
         raise AssertionError(f"not within {seconds:g} s; {self.status!r}; {self.faults}")
 
     def reset(self, preset: str, selected: int = 0) -> None:
@@ -290,8 +316,19 @@ class Bench:
 
     def settle(self) -> None:
         """Wait until what was done on the page has been sent, run and shown."""
-        self.page.wait_for_timeout(2 * THROTTLE_MS)
-        self.catch_up()
+        self.sent()
+        if self.sessions is not None:  # else it is a server in another process
+            self.catch_up()
+
+    def sent(self) -> None:
+        """Wait until the server has dealt with what was done on the page: a command after it is answered."""
+        for view in self._pages:
+            if view not in self._answering:
+                self._answering.add(view)
+                view.commands.register("nothing", lambda _: None)
+        number = self.page.evaluate("() => { schuler.command('nothing'); return schuler.asked(); }")
+        self.page.wait_for_function("number => schuler.heard() >= number", arg=number)
+        self.wait_until(lambda: not any(_has_callbacks(view) for view in self._pages))
 
     def catch_up(self) -> None:
         """Wait until the page shows the last run, and all that the server has sent.
@@ -324,7 +361,9 @@ class Bench:
 
     @property
     def _pages(self) -> list[OpenPage]:
-        """The server's side of all open pages of the session."""
+        """The server's side of all open pages of the session; none when it is in another process."""
+        if self.sessions is None:
+            return []
         return [view for view in self.session._views if isinstance(view, OpenPage)]
 
     def _receive(self) -> None:

@@ -138,7 +138,6 @@ def test_a_pin_is_renamed_hidden_gone_back_to_and_removed(pinned: Bench) -> None
     pinned.tab("Errors")
     page.wait_for_function(f"() => ({_UPLOT_NAMES})().some(names => names.some(n => n.includes('\"old\"')))")
     pinned.tab("Compare")
-    page.wait_for_timeout(100)
     pinned.box("pin shown").click()
     page.wait_for_function("() => document.querySelector('.sb-pins')?.innerText.includes('hidden')")
     assert session.pins.shown == ()

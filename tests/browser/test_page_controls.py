@@ -177,5 +177,4 @@ def test_the_3d_view_is_drawn_anew_when_the_track_moves(damped: Bench) -> None:
     before = canvas.screenshot()
     damped.tab("Sensors")
     damped.type("gyro bias z (deg/h), exact", "0.05")
-    damped.page.wait_for_timeout(500)
-    assert canvas.screenshot() != before
+    damped.wait_for_change(canvas.screenshot, before)

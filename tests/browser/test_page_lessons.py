@@ -8,7 +8,7 @@ from app.views.learn.lessons import MISSING, Lesson, lessons, names_in
 from app.views.learn.names import named
 from app.views.learn.view import right_answer, spec_at
 from navcore.engine.simulation import simulate
-from tests.browser.driver import THROTTLE_MS, Bench
+from tests.browser.driver import Bench
 from tests.browser.test_page_layout import SIZES, resize
 
 pytestmark = pytest.mark.browser
@@ -22,9 +22,9 @@ _LIVE = f"""() => [...document.querySelectorAll('{SECTION} .sb-live')]
 
 
 def press(bench: Bench, what: str) -> None:
-    """Press a button of the lesson by what it asks for."""
-    bench.page.wait_for_timeout(THROTTLE_MS)
+    """Press a button of the lesson by what it asks for; wait until that is done."""
     bench.page.locator(f"[data-command='lesson {what}']").first.click()
+    bench.sent()
 
 
 def heading(bench: Bench, text: str) -> None:
@@ -47,7 +47,6 @@ def answer(bench: Bench, given: str, *, choices: bool) -> None:
     if choices:
         press(bench, f"answer {given}")
         return
-    bench.page.wait_for_timeout(THROTTLE_MS)
     bench.page.get_by_label("Your answer").fill(given)
     bench.page.keyboard.press("Enter")
 

@@ -97,7 +97,7 @@ def test_cursor_shows_values_in_all_plots_and_moves_the_ship(reading: Bench) -> 
     labelled(reading, "δVE")
     box = page.locator(".uplot .u-over").first.bounding_box()
     assert box is not None
-    page.wait_for_timeout(500)  # a new plot is watched within this time
+    reading.settle()
     page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.5 * box["height"])
     page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 0.5 * box["height"])
     filled = "() => [...document.querySelectorAll('.sb-values')].filter(e => e.textContent).length"
@@ -113,7 +113,7 @@ def test_cursor_shows_values_in_all_plots_and_moves_the_ship(reading: Bench) -> 
     # a click holds the cursor, and the values, where they are
     page.mouse.click(box["x"] + 0.4 * box["width"], box["y"] + 0.5 * box["height"])
     page.mouse.move(10, 10)
-    page.wait_for_timeout(300)
+    reading.settle()
     assert page.evaluate(filled) == count
     page.mouse.click(box["x"] + 0.4 * box["width"], box["y"] + 0.5 * box["height"])
     page.mouse.move(10, 10)

@@ -41,7 +41,7 @@ def box(bench: Bench, label: str) -> Any:
 
 def ask(bench: Bench, label: str, text: str) -> None:
     box(bench, label).fill(text)
-    bench.page.wait_for_timeout(100)
+    bench.settle()
 
 
 def cells(bench: Bench, measure: str) -> list[tuple[float, str, str]]:

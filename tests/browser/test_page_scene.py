@@ -43,20 +43,19 @@ def test_cameras_look_from_elsewhere(moving: Bench) -> None:
     page = moving.page
     left, top, right, bottom = page.evaluate(_VIEW)
     middle = {"x": (left + right) / 2 - 150, "y": (top + bottom) / 2 - 150, "width": 300, "height": 300}
-    seen: list[bytes] = []
+    seen = [page.screenshot(clip=middle)]  # pyright: ignore[reportArgumentType]
 
     def look(camera: str, time_s: float) -> None:
         command(moving, f"camera-{camera}")
         command(moving, "seek", time_s)
         wait_for(moving, "n.camera === arg[0] && n.time === arg[1]", [camera, time_s])
-        page.wait_for_timeout(300)
-        seen.append(page.screenshot(clip=middle))  # pyright: ignore[reportArgumentType]
+        seen.append(moving.wait_for_change(lambda: page.screenshot(clip=middle), *seen))  # pyright: ignore[reportArgumentType]
 
     look("top", 6000)
     look("side", 6000)
     look("follow", 6000)
     look("follow", 12000)  # the camera goes with the ship
-    assert len(set(seen)) == 4
+    assert len(set(seen)) == 5
     page.get_by_role("button", name="view: map").click()
     wait_for(moving, "n.camera === 'map'")
     command(moving, "seek", 1e9)

@@ -89,8 +89,8 @@ def view(bench: Bench) -> dict[str, Any]:
 
 
 def view_other_than(bench: Bench, old: dict[str, Any]) -> dict[str, Any]:
-    """The switching view as soon as it differs from an old one; after 5 s as it is."""
-    end = time.monotonic() + 5.0
+    """The switching view as soon as it differs from an old one; after 30 s as it is."""
+    end = time.monotonic() + 30.0
     while (found := view(bench)) == old and time.monotonic() < end:
         pass
     return found

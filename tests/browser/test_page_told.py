@@ -86,7 +86,6 @@ def test_p_pins_after_a_typed_value(bench: Bench, ends: str) -> None:
     if ends:
         box.press(ends)
         bench.page.wait_for_function("() => document.activeElement === document.body")
-    bench.page.wait_for_timeout(THROTTLE_MS)
     bench.page.keyboard.press("p")
     bench.wait_until(lambda: len(bench.session.pins.shown) == 1)
     [pin] = bench.session.pins.shown

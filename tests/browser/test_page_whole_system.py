@@ -68,9 +68,7 @@ def test_modes_growth_and_the_line_under_the_network_are_the_engines(whole: Benc
 def test_a_pair_that_lets_the_24_h_mode_grow_is_not_placed_when_it_must_not(whole: Bench) -> None:
     before = whole.session.scenario
     whole.box("H'(0) ≤ 0").click()
-    whole.page.wait_for_timeout(100)
     whole.box("pair ω/ωs").fill("1.2")
-    whole.page.wait_for_timeout(100)
     whole.page.get_by_role("button", name="Place", exact=True).click()
     told = whole.notice("The pair was not placed")
     assert "H'(0)" in told and "the 24 h mode grows" in told and "unity2 with a pair below omega_s" in told
@@ -79,7 +77,6 @@ def test_a_pair_that_lets_the_24_h_mode_grow_is_not_placed_when_it_must_not(whol
     whole.close_notices()
     number = whole.run
     whole.box("pair ω/ωs").fill("0.8")
-    whole.page.wait_for_timeout(100)
     whole.page.get_by_role("button", name="Place", exact=True).click()
     whole.wait_for_run(number)
     assert whole.session.run.methods[1].whole.earth_growth < 0.0

@@ -110,7 +110,7 @@ def test_units_cursor_and_spectrum(window: Bench) -> None:
     window.page.wait_for_function(_SHOWS, arg=["δVE (kn)", 3])
     window.choose("velocities in", "auto")
     window.page.wait_for_function(_SHOWS, arg=["δVE (m/s)", 3])
-    window.page.wait_for_timeout(500)  # a new plot is watched within this time
+    window.settle()
     chart = window.page.locator(".uplot .u-over").first
     for x in (40, 60):
         chart.hover(position={"x": x, "y": 20})
@@ -127,7 +127,6 @@ def test_a_typed_pair_is_placed(window: Bench) -> None:
     window.tab("Poles")
     number = window.run
     window.box("pair ξ").fill("0.35")
-    window.page.wait_for_timeout(100)
     button(window, "Place").click()
     window.wait_for_run(number)
     assert edits.value_at(window.session.scenario, ZETA) == pytest.approx(0.35)

@@ -103,7 +103,7 @@ def test_measured_filter_lies_on_h(workbench: Bench) -> None:
     assert len(dots["x"]) >= 10
     assert np.max(np.abs(np.array(dots["y"]) - on_curve)) < 0.05
     assert workbench.session.display.discrete
-    workbench.page.wait_for_timeout(100)
+    workbench.settle()
     switch.click()
     workbench.page.wait_for_function(_HAS_NO_TRACE, arg="placed measured")
 
@@ -148,10 +148,12 @@ def test_a_click_into_the_pole_map_places_the_pair_in_one_step(workbench: Bench)
     workbench.page.mouse.down()
     workbench.page.mouse.move(x + 60, y + 60, steps=4)
     workbench.page.mouse.up()
-    workbench.page.wait_for_timeout(600)
+    workbench.page.wait_for_timeout(600)  # a click is told so late, for it may become a double click
+    workbench.settle()
     assert workbench.session.scenario == before
     workbench.page.mouse.dblclick(x, y)
     workbench.page.wait_for_timeout(600)
+    workbench.settle()
     assert workbench.session.scenario == before
     assert workbench.faults == []
 
@@ -174,9 +176,7 @@ def test_a_typed_pair_is_placed(workbench: Bench) -> None:
     workbench.tab("Poles")
     number = workbench.run
     workbench.box("pair ξ").fill("0.35")
-    workbench.page.wait_for_timeout(100)
     workbench.box("pair ω/ωs").fill("1.6")
-    workbench.page.wait_for_timeout(100)
     workbench.page.get_by_role("button", name="Place", exact=True).click()
     workbench.wait_for_run(number)
     wanted = 1.6 * (-0.35 + 1j * np.sqrt(1 - 0.35**2))

@@ -1,7 +1,7 @@
 // What the page asks the server for: `schuler.command("name", "argument", ...)`, from any script of ours, from keys and
 // from elements with data-command="name argument". It is written, with a running number, into the control labelled
-// "page command", which the page's style hides (app/shell/commands.py). viser sends at most one value in 30 ms, whichever
-// control it comes from: everything that the server has not heard is written again.
+// "page command", which the page's style hides (app/shell/commands.py). Of a control's values only the newest is sent in
+// 30 ms: everything that the server has not heard is written again.
 (() => {
   const LABEL = "page command";
   const SPACING_MS = 60;
@@ -11,10 +11,11 @@
   let timer = 0;
   let sent = 0;
 
+  const heard = () => Number(document.getElementById("sb-told")?.dataset.count ?? 0);
+
   function send() {
     timer = 0;
-    const heard = Number(document.getElementById("sb-told")?.dataset.count ?? 0);
-    waiting = waiting.filter(({ asked }) => asked[0] > heard);
+    waiting = waiting.filter(({ asked }) => asked[0] > heard());
     if (waiting.length === 0) return;
     timer = setTimeout(send, REPEAT_MS);
     const input = window.schuler.box(LABEL);
@@ -42,6 +43,9 @@
     stream: (name, ...words) => ask(name, words, { onlyLatest: true }),
     // What the page says by itself: it waits too while the user moves something, whose value it would displace.
     report: (name, ...words) => ask(name, words, { onlyLatest: true, gives: true }),
+    // The number of the last command asked for, and that of the last one which the server has carried out.
+    asked: () => count,
+    heard,
   });
 
   addEventListener("click", (event) => {

@@ -10,7 +10,7 @@
     return [`${innerWidth}x${innerHeight}`, ...front].join("|");
   }
 
-  // What the server has heard is in #sb-heard: viser drops a value when several change at once.
+  // What the server has heard is in #sb-heard: what it has not is reported again.
   function report() {
     waiting = 0;
     const input = window.schuler.box(LABEL);
@@ -20,7 +20,7 @@
     window.schuler.write(input, text);
   }
 
-  // viser sends at most one value in 30 ms: a report made together with another change may be dropped.
+  // One click may open a tab and close another, and tabs change after the click: they are read once they stand still.
   function soon(delay = 60) {
     clearTimeout(waiting);
     waiting = setTimeout(report, delay);
