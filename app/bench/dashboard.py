@@ -14,6 +14,8 @@ _PAUSE_S = 0.12
 """Between two steps of the slider, so that each is answered by itself; browsers send one in 30 ms at most."""
 _WINDOW = "1920x1080|Method|Frequency|Errors"
 """Window and front tabs: Bode plots and all error curves are sent, and the ship's track in 3D."""
+DESIGN = "1920x1080|Method|Design|Errors"
+"""The steady budget and its floor follow the slider."""
 _ALL_VIEWS = "1920x1080|Method|Frequency|Poles|Step|Errors|Metrics|Compare|Spectrum|Requirements|Scenario"
 """As if every tab were in front: more than any window shows at once."""
 _PINS = 2
@@ -28,6 +30,7 @@ def measure_dashboard() -> dict[str, float]:
     with Server() as server:
         starts.append(server.startup_s)
         answers = _percentiles("slider_to_frame", slider_to_frame_ms(server.port))
+        answers |= _percentiles("slider_design", slider_to_frame_ms(server.port, DESIGN))
         answers |= _percentiles("slider_all_views", slider_to_frame_ms(server.port, _ALL_VIEWS, _PINS))
         memory = server.rss_mb()
     return answers | {"startup_s": statistics.median(starts), "rss_mb": memory}
@@ -58,7 +61,8 @@ def slider_to_frame_ms(port: int, window: str = _WINDOW, pins: int = 0, steps: i
     steps : int
         Timed steps.
     """
-    with Visitor(port, f"bench-session-{pins}") as visitor:
+    upper = window.split("|")[2]
+    with Visitor(port, f"bench-session-{upper}-{pins}") as visitor:
         visitor.set(PAGE_STATE, window)
         visitor.wait_for_run(1)
         _choose(visitor, "scenario", "sikuliaq-like")

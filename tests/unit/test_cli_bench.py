@@ -9,12 +9,12 @@ import sys
 
 import pytest
 
-from app.bench.dashboard import slider_to_frame_ms
+from app.bench.dashboard import DESIGN, slider_to_frame_ms
 from app.bench.error_model import day
 from app.bench.process import Server
 from app.bench.rounds import median_ratio, timed_rounds
 from app.bench.strapdown import YARDSTICK, measure_strapdown
-from app.bench.strapdown_day import strapdown_day
+from app.bench.strapdown_day import KALMAN, strapdown_day
 from app.cli import main
 from app.cli.bench_text import bench_text
 
@@ -30,8 +30,11 @@ NUMBERS = {
     "imu_simulation_ns_per_sample": 75.0,
     "strapdown_24h_100hz_s": 1.7,
     "strapdown_24h_100hz_mb": 230.0,
+    "strapdown_24h_100hz_kalman_s": 4.0,
     "slider_to_frame_ms_p50": 55.0,
     "slider_to_frame_ms_p95": 69.0,
+    "slider_design_ms_p50": 60.0,
+    "slider_design_ms_p95": 75.0,
     "startup_s": 0.9,
     "rss_mb": 250.0,
 }
@@ -80,6 +83,9 @@ def test_the_strapdown_day_is_damped_noisy_and_moving():
     assert (scenario.run.duration_h, scenario.run.rate_hz) == (24.0, 100.0)
     assert min(scenario.imu.gyro_arw_dpsh, scenario.imu.accel_vrw_ugpshz, scenario.reference.noise_mps) > 0.0
     assert scenario.motion.kind == "swing"
+    filtered = strapdown_day(seed=1, methods=KALMAN)
+    assert [method.damping for method in filtered.method] == ["kalman"]
+    assert filtered.imu == scenario.imu and filtered.reference == scenario.reference
 
 
 def test_strapdown_gives_its_keys_and_with_a_yardstick_the_ratios(tmp_path, monkeypatch):
@@ -123,9 +129,10 @@ def test_a_slider_is_answered_by_figures_of_a_running_server():
     with Server() as server:
         assert server.startup_s > 0.0
         answers = slider_to_frame_ms(server.port, steps=3)
+        design = slider_to_frame_ms(server.port, DESIGN, steps=3)
         assert server.rss_mb() > 50.0
-    assert len(answers) == 3
-    assert min(answers) > 1.0  # a run of 24 h and its figures cannot be there sooner
+    assert len(answers) == len(design) == 3
+    assert min(answers + design) > 1.0  # a run of 24 h and its figures cannot be there sooner
 
 
 def test_a_compiled_yardstick_is_found_again_in_the_cache(tmp_path):
