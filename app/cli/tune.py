@@ -116,7 +116,7 @@ def tune_text(objective: str, found: Tuned) -> list[str]:
         cost = found.cost.get(text)
         value, unit = _shown(objective, cost)
         lines.append(f"active: {text}" + ("" if cost is None else f"; without it {value} {unit}".rstrip()))
-    return lines
+    return [*lines, *(f"warning: {text}" for text in found.warnings)]
 
 
 def _shown(objective: str, value: float | None) -> tuple[str, str]:

@@ -19,6 +19,7 @@ from navcore.design.result import Budget, MethodBudget, Shown
 from navcore.design.scheduled import scheduled_times
 from navcore.design.seeds import SEEDS, no_covariance, seed_variance
 from navcore.design.steady import instability, steady_budget
+from navcore.design.unmodelled import recorded_warnings
 from navcore.foundation.errors import InputError
 from navcore.scenario.model import Method, Scenario
 from navcore.scenario.stochastic import StochasticModel, stochastic_model
@@ -113,13 +114,9 @@ def _along_budget(
 
 
 def _warnings(scenario: Scenario) -> tuple[str, ...]:
-    found = []
-    if scenario.reference.kind == "file":
-        found.append("reference.file: a recorded log has no stochastic model and counts as free of error")
+    found = [*recorded_warnings(scenario)]
     if any((*scenario.imu.gyro_lsb, *scenario.imu.accel_lsb)):
         found.append("imu.gyro_lsb, imu.accel_lsb: quantisation is not in the budget")
-    if scenario.imu.file is not None:
-        found.append("imu.file: a recorded IMU has no stochastic model and counts as free of error")
     if scenario.alignment.kind == "compass":
         found.append("alignment: what biases leave after it is in the budget, its own noise is not")
     return tuple(found)

@@ -11,6 +11,7 @@ from navcore.design.floor import Floor, steady_floor
 from navcore.design.form import law_form
 from navcore.design.level import Level, constant_part, level, line_part, steady_parts
 from navcore.design.result import Budget, MethodBudget
+from navcore.design.unmodelled import recorded_warnings
 from navcore.foundation.units import HOUR
 from navcore.scenario.model import Method, Scenario
 from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
@@ -42,7 +43,7 @@ def _steady_method(scenario: Scenario, method: Method, model: StochasticModel, f
     if model.tide.any():
         amplitude = float(np.sqrt(np.mean(model.tide**2)))
         parts["log_tide"] = line_part(channel, amplitude, 2.0 * math.pi / model.tide_period_s)
-    warnings = []
+    warnings = [*recorded_warnings(scenario)]
     if method.damping != "free" and method.policy.id not in ("constant", "schedule"):
         warnings.append(
             f'policy "{method.policy.id}" looks at the data: shown is the loop while it is damped'

@@ -22,6 +22,7 @@ from navcore.design.measures import (
     read_requirement,
 )
 from navcore.design.search import ALONG, BOUNDLESS, EXPLAIN, MISSED, REFUSED, STEADY, Effort, Search
+from navcore.design.unmodelled import recorded_warnings
 from navcore.design.vary import Varied, present, read_varied
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.model import Scenario
@@ -55,6 +56,9 @@ class Tuned:
         Range of each field, the others held, within which the objective is at most 5 % above the best.
     stopped : bool
         The search was cancelled: the best so far.
+    warnings : tuple of str
+        What the objective does not see of the best setting: a mode of the whole system that grows, a
+        recording that counts as free of error.
     scenario : Scenario
         With the best setting in place.
     """
@@ -68,6 +72,7 @@ class Tuned:
     cost: dict[str, float]
     flat: dict[str, tuple[float, float]]
     stopped: bool
+    warnings: tuple[str, ...]
     scenario: Scenario = field(repr=False)
 
     def as_dict(self) -> dict[str, Any]:
@@ -82,6 +87,7 @@ class Tuned:
             "cost": self.cost,
             "flat": {name: list(ends) for name, ends in self.flat.items()},
             "stopped": self.stopped,
+            "warnings": list(self.warnings),
         }
 
 
@@ -225,8 +231,14 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
         cost=cost,
         flat=flat,
         stopped=stopped,
+        warnings=tuple(dict.fromkeys(text for setting in settings for text in _unseen(setting))),
         scenario=scenario.model_copy(update={"method": methods}),
     )
+
+
+def _unseen(setting: Setting) -> tuple[str, ...]:
+    """Whole system and recordings, of which a measure of one channel says nothing."""
+    return (*setting.whole.warnings, *recorded_warnings(setting.ship.scenario))
 
 
 def _without(search: Search, rest: Sequence[Requirement], effort: Effort, start: np.ndarray) -> float:

@@ -77,6 +77,25 @@ def test_an_optimum_at_the_end_of_a_range_is_told(
     assert found.at_end_of_range == tuple(f"method.0.network.{name}" for name in at_end)
 
 
+def test_a_24_h_mode_that_grows_is_told_with_the_proposal() -> None:
+    """The tilt of one channel does not see it; a requirement takes it, and the sentence, away."""
+    ship, vary = set_a({"id": "optimal"}), ["method.0.network.q=0:5"]
+    found = tune(ship, "tilt_rms", vary)
+    (told,) = found.warnings
+    assert "the 24 h mode grows, e-folding time" in told
+    assert found.as_dict()["warnings"] == [told]
+    assert tune(ship, "tilt_rms", vary, ["earth_mode_growth_per_s<=0"]).warnings == ()
+
+
+def test_a_recorded_log_is_told_to_count_as_free_of_error() -> None:
+    """In the steady budget, whose floor rests on it, and with a proposal."""
+    recorded = load("sikuliaq-recorded")
+    index = next(k for k, method in enumerate(recorded.method) if method.network.id == "complementary")
+    told = "reference.file: a recorded log has no stochastic model and counts as free of error"
+    assert told in budget(recorded, steady=True).methods[index].warnings
+    assert told in tune(recorded, "settling_s", [f"method.{index}.network.zeta"]).warnings
+
+
 def test_an_active_requirement_is_named_with_its_cost() -> None:
     """Less velocity error costs tilt; without the requirement the tilt is that of the free optimum."""
     found = tune(set_a({"id": "compass"}), "tilt_rms", COMPASS, ["log_tilt<=20arcsec", "settling_s<=48h"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -98,6 +99,8 @@ def test_a_proposal_names_field_value_floor_and_what_holds_it(compass):
     task = TuningTask(compass, "tilt_rms", fields, limits)
     told = " ".join(sentences_about(task, found))
     assert "times the floor" in told and "The requirement settling ≤ 10 min holds the optimum back" in told
+    grows = "whole system at latitude 45 deg: the 24 h mode grows, e-folding time 3.1 days"
+    assert sentences_about(task, replace(found, warnings=(grows,)))[-1] == grows
     html = proposal_html(task, found)
     assert ">sigma<" in html and "arcsec" in html and "0.0088" in html
 

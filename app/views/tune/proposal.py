@@ -85,7 +85,7 @@ def sentences_about(task: TuningTask, found: Tuned) -> list[str]:
         without = found.cost.get(text)
         more = "" if without is None else f" Without it the objective is {number(without / size, 4)} {unit}."
         told.append(f"The requirement {requirement_words(text)} holds the optimum back.{more}")
-    return told
+    return [*told, *found.warnings]
 
 
 def requirement_words(text: str) -> str:
