@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import dataclasses
 import importlib.util
 import inspect
 import re
@@ -22,7 +23,7 @@ from viser._assignable_props_api import AssignablePropsBase
 from viser.infra import _infra
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
-from app.bridge import controls, mends, program, server
+from app.bridge import controls, mends, program, server, texts
 from app.bridge.pool import FairPool
 from app.http.page import FIRST_SCRIPTS, PLOTLY, build_page
 from navcore.foundation.errors import InputError
@@ -184,6 +185,67 @@ def test_held_value_is_sent_even_when_nothing_changed(bench: Bench) -> None:
         controls.show_held_value(bench.server.viser, client_id, uuid)
         sent = visitor.wait_for(lambda message: message["type"] == "GuiUpdateMessage")
         assert (sent["uuid"], sent["updates"]) == (uuid, {"value": 0.5})
+
+
+class _Loud:
+    """A language in which every text is written in capitals."""
+
+    name = "loud"
+
+    def text(self, text: str) -> str:
+        return text.upper()
+
+
+def test_texts_stand_in_the_fields_that_are_translated() -> None:
+    kinds = [kind for kind in vars(_messages).values() if dataclasses.is_dataclass(kind)]
+    fields = {entry.name for kind in kinds for entry in dataclasses.fields(kind)}
+    assert texts._TEXTS | texts._LISTS | texts._UPLOT | {texts._PLOTLY} <= fields
+
+
+def test_a_page_is_sent_its_language_and_its_choice_is_read_back(bench: Bench) -> None:
+    class Figure:
+        def to_json(self) -> str:
+            return '{"data": [], "layout": {"title": {"text": "tilt"}}}'
+
+    with visit(bench.port, "the-reader") as visitor:
+        visitor.control("last")
+        viser_server = bench.server.viser
+        (client,) = viser_server.get_clients().values()
+        assert texts.language_of(client) == "en"
+        texts.speak(viser_server, client.client_id, _Loud())
+        assert texts.language_of(client) == "loud"
+
+        chooser = client.gui.add_dropdown("policy", ("calm", "rough"))
+        sent = visitor.wait_for(
+            lambda message: (
+                message["type"] == "GuiDropdownMessage" and message["uuid"] == controls.id_of(chooser)
+            )
+        )
+        assert (sent["props"]["label"], *sent["props"]["options"], sent["value"]) == (
+            "POLICY",
+            "CALM",
+            "ROUGH",
+            "CALM",
+        )
+        assert chooser.options == ("calm", "rough") and chooser.value == "calm"
+        assert texts.meant(viser_server, client.client_id, sent["uuid"], "ROUGH") == "rough"
+        chooser.value = "rough"
+        changed = visitor.wait_for(lambda message: "value" in (message.get("updates") or {}))
+        assert changed["updates"] == {"value": "ROUGH"}
+
+        client.gui.add_plotly(Figure())
+        # viser makes the plot empty, and then sends its figure
+        visitor.wait_for(
+            lambda message: '"TILT"' in (message.get("updates") or {}).get("_plotly_json_str", "")
+        )
+        client.gui.add_uplot((np.arange(3.0), np.arange(3.0)), ({}, {"label": "drift"}))
+        chart = visitor.wait_for(lambda message: message["type"] == "GuiUplotMessage")
+        assert chart["props"]["series"][1]["label"] == "DRIFT"
+
+        texts.speak(viser_server, client.client_id, None)
+        assert texts.language_of(client) == "en"
+        assert texts.meant(viser_server, client.client_id, sent["uuid"], "ROUGH") == "ROUGH"
+        assert texts.meant(viser_server, 10_000, sent["uuid"], "ROUGH") == "ROUGH"
 
 
 class _Interleaved(deque):

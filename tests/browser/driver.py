@@ -102,6 +102,8 @@ _ACCOUNT = """() => {
     focus: document.activeElement?.outerHTML.slice(0, 200),
   };
 }"""
+# viser's page gives uPlot its numbers after the frame in which the rest of a message is shown.
+_NEXT_FRAME = "() => new Promise(go => requestAnimationFrame(() => setTimeout(go)))"
 _NO_NOTICES = """() => {
   document.querySelectorAll('.mantine-Notification-closeButton').forEach(button => button.click());
   return document.querySelector('.mantine-Notification-root') === null;
@@ -249,6 +251,7 @@ class Bench:
                 f"no run after {after}: shown {shown}, made {made}, {self.status!r}; focus {focus}; "
                 f"{self.faults}"
             ) from None
+        self.page.evaluate(_NEXT_FRAME)
 
     def wait_for_change(self, look: Callable[[], T], *before: T) -> T:
         """Wait until something stands still and differs from all that it was; return it."""
@@ -375,6 +378,7 @@ class Bench:
                 self._marks[view].content = f'<div hidden data-mark="{number}"></div>'
                 view.client.flush()
         self.page.wait_for_selector(f'[data-mark="{number}"]', state="attached")
+        self.page.evaluate(_NEXT_FRAME)
 
     def account(self) -> str:
         """What page and server hold, in lines: for the report of a failed test."""
