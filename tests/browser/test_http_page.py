@@ -73,7 +73,7 @@ def test_page_works_under_its_session_path_with_the_policy_on(
 
     knob = page.get_by_text("gain", exact=True).first.evaluate("label => label.htmlFor")
     page.locator(f"[id='{knob}'] [role=slider]").press("ArrowRight")
-    eventually(lambda: visits == [("connect", session), ("gain", 0.6)])
+    eventually(lambda: visits == [("connect", session), ("gain", 0.6)], 30.0)
     assert faults == []
 
     # The policy is what stops markup that reached the page: remove it, and this fails.

@@ -33,11 +33,11 @@ def whole(bench: Bench) -> Iterator[Bench]:
     number = bench.run
     bench.session.change(Scenario.parse(data), None)
     bench.wait_for_run(number)
-    bench.session.show(None, requirements=Requirements(), poles="channel")
+    bench.show(requirements=Requirements(), poles="channel")
     bench.tab("Poles", "Method")
     bench.box("pair ξ").wait_for()
     yield bench
-    bench.session.show(None, requirements=Requirements(), poles="channel")
+    bench.show(requirements=Requirements(), poles="channel")
     resize(bench, SIZES[0])
 
 

@@ -46,7 +46,7 @@ def number(message: dict[str, Any]) -> int:
     return int(re.search(r'data-run="(\d+)"', message["updates"]["content"])[1])
 
 
-def eventually(true: Callable[[], bool], seconds: float = 10.0) -> None:
+def eventually(true: Callable[[], bool], seconds: float = 60.0) -> None:
     until = time.monotonic() + seconds
     while not true():
         assert time.monotonic() < until, "did not happen"
@@ -108,7 +108,8 @@ def test_a_flood_of_slider_moves_becomes_a_few_runs_and_the_last_wins(dashboard:
         session = served.sessions.get("flood-of-moves")
         eventually(lambda: edits.network_values(session.scenario, session.selected)["zeta"] == 1.495)
         assert session.wait_idle(20.0)
-        shown = runs(visitor, 1.5)
+        visitor.wait_for(lambda message: is_run(message) and number(message) == session.run_number, 30.0)
+        shown = [message for message in visitor.received if is_run(message)]
         assert 1 <= len(shown) <= 60
         document = json.loads(unescape(re.sub(r"<[^>]*>", "", shown[-1]["updates"]["content"])))
         assert document["scenario_sha256"] == _hash(session.run.scenario)
