@@ -95,7 +95,7 @@ def test_a_proposal_is_accepted_and_undone_or_discarded(window: Bench) -> None:
     before = session.scenario
     window.tab("Tune")
     page.get_by_role("button", name=TUNE, exact=True).click()
-    page.get_by_role("button", name=ACCEPT, exact=True).wait_for(timeout=90_000)
+    page.get_by_role("button", name=ACCEPT, exact=True).wait_for(timeout=120_000)
     assert "times the floor" in page.locator(".sb-proposal").inner_text()
     assert session.scenario == before
     page.get_by_role("button", name=ACCEPT, exact=True).click()
@@ -103,7 +103,7 @@ def test_a_proposal_is_accepted_and_undone_or_discarded(window: Bench) -> None:
     assert session.scenario.method[2].network != before.method[2].network
     assert session.undo() and session.scenario == before
     page.get_by_role("button", name=TUNE, exact=True).click()
-    page.get_by_role("button", name=DISCARD, exact=True).wait_for(timeout=90_000)
+    page.get_by_role("button", name=DISCARD, exact=True).wait_for(timeout=120_000)
     page.get_by_role("button", name=DISCARD, exact=True).click()
     page.locator(".sb-proposal").wait_for(state="hidden")
     assert session.scenario == before
@@ -115,11 +115,11 @@ def test_a_click_on_a_point_of_the_fronts_is_one_step_of_undo(window: Bench) -> 
     window.choose(SEARCH_FOR, "Pareto fronts")
     page.get_by_role("button", name=FIND, exact=True).click()
     page.get_by_role("button", name=STOP, exact=True).click()
-    page.get_by_text("Stopped: no fronts were found.").wait_for(timeout=20_000)
+    page.get_by_text("Stopped: no fronts were found.").wait_for(timeout=60_000)
     # all networks take too long for a test
     search = session.searches.fronts
     search.begin(FrontsTask(session.scenario, 2, ("tilt_rms", "velocity_rms"), ("classic2", "classic3")))
-    page.wait_for_function(f"() => ({_SPOT})('classic3') !== null", timeout=20_000)
+    page.wait_for_function(f"() => ({_SPOT})('classic3') !== null", timeout=60_000)
     before = session.scenario
     page.mouse.click(*page.evaluate(_SPOT, "classic3"))
     window.notice("classic3 from the Pareto fronts")

@@ -76,7 +76,7 @@ def test_logarithmic_axis_shows_magnitudes(reading: Bench) -> None:
 def test_envelope_of_twenty_seeds_is_drawn_and_goes_with_the_scenario(reading: Bench) -> None:
     reading.choose(BANDS, "20 seeds, 5 to 95 %")
     bands = f"() => ({_CHART})('δVE')?.bands?.length ?? 0"
-    reading.page.wait_for_function(f"() => ({bands})() === 3", timeout=60_000)
+    reading.page.wait_for_function(f"() => ({bands})() === 3", timeout=120_000)
     assert "5 to 95 % of 20 seeds" in reading.page.locator("body").inner_text()
     reading.tab("Method")
     reading.press("zeta")
@@ -84,7 +84,7 @@ def test_envelope_of_twenty_seeds_is_drawn_and_goes_with_the_scenario(reading: B
     session = reading.session
     assert session.run is not None
     # the band of the earlier scenario stays, marked, until that of the new one is there
-    reading.page.wait_for_function(f"() => !({_LEGEND})().includes('earlier')", timeout=60_000)
+    reading.page.wait_for_function(f"() => !({_LEGEND})().includes('earlier')", timeout=120_000)
     assert reading.page.evaluate(f"() => ({bands})()") == 3
     found = session.envelopes.beside(session.run.scenario, "seeds")
     assert found is not None and not found.old

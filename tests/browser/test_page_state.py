@@ -242,7 +242,7 @@ def test_the_page_may_ask_faster_than_viser_sends(fresh: Bench, session: Session
 # ------------------------------------------------------------ others
 
 
-@pytest.mark.timeout(300)
+@pytest.mark.timeout(600)
 def test_a_link_opens_the_state_as_it_was_shared_for_everyone(
     fresh: Bench, session: Session, another: Callable[[str], Bench]
 ) -> None:
@@ -272,7 +272,7 @@ def test_a_link_opens_the_state_as_it_was_shared_for_everyone(
     assert fresh.faults == first.faults == second.faults == []
 
 
-@pytest.mark.timeout(300)
+@pytest.mark.timeout(600)
 def test_one_presents_and_the_others_watch(
     fresh: Bench, session: Session, another: Callable[[str], Bench]
 ) -> None:
@@ -354,7 +354,7 @@ def serve(port: int, state: Path, repo_root: Path) -> subprocess.Popen[bytes]:
     raise TimeoutError
 
 
-@pytest.mark.timeout(300)  # three servers and pages
+@pytest.mark.timeout(600)  # three servers and pages
 def test_the_work_survives_the_death_of_the_server(browser: Browser, tmp_path: Path, repo_root: Path) -> None:
     from app.bench.process import free_port
 

@@ -46,7 +46,7 @@ def test_a_table_is_found_and_taken_over_as_one_step(adaptive: Bench) -> None:
     before, number = table(adaptive), adaptive.run
     adaptive.box("coefficient step").fill("0.2")
     page.get_by_role("button", name=FIND).click()
-    page.locator(".sb-tuned svg").wait_for(timeout=60_000)
+    page.locator(".sb-tuned svg").wait_for(timeout=120_000)
     found = session.searches.tuner.result
     assert found is not None and found.settings.step == 0.2
     assert page.locator(".sb-tuned .sb-found").count() == len(found.rows())

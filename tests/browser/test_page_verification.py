@@ -42,7 +42,7 @@ def test_the_strapdown_is_drawn_dashed_and_becomes_old(short: Bench) -> None:
     assert not short.page.get_by_role("button", name=STOP).is_visible()
     short.tab("View")
     short.choose("export plot", "Verification: Tilt about east φE, difference")
-    with short.page.expect_download(timeout=20_000) as download:
+    with short.page.expect_download(timeout=60_000) as download:
         short.page.get_by_text("CSV", exact=True).click()
     saved = download.value.path().read_text()
     assert "strapdown minus linear model" in saved and len(saved.splitlines()) > 300
