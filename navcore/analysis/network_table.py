@@ -32,7 +32,7 @@ _HEAD = """# Networks and the 24 h mode
 One level channel decides how fast tilt and velocity settle. Whether the *whole system* is stable depends on
 the slope H'(0) too: with the Earth's rotation a network with H(0) = 1 moves the 24 h mode by
 
-    growth = (1/2) Omega^2 (1 + sin^2 L) H'(0)        (eigenvalues: within 4 %)
+    growth = (1/2) Omega^2 (1 + sin^2 L) H'(0)        (eigenvalues: within 4 % for |H'(0)| <= 1000 s)
 
 With H'(0) > 0 the mode grows: a heading error of an arc-minute becomes hundreds of kilometres of latitude
 within weeks, however good the log. With H'(0) < 0 it decays, at the price that slow errors of the log come in
@@ -45,7 +45,8 @@ latitude.
 
 """
 
-_FOOT = """ Velocity feedback (`compass` with `realisation = "feedback"`) is a case of its own: it pulls the
+_FOOT = """
+Velocity feedback (`compass` with `realisation = "feedback"`) is a case of its own: it pulls the
 velocity onto the log's. Without an azimuth loop the latitude then stays where it is, and the 24 h mode
 neither grows nor decays.
 

@@ -253,7 +253,9 @@ def growth_over_latitude(
 
 
 def approximate_growth(h_slope: float, lat: float) -> float:
-    """Growth of the 24 h mode for H(0) = 1, Omega^2 (1 + sin^2 L) H'(0)/2, 1/s; good to 6 % (theory.md 10).
+    """Growth of the 24 h mode for H(0) = 1, Omega^2 (1 + sin^2 L) H'(0)/2, 1/s (theory.md 10).
+
+    The first order in H'(0): within 4 % of the eigenvalue for |H'(0)| up to 1000 s, 5.2 % off at 2100 s.
 
     Parameters
     ----------

@@ -50,12 +50,14 @@ def test_pole2_exact_of_physics_10():
         assert whole_system(h, "external", lat * DEG).e_folding_s / DAY == pytest.approx(printed, abs=0.055)
 
 
-@pytest.mark.parametrize(("text", "slope", "days"), [row for row in TABLE if abs(row[1]) < 1000.0])
+@pytest.mark.parametrize(("text", "slope", "days"), TABLE)
 @pytest.mark.parametrize("lat", LATITUDES)
-def test_the_approximate_formula_is_good_to_four_per_cent(text, slope, days, lat):
+def test_the_approximate_formula_is_as_good_as_theory_10_says(text, slope, days, lat):
+    """4 % for slopes up to 1000 s; the steep last row is 5.2 % off at 75 deg."""
     h = network(text)
     exact = whole_system(h, "external", lat * DEG).earth_growth
-    assert approximate_growth(h.h_slope, lat * DEG) == pytest.approx(exact, rel=0.04)
+    allowed = 0.04 if abs(slope) < 1000.0 else 0.053
+    assert approximate_growth(h.h_slope, lat * DEG) == pytest.approx(exact, rel=allowed)
 
 
 def measured(scenario: dict, skip_h: float) -> list[tuple[complex, MethodRun]]:
