@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import settings
+from hypothesis.internal.conjecture import providers
 
 from navcore.foundation.kernel_cache import cache_folder
 from tests.chromium import FLAGS, find_chromium
@@ -22,9 +23,11 @@ if TYPE_CHECKING:
 
 REPO_ROOT = Path(__file__).resolve().parent.parent
 
-# The same examples on every run: a failure on one machine is a failure on all.
+# The same examples on every run: a failure on one machine is a failure on all. Unless told, Hypothesis draws
+# from the constants of all loaded modules too, which every edit and every choice of tests changes.
 settings.register_profile("schuler", deadline=None, derandomize=True, database=None)
 settings.load_profile("schuler")
+providers._get_local_constants = lambda: providers._local_constants
 
 
 def pytest_configure() -> None:

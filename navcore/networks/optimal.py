@@ -35,6 +35,7 @@ FRAGILE = 0.5
 
 _ACCURACY = 1e-8
 """To which the running form must have the response of the network."""
+_UNSTABLE = "makes an unstable network with these figures: must be larger"
 _FIELDS = {
     "gyro_arw_dpsh": ("gyro_white", DEG_PER_SQRT_HOUR),
     "gyro_instability_dph": ("gyro_drift", DEG_PER_HOUR),
@@ -190,7 +191,7 @@ class OptimalNetwork(NetworkParameters):
         poles = network.poles / network.omega_s
         loop = np.roots(np.polyadd(np.append(network.den_p, [0.0, 0.0]), network.loop_num_p))
         if np.max(np.real(poles)) >= 0.0 or np.max(np.real(loop)) >= 0.0:
-            raise refuse("rho", self.rho, "makes an unstable network with these figures: must be larger")
+            raise refuse("rho", self.rho, _UNSTABLE)
         p = 1j * np.geomspace(1e-2, 1e2, 40)
         exact = [network.response(p.imag * network.omega_s)]
         nums = [network.num_p]
@@ -207,7 +208,10 @@ class OptimalNetwork(NetworkParameters):
 
 @lru_cache(maxsize=256)
 def _law(figures: SensorFigures, rho: float, q: float, feedback: bool, omega_s: float) -> Compensator:
-    return compensator(plant(figures, omega_s).excited(), rho, q, feedback).reduced(MAX_ORDER)
+    law = compensator(plant(figures, omega_s).excited(), rho, q, feedback)
+    if np.max(np.real(np.linalg.eigvals(law.A))) >= 0.0:  # which has no balanced truncation
+        raise refuse("rho", rho, _UNSTABLE)
+    return law.reduced(MAX_ORDER)
 
 
 def _second_output(law: Compensator) -> np.ndarray:

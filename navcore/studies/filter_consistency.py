@@ -121,7 +121,9 @@ def _final_error_of_strapdown(scenario: Scenario) -> tuple[np.ndarray, np.ndarra
     return error, run.filter.P[:STATES, :STATES]
 
 
-def consistency(seeds: int, fidelity: str = "error_model") -> Consistency:
+def consistency(
+    seeds: int, fidelity: str = "error_model", duration_h: float = SHIP["run"]["duration_h"]
+) -> Consistency:
     """Run the seeds 1 to ``seeds`` and compare.
 
     Parameters
@@ -130,10 +132,12 @@ def consistency(seeds: int, fidelity: str = "error_model") -> Consistency:
         Runs.
     fidelity : {"error_model", "strapdown"}
         Of the runs of `SHIP`.
+    duration_h : float
+        Length of a run, h; the turn ends at 0.86 h.
     """
     from scipy.stats import chi2
 
-    total, data = 0.0, SHIP | {"run": SHIP["run"] | {"fidelity": fidelity}}
+    total, data = 0.0, SHIP | {"run": SHIP["run"] | {"fidelity": fidelity, "duration_h": duration_h}}
     for seed in range(1, seeds + 1):
         error, P = final_error(drawn(data, seed))
         unit = np.sqrt(np.diag(P))

@@ -50,7 +50,7 @@ BIASES = {"gyro": 0.004, "accel": 15.0, "log": 0.03}
 START = {"level": 0.1, "heading": 2.0, "velocity": 0.05, "position": 2.0}
 
 
-def drawn(motion: str, seed: int, random: bool = True) -> Scenario:
+def drawn(motion: str, seed: int, random: bool = True, step_s: float = 1.0) -> Scenario:
     """Scenario of one seed; without ``random`` its constants are zero, and their deviations remain."""
     rng = np.random.default_rng([seed, 7])
 
@@ -59,7 +59,7 @@ def drawn(motion: str, seed: int, random: bool = True) -> Scenario:
 
     return Scenario.parse(
         {
-            "run": {"duration_h": 4.0, "seed": seed, "output_step_s": 60.0},
+            "run": {"duration_h": 4.0, "seed": seed, "step_s": step_s, "output_step_s": 60.0},
             "motion": MOTIONS[motion],
             "imu": {
                 "gyro_arw_dpsh": 0.003,
@@ -98,12 +98,13 @@ def drawn(motion: str, seed: int, random: bool = True) -> Scenario:
     )
 
 
-def mean_squares(motion: str, seeds: int) -> np.ndarray:
+def mean_squares(motion: str, seeds: int, step_s: float) -> np.ndarray:
     """Mean squares of phi E, N, U, dV E, N, dL, dlambda at the times; shape (6, 5, 7)."""
     rows = np.rint(np.array(TIMES_H) * 60.0).astype(int)
 
     def one(seed: int) -> np.ndarray:
-        return np.stack([run.rows[rows, :7] ** 2 for run in simulate(drawn(motion, seed)).methods])
+        run = simulate(drawn(motion, seed, step_s=step_s))
+        return np.stack([method.rows[rows, :7] ** 2 for method in run.methods])
 
     total = np.zeros((len(NETWORKS), len(TIMES_H), 7))
     with ThreadPoolExecutor(2) as pool:
@@ -112,15 +113,15 @@ def mean_squares(motion: str, seeds: int) -> np.ndarray:
     return total / seeds
 
 
-def ratios(motion: str, seeds: int) -> np.ndarray:
+def ratios(motion: str, seeds: int, step_s: float = 1.0) -> np.ndarray:
     """Mean square of the seeds over the variance of the budget; shape (6, 5, 7)."""
-    found = budget(drawn(motion, 0, random=False))
+    found = budget(drawn(motion, 0, random=False, step_s=step_s))
     variance = np.empty((len(NETWORKS), len(TIMES_H), 7))
     for k, method in enumerate(found.methods):
         assert method.shown == "covariance" and method.series is not None
         at = [int(np.argmin(np.abs(method.series.t_s - hours * 3600.0))) for hours in TIMES_H]
         variance[k] = method.series.total[at]
-    return mean_squares(motion, seeds) / variance
+    return mean_squares(motion, seeds, step_s) / variance
 
 
 def inside(found: np.ndarray, seeds: int) -> np.ndarray:

@@ -19,12 +19,29 @@ from app.papers.deng import (
 )
 from app.papers.deng_alignment import tilt_difference
 from app.papers.runs import Runs
+from navcore.engine.run import Run
 from navcore.scenario.file import load
+
+
+class CoarseRuns(Runs):
+    """IMU and log at 50 Hz in place of 200 Hz; half the noise of a sample is the same density."""
+
+    def __call__(self, preset: str, *overrides: str) -> Run:
+        """Run of a preset with further overrides."""
+        return super().__call__(
+            preset, "run.rate_hz=50", "reference.rate_hz=50", "reference.noise_mps=0.1", *overrides
+        )
 
 
 @pytest.fixture(scope="module")
 def runs() -> Runs:
     return Runs()
+
+
+@pytest.fixture(scope="module")
+def drives() -> Runs:
+    """Runs of the drive: the loop follows a tenth of a hertz, and 50 Hz take a fifth of the time."""
+    return CoarseRuns()
 
 
 def test_the_setting_is_the_papers():
@@ -58,15 +75,16 @@ def test_a_slower_loop_lets_less_of_the_logs_noise_through(runs, preset):
 
 
 @pytest.mark.parametrize("preset", ["deng-static", "deng-swing", "deng-vehicle"])
-def test_the_schuler_oscillation_disappears(runs, preset):
-    assert schuler_swing(runs, preset, "free") > 0.3
-    assert schuler_swing(runs, preset, DAMPED) < 0.01 * schuler_swing(runs, preset, "free")
+def test_the_schuler_oscillation_disappears(runs, drives, preset):
+    found = drives if preset == "deng-vehicle" else runs
+    assert schuler_swing(found, preset, "free") > 0.3
+    assert schuler_swing(found, preset, DAMPED) < 0.01 * schuler_swing(found, preset, "free")
 
 
-def test_table_4_damping_improves_attitude_velocity_and_position(runs):
-    assert np.mean(improvement(runs, 0)) > 1.5
-    assert np.mean(improvement(runs, 4)) > 50.0
-    assert np.mean(improvement(runs, 7)) > 50.0
+def test_table_4_damping_improves_attitude_velocity_and_position(drives):
+    assert np.mean(improvement(drives, 0)) > 1.5
+    assert np.mean(improvement(drives, 4)) > 50.0
+    assert np.mean(improvement(drives, 7)) > 50.0
 
 
 def test_at_rest_the_damped_tilt_is_worse_than_the_free_one(runs):
@@ -79,5 +97,5 @@ def test_network_and_feedback_form_have_the_same_tilt(runs):
     assert np.all(tilt_difference(runs) < 0.02)
 
 
-def test_the_printed_form_has_transients_when_the_speed_changes(runs):
-    assert largest_tilt(runs, PRINTED) > 1.4 * largest_tilt(runs, SLOW)
+def test_the_printed_form_has_transients_when_the_speed_changes(drives):
+    assert largest_tilt(drives, PRINTED) > 1.4 * largest_tilt(drives, SLOW)

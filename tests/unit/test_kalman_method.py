@@ -83,7 +83,7 @@ def test_its_covariance_comes_to_the_floor() -> None:
 @pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
 def test_its_covariance_holds_over_seeds(fidelity: str) -> None:
     """Normalised error of a moving ship with a log along its axes, biases and initial errors drawn."""
-    found = consistency(100, fidelity)
+    found = consistency(100, fidelity, duration_h=2.0)
     assert found.holds, found
 
 

@@ -226,6 +226,13 @@ def test_figures_that_make_no_network_are_refused_with_the_field() -> None:
         ).transfer(OMEGA_S)
 
 
+def test_an_unstable_compensator_is_refused_before_its_order_is_reduced() -> None:
+    """The balanced truncation of an unstable system would divide by zero."""
+    figures = {"log_noise_mps": 4e-8, "log_drift_tau_s": 10.0, "accel_tau_s": 10.0}
+    with pytest.raises(InputError, match="rho = 1.0: makes an unstable network"):
+        parse_network({"id": "optimal", "rho": 1.0, **figures}).transfer(OMEGA_S)
+
+
 def test_command_shows_it(capsys: pytest.CaptureFixture[str]) -> None:
     """`schuler network` without a scenario."""
     assert main(["network", 'id = "optimal", rho = 1e-4', "--json"]) == 0
