@@ -202,12 +202,15 @@ def test_a_long_run_marks_the_old_picture_and_is_stopped(
     real = session._simulate
 
     def slowly(scenario: Any, progress: Any, cancelled: Any) -> Any:
-        # A fast machine would be done before the button is pressed.
-        return real(scenario, progress, lambda: time.sleep(0.1) or cancelled())
+        # However long the page takes until the button is pressed.
+        while not cancelled():
+            progress(0.25)
+            time.sleep(0.05)
+        return real(scenario, progress, cancelled)
 
-    monkeypatch.setattr(session, "_simulate", slowly)
     fresh.tab("Run")
     fresh.type("output step (s)", "3600")
+    monkeypatch.setattr(session, "_simulate", slowly)
     number, digest = fresh.run, fresh.digest
     fresh.box("duration (h), exact").fill("800")
     stop = fresh.page.get_by_role("button", name="Stop the run")
