@@ -55,7 +55,6 @@ def shared(browser: Browser, dashboard: tuple[DashboardServer, Dashboard]) -> It
     """
     context = browser.new_context(viewport={"width": 1920, "height": 1080}, accept_downloads=True)
     page = context.new_page()
-    page.set_default_timeout(60_000)
     yield Bench(page, dashboard[0].url, dashboard[1].sessions).open()
     context.close()
 

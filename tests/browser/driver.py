@@ -33,6 +33,9 @@ T = TypeVar("T")
 THROTTLE_MS = 80
 """More than the 30 ms in which the page sends at most one value of a control."""
 
+PATIENCE_MS = 90_000
+"""So long a page may take for one thing, on a machine that does much else."""
+
 SLOW = float(os.environ.get("SCHULER_BROWSER_SLOW", "1"))
 """The page's processor is so many times slower: a test must not depend on its speed."""
 
@@ -141,6 +144,7 @@ class Bench:
         self._marks: WeakKeyDictionary[Any, Any] = WeakKeyDictionary()
         self._mark_numbers = count(1)
         self._answering: WeakSet[OpenPage] = WeakSet()
+        page.set_default_timeout(PATIENCE_MS)
         if SLOW > 1.0:
             tools = page.context.new_cdp_session(page)
             tools.send("Emulation.setCPUThrottlingRate", {"rate": SLOW})

@@ -12,6 +12,7 @@ import viser
 
 from app.http.server import DashboardServer, start
 from tests.attack.conftest import eventually
+from tests.browser.driver import PATIENCE_MS
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -58,6 +59,7 @@ def test_page_works_under_its_session_path_with_the_policy_on(
     server: DashboardServer, page: Page, visits: list[tuple[str, Any]]
 ) -> None:
     faults: list[str] = []
+    page.set_default_timeout(PATIENCE_MS)
     page.on("pageerror", lambda error: faults.append(str(error)))
     page.on("console", lambda message: faults.append(message.text) if message.type == "error" else None)
     page.on("requestfailed", lambda request: faults.append(request.url))

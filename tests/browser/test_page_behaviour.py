@@ -334,7 +334,6 @@ def test_a_reload_keeps_the_work_and_another_visitor_has_none_of_it(
     # the same address in another window, as after a reload
     context = browser.new_context(viewport={"width": 1280, "height": 720})
     page = context.new_page()
-    page.set_default_timeout(90_000)
     other = Bench(page, fresh.url, sessions).open(f"s/{fresh.session_id}/")
     assert other.digest == digest
     assert other.value("sigma (1/s), exact") == 0.0123

@@ -86,7 +86,6 @@ def test_what_is_left_out_is_found() -> None:
 def test_nothing_is_left_in_english(browser: Browser, dashboard: tuple[DashboardServer, Dashboard]) -> None:
     context = browser.new_context(viewport={"width": 1920, "height": 1080})
     page = context.new_page()
-    page.set_default_timeout(60_000)
     bench = Bench(page, dashboard[0].url, dashboard[1].sessions).open(query="?lang=zh&fixedDpr=0.25&start=no")
     assert page.evaluate("document.documentElement.lang") == "zh-CN"
     seen = set(page.evaluate(SEEN))

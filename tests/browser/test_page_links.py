@@ -28,7 +28,6 @@ def visitor(browser: Browser, dashboard: Any) -> Iterator[Callable[[int, int], B
     def make(width: int, height: int) -> Bench:
         contexts.append(browser.new_context(viewport={"width": width, "height": height}))
         page = contexts[-1].new_page()
-        page.set_default_timeout(60_000)
         return Bench(page, dashboard[0].url, dashboard[1].sessions)
 
     yield make

@@ -107,7 +107,6 @@ def test_a_new_tab_stands_in_the_browser(browser: Browser, served: tuple[Dashboa
     server, dashboard = served
     context = browser.new_context(viewport={"width": 1920, "height": 1080})
     page = context.new_page()
-    page.set_default_timeout(60_000)
     bench = Bench(page, server.url, dashboard.sessions).open()
     bench.tab("Peaks")
     page.wait_for_selector(".peak")

@@ -36,7 +36,6 @@ def kept(browser: Browser, tmp_path: Path) -> Iterator[tuple[Bench, Store]]:
     context = browser.new_context(viewport={"width": 1366, "height": 768})
     try:
         page = context.new_page()
-        page.set_default_timeout(60_000)
         bench = Bench(page, server.url, dashboard.sessions).open()
         store = dashboard.sessions._store
         assert store is not None

@@ -13,6 +13,7 @@ import app.shell
 from app.http.limits import Limits
 from app.http.server import DashboardServer, start
 from tests.attack.conftest import eventually
+from tests.browser.driver import PATIENCE_MS
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Page
@@ -49,6 +50,7 @@ def server(open_now: list[str]) -> Iterator[DashboardServer]:
 def visited(browser: Browser, server: DashboardServer) -> tuple[BrowserContext, Page, str]:
     context = browser.new_context(viewport={"width": 900, "height": 600})
     page = context.new_page()
+    page.set_default_timeout(PATIENCE_MS)
     page.goto(f"{server.url}?fixedDpr=0.25&start=no")
     return context, page, page.url.split("/s/")[1].split("/")[0]
 
@@ -57,21 +59,21 @@ def test_an_idle_page_comes_back_by_itself_and_at_once_with_its_person(
     browser: Browser, server: DashboardServer, open_now: list[str]
 ) -> None:
     first_context, first, first_id = visited(browser, server)
-    eventually(lambda: open_now == [first_id], 30.0)
+    eventually(lambda: open_now == [first_id], 90.0)
     first.wait_for_timeout(1500)
     second_context, _, second_id = visited(browser, server)
-    eventually(lambda: open_now == [second_id], 30.0)
+    eventually(lambda: open_now == [second_id], 90.0)
     second_context.close()
-    eventually(lambda: open_now == [first_id], 30.0)
+    eventually(lambda: open_now == [first_id], 90.0)
 
     first.wait_for_timeout(1500)
     third_context, _, third_id = visited(browser, server)
-    eventually(lambda: open_now == [third_id], 30.0)
+    eventually(lambda: open_now == [third_id], 90.0)
     first.wait_for_timeout(QUIET_MS)
     assert open_now == [third_id], "a page that nobody looks at drives nobody out"
     with first.expect_response(lambda answer: answer.url.endswith("/place")) as asked:
         first.mouse.move(300, 300)
     assert asked.value.status == 204
-    eventually(lambda: open_now == [first_id], 30.0)
+    eventually(lambda: open_now == [first_id], 90.0)
     third_context.close()
     first_context.close()

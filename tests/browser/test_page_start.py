@@ -33,7 +33,6 @@ def visitor(request: pytest.FixtureRequest, browser: Browser, dashboard: Any) ->
     width, height = request.param
     context = browser.new_context(viewport={"width": width, "height": height})
     page = context.new_page()
-    page.set_default_timeout(60_000)
     yield Bench(page, dashboard[0].url, dashboard[1].sessions)
     context.close()
 

@@ -50,7 +50,6 @@ def another(
     def opened(path: str) -> Bench:
         contexts.append(browser.new_context(viewport=SIZE))
         page = contexts[-1].new_page()
-        page.set_default_timeout(90_000)
         return Bench(page, dashboard[0].url, dashboard[1].sessions).open(path)
 
     yield opened
@@ -363,7 +362,6 @@ def test_the_work_survives_the_death_of_the_server(browser: Browser, tmp_path: P
     process = serve(port, tmp_path, repo_root)
     try:
         page = context.new_page()
-        page.set_default_timeout(90_000)
         mine = Bench(page, f"http://127.0.0.1:{port}/", None)
         mine.open()
         mine.choose_and_run("scenario", "zha-fast")

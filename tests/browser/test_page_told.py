@@ -11,7 +11,7 @@ import pytest
 import app.shell
 from app.http.server import DashboardServer, start
 from app.views.files import view as files_view
-from tests.browser.driver import THROTTLE_MS, Bench
+from tests.browser.driver import PATIENCE_MS, THROTTLE_MS, Bench
 
 if TYPE_CHECKING:
     import viser
@@ -35,6 +35,7 @@ def server() -> Iterator[DashboardServer]:
 
 def test_a_page_says_that_its_server_is_lost(browser: Browser, server: DashboardServer) -> None:
     page = browser.new_page(viewport={"width": 900, "height": 600})
+    page.set_default_timeout(PATIENCE_MS)
     page.goto(f"{server.url}?fixedDpr=0.25")
     page.get_by_text("run 1").wait_for()
     page.wait_for_timeout(2500)

@@ -192,7 +192,6 @@ def on_a_page(size: tuple[int, int], act: Callable[[Bench], None]) -> None:
         with sync_playwright() as playwright:
             browser = playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
             page = browser.new_page(viewport={"width": size[0], "height": size[1]})
-            page.set_default_timeout(60_000)
             act(Bench(page, server.url, dashboard.sessions).open(query="?start=no"))
             browser.close()
     finally:
