@@ -21,10 +21,11 @@ _SMALLEST = 1e-6
 Verdict = Literal["agrees", "differs", "undecided"]
 """Agrees: our number, or its whole confidence interval, lies in the range. Differs: none of it does.
 Undecided: the interval reaches across an end of the range."""
-Kind = Literal["predicted", "fitted", "direction only"]
+Kind = Literal["predicted", "fitted", "direction only", "own"]
 """Predicted: a number from the paper's settings alone. Fitted: a number that a setting of ours was fitted to.
-Direction only: the paper states a relation, or its setting is too incomplete for more than one."""
-KINDS: tuple[Kind, ...] = ("predicted", "fitted", "direction only")
+Direction only: the paper states a relation, or its setting is too incomplete for more than one.
+Own: the claim is ours."""
+KINDS: tuple[Kind, ...] = ("predicted", "fitted", "direction only", "own")
 Span = tuple[float, float]
 
 
@@ -66,7 +67,7 @@ class Claim:
         goes by the 95 % confidence interval of their mean.
     unit : str
         Unit of both numbers.
-    kind : {"predicted", "fitted", "direction only"}
+    kind : {"predicted", "fitted", "direction only", "own"}
         What the number is worth as evidence.
     strapdown : bool
         Whether the number is computed in the full strapdown as well; both must agree.
@@ -78,7 +79,7 @@ class Claim:
     facts : mapping of str to callable
         Numbers that ``why`` and ``note`` name in braces.
     digits : int
-        Significant digits of our number.
+        Significant digits of our number; 0: it is a count, and printed whole.
     """
 
     says: str
@@ -162,9 +163,14 @@ class Paper:
 
 
 def number(value: float, digits: int = 3) -> str:
-    """Text of a number with a fixed count of significant digits; no exponent within 1e-4 .. 1e6."""
+    """Text of a number with a fixed count of significant digits; no exponent within 1e-4 .. 1e6.
+
+    With 0 digits it is a count: rounded to a whole number.
+    """
     if not math.isfinite(value):
         return "-" if math.isnan(value) else "infinite"
+    if digits == 0:
+        return f"{value:.0f}"
     if 0.0 < abs(value) < _SMALLEST:
         return "< 1e-6"
     text = f"{value:.{digits - 1}e}"

@@ -73,7 +73,7 @@ def statistics(runs: Runs, preset: str, name: str) -> np.ndarray:
 
 
 def schuler_swing(runs: Runs, preset: str, name: str) -> float:
-    """Amplitude of the Schuler line in dV_N by least squares over whole run, m/s."""
+    """Amplitude of the Schuler line in dV_N by least squares over the whole run, m/s."""
     run = runs(preset, "run.seed=1")
     found = method(run, name)
     phase = run.scenario.omega_s * found.t_s
@@ -102,25 +102,25 @@ def _table(preset: str, printed: Printed, caption: str) -> Callable[[Runs], Tabl
 
 _HEADING = (
     "0.02 deg/h and 0.006 deg/sqrt(h) turn the heading by {drift} deg within this run, and the heading is "
-    "not damped (the paper's neither): what the paper's heading scatters with does not come from the sensors "
-    "that it states."
+    "not damped (nor is the paper's): the sensors that the paper states cannot cause the spread of its "
+    "heading."
 )
 _CAR = (
-    "a real car with its engine running against a reference that is itself good to 0.01 deg; ours has the "
-    "errors of the sensors and the log only."
+    "the paper has a real car with its engine running, and a reference that is itself good to 0.01 deg; ours "
+    "has only the errors of the sensors and the log."
 )
 _SQUARE = (
     "the square root of the printed number is far from what sensors and log of the paper give; as a standard "
     "deviation the same number agrees."
 )
 _VERTICAL = (
-    "the vertical channel's damping is not printed; an ideal altimeter, of whatever gain, leaves the noise "
-    "of the accelerometer."
+    "the damping of the vertical channel is not printed; with an ideal altimeter of any gain the noise of "
+    "the accelerometer remains."
 )
 _TURNED = (
     "the log measures in the axes of the vehicle and is turned by the computed heading, so that the heading "
-    "error of the alignment times the speed stands in the velocity and adds up in the position. It differs "
-    "from seed to seed (with seed 1 the velocity agrees); the paper's is one drive after one alignment."
+    "error of the alignment times the speed appears in the velocity and adds up in the position. It differs "
+    "from seed to seed (with seed 1 the velocity agrees); the paper shows one drive after one alignment."
 )
 
 
@@ -310,7 +310,7 @@ VEHICLE = Exhibit(
             at_most(1.2),
             lambda runs: largest_tilt(runs, PRINTED) / largest_tilt(runs, SLOW),
             why="as printed the platform's command lacks the transport rate V_r/R of the reference: after "
-            "every change of speed the loop has to find it anew ({printed} against {right} arcsec).",
+            "every change of speed the loop has to settle on it anew ({printed} against {right} arcsec).",
             facts={
                 "printed": lambda runs: largest_tilt(runs, PRINTED),
                 "right": lambda runs: largest_tilt(runs, SLOW),

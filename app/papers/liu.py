@@ -147,7 +147,7 @@ GAINS = Exhibit(
             about(1.0, 0.2),
             lambda runs: zeta_ratio(10.0),
             why="1 - H has the factor 2 zeta (with eta = 0.5), so above the Schuler frequency a nine times "
-            "smaller zeta lets nine times less through: it is the peak that does not mind zeta.",
+            "smaller zeta lets nine times less through. Only the peak hardly depends on zeta.",
         ),
     ),
     tables=(_gain_table,),

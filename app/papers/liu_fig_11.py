@@ -98,7 +98,7 @@ def _table(runs: Runs) -> Table:
             (
                 name,
                 number(system.h_slope),
-                "neither" if np.isinf(days) else number(days),
+                "neither grows nor decays" if np.isinf(days) else number(days),
                 *(mean_and_interval(found[:, k]) for k in range(DAYS)),
             )
         )
@@ -125,8 +125,8 @@ LONG = Exhibit(
     title="Figures 11 and 12: five days, free and with three networks",
     presets=("liu-networks", PRESET),
     setting="The paper's records are not public; here the log of `liu-networks` and the sensors of "
-    "`liu-switching`. Both figures are about days, and over days the stability of the whole system "
-    "decides, not that of one channel (theory.md 10): horizontal damping moves the 24 h mode by H'(0).",
+    "`liu-switching`. Both figures show days, and over days the stability of the whole system decides, not "
+    "that of one channel (theory.md 10): H'(0) of the network makes the 24 h mode grow or decay.",
     claims=(
         Claim(
             "figure 11: the undamped position error diverges with time: RMS of the fifth day over the first",
@@ -144,7 +144,8 @@ LONG = Exhibit(
             "does not diverge",
             at_most(1.0),
             lambda runs: growth(runs, "complementary"),
-            note="The whole system explains it: H'(0) < 0, and the 24 h mode decays with {decay} days.",
+            note="The whole system explains it: H'(0) < 0, and the 24 h mode decays with an e-folding time "
+            "of {decay} days.",
             facts={"decay": lambda runs: -_e_folding_days(runs, "complementary")},
         ),
         Claim(
@@ -162,7 +163,7 @@ LONG = Exhibit(
             "smallest",
             at_most(1.0),
             lambda runs: fifth_day(runs, "complementary", "classic3"),
-            note="Likewise: with classic3 it grows with {classic3} days.",
+            note="Likewise: with classic3 its e-folding time is {classic3} days.",
             facts=_FACTS,
         ),
     ),

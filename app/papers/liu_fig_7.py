@@ -67,7 +67,7 @@ FIGURE_7 = Exhibit(
             lambda runs: overshoot(switched(runs, "hard")) / overshoot(fig_7(runs), 0),
             kind="predicted",
             why="when the filter is cleared the standing 0.5 m/s arrives as a step of 0.5 m/s on "
-            "re-engagement ({hard} m/s against {step} m/s). Kept running behind the switch it makes none.",
+            "re-engagement ({hard} m/s against {step} m/s). A filter that is kept running has no overshoot.",
             facts={
                 "hard": lambda runs: overshoot(switched(runs, "hard")),
                 "step": lambda runs: overshoot(fig_7(runs), 0),
@@ -79,8 +79,8 @@ FIGURE_7 = Exhibit(
             "lower",
             at_most(1.0),
             lambda runs: overshoot(_switch(runs, "Liu 19")) / overshoot(_switch(runs, "hard")),
-            note="It is the recursion that does it, not the ramp: (19) sees differences of its input only, "
-            "and what stands while zeta is next to nothing is never seen. With a filter that sees the whole "
+            note="The recursion does this, not the ramp: (19) takes only the changes of its input, so that "
+            "what stands while zeta is close to 0 never enters. With a filter that takes the whole "
             "difference the same ramp leaves {ramp} m/s.",
             facts={"ramp": lambda runs: overshoot(_switch(runs, "ramp"))},
         ),

@@ -113,6 +113,11 @@ def _base(overrides: Iterable[str], **blocks: Any) -> Scenario:
     return scenario_of(PRESET, overrides, method=[*methods, bridge], **blocks)
 
 
+def without_changes(scenario: Scenario) -> Scenario:
+    """The same without any change of the log's error."""
+    return _with_events(scenario, [])
+
+
 def _with_events(scenario: Scenario, events: Events) -> Scenario:
     """Replace the log's events; there may be more of them than a file may hold."""
     made = tuple(LogEvent(**event) for event in events)
@@ -208,7 +213,7 @@ def added(runs: Runs, case: str) -> np.ndarray:
         found = []
         for seed in SEEDS:
             scenario = CASES[case](seed)
-            found.append(paired(simulate(scenario), simulate(_with_events(scenario, []))))
+            found.append(paired(simulate(scenario), simulate(without_changes(scenario))))
         return np.array(found)
 
     return runs.keep(("liu-switching", case, "added"), make)

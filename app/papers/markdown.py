@@ -10,22 +10,23 @@ from app.papers.estimate import Estimate, estimate
 from app.papers.runs import Runs
 
 HEAD = """\
-# What the papers say, and what comes out here
+# What the papers claim, and what we find
 
-Written by `make papers` from the presets; nothing here is typed by hand. For each figure and table of the
-papers: the claim, our number, the range of numbers that counts as agreement, and the verdict; where the two
-differ, the reason. *Linear* is the error model (or the single channel) of the preset, *strapdown* the full
-nonlinear mechanization on the same setting, where both apply. Seeds and digits are fixed: the same code
-writes the same file.
+`make papers` runs the presets and writes this page; every number of ours is computed. For each figure and
+table of the papers it states the claim, our number, the range of numbers that counts as agreement, and the
+verdict. Where the two differ, it gives the reason. *Linear* is the error model (or the single channel) of the
+preset; *strapdown* is the full nonlinear mechanization on the same setting, where both apply. Seeds and
+digits are fixed: the same code writes the same file.
 
 Where noise decides, our number is the mean over the stated number of seeds with its 95 % confidence interval
 (Student), and the verdict goes by the interval: *agrees* when all of it lies in the range, *differs* when
 none of it does, *undecided* when it reaches across an end of the range. Where both fidelities are given, both
-must agree, and one that differs is enough to differ.
+must agree; if one of them differs, the verdict is *differs*. A number without an interval is of one run.
 
 The kind of a claim says what its agreement is worth. *Predicted*: our number follows from the settings that
 the paper prints. *Fitted*: a setting that the paper does not print was chosen so that the number comes out.
 *Direction only*: the paper states a relation without a number, or prints too little of its setting for more.
+*Own*: the claim is ours, about what this project adds; it says nothing about a paper.
 """
 
 
@@ -59,10 +60,15 @@ def check(claim: Claim, runs: Runs) -> Checked:
     if verdict != "undecided" and (verdict == "differs") != bool(claim.why):
         found = f"{linear}" if strapdown is None else f"{linear} / {strapdown}"
         raise Contradiction(f"{claim.says}: {found} {verdict} with {claim.agreed}, why = {claim.why!r}")
-    facts = {name: number(fact(runs)) for name, fact in claim.facts.items()}
+    facts = {name: _fact(fact(runs)) for name, fact in claim.facts.items()}
     return Checked(
         claim, linear, strapdown, verdict, claim.why.format_map(facts), claim.note.format_map(facts)
     )
+
+
+def _fact(value: float) -> str:
+    """Text of a number that a reason names; a whole number is a count."""
+    return str(value) if isinstance(value, int) else number(value)
 
 
 def report(papers: Iterable[tuple[Paper, Sequence[tuple[Exhibit, str]]]]) -> str:
@@ -135,7 +141,9 @@ def _presets(exhibit: Exhibit) -> str:
 def _claims(checked: Sequence[Checked]) -> Table:
     both = any(c.strapdown is not None for c in checked)
     ours_head = ("linear", "strapdown") if both else ("ours",)
-    head = ("", "the paper's claim", "paper", *ours_head, "agrees within", "kind", "verdict")
+    own = all(c.claim.kind == "own" for c in checked)
+    stated = ("our claim", "expected") if own else ("the paper's claim", "paper")
+    head = ("", *stated, *ours_head, "agrees within", "kind", "verdict")
     rows = []
     for i, c in enumerate(checked, 1):
         ours = [_value(c.claim, c.linear)]
@@ -154,14 +162,28 @@ def _value(claim: Claim, found: Estimate) -> str:
     return f"{text} ({found.seeds} seeds)" if found.seeds > 1 else text
 
 
-_OPEN = {"undecided": "is undecided"}
+_VERBS = {"differs": ("differs", "differ"), "undecided": ("is undecided", "are undecided")}
 
 
 def _notes(checked: Sequence[Checked]) -> str:
-    lines = []
+    """Reasons and notes, each stated once for all claims that share it."""
+    lines: dict[str, None] = {}
     for i, c in enumerate(checked, 1):
         if c.why:
-            lines.append(f"- **Claim {i} {_OPEN.get(c.verdict, c.verdict)}:** {c.why}")
+            alike = [
+                k for k, other in enumerate(checked, 1) if (other.why, other.verdict) == (c.why, c.verdict)
+            ]
+            one, several = _VERBS.get(c.verdict, (c.verdict, c.verdict))
+            verb = one if len(alike) == 1 else several
+            lines[f"- **{_numbered(alike)} {verb}:** {c.why}"] = None
         if c.note:
-            lines.append(f"- Note on claim {i}: {c.note}")
+            lines[f"- Note on claim {i}: {c.note}"] = None
     return "\n".join(lines) + "\n" if lines else ""
+
+
+def _numbered(numbers: Sequence[int]) -> str:
+    """Text "Claim 3" or "Claims 3, 5 and 7"."""
+    if len(numbers) == 1:
+        return f"Claim {numbers[0]}"
+    *first, last = (str(number) for number in numbers)
+    return f"Claims {', '.join(first)} and {last}"

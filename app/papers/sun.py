@@ -87,7 +87,8 @@ STEP = Exhibit(
             about(2.0, 0.2),
             lambda runs: float(np.max(step()) - 1.0),
             kind="predicted",
-            why="the peak is {peak} at {time} s; it is the peak itself that is (more than) two-fold.",
+            why="the peak is {peak} at {time} s. The peak is more than two-fold, the overshoot above 1 is "
+            "not.",
             facts={"peak": lambda runs: float(np.max(step())), "time": lambda runs: float(np.argmax(step()))},
         ),
         Claim(
@@ -179,7 +180,7 @@ def _law_table(runs: Runs) -> Table:
         "damping with (18) as printed",
         "with (18) exact",
     )
-    return Table("Sun's law, and what the loop really gets:", head, tuple(rows))
+    return Table("Sun's law, and the damping that the loop then has:", head, tuple(rows))
 
 
 def _draw_law(runs: Runs, figure: Figure) -> None:

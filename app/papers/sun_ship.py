@@ -30,8 +30,8 @@ QUIET = "imu.gyro_arw_dpsh=0.0006"
 VARIANTS: dict[str, tuple[str, ...]] = {
     "as printed": (),
     "initial errors 0.1', 0.1', 1'": (SMALL,),
-    "and no random drift of the gyros": (SMALL, "imu.gyro_arw_dpsh=0"),
-    "0.1', 0.1', 1'; gyros of eq. 8, random drift 0.0006": (
+    "the same, no random drift of the gyros": (SMALL, "imu.gyro_arw_dpsh=0"),
+    "initial errors 0.1', 0.1', 1', gyros of eq. 8 with 0.0006 deg/sqrt(h)": (
         SMALL,
         "imu.gyro_bias_dph=[0.006,0.006,0.001]",
         QUIET,
@@ -42,7 +42,7 @@ VARIANTS: dict[str, tuple[str, ...]] = {
         QUIET,
         "reference.scale_ppm=0",
     ),
-    "0.1', 0.1', 1'; gyros 0.001 deg/h, random drift 0.0006": (
+    "initial errors 0.1', 0.1', 1', gyros 0.001 deg/h, 0.0006 deg/sqrt(h)": (
         SMALL,
         "imu.gyro_bias_dph=[0.001,0.001,0.001]",
         QUIET,
@@ -228,8 +228,8 @@ SHIP = Exhibit(
             "0.04 to 0.99",
             at_least(0.1),
             lambda runs: measured(runs)["largest xi"],
-            why="the low-passed difference never falls below {least} kn in any run: xi is the least of "
-            "table 1 all the time.",
+            why="the low-passed difference never falls below {least} kn in any run, so that xi stays at the "
+            "smallest value of table 1.",
             facts={"least": lambda runs: float(np.min(measured(runs)["least difference"]))},
         ),
         *(
@@ -237,8 +237,8 @@ SHIP = Exhibit(
                 angle,
                 EQ_8_GYROS,
                 "with gyros good enough for the law to damp (mean xi {xi}) the manoeuvre comes in through "
-                "the log's scale error as it does in every damped loop: claims 1 and 3 turn round. Without "
-                "the scale error the ratio is {ideal}."
+                "the log's scale error as it does in every damped loop: claims 1 and 3 are reversed. "
+                "Without the scale error the ratio is {ideal}."
                 if angle != "roll"
                 else "",
             )

@@ -106,8 +106,9 @@ FAST = Exhibit(
     name="zha-fig-1",
     title="Figure 1 and section 3: tilt from a gyro drift",
     presets=("zha-fast",),
-    setting="One criterion for both networks: the transient has ended when the tilt stays within 0.5 % of "
-    "its peak from where it ends, Zha's own exp(-5.25). The table has the usual 2 % as well.",
+    setting="One criterion for both networks: the transient has ended when the distance of the tilt from its "
+    "final value stays below 0.5 % of its peak, which is Zha's own exp(-5.25). The table also has the usual "
+    "2 %.",
     claims=(
         Claim(
             "with the fast network the oscillation is down within 10 min (figure 1)",
@@ -177,7 +178,7 @@ FAST = Exhibit(
             lambda runs: corrected_k2(),
             kind="predicted",
             digits=5,
-            why="Deng 2 and Zha 13 give another one; K1 = 0.0264 and K3 = 0.904 do agree. With the printed "
+            why="Deng 2 and Zha 13 give another value; K1 = 0.0264 and K3 = 0.904 do agree. With the printed "
             "K2 the least damping is {damping} and the transient takes {slow} min by 5.25 / slowest decay, "
             "{exact} min to 0.5 %.",
             facts={
@@ -343,8 +344,8 @@ EXTERNAL = Exhibit(
             lambda runs: reductions(runs, "classic2", NO_TILT),
             "%",
             strapdown=True,
-            why="without an initial tilt there is little for the fast network to be fast at, and it lets "
-            "through more of the log's noise than classic2: at rest it is then the worse of the two (table). "
+            why="without an initial tilt there is little to damp, and the fast network lets through more of "
+            "the log's noise than classic2: at rest it is then the worse of the two (table). "
             "The paper's figure needs a tilt of some arc-minutes.",
         ),
     ),

@@ -110,6 +110,15 @@ for fidelity in ("error_model", "strapdown"):
     found[fidelity] = [method.law_series.tolist() for method in run.methods]
 print(json.dumps(found))
 """
+LEFT_OUT = {
+    "policy": {
+        "yaw_rate": "YawRate",
+        "variation": "Variation",
+        "adaptive": "Adaptive",
+        "schedule": "Schedule",
+    },
+    "switching": {"ramp": "Ramp", "step": "Step", "bumpless": "Bumpless", "bridge": "Bridge"},
+}
 ENTRIES = {"policy": ("turns", POLICY, "Turns"), "switching": ("waiting", SWITCHING, "Waiting")}
 
 
@@ -126,6 +135,11 @@ def program(tmp_path_factory: pytest.TempPathFactory, repo_root: Path) -> Path:
         line = f'    "navcore.law.{part}.{name}:{kind}",\n'
         changed = registry.replace('    "id",\n', '    "id",\n' + line, 1)
         assert changed != registry, "the first place of the registry moves every other entry by one"
+        # what the two runs do not use is left out: compiling all of it takes most of the time
+        for module, kind in LEFT_OUT[part].items():
+            line = f'    "navcore.law.{part}.{module}:{kind}",\n'
+            assert line in changed
+            changed = changed.replace(line, "")
         (place / "__init__.py").write_text(changed, encoding="utf-8")
     return folder
 

@@ -56,7 +56,7 @@ def test_a_number_over_seeds_is_printed_with_its_interval_and_their_count():
     assert "| 2.00 +- 2.5 m (3 seeds) | -4.00 to 8.00 | fitted | agrees |" in exhibit_text(
         exhibit, [wide], []
     )
-    assert summary([(Paper("P", "", ()), exhibit, [wide])]).rows[-1][3:] == ("", "1 of 1", "", "0", "0")
+    assert summary([(Paper("P", "", ()), exhibit, [wide])]).rows[-1][3:] == ("", "1 of 1", "", "", "0", "0")
 
 
 def test_a_claim_that_differs_needs_a_reason_and_one_that_agrees_must_not_have_one():

@@ -146,9 +146,11 @@ def _worst(pattern: str | bytes, flags: int, methods: tuple[str, ...]) -> tuple[
         for method in methods:
             run = _run(compiled, method)
             steepest = max(steepest, (_steepness(run, given, tail, SMALL), f"{method} on {unit!r}"))
+            if steepest[0] > STEEPEST:
+                return steepest
             taken = _timed(run, given * (SMALL // len(given)) + tail)
             slowest = max(slowest, (taken, given, run), key=lambda found: found[0])
-    if steepest[0] > STEEPEST or slowest[1] is None or slowest[2] is None:
+    if slowest[1] is None or slowest[2] is None:
         return steepest
     return max(steepest, (_steepness(slowest[2], slowest[1], tail, LARGEST), f"1 MiB of {slowest[1]!r}"))
 
