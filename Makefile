@@ -15,7 +15,7 @@ endif
 
 KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
-.PHONY: help setup run test check docs format unit paint soak tour accuracy covariance tuning consistency design benchmarks mutation papers cards guide languages sbom audit lock clean REMAKE
+.PHONY: help setup run test check docs format unit paint soak serving tour accuracy covariance tuning consistency design benchmarks mutation papers cards guide languages sbom audit lock clean REMAKE
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'
@@ -28,6 +28,7 @@ help:
 	@echo 'make papers   run the presets of the five papers and write docs/papers.md with its pictures anew'
 	@echo 'make paint    time from a slider step to the last paint of it in Chromium'
 	@echo 'make soak     30 visitors for 30 minutes on one server, then floods: one table (CLIENTS=, BROWSERS=, MINUTES=)'
+	@echo 'make serving  run what docs/serving.md names, and write its table from that and from the last soak'
 	@echo 'make mutation  change the code of navcore at random, and see which changes no test notices'
 	@echo 'make accuracy  what the strapdown engine is accurate to, figure by figure'
 	@echo 'make covariance  the error budget beside 2,000 seeds; SEEDS=... for another number'
@@ -63,7 +64,11 @@ paint: setup $(STAMPS)/test
 # CLIENTS=30 BROWSERS=3 MINUTES=30: so many visitors, so many of them browsers, for so long.
 soak: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.attack.soak --clients $(or $(CLIENTS),30) --browsers $(or $(BROWSERS),3) \
-	  --minutes $(or $(MINUTES),30)
+	  --minutes $(or $(MINUTES),30) --json build/soak.json
+
+# The tests that tests/attack/serving.toml names, and what the last `make soak` has left in build/soak.json.
+serving: setup $(STAMPS)/test
+	@$(BIN)/python -m tests.attack.serving
 
 tour: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.browser.tour

@@ -15,6 +15,7 @@ import argparse
 import json
 import math
 import os
+import platform
 import queue
 import signal
 import statistics
@@ -38,7 +39,9 @@ from tests.attack.load import (
     pausing,
 )
 
-BESIDE_S = 20.0
+BESIDE_S = 30.0
+_BESIDE_PAUSE_S = (0.3, 0.8)
+"""Short enough for some fifty answers: the 95th percentile of fewer is the slowest one."""
 _LONG_PER_PROCESS = 10
 
 
@@ -48,6 +51,8 @@ class Row:
 
     Attributes
     ----------
+    key : str
+        Its name in the record and in tests/attack/serving.toml.
     what, unit : str
         In words.
     measured : float
@@ -58,6 +63,7 @@ class Row:
         Missing it is a fault of the server whatever the machine is.
     """
 
+    key: str
     what: str
     measured: float
     unit: str
@@ -78,6 +84,12 @@ class Row:
         wanted = f">= {self.least:g}" if self.least is not None else wanted
         verdict = "" if not wanted else "met" if self.met else "MISSED"
         return f"| {self.what:<62} | {self.measured:>10.4g} | {self.unit:<8} | {wanted:>8} | {verdict:<6} |"
+
+
+HEAD = (
+    f"| {'what':<62} | {'measured':>10} | {'unit':<8} | {'wanted':>8} | {'':<6} |",
+    f"|{'-' * 64}|{'-' * 11}:|{'-' * 10}|{'-' * 9}:|{'-' * 8}|",
+)
 
 
 class Memory(threading.Thread):
@@ -101,18 +113,23 @@ class Memory(threading.Thread):
         return statistics.median(self.mb[-tenth:]) - statistics.median(self.mb[third : third + tenth])
 
 
-def answers(name: str, seen: Seen, p95_ms: float | None) -> list[Row]:
+def answers(key: str, name: str, seen: Seen, p95_ms: float | None) -> list[Row]:
     """Rows of what some visitors saw."""
-    wrong, numbers = seen.wrong, seen.other_numbers
+    slowest_ms, rate = (
+        1e3 * max(seen.answers_s, default=math.inf),
+        len(seen.answers_s) / max(seen.seconds, 1e-9),
+    )
+    compared = f"{name}: answers of somebody else's run, of {seen.compared}"
+    recomputed = f"{name}: other numbers than run here, of {seen.recomputed}"
     return [
-        Row(f"{name}: answers", len(seen.answers_s), "", least=1, strict=True),
-        Row(f"{name}: answers a second", len(seen.answers_s) / max(seen.seconds, 1e-9), "1/s"),
-        Row(f"{name}: median", seen.quantile_ms(50), "ms"),
-        Row(f"{name}: 95th percentile", seen.quantile_ms(95), "ms", most=p95_ms),
-        Row(f"{name}: slowest", 1e3 * max(seen.answers_s, default=math.inf), "ms"),
-        Row(f"{name}: moves without an answer", seen.lost, "", most=0, strict=True),
-        Row(f"{name}: answers of somebody else's run, of {seen.compared}", wrong, "", most=0, strict=True),
-        Row(f"{name}: other numbers than run here, of {seen.recomputed}", numbers, "", most=0, strict=True),
+        Row(f"{key}_answers", f"{name}: answers", len(seen.answers_s), "", least=1, strict=True),
+        Row(f"{key}_rate", f"{name}: answers a second", rate, "1/s"),
+        Row(f"{key}_p50", f"{name}: median", seen.quantile_ms(50), "ms"),
+        Row(f"{key}_p95", f"{name}: 95th percentile", seen.quantile_ms(95), "ms", most=p95_ms),
+        Row(f"{key}_slowest", f"{name}: slowest", slowest_ms, "ms"),
+        Row(f"{key}_lost", f"{name}: moves without an answer", seen.lost, "", most=0, strict=True),
+        Row(f"{key}_wrong", compared, seen.wrong, "", most=0, strict=True),
+        Row(f"{key}_other", recomputed, seen.other_numbers, "", most=0, strict=True),
     ]
 
 
@@ -130,55 +147,49 @@ def lecture(server: Server, arguments: argparse.Namespace) -> list[Row]:
     seen, browsers = crowds(order, people, arguments.browsers, ready=ready)
     memory.ended.set()
     cpu_ms = 1e3 * (server.cpu_s() - began[0]) / max(1, len(seen.answers_s) + len(browsers.answers_s))
-    rows = answers(f"{people} visitors", seen, 500.0)
+    rows = answers("lecture", f"{people} visitors", seen, 500.0)
     if arguments.browsers:
-        rows += answers(f"{arguments.browsers} browsers", browsers, None)
+        rows += answers("browsers", f"{arguments.browsers} browsers", browsers, None)
     most_mb = max(memory.mb or [before_mb])
+    for_each = (most_mb - before_mb) / arguments.clients
     rows += [
-        Row("processor time of an answer, everything included", cpu_ms, "ms"),
-        Row("memory before the visitors", before_mb, "MB"),
-        Row("memory for each visitor, at most", (most_mb - before_mb) / arguments.clients, "MB", most=25.0),
-        Row("memory: growth after the first third", memory.growth_mb(), "MB", most=0.1 * most_mb),
+        Row("lecture_cpu", "processor time of an answer, everything included", cpu_ms, "ms"),
+        Row("before_mb", "memory before the visitors", before_mb, "MB"),
+        Row("each_mb", "memory for each visitor, at most", for_each, "MB", most=25.0),
+        Row(
+            "growth_mb", "memory: growth after the first third", memory.growth_mb(), "MB", most=0.1 * most_mb
+        ),
     ]
     time.sleep(arguments.rest)
     left = (server.rss_mb() - before_mb) / arguments.clients
-    return [*rows, Row(f"memory for each, {arguments.rest:g} s after all have left", left, "MB", most=5.0)]
+    said = f"memory for each, {arguments.rest:g} s after all have left"
+    return [*rows, Row("left_mb", said, left, "MB", most=5.0)]
 
 
 def cost(server: Server) -> list[Row]:
     """Processor time of one answer, and how many a server gives."""
-    rows = [
-        Row(
-            "processor time of an answer while dragging", dragging(server.port, server.cpu_s, 8.0), "ms", 50.0
-        ),
-        Row(
-            "the same after a pause of 2.5 s, all included", pausing(server.port, server.cpu_s, 6), "ms", 60.0
-        ),
-    ]
+    drag_ms, pause_ms = dragging(server.port, server.cpu_s, 8.0), pausing(server.port, server.cpu_s, 6)
     busy, _ = crowds(Order(server.port, BESIDE_S, (0.0, 0.0), check=False), 10, first=500_000)
+    rate = len(busy.answers_s) / busy.seconds
     return [
-        *rows,
-        Row(
-            "10 visitors without pauses: answers a second",
-            len(busy.answers_s) / busy.seconds,
-            "1/s",
-            None,
-            30.0,
-        ),
+        Row("drag_cpu", "processor time of an answer while dragging", drag_ms, "ms", 50.0),
+        Row("pause_cpu", "the same after a pause of 2.5 s, all included", pause_ms, "ms", 60.0),
+        Row("rate", "10 visitors without pauses: answers a second", rate, "1/s", None, 30.0),
     ]
 
 
 def fairness(server: Server, arguments: argparse.Namespace) -> list[Row]:
     """One visitor beside those who take what they can, and the same visitor alone just before."""
-    order = Order(server.port, BESIDE_S, (arguments.shortest, arguments.longest), check=False)
+    order = Order(server.port, BESIDE_S, _BESIDE_PAUSE_S, check=False)
     attacks = [
-        ("one who floods a slider", flood_of_a_slider, 1),
-        ("one who floods commands", flood_of_commands, 1),
+        ("slider_flood", "one who floods a slider", flood_of_a_slider, 1),
+        ("command_flood", "one who floods commands", flood_of_commands, 1),
     ]
     if arguments.long:
-        attacks.append((f"{arguments.long} long runs", long_runs, arguments.long // _LONG_PER_PROCESS))
+        processes = arguments.long // _LONG_PER_PROCESS
+        attacks.append(("long_runs", f"{arguments.long} long runs", long_runs, processes))
     rows = []
-    for number, (name, attack, processes) in enumerate(attacks):
+    for number, (key, name, attack, processes) in enumerate(attacks):
         first = 600_000 + 20_000 * number
         alone = beside(order, None, 0, 0.0, first)
         seen = beside(
@@ -188,8 +199,9 @@ def fairness(server: Server, arguments: argparse.Namespace) -> list[Row]:
             own, other = alone.quantile_ms(hundredth), seen.quantile_ms(hundredth)
             which = "median" if hundredth == 50 else "95th percentile"
             said = f"beside {name}: {which} {other:.0f} ms, times alone"
-            rows.append(Row(said, other / own, "", most=2.0))
-        rows.append(Row(f"beside {name}: moves without an answer", seen.lost, "", most=0, strict=True))
+            rows.append(Row(f"{key}_p{hundredth}", said, other / own, "", most=2.0))
+        said = f"beside {name}: moves without an answer"
+        rows.append(Row(f"{key}_lost", said, seen.lost, "", most=0, strict=True))
         time.sleep(3.0)
     return rows
 
@@ -200,10 +212,11 @@ def coming_and_going(server: Server, arguments: argparse.Namespace) -> list[Row]
     connects(server.port, arguments.connects)
     time.sleep(arguments.rest)
     grown = server.rss_mb() - before_mb
-    rows = [
-        Row(f"memory: growth by {arguments.connects} visitors who came and left", grown, "MB", most=100.0)
+    said = f"memory: growth by {arguments.connects} visitors who came and left"
+    return [
+        Row("connects_mb", said, grown, "MB", most=100.0),
+        Row("connects_threads", "threads of the server then", server.threads(), "", most=64.0),
     ]
-    return [*rows, Row("threads of the server then", server.threads(), "", most=64.0)]
 
 
 def measure(arguments: argparse.Namespace) -> list[Row]:
@@ -213,6 +226,7 @@ def measure(arguments: argparse.Namespace) -> list[Row]:
         time.sleep(5.0)  # the kernels are loaded behind the first page
         parts = [
             lambda: answers(
+                "alone",
                 "one visitor alone",
                 beside(Order(server.port, BESIDE_S, (0.5, 2.0)), None, 0, 0.0, 700_000),
                 None,
@@ -226,13 +240,24 @@ def measure(arguments: argparse.Namespace) -> list[Row]:
             try:
                 made = part()
             except (TimeoutError, threading.BrokenBarrierError, queue.Empty, OSError) as error:
-                made = [
-                    Row(f"not ended: {type(error).__name__}: {error}"[:62], 1.0, "", most=0.0, strict=True)
-                ]
+                said = f"not ended: {type(error).__name__}: {error}"[:62]
+                made = [Row("not_ended", said, 1.0, "", most=0.0, strict=True)]
             rows += made
+            if rows == made:
+                print("\n".join(HEAD), flush=True)
             for row in made:
                 print(row.line, flush=True)
     return rows
+
+
+def told_of_machine(arguments: argparse.Namespace) -> str:
+    """What was measured, where and when, in one line."""
+    load = os.getloadavg()[0]
+    return (
+        f"{arguments.clients} visitors, {arguments.browsers} of them browsers, {arguments.minutes:g} min; "
+        f"{os.cpu_count()} cores, load {load:.1f} before it began, Python {platform.python_version()}, "
+        f"{time.strftime('%Y-%m-%d', time.gmtime())}"
+    )
 
 
 def main() -> int:
@@ -253,13 +278,15 @@ def main() -> int:
     alarm = threading.Timer(until_s, _give_up, [until_s])
     alarm.daemon = True
     alarm.start()
-    began = time.monotonic()
+    began, circumstances = time.monotonic(), told_of_machine(arguments)
+    print(f"{circumstances}\n", flush=True)
     rows = measure(arguments)
-    print(
-        f"\n{sum(not row.met for row in rows)} of {len(rows)} rows missed; {time.monotonic() - began:.0f} s"
-    )
+    missed, took_s = [row.what for row in rows if not row.met], time.monotonic() - began
+    print("\n" + "\n".join([f"{len(missed)} of {len(rows)} rows missed; {took_s:.0f} s", *missed]))
     if arguments.json:
-        arguments.json.write_text(json.dumps([asdict(row) for row in rows], indent=2) + "\n")
+        arguments.json.parent.mkdir(parents=True, exist_ok=True)
+        record = {"circumstances": circumstances, "rows": [asdict(row) | {"met": row.met} for row in rows]}
+        arguments.json.write_text(json.dumps(record, indent=2) + "\n")
     sys.stdout.flush()
     os._exit(int(any(row.strict and not row.met for row in rows)))  # not waiting for the timer
 

@@ -7,7 +7,8 @@ import signal
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
@@ -69,14 +70,18 @@ def test_signal_ends_the_process_in_time_and_quietly(number: signal.Signals) -> 
         assert (child.returncode, out, errors) == (0, "left\n", "")
 
 
-def test_signal_ends_the_process_although_a_callback_computes() -> None:
+def test_signal_ends_the_process_although_a_callback_computes(
+    record_property: Callable[[str, object], None],
+) -> None:
     with process() as child:
         port = int(child.stdout.readline())
         with visit(port) as visitor:
             visitor.set(visitor.control("last"), True)
             assert child.stdout.readline() == "computing\n"
+            began = time.monotonic()
             child.send_signal(signal.SIGTERM)
             assert child.wait(timeout=5) == 0
+            record_property("ended_s", time.monotonic() - began)
 
 
 def test_second_signal_ends_it_at_once() -> None:
