@@ -3,8 +3,9 @@
     python -m tests.attack.serving            # run the tests that serving.toml names, and write the table
     python -m tests.attack.serving --table    # write the table anew from the record
 
-A test records a figure by pytest's ``record_property``; it comes here in the JUnit report. ``make soak`` leaves
-its rows in build/soak.json, which is taken if it is there. The record, docs/serving.json, stands beside the page.
+A test records a figure by pytest's ``record_property``; it comes here in the JUnit report. ``make soak``
+leaves its rows in build/soak.json, which is taken if it is there. The record, docs/serving.json, stands beside
+the page.
 """
 
 from __future__ import annotations
