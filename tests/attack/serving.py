@@ -4,8 +4,8 @@
     python -m tests.attack.serving --table    # write the table anew from the record
 
 A test records a figure by pytest's ``record_property``; it comes here in the JUnit report. ``make soak``
-leaves its rows in build/soak.json, which is taken if it is there. The record, docs/serving.json, stands beside
-the page.
+leaves its rows in build/soak.json, which is taken if it is there. The record, docs/serving.json, stands
+beside the page.
 """
 
 from __future__ import annotations
