@@ -32,12 +32,12 @@ from navcore.scenario.model import Scenario
 from tests.attack.wire import ask
 
 pytest.importorskip("distributed", reason="the extra schuler-bench[cluster] is not installed")
-pytestmark = pytest.mark.attack
+pytestmark = [pytest.mark.attack, pytest.mark.timeout(400)]
 
 SHORT = ("run.duration_h=1",)
 
 
-def until(true: Callable[[], Any], seconds: float = 60.0) -> None:
+def until(true: Callable[[], Any], seconds: float = 120.0) -> None:
     end = time.monotonic() + seconds
     while not true():
         assert time.monotonic() < end, "did not happen"
@@ -131,7 +131,7 @@ def test_a_heavy_job_is_done_there_with_the_same_result(there: Cluster, scenario
     lanes: list[float] = []
     budgeter = Budgeter(lambda: lanes.append(scheduler().figures()["running_cluster"]))
     budgeter.begin(scenario)
-    assert budgeter.wait_idle(60.0)
+    assert budgeter.wait_idle(120.0)
     assert budgeter.words == () and 1.0 in lanes
     found, here = budgeter.result, budget(scenario)
     assert found is not None and found.as_dict() == here.as_dict()
@@ -151,7 +151,7 @@ def test_bands_over_seeds_are_those_of_this_machine(
             use_cluster(None)
         bands = Envelopes(simulate, lambda: told.append(True), lambda: None, still_s=0.0)
         bands.follow(scenario, "seeds")
-        assert bands.wait_idle(90.0)
+        assert bands.wait_idle(120.0)
         made.append(bands.beside(scenario, "seeds"))
         bands.stop()
     one, other = made
@@ -200,7 +200,7 @@ def test_a_lost_cluster_is_told_and_the_work_done_here(
     until((tmp_path / "begun").exists)
     machines.worker.kill()
     machines.worker.wait()
-    assert search.wait_idle(60.0)
+    assert search.wait_idle(120.0)
     assert search.result == os.getpid() and search.words == () and (LOST,) in told
     assert not there.ready and heavy_load(scenario).lane is Lane.SPARE
     assert any("heavy jobs are done here" in record.getMessage() for record in caplog.records)
