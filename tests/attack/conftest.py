@@ -79,7 +79,7 @@ def running(**options: Any) -> Iterator[Bench]:
         server.stop()
 
 
-def eventually(condition: Callable[[], Any], seconds: float = 5.0) -> None:
+def eventually(condition: Callable[[], Any], seconds: float = 30.0) -> None:
     """Wait until the condition holds; fail when it never does."""
     until = time.monotonic() + seconds
     while not condition():

@@ -83,7 +83,8 @@ def entries() -> list[Entry]:
 def table(rows: list[Entry], record: dict[str, Any]) -> str:
     """The table, and where and when it was measured."""
     lines = "".join(row.line(number, record) for number, row in enumerate(rows, 1))
-    measured = f"Tests: {record['circumstances']}.\nSoak: {record['soak']['circumstances']}.\n"
+    soak = record["soak"]["circumstances"] or "not run yet"
+    measured = f"Tests: {record['circumstances']}.\nSoak: {soak}.\n"
     return f"{BEGIN}{HEAD}{lines}\n{measured}{END}"
 
 

@@ -93,7 +93,7 @@ class Visitor:
     def set(self, uuid: str, value: Any, **more: Any) -> None:
         self.send(type="GuiUpdateMessage", uuid=uuid, updates={"value": value, **more})
 
-    def wait_for(self, wanted: Callable[[dict[str, Any]], bool], seconds: float = 5.0) -> dict[str, Any]:
+    def wait_for(self, wanted: Callable[[dict[str, Any]], bool], seconds: float = 30.0) -> dict[str, Any]:
         """First message that fits, among those received so far and those to come."""
         seen, until = 0, time.monotonic() + seconds
         while True:
