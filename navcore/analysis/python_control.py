@@ -95,6 +95,7 @@ def disk_margin(network: LinearNetwork) -> DiskMargin | None:
         ]
     )
     omega = np.unique(omega[omega > 0.0])
-    open_loop = control.tf(network.loop_num_p, network.den_p) * control.tf([1.0], [1.0, 0.0, 0.0])
+    forward = transfer_function(network.loop_num_p, network.den_p)
+    open_loop = forward * control.tf([1.0], [1.0, 0.0, 0.0])
     size, gain_db, phase_deg = (float(value) for value in control.disk_margins(open_loop, omega))
     return DiskMargin(size, 10.0 ** (gain_db / 20.0), math.radians(phase_deg))

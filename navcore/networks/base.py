@@ -110,7 +110,7 @@ class LinearNetwork:
         """Numerator over ``den_p`` of H + p G: the loop is p^2 + H + p G, with G = 0 but for two outputs."""
         if self.feedback_p is None:
             return self.num_p
-        return np.polyadd(self.num_p, np.append(self.feedback_p, 0.0))
+        return np.asarray(np.polyadd(self.num_p, np.append(self.feedback_p, 0.0)), dtype=np.float64)
 
     def loop_response(self, omega: np.ndarray | float) -> ComplexArray:
         """Return (H + p G)(j omega), shape of ``omega`` (rad/s): H, but for a network with two outputs."""

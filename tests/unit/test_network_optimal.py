@@ -248,6 +248,7 @@ def test_command_shows_the_second_output(capsys: pytest.CaptureFixture[str]) -> 
     assert main(["network", text, "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
     network = parse_network(text).transfer(SPHERE.schuler_frequency(0.0))
+    assert network.feedback_p is not None
     for omega in (0.0, 1.24e-3):
         found = np.polyval(document["feedback_num"], 1j * omega) / np.polyval(document["den"], 1j * omega)
         p = 1j * omega / network.omega_s
