@@ -63,11 +63,14 @@ class _Pattern:
         Its translation, with the values as ``{0}``.
     weight : int
         Letters of the text itself: of two texts that match, the one that says more is meant.
+    labels : bool
+        A colon stands in the text itself.
     """
 
     pattern: re.Pattern[str]
     said: str
     weight: int
+    labels: bool
 
     def values(self, text: str) -> tuple[str, ...] | None:
         """Values in a text; None when it is another one."""
@@ -76,6 +79,9 @@ class _Pattern:
             return None
         values = found.groups(default="")
         if values and values[-1].endswith(".") and text.endswith(values[-1]):  # the sentence's own
+            return None
+        # "A: tilt from log error" is a label and a text: the label is not part of the text's first value.
+        if self.pattern.pattern.startswith("(?P") and not self.labels and ": " in values[0]:
             return None
         # A text of few letters fits much by chance: then its values must be words, not sentences.
         by_chance = self.weight < _WEAK and _TAGS.search(text) is not None
@@ -272,7 +278,7 @@ def _pattern(key: str, said: str) -> _Pattern:
     for number, part in zip(order, parts[1:], strict=True):
         again = f"(?P=v{number})" if f"(?P<v{number}>" in pattern else f"(?P<v{number}>.*?)"
         pattern += again + re.escape(part)
-    return _Pattern(re.compile(pattern, re.DOTALL), said, sum(map(len, parts)))
+    return _Pattern(re.compile(pattern, re.DOTALL), said, sum(map(len, parts)), ":" in key)
 
 
 def read_texts(language: str) -> dict[str, str]:

@@ -45,6 +45,8 @@ _CODE = re.compile(
     r"^[#.]?[\w-]+\s*\{[^0-9]|[a-z-]+:\s*[^;{}]*;|^--|\bvar\(|^[MmLl]\d|^/|^\w+(\.\w+)+$|\d+px\b|\}px\b"
     r"|^<?tr |^pointer-|HTTP/|^Content-|-apple-system|^<|\\[a-z]+\{|^data-"
 )
+_SENTENCE = re.compile(r"(?:\b[A-Za-z]+[,:;]? ){5}")
+"""Six words one after the other: no style or path has them."""
 _NO_TEXTS = frozenset(
     "Enter|Escape|Slider|Select|Schuler Bench|Infinity|Library|Application Support|page command|page state|"
     "page painted|<span>{0}</span>|Hz|skip|height|alpha|{0} next|{0} open {1}|{0} list|{0}px {1}".split("|")
@@ -112,8 +114,12 @@ def is_prose(key: str) -> bool:
     --------
     >>> [is_prose(text) for text in ("Undo", "largest tilt", "time_s", "color:red;", "Run {0}: {1} ms")]
     [True, True, False, False, True]
+    >>> is_prose("Poles left of it die away: the farther left, the faster; steep ones swing.")
+    True
     """
     bare = re.sub(r"<[^>]*>", "", key).strip()
+    if _SENTENCE.search(bare):
+        return True
     if _CODE.search(bare) or bare in _NO_TEXTS or _CITATION.fullmatch(bare):
         return False
     return _PROSE.search(bare) is not None or _NAME.fullmatch(bare.strip(" .:;,")) is not None

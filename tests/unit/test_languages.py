@@ -11,6 +11,7 @@ from babel.messages.mofile import write_mo
 
 from app.languages import markup
 from app.languages.wording import FOLDER, NAMES, Wording, read_texts, wording, words_of
+from app.views import load
 from tests.translating.__main__ import LANGUAGES, po_path, read, script, script_path
 from tests.translating.extract import texts
 from tests.translating.python import Text, is_prose, texts_in
@@ -193,3 +194,25 @@ def test_pieces_of_html() -> None:
 
 def test_catalogues_lie_in_the_package() -> None:
     assert (FOLDER / "zh_CN" / "LC_MESSAGES" / "schuler.mo").is_file()
+
+
+SYMBOLS = frozenset("TOML CSV RMS dB min".split())
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *(kind.look_for for kind in load() if kind.look_for),
+        "<b>φ/δV<sub>r</sub>: tilt from log error</b>",
+        "standard deviation, steady state at rest; the dashed line is the floor",
+        "2.65<br>1.68 × floor",
+        "tilt most of all (45 %) from gyro white noise, as a constant",
+        "position error mostly (68 %) from gyro white noise, as a slow drift",
+        "output / step",
+        "step (s)",
+    ],
+)
+def test_no_word_of_a_line_of_the_page_stays_english(language: str, text: str) -> None:
+    said = Wording(read_texts(language), language).text(text)
+    plain = re.sub(r"<[^>]*>|\([^()]*\)", "", said)
+    assert set(re.findall(r"[A-Za-z]{3,}", plain)) <= SYMBOLS, said

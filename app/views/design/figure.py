@@ -209,7 +209,8 @@ def _layout(
         if budget.steady
         else "standard deviation, RMS over the run"
     )
-    what += "; dashed: floor" if budget.floor.rms.tilt_rad is not None else ""
+    if budget.floor.rms.tilt_rad is not None:
+        what = f"{what}; the dashed line is the floor"
     columns, rows = 2, (len(shown) + 1) // 2
     legend_px = _LEGEND_ROW_PX * _legend_rows([_words(name) for name in names], width_px - _LEFT_PX)
     bottom_px = _TICKS_PX + legend_px

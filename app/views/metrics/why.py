@@ -91,9 +91,12 @@ def cause_text(cause: Cause, result: Why) -> str:
     period = _period(cause, result)
     if not cause.source:
         return f"{cause.quantity} {period}"
-    how = "all" if cause.share > 0.995 else "mostly" if cause.share >= 0.5 else "most of all"
-    part = "" if cause.share > 0.995 else f" ({100.0 * cause.share:.0f} %)"
-    return f"{cause.quantity} {how}{part} from {cause.source}, {period}"
+    if cause.share > 0.995:
+        return f"{cause.quantity} all from {cause.source}, {period}"
+    percent = f"{100.0 * cause.share:.0f}"
+    if cause.share >= 0.5:
+        return f"{cause.quantity} mostly ({percent} %) from {cause.source}, {period}"
+    return f"{cause.quantity} most of all ({percent} %) from {cause.source}, {period}"
 
 
 def _period(cause: Cause, result: Why) -> str:

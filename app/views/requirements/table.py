@@ -51,7 +51,9 @@ def _row(verdict: Verdict) -> str:
     info = Requirements.model_fields[verdict.name]
     extra = extra_of(info)
     unit = f' <span style="color:{style.MUTED}">({escape(extra["unit"])})</span>' if extra["unit"] else ""
-    limit = "none" if verdict.limit is None else f"{sign_of(verdict.name)} {number(verdict.limit, _DIGITS)}"
+    limit = (
+        "no limit" if verdict.limit is None else f"{sign_of(verdict.name)} {number(verdict.limit, _DIGITS)}"
+    )
     cells = "".join(
         f'<td data-measure="{verdict.name}" data-value="{_number(value)}" data-passed="{_word(verdict, ok)}" '
         f'style="{_CELL}">{_measured(value)}{_mark(verdict, ok)}</td>'
