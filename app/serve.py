@@ -37,6 +37,7 @@ _SCRIPTS = (
     "commands",
     "front",
     "boxes",
+    "paste",
     "access",
     "cursor",
     "pick",

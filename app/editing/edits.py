@@ -106,7 +106,7 @@ def with_method(scenario: Scenario, like: int | None) -> tuple[Scenario, int]:
         where = like + 1
     # The copy of "classic2 2" is "classic2 3".
     plain = re.sub(r" \d+$", "", made["name"])
-    made["name"] = _free_name(plain, [m["name"] for m in data["method"]])
+    made["name"] = free_name(plain, [m["name"] for m in data["method"]])
     data["method"].insert(where, made)
     return Scenario.parse(data), where
 
@@ -210,10 +210,11 @@ def _forget_made_name(scenario: Scenario, data: Any, index: int) -> None:
     block = data["method"][index]
     names: dict[str, str] = {"free": "free", "averaging": f"averaging ({block['averaging']['variant']})"}
     names["kalman"] = "kalman"
-    block["name"] = _free_name(names.get(block["damping"], str(block["network"]["id"])), others)
+    block["name"] = free_name(names.get(block["damping"], str(block["network"]["id"])), others)
 
 
-def _free_name(name: str, taken: list[str]) -> str:
+def free_name(name: str, taken: list[str]) -> str:
+    """Name that no other method has: this one, or this one with a number."""
     names = (name, *(f"{name} {number}" for number in range(2, MAX_METHODS + 2)))
     return next(free for free in names if free not in taken)
 

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 PAGE_COMMAND = "page command"
 """Label of the control through which the page asks (static/commands.js)."""
 LONGEST_ARGUMENT = 2000
+"""Characters of an argument, where a command does not allow more."""
+LONGEST_TEXT = 9000
+"""Characters of any argument: with its line ends written as two it fits into the hidden control."""
 MOST_AT_ONCE = 50
 _MOST_LOGGED = 20
 _NAME = re.compile(r"[a-z][a-z0-9-]{0,79}")
@@ -52,6 +55,8 @@ class Command:
         Such as "Ctrl+Z", "Space", "B", "?"; none of them acts while the user types in a text box.
     watcher : bool
         Also for a page that only watches a presenter: it changes nothing that others see.
+    longest : int
+        Characters that the argument may have: `LONGEST_TEXT` at most.
     """
 
     name: str
@@ -59,6 +64,7 @@ class Command:
     title: str = ""
     keys: tuple[str, ...] = ()
     watcher: bool = False
+    longest: int = LONGEST_ARGUMENT
 
 
 class Commands:
@@ -97,13 +103,20 @@ class Commands:
         return id_of(self._box)
 
     def register(
-        self, name: str, act: Act, title: str = "", keys: Sequence[str] | str = (), *, watcher: bool = False
+        self,
+        name: str,
+        act: Act,
+        title: str = "",
+        keys: Sequence[str] | str = (),
+        *,
+        watcher: bool = False,
+        longest: int = LONGEST_ARGUMENT,
     ) -> None:
         """Add a command, or replace the one of that name.
 
         Parameters
         ----------
-        name, act, title, keys, watcher
+        name, act, title, keys, watcher, longest
             See `Command`; one key may be given as it is.
 
         Raises
@@ -118,7 +131,7 @@ class Commands:
             for other in self._by_name.values():
                 if other.name != name and {as_pressed(k) for k in keys} & {as_pressed(k) for k in other.keys}:
                     raise ValueError(f"{other.name} and {name} have the same key")
-            self._by_name[name] = Command(name, act, title, keys, watcher)
+            self._by_name[name] = Command(name, act, title, keys, watcher, longest)
             if self._shown:
                 self._show_entry(name)
                 self._show_keys()
@@ -158,7 +171,8 @@ class Commands:
         what : str
             "tab": bring the tab of that name to the front; "link": show a link to another session; "keys":
             list the keys; "upload": let the user choose a file; "front": bring the tabs of these names,
-            parted by "|", to the front without giving them the focus. A view's script may add more
+            parted by "|", to the front without giving them the focus; "copy": put the text on the
+            clipboard; "paste": ask for a text (static/paste.js). A view's script may add more
             (``schuler.act``).
         text : str
             What it is about.
@@ -217,7 +231,7 @@ class Commands:
             if self._logged <= _MOST_LOGGED:
                 _log.warning("a page asked for the unknown command %.60r", name)
             return
-        if self._closed or (self.watching and not command.watcher):
+        if self._closed or (self.watching and not command.watcher) or len(argument) > command.longest:
             return
         try:
             command.act(argument)
@@ -253,6 +267,6 @@ def read_commands(text: str) -> list[tuple[int, str, str]]:
     fitting = [
         (number, name, argument)
         for number, name, argument in found[:MOST_AT_ONCE]
-        if 0 < number < 10**9 and len(argument) <= LONGEST_ARGUMENT
+        if 0 < number < 10**9 and len(argument) <= LONGEST_TEXT
     ]
     return sorted(fitting)

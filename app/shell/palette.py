@@ -10,6 +10,7 @@ from typing import Any
 from app.session.history import changed_fields
 from app.shell import notices
 from app.shell.opening import Opening
+from app.shell.pasting import Pasting
 from app.shell.presenter import PresenterLock
 from app.shell.reset import Resets
 from app.shell.toolbar import PRESENT, REDO, RESET_ALL, SHARE, UNDO, Toolbar
@@ -40,6 +41,7 @@ class Palette:
         self._shown: tuple[object, ...] = ()
         self._values: list[Any] = []
         self._resets = Resets(self._commands, frame.editor.put)
+        Pasting(self._client, self._commands, self._session)
         self._typing = Typing(
             self._commands,
             frame.controls,

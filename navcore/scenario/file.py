@@ -183,7 +183,12 @@ def _set(data: Any, path: list[str], value: Any) -> str:
 
 def to_toml(scenario: Scenario) -> str:
     """Complete, resolved scenario as TOML text."""
-    return "\n".join(_part_as_toml(json.dumps(part)) for part in _parts(scenario.canonical()))
+    return blocks_to_toml(scenario.canonical())
+
+
+def blocks_to_toml(data: dict[str, Any]) -> str:
+    """Blocks of a scenario, as `Scenario.canonical` gives them, as TOML text."""
+    return "\n".join(_part_as_toml(json.dumps(part)) for part in _parts(data))
 
 
 def _parts(data: dict[str, Any]) -> Iterator[dict[str, Any]]:

@@ -400,3 +400,52 @@ def test_a_slider_grows_for_a_value_outside_its_range_and_goes_back(fresh: Bench
         fresh.put(edits.with_value(session.scenario, ("method", 2, "network", "sigma"), value), selected=2)
         stands(low, 0.2, value)
     assert fresh.faults == []
+
+
+_PASTED = """text => {
+  const clipboardData = new DataTransfer();
+  clipboardData.setData('text/plain', text);
+  document.activeElement?.blur();
+  document.body.dispatchEvent(new ClipboardEvent('paste', {clipboardData, bubbles: true, cancelable: true}));
+}"""
+
+
+def test_a_method_and_the_logs_events_are_copied_and_pasted_as_toml(fresh: Bench, session: Session) -> None:
+    page, names = fresh.page, [method.name for method in session.scenario.method]
+    dialog, area = page.locator("dialog.sb-dialog"), page.locator("dialog.sb-dialog textarea")
+
+    def copied(copy: str) -> str:
+        """What a button of the tab in front copies."""
+        page.get_by_role("button", name=copy, exact=True).click()
+        area.wait_for()
+        text = area.input_value()
+        dialog.get_by_role("button", name="Close").click()
+        dialog.wait_for(state="detached")
+        return text
+
+    text = copied("copy as TOML")
+    assert text.startswith("[[method]]") and 'id = "compass"' in text
+    number = fresh.run
+    page.evaluate(_PASTED, text)  # anywhere on the page
+    fresh.wait_for_run(number)
+    fresh.settle()
+    added = session.scenario.method[3]
+    assert [method.name for method in session.scenario.method] == [*names, added.name]
+    assert added.network == session.scenario.method[2].network and session.selected == 3
+    page.get_by_role("button", name="paste TOML", exact=True).click()
+    area.fill(text.replace("xi = 0.7", "xi = 70.0"))
+    dialog.get_by_role("button", name="Paste").click()
+    notice = fresh.notice("That did not work")
+    assert "method.4.network.xi" in notice and "70" in notice and "must be" in notice
+    session.undo()  # one step
+    fresh.catch_up()
+    assert [method.name for method in session.scenario.method] == names
+
+    fresh.tab("Log")
+    text = "[[reference.event]]\nt_h = 1.0\n\n[[reference.event]]\nt_h = 2.5\n"
+    page.evaluate(_PASTED, text)
+    fresh.wait_until(lambda: [event.t_h for event in session.scenario.reference.event] == [1.0, 2.5])
+    fresh.settle()
+    assert fresh.value("event 2 begins (h), exact") == 2.5
+    assert "t_h = 2.5" in copied("copy as TOML")
+    assert fresh.faults == []

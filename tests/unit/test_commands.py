@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from app.shell.commands import LONGEST_ARGUMENT, MOST_AT_ONCE, Commands, read_commands
+from app.shell.commands import LONGEST_ARGUMENT, LONGEST_TEXT, MOST_AT_ONCE, Commands, read_commands
 
 
 class Gui:
@@ -66,6 +66,16 @@ def test_commands_are_carried_out_once_and_in_order(commands: Commands, gui: Gui
     assert 'data-count="3"' in commands._heard.content
 
 
+def test_only_a_command_that_takes_a_long_text_is_given_one(commands: Commands, gui: Gui) -> None:
+    done: list[str] = []
+    commands.register("short", lambda text: done.append(f"short {len(text)}"))
+    commands.register("long", lambda text: done.append(f"long {len(text)}"), longest=LONGEST_TEXT)
+    long = "x" * (LONGEST_ARGUMENT + 1)
+    gui.ask([1, "short", long], [2, "long", long], [3, "short", long[1:]])
+    assert done == [f"long {len(long)}", f"short {LONGEST_ARGUMENT}"]
+    assert 'data-count="3"' in commands._heard.content
+
+
 def test_an_unknown_command_is_ignored_with_a_log_line(
     commands: Commands, gui: Gui, caplog: pytest.LogCaptureFixture, failed: list[Exception]
 ) -> None:
@@ -105,7 +115,7 @@ def test_a_fault_is_told_and_the_next_command_is_carried_out(
         '[[1000000000,"undo",""]]',
         '[[1,"undo",null]]',
         "[" * 10_000,
-        json.dumps([[1, "undo", "x" * (LONGEST_ARGUMENT + 1)]]),
+        json.dumps([[1, "undo", "x" * (LONGEST_TEXT + 1)]]),
     ],
 )
 def test_anything_else_is_nothing(text: str) -> None:

@@ -9,6 +9,7 @@ from app.editing.form import FieldSpec
 from app.session.log_fit import can_fit, fit_of, told, with_fitted_log
 from app.shell import notices
 from app.shell.control import Control
+from app.shell.pasting import COPY_LOG, PASTE
 from app.shell.section import Section, controls_of
 from app.shell.view import Tab, View, if_user
 from navcore.scenario.model import Scenario
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 ADD_EVENT, REMOVE_EVENT = "add event", "remove event"
 ADD_OUTAGE, REMOVE_OUTAGE = "add outage", "remove outage"
+COPY_TEXT, PASTE_TEXT = "copy as TOML", "paste TOML"
 FIT, USE_FIT = "Fit this log's error", "Simulate a log with this error"
 _FIT_TOLD = "Compares the recorded log with the recorded track: delay, bias, noise and drift of its error."
 _USE_TOLD = (
@@ -55,6 +57,13 @@ class LogView(View):
                 hint="A time in which the log gives nothing: undamped meanwhile.",
                 order=200,
             )
+            self._clipboard = gui.add_button_group(
+                "events as text",
+                (COPY_TEXT, PASTE_TEXT),
+                hint="Copy all events and outages as TOML, or paste such a list in their place. Ctrl+V "
+                "pastes too.",
+                order=59,
+            )
             self._fit = gui.add_button(FIT, hint=_FIT_TOLD, order=20, visible=False)
             self._fitted = gui.add_html("", order=21)
             self._use = gui.add_button(USE_FIT, color="gray", hint=_USE_TOLD, order=22, visible=False)
@@ -66,6 +75,10 @@ class LogView(View):
             group.on_click(
                 lambda event: self._arrange(event.target.value) if event.client is not None else None
             )
+        ask = self.frame.commands.run
+        self._clipboard.on_click(
+            if_user(lambda: ask(COPY_LOG if self._clipboard.value == COPY_TEXT else PASTE))
+        )
         places = {"kind": 0.0, "first": 1.0, "more": 30.0, "event": 61.0, "outage": 201.0}
         self.sections = {name: Section(gui, tab, edit, order) for name, order in places.items()}
 
@@ -118,7 +131,7 @@ class LogView(View):
         self._all.visible = bool(more)
         if not self._all.value:
             more = [spec for spec in more if edits.value_at(scenario, spec.path) != spec.default]
-        self._buttons.visible = self._outages.visible = kind != "none"
+        self._buttons.visible = self._outages.visible = self._clipboard.visible = kind != "none"
         listed = {
             "kind": [form.choice(Reference, "kind", ("reference",))],
             "first": first,

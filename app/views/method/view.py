@@ -15,6 +15,7 @@ from app.plots.warnings import severity, warnings_for
 from app.session.shown import Shown
 from app.shell import notices
 from app.shell.control import Control
+from app.shell.pasting import COPY_METHOD, PASTE
 from app.shell.section import Section, controls_of
 from app.shell.view import Frame, Tab, View, if_user
 from app.views.method.tuning import TuningPanel
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     import viser
 
 ADD, COPY, REMOVE = "add", "copy", "remove"
+COPY_TEXT, PASTE_TEXT = "copy as TOML", "paste TOML"
 NO_DESIGN = "no (sigma, xi) gives these K"
 _CATALOGUES: Mapping[str, tuple[Mapping[str, type], str]] = {
     "network": (NETWORKS, "network"),
@@ -68,6 +70,13 @@ class MethodView(View):
                 "same truth, sensors and log.",
                 order=1,
             )
+            clipboard = gui.add_button_group(
+                "as text",
+                (COPY_TEXT, PASTE_TEXT),
+                hint="Copy the method as TOML, or paste one that was copied, from this session or another. "
+                "Ctrl+V pastes too.",
+                order=1.5,
+            )
             self._unused = gui.add_html("", order=19, visible=False)
             self._warnings = gui.add_html("", order=28, visible=False)
             self._loop = gui.add_html("", order=29, visible=False)
@@ -75,6 +84,8 @@ class MethodView(View):
         buttons.on_click(
             lambda event: self._arrange(event.target.value) if event.client is not None else None
         )
+        ask = self.frame.commands.run
+        clipboard.on_click(if_user(lambda: ask(COPY_METHOD if clipboard.value == COPY_TEXT else PASTE)))
         places = {
             "method": 2.0,
             "averaging": 10.0,
