@@ -251,7 +251,8 @@ def check_address(address: str | None) -> None:
 
 
 def _threads(client: Client) -> int:
-    found: dict[str, int] = client.sync(client.scheduler.ncores, callback_timeout=_ANSWER_S)
+    ask: Any = client.scheduler  # None while it is not connected
+    found: Any = client.sync(ask.ncores, callback_timeout=_ANSWER_S)
     return sum(found.values())
 
 

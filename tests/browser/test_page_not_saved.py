@@ -65,5 +65,5 @@ def test_a_failed_autosave_is_told_on_the_page(kept: tuple[Bench, Store]) -> Non
     assert store.flush(60.0)
     document = store.read(bench.session_id)
     assert document is not None and document["steps"][document["at"]]["name"].startswith("zeta")
-    assert bench.session.scenario.method[bench.session.selected].network.zeta == 0.8
+    assert bench.session.scenario.method[bench.session.selected].network.model_dump()["zeta"] == 0.8
     assert bench.faults == []

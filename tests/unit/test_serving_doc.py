@@ -32,7 +32,7 @@ def keys_of_the_soak(path: Path) -> re.Pattern[str]:
     calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and node.args]
     keys = [call.args[0] for call in calls if isinstance(call.func, ast.Name) and call.func.id == "Row"]
     patterns = [
-        "".join(part.value if isinstance(part, ast.Constant) else r"[a-z0-9_]+" for part in key.values)
+        "".join(str(part.value) if isinstance(part, ast.Constant) else r"[a-z0-9_]+" for part in key.values)
         if isinstance(key, ast.JoinedStr)
         else str(ast.literal_eval(key))
         for key in keys
