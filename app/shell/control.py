@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from app.bridge.controls import set_slider_range
+from app.bridge.controls import id_of, set_slider_range
 from app.editing import form
 from app.editing.form import FieldSpec, Slider
 from app.shell import notices
@@ -209,6 +209,11 @@ class Control:
         for widget in (self._slider, self._box):
             if widget is not None:
                 widget.handle.remove()
+
+    @property
+    def ids(self) -> list[str]:
+        """Ids of its widgets in viser."""
+        return [id_of(widget.handle) for widget in (self._slider, self._box) if widget is not None]
 
 
 def _marks(slider: Slider) -> tuple[tuple[float, str], tuple[float, str]]:

@@ -33,7 +33,7 @@ class ExplainView(View):
             self._html.content = f'<div id="sb-explained" hidden data-count="{self._count}">{content}</div>'
 
     def _content(self, id: str) -> str:
-        control = next((c for c in self.frame.controls() if id in c.ids()), None)
+        control = next((c for c in self.frame.controls() if id in c.ids), None)
         if control is not None:
             return explain_html(control.spec, self.session.scenario)
         handle = control_with(self.frame.gui, id)
