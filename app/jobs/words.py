@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from navcore.foundation.errors import InputError
 
-_FOLDERS = re.compile(r"(?<![\w./])/(?:[^/\s'\":]++/)++")
+_FOLDERS = re.compile(r"(?<![\w./])/(?>(?:[^/\s'\":]++/)+)")
 
 
 def without_folders(text: str) -> str:

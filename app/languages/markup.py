@@ -18,7 +18,7 @@ OPEN, CLOSE = "\ue000", "\ue001"
 
 def _element(name: str, attributes: str = r"\b[^<>]*>") -> str:
     """Pattern of an element and all that it holds. It stops at its like: no text takes long to search."""
-    return rf"<{name}{attributes}(?:[^<]|<(?!{name}\b|/{name}>))*+</{name}>"
+    return rf"<{name}{attributes}(?>(?:[^<]|<(?!{name}\b|/{name}>))*)</{name}>"
 
 
 _MATH = _element("math")
@@ -35,7 +35,7 @@ _HIDDEN = "|".join(
         _element("div", r" id=.sb-[a-z]+. hidden\b[^<>]*>"),
     )
 )
-_TOKEN = re.compile(rf"({_HIDDEN}|</?[a-zA-Z][^<>]*>|<!--(?:[^-<]|-(?!->)|<(?!!--))*+-->)")
+_TOKEN = re.compile(rf"({_HIDDEN}|</?[a-zA-Z][^<>]*>|<!--(?>(?:[^-<]|-(?!->)|<(?!!--))*)-->)")
 _INLINE = re.compile(r"<(/?)(b|i|em|strong|code|sub|sup|a|span|kbd|small|var)\b([^>]*)>")
 _ATTRIBUTE = re.compile(r'\b(title|aria-label|aria-valuetext|alt|placeholder|data-told)="([^"]*)"')
 _TAG = re.compile(r"</?[a-z]+>")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from app.bridge.controls import id_of, set_slider_range
-from app.editing import form
+from app.editing import form, texts
 from app.editing.form import FieldSpec, Slider
 from app.shell import notices
 from app.shell.widget import Widget
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 DECIMALS = 12
 """Decimals that a number box takes and shows."""
-_READ = {"roots": form.read_roots, "numbers": form.read_numbers, "pairs": form.read_pairs}
-_WRITE = {"roots": form.write_roots, "numbers": form.write_numbers, "pairs": form.write_pairs}
+_READ = {"roots": texts.read_roots, "numbers": texts.read_numbers, "pairs": texts.read_pairs}
+_WRITE = {"roots": texts.write_roots, "numbers": texts.write_numbers, "pairs": texts.write_pairs}
 _AS_THEY_ARE = ("integer", "choice", "flag")
 EXACT = ", exact"
 """Ends the label of a number box that stands beside a slider."""

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from navcore.analysis.settling import last_exceedance
-from navcore.networks.base import ComplexArray, LinearNetwork, sorted_roots
+from navcore.networks.base import ComplexArray, LinearNetwork
+from navcore.networks.roots import sorted_roots
 from navcore.networks.state_space import state_space
 
 _ON_AXIS = 1e-9

@@ -17,7 +17,8 @@ import numpy as np
 from navcore.analysis.loop import closed_loop_poles
 from navcore.foundation.earth import EARTH_RATE, SPHERE, Earth
 from navcore.foundation.units import DEG
-from navcore.networks.base import ComplexArray, LinearNetwork, linear_network, sorted_roots
+from navcore.networks.base import ComplexArray, LinearNetwork, linear_network
+from navcore.networks.roots import sorted_roots
 from navcore.networks.state_space import state_space, state_spaces
 
 DV_E, DV_N, LATITUDE, PHI_E, PHI_N, PHI_U = range(6)

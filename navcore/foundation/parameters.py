@@ -7,6 +7,7 @@ descriptions and the error messages their allowed ranges from the same declarati
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Annotated, Any, get_args, get_origin
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
@@ -197,3 +198,8 @@ def extra_of(info: FieldInfo) -> dict[str, Any]:
     """Unit, label, slider and log flag of a field made with `quantity`; empty for other fields."""
     extra = info.json_schema_extra
     return dict(extra) if isinstance(extra, dict) else {}
+
+
+def given(data: Any, names: Sequence[str]) -> list[str]:
+    """Names of the fields that raw input sets to something."""
+    return [name for name in names if isinstance(data, dict) and data.get(name) is not None]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.registry import Entry
+from navcore.networks.roots import sorted_roots
 
 if TYPE_CHECKING:
     from control import TransferFunction
@@ -318,11 +319,6 @@ class NetworkParameters(Entry):
         return 0.0
 
 
-def given(data: Any, names: Sequence[str]) -> list[str]:
-    """Names of the fields that raw input sets to something."""
-    return [name for name in names if isinstance(data, dict) and data.get(name) is not None]
-
-
 def refuse(name: str, value: object, allowed: str) -> InputError:
     """Make the error of one field, named relative to the network block."""
     return InputError(Fault("", name, value, allowed))
@@ -399,29 +395,3 @@ def _fixed(array: NDArray[_T]) -> NDArray[_T]:
     array = np.ascontiguousarray(array)
     array.setflags(write=False)
     return array
-
-
-def sorted_roots(roots: np.ndarray) -> ComplexArray:
-    """Return the roots as complex numbers, slowest first."""
-    values = np.asarray(roots, dtype=np.complex128)
-    return values[np.lexsort((values.imag, np.abs(values)))]
-
-
-def quadratic_roots(b: float, c: float) -> list[complex]:
-    """Roots of p^2 + b p + c without cancellation; complex ones as an exact conjugate pair."""
-    discriminant = 0.25 * b * b - c
-    if discriminant < 0.0:
-        imag = math.sqrt(-discriminant)
-        return [complex(-0.5 * b, -imag), complex(-0.5 * b, imag)]
-    large = -0.5 * b - math.copysign(math.sqrt(discriminant), b)
-    return [complex(large), complex(c / large if large != 0.0 else 0.0)]
-
-
-def pair(damping: float, frequency: float) -> list[complex]:
-    """Roots of p^2 + 2 damping frequency p + frequency^2, exact for damping = 1 too."""
-    real = -damping * frequency
-    if damping < 1.0:
-        imag = frequency * math.sqrt((1.0 - damping) * (1.0 + damping))
-        return [complex(real, -imag), complex(real, imag)]
-    large = real - frequency * math.sqrt((damping - 1.0) * (damping + 1.0))
-    return [complex(large), complex(frequency * frequency / large)]

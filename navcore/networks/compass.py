@@ -7,16 +7,10 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
-from navcore.foundation.parameters import choice, quantity
-from navcore.networks.base import (
-    LinearNetwork,
-    NetworkParameters,
-    given,
-    linear_network,
-    pair,
-    refuse,
-)
+from navcore.foundation.parameters import choice, given, quantity
+from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network, refuse
 from navcore.networks.pair import Placement, placement
+from navcore.networks.roots import pair
 
 GAINS_TOLERANCE = 1e-3
 """Mismatch, relative to the largest term, up to which gains count as those of some (sigma, xi).

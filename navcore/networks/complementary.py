@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import ClassVar, Literal
 
 from navcore.foundation.parameters import quantity
-from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network, pair
+from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network
 from navcore.networks.pair import Placement, placement_at_omega_s
+from navcore.networks.roots import pair
 from navcore.networks.tuning_codes import COMPLEMENTARY
 
 

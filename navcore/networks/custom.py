@@ -8,12 +8,11 @@ import numpy as np
 from pydantic import BeforeValidator, model_validator
 
 from navcore.foundation.errors import InputError
-from navcore.foundation.parameters import bounded, quantity
+from navcore.foundation.parameters import bounded, given, quantity
 from navcore.networks.base import (
     MAX_ORDER,
     LinearNetwork,
     NetworkParameters,
-    given,
     linear_network,
     refuse,
 )

@@ -8,8 +8,9 @@ from typing import ClassVar, Literal
 from pydantic import model_validator
 
 from navcore.foundation.parameters import choice, quantity
-from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network, pair, refuse
+from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network, refuse
 from navcore.networks.pair import Placement, placement_at_omega_s
+from navcore.networks.roots import pair
 from navcore.networks.tuning_codes import POLE2
 
 

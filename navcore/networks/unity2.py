@@ -7,17 +7,15 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
-from navcore.foundation.parameters import quantity
+from navcore.foundation.parameters import given, quantity
 from navcore.networks.base import (
     LinearNetwork,
     NetworkParameters,
-    given,
     linear_network,
-    pair,
-    quadratic_roots,
     refuse,
 )
 from navcore.networks.pair import Placement, placement, same_frequency
+from navcore.networks.roots import pair, quadratic_roots
 from navcore.networks.tuning_codes import UNITY2
 
 FORBIDDEN = (0.99, 1.01)

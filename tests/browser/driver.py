@@ -20,6 +20,7 @@ from app.session.sessions import first_scenario
 from app.shell.layout import layout_for
 from app.shell.page import Page as OpenPage
 from navcore.scenario.file import load
+from tests.browser import scripts
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
@@ -46,75 +47,6 @@ viser's page removes at once what is removed, but changes what is changed at the
 was changed and then removed within one frame, when the page is behind, is reported so. And plotly goes on
 laying out a plot in several steps, whether or not it is still there.
 """
-
-_UP_TO_DATE = """() => {
-  const plots = [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null);
-  const run = document.querySelector('#sb-run').dataset.run;
-  return plots.length > 0 && plots.every(p => String(p._fullLayout?.meta?.run) === run);
-}"""
-_PLOTLY = """() => {
-  const plain = values => Array.from(values ?? [], v => (Number.isFinite(v) ? v : null));
-  const plots = [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null);
-  return plots.flatMap(p => p._fullData.map(t => ({name: t.name, x: plain(t.x), y: plain(t.y)})));
-}"""
-_UPLOT = """() => {
-  const charts = Object.values(window.__viserTestpoints?.uplots ?? {}).map(entry => entry.chart);
-  return charts.map(c => ({label: c.axes[1].label, data: c.data.map(d => Array.from(d))}));
-}"""
-# Sums that any change of a value or of its place changes: whole arrays would take a second to hand over.
-_SUMS = """count => {
-  const sum = values => {
-    let total = 0;
-    (values ?? []).forEach((v, i) => { if (Number.isFinite(v)) total += v * (1 + (i % 97)); });
-    return `${values?.length ?? 0}:${total}`;
-  };
-  const plots = [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null);
-  const charts = Object.values(window.__viserTestpoints?.uplots ?? {}).map(entry => entry.chart);
-  const nodes = window.__viserSceneTree.getState();
-  const lines = [...Array(count).keys()].map(i => nodes[`/track/method${i}`]?.message.props.points);
-  return {
-    plotly: plots.flatMap(p => p._fullData.map(t => [t.name, sum(t.x), sum(t.y)])),
-    curves: charts.map(c => c.data.map(sum)),
-    track: lines.map(points => sum(points)),
-  };
-}"""
-# The server has heard of the window's size and of the tabs in front (app/shell/static/page.js).
-_HEARD = """() => {
-  const front = [...document.querySelectorAll('[role=tab][aria-selected=true]')].map(tab => tab.textContent);
-  const state = [`${innerWidth}x${innerHeight}`, ...front].join('|');
-  return document.querySelector('#sb-heard')?.dataset.state === state;
-}"""
-# The tab in which a new scenario opens is in front.
-_OPENED = """() => {
-  const wanted = document.querySelector('#sb-focus')?.dataset ?? {};
-  return !wanted.scenario || schuler.tab(wanted.tab) === undefined
-    || document.documentElement.dataset.opened === wanted.scenario;
-}"""
-# What a report of a failed test says of the page.
-_ACCOUNT = """() => {
-  const texts = selector => [...document.querySelectorAll(selector)]
-    .filter(e => e.offsetParent !== null).map(e => e.innerText.trim());
-  return {
-    window: `${innerWidth}x${innerHeight}`,
-    'tabs in front': texts('[role=tab][aria-selected=true]'),
-    'server has heard': document.querySelector('#sb-heard')?.dataset.state,
-    'run shown': document.querySelector('#sb-run')?.dataset.run,
-    status: document.querySelector('#sb-status')?.textContent,
-    notices: texts('.mantine-Notification-root'),
-    notes: texts('.sb-note'),
-    focus: document.activeElement?.outerHTML.slice(0, 200),
-  };
-}"""
-# viser's page gives uPlot its numbers after the frame in which the rest of a message is shown.
-_NEXT_FRAME = "() => new Promise(go => requestAnimationFrame(() => setTimeout(go)))"
-_NO_NOTICES = """() => {
-  document.querySelectorAll('.mantine-Notification-closeButton').forEach(button => button.click());
-  return document.querySelector('.mantine-Notification-root') === null;
-}"""
-_LINE = """name => {
-  const node = window.__viserSceneTree.getState()[name];
-  return node ? Array.from(node.message.props.points) : null;
-}"""
 
 
 def _has_callbacks(view: OpenPage) -> bool:
@@ -234,7 +166,7 @@ class Bench:
 
     def close_notices(self) -> None:
         # Not by the mouse: notices move while others close, which lets others come that waited for room.
-        self.page.wait_for_function(_NO_NOTICES, polling=THROTTLE_MS)
+        self.page.wait_for_function(scripts.NO_NOTICES, polling=THROTTLE_MS)
 
     # ------------------------------------------------------------ waiting and reading
 
@@ -255,7 +187,7 @@ class Bench:
                 f"no run after {after}: shown {shown}, made {made}, {self.status!r}; focus {focus}; "
                 f"{self.faults}"
             ) from None
-        self.page.evaluate(_NEXT_FRAME)
+        self.page.evaluate(scripts.NEXT_FRAME)
 
     def wait_for_change(self, look: Callable[[], T], *before: T) -> T:
         """Wait until something stands still and differs from all that it was; return it."""
@@ -287,7 +219,7 @@ class Bench:
             session.change(scenario, None, origin=origin, selected=selected)
             session.select(selected, None)
         self.catch_up()
-        self.page.wait_for_function(_OPENED)
+        self.page.wait_for_function(scripts.OPENED)
         self.heard()
         self.close_notices()
 
@@ -350,7 +282,7 @@ class Bench:
 
     def heard(self) -> None:
         """Wait until the server knows window and front tabs, and the page holds what it sent for them."""
-        self.page.wait_for_function(_HEARD)
+        self.page.wait_for_function(scripts.HEARD)
         if self.sessions is None:  # a server in another process
             return
         views = [view for view in self._pages if view._front]
@@ -382,12 +314,12 @@ class Bench:
                 self._marks[view].content = f'<div hidden data-mark="{number}"></div>'
                 view.client.flush()
         self.page.wait_for_selector(f'[data-mark="{number}"]', state="attached")
-        self.page.evaluate(_NEXT_FRAME)
+        self.page.evaluate(scripts.NEXT_FRAME)
 
     def account(self) -> str:
         """What page and server hold, in lines: for the report of a failed test."""
         try:
-            told = {"address": self.page.url, **self.page.evaluate(_ACCOUNT)}
+            told = {"address": self.page.url, **self.page.evaluate(scripts.ACCOUNT)}
         except PlaywrightError as error:
             told = {"page": str(error).strip()}
         told["faults in the console"] = self.faults
@@ -429,18 +361,18 @@ class Bench:
 
     def plotly(self) -> list[dict[str, Any]]:
         """Traces of the plotly figures in view, as plotly holds them, once they are those of the run."""
-        self.page.wait_for_function(_UP_TO_DATE)
-        return self.page.evaluate(_PLOTLY)
+        self.page.wait_for_function(scripts.UP_TO_DATE)
+        return self.page.evaluate(scripts.PLOTLY)
 
     def sums(self, methods: int = 3) -> dict[str, Any]:
         """Sums over what plotly, uPlot and the 3D scene hold, once the plots in view are those of the run."""
-        self.page.wait_for_function(_UP_TO_DATE)
-        return self.page.evaluate(_SUMS, methods)
+        self.page.wait_for_function(scripts.UP_TO_DATE)
+        return self.page.evaluate(scripts.SUMS, methods)
 
     def curves(self) -> list[dict[str, Any]]:
         """Error curves, as uPlot holds them."""
-        return self.page.evaluate(_UPLOT)
+        return self.page.evaluate(scripts.UPLOT)
 
     def line(self, name: str) -> list[float] | None:
         """Points of a line in the 3D scene, as the page's scene tree holds them."""
-        return self.page.evaluate(_LINE, name)
+        return self.page.evaluate(scripts.LINE, name)

@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 
-from tests.browser.driver import _LINE, Bench
+from tests.browser.driver import Bench
+from tests.browser.scripts import LINE
 
 pytestmark = pytest.mark.browser
 
@@ -162,12 +163,12 @@ def test_transfer_is_chosen(damped: Bench) -> None:
 def test_ship_and_exaggeration_move_in_3d(damped: Bench) -> None:
     at_end, number = damped.line("/error/method0"), damped.run
     damped.page.get_by_role("slider", name="time in the run").press("Home")
-    vector = f"({_LINE})('/error/method0')"
+    vector = f"({LINE})('/error/method0')"
     damped.page.wait_for_function(f"end => String({vector}) !== String(end)", arg=at_end)
     before = damped.line("/track/method0")
     damped.choose("enlarge errors in 3D", "50")
     damped.page.locator("#sb-stage .sb-key [data-is=caption]", has_text="x 50").wait_for()
-    damped.page.wait_for_function(f"old => String(({_LINE})('/track/method0')) !== String(old)", arg=before)
+    damped.page.wait_for_function(f"old => String(({LINE})('/track/method0')) !== String(old)", arg=before)
     damped.choose("enlarge errors in 3D", "fit")
     assert damped.run == number
 

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from navcore.networks import NETWORKS, parse_network
-from navcore.networks.base import linear_network, pair, quadratic_roots
+from navcore.networks.base import linear_network
+from navcore.networks.roots import pair, quadratic_roots
 from navcore.networks.state_space import state_space
 
 OMEGA_S = float(np.sqrt(9.80665 / 6378137.0))

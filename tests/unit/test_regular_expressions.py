@@ -169,3 +169,11 @@ def test_every_expression_takes_linear_time(repo_root: Path) -> None:
 @pytest.mark.parametrize("pattern", [r"\$..RMC,(\d{6}(?:\.\d+)?),A,[^*\n]*?,(\d\d)(\d\d)(\d\d),", r"\s+$"])
 def test_one_that_backtracks_is_found(pattern: str) -> None:
     assert _worst(pattern, 0, ("search",))[0] > STEEPEST
+
+
+def test_no_group_is_possessive(repo_root: Path) -> None:
+    """Python before 3.11.5 matches a possessive group that can backtrack wrongly, an atomic one rightly."""
+    of_group = re.compile(r"\)[*+?]\+")
+    files = [*(repo_root / "navcore").rglob("*.py"), *(repo_root / "app").rglob("*.py")]
+    assert files
+    assert [str(path) for path in files if of_group.search(path.read_text(encoding="utf-8"))] == []
