@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import fcntl
+import termios
 import time
+from array import array
 from dataclasses import dataclass
 from typing import Any
 
@@ -52,7 +55,7 @@ class Connection(ServerConnection):
         self.address = ""
         self.session_id = ""
         self.active_s = time.monotonic()
-        self.asked = False
+        self._asked = False
         self.gate: Gate | None = None
         self._limits, self._door, self._places = limits, door, places
         self._dismissed = False
@@ -72,14 +75,27 @@ class Connection(ServerConnection):
         self._places.leave(self)
         super().connection_lost(exc)
 
+    @property
+    def asked(self) -> bool:
+        """Whether a request has arrived, also if still unread: many may be taken before one is read."""
+        return self._asked or _unread(self.transport) > 0
+
+    @asked.setter
+    def asked(self, asked: bool) -> None:
+        self._asked = asked
+
     def turn_away(self) -> None:
         """Close a connection that is still at the door, with a word if it can still be read."""
         if self.transport.get_write_buffer_size() == 0 and not self.asked:
             body = b"Too many connections; try again later.\n"
             head = "HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\n"
             head += f"Content-Type: text/plain\r\nContent-Length: {len(body)}\r\n\r\n"
-            self.transport.write(head.encode() + body)
-            self.transport.close()
+            try:
+                self.transport.write(head.encode() + body)
+            except RuntimeError:  # websockets has ended its side already
+                self.transport.abort()
+            else:
+                self.transport.close()
         else:
             self.transport.abort()
 
@@ -162,3 +178,13 @@ class Guest:
             return
         self._last_notice_s = now_s
         client.add_notification("Not accepted", text, color="red", auto_close_seconds=8.0)
+
+
+def _unread(transport: asyncio.BaseTransport) -> int:
+    """Bytes that have come and are still to be read."""
+    socket, count = transport.get_extra_info("socket"), array("i", [0])
+    try:
+        fcntl.ioctl(socket.fileno(), termios.FIONREAD, count)
+    except (AttributeError, OSError, ValueError):  # no socket, or closed
+        return 0
+    return count[0]

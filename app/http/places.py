@@ -23,7 +23,11 @@ class Connected(Protocol):
     address: str
     session_id: str
     active_s: float
-    asked: bool
+
+    @property
+    def asked(self) -> bool:
+        """Whether a request has arrived."""
+        ...
 
     def turn_away(self) -> None:
         """Close a connection that is still at the door."""

@@ -107,6 +107,7 @@ def test_a_flood_of_slider_moves_becomes_a_few_runs_and_the_last_wins(dashboard:
             visitor.set(zeta, 0.5 + 0.005 * step)
         session = served.sessions.get("flood-of-moves")
         eventually(lambda: edits.network_values(session.scenario, session.selected)["zeta"] == 1.495)
+        eventually(lambda: session.run is not None and session.run.scenario == session.scenario)
         assert session.wait_idle(20.0)
         visitor.wait_for(lambda message: is_run(message) and number(message) == session.run_number, 30.0)
         shown = [message for message in visitor.received if is_run(message)]
