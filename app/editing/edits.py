@@ -104,9 +104,7 @@ def with_method(scenario: Scenario, like: int | None) -> tuple[Scenario, int]:
     else:
         made = dict(data["method"][like])
         where = like + 1
-    # The copy of "classic2 2" is "classic2 3".
-    plain = re.sub(r" \d+$", "", made["name"])
-    made["name"] = free_name(plain, [m["name"] for m in data["method"]])
+    made["name"] = free_name(made["name"], [m["name"] for m in data["method"]])
     data["method"].insert(where, made)
     return Scenario.parse(data), where
 
@@ -205,7 +203,7 @@ def _forget_made_name(scenario: Scenario, data: Any, index: int) -> None:
     others = [m["name"] for i, m in enumerate(data["method"]) if i != index]
     made = {method.model_copy(update={"name": ""}).label(), method.network.id, "free", "kalman"}
     made |= {f"averaging ({variant})" for variant in get_args(Variant)}
-    if re.sub(r" \d+$", "", method.name) not in made:
+    if _unnumbered(method.name) not in made:
         return
     block = data["method"][index]
     names: dict[str, str] = {"free": "free", "averaging": f"averaging ({block['averaging']['variant']})"}
@@ -214,9 +212,15 @@ def _forget_made_name(scenario: Scenario, data: Any, index: int) -> None:
 
 
 def free_name(name: str, taken: list[str]) -> str:
-    """Name that no other method has: this one, or this one with a number."""
-    names = (name, *(f"{name} {number}" for number in range(2, MAX_METHODS + 2)))
+    """Name that no other method has: this one, or with another number: the copy of "a 2" is "a 3"."""
+    plain = _unnumbered(name) if name in taken else name
+    names = (plain, *(f"{plain} {number}" for number in range(2, MAX_METHODS + 2)))
     return next(free for free in names if free not in taken)
+
+
+def _unnumbered(name: str) -> str:
+    """Name without the number that tells it from others."""
+    return re.sub(r" \d+$", "", name)
 
 
 def _at(data: Any, path: Path) -> Any:

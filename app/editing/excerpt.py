@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -102,7 +101,6 @@ def _named(method: Any, known: list[str]) -> Any:
         return method
     network = method.get("network")
     made = network.get("id") if isinstance(network, dict) else None
-    name = str(method.get("name") or made or method.get("damping") or "free")
-    name = free_name(re.sub(r" \d+$", "", name) if name in known else name, known)
+    name = free_name(str(method.get("name") or made or method.get("damping") or "free"), known)
     known.append(name)
     return method | {"name": name}

@@ -15,7 +15,7 @@ from navcore.scenario.model import Scenario
 CORRECTED = f"{BRIDGE}, output corrected"
 METHODS = (BEST, BRIDGE, CORRECTED)
 CASES = ("as it is", "no changes of the log", "no initial heading error", "neither")
-AS_IS, QUIET, NO_HEADING, _ = CASES
+AS_IS, QUIET, NO_HEADING, NEITHER = CASES
 
 
 def scenario_of_case(seed: int, case: str) -> Scenario:
@@ -26,9 +26,9 @@ def scenario_of_case(seed: int, case: str) -> Scenario:
     switching = bridge.switching.model_copy(update={"output": "corrected"})
     corrected = bridge.model_copy(update={"name": CORRECTED, "switching": switching})
     scenario = scenario.model_copy(update={"method": (kept[BEST], bridge, corrected)})
-    if case in (QUIET, CASES[3]):
+    if case in (QUIET, NEITHER):
         scenario = without_changes(scenario)
-    if case in (NO_HEADING, CASES[3]):
+    if case in (NO_HEADING, NEITHER):
         level = scenario.initial_error.attitude_arcmin[:2]
         start = scenario.initial_error.model_copy(update={"attitude_arcmin": (*level, 0.0)})
         scenario = scenario.model_copy(update={"initial_error": start})

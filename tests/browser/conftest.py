@@ -74,6 +74,14 @@ def bench(opened: Bench) -> Bench:
 
 
 @pytest.fixture
+def fresh(bench: Bench) -> Bench:
+    """Give the shared page with a still ship in one channel; the compass network in hand."""
+    bench.reset("zha-fast", selected=2)
+    bench.tab("Frequency", "Errors", "Method")
+    return bench
+
+
+@pytest.fixture
 def session(bench: Bench) -> Session:
     """What the server keeps of the shared page's visitor."""
     return bench.session

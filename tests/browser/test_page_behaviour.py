@@ -31,14 +31,6 @@ pytestmark = pytest.mark.browser
 GAINS = ("K1 (1/s)", "K2", "K3 (1/s)")
 
 
-@pytest.fixture
-def fresh(bench: Bench) -> Bench:
-    """A still ship in one channel; the compass network in hand."""
-    bench.reset("zha-fast", selected=2)
-    bench.tab("Frequency", "Errors", "Method")
-    return bench
-
-
 # ------------------------------------------------------------ values
 
 

@@ -16,14 +16,6 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.browser
 
 
-@pytest.fixture
-def fresh(bench: Bench) -> Bench:
-    """A still ship in one channel; the compass network in hand."""
-    bench.reset("zha-fast", selected=2)
-    bench.tab("Frequency", "Errors", "Method")
-    return bench
-
-
 def test_a_unit_is_typed_a_wheel_steps_and_a_double_click_resets(fresh: Bench, session: Session) -> None:
     page = fresh.page
     fresh.tab("Run")
