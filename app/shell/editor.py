@@ -135,7 +135,8 @@ class Editor:
             control.show(control.value)
             kept = f"{control.value:.9g}" if control.spec.kind == "number" else control.as_text(control.value)
             if isinstance(error, InputError):
-                lines = [notices.refusal(fault, kept) for fault in error.faults]
+                field = ".".join(map(str, control.spec.path))
+                lines = [notices.refusal(fault, kept, field, shown) for fault in error.faults]
             else:
                 lines = [f"{shown!r} was not taken over: cannot be read ({kept} is kept)"]
             control.refuse(lines)

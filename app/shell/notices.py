@@ -79,9 +79,29 @@ def small(text: str) -> str:
     )
 
 
-def refusal(fault: Fault, kept: str = "") -> str:
-    """One fault in words, for a reader who looks at the control: the value, what it must be, what is kept."""
+def refusal(fault: Fault, kept: str = "", field: str = "", entered: object = None) -> str:
+    """One fault in words, for a reader who looks at a control.
+
+    Parameters
+    ----------
+    fault : Fault
+        What is wrong.
+    kept : str
+        The value that stays in force.
+    field : str
+        The control's own field, dotted. Where the fault is in another field, the two clash, and both are told.
+    entered : object
+        What the control was given.
+
+    Returns
+    -------
+    str
+        The value, what it must be, what is kept.
+    """
     value = "" if fault.value is None else f"{_shown(fault.value)} was not taken over: "
+    if field and fault.field and not f"{field}.".startswith(f"{fault.field}."):
+        other = fault.field if fault.value is None else f"{fault.field} = {_shown(fault.value)}"
+        value = f"{_shown(entered)} does not go with {other}: "
     keeps = f" ({kept} is kept)" if kept else ""
     return f"{value}{fault.allowed}{keeps}"
 

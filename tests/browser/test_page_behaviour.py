@@ -95,7 +95,8 @@ def test_a_refused_combination_names_the_reason_beside_the_control(fresh: Bench)
 def test_external_damping_without_reference_is_refused(fresh: Bench) -> None:
     fresh.tab("Log")
     fresh.choose("reference", "none")
-    assert "needs a reference velocity" in fresh.notice("reference: not taken over")
+    told = fresh.notice("reference: not taken over")
+    assert "none does not go with method.1.damping = external: needs a reference velocity" in told
     assert fresh.box("reference").input_value() == "log"
 
 
