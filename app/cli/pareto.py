@@ -85,6 +85,8 @@ def pareto_text(found: Pareto) -> list[str]:
             setting = ", ".join(
                 f"{field} = {value:.4g}" for field, value in point.network.items() if isinstance(value, float)
             )
+            if point.earth_growth > 0.0:
+                setting = f"{setting or 'no parameter'}; its 24 h mode grows"
             rows.append([name if k == 0 else "", *_values(found, point.values), setting])
     if found.present is not None:
         rows.append(["as it is", *_values(found, found.present), ""])

@@ -89,7 +89,7 @@ def refusal(fault: Fault, kept: str = "", field: str = "", entered: object = Non
     kept : str
         The value that stays in force.
     field : str
-        The control's own field, dotted. Where the fault is in another field, the two clash, and both are told.
+        The control's own field, dotted. Where the fault is in another field, both are told.
     entered : object
         What the control was given.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -38,10 +38,13 @@ class Point:
         Objectives, SI.
     network : dict
         The network block that gives them.
+    earth_growth : float
+        Growth of the 24 h mode of the whole system with it, 1/s (theory.md 10); negative when it decays.
     """
 
     values: tuple[float, float]
     network: dict[str, Any]
+    earth_growth: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -155,7 +158,10 @@ def pareto(
                 progress((done + fraction) / len(ids))
 
         seen, stopped = _front(scenario, method, name, objectives, along, report, cancelled)
-        fronts[name] = _best(seen)
+        fronts[name] = tuple(
+            replace(point, earth_growth=_earth_growth(ship, scenario.method[method], point.network))
+            for point in _best(seen)
+        )
         report(1.0)
         if stopped:
             break
@@ -197,6 +203,11 @@ def _checked(objectives: tuple[str, str], networks: Sequence[str] | None) -> lis
         if name not in ids:
             raise InputError(Fault("", "networks", name, f"must be one of {', '.join(ids)}"))
     return ids if networks is None else list(dict.fromkeys(networks))
+
+
+def _earth_growth(ship: Ship, method: Method, network: dict[str, Any]) -> float:
+    changed = method.model_dump(mode="json", by_alias=True, exclude_none=True) | {"network": network}
+    return Setting(ship, Method.model_validate(changed)).whole.earth_growth
 
 
 def _both(setting: Setting, names: tuple[str, str]) -> tuple[float, float] | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -54,6 +55,20 @@ def test_the_picture_has_a_curve_a_network_the_star_and_the_floor(ship: Scenario
             low, high = layout[f"{axis}axis"]["range"]
             assert all(low < math.log10(value) < high for value in trace[axis])
     assert layout["meta"]["pick"]["panels"] == (("xaxis", "yaxis"),)
+
+
+def test_a_point_whose_24_h_mode_grows_has_an_open_mark(found: Pareto) -> None:
+    (classic3,) = found.fronts["classic3"]
+    assert classic3.earth_growth > 0.0  # H'(0) > 0 (physics, docs/networks.md)
+    decaying = replace(classic3, earth_growth=-classic3.earth_growth)
+    for point, symbol, told in ((classic3, "-open", "24 h mode grows"), (decaying, "", "24 h mode decays")):
+        one = replace(found, fronts={"classic3": (point,)}, floor=(None, None))
+        made = fronts_figure(one, OBJECTIVES, None, "")
+        (trace,) = made["data"]
+        assert trace["marker"]["symbol"][0].removeprefix("square") == symbol
+        assert told in trace["text"][0]
+        said = [note["text"] for note in made["layout"]["annotations"]]
+        assert said == (["open mark: its 24 h mode grows"] if symbol else [])
 
 
 def test_a_click_means_the_nearest_point_and_nothing_far_from_all(found: Pareto) -> None:

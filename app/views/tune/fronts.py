@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from app.plots import style
+from app.plots.earth_mode import earth_mode_text
 from app.plots.plotly_data import PlotlyFigure, figure
 from app.plots.units import number
 from navcore.design.pareto import Pareto, Point
@@ -28,7 +29,7 @@ _SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "pentagon", "
 _NEAR = 0.05
 """A click takes the nearest point within this part of both axes."""
 _PAD = 0.06
-_LEFT_PX, _RIGHT_PX, _TOP_PX, _TICKS_PX, _LEGEND_ROW_PX = 66, 14, 30, 48, 21
+_LEFT_PX, _RIGHT_PX, _TOP_PX, _TICKS_PX, _LEGEND_ROW_PX = 66, 14, 44, 48, 21
 _EMPTY = "Find the fronts: the best of every network in place of this one."
 _FEW_TICKS, _MANY_TICKS = (1.0, 2.0, 5.0), (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 _FINEST_DECADES = 0.12
@@ -106,6 +107,7 @@ def fronts_figure(
         layout["annotations"].append(_middle(_EMPTY))
     else:
         _add_floor(layout, found, ranges, (x_size, y_size))
+        _add_key(layout, found)
     return figure(data, layout)
 
 
@@ -138,16 +140,24 @@ def nearest(found: Pareto, x: float, y: float) -> tuple[str, Point]:
 
 def _front(name: str, points: tuple[Point, ...], index: int, sizes: Pair) -> dict[str, Any]:
     color = style.method_color(index)
+    full = _SYMBOLS[index % len(_SYMBOLS)]
     return {
         "type": "scatter",
         "mode": "lines+markers",
         "name": name,
         "x": [point.values[0] / sizes[0] for point in points],
         "y": [point.values[1] / sizes[1] for point in points],
-        "text": [f"{name}: {setting_text(point.network)}" for point in points],
+        "text": [
+            f"{name}: {setting_text(point.network)}<br>24 h mode {earth_mode_text(point.earth_growth)}"
+            for point in points
+        ],
         "hovertemplate": "%{text}<br>%{x:.4g}, %{y:.4g}<extra></extra>",
         "line": {"color": color, "width": 1.2},
-        "marker": {"color": color, "size": 9, "symbol": _SYMBOLS[index % len(_SYMBOLS)]},
+        "marker": {
+            "color": color,
+            "size": 9,
+            "symbol": [f"{full}-open" if point.earth_growth > 0.0 else full for point in points],
+        },
     }
 
 
@@ -220,14 +230,18 @@ def _add_floor(layout: dict[str, Any], found: Pareto, ranges: tuple[Pair, Pair],
                 "layer": "below",
             },
         ]
+
+
+def _add_key(layout: dict[str, Any], found: Pareto) -> None:
+    """Say above the plot what the open marks and the grey stand for."""
+    points = [point for front in found.fronts.values() for point in front]
+    said = ["open mark: its 24 h mode grows"] if any(p.earth_growth > 0.0 for p in points) else []
     if any(found.floor):
+        said.append("grey: below the floor, out of reach of any causal linear damping")
+    if said:
         muted = {"size": style.FONT_SIZE - 1, "color": style.MUTED}
-        layout["annotations"].append(
-            style.text(
-                1.0, 1.0, "grey: below the floor, out of reach of any causal linear damping",
-                xref="x domain", yref="paper", xanchor="right", yanchor="bottom", font=muted,
-            )
-        )  # fmt: skip
+        place = {"xref": "x domain", "yref": "paper", "xanchor": "right", "yanchor": "bottom"}
+        layout["annotations"].append(style.text(1.0, 1.0, "<br>".join(said), **place, font=muted))
 
 
 def _above(note: str) -> dict[str, Any]:
