@@ -29,7 +29,7 @@ help:
 	@echo 'make paint    time from a slider step to the last paint of it in Chromium'
 	@echo 'make soak     30 visitors for 30 minutes on one server, then floods: one table (CLIENTS=, BROWSERS=, MINUTES=)'
 	@echo 'make serving  run what docs/serving.md names, and write its table from that and from the last soak'
-	@echo 'make mutation  change the code of navcore at random, and see which changes no test notices'
+	@echo 'make mutation  change the code of navcore at random, and see which changes no test notices (SAMPLE=, SEED=)'
 	@echo 'make accuracy  what the strapdown engine is accurate to, figure by figure'
 	@echo 'make covariance  the error budget beside 2,000 seeds; SEEDS=... for another number'
 	@echo 'make tuning   the tuning from several starts beside a fine grid, with its times'
@@ -73,9 +73,10 @@ serving: setup $(STAMPS)/test
 tour: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.browser.tour
 
-# MUTANTS: how many a room.
+# SAMPLE=60 SEED=1: so many changes a room, drawn by this seed. RESULTS=folder: goes on from what is kept there.
 mutation: setup $(STAMPS)/test
-	@$(BIN)/python -m tests.mutation --sample $(or $(MUTANTS),20)
+	@$(BIN)/python -m tests.mutation --sample $(or $(SAMPLE),60) --seed $(or $(SEED),1) \
+	  --folder $(or $(RESULTS),build/mutation)
 
 unit: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.stages unit

@@ -12,9 +12,16 @@ _COMPILING = "numba:compile"
 
 
 class Uncounted(event.Listener):
-    """Stops the timer of pytest-timeout (its method "signal") while any thread of the process compiles."""
+    """Stops a timer while any thread of the process compiles.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    timer : int
+        Of `signal`; unless told that of pytest-timeout (its method "signal").
+    """
+
+    def __init__(self, timer: int | None = None) -> None:
+        self._timer = getattr(signal, "ITIMER_REAL", 0) if timer is None else timer
         self._lock = threading.Lock()
         self._depth, self._left = 0, 0.0
 
@@ -27,12 +34,12 @@ class Uncounted(event.Listener):
         with self._lock:
             self._depth += 1
             if self._depth == 1 and hasattr(signal, "setitimer"):
-                self._left = signal.setitimer(signal.ITIMER_REAL, 0.0)[0]
+                self._left = signal.setitimer(self._timer, 0.0)[0]
 
     def on_end(self, event: Any) -> None:
         """Set the timer to what was left."""
         with self._lock:
             self._depth -= 1
             if self._depth == 0 and self._left > 0.0:
-                signal.setitimer(signal.ITIMER_REAL, self._left)
+                signal.setitimer(self._timer, self._left)
                 self._left = 0.0

@@ -64,7 +64,7 @@ class Claim:
         Range of our number within which the two agree; printed in the report.
     ours : callable
         Our number from the runs, in ``unit``; an array holds one number for each seed, and the verdict then
-        goes by the 95 % confidence interval of their mean.
+        goes by the 95 % confidence interval of their mean. Another statistic of the seeds is an `Estimate`.
     unit : str
         Unit of both numbers.
     kind : {"predicted", "fitted", "direction only", "own"}
@@ -85,7 +85,7 @@ class Claim:
     says: str
     printed: str
     agreed: Span
-    ours: Callable[[Runs], float | np.ndarray]
+    ours: Callable[[Runs], float | np.ndarray | Estimate]
     unit: str = ""
     kind: Kind = "direction only"
     strapdown: bool = False

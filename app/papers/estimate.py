@@ -41,8 +41,16 @@ class Estimate:
         return 0 if math.isfinite(self.half) and least <= high and most >= low else -1
 
 
-def estimate(found: float | np.ndarray) -> Estimate:
-    """Estimate from what a claim computes: one number, or one for each seed."""
+def rms_estimate(samples: np.ndarray) -> Estimate:
+    """RMS of independent samples; its interval is that of the mean of the squares, to first order."""
+    mean, half = interval(np.square(samples))
+    return Estimate(math.sqrt(mean), half / (2.0 * math.sqrt(mean)), samples.size)
+
+
+def estimate(found: float | np.ndarray | Estimate) -> Estimate:
+    """Estimate from what a claim computes: one number, one for each seed, or an estimate."""
+    if isinstance(found, Estimate):
+        return found
     samples = np.atleast_1d(np.asarray(found, dtype=float))
     if samples.size == 1:
         return Estimate(float(samples[0]))

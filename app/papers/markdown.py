@@ -19,9 +19,10 @@ preset; *strapdown* is the full nonlinear mechanization on the same setting, whe
 digits are fixed: the same code writes the same file.
 
 Where noise decides, our number is the mean over the stated number of seeds with its 95 % confidence interval
-(Student), and the verdict goes by the interval: *agrees* when all of it lies in the range, *differs* when
-none of it does, *undecided* when it reaches across an end of the range. Where both fidelities are given, both
-must agree; if one of them differs, the verdict is *differs*. A number without an interval is of one run.
+(Student; an RMS over seeds has the interval of the mean of the squares, to first order), and the verdict goes
+by the interval: *agrees* when all of it lies in the range, *differs* when none of it does, *undecided* when
+it reaches across an end of the range. Where both fidelities are given, both must agree; if one of them
+differs, the verdict is *differs*. A number without an interval is of one run.
 
 The kind of a claim says what its agreement is worth. *Predicted*: our number follows from the settings that
 the paper prints. *Fitted*: a setting that the paper does not print was chosen so that the number comes out.

@@ -77,8 +77,10 @@ def test_a_slower_loop_lets_less_of_the_logs_noise_through(runs, preset):
 @pytest.mark.parametrize("preset", ["deng-static", "deng-swing", "deng-vehicle"])
 def test_the_schuler_oscillation_disappears(runs, drives, preset):
     found = drives if preset == "deng-vehicle" else runs
-    assert schuler_swing(found, preset, "free") > 0.3
-    assert schuler_swing(found, preset, DAMPED) < 0.01 * schuler_swing(found, preset, "free")
+    seeds = range(1, 3)
+    free, damped = (schuler_swing(found, preset, name, seeds) for name in ("free", DAMPED))
+    assert len(free) == 2 and free[0] != free[1]
+    assert np.all(free > 0.1) and np.all(damped < 0.01 * free)
 
 
 def test_table_4_damping_improves_attitude_velocity_and_position(drives):
@@ -98,4 +100,4 @@ def test_network_and_feedback_form_have_the_same_tilt(runs):
 
 
 def test_the_printed_form_has_transients_when_the_speed_changes(drives):
-    assert largest_tilt(drives, PRINTED) > 1.4 * largest_tilt(drives, SLOW)
+    assert np.mean(largest_tilt(drives, PRINTED) / largest_tilt(drives, SLOW)) > 1.4

@@ -1,9 +1,11 @@
-"""Mutation run (`make mutation`): draw changes of a room at random, and see which no test notices.
+"""Mutation run (`make mutation`): draw changes of each room at random, and see which no test notices.
 
-What became of each change is appended to ``build/mutation/results.jsonl``; a change that stands there is not
-made again unless ``--again`` asks for the survivors. Not part of `make test`: a change takes 5 to 60 s.
+What became of each change is appended to ``FOLDER/results.jsonl``; a change that stands there is not made
+again unless ``--again`` asks for the survivors. A room's changes are made in a random order that the seed
+fixes, so that those made are a random sample at any time, and a larger sample holds the smaller one. Not part
+of `make test`: a change takes 5 to 200 s of CPU time.
 
-    python -m tests.mutation --sample 40 --seed 1 analysis law
+    python -m tests.mutation --sample 60 --seed 1 analysis law
 """
 
 from __future__ import annotations
@@ -14,10 +16,8 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
 
 import argparse  # noqa: E402
-import hashlib  # noqa: E402
 import json  # noqa: E402
 import math  # noqa: E402
-import random  # noqa: E402
 import shutil  # noqa: E402
 import sys  # noqa: E402
 import tempfile  # noqa: E402
@@ -32,116 +32,104 @@ import pydantic  # noqa: E402, F401
 import scipy.linalg  # noqa: E402, F401
 import scipy.signal  # noqa: E402, F401
 
-from tests.mutation.child import in_fork, run_tests  # noqa: E402
+from tests.mutation.child import Recorder, in_fork, run_tests  # noqa: E402
 from tests.mutation.kernels import Closures  # noqa: E402
-from tests.mutation.mutants import Mutant, changed, mutants_of  # noqa: E402
+from tests.mutation.mutants import Mutant, changed  # noqa: E402
+from tests.mutation.results import ROOT, Kept, key, sample, tell_scores  # noqa: E402
 from tests.mutation.rooms import INTERPRETED, LEFT_OUT, ROOMS  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[2]
-KEPT = ROOT / "build" / "mutation"
-_TEST_S, _RUN_S = 1.5, 300.0
-"""A slower test on the unchanged tree is left out; a slower run on a change is "timeout"."""
+_TEST_S, _INTERPRETED_S, _SLOWER = 3.0, 1.0, 10.0
+"""A test of more CPU time on the unchanged tree takes no part (compiled; with kernels run as Python); on a
+change a test may take so many times this."""
+_RUN_S = 1800.0
+"""CPU time of all tests of a change, compiling included; a change that takes longer counts as noticed."""
 
 
 def main() -> None:
-    """Draw the samples, run them, print a line a change and the score of each room."""
+    """Draw the samples, run them, print a line a change and the scores."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("rooms", nargs="*", default=list(ROOMS))
-    parser.add_argument("--sample", type=int, default=40, help="changes a room")
+    parser.add_argument("--sample", type=int, default=60, help="changes a room")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--folder", type=Path, default=ROOT / "build" / "mutation", help="keeps the results")
     parser.add_argument("--minutes", type=float, default=math.inf, help="begin no change after so long")
+    parser.add_argument("--interpreted", action="store_true", help="compile no changed kernel (quick, lower)")
     parser.add_argument("--again", action="store_true", help="make those again that survived")
     parser.add_argument("--score", action="store_true", help="make none; tell the score of those made")
     given = parser.parse_args()
     end = time.monotonic() + 60.0 * given.minutes
-    KEPT.mkdir(parents=True, exist_ok=True)
-    for room in given.rooms:
-        sample = _sample(room, given.sample, given.seed)
+    kept = Kept(given.folder)
+    samples = {room: sample(room, given.sample, given.seed) for room in given.rooms}
+    for room, drawn in samples.items():
         if not given.score:
             with tempfile.TemporaryDirectory() as folder:
-                _Room(room, Path(folder) / "tree").run(sample, given.again, end)
-        _tell_score(room, sample)
-
-
-def _sample(room: str, size: int, seed: int) -> list[Mutant]:
-    every = [m for file in sorted((ROOT / "navcore" / room).rglob("*.py")) for m in mutants_of(file, ROOT)]
-    return random.Random(seed).sample(every, min(size, len(every)))
-
-
-def _results() -> dict[str, dict[str, Any]]:
-    """What became of each change, the last time it was made."""
-    path = KEPT / "results.jsonl"
-    lines = path.read_text("utf-8").splitlines() if path.is_file() else []
-    return {found["key"]: found for found in map(json.loads, lines)}
-
-
-def _key(mutant: Mutant) -> str:
-    source = (ROOT / mutant.file).read_bytes()
-    return f"{mutant.name} {hashlib.sha256(source).hexdigest()[:12]}"
+                _Room(room, Path(folder) / "tree", kept, not given.interpreted).run(drawn, given.again, end)
+    tell_scores(samples, kept)
 
 
 class _Room:
     """A copy of the tree, and the tests of a room that pass on it."""
 
-    def __init__(self, room: str, tree: Path) -> None:
-        self.room, self.tree = room, tree
+    def __init__(self, room: str, tree: Path, kept: Kept, compiles: bool) -> None:
+        self.room, self.tree, self.kept, self.compiles = room, tree, kept, compiles
         ignored = shutil.ignore_patterns(".git", ".venv", "__pycache__", "*.webp", "build")
         shutil.copytree(ROOT, tree, ignore=ignored)
         first, others = ([f for word in words for f in _test_files(tree, word)] for words in ROOMS[room])
         self.tiers = (first, [file for file in dict.fromkeys(others) if file not in first])
-        self.kept = json.loads(in_fork(lambda out: json.dump(_kernels(tree), out), 300.0))
+        self.interpreted = [f for word in INTERPRETED[room] for f in _test_files(tree, word)]
+        self.digest, self.closures = json.loads(in_fork(lambda out: json.dump(_kernels(tree), out), 300.0))
+        self.modules = {module for _, modules in self.closures.values() for module in modules}
         everything = [*first, *others]
-        in_fork(
-            lambda out: run_tests(tree, everything, None, self.kept, False, 60.0, collect_only=True), 300.0
+        in_fork(lambda out: self._tests(everything, None, False, collect_only=True), 300.0)
+        self.killers = Counter(
+            found["by"].partition("[")[0] for found in kept.results().values() if found["room"] == room
         )
-        by = (found["by"] for found in _results().values() if found["room"] == room and "::" in found["by"])
-        self.killers = Counter(name.partition("[")[0] for name in by)
         self.baselines: dict[bool, dict[str, float]] = {}
 
-    def run(self, sample: list[Mutant], again: bool, end: float) -> None:
+    def run(self, drawn: list[Mutant], again: bool, end: float) -> None:
         """Make each change that was not made yet, and keep what became of it."""
-        before = _results()
-        for mutant in sample:
-            old = before.get(_key(mutant))
+        before = self.kept.results()
+        for mutant in drawn:
+            old = before.get(key(mutant))
             if time.monotonic() > end:
                 return
             if old and not (again and old["fate"] == "survived"):
                 continue
             begin = time.monotonic()
             fate, by = self._fate(mutant)
-            found = {"key": _key(mutant), "room": self.room, "line": mutant.line, "what": mutant.what}
-            found |= {"fate": fate, "by": by, "seconds": round(time.monotonic() - begin, 1)}
-            with (KEPT / "results.jsonl").open("a", encoding="utf-8") as out:
-                out.write(json.dumps(found) + "\n")
-            print(
-                f"{fate:9} {found['seconds']:6.1f} s  {mutant.file}:{mutant.line}  {mutant.what}  {by}",
-                flush=True,
-            )
+            seconds = round(time.monotonic() - begin, 1)
+            self.kept.add(mutant, room=self.room, fate=fate, by=by, seconds=seconds)
+            print(f"{fate:9} {seconds:6.1f} s  {mutant.file}:{mutant.line}  {mutant.what}  {by}", flush=True)
 
     def _fate(self, mutant: Mutant) -> tuple[str, str]:
+        """Change the tree and run the tests; a kernel is first judged as Python, which needs no compiler."""
         path = self.tree / mutant.file
         before = path.read_text("utf-8")
-        interpret = mutant.file.startswith(INTERPRETED)
-        seconds = self._baseline(interpret)
-        order = self._order(seconds)
+        module = mutant.file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+        stages = [(files, False) for files in self.tiers]
+        if module in self.modules:
+            stages = [(self.interpreted, True), *(stages if self.compiles else [])]
         fate, by = "survived", ""
         try:
             path.write_text(changed(before, mutant.place), "utf-8")
-            for files in self.tiers:
-                fate, by = self._judge(files, [n for n in order if n.partition("::")[0] in files], interpret)
+            for files, interpret in stages:
+                fate, by = self._judge(files, interpret)
                 if fate != "survived":
                     break
         finally:
             path.write_text(before, "utf-8")
         return fate, by
 
-    def _judge(self, files: list[str], order: list[str], interpret: bool) -> tuple[str, str]:
+    def _judge(self, files: list[str], interpret: bool) -> tuple[str, str]:
         """Run the tests of these files until one fails; fate of the change, and the test that noticed it."""
+        order = [name for name in self._order(interpret) if name.partition("::")[0] in files]
+        if not order:
+            return "survived", ""
 
         def work(out: Any) -> None:
-            code, recorder = run_tests(self.tree, files, order, self.kept, interpret, 10.0 * _TEST_S)
+            code, recorder = self._tests(files, order, interpret)
             json.dump([code, recorder.bad], out)
 
         answer = in_fork(work, _RUN_S)
@@ -152,8 +140,23 @@ class _Room:
             self.killers[name.partition("[")[0]] += 1
         return ("survived", "") if code == 0 else ("killed", bad[0] if bad else "import or collection")
 
-    def _order(self, seconds: dict[str, float]) -> list[str]:
+    def _tests(
+        self, files: list[str], order: list[str] | None, interpret: bool, *, collect_only: bool = False
+    ) -> tuple[int, Recorder]:
+        closures = self.closures
+        if interpret and order is None:  # as if every kernel that this room takes part in had changed
+            room = f"navcore.{self.room}."
+            closures = {
+                name: ("" if any(f"{module}.".startswith(room) for module in modules) else digest, modules)
+                for name, (digest, modules) in closures.items()
+            }
+        kept = self.digest, closures
+        limit = _limit(interpret) * (1.0 if order is None else _SLOWER)
+        return run_tests(self.tree, files, order, kept, interpret, limit, collect_only=collect_only)
+
+    def _order(self, interpret: bool) -> list[str]:
         """Tests that noticed a change before, a first case of each test, the rest; the quick ones first."""
+        seconds = self._baseline(interpret)
         cases: Counter[str] = Counter()
         rank: dict[str, tuple[int, bool, float]] = {}
         for name in sorted(seconds, key=seconds.__getitem__):
@@ -163,35 +166,27 @@ class _Room:
         return sorted(rank, key=rank.__getitem__)
 
     def _baseline(self, interpret: bool) -> dict[str, float]:
-        """Seconds of each test that passes in time on the unchanged tree."""
+        """CPU seconds of each test that passes in time on the unchanged tree."""
         if interpret not in self.baselines:
-            path = KEPT / f"{self.room}-{'interpreted' if interpret else 'compiled'}.json"
+            path = self.kept.folder / f"{self.room}-{'interpreted' if interpret else 'compiled'}.json"
             if not path.is_file():
-                digest, closures = self.kept
-                # interpreted: as if every kernel that the law takes part in had changed
-                law = {
-                    n: ("" if interpret and _uses(modules) else d, modules)
-                    for n, (d, modules) in closures.items()
-                }
+                files = self.interpreted if interpret else [file for tier in self.tiers for file in tier]
 
                 def work(out: Any) -> None:
-                    files = [file for tier in self.tiers for file in tier]
-                    _, recorder = run_tests(self.tree, files, None, (digest, law), interpret, 10.0 * _TEST_S)
+                    _, recorder = self._tests(files, None, interpret)
                     bad = set(recorder.bad)
-                    json.dump(
-                        {n: s for n, s in recorder.seconds.items() if n not in bad and s <= _TEST_S}, out
-                    )
+                    json.dump({n: s for n, s in recorder.seconds.items() if n not in bad}, out)
 
-                path.write_text(in_fork(work, 3000.0), "utf-8")
-            found = json.loads(path.read_text("utf-8"))
-            self.baselines[interpret] = {name: s for name, s in found.items() if s <= _TEST_S}
-            total = sum(self.baselines[interpret].values())
-            print(f"{self.room}: {len(self.baselines[interpret])} tests, {total:.0f} s", flush=True)
+                path.write_text(in_fork(work, 3600.0), "utf-8")
+            every = json.loads(path.read_text("utf-8"))
+            found = {name: seconds for name, seconds in every.items() if seconds <= _limit(interpret)}
+            self.baselines[interpret] = found
+            print(f"{path.stem}: {len(found)} tests, {sum(found.values()):.0f} s", flush=True)
         return self.baselines[interpret]
 
 
-def _uses(modules: list[str]) -> bool:
-    return any(f"{name.replace('.', '/')}/".startswith(INTERPRETED) for name in modules)
+def _limit(interpret: bool) -> float:
+    return _INTERPRETED_S if interpret else _TEST_S
 
 
 def _test_files(tree: Path, pattern: str) -> list[str]:
@@ -210,19 +205,6 @@ def _kernels(tree: Path) -> tuple[str, Closures]:
     from tests.mutation.kernels import kernel_closures
 
     return kernel_hash(), kernel_closures()
-
-
-def _tell_score(room: str, sample: list[Mutant]) -> None:
-    """Print the share of changes that a test noticed, with its 95 % interval (Wilson)."""
-    made = [found for mutant in sample if (found := _results().get(_key(mutant)))]
-    n = len(made)
-    if not n:
-        return
-    p, z = sum(found["fate"] != "survived" for found in made) / n, 1.96
-    middle = (p + z * z / (2 * n)) / (1 + z * z / n)
-    half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-    print(f"{room}: {100 * p:.1f} % of {n} noticed, 95 % interval {100 * (middle - half):.0f} to ", end="")
-    print(f"{100 * (middle + half):.0f} %", flush=True)
 
 
 if __name__ == "__main__":

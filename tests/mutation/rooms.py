@@ -41,8 +41,15 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 }  # fmt: skip
 """Tests of each room of navcore, as patterns of modules: those that are run first, and the others."""
 
-INTERPRETED = ("navcore/law/",)
-"""Where a changed kernel runs as Python: compiling the law takes a minute, its tests need few steps."""
+INTERPRETED: dict[str, tuple[str, ...]] = {
+    "law": ("test_control_*", "test_history"),
+    "mechanization": (
+        "test_strapdown_kernel", "test_error_model", "test_strapdown_every_sample", "test_kalman_method",
+    ),
+    "sensors": ("test_imu*", "test_noise", "test_reference_*"),
+    "analysis": (),
+}  # fmt: skip
+"""Tests that judge a changed kernel first, run as Python: to compile it and its callers takes minutes."""
 
 LEFT_OUT = ("test_kernel_cache", "test_cli")
 """Tests that start another process."""

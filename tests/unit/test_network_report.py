@@ -8,6 +8,7 @@ import pytest
 
 from navcore.analysis.report import network_report
 from navcore.foundation.earth import SPHERE
+from navcore.foundation.errors import InputError
 from navcore.networks import NETWORKS, parse_network
 
 KEYS = [
@@ -55,3 +56,18 @@ def test_an_infinite_h0_becomes_null() -> None:
     report = network_report(parse_network('id = "custom", zeros = [-1], poles = [0]'))
     assert report["h0"] is None
     json.dumps(report, allow_nan=False)
+
+
+def test_ends_of_what_can_be_asked() -> None:
+    free = parse_network('id = "none"')
+    for lat_deg in (-89.0, 89.0):
+        assert network_report(free, lat_deg)["lat_deg"] == lat_deg
+    for lat_deg in (-89.1, 89.1, float("nan")):
+        with pytest.raises(InputError, match=r"must be >= -89 and <= 89 \(deg\)"):
+            network_report(free, lat_deg)
+    damped = parse_network('id = "classic2"')
+    for period_s, step_s in ((1e-3, 1e-3), (1e4, 1.0)):
+        network_report(damped, log_period_s=period_s, law_step_s=step_s)
+    for period_s, step_s in ((0.9e-3, 1e-3), (1.1e4, 1.0), (1.0, 0.9e-3), (1.0, 1.1e4)):
+        with pytest.raises(InputError, match=r"must be >= 0.001 and <= 10000 \(s\)"):
+            network_report(damped, log_period_s=period_s, law_step_s=step_s)

@@ -10,6 +10,7 @@ import pytest
 from navcore.analysis.whole_system import (
     EARTH_MODE,
     SCHULER_MODE,
+    _nearest,
     duration,
     feedback_gains,
     growth_over_latitude,
@@ -138,3 +139,11 @@ def test_only_the_24_h_mode_is_explained_by_the_slope() -> None:
     unstable = whole_system(network('id = "pole2", xi = 0.05, variant = "as_printed"'), "external", 0.8)
     others = [text for text in unstable.warnings if "24 h mode" not in text]
     assert others and all("H'(0)" not in text for text in others)
+
+
+def test_values_join_the_targets_that_are_closest_for_their_size() -> None:
+    """Of 1 % off at 100 and 10 % off at 1 the first is closer, though ten times further in value."""
+    assert _nearest(np.array([1.0 + 0j, 100.0]), np.array([90.0 + 0j, 1.2, 99.2])) == [1, 2]
+    assert _nearest(np.array([1.0 + 0j, 1.1]), np.array([1.08 + 0j, 20.0])) == [1, 0]
+    # apart by 30 of 130 and by 2 of 4: the large value has the target, though the small one is nearer to it
+    assert _nearest(np.array([1.0 + 0j, 50.0]), np.array([20.0 + 0j, 1000.0])) == [1, 0]

@@ -1,0 +1,29 @@
+"""Changes that nothing can notice, as `equivalent.toml` lists them with their reasons."""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache
+from pathlib import Path
+
+from tests.mutation.mutants import Mutant
+
+_HERE = Path(__file__).resolve()
+
+
+@cache
+def listed() -> tuple[dict[str, str], ...]:
+    """Read the list."""
+    return tuple(tomllib.loads(_HERE.with_suffix(".toml").read_text("utf-8"))["change"])
+
+
+def is_equivalent(mutant: Mutant) -> bool:
+    """Whether a change is in the list."""
+    return any(
+        entry["file"] == mutant.file and entry["what"] == mutant.what and entry["where"] in _line(mutant)
+        for entry in listed()
+    )
+
+
+def _line(mutant: Mutant) -> str:
+    return (_HERE.parents[2] / mutant.file).read_text("utf-8").splitlines()[mutant.line - 1]
