@@ -14,6 +14,8 @@ import viser
 from viser import _gui_api as viser_gui
 from viser import _messages as messages
 
+from app.bridge.curves import same_numbers
+
 _FREE, _GREYED = "_schuler_free", "_schuler_greyed"
 """Marks on a client's gui: ids that a locked page may still use, and those that the lock has disabled."""
 
@@ -141,7 +143,7 @@ def show_numbers(plot: viser.GuiUplotHandle, data: tuple[np.ndarray, ...]) -> No
     single = in_single(data)
     props: Any = plot._impl.props
     held = props.data
-    if len(held) == len(single) and all(map(_same, held, single)):
+    if len(held) == len(single) and all(map(same_numbers, held, single)):
         return
     props.data = single
     plot._queue_update("data", single)
@@ -150,10 +152,6 @@ def show_numbers(plot: viser.GuiUplotHandle, data: tuple[np.ndarray, ...]) -> No
 def in_single(data: tuple[np.ndarray, ...]) -> tuple[np.ndarray, ...]:
     """Numbers as float32: a plot that is made with them shows the same ones as one that they are sent to."""
     return tuple(np.asarray(values, dtype=np.float32) for values in data)
-
-
-def _same(one: np.ndarray, other: np.ndarray) -> bool:
-    return np.array_equal(one, other, equal_nan=True)
 
 
 def set_slider_range(

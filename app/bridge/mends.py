@@ -1,9 +1,9 @@
-"""What viser is mended in: a page's queue and language, the callbacks' threads, the handles' types."""
+"""What viser is mended in: a page's queue, its language and curves; the callbacks' threads; types."""
 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import AsyncGenerator, Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, get_type_hints
@@ -13,6 +13,7 @@ from viser._assignable_props_api import AssignablePropsBase
 from viser.infra import _infra
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
+from app.bridge.curves import shortened
 from app.bridge.pool import FairPool
 from app.bridge.texts import Translator
 
@@ -51,6 +52,14 @@ class MendedBuffer(AsyncMessageBuffer):
     def push(self, message: Any) -> None:
         """Queue a message, in the page's language."""
         super().push(message if self.translator is None else self.translator.message(message))
+
+    def window_generator(
+        self, client_id: int, backlog_done_message: Any = None
+    ) -> AsyncGenerator[Sequence[Any], None]:
+        """Take out what is to be sent; of the curves that the page has, nothing (`app.bridge.curves`)."""
+        windows = super().window_generator(client_id, backlog_done_message)
+        # What is queued for all pages is kept for those to come: it stays as it is.
+        return windows if self.persistent_messages else shortened(windows)
 
 
 def mend_queues() -> None:

@@ -1,8 +1,8 @@
-// What a page's controls say to the server. viser's page sends at most one value in 30 ms, whichever control it comes from,
+// The way between page and server. viser's page sends at most one value in 30 ms, whichever control it comes from,
 // and drops what comes between: of two controls changed at once one is lost. Here each control keeps its newest value
 // until it is sent, and nothing is dropped. viser's websocket lives in a worker, which takes what it is to send as
 // messages; the worker is found when viser makes it. Leans on viser's page, as pinned: app/bridge/program.py puts
-// `schuler.send` into it, and tests/attack/test_viser_insides.py looks for both messages of the worker.
+// `schuler.send` into it, and tests/attack/test_viser_insides.py looks for the messages to and from the worker.
 (() => {
   const PERIOD_MS = 30;
   const Plain = window.Worker;
@@ -11,6 +11,15 @@
   let resting = false;
 
   window.Worker = class extends Plain {
+    constructor(...given) {
+      super(...given);
+      // Before viser's program listens: what our scripts change in a message, it finds changed.
+      this.addEventListener("message", ({ data }) => {
+        if (data?.type === "connected") window.dispatchEvent(new Event("connected"));
+        if (data?.type === "message_batch") window.dispatchEvent(new CustomEvent("arrived", { detail: data.messages }));
+      });
+    }
+
     postMessage(data, ...rest) {
       if (data?.type === "set_server") {
         socket = this;
