@@ -79,14 +79,19 @@ class _Room:
         first, others = ([f for word in words for f in _test_files(tree, word)] for words in ROOMS[room])
         self.tiers = (first, [file for file in dict.fromkeys(others) if file not in first])
         self.interpreted = [f for word in INTERPRETED[room] for f in _test_files(tree, word)]
-        self.digest, self.closures = json.loads(in_fork(lambda out: json.dump(_kernels(tree), out), 300.0))
-        self.modules = {module for _, modules in self.closures.values() for module in modules}
+        self.digest, self.closures = self._kernels()
         everything = [*first, *others]
         in_fork(lambda out: self._tests(everything, None, False, collect_only=True), 300.0)
         self.killers = Counter(
             found["by"].partition("[")[0] for found in kept.results().values() if found["room"] == room
         )
         self.baselines: dict[bool, dict[str, float]] = {}
+
+    def _kernels(self) -> tuple[str, Closures]:
+        """Digest and closures of the tree's kernels as they are; none of one that cannot be read."""
+        answer = in_fork(lambda out: json.dump(_kernels(self.tree), out), 300.0)
+        digest, closures = json.loads(answer) if answer else ("", {})
+        return digest, {name: (of, modules) for name, (of, modules) in closures.items()}
 
     def run(self, drawn: list[Mutant], again: bool, end: float) -> None:
         """Make each change that was not made yet, and keep what became of it."""
@@ -107,13 +112,12 @@ class _Room:
         """Change the tree and run the tests; a kernel is first judged as Python, which needs no compiler."""
         path = self.tree / mutant.file
         before = path.read_text("utf-8")
-        module = mutant.file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
-        stages = [(files, False) for files in self.tiers]
-        if module in self.modules:
-            stages = [(self.interpreted, True), *(stages if self.compiles else [])]
         fate, by = "survived", ""
         try:
             path.write_text(changed(before, mutant.place), "utf-8")
+            stages = [(files, False) for files in self.tiers]
+            if self._kernels()[1] != self.closures:
+                stages = [(self.interpreted, True), *(stages if self.compiles else [])]
             for files, interpret in stages:
                 fate, by = self._judge(files, interpret)
                 if fate != "survived":

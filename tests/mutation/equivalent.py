@@ -17,11 +17,11 @@ def listed() -> tuple[dict[str, str], ...]:
     return tuple(tomllib.loads(_HERE.with_suffix(".toml").read_text("utf-8"))["change"])
 
 
-def is_equivalent(mutant: Mutant) -> bool:
-    """Whether a change is in the list."""
+def is_equivalent(mutant: Mutant, entries: tuple[dict[str, str], ...] | None = None) -> bool:
+    """Whether a change is among the entries, those of the list unless told."""
     return any(
         entry["file"] == mutant.file and entry["what"] == mutant.what and entry["where"] in _line(mutant)
-        for entry in listed()
+        for entry in (listed() if entries is None else entries)
     )
 
 

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 import random
 from pathlib import Path
 from typing import Any
+
+from scipy.stats import binomtest
 
 from tests.mutation.equivalent import is_equivalent
 from tests.mutation.mutants import Mutant, mutants_of
 
 ROOT = Path(__file__).resolve().parents[2]
-_NORMAL_95 = 1.959964
 
 
 def every(room: str) -> list[Mutant]:
@@ -54,14 +54,6 @@ class Kept:
             out.write(json.dumps(line) + "\n")
 
 
-def wilson(hits: int, n: int) -> tuple[float, float]:
-    """95 % interval of a share (Wilson)."""
-    p, z = hits / n, _NORMAL_95
-    middle = (p + z * z / (2 * n)) / (1 + z * z / n)
-    half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-    return middle - half, middle + half
-
-
 def tell_scores(samples: dict[str, list[Mutant]], kept: Kept) -> None:
     """Print how many changes a test noticed, of each room and in all; then the survivors."""
     results = kept.results()
@@ -84,6 +76,6 @@ def tell_scores(samples: dict[str, list[Mutant]], kept: Kept) -> None:
 def _score(name: str, noticed: int, equal: int, made: int) -> str:
     if made == equal:
         return f"{name}: none made"
-    low, high = wilson(noticed, made - equal)
+    low, high = binomtest(noticed, made - equal).proportion_ci(method="wilson")
     text = f"{name}: noticed {noticed} of {made - equal}, {100.0 * noticed / (made - equal):.1f} %"
     return f"{text}, 95 % interval {100.0 * low:.1f} to {100.0 * high:.1f} %; {equal} equivalent left out"
