@@ -7,6 +7,7 @@ then Tol's muted set.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from html import escape
 from typing import Any
 
@@ -49,6 +50,11 @@ TITLE_SIZE = 14
 LINE_WIDTH = 2.0
 CURVE_WIDTH = 1.5
 """Of time curves: noise drawn any wider hides what lies below it."""
+
+_BOLD_PX = 7.4
+"""Mean width of a letter in a panel's title."""
+_BETWEEN_PX = 32.0
+"""Half the room between two columns of plots for the labels of an axis."""
 
 UPLOT_CSS = (
     ".uplot .u-legend{font-size:13px;margin:0;text-align:left;padding-left:58px}"
@@ -153,6 +159,17 @@ def legend_rows(names: list[str], width_px: float) -> int:
             rows, used = rows + 1, 0.0
         used += need
     return rows
+
+
+def column(inner_px: float) -> float:
+    """Share of a figure's inner width that each of two columns may take: axis labels stand between them."""
+    return min(0.44, 0.5 - _BETWEEN_PX / max(inner_px, 4.0 * _BETWEEN_PX))
+
+
+def fitting(titles: Sequence[str], room_px: float) -> str:
+    """Return the first of some panel titles, the longest first, that has room; else the last."""
+    fits = (title for title in titles if len(title) * _BOLD_PX <= room_px)
+    return next(fits, titles[-1])
 
 
 def panel_title(content: str, suffix: str = "", shift_px: float = 13.0) -> dict[str, Any]:

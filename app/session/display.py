@@ -66,6 +66,8 @@ class Display(BaseModel):
         The baseline is shown in the place of the present run.
     theme : str
         Of the whole page.
+    size : str
+        Of type and lines; "presentation": readable from the back of a room, with few controls.
     budget : str
         The error budget shown: of the steady state of one level channel, or of the whole run.
     objective : str
@@ -103,6 +105,7 @@ class Display(BaseModel):
     window_to_h: Annotated[float | None, Field(ge=0.0, le=1e5)] = None
     flipped: bool = False
     theme: Literal["light", "dark"] = "light"
+    size: Literal["normal", "presentation"] = "normal"
     budget: Literal["steady", "run"] = "steady"
     objective: Literal["tilt_rms", "velocity_rms", "position_rms", "heading_rms", "settling_s"] = "tilt_rms"
 

@@ -43,7 +43,7 @@ class Column:
             lower = self._gui.add_panel()
             lower.dock_below(upper)
             self._panels.append(lower)
-        upper.set_width(layout.right_px)
+        upper.set_width(round(layout.right_px * layout.scale))
         self._stale = set(self._pictured)
         for view in self._views:
             if view.always:

@@ -74,6 +74,11 @@ class HeaderPanel:
             f"{'<br>'.join(line for line in lines if line)}</div>"
         )
 
+    def fold(self, folded: bool) -> None:
+        """Hide or show the chooser of the scenario."""
+        if self._scenario.visible == folded:
+            self._scenario.visible = not folded
+
     def show_run(self, run: Run, number: int, *, outdated: bool, frame_ms: float) -> None:
         """Say which run the pictures show."""
         ended = {"ok": "", "diverged": ", diverged", "stopped": ", stopped"}[run.status]

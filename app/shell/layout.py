@@ -19,6 +19,11 @@ _MARGIN_PX = 18
 """Above and below a panel's content."""
 _LOOK_PX = 21
 """The line at the top of a tab that says what to look for."""
+_PRESENTED_PX = 560.0
+"""Height for which a page in presentation size is laid out: it is enlarged to the window's."""
+_TABS_PX = 28
+"""A second row of tabs in its column."""
+_LEAST_SCALE, _MOST_SCALE = 1.25, 4.0
 CHOOSER_PX = 36
 """A chooser above a plot."""
 TOOLS = '<div class="sb-tools"></div>'
@@ -27,10 +32,12 @@ TOOLS = '<div class="sb-tools"></div>'
 
 @dataclass(frozen=True)
 class Layout:
-    """Sizes in CSS pixels.
+    """Sizes in CSS pixels, before the page is enlarged.
 
     Attributes
     ----------
+    scale : float
+        By which type, lines and all sizes are enlarged; 1 but in presentation size.
     wide : bool
         Two panels above each other; else one.
     left_px, right_px : int
@@ -49,26 +56,43 @@ class Layout:
     plot_px: int
     room_px: int
     view_px: tuple[int, int]
+    scale: float = 1.0
 
     def aspect(self, taken_px: int = 0) -> float:
         """Height / width of a plot that fills the panel, ``taken_px`` being used by something else."""
         return max(self.room_px - taken_px, 160) / self.plot_px
 
 
-def layout_for(width: int, height: int) -> Layout:
+def layout_for(width: int, height: int, *, presentation: bool = False) -> Layout:
     """Arrange the page for a window of this size (CSS pixels).
+
+    In presentation size a text is as high in every window, as a part of the window's height.
 
     Examples
     --------
     >>> layout_for(1920, 1080).wide, layout_for(1366, 768).wide
     (True, False)
+    >>> layout_for(1280, 720, presentation=True).scale, layout_for(1920, 1080, presentation=True).scale
+    (1.29, 1.93)
     """
+    if presentation:
+        return _presented(width, height)
     wide = width >= WIDE_FROM_PX
     left = 360 if width >= 1500 else 340 if width >= 1300 else 320
     right = width // 2 if wide else max(360, min(round(0.5 * width), width - left - 260))
     room = (height // 2 if wide else height) - _CHROME_PX[wide] - _MARGIN_PX - _LOOK_PX
     view = max(width - left - right, 120), height
     return Layout(wide, left, right, right - _COLUMN_PADDING_PX, max(room, 200), view)
+
+
+def _presented(width: int, height: int) -> Layout:
+    """One column of plots, and a narrow one for the few controls."""
+    scale = round(min(max(height / _PRESENTED_PX, _LEAST_SCALE), _MOST_SCALE), 2)
+    across, down = int(width / scale), int(height / scale)
+    left, right = min(300, round(0.3 * across)), round(0.48 * across)
+    room = down - _CHROME_PX[False] - _TABS_PX - _MARGIN_PX
+    view = max(across - left - right, 120), down
+    return Layout(False, left, right, right - _COLUMN_PADDING_PX, max(room, 200), view, scale)
 
 
 def read_state(text: str) -> tuple[tuple[int, int] | None, tuple[str, ...]]:

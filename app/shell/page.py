@@ -27,7 +27,7 @@ from app.shell.commands import Commands
 from app.shell.editor import Editor
 from app.shell.following import Following
 from app.shell.header import HeaderPanel
-from app.shell.layout import layout_for, read_state
+from app.shell.layout import Layout, layout_for, read_state
 from app.shell.opening import Opening
 from app.shell.pace import Pace
 from app.shell.palette import Palette
@@ -95,14 +95,15 @@ class Page:
             camera = self.client.camera
             self._window = (max(camera.image_width, 1280), max(camera.image_height, 720))
         with session.lock, self.client.atomic():
-            self._layout = layout_for(*self._window)
+            self._layout = self.wanted_layout()
             gui.main_panel.dock_left()
-            gui.main_panel.set_width(self._layout.left_px)
+            gui.main_panel.set_width(round(self._layout.left_px * self._layout.scale))
             self._make_views(kinds)
             self._run_element = gui.add_html("", order=2)
             self._heard = gui.add_html("", order=3)
             self._picture = gui.add_html("", order=3)
             self.refresh()
+            self._fold()
             for view in self._views:
                 view.follow_display()
             self.commands.show()
@@ -193,16 +194,21 @@ class Page:
     def display_changed(self, by: object) -> None:
         """Draw the pictures in front as the session's display says."""
         del by
+        self._arrange(keeping_front=True)
         with self.session.lock, self.client.atomic():
             if self._closed:
                 return
             found = shown(self.session)
+            self._fold()
             for view in self._views:
                 view.follow_display()
                 if found is not None:
                     view.draw(found)
         self.client.flush()
         self._again_pictures()
+
+    def _fold(self) -> None:
+        self.header.fold(self.session.display.size == "presentation")
 
     def run_progressed(self, fraction: float, elapsed_s: float) -> None:
         """Mark the picture as old once a run takes its time."""
@@ -374,16 +380,28 @@ class Page:
         if told is not None:
             self._pace.told(int(told[1]), moving=told[2] == "1")
 
-    def _arrange(self) -> None:
-        """Lay the results out anew if the window has another size now."""
+    def wanted_layout(self) -> Layout:
+        """Sizes for the window as it is, and as large as the session's display says."""
+        return layout_for(*self._window, presentation=self.session.display.size == "presentation")
+
+    def _arrange(self, *, keeping_front: bool = False) -> None:
+        """Lay the results out anew if the window, or what stands in it, has another size now.
+
+        The page is asked to keep the tabs in front where it tells of nothing new by itself.
+        """
         with self.session.lock, self.client.atomic():
-            layout = layout_for(*self._window)
+            layout = self.wanted_layout()
             if self._closed or layout == self._layout:
                 return
             self._layout = layout
-            self.gui.main_panel.set_width(layout.left_px)
+            self.gui.main_panel.set_width(round(layout.left_px * layout.scale))
             self.column.build(layout)
-            self._front = frozenset()
+            if keeping_front:
+                self._heard.content = ""
+                front = [view.title for view in self._views if view.title in self._front]
+                self.commands.ask_page("front", "|".join(front))
+            else:
+                self._front = frozenset()
             for view in self._views:
                 view.follow_scenario()
                 view.follow_display()

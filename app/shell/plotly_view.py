@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
+from app.plots.enlarged import enlarged
 from app.plots.pinned import restyled, together
 from app.plots.plotly_data import PlotlyFigure
 from app.session.shown import Shown
@@ -64,7 +65,7 @@ class PlotlyView(PictureView[PlotlyFigure]):
         figure = self.figure(together(found.run, found.pins), found)
         restyled(figure, found.run, found.pins)
         figure["layout"]["meta"] = figure["layout"]["meta"] | {"run": found.number, "view": self.title}
-        return figure
+        return enlarged(figure, self.frame.layout().scale)
 
     def show(self, picture: PlotlyFigure) -> None:
         """Send the figure."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from app.bridge.controls import in_single, show_numbers
 from app.plots import style
+from app.plots.enlarged import enlarged_time_plot
 from app.plots.uplot import UplotFigure
 from app.shell.layout import CHOOSER_PX, Layout
 from app.shell.view import Tab
@@ -26,23 +27,25 @@ class Stack:
         self._gui, self._tab = gui, tab
         self._held: dict[str, tuple[tuple[Any, ...], viser.GuiUplotHandle]] = {}
 
-    def show(self, figures: Sequence[UplotFigure], heights: Sequence[int], labelled: int) -> None:
-        """Show these plots; the last ``labelled`` ones carry the time axis."""
+    def show(
+        self, figures: Sequence[UplotFigure], heights: Sequence[int], labelled: int, scale: float = 1.0
+    ) -> None:
+        """Show these plots, enlarged by ``scale``; the last ``labelled`` ones carry the time axis."""
         keys = [figure.key for figure in figures]
         for key in [key for key in self._held if key not in keys]:
             self._held.pop(key)[1].remove()
         for order, (figure, height) in enumerate(zip(figures, heights, strict=True)):
-            self._show(figure, order, height, last=order >= len(figures) - labelled)
+            self._show(figure, order, height, scale, last=order >= len(figures) - labelled)
 
-    def _show(self, figure: UplotFigure, order: int, height: int, *, last: bool) -> None:
-        config = (*figure.config_key(), order, height, last)
+    def _show(self, figure: UplotFigure, order: int, height: int, scale: float, *, last: bool) -> None:
+        config = (*figure.config_key(), order, height, last, scale)
         held = self._held.get(figure.key)
         if held is not None and held[0] == config:
             show_numbers(held[1], figure.data)
             return
         if held is not None:
             held[1].remove()
-        arguments = figure.kwargs(height=height, time_axis=last, legend=False)
+        arguments = enlarged_time_plot(figure.kwargs(height=height, time_axis=last, legend=False), scale)
         arguments["data"] = in_single(figure.data)
         with self._tab:
             self._held[figure.key] = config, self._gui.add_uplot(**arguments, order=10 + order)

@@ -125,6 +125,11 @@ class View:
         """Make the widgets; again when the page is laid out anew and the old ones have gone."""
 
     @property
+    def leads(self) -> int:
+        """Rank among the left tabs in presentation size, where the highest one stands alone."""
+        return 0
+
+    @property
     def controls(self) -> Sequence[Control]:
         """Its controls of fields."""
         return ()

@@ -17,7 +17,6 @@ from app.bridge.server import pool_of
 from app.session.display import Display
 from app.session.session import first_editable
 from app.session.sessions import first_scenario
-from app.shell.layout import layout_for
 from app.shell.page import Page as OpenPage
 from navcore.scenario.file import load
 from tests.browser import scripts
@@ -288,8 +287,7 @@ class Bench:
         views = [view for view in self._pages if view._front]
         for _ in range(3000):
             if all(
-                view._layout == layout_for(*view._window) and not view.column.stale(view._front)
-                for view in views
+                view._layout == view.wanted_layout() and not view.column.stale(view._front) for view in views
             ):
                 break
             self.page.wait_for_timeout(10)

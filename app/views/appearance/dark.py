@@ -29,7 +29,7 @@ class DarkPage:
         """Make the switch, in the present container."""
         gui = self._frame.gui
         gui.add_html(notices.heading("Page"), order=30)
-        told = "Dark: for a dim room. Light: for a projector and print. Key: D. Larger print: Ctrl and +."
+        told = "Dark: for a dim room. Light: for a projector and print. Key: D."
         self._switch = gui.add_checkbox(DARK, False, hint=told, order=31)
         self._switch.on_update(if_user(lambda: self._choose(self._switch.value)))
 

@@ -1,4 +1,4 @@
-"""Tab "View": units, axes and bands of the plots, export of any plot, language, light or dark page."""
+"""Tab "View": units, axes and bands of the plots, export of any plot, language, look and size of the page."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from app.shell.view import Tab, View, if_user
 from app.views.appearance.dark import DarkPage
 from app.views.appearance.export import FORMATS, Export
 from app.views.appearance.language import PageLanguage
+from app.views.appearance.presentation import PresentationSize
 
 _CHOICES = {
     "angles in": ("angle", "Unit of tilts and headings in the plots over time, the spectrum and the table."),
@@ -37,6 +38,7 @@ class AppearanceView(View):
         """Make the widgets."""
         gui, export = self.frame.gui, Export(self.frame)
         self._dark, language = DarkPage(self.frame), PageLanguage(self.frame)
+        self._size = PresentationSize(self.frame)
         self._choosers: dict[str, Any] = {}
         with tab:
             gui.add_html(notices.heading("Units and axes"), order=0)
@@ -63,6 +65,7 @@ class AppearanceView(View):
             )
             language.build()
             self._dark.build()
+            self._size.build()
         self._bands.on_update(if_user(lambda: self.frame.show(envelope=_BANDS[self._bands.value])))
         format.on_click(
             lambda event: export.save(plot.value, event.target.value) if event.client is not None else None
@@ -81,7 +84,12 @@ class AppearanceView(View):
             chooser.value = getattr(display, field)
         self._bands.value = next(word for word, key in _BANDS.items() if key == display.envelope)
         self._dark.show(display)
+        self._size.show(display)
         self.follow_jobs()
+
+    def follow_scenario(self) -> None:
+        """Let the tab that leads now stand alone in presentation size: a lesson may have been opened."""
+        self._size.show(self.session.display)
 
     def follow_jobs(self) -> None:
         """Show how far the bands are, or why there are none."""

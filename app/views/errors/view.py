@@ -101,11 +101,12 @@ class ErrorsView(PictureView[ErrorCurves]):
 
     def show(self, picture: ErrorCurves) -> None:
         """Show the plots that are chosen, below their legend."""
-        room, plots = room_px(self.frame.layout(), picture.names), list(picture.plots.values())
+        layout, plots = self.frame.layout(), list(picture.plots.values())
+        room = room_px(layout, picture.names)
         abreast = 2 if picture.two_abreast else 1
         heights = [each for each in stack_heights(room, len(plots) // abreast) for _ in range(abreast)]
         self._legend.content = (_TWO if picture.two_abreast else "") + picture.legend
-        self._stack.show(plots, heights, labelled=abreast)
+        self._stack.show(plots, heights, labelled=abreast, scale=layout.scale)
 
     def figures(self, found: Shown, plot: str) -> Figures:
         """Make the plot of one quantity: of the run, or of its verification."""

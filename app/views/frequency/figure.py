@@ -34,8 +34,7 @@ _MOST_DECADES = 8.0
 _BOLD_PX = 7.8
 """Mean width of a letter in a title."""
 _LONGEST_SILENCE = 22
-_COLUMN = 0.44
-_LEAST_COLUMN_PX = 240.0
+_LEAST_COLUMN_PX, _SMALL_COLUMN_PX = 240.0, 200.0
 _REFERENCE = {
     "legendgroup": "reference",
     "line": {"color": style.INK, "width": style.LINE_WIDTH, "dash": "dash", "simplify": False},
@@ -232,11 +231,12 @@ def _layout(
 ) -> dict[str, Any]:
     names = [m.method.name for m in run.methods]
     rows = style.legend_rows([*names, *also], width_px - 84.0)
-    column_px = _COLUMN * (width_px - 84.0)
+    share = style.column(width_px - 84.0)
+    column_px = share * (width_px - 84.0)
     annotations = [
         _title("x domain", "<b>Damping network H(jω)</b>"),
         _title("x2 domain", _transfer_title(view, silent, column_px)),
-        *(note for axis in ("x", "x2") for note in _marker_labels(run, axis)),
+        *(note for axis in ("x", "x2") for note in _marker_labels(run, axis, column_px)),
     ]
     if len(silent) == len(names):
         annotations.append(
@@ -247,8 +247,8 @@ def _layout(
         margin={"l": 68, "r": 16, "t": 62, "b": 66 + 22 * rows},
         hovermode="x unified",
         legend=style.legend(),
-        xaxis=_omega_axis("y2", [0.0, _COLUMN], column_px),
-        xaxis2=_omega_axis("y4", [1.0 - _COLUMN, 1.0], column_px),
+        xaxis=_omega_axis("y2", [0.0, share], column_px),
+        xaxis2=_omega_axis("y4", [1.0 - share, 1.0], column_px),
         yaxis=_level_axis("|H|  (dB)", seen["y"]) | upper | {"anchor": "x"},
         yaxis2=_phase_axis(seen["y2"]) | lower | {"anchor": "x"},
         yaxis3=(_level_axis(view.unit, seen["y3"]) if _in_decibel(view) else _log_axis(view.unit, seen["y3"]))
@@ -358,10 +358,12 @@ def _marker_lines(run: Run, axis: str) -> list[dict[str, Any]]:
     ]
 
 
-def _marker_labels(run: Run, axis: str) -> list[dict[str, Any]]:
+def _marker_labels(run: Run, axis: str, column_px: float) -> list[dict[str, Any]]:
     """Labels above the plots; Foucault always lies left of 24 h, so it is written to the left."""
     notes = []
     for name, omega in natural_frequencies(run).items():
+        if name == "24 h" and column_px < _SMALL_COLUMN_PX:
+            continue  # no room between the two others
         period = duration(2.0 * math.pi / omega)
         content = name if name == "24 h" else f"{name}<br>{period}"
         anchor = {"24 h": "left", "Foucault": "right", "Schuler": "center"}[name]

@@ -58,6 +58,11 @@ class LearnView(View):
         self._section = Section(gui, tab, self.frame.editor.edit, 1.0)
 
     @property
+    def leads(self) -> int:
+        """An open lesson has what a lecture needs."""
+        return 0 if self._lesson is None else 2
+
+    @property
     def controls(self) -> list[Control]:
         """The sliders of the lesson."""
         return list(self._section.controls.values())
@@ -80,8 +85,11 @@ class LearnView(View):
         if act is None or (rest and not rest.strip()) or (what in ("open", "step") and not rest.isdigit()):
             return
         with self.session.lock, self._lock:
+            led = self.leads
             act()
             self._show(None)
+            if led != self.leads:
+                self.frame.refresh()
 
     def _go(self, lesson: int | None, step: int) -> None:
         if lesson is not None and not (lesson < len(lessons()) and 0 <= step < len(lessons()[lesson].steps)):

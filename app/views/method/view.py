@@ -84,6 +84,7 @@ class MethodView(View):
         buttons.on_click(
             lambda event: self._arrange(event.target.value) if event.client is not None else None
         )
+        self._arranging = buttons, clipboard
         ask = self.frame.commands.run
         clipboard.on_click(if_user(lambda: ask(COPY_METHOD if clipboard.value == COPY_TEXT else PASTE)))
         places = {
@@ -96,6 +97,11 @@ class MethodView(View):
         }
         self.sections = {name: Section(gui, tab, edit, order) for name, order in places.items()}
         self._tuning = TuningPanel(self.frame, tab, order=95.0)
+
+    @property
+    def leads(self) -> int:
+        """A method is what one varies where no lesson is open."""
+        return 1
 
     @property
     def controls(self) -> list[Control]:
@@ -122,6 +128,11 @@ class MethodView(View):
         scenario, index = self.session.scenario, self.session.selected
         self._show(scenario, index, self.frame.editor.moved)
         self._show_warnings(self.session.run, scenario, index)
+
+    def follow_display(self) -> None:
+        """Leave what arranges the methods to the normal size: a lecture moves their parameters."""
+        for buttons in self._arranging:
+            buttons.visible = self.session.display.size == "normal"
 
     def follow_jobs(self) -> None:
         """Show how far the search for a damping table is."""

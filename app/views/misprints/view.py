@@ -6,6 +6,7 @@ import threading
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, cast
 
+from app.plots.enlarged import enlarged
 from app.shell.layout import CHOOSER_PX
 from app.shell.view import Frame, Tab, View, if_user
 
@@ -89,6 +90,7 @@ class MisprintsView(View):
         aspect = layout.aspect(2 * CHOOSER_PX + words + _BETWEEN_PX)
         made = comparison_plot(comparison, shown, aspect, width_px=float(layout.plot_px))
         made["layout"]["meta"] |= {"misprint": id, "shown": shown}
+        made = enlarged(made, layout.scale)
         if self._plot is not None:
             self._plot.figure = cast(Any, made)
             return

@@ -37,6 +37,11 @@ _GAP = 0.09
 _PICK = {"command": COMMAND, "panels": (("xaxis", "yaxis"), ("xaxis2", "yaxis2"))}
 """What pick.js does with a click: it is a wanted pole, in units of the Schuler frequency."""
 _KEYS = ("closed-loop pole", "zero of H")
+_TITLES = {
+    "": ("All closed-loop poles (┊ settling time)", "All closed-loop poles", "All poles"),
+    "2": ("Near the Schuler frequency", "Near Schuler"),
+}
+"""Title of each panel, then shorter ones for smaller panels."""
 
 
 def poles(
@@ -82,9 +87,9 @@ def poles(
         for i, (method, (roots, zeros)) in enumerate(zip(run.methods, marks, strict=True)):
             data += _method_marks(method, i, roots, zeros, suffix)
     data += _key_entries()
-    layout = _layout(panels, margin, aspect, locus_note(run, selected, locus))
-    layout["annotations"] += _far_zeros([zeros for _, zeros in marks], panels[""][0][0])
     width = 0.5 * (1.0 - _GAP) * (width_px - margin["l"] - margin["r"])
+    layout = _layout(panels, margin, aspect, locus_note(run, selected, locus), width)
+    layout["annotations"] += _far_zeros([zeros for _, zeros in marks], panels[""][0][0])
     for suffix, (re, im) in panels.items():
         layout["annotations"] += settling_labels(suffix, re, run.scenario.omega_s, width)
         layout["shapes"] += settling_shapes(suffix, re, run.scenario.omega_s, width)
@@ -189,12 +194,16 @@ def _key_entries() -> list[dict[str, Any]]:
 
 
 def _layout(
-    panels: dict[str, tuple[Interval, Interval]], margin: dict[str, int], aspect: float, locus: str
+    panels: dict[str, tuple[Interval, Interval]],
+    margin: dict[str, int],
+    aspect: float,
+    locus: str,
+    room_px: float,
 ) -> dict[str, Any]:
     made = style.layout(
         margin=margin, hovermode="closest", legend=style.legend(), meta={"aspect": aspect, "pick": _PICK}
     )
-    titles = {"": "All closed-loop poles (┊ settling time)", "2": "Near the Schuler frequency"}
+    titles = {suffix: style.fitting(texts, room_px) for suffix, texts in _TITLES.items()}
     half = 0.5 * (1.0 - _GAP)
     shapes: list[dict[str, Any]] = []
     notes: list[dict[str, Any]] = []

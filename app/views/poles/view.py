@@ -78,6 +78,7 @@ class PolesView(PlotlyView):
             hint="Sets the parameters of the selected method's network that give this pair, where it can.",
         )
         self._locus.on_update(if_user(self._choose))
+        self._placing = self._xi, self._ratio, button
         button.on_click(if_user(lambda: self._placer.typed(self._xi.value, self._ratio.value)))
 
     @property
@@ -107,6 +108,8 @@ class PolesView(PlotlyView):
         """Show whose poles and which parameter are chosen."""
         self._system.value = _system(self.session.display)
         self._decays.value = _decays(self.session.display)
+        for tool in self._placing:
+            tool.visible = self.session.display.size == "normal"  # a click into the map places, too
         self.follow_scenario()
 
     @property

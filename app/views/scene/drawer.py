@@ -53,6 +53,7 @@ class SceneDrawer:
         self._selected = 0
         self._past: dict[str, tuple[object, int]] = {}
         self._ghost: tuple[int, int, int] | None = None
+        self._scale = 1.0
         self.place: Place | None = None
         # Shadows and the environment map keep two cores busy under software rendering.
         scene.configure_default_lights(cast_shadow=False)
@@ -60,6 +61,15 @@ class SceneDrawer:
         scene.add_light_ambient("/light", intensity=1.4)
         self._make_sea()
         self._make_ship()
+
+    def enlarge(self, scale: float) -> None:
+        """Write labels larger by ``scale``, and draw lines wider, from the next `draw` on."""
+        if scale == self._scale:
+            return
+        self._scale = scale
+        for name in [name for name in self._nodes if name.count("/") > 1]:
+            self._nodes.pop(name).remove()
+        self._past.clear()
 
     def draw(self, track: TrackScene, time_s: float, selected: int = 0) -> None:
         """Show a run's map, the ships where they are at ``time_s``; ``selected`` has a computed one."""
@@ -203,7 +213,8 @@ class SceneDrawer:
         if node is not None:
             self._nodes.pop(name).remove()
         if len(points):
-            self._nodes[name] = self._scene.add_line_segments(name, points, color, thickness=thickness)
+            wide = thickness * self._scale**0.5  # the map itself is smaller on an enlarged page
+            self._nodes[name] = self._scene.add_line_segments(name, points, color, thickness=wide)
 
     def _texts(self, name: str, labels: tuple[SceneLabel, ...], size: float = _LABEL) -> None:
         for index, label in enumerate(labels):
@@ -217,7 +228,11 @@ class SceneDrawer:
         self._labels[name] = label
         if node is None:
             self._nodes[name] = self._scene.add_label(
-                name, label.text, position=label.position, font_screen_scale=size, anchor="top-center"
+                name,
+                label.text,
+                position=label.position,
+                font_screen_scale=size * self._scale,
+                anchor="top-center",
             )
             return
         if node.text != label.text:

@@ -166,7 +166,8 @@
     stage.style.top = `${Math.round(box.top)}px`;
     stage.style.width = `${wanted[2]}px`;
     stage.style.height = `${Math.round(box.height)}px`;
-    const small = box.width < 480;
+    const scale = Number(document.getElementById("sb-size")?.dataset.scale ?? 1);
+    const small = box.width < 480 * scale;
     if (small === stage.classList.contains("sb-small")) return;
     stage.classList.toggle("sb-small", small);
     const shown = stage.querySelectorAll('[data-shows][aria-pressed="true"]');

@@ -68,6 +68,7 @@ class SceneView(View):
         """Show the chosen factor."""
         factor = self.session.display.exaggeration
         self._factor.value = _FIT if factor is None else f"{factor:g}"
+        self._factor.visible = self.session.display.size == "normal"
 
     def follow_scenario(self) -> None:
         """Show the computed ship and the readout of the method that is edited now."""
@@ -82,6 +83,7 @@ class SceneView(View):
         display, layout = found.display, self.frame.layout()
         beside = max(2, int(_MAP_SHARE * layout.view_px[0] / _LABEL_PX))
         made = track(run, display.exaggeration, found.pins, display.state_of, beside)
+        self._scene.enlarge(layout.scale)
         self._scene.draw(made, state.time_s, selected)
         self._tell(state)
 

@@ -36,10 +36,16 @@ class _Disturbance:
     source: Source
     size: float
     words: str
+    short: tuple[str, str]
 
 
-_LOG = _Disturbance("dv_r", 1.0, "a log step of 1 m/s")
-_GYRO = _Disturbance("eps", 0.01 * DEG_PER_HOUR, "a gyro step of 0.01 °/h")
+_LOG = _Disturbance("dv_r", 1.0, "a log step of 1 m/s", ("Velocity error, log step", "Tilt, log step"))
+_GYRO = _Disturbance(
+    "eps", 0.01 * DEG_PER_HOUR, "a gyro step of 0.01 °/h", ("Velocity error, gyro step", "Tilt, gyro step")
+)
+_TILT = "Tilt after an initial tilt (◆ settled to 2 %)", "Tilt (◆ settled to 2 %)", "Tilt (◆ settled)"
+_NETWORK = "Step response of H itself", "Step response of H"
+"""Titles, shorter ones for smaller panels."""
 
 
 @dataclass(frozen=True)
@@ -218,17 +224,27 @@ def _layout(
     # room between the rows for tick labels, axis title and the title of the lower plot
     gap = 68.0 / max(aspect * width_px - margin["t"] - margin["b"], 150.0)
     upper, lower = [0.5 + 0.5 * gap, 1.0], [0.0, 0.5 - 0.5 * gap]
-    left, right = [0.0, 0.44], [0.56, 1.0]
+    inner_px = width_px - margin["l"] - margin["r"]
+    share = style.column(inner_px)
+    left, right = [0.0, share], [1.0 - share, 1.0]
+    room_px = share * inner_px
     loop_min, network_min = (span / MINUTE for span in spans_s)
     panels = (
-        ("", left, upper, loop_min, "Tilt after an initial tilt (◆ settled to 2 %)", "φ/φ<sub>0</sub>"),
-        ("2", right, upper, network_min, "Step response of H itself", "output / step"),
-        ("3", left, lower, loop_min, f"Velocity error after {cause.words}", f"δV ({units[0].name})"),
-        ("4", right, lower, loop_min, f"Tilt after {cause.words}", f"φ ({units[1].name})"),
+        ("", left, upper, loop_min, _TILT, "φ/φ<sub>0</sub>"),
+        ("2", right, upper, network_min, _NETWORK, "output / step"),
+        (
+            "3",
+            left,
+            lower,
+            loop_min,
+            (f"Velocity error after {cause.words}", cause.short[0]),
+            f"δV ({units[0].name})",
+        ),
+        ("4", right, lower, loop_min, (f"Tilt after {cause.words}", cause.short[1]), f"φ ({units[1].name})"),
     )
     made = style.layout(margin=margin, hovermode="x unified", legend=style.legend(), meta={"aspect": aspect})
     notes: list[dict[str, Any]] = []
-    for suffix, column, row, span_min, title, y_title in panels:
+    for suffix, column, row, span_min, titles, y_title in panels:
         made[f"xaxis{suffix}"] = style.axis(
             "time (min)",
             domain=column,
@@ -247,7 +263,7 @@ def _layout(
             zerolinecolor=style.REFERENCE,
             zerolinewidth=1,
         )
-        notes.append(style.panel_title(title, suffix))
+        notes.append(style.panel_title(style.fitting(titles, room_px), suffix))
     return made | {"annotations": notes, "shapes": [_settled_band()]}
 
 

@@ -79,8 +79,9 @@ class SwitchingView(PictureView[Switching]):
             self._above.value = picture.errors[_FIRST_ABOVE].title
         figures = [picture.errors[titles[self._above.value]], *picture.plots]
         self._legend.content = switching_legend(picture.run)
-        room = room_px(self.frame.layout(), legend_names(picture.run))
-        self._stack.show(figures, stack_heights(room, len(figures), _LEAST_PX), labelled=1)
+        layout = self.frame.layout()
+        heights = stack_heights(room_px(layout, legend_names(picture.run)), len(figures), _LEAST_PX)
+        self._stack.show(figures, heights, labelled=1, scale=layout.scale)
 
     def figures(self, found: Shown, plot: str) -> Figures:
         """Make the plots below the error curve."""
