@@ -6,6 +6,7 @@ import logging
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+from weakref import WeakKeyDictionary
 
 from pydantic import ValidationError
 
@@ -23,6 +24,7 @@ _LONGEST_NAME = 60
 _log = logging.getLogger("schuler.document")
 
 Document = dict[str, Any]
+_made: WeakKeyDictionary[Session, dict[int, tuple[Scenario, Document]]] = WeakKeyDictionary()
 Unreadable = (InputError, ValidationError, ValueError, TypeError, KeyError, IndexError, AttributeError)
 """What reading a document of strange content raises."""
 
@@ -51,32 +53,49 @@ def to_document(session: Session, *, whole: bool = True) -> Document:
         steps, at = ((state, ""),), 0
     first = max(0, at - STEPS_BACK)
     kept = steps[first : at + STEPS_FORWARD + 1]
-    scenarios: list[Document] = []
-    numbers: dict[int, int] = {}
+    scenarios = _Scenarios(_made.get(session, {}))
     baseline = next((index for index, pin in enumerate(shown, start=1) if pin.id == display.baseline), None)
+    listed = [_step(one, name, scenarios) for one, name in kept]
+    if whole:
+        _made[session] = scenarios.made
     return {
         "schema": SCHEMA,
         "id": session.id,
         "at": at - first,
-        "steps": [_step(one, name, scenarios, numbers) for one, name in kept],
-        "scenarios": scenarios,
+        "steps": listed,
+        "scenarios": [document for _, document in scenarios.made.values()],
         "display": display.model_dump(mode="json") | {"baseline": baseline},
         "pins": [pin | {"scenario": plain_names(pin["scenario"])} for pin in pins],
         "files": files,
     }
 
 
-def _step(state: State, name: str, scenarios: list[Document], numbers: dict[int, int]) -> Document:
-    """One state; scenarios that several states share are kept once."""
-    found = []
-    for scenario in (state.scenario, state.opened):
-        if id(scenario) not in numbers:
-            numbers[id(scenario)] = len(scenarios)
-            scenarios.append(plain_names(scenario.canonical()))
-        found.append(numbers[id(scenario)])
-    return {"scenario": found[0], "opened": found[1], "origin": state.origin, "selected": state.selected} | (
-        {"name": name} if name else {}
-    )
+class _Scenarios:
+    """Scenarios of a document, each once, in the order in which they are first met.
+
+    Parameters
+    ----------
+    before : dict
+        What the document before held: a session is written after every change, most of it as it was.
+    """
+
+    def __init__(self, before: dict[int, tuple[Scenario, Document]]) -> None:
+        self._before = before
+        self.made: dict[int, tuple[Scenario, Document]] = {}
+
+    def number(self, scenario: Scenario) -> int:
+        key = id(scenario)
+        if key not in self.made:
+            known, document = self._before.get(key, (None, {}))
+            if known is not scenario:
+                document = plain_names(scenario.canonical())
+            self.made[key] = scenario, document
+        return list(self.made).index(key)
+
+
+def _step(state: State, name: str, scenarios: _Scenarios) -> Document:
+    found = {"scenario": scenarios.number(state.scenario), "opened": scenarios.number(state.opened)}
+    return found | {"origin": state.origin, "selected": state.selected} | ({"name": name} if name else {})
 
 
 def restore(session: Session, document: Document) -> None:

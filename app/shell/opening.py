@@ -37,17 +37,18 @@ class Opening:
 
     def __init__(self, client: viser.ClientHandle, session: Session, refresh: Callable[[], None]) -> None:
         self._client, self._session, self._refresh = client, session, refresh
+        self._presets = tuple(presets())
 
     def scenarios(self) -> tuple[str, ...]:
         """Names to choose from."""
-        return (*presets(), *((UPLOADED,) if self._session.uploads.files else ()))
+        return (*self._presets, *((UPLOADED,) if self._session.uploads.files else ()))
 
     def choose_scenario(self, name: str) -> None:
         """Open a preset, or run on the uploaded recordings."""
         with self._session.lock, notices.told(self._client, f"{name} cannot be opened", self._refresh):
             if name == self._session.origin:
                 return
-            if name not in presets():
+            if name not in self._presets:
                 self.use_files()
                 return
             opened = load(name)

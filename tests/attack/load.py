@@ -9,6 +9,7 @@ import re
 import statistics
 import threading
 import time
+import urllib.request
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -21,7 +22,8 @@ if TYPE_CHECKING:
 
 WINDOW = "1920x1080|Method|Frequency|Errors|Scenario"
 ANSWER_S = 30.0
-LONG_RUN_H = 800.0
+LONG_RUN_H = 300.0
+"""Some seconds of computing, within the memory that a run may take."""
 _PER_PROCESS = 8
 _CHECKED_EVERY, _CHECKED_FIRST = 25, 7
 _ZETA = re.compile(r"zeta = ([0-9.]+)")
@@ -286,6 +288,9 @@ def _long_run(port: int, number: int, ended: Event) -> None:
         visitor.set(PAGE_STATE, WINDOW)
         visitor.wait(lambda: visitor.run_number >= 1, "its first run", 120.0)
         visitor.set("duration (h), exact", LONG_RUN_H)
+        visitor.rest(1.0)
+        if visitor.notices:
+            raise RuntimeError(f"the long run was refused: {visitor.notices[0]}")
         step = 0
         while not ended.is_set():
             visitor.rest(3.0)
@@ -293,8 +298,20 @@ def _long_run(port: int, number: int, ended: Event) -> None:
             visitor.set("zeta", round(0.5 + 0.001 * (step % 300), 3))
 
 
+def long_under_way(port: int) -> float:
+    """Long runs that wait or run, as ``/metrics`` tells."""
+    with urllib.request.urlopen(f"http://127.0.0.1:{port}/metrics", timeout=30.0) as answer:
+        found = re.findall(r"^schuler_(?:waiting|running)_long (\S+)$", answer.read().decode(), re.MULTILINE)
+    return sum(map(float, found))
+
+
 def beside(
-    order: Order, attack: Callable[..., None] | None, processes: int, settle_s: float, first: int
+    order: Order,
+    attack: Callable[..., None] | None,
+    processes: int,
+    settle_s: float,
+    first: int,
+    ready: Callable[[], None] = lambda: None,
 ) -> Seen:
     """What one visitor sees beside others who take what they can."""
     ended = _spawn.Event()
@@ -306,7 +323,7 @@ def beside(
         process.start()
     try:
         time.sleep(settle_s)
-        seen, _ = crowds(order, 1, first=first)
+        seen, _ = crowds(order, 1, first=first, ready=ready)
     finally:
         ended.set()
         for process in started:

@@ -23,6 +23,7 @@ import sys
 import threading
 import time
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 
 from app.bench.process import Server
@@ -36,6 +37,7 @@ from tests.attack.load import (
     flood_of_a_slider,
     flood_of_commands,
     long_runs,
+    long_under_way,
     pausing,
 )
 
@@ -192,9 +194,10 @@ def fairness(server: Server, arguments: argparse.Namespace) -> list[Row]:
     for number, (key, name, attack, processes) in enumerate(attacks):
         first = 600_000 + 20_000 * number
         alone = beside(order, None, 0, 0.0, first)
-        seen = beside(
-            order, attack, processes, 8.0 + 0.25 * arguments.long * (attack is long_runs), first + 10_000
-        )
+        settle_s = 8.0 + 0.25 * arguments.long * (attack is long_runs)
+        under_way: list[float] = []
+        ready = partial(_count_long, server.port, under_way)
+        seen = beside(order, attack, processes, settle_s, first + 10_000, ready)
         for hundredth in (50, 95):
             own, other = alone.quantile_ms(hundredth), seen.quantile_ms(hundredth)
             which = "median" if hundredth == 50 else "95th percentile"
@@ -202,8 +205,15 @@ def fairness(server: Server, arguments: argparse.Namespace) -> list[Row]:
             rows.append(Row(f"{key}_p{hundredth}", said, other / own, "", most=2.0))
         said = f"beside {name}: moves without an answer"
         rows.append(Row(f"{key}_lost", said, seen.lost, "", most=0, strict=True))
+        if attack is long_runs:
+            said, least = f"of {arguments.long} long runs, under way or waiting", 0.9 * arguments.long
+            rows.append(Row(f"{key}_count", said, under_way[0], "", None, least, strict=True))
         time.sleep(3.0)
     return rows
+
+
+def _count_long(port: int, counts: list[float]) -> None:
+    counts.append(long_under_way(port))
 
 
 def coming_and_going(server: Server, arguments: argparse.Namespace) -> list[Row]:
