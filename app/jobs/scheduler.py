@@ -2,7 +2,8 @@
 
 Three lanes for what is computed here. *Answers* are the short runs that follow a control: one a core, the
 visitors in turn. *Long* runs are those that are estimated to take a while: one a core but for one core, and
-they stand still while answers want the cores. *Spare* work (what dominates a run, envelopes, verification,
+they stand still while answers want as many cores: a run computes its methods side by side, and would leave
+an answer less than one. *Spare* work (what dominates a run, envelopes, verification,
 searches, pins after a restart) goes on only while nothing else does. A job stands still where it asks
 whether it is cancelled; so that none stands still for ever under lasting load, each gets a short turn after a
 while all the same. All jobs together are admitted by their estimated memory.
@@ -184,7 +185,7 @@ class Scheduler:
         active = [t for t in running if not t._still and t is not ticket]
         if mine is Lane.SPARE:
             return any(t.load.lane is not Lane.SPARE for t in active)
-        return sum(t.load.lane is not Lane.SPARE for t in active) >= self.cores
+        return sum(t.load.lane is not Lane.SPARE for t in active) >= self._most(mine)
 
     def _next(self, lane: Lane) -> Ticket | None:
         now_s = time.monotonic()

@@ -150,13 +150,14 @@ def test_what_was_taken_back_is_not_begun() -> None:
     assert line.began == ["first"]
 
 
+@pytest.mark.parametrize("cores", [1, 2])
 @pytest.mark.parametrize("lane", [Lane.LONG, Lane.SPARE])
 def test_a_long_job_stands_still_while_answers_want_the_core(
-    lane: Lane, monkeypatch: pytest.MonkeyPatch
+    lane: Lane, cores: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(module, "_TURN_S", 0.0)
     monkeypatch.setitem(module._PATIENCE_S, lane.value, 30.0)
-    line, ended, polls = Line(), threading.Event(), []
+    line, ended, polls = Line(cores), threading.Event(), []
 
     def work(job: str, watch: Watch) -> None:
         while not ended.is_set():
