@@ -45,12 +45,10 @@ class Searches:
         self.designer = Designer(self._tell, name=name)
         self.fronts = Fronts(self._tell, name=name)
 
-    def watch(self, changed: Callable[[], None], run: Run | None) -> None:
-        """Tell an open page whenever there is something new; ``run`` is what it shows."""
+    def watch(self, changed: Callable[[], None]) -> None:
+        """Tell an open page whenever there is something new."""
         with self._lock:
             self._watchers.append(changed)
-        if run is not None and not self.explainer.fits(run):
-            self.explainer.follow(run)
 
     def unwatch(self, changed: Callable[[], None]) -> None:
         """Forget a page that has gone; after the last one all searches end."""
@@ -68,11 +66,11 @@ class Searches:
         """The scenario has changed: the processors belong to its run."""
         self.explainer.cancel()
 
-    def ran(self, run: Run) -> None:
-        """A run is shown from now on."""
+    def explain(self, run: Run) -> None:
+        """Look for what dominates a run: a view that says so is in front and shows the run."""
         with self._lock:
             watched = bool(self._watchers)
-        if watched and not self.explainer.fits(run):
+        if watched and not self.explainer.follows(run):
             self.explainer.follow(run)
 
     def stop(self) -> None:

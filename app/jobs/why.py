@@ -1,4 +1,4 @@
-"""What dominates the run that is shown, found in the background once it has stood still for a moment."""
+"""What dominates a run whose metrics are looked at, found once it has stood still for a moment."""
 
 from __future__ import annotations
 
@@ -71,6 +71,11 @@ class Explainer:
         """Whether the result is of this run."""
         with self._lock:
             return self._of is run
+
+    def follows(self, run: Run) -> bool:
+        """Whether this run has been asked about last, or the result is of it."""
+        with self._lock:
+            return self._wanted is run or self._of is run
 
     def stop(self) -> None:
         """End the thread."""

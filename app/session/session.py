@@ -372,7 +372,6 @@ class Session:
             self.envelopes.follow(scenario, self.display.envelope)
             waiting = [] if self.outdated else self._after_run
             self._after_run = [act for act in self._after_run if act not in waiting]
-        self.searches.ran(run)
         self._tell(lambda view: view.run_ended())
         for act in waiting:
             act()

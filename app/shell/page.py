@@ -113,7 +113,7 @@ class Page:
         for view in self._views:
             view.resize()
         session.attach(self)
-        session.searches.watch(self._searches_changed, session.run)
+        session.searches.watch(self._searches_changed)
         if session.run is not None:
             self.run_ended()
         if session.waits:

@@ -93,7 +93,10 @@ def test_a_search_is_stopped(adaptive: Bench, monkeypatch: pytest.MonkeyPatch) -
 
 def test_why_is_said_once_the_run_stands_still(bench: Bench) -> None:
     bench.reset("zha-fast", selected=2)
-    bench.tab("Metrics", "Method")
+    bench.tab("Errors", "Method")
+    bench.press("xi")
+    assert not bench.session.searches.explainer.follows(bench.session.run), "nobody looks at it"
+    bench.tab("Metrics")
     page = bench.page
     page.wait_for_function(_WHY, arg="1")
     text = page.locator("#sb-why").inner_text()

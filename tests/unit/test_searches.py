@@ -100,19 +100,41 @@ def test_without_a_page_nothing_is_looked_for(finder: Finder) -> None:
     searches = Searches("test")
     searches.explainer._find = finder
     run: Any = object()
-    searches.ran(run)
+    searches.explain(run)
     assert not searches.explainer._worker.busy
     told: list[int] = []
     watch = lambda: told.append(1)  # noqa: E731
-    searches.watch(watch, run)
+    searches.watch(watch)
+    assert not searches.explainer._worker.busy, "nobody looks at it"
+    searches.explain(run)
     assert searches.explainer.wait_idle(5.0)
     assert told and searches.explainer.fits(run)
     finder.quick = False
     finder.begun.clear()
-    searches.ran(object())  # pyright: ignore[reportArgumentType]
+    searches.explain(object())  # pyright: ignore[reportArgumentType]
     assert finder.begun.wait(5.0)
     searches.unwatch(watch)
     assert searches.explainer.wait_idle(5.0)
+    searches.stop()
+
+
+def test_a_run_that_several_pages_show_is_looked_at_once(finder: Finder) -> None:
+    searches = Searches("test")
+    searches.explainer._find = finder
+    run: Any = object()
+    searches.watch(lambda: None)
+    finder.quick = False
+    searches.explain(run)
+    assert finder.begun.wait(5.0)
+    finder.begun.clear()
+    searches.explain(run)
+    finder.quick = True
+    assert searches.explainer.wait_idle(5.0)
+    searches.explain(run)
+    assert searches.explainer.wait_idle(5.0) and finder.asked == [run]
+    searches.changed()
+    searches.explain(another := object())  # pyright: ignore[reportArgumentType]
+    assert searches.explainer.wait_idle(5.0) and finder.asked == [run, another]
     searches.stop()
 
 

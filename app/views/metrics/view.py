@@ -93,11 +93,13 @@ class MetricsView(PictureView[tuple[str, str]]):
         return self._table_html(found), _warnings_html(found.run, found.verified)
 
     def show(self, picture: tuple[str, str]) -> None:
-        """Show table and warnings."""
+        """Show table and warnings; what dominates the run is looked for only now that they are in front."""
         table, warnings = picture
         narrow = "" if self.frame.layout().wide else " sb-narrow"
         self._table.content = f'<div class="sb-table{narrow}" style="padding:4px 10px">{table}</div>'
         self._warnings.content = warnings
+        if self.session.run is not None:
+            self.session.searches.explain(self.session.run)
 
     def _table_html(self, found: Shown) -> str:
         """Metrics of all methods, in as many tables below each other as the width asks for."""
