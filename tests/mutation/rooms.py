@@ -43,9 +43,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 
 INTERPRETED: dict[str, tuple[str, ...]] = {
     "law": ("test_control_*", "test_history"),
-    "mechanization": (
-        "test_strapdown_kernel", "test_error_model", "test_strapdown_every_sample", "test_kalman_method",
-    ),
+    "mechanization": ("test_strapdown_kernel", "test_error_model", "test_strapdown_batch", "test_alignment"),
     "sensors": ("test_imu*", "test_noise", "test_reference_*"),
     "analysis": (),
 }  # fmt: skip

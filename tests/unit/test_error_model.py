@@ -63,7 +63,7 @@ def _inputs(steps: int):
     nabla = rng.normal(0, 5e-4, (steps, 3))
     dv_r = rng.normal(0.2, 0.3, (steps + 1, 2))
     valid = np.ones(steps + 1, bool)
-    valid[300:360] = False
+    valid[steps // 3 : steps * 2 // 5] = False
     x0 = np.array([0.1, -0.2, 1e-5, 2e-5, 3e-4, -2e-4, 2e-3])
     return eps, nabla, dv_r, valid, x0
 
@@ -109,8 +109,9 @@ def _compiled(
     ],
     ids=["free", "complementary", "threshold", "compass-network", "internal", "feedback", "deng"],
 )
-def test_kernel_equals_twin_sample_by_sample(earth, damping, parameters, limit):
-    truth, inputs = _moving_truth(STEPS, 1.0), _inputs(STEPS)
+@pytest.mark.parametrize("steps", [40, STEPS])  # the mutation run makes the short one as Python
+def test_kernel_equals_twin_sample_by_sample(earth, damping, parameters, limit, steps):
+    truth, inputs = _moving_truth(steps, 1.0), _inputs(steps)
     omega_s = earth.schuler_frequency(LAT0)
     compiled = _compiled(truth, _law(damping, parameters, omega_s, limit, 1.0), earth, 1.0, inputs)
     law = None
@@ -122,7 +123,8 @@ def test_kernel_equals_twin_sample_by_sample(earth, damping, parameters, limit):
     assert np.all(np.abs(compiled - twin) <= 1e-11 * scale)
     if damping != "free":
         free = run_twin(truth, eps, nabla, dv_r, valid, x0, None, earth, 1.0)
-        assert np.abs(free - twin).max() > 1e-5, "the law must have done something"
+        done = 1e-5 if steps == STEPS else 0.0
+        assert np.abs(free - twin).max() > done, "the law must have done something"
 
 
 def test_eigenvalues_at_rest_are_earth_and_split_schuler_lines():

@@ -142,6 +142,15 @@ def test_a_longer_run_begins_like_a_shorter_one() -> None:
     assert short.gyro == pytest.approx(long.gyro[:200], rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    "fields", [{"gyro_arw_dpsh": 0.5}, {"gyro_instability_dph": 0.5}], ids=["noise", "drift"]
+)
+def test_a_run_of_one_step_begins_like_a_longer_one(fields: dict[str, float]) -> None:
+    one, ten = (_errors(LEVEL, count, **fields).gyro for count in (1, 10))
+    assert one.shape == (1, 3) and one.any()
+    assert one[0].tolist() == ten[0].tolist()
+
+
 def test_the_order_of_misalignments() -> None:
     terms = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
     errors = _errors(
