@@ -33,6 +33,7 @@ _SCRIPTS = (
     "widgets",
     "drawn",
     "marks",
+    "alone",
     "page",
     "commands",
     "front",
@@ -172,6 +173,7 @@ def open_dashboard(
     *,
     token: str | None = None,
     allow_origins: Iterable[str] = (),
+    frame_origins: Iterable[str] = (),
     state: Path | None = None,
     inner: Inner | None = None,
     limits: Limits | None = None,
@@ -181,7 +183,7 @@ def open_dashboard(
 
     Parameters
     ----------
-    host, port, token, allow_origins
+    host, port, token, allow_origins, frame_origins
         See `app.http.server.start`.
     inner, limits
         See `app.http.server.start`.
@@ -204,6 +206,7 @@ def open_dashboard(
         port,
         token=token,
         allow_origins=allow_origins,
+        frame_origins=frame_origins,
         on_connect=dashboard.on_connect,
         on_disconnect=dashboard.on_disconnect,
         page_scripts=[
@@ -233,6 +236,7 @@ def serve(
     *,
     token: str | None = None,
     allow_origins: Iterable[str] = (),
+    frame_origins: Iterable[str] = (),
     show_token: bool = False,
     open_browser: bool = False,
     cluster: str | None = None,
@@ -241,7 +245,7 @@ def serve(
 
     Parameters
     ----------
-    host, port, token, allow_origins
+    host, port, token, allow_origins, frame_origins
         See `app.http.server.start`.
     show_token : bool
         Print the address with the token in it, once: it was generated, and nobody knows it yet.
@@ -263,7 +267,9 @@ def serve(
     check_address(cluster)
     bound_arenas()
     state = default_folder()
-    server, dashboard = open_dashboard(host, port, token=token, allow_origins=allow_origins, state=state)
+    server, dashboard = open_dashboard(
+        host, port, token=token, allow_origins=allow_origins, frame_origins=frame_origins, state=state
+    )
     use_cluster(cluster)
     link = link_with(server.url, token)
     print(f"Schuler Bench: {link if show_token else server.url}  (Ctrl+C ends it)", flush=True)

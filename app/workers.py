@@ -56,7 +56,7 @@ class Settings:
         Of the socket the worker listens on.
     token : str or None
         As of `app.http.server.start`.
-    origins : list of str
+    origins, framers : list of str
         As of `app.http.server.start`.
     workers : int
         How many share the places.
@@ -70,6 +70,7 @@ class Settings:
     descriptor: int
     token: str | None
     origins: list[str]
+    framers: list[str]
     workers: int
     cluster: str | None = None
 
@@ -149,13 +150,14 @@ def serve_with_workers(
     token: str | None = None,
     show_token: bool = False,
     allow_origins: Iterable[str] = (),
+    frame_origins: Iterable[str] = (),
     cluster: str | None = None,
 ) -> None:
     """Serve until SIGINT or SIGTERM, with ``count`` processes behind one door.
 
     Parameters
     ----------
-    host, port, token, allow_origins
+    host, port, token, allow_origins, frame_origins
         See `app.http.server.start`.
     count : int
         Of workers.
@@ -176,14 +178,15 @@ def serve_with_workers(
         raise InputError([Fault("serve", "--workers", count, f"must be from 1 to {MOST_WORKERS}")])
     if os.name != "posix":
         raise InputError([Fault("serve", "--workers", count, "is for Linux and macOS")])
-    origins = parse_origins(allow_origins)
+    origins, framers = parse_origins(allow_origins), parse_origins(frame_origins, "--frame-origin")
     check_address(cluster)
     with ExitStack() as held:
         listener = held.enter_context(listen(host, port))
         bound, loopback = listener.getsockname()[1], is_loopback(listener)
         access_rules(host, bound, loopback=loopback, token=token, origins=origins)
         held.enter_context(_claimed_folder(count))
-        crew = Crew(count, Settings(host, bound, loopback, -1, token, sorted(origins), count, cluster))
+        origin_lists = sorted(origins), sorted(framers)
+        crew = Crew(count, Settings(host, bound, loopback, -1, token, *origin_lists, count, cluster))
         held.callback(crew.stop)
         shown = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
         url = f"http://{authority(shown, bound)}/"
@@ -233,6 +236,7 @@ def work() -> None:
         settings.port,
         token=settings.token,
         allow_origins=settings.origins,
+        frame_origins=settings.framers,
         state=default_folder(),
         inner=Inner(socket.socket(fileno=settings.descriptor), settings.loopback),
         limits=Limits(visitors=max(_FEWEST_PLACES, _PLACES // settings.workers)),

@@ -30,6 +30,8 @@ class ServeCommand:
     allow_origin : tuple of str
         A further address under which the page may be opened, e.g. behind a reverse proxy; also
         SCHULER_ALLOW_ORIGIN, several with commas between them.
+    frame_origin : tuple of str
+        An origin whose pages may show a single view (?view=bode) in a frame; no page may without it.
     workers : int
         Processes behind one door, for many visitors: about one a core. Sessions stay with their worker; one
         that fails is started again.
@@ -46,6 +48,7 @@ class ServeCommand:
     token_file: Annotated[Path | None, arg(metavar="FILE")] = None
     generate_token: bool = False
     allow_origin: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="URL")] = ()
+    frame_origin: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="URL")] = ()
     workers: Annotated[int, arg(metavar="N")] = 1
     cluster: Annotated[str | None, arg(metavar="ADDRESS")] = None
     open: bool = False
@@ -68,6 +71,7 @@ class ServeCommand:
                 token=token.value,
                 show_token=token.generated,
                 allow_origins=(*self.allow_origin, *named),
+                frame_origins=self.frame_origin,
                 cluster=cluster,
             )
             return 0
@@ -77,6 +81,7 @@ class ServeCommand:
             token=token.value,
             show_token=token.generated,
             allow_origins=(*self.allow_origin, *named),
+            frame_origins=self.frame_origin,
             cluster=cluster,
             open_browser=self.open,
         )

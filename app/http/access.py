@@ -55,6 +55,8 @@ class Access:
         What a visitor must know.
     cookie_name : str
         Carries the port: cookies are shared by all ports of a host.
+    framed_by : frozenset of str
+        Origins whose pages may show a single view in a frame.
     """
 
     hosts: frozenset[str]
@@ -62,6 +64,7 @@ class Access:
     loopback: bool
     token: str | None
     cookie_name: str
+    framed_by: frozenset[str] = frozenset()
 
     def token_is_right(self, offered: str) -> bool:
         """Compare in constant time."""

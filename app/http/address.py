@@ -78,13 +78,15 @@ def authority(host: str, port: int, scheme: str = "http") -> str:
     return name if port == _DEFAULT_PORT[scheme] else f"{name}:{port}"
 
 
-def parse_origins(texts: Iterable[str]) -> frozenset[str]:
+def parse_origins(texts: Iterable[str], option: str = "--allow-origin") -> frozenset[str]:
     """Check and normalise the origins given by the user.
 
     Parameters
     ----------
     texts : iterable of str
         For example ``https://bench.example.org`` or ``http://10.1.2.3:8080``; no path, no pattern.
+    option : str
+        By which they were given.
 
     Returns
     -------
@@ -103,7 +105,7 @@ def parse_origins(texts: Iterable[str]) -> frozenset[str]:
             wanted = (
                 "must be scheme://host or scheme://host:port with http or https, without a path or pattern"
             )
-            faults.append(Fault("serve", "--allow-origin", text, wanted))
+            faults.append(Fault("serve", option, text, wanted))
         else:
             origins.add(origin)
     if faults:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 
-def security_headers(host: str) -> dict[str, str]:
+
+def security_headers(host: str, framed_by: Collection[str] = ()) -> dict[str, str]:
     """Return the headers of every answer.
 
     Scripts run only from this server's own files: no inline script, no inline handler and no ``eval``, so
@@ -14,6 +16,8 @@ def security_headers(host: str) -> dict[str, str]:
     ----------
     host : str
         The Host header, already checked; the websocket goes there. Some browsers do not count it as 'self'.
+    framed_by : collection of str
+        Origins whose pages may show the answer in a frame; none by default.
     """
     socket = f"ws://{host} wss://{host}" if host else ""
     policy = {
@@ -26,11 +30,12 @@ def security_headers(host: str) -> dict[str, str]:
         "connect-src": f"'self' {socket} data: blob:",
         "base-uri": "'none'",
         "form-action": "'none'",
-        "frame-ancestors": "'none'",
+        "frame-ancestors": " ".join(sorted(framed_by)) or "'none'",
     }
     return {
         "Content-Security-Policy": "; ".join(f"{key} {value}".strip() for key, value in policy.items()),
         "X-Content-Type-Options": "nosniff",
+        # For old browsers: those that know frame-ancestors ignore it.
         "X-Frame-Options": "DENY",
         # The path of a page is a capability: whoever knows it sees the visitor's work.
         "Referrer-Policy": "no-referrer",

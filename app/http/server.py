@@ -10,7 +10,7 @@ import socket
 import threading
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -125,6 +125,7 @@ def start(
     *,
     token: str | None = None,
     allow_origins: Iterable[str] = (),
+    frame_origins: Iterable[str] = (),
     on_connect: SessionCallback,
     on_disconnect: SessionCallback,
     page_scripts: Sequence[Path] = (),
@@ -145,6 +146,8 @@ def start(
         What a visitor must know; compulsory when others than this machine can reach the address.
     allow_origins : iterable of str
         Further addresses under which the page may be opened, for example behind a reverse proxy.
+    frame_origins : iterable of str
+        Origins whose pages may show a single view (``?view=bode``) in a frame.
     on_connect : callable
         ``on_connect(client, session_id)``, in a worker thread, when a page has opened or was reloaded.
     on_disconnect : callable
@@ -166,12 +169,13 @@ def start(
         The address cannot be bound, the token is missing, an origin is malformed, or viser is another
         version.
     """
-    origins = parse_origins(allow_origins)
+    origins, framed_by = parse_origins(allow_origins), parse_origins(frame_origins, "--frame-origin")
     listener = listen(host, port) if inner is None else inner.listener
     try:
         bound_port = listener.getsockname()[1] if inner is None else port
         loopback = is_loopback(listener) if inner is None else inner.loopback
         access = access_rules(host, bound_port, loopback=loopback, token=token, origins=origins)
+        access = replace(access, framed_by=framed_by)
         # Only now: what is refused above is refused without the half second that importing viser takes.
         from app.bridge import server as bridge
         from app.http.ids import SessionIds

@@ -121,7 +121,10 @@ class Site:
             return
         host = request.headers.get_all("Host")
         known = host[0].lower() if len(host) == 1 and host[0].lower() in self.access.hosts else ""
-        for name, value in security_headers(known).items():
+        # A frame may hold a single view (shell/static/alone.js), never the page with its controls.
+        alone = "view" in dict(parse_qsl(request.path.partition("?")[2], keep_blank_values=True))
+        framed_by = self.access.framed_by if alone else frozenset[str]()
+        for name, value in security_headers(known, framed_by).items():
             response.headers[name] = value
 
     def _open(self, connection: Connection, path: str) -> Response | None:

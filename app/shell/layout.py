@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 SMALLEST = (640, 400)
 LARGEST = (7680, 4320)
+SMALLEST_ALONE = (240, 160)
+"""Of a view that fills the window: it may stand in a small frame of another page."""
 WIDE_FROM_PX = 1600
 """From this width on the plots stand in two panels above each other; below, in one column of tabs."""
 
@@ -63,8 +65,8 @@ class Layout:
         return max(self.room_px - taken_px, 160) / self.plot_px
 
 
-def layout_for(width: int, height: int, *, presentation: bool = False) -> Layout:
-    """Arrange the page for a window of this size (CSS pixels).
+def layout_for(width: int, height: int, alone: bool = False, *, presentation: bool = False) -> Layout:
+    """Arrange the page for a window of this size (CSS pixels); ``alone``: one view fills it, in normal size.
 
     In presentation size a text is as high in every window, as a part of the window's height.
 
@@ -75,6 +77,9 @@ def layout_for(width: int, height: int, *, presentation: bool = False) -> Layout
     >>> layout_for(1280, 720, presentation=True).scale, layout_for(1920, 1080, presentation=True).scale
     (1.29, 1.93)
     """
+    if alone:
+        size = width, height
+        return Layout(False, 320, width, width - _COLUMN_PADDING_PX, max(height - _MARGIN_PX, 120), size)
     if presentation:
         return _presented(width, height)
     wide = width >= WIDE_FROM_PX
@@ -95,22 +100,27 @@ def _presented(width: int, height: int) -> Layout:
     return Layout(False, left, right, right - _COLUMN_PADDING_PX, max(room, 200), view, scale)
 
 
-def read_state(text: str) -> tuple[tuple[int, int] | None, tuple[str, ...]]:
-    """Window size and front tabs as the page reports them; (None, ()) for anything else.
+def read_state(text: str) -> tuple[tuple[int, int, bool] | None, tuple[str, ...]]:
+    """Window size, whether one view fills it, and front tabs as the page reports them.
+
+    Returns (None, ()) for anything else.
 
     Examples
     --------
     >>> read_state("1920x1080|Frequency|Errors")
-    ((1920, 1080), ('Frequency', 'Errors'))
+    ((1920, 1080, False), ('Frequency', 'Errors'))
+    >>> read_state("480x320 alone|Method|Poles")
+    ((480, 320, True), ('Method', 'Poles'))
     >>> read_state("hello")
     (None, ())
     """
     size, *tabs = text.strip().split("|")
-    found = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})", size)
+    found = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})( alone)?", size)
     if found is None:
         return None, ()
+    smallest = SMALLEST_ALONE if found[3] else SMALLEST
     width, height = (
         min(max(int(number), low), high)
-        for number, low, high in zip(found.groups(), SMALLEST, LARGEST, strict=True)
+        for number, low, high in zip(found.groups()[:2], smallest, LARGEST, strict=True)
     )
-    return (width, height), tuple(tabs[:20])
+    return (width, height, found[3] is not None), tuple(tabs[:20])

@@ -34,6 +34,7 @@ from app.shell.palette import Palette
 from app.shell.presenter import PresenterLock
 from app.shell.run_element import run_element
 from app.shell.view import Frame, View, styles_of
+from app.shell.views_alone import views_element
 from navcore.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ class Page:
         self._closed = self._built = False
         self._say_again_s = 0.0
         self._reported = threading.Event()
-        self._window = (0, 0)
+        self._window = (0, 0, False)
         self._shown_result = session.verifier.result
         self._selected = session.selected
         self._front: frozenset[str] = frozenset()
@@ -93,12 +94,13 @@ class Page:
             # No word from the script: the view covers the window as long as nothing is docked, but its size
             # counts device pixels.
             camera = self.client.camera
-            self._window = (max(camera.image_width, 1280), max(camera.image_height, 720))
+            self._window = (max(camera.image_width, 1280), max(camera.image_height, 720), False)
         with session.lock, self.client.atomic():
             self._layout = self.wanted_layout()
             gui.main_panel.dock_left()
             gui.main_panel.set_width(round(self._layout.left_px * self._layout.scale))
             self._make_views(kinds)
+            gui.add_html(views_element(kinds), order=3)
             self._run_element = gui.add_html("", order=2)
             self._heard = gui.add_html("", order=3)
             self._picture = gui.add_html("", order=3)

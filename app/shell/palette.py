@@ -16,6 +16,7 @@ from app.shell.reset import Resets
 from app.shell.toolbar import PRESENT, REDO, RESET_ALL, SHARE, UNDO, Toolbar
 from app.shell.typing import Typing
 from app.shell.view import Frame
+from app.shell.views_alone import view_names
 from navcore.scenario.file import load, presets
 
 _LONGEST_UNDO = 48
@@ -57,6 +58,7 @@ class Palette:
         add(SHARE, lambda _: self._share(), "Share: a link that opens this state")
         add("share-view", lambda _: self._share("link-view"), "Share this view: a link that opens these tabs")
         add("no-tab", self._tell_no_tab, watcher=True)
+        add("no-view", self._tell_no_view, watcher=True)
         add(PRESENT, lambda _: self._present(), "Present: drive alone, others watch")
         add("run", lambda _: session.redo_run(), "Run again")
         add("stop", lambda _: session.cancel_run(), "Stop the run")
@@ -136,6 +138,14 @@ class Palette:
         ]
         lines.append(f"The tabs are: {', '.join(titles)}.")
         notices.tell(self._client, "Not all tabs of the address are here", lines, "warning")
+
+    def _tell_no_view(self, name: str) -> None:
+        """Tell that the address names a view that the page does not have (static/alone.js)."""
+        lines = [
+            f"The address names the view {name[:40]!r}, which this page does not have.",
+            f"The views are: {', '.join(view_names(self._frame.kinds))}.",
+        ]
+        notices.tell(self._client, "No such view", lines, "warning")
 
     def _present(self) -> None:
         if not self._lock.toggle():

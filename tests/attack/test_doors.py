@@ -100,6 +100,20 @@ def test_every_answer_carries_the_headers(bench: Bench) -> None:
     assert "evil" not in ask(bench.port, "/", {"Host": "evil.example"}).headers["Content-Security-Policy"]
 
 
+def test_only_a_single_view_may_be_framed_and_only_by_named_origins() -> None:
+    with running(frame_origins=["https://slides.example.org"]) as bench:
+        for path, framed_by in (
+            (f"/s/{SESSION}/?view=bode", "https://slides.example.org"),
+            (f"/s/{SESSION}/?lang=en&view=bode", "https://slides.example.org"),
+            (f"/s/{SESSION}/", "'none'"),
+            (f"/s/{SESSION}/?tab=view", "'none'"),
+        ):
+            policy = ask(bench.port, path).headers["Content-Security-Policy"]
+            assert f"frame-ancestors {framed_by}" in policy.split("; "), path
+    with pytest.raises(InputError, match="--frame-origin"), running(frame_origins=["*"]):
+        pass
+
+
 @pytest.mark.parametrize(
     "path",
     [

@@ -1,4 +1,4 @@
-"""What the address of the page can ask for: tabs in front."""
+"""What the address of the page can ask for: tabs in front, one view alone."""
 
 from __future__ import annotations
 
@@ -62,3 +62,49 @@ def test_an_address_opens_tabs_and_a_link_to_them_is_made(visitor: Callable[[int
     assert fronted(small) == ["Sensors", "Errors"]
     assert small.session.display == bench.session.display
     assert bench.faults == small.faults == []
+
+
+# The view with this name fills the window and has been drawn.
+_FILLS = """view => {
+  const shown = document.querySelector(`[data-sb-alone="${view}"]`);
+  const drawn = shown?.querySelector('.js-plotly-plot .trace, .uplot canvas');
+  if (!drawn || document.getElementById('sb-veil')) return false;
+  const plots = [...shown.querySelectorAll('.js-plotly-plot, .uplot')]
+    .map(plot => plot.getBoundingClientRect());
+  const [top, left] = ['top', 'left'].map(side => Math.min(...plots.map(box => box[side])));
+  const [bottom, right] = ['bottom', 'right'].map(side => Math.max(...plots.map(box => box[side])));
+  const within = top >= 0 && left >= 0 && bottom <= innerHeight && right <= innerWidth;
+  return within && right - left > 0.9 * innerWidth && bottom - top > 0.72 * innerHeight;
+}"""
+# Labels or roles of the controls that a user sees.
+_CONTROLS = """() =>
+  [...document.querySelectorAll('input, select, textarea, [role=tab], [role=slider], .mantine-Button-root')]
+    .filter(each => each.checkVisibility({visibilityProperty: true}))
+    .map(each => each.getAttribute('aria-label') ?? each.getAttribute('role') ?? each.tagName)"""
+
+
+def test_one_view_fills_the_window_without_controls(visitor: Callable[[int, int], Bench]) -> None:
+    bench = visitor(600, 380)
+    page = bench.page
+    for name, width in (("bode", 500), ("errors", 600)):  # 500: there viser would leave the views out
+        page.set_viewport_size({"width": width, "height": 380})
+        page.goto(f"{bench.url}?fixedDpr=0.25&view={name}")
+        page.wait_for_function(_FILLS, arg=name)
+        assert page.evaluate(_CONTROLS) == []
+        page.keyboard.press("Control+k")
+        page.keyboard.press("?")
+        bench.sent()
+        assert page.get_by_role("dialog").count() == 0
+        assert page.evaluate(_CONTROLS) == []
+    page.goto(f"{bench.url}?fixedDpr=0.25&view=boat")
+    told = bench.notice("No such view")
+    assert "'boat'" in told and "bode, poles, step" in told
+    assert page.evaluate(_CONTROLS) == []
+    # the same session with all its controls: what is asked for above can be seen
+    page.set_viewport_size({"width": 1280, "height": 720})
+    bench.open(f"s/{bench.session_id}/")
+    bench.heard()
+    assert len(page.evaluate(_CONTROLS)) > 20
+    page.keyboard.press("?")
+    page.get_by_role("dialog", name="Keys").wait_for()
+    assert bench.faults == []

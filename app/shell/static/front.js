@@ -53,7 +53,7 @@
     document.documentElement.dataset.fronted = "";
   }
 
-  if (wanted.length === 0) return;
+  if (wanted.length === 0 || window.schuler.alone) return;
   const timer = setInterval(bring, 100);
   // Whoever goes on by hand is not taken back.
   for (const kind of ["pointerdown", "keydown"]) addEventListener(kind, (event) => event.isTrusted && end(), { capture: true, once: true });

@@ -7,7 +7,9 @@
     "font:16px system-ui,sans-serif";
   document.documentElement.append(veil);
   const timer = setInterval(() => {
-    if (document.querySelector('[role="tab"]') === null && performance.now() < LONGEST_MS) return;
+    // Where one view is to stand alone, alone.js removes it.
+    const opened = document.querySelector('[role="tab"]') !== null && !window.schuler?.alone;
+    if (!opened && performance.now() < LONGEST_MS) return;
     clearInterval(timer);
     veil.remove();
   }, 50);

@@ -4,7 +4,7 @@
   const KEY = "sb-start";
   const { element, dialog, act } = window.schuler;
   const source = () => document.getElementById("sb-start");
-  const asked = new URLSearchParams(location.search).get("start");
+  const asked = window.schuler.alone ? "no" : new URLSearchParams(location.search).get("start");
 
   // A browser may refuse storage: then the card comes again with the next new session.
   const remembered = () => {

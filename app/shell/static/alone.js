@@ -1,0 +1,44 @@
+// "?view=bode" in the address: this view fills the window, without controls and keys, for a frame in another page. The
+// names come from #sb-views (app/shell/views_alone.py); page.css hides the rest of the page, which stays where it is.
+(() => {
+  const asked = new URLSearchParams(location.search).get("view")?.trim().toLowerCase() ?? null;
+  window.schuler.alone = asked !== null;
+  if (asked === null) return;
+  document.documentElement.dataset.alone = asked;
+  // In a narrow window viser leaves out the column in which the views stand.
+  const matches = window.matchMedia.bind(window);
+  window.matchMedia = (query) => matches(query.includes("max-width") ? "(max-width: 0px)" : query);
+  let told = false;
+
+  function tell() {
+    if (!told) window.schuler.command("no-view", asked);
+    told = true;
+  }
+
+  // What is to be seen: the area of the view's tab.
+  function area(title) {
+    const tab = window.schuler.tab(title);
+    window.schuler.open(tab);
+    // A panel keeps one area for each of its tabs; those behind have no box.
+    const areas = [...(tab?.closest(".mantine-Paper-root")?.querySelectorAll(".mantine-ScrollArea-root") ?? [])];
+    return areas.find((each) => each.getClientRects().length > 0);
+  }
+
+  // Again and again: the page is laid out anew when the window changes, and a scenario brings its own tab to the front.
+  function show() {
+    const names = JSON.parse(document.getElementById("sb-views")?.dataset.names ?? "null");
+    if (names === null || document.querySelector("#sb-run[data-run]") === null) return;
+    const title = names[asked];
+    const wanted = title === undefined ? undefined : area(title);
+    if (title === undefined) tell();
+    for (const shown of document.querySelectorAll("[data-sb-alone]")) {
+      if (shown !== wanted) delete shown.dataset.sbAlone;
+    }
+    if (wanted && wanted.dataset.sbAlone === undefined) wanted.dataset.sbAlone = asked;
+    if (wanted || told) document.getElementById("sb-veil")?.remove();
+  }
+
+  setInterval(show, 100);
+  // Ours and viser's keys act on what is not to be seen here; what the browser does by itself goes on.
+  addEventListener("keydown", (event) => event.isTrusted && event.stopPropagation(), true);
+})();
