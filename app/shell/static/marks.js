@@ -61,7 +61,12 @@
 
   const drawn = (node) =>
     node instanceof SVGElement || (node instanceof Element && node.closest(".js-plotly-plot, .uplot") !== null);
+  // A text that has changed changes no layout: a slider step replaces some ten of them.
+  const OURS = ["two", ...CONTAINERS].map((name) => `.sb-${name}`).join(", ");
+  const LAID_OUT = `[class*="mantine-"], label, .uplot-container, .js-plotly-plot, ${OURS}, ${WIDE}`;
+  const laidOut = (node) => node instanceof Element && (node.matches(LAID_OUT) || node.querySelector(LAID_OUT) !== null);
   new MutationObserver((changes) => {
-    if (changes.some((change) => !drawn(change.target))) mark();
+    const matters = ({ target, addedNodes, removedNodes }) => !drawn(target) && [...addedNodes, ...removedNodes].some(laidOut);
+    if (changes.some(matters)) mark();
   }).observe(document.documentElement, { childList: true, subtree: true });
 })();

@@ -138,7 +138,8 @@
     if (!scrubbing) mark(now.time);
   }
 
-  // Leans on viser's handles of its charts, as pinned: tests/browser/test_page_playback.py looks at the result.
+  // Leans on viser's handles of its charts, as pinned: tests/browser/test_page_playback.py looks at the result. The width
+  // is the chart's own: asked of the element, the browser would lay the page out again for each plot.
   function mark(time) {
     const charts = Object.values(window.__viserTestpoints?.uplots ?? {});
     for (const { chart } of charts) {
@@ -150,8 +151,8 @@
         over.append(line);
       }
       const unit = UNITS[/\((\w+)\)/.exec(chart.series[0].label)?.[1]] ?? 3600;
-      const x = chart.valToPos(time / unit, "x");
-      const within = Number.isFinite(x) && x >= -0.5 && x <= over.clientWidth + 0.5;
+      const [x, left, right] = [time / unit, chart.scales.x.min, chart.scales.x.max].map((value) => chart.valToPos(value, "x"));
+      const within = Number.isFinite(x) && x >= left - 0.5 && x <= right + 0.5;
       line.style.display = within ? "" : "none";
       if (within) line.style.transform = `translateX(${x.toFixed(1)}px)`;
     }
