@@ -30,6 +30,7 @@ _SCRIPTS = (
     "veil",
     "redraw",
     "strokes",
+    "touch",
     "widgets",
     "drawn",
     "marks",

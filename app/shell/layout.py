@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 SMALLEST = (640, 400)
 LARGEST = (7680, 4320)
@@ -23,6 +23,8 @@ _LOOK_PX = 21
 """The line at the top of a tab that says what to look for."""
 _PRESENTED_PX = 560.0
 """Height for which a page in presentation size is laid out: it is enlarged to the window's."""
+_TOUCH_PX = 30
+"""More height of tabs and of the tools above a plot, where a finger must hit them (static/touch.css)."""
 _TABS_PX = 28
 """A second row of tabs in its column."""
 _LEAST_SCALE, _MOST_SCALE = 1.25, 4.0
@@ -40,6 +42,8 @@ class Layout:
     ----------
     scale : float
         By which type, lines and all sizes are enlarged; 1 but in presentation size.
+    touch : bool
+        A finger is the pointer.
     wide : bool
         Two panels above each other; else one.
     left_px, right_px : int
@@ -59,13 +63,16 @@ class Layout:
     room_px: int
     view_px: tuple[int, int]
     scale: float = 1.0
+    touch: bool = False
 
     def aspect(self, taken_px: int = 0) -> float:
         """Height / width of a plot that fills the panel, ``taken_px`` being used by something else."""
         return max(self.room_px - taken_px, 160) / self.plot_px
 
 
-def layout_for(width: int, height: int, alone: bool = False, *, presentation: bool = False) -> Layout:
+def layout_for(
+    width: int, height: int, alone: bool = False, touch: bool = False, *, presentation: bool = False
+) -> Layout:
     """Arrange the page for a window of this size (CSS pixels); ``alone``: one view fills it, in normal size.
 
     In presentation size a text is as high in every window, as a part of the window's height.
@@ -82,6 +89,9 @@ def layout_for(width: int, height: int, alone: bool = False, *, presentation: bo
         return Layout(False, 320, width, width - _COLUMN_PADDING_PX, max(height - _MARGIN_PX, 120), size)
     if presentation:
         return _presented(width, height)
+    if touch:
+        mouse = layout_for(width, height)
+        return replace(mouse, room_px=max(mouse.room_px - _TOUCH_PX, 200), touch=True)
     wide = width >= WIDE_FROM_PX
     left = 360 if width >= 1500 else 340 if width >= 1300 else 320
     right = width // 2 if wide else max(360, min(round(0.5 * width), width - left - 260))
@@ -100,22 +110,24 @@ def _presented(width: int, height: int) -> Layout:
     return Layout(False, left, right, right - _COLUMN_PADDING_PX, max(room, 200), view, scale)
 
 
-def read_state(text: str) -> tuple[tuple[int, int, bool] | None, tuple[str, ...]]:
-    """Window size, whether one view fills it, and front tabs as the page reports them.
+def read_state(text: str) -> tuple[tuple[int, int, bool, bool] | None, tuple[str, ...]]:
+    """Window size, whether one view fills it, whether a finger is the pointer, and front tabs.
 
-    Returns (None, ()) for anything else.
+    Returns (None, ()) for anything else than what the page reports.
 
     Examples
     --------
     >>> read_state("1920x1080|Frequency|Errors")
-    ((1920, 1080, False), ('Frequency', 'Errors'))
+    ((1920, 1080, False, False), ('Frequency', 'Errors'))
     >>> read_state("480x320 alone|Method|Poles")
-    ((480, 320, True), ('Method', 'Poles'))
+    ((480, 320, True, False), ('Method', 'Poles'))
+    >>> read_state("1180x820 touch|Errors")
+    ((1180, 820, False, True), ('Errors',))
     >>> read_state("hello")
     (None, ())
     """
     size, *tabs = text.strip().split("|")
-    found = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})( alone)?", size)
+    found = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})( alone)?( touch)?", size)
     if found is None:
         return None, ()
     smallest = SMALLEST_ALONE if found[3] else SMALLEST
@@ -123,4 +135,4 @@ def read_state(text: str) -> tuple[tuple[int, int, bool] | None, tuple[str, ...]
         min(max(int(number), low), high)
         for number, low, high in zip(found.groups()[:2], smallest, LARGEST, strict=True)
     )
-    return (width, height, found[3] is not None), tuple(tabs[:20])
+    return (width, height, found[3] is not None, found[4] is not None), tuple(tabs[:20])

@@ -69,7 +69,7 @@ class Page:
         self._closed = self._built = False
         self._say_again_s = 0.0
         self._reported = threading.Event()
-        self._window = (0, 0, False)
+        self._window = (0, 0, False, False)
         self._shown_result = session.verifier.result
         self._selected = session.selected
         self._front: frozenset[str] = frozenset()
@@ -94,7 +94,7 @@ class Page:
             # No word from the script: the view covers the window as long as nothing is docked, but its size
             # counts device pixels.
             camera = self.client.camera
-            self._window = (max(camera.image_width, 1280), max(camera.image_height, 720), False)
+            self._window = (max(camera.image_width, 1280), max(camera.image_height, 720), False, False)
         with session.lock, self.client.atomic():
             self._layout = self.wanted_layout()
             gui.main_panel.dock_left()
@@ -122,7 +122,9 @@ class Page:
             self.run_waits()
 
     def _styles(self, kinds: Sequence[type[View]]) -> str:
-        css = "".join((_STATIC / f"{name}.css").read_text(encoding="utf-8") for name in ("page", "commands"))
+        css = "".join(
+            (_STATIC / f"{name}.css").read_text(encoding="utf-8") for name in ("page", "commands", "touch")
+        )
         css = css.replace("PAGE_STATE", id_of(self._state)).replace("PAGE_COMMAND", self.commands.box_id)
         return css + styles_of(kinds) + style.UPLOT_CSS
 
@@ -384,7 +386,8 @@ class Page:
 
     def wanted_layout(self) -> Layout:
         """Sizes for the window as it is, and as large as the session's display says."""
-        return layout_for(*self._window, presentation=self.session.display.size == "presentation")
+        presentation = self.session.display.size == "presentation"
+        return layout_for(*self._window, presentation=presentation)
 
     def _arrange(self, *, keeping_front: bool = False) -> None:
         """Lay the results out anew if the window, or what stands in it, has another size now.

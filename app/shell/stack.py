@@ -15,7 +15,8 @@ from app.shell.view import Tab
 if TYPE_CHECKING:
     import viser
 
-_LEGEND_ROW_PX = 23
+_LEGEND_ROW_PX = {False: 23, True: 40}
+"""Of a legend for a mouse, and for a finger."""
 _LEGEND_MARGIN_PX = 7
 _LEGEND_INDENT_PX = 90
 
@@ -54,4 +55,4 @@ class Stack:
 def room_px(layout: Layout, names: list[str]) -> int:
     """Height for plots below a chooser and a legend of these names."""
     rows = style.legend_rows(names, layout.plot_px - _LEGEND_INDENT_PX)
-    return layout.room_px - CHOOSER_PX - _LEGEND_MARGIN_PX - rows * _LEGEND_ROW_PX
+    return layout.room_px - CHOOSER_PX - _LEGEND_MARGIN_PX - rows * _LEGEND_ROW_PX[layout.touch]

@@ -32,11 +32,7 @@ SUMS = """count => {
   };
 }"""
 # The server has heard of the window's size and of the tabs in front (app/shell/static/page.js).
-HEARD = """() => {
-  const front = [...document.querySelectorAll('[role=tab][aria-selected=true]')].map(tab => tab.textContent);
-  const state = [`${innerWidth}x${innerHeight}`, ...front].join('|');
-  return document.querySelector('#sb-heard')?.dataset.state === state;
-}"""
+HEARD = "() => document.querySelector('#sb-heard')?.dataset.state === schuler.state()"
 # The tab in which a new scenario opens is in front.
 OPENED = """() => {
   const wanted = document.querySelector('#sb-focus')?.dataset ?? {};

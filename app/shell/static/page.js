@@ -1,6 +1,6 @@
 // Tells the server what viser does not: the size of the window and which tabs are in front. It is written into the
 // control labelled "page state", which the page's style hides; the server reads it as "1920x1080|Frequency|Errors", or as
-// "480x320 alone|..." where one view fills the window (alone.js).
+// "480x320 alone|..." where one view fills the window (alone.js), "1180x820 touch|..." where a finger is the pointer.
 // And brings the tab to the front in which a newly chosen scenario opens: viser's server cannot.
 (() => {
   const LABEL = "page state";
@@ -8,8 +8,12 @@
 
   function state() {
     const front = [...document.querySelectorAll('[role="tab"][aria-selected="true"]')].map((tab) => window.schuler.english(tab.textContent));
-    return [`${innerWidth}x${innerHeight}${window.schuler.alone ? " alone" : ""}`, ...front].join("|");
+    const alone = window.schuler.alone ? " alone" : "";
+    const touch = matchMedia("(pointer: coarse)").matches ? " touch" : "";
+    return [`${innerWidth}x${innerHeight}${alone}${touch}`, ...front].join("|");
   }
+
+  window.schuler.state = state;
 
   // What the server has heard is in #sb-heard: what it has not is reported again.
   function report() {

@@ -108,8 +108,10 @@ class PolesView(PlotlyView):
         """Show whose poles and which parameter are chosen."""
         self._system.value = _system(self.session.display)
         self._decays.value = _decays(self.session.display)
+        # A click or a tap into the map places a pair, too: where there is little room, that is enough.
+        room = self.session.display.size == "normal" and not self.frame.layout().touch
         for tool in self._placing:
-            tool.visible = self.session.display.size == "normal"  # a click into the map places, too
+            tool.visible = room
         self.follow_scenario()
 
     @property
