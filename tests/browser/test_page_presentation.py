@@ -70,6 +70,7 @@ def test_the_controls_are_those_of_the_method_and_then_of_the_lesson(large: Benc
     labels = page.evaluate(_SHOWN_LABELS)
     assert not {"scenario", "methods", "as text", "duration (h)", "enlarge errors in 3D"} & set(labels)
     assert page.locator("[data-dock-region=left] [role=tablist]").is_hidden()
+    assert page.locator("[data-command=undo]").is_hidden()
     page.evaluate("() => schuler.command('lesson', 'open 1')")
     page.locator(".sb-lesson h3").first.wait_for()
     assert "network" not in page.evaluate(_SHOWN_LABELS)

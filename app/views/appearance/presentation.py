@@ -69,7 +69,7 @@ def _style(scale: float) -> str:
 
 
 _ROW = (
-    '<div class="sb-row" role="toolbar" aria-label="Presentation">'
+    '<div class="sb-row sb-lecture" role="toolbar" aria-label="Presentation">'
     '<button class="sb-do" data-command="size" aria-pressed="true" '
     'title="Back to the page with all its controls (L)">Normal size</button>'
     '<button class="sb-do" data-command="tab Learn" title="Lessons of five minutes">Learn</button>'
