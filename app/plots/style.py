@@ -7,6 +7,7 @@ then Tol's muted set.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from html import escape
 from typing import Any
@@ -151,14 +152,15 @@ def text(x: float | str, y: float, content: str, **more: Any) -> dict[str, Any]:
 
 
 def legend_rows(names: list[str], width_px: float) -> int:
-    """Rows that a horizontal legend of these names needs, estimated from the number of letters."""
-    rows, used = 1, 0.0
-    for name in names:
-        need = 52.0 + 7.2 * len(name)
-        if used and used + need > width_px:
-            rows, used = rows + 1, 0.0
-        used += need
-    return rows
+    """Rows that a horizontal plotly legend of these names needs, estimated from the number of letters.
+
+    What does not fit in one row, plotly sets in columns of equal width.
+    """
+    needs = [52.0 + 7.2 * len(name) for name in names]
+    if not needs or sum(needs) <= width_px:
+        return 1
+    columns = max(1, int(width_px // max(needs)))
+    return math.ceil(len(names) / columns)
 
 
 def column(inner_px: float) -> float:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from app.bridge.controls import in_single, show_numbers
-from app.plots import style
 from app.plots.enlarged import enlarged_time_plot
 from app.plots.uplot import UplotFigure
 from app.shell.layout import CHOOSER_PX, Layout
@@ -54,5 +53,16 @@ class Stack:
 
 def room_px(layout: Layout, names: list[str]) -> int:
     """Height for plots below a chooser and a legend of these names."""
-    rows = style.legend_rows(names, layout.plot_px - _LEGEND_INDENT_PX)
+    rows = _rows(names, layout.plot_px - _LEGEND_INDENT_PX)
     return layout.room_px - CHOOSER_PX - _LEGEND_MARGIN_PX - rows * _LEGEND_ROW_PX[layout.touch]
+
+
+def _rows(names: list[str], width_px: float) -> int:
+    """Rows of a legend whose names follow each other, estimated from the number of letters."""
+    rows, used = 1, 0.0
+    for name in names:
+        need = 52.0 + 7.2 * len(name)
+        if used and used + need > width_px:
+            rows, used = rows + 1, 0.0
+        used += need
+    return rows

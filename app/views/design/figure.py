@@ -47,7 +47,6 @@ _LEFT_PX, _RIGHT_PX, _TOP_PX = 62, 12, 52
 _NOTE_PX = 26
 """Of the line about the whole figure above the panels, so that it stands clear of their titles."""
 _TICKS_PX, _LEGEND_ROW_PX = 34, 21
-_LEGEND_KEY_PX, _LETTER_PX = 52.0, 7.2
 
 
 def budget_figure(
@@ -87,14 +86,6 @@ def budget_figure(
 def _lines(budget: Budget, width_px: float) -> int:
     """Lines of the text above a bar: two where the bars stand close."""
     return 1 if 0.43 * width_px >= _ONE_LINE_PX * len(budget.methods) else 2
-
-
-def _legend_rows(words: Sequence[str], width_px: float) -> int:
-    """Rows of the legend: plotly sets what does not fit in one row in columns as wide as the longest word."""
-    if not words or style.legend_rows(list(words), width_px) == 1:
-        return 1
-    a_row = max(1, int(width_px // (_LEGEND_KEY_PX + _LETTER_PX * max(len(word) for word in words))))
-    return -(-len(words) // a_row)
 
 
 def _names(budget: Budget, keys: Sequence[str]) -> list[str]:
@@ -212,7 +203,7 @@ def _layout(
     if budget.floor.rms.tilt_rad is not None:
         what = f"{what}; the dashed line is the floor"
     columns, rows = 2, (len(shown) + 1) // 2
-    legend_px = _LEGEND_ROW_PX * _legend_rows([_words(name) for name in names], width_px - _LEFT_PX)
+    legend_px = _LEGEND_ROW_PX * style.legend_rows([_words(name) for name in names], width_px - _LEFT_PX)
     bottom_px = _TICKS_PX + legend_px
     height_px = aspect * width_px - _TOP_PX - bottom_px
     made = style.layout(

@@ -91,7 +91,7 @@ def fronts_figure(
         data.append(_present(now, present, (x_size, y_size)))
     ranges = _ranges(found, present, (x_size, y_size))
     names = [*fronts, *([now] if present is not None else [])]
-    legend_px = _LEGEND_ROW_PX * style.legend_rows(names, width_px)
+    legend_px = _LEGEND_ROW_PX * style.legend_rows(names, width_px - _LEFT_PX - _RIGHT_PX)
     layout = style.layout(
         meta={"aspect": aspect, "pick": {"command": COMMAND, "panels": (("xaxis", "yaxis"),)}},
         hovermode="closest",
@@ -239,9 +239,12 @@ def _add_key(layout: dict[str, Any], found: Pareto) -> None:
     if any(found.floor):
         said.append("grey: below the floor, out of reach of any causal linear damping")
     if said:
-        muted = {"size": style.FONT_SIZE - 1, "color": style.MUTED}
-        place = {"xref": "x domain", "yref": "paper", "xanchor": "right", "yanchor": "bottom"}
-        layout["annotations"].append(style.text(1.0, 1.0, "<br>".join(said), **place, font=muted))
+        layout["annotations"].append(
+            style.text(
+                1.0, 1.0, "<br>".join(said), xref="x domain", yref="paper", xanchor="right", yanchor="bottom",
+                align="right", font={"size": style.FONT_SIZE - 1, "color": style.MUTED},
+            )
+        )  # fmt: skip
 
 
 def _above(note: str) -> dict[str, Any]:
