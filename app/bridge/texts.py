@@ -157,3 +157,9 @@ def language_of(client: Any) -> str:
     """Language of a page, as a browser tells it."""
     translator: Translator | None = client._websock_connection.get_message_buffer().translator
     return "en" if translator is None else translator.name
+
+
+def figure_said(client: Any, figure: str) -> str:
+    """Return a plotly figure (JSON) in a page's language, where it stands in HTML of ours."""
+    translator: Translator | None = client._websock_connection.get_message_buffer().translator
+    return figure if translator is None else translator._plotly(figure)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from app.plots import style
+from app.plots.fonts import picture_fonts
 from app.plots.plotly_data import PlotlyFigure, values_of
 from app.plots.uplot import UplotFigure
 
@@ -98,10 +99,8 @@ def time_picture(figures: Sequence[UplotFigure], format: str, title: str) -> byt
     title : str
         Above the plots.
     """
-    import matplotlib
-
     settings: dict[Any, Any] = {"font.size": 9, "svg.fonttype": "none", "svg.hashsalt": "schuler"}
-    with matplotlib.rc_context(settings):
+    with picture_fonts(settings):
         return _time_picture(figures, format, title)
 
 

@@ -13,6 +13,7 @@ import pytest
 
 from app.jobs.envelopes import SEEDS, Envelopes, with_seed
 from app.plots.envelope import Envelope, envelope
+from app.plots.fonts import installed_chinese
 from app.plots.plotly_data import packed, unpacked, values_of
 from app.plots.saved import plotly_csv, time_csv, time_picture
 from app.session.display import Display
@@ -269,6 +270,16 @@ def test_time_plots_become_pictures(runs: list[Run], scale: str) -> None:
     assert "classic2" in text and "time (min)" in text and "(m/s)" in text
     png = time_picture([plots["dve"], plots["position"]], "png", "two")
     assert png.startswith(b"\x89PNG")
+
+
+@pytest.mark.skipif(not installed_chinese(), reason="no font of this computer has Chinese characters")
+def test_chinese_names_are_drawn_not_boxes() -> None:
+    plots = switching_plots(switching_run(), "min")
+    one, other = (time_picture(plots, "png", title) for title in ("\u963b\u5c3c", "\u8bef\u5dee"))
+    assert one != other
+    assert "\u963b\u5c3c" in "".join(
+        ElementTree.fromstring(time_picture(plots, "svg", "\u963b\u5c3c")).itertext()
+    )
 
 
 def test_switching_states_become_a_picture() -> None:

@@ -1,16 +1,17 @@
-// Saves what plotly draws, as SVG or PNG: the server asks by #sb-export, which names the view and the format.
+// Saves what plotly draws, as SVG or PNG: the server asks by #sb-export, which names the view and the format and carries
+// the figure. A plot that is in front is saved as it is seen, with its zoom; another one as the server made it.
 (() => {
   let done = 0;
 
   async function save(wanted) {
     const plots = [...document.querySelectorAll(".js-plotly-plot")];
     const plot = plots.find((each) => each._fullLayout?.meta?.view === wanted.view && each.offsetParent !== null);
-    if (plot === undefined) {
-      window.schuler.command("unsaved", wanted.view);
+    if (plot === undefined && window.Plotly === undefined) {
+      window.schuler.command("unsaved", wanted.view); // viser brings plotly with the first plot that needs it
       return;
     }
-    const box = plot.getBoundingClientRect();
-    const picture = await Plotly.toImage(plot, {
+    const box = plot?.getBoundingClientRect() ?? { width: wanted.width, height: wanted.width * wanted.aspect };
+    const picture = await Plotly.toImage(plot ?? JSON.parse(wanted.figure), {
       format: wanted.format,
       width: Math.round(box.width),
       height: Math.round(box.height),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
+from app.bridge.texts import figure_said
 from app.plots.saved import plotly_csv, time_csv, time_picture
 from app.session.shown import Shown, shown
 from app.shell import notices
@@ -44,10 +45,18 @@ class Export:
             return
         name = f"{title.split(': ')[-1].split(' (')[0]}".replace(" ", "-").lower()
         if isinstance(view, PlotlyView) and format != "CSV":
+            try:
+                figure = view.picture(found)
+            except LookupError as error:
+                notices.tell(self._client, "Nothing to save", [str(error)], "warning")
+                return
             self._count += 1
+            layout = self._frame.layout()
             self._wanted.content = (
                 f'<div id="sb-export" hidden data-count="{self._count}" data-view="{escape(title)}" '
-                f'data-format="{format.lower()}" data-name="{escape(name)}"></div>'
+                f'data-format="{format.lower()}" data-name="{escape(name)}" '
+                f'data-figure="{escape(figure_said(self._client, figure.to_json()))}" '
+                f'data-width="{layout.plot_px * layout.scale:.0f}" data-aspect="{figure.aspect:.4f}"></div>'
             )
             self._client.flush()
             return
@@ -60,7 +69,7 @@ class Export:
         self._client.flush()
 
     def _unsaved(self, view: str) -> None:
-        """The page cannot draw a picture of what it does not show."""
+        """The page cannot draw a picture yet."""
         lines = [f"Bring the tab {view[:20]} to the front, and save it again."]
         notices.tell(self._client, "Not saved", lines, "warning")
 
