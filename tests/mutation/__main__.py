@@ -96,6 +96,8 @@ class _Room:
     def run(self, drawn: list[Mutant], again: bool, end: float) -> None:
         """Make each change that was not made yet, and keep what became of it."""
         before = self.kept.results()
+        for interpret in (False, True):  # on the unchanged tree
+            self._baseline(interpret)
         for mutant in drawn:
             old = before.get(key(mutant))
             if time.monotonic() > end:
@@ -128,7 +130,7 @@ class _Room:
 
     def _judge(self, files: list[str], interpret: bool) -> tuple[str, str]:
         """Run the tests of these files until one fails; fate of the change, and the test that noticed it."""
-        order = [name for name in self._order(interpret) if name.partition("::")[0] in files]
+        order = [name for name in self._order(self.baselines[interpret]) if name.partition("::")[0] in files]
         if not order:
             return "survived", ""
 
@@ -158,9 +160,8 @@ class _Room:
         limit = _limit(interpret) * (1.0 if order is None else _SLOWER)
         return run_tests(self.tree, files, order, kept, interpret, limit, collect_only=collect_only)
 
-    def _order(self, interpret: bool) -> list[str]:
+    def _order(self, seconds: dict[str, float]) -> list[str]:
         """Tests that noticed a change before, a first case of each test, the rest; the quick ones first."""
-        seconds = self._baseline(interpret)
         cases: Counter[str] = Counter()
         rank: dict[str, tuple[int, bool, float]] = {}
         for name in sorted(seconds, key=seconds.__getitem__):
@@ -169,8 +170,8 @@ class _Room:
             cases[test] += 1
         return sorted(rank, key=rank.__getitem__)
 
-    def _baseline(self, interpret: bool) -> dict[str, float]:
-        """CPU seconds of each test that passes in time on the unchanged tree."""
+    def _baseline(self, interpret: bool) -> None:
+        """Measure the CPU seconds of each test that passes in time on the tree as it is."""
         if interpret not in self.baselines:
             path = self.kept.folder / f"{self.room}-{'interpreted' if interpret else 'compiled'}.json"
             if not path.is_file():
@@ -181,12 +182,11 @@ class _Room:
                     bad = set(recorder.bad)
                     json.dump({n: s for n, s in recorder.seconds.items() if n not in bad}, out)
 
-                path.write_text(in_fork(work, 3600.0), "utf-8")
+                path.write_text(in_fork(work, 3600.0) if files else "{}", "utf-8")
             every = json.loads(path.read_text("utf-8"))
             found = {name: seconds for name, seconds in every.items() if seconds <= _limit(interpret)}
             self.baselines[interpret] = found
             print(f"{path.stem}: {len(found)} tests, {sum(found.values()):.0f} s", flush=True)
-        return self.baselines[interpret]
 
 
 def _limit(interpret: bool) -> float:

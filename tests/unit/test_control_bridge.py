@@ -106,6 +106,51 @@ def test_the_schedule_ends_with_the_feedback_of_its_last_gains() -> None:
     assert run.value("feedback_gain") == pytest.approx(k1, rel=1e-12)
 
 
+GAINS = {"k1": 2.0e-3, "k2": 3.0, "k3": 1.0e-3}
+
+
+def test_a_schedule_that_stays_at_its_gains_is_the_compass_with_them_in_network_form() -> None:
+    network = {"id": "compass", "realisation": "network", **GAINS}
+    gains = list(GAINS.values())
+    stays = LawRun(network, {"id": "schedule", "from": gains, "to": gains}, {"id": "hard"})
+    constant = LawRun(network, {"id": "constant"}, {"id": "hard"})
+    for d in np.sin(0.05 * np.arange(100)):
+        expected = constant.step(float(d), float(d) - 0.2)
+        assert np.any(expected != 0.0)
+        assert stays.step(float(d), float(d) - 0.2) == pytest.approx(expected, rel=1e-9, abs=1e-12)
+
+
+def test_a_schedule_without_k1_has_no_state_to_rest_in() -> None:
+    gains = [0.0, 1.0, 1e-3]
+    run = LawRun(
+        {"id": "compass", "realisation": "network"},
+        {"id": "schedule", "from": gains, "to": gains},
+        {"id": "hard"},
+    )
+    run.step(0.1)
+    assert run.value("network.steady") == 0.0
+
+
+def test_the_gains_of_a_schedule_pass_without_a_jump_in_network_form() -> None:
+    """A steady difference of 1 m/s: halfway through the passage the gains are the mean of both ends."""
+    first, last = (4.0e-3, 3.0, 2.0e-3), (2.0e-3, 2.0, 1.0e-3)
+    run = LawRun(
+        {"id": "compass", "realisation": "network"},
+        {"id": "schedule", "from": list(first), "to": list(last), "duration_s": 100.0},
+        {"id": "hard"},
+    )
+    found = np.array([run.step(1.0)[0] for _ in range(201)])
+    # c = -K2 u + v; v' = -K1 v + (K1 (1 + K2) - K3) u, with the gains of each moment
+    v, expected = 0.0, []
+    for k in range(201):
+        share = min(k / 100.0, 1.0)
+        k1, k2, k3 = (a + share * (b - a) for a, b in zip(first, last, strict=True))
+        expected.append(v - k2)
+        v += -k1 * v + k1 * (1.0 + k2) - k3
+    assert found == pytest.approx(np.array(expected), abs=0.02)
+    assert np.abs(np.diff(found)).max() < 0.05
+
+
 def test_at_a_constant_velocity_no_acceleration_is_measured() -> None:
     run = LawRun({"id": "classic2"}, {"id": "acceleration"}, {"id": "hard"})
     for _ in range(40):

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from navcore.law.law import Law, law_step
 from navcore.law.records import Sensed
+from navcore.law.switching import SWITCHINGS
 from navcore.law.tuned_network import retune, tune
 from navcore.networks import parse_network
 from navcore.networks.discrete import discretise
@@ -310,3 +311,18 @@ def test_sampled_radius_knows_a_stable_loop_from_an_unstable_one():
 def test_law_step_of_a_free_method_does_nothing():
     run = LawRun(COMPLEMENTARY, {"id": "variation"}, {"id": "bumpless"}, damping="free")
     assert law_step(run.law, Sensed(1.0, 2.0, 0.2)) == (0.0, 0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("switching", list(SWITCHINGS))
+def test_north_is_switched_as_east(switching: str) -> None:
+    """What the log says of one channel alone gives in the other, said of that alone, the same correction."""
+    policy = {"id": "threshold", "limit_mps": 0.5}
+    east, north = (LawRun({"id": "complementary"}, policy, {"id": switching}) for _ in range(2))
+    t = np.arange(400)
+    differences = 0.3 * np.sin(0.02 * t) + np.where((t > 250) & (t < 300), 1.0, 0.0)
+    found = np.array([[*east.step(d, 0.0), east.value("damped")] for d in differences])
+    other = np.array([[*north.step(0.0, d), north.value("damped")] for d in differences])
+    assert np.all(found[:, [1, 3]] == 0.0) and np.ptp(found[250:, 0]) > 1e-5
+    assert other[:, [1, 0, 3, 2, 4]] == pytest.approx(found, rel=1e-12, abs=1e-15)
+    if switching not in ("keep", "step"):
+        assert set(found[200:, 4]) == {0.0, 1.0}

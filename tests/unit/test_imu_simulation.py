@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from navcore.foundation.compiled import kernel
-from navcore.foundation.earth import WGS84
-from navcore.foundation.units import ARCSEC, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
+from navcore.foundation.earth import WGS84, attitude_matrix
+from navcore.foundation.units import ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
 from navcore.motion.base import Truth
 from navcore.motion.inertial import inertial_signals
 from navcore.motion.static import StaticMotion
@@ -155,3 +155,13 @@ def test_sums_are_the_errors_in_the_navigation_frame():
     np.testing.assert_allclose(sums[:, 1], -DEG_PER_HOUR, rtol=1e-9)
     np.testing.assert_allclose(sums[:, 3], 100.0 * MICRO_G, rtol=1e-9)
     assert sums.shape == (10, 6)
+
+
+def test_sums_turn_all_three_axes():
+    gyro, accel = (1.0, -2.0, 3.0), (100.0, -50.0, 30.0)
+    motion = StaticMotion(pitch_deg=6.0, roll_deg=8.0, heading_deg=75.0)
+    sim = ImuSimulation(motion, SITE, WGS84, Imu(gyro_bias_dph=gyro, accel_bias_ug=accel), RATE, 1000, 1)
+    sums = np.concatenate([s.copy() for _, s in sim.chunks(with_sums=True)])
+    turn = attitude_matrix(6.0 * DEG, 8.0 * DEG, 75.0 * DEG)
+    np.testing.assert_allclose(sums[:, :3], np.tile(turn @ gyro * DEG_PER_HOUR, (10, 1)), rtol=1e-9)
+    np.testing.assert_allclose(sums[:, 3:], np.tile(turn @ accel * MICRO_G, (10, 1)), rtol=1e-9)
