@@ -32,7 +32,7 @@ def picture_fonts(settings: dict[Any, Any]) -> Iterator[None]:
     """
     import matplotlib
 
-    fonts = {"font.family": ["DejaVu Sans", *installed_chinese(), "sans-serif"]}
+    fonts: dict[Any, Any] = {"font.family": ["DejaVu Sans", *installed_chinese(), "sans-serif"]}
     with matplotlib.rc_context(settings | fonts), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph .* missing from")
         yield
