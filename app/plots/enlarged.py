@@ -33,7 +33,7 @@ _KEPT = frozenset({"x", "y", "text", "customdata", "meta"})
 _UPLOT_PX = frozenset(
     {"size", "labelSize", "labelGap", "gap", "width", "space", "prox", "height", "padding", "dash"}
 )
-_FONT_PX = re.compile(r"([0-9.]+)px")
+_FONT_PX = re.compile(r"(?<![0-9.])([0-9.]+)px")
 
 
 def enlarged(figure: PlotlyFigure, scale: float) -> PlotlyFigure:

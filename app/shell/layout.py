@@ -32,6 +32,8 @@ CHOOSER_PX = 36
 """A chooser above a plot."""
 TOOLS = '<div class="sb-tools"></div>'
 """HTML that lets the controls of a tab stand in one row (static/page.css)."""
+Window = tuple[int, int, bool, bool]
+"""Width and height, CSS pixels; whether one view fills it; whether a finger is the pointer."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +112,7 @@ def _presented(width: int, height: int) -> Layout:
     return Layout(False, left, right, right - _COLUMN_PADDING_PX, max(room, 200), view, scale)
 
 
-def read_state(text: str) -> tuple[tuple[int, int, bool, bool] | None, tuple[str, ...]]:
+def read_state(text: str) -> tuple[Window | None, tuple[str, ...]]:
     """Window size, whether one view fills it, whether a finger is the pointer, and front tabs.
 
     Returns (None, ()) for anything else than what the page reports.

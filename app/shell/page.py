@@ -7,8 +7,6 @@ thing sent for a run. A control is found by its label's exact text.
 
 from __future__ import annotations
 
-import re
-import threading
 import time
 from collections.abc import Sequence, Set
 from contextlib import nullcontext
@@ -16,7 +14,6 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.bridge.controls import id_of
 from app.bridge.server import leaving_is_no_fault
 from app.plots import style
 from app.session.session import Session
@@ -27,11 +24,12 @@ from app.shell.commands import Commands
 from app.shell.editor import Editor
 from app.shell.following import Following
 from app.shell.header import HeaderPanel
-from app.shell.layout import Layout, layout_for, read_state
+from app.shell.layout import Layout, Window, layout_for
 from app.shell.opening import Opening
 from app.shell.pace import Pace
 from app.shell.palette import Palette
 from app.shell.presenter import PresenterLock
+from app.shell.reports import Reports
 from app.shell.run_element import run_element
 from app.shell.view import Frame, View, styles_of
 from app.shell.views_alone import views_element
@@ -39,12 +37,6 @@ from navcore.foundation.errors import InputError
 
 if TYPE_CHECKING:
     import viser
-
-PAGE_STATE = "page state"
-"""Label of the control through which the page reports its size and front tabs (static/page.js)."""
-
-PAGE_PAINTED = "page painted"
-"""Label of the control through which the page says which picture it has painted (static/drawn.js)."""
 
 _STATIC = Path(__file__).parent / "static"
 _SIZE_WAIT_S = 1.5
@@ -68,8 +60,7 @@ class Page:
         self.client, self.session, self.gui = client, session, client.gui
         self._closed = self._built = False
         self._say_again_s = 0.0
-        self._reported = threading.Event()
-        self._window = (0, 0, False, False)
+        self._window: Window = (0, 0, False, False)
         self._shown_result = session.verifier.result
         self._selected = session.selected
         self._front: frozenset[str] = frozenset()
@@ -83,14 +74,11 @@ class Page:
     def _build(self, kinds: Sequence[type[View]]) -> None:
         gui, session = self.gui, self.session
         leaving_is_no_fault(self.client)
-        self._state = gui.add_text(PAGE_STATE, "", order=1)
-        self._state.on_update(lambda _: self._on_state())
-        self._painted = gui.add_text(PAGE_PAINTED, "", order=1)
-        self._painted.on_update(lambda _: self._on_painted())
+        self._reports = Reports(gui, self._on_window, self._pace.told)
         self.commands = Commands(gui, self._command_failed)
         gui.add_html(f"<style>{self._styles(kinds)}</style>", order=0)
         self.client.flush()
-        if not self._reported.wait(_SIZE_WAIT_S):
+        if not self._reports.wait_for_window(_SIZE_WAIT_S):
             # No word from the script: the view covers the window as long as nothing is docked, but its size
             # counts device pixels.
             camera = self.client.camera
@@ -125,7 +113,7 @@ class Page:
         css = "".join(
             (_STATIC / f"{name}.css").read_text(encoding="utf-8") for name in ("page", "commands", "touch")
         )
-        css = css.replace("PAGE_STATE", id_of(self._state)).replace("PAGE_COMMAND", self.commands.box_id)
+        css = css.replace("PAGE_STATE", self._reports.window_id).replace("PAGE_COMMAND", self.commands.box_id)
         return css + styles_of(kinds) + style.UPLOT_CSS
 
     def _make_views(self, kinds: Sequence[type[View]]) -> None:
@@ -147,7 +135,7 @@ class Page:
                 view.build(nullcontext())
         self.column = Column(gui, [view for view in self._views if view.place in ("upper", "lower")])
         self.column.build(self._layout)
-        free = frozenset({id_of(self._state), id_of(self._painted), self.commands.box_id})
+        free = frozenset({self._reports.window_id, self._reports.painted_id, self.commands.box_id})
         lock = PresenterLock(client, session, self, self.commands, free)
         self.palette = Palette(frame, lock)
 
@@ -322,7 +310,7 @@ class Page:
                 self._run_element.content = content
             else:
                 self.header.show_moving()
-            told = f'data-number="{number}" data-answer="{id_of(self._painted)}"'
+            told = f'data-number="{number}" data-answer="{self._reports.painted_id}"'
             self._picture.content = f"<div id='sb-picture' hidden {told}></div>"
         self.client.flush()
         # A tab that came to the front meanwhile was not yet known to be out of date.
@@ -363,26 +351,16 @@ class Page:
 
     # ------------------------------------------------------------ size and tabs
 
-    def _on_state(self) -> None:
-        window, front = read_state(self._state.value)
-        if window is None:
-            return
+    def _on_window(self, window: Window, front: frozenset[str], told: str) -> None:
         self._window = window
         if front:
-            fresh, self._front = frozenset(front) - self._front, frozenset(front)
+            fresh, self._front = front - self._front, front
             self.session.tell_front(self, fresh)
-        self._reported.set()
         if self._built:
-            heard = escape(self._state.value.strip())
-            self._heard.content = f'<div id="sb-heard" hidden data-state="{heard}"></div>'
+            self._heard.content = f'<div id="sb-heard" hidden data-state="{escape(told)}"></div>'
             self._arrange()
             self._show_stale()
             self.column.tell_front(self._front)
-
-    def _on_painted(self) -> None:
-        told = re.fullmatch(r"([0-9]{1,9}) ([01])", self._painted.value)
-        if told is not None:
-            self._pace.told(int(told[1]), moving=told[2] == "1")
 
     def wanted_layout(self) -> Layout:
         """Sizes for the window as it is, and as large as the session's display says."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from app.serve import open_dashboard
-from app.shell.page import PAGE_STATE
+from app.shell.reports import PAGE_STATE
 from app.views import VIEWS
 from tests.attack.wire import visit
 from tests.browser.driver import Bench

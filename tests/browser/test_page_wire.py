@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from app.editing import edits
-from app.shell.page import PAGE_STATE, Page
+from app.shell.page import Page
 from app.shell.plotly_view import PlotlyView
+from app.shell.reports import PAGE_STATE
 from app.views import load
 from app.views.tune.view import TuneView
 from tests.attack.wire import Visitor, decode, visit
@@ -94,7 +95,7 @@ def _pages(served: Dashboard, session_id: str) -> list[Page]:
 
 def _ids(dashboard: Served, session_id: str) -> list[str]:
     eventually(lambda: bool(_pages(dashboard[1], session_id)))
-    return [page._state._impl.uuid for page in _pages(dashboard[1], session_id)]
+    return [page._reports.window_id for page in _pages(dashboard[1], session_id)]
 
 
 def test_a_flood_of_slider_moves_becomes_a_few_runs_and_the_last_wins(dashboard: Served) -> None:

@@ -16,6 +16,7 @@ from app.plots.transfer_views import SHOWN as SHOWN
 from app.plots.transfer_views import TRANSFERS as TRANSFERS
 from app.plots.transfer_views import VIEWS, TransferView
 from app.plots.units import duration
+from app.views.frequency.axes import level_axis, log_axis, phase_axis
 from app.views.frequency.curves import decibel, pair, phase
 from app.views.frequency.discrete import law_step_s, measured_gain
 from app.views.frequency.nyquist import nyquist
@@ -30,7 +31,6 @@ OMEGA_MIN, OMEGA_MAX = 5e-6, 0.2
 _PLAIN_POINTS = 240
 _CLUSTER = np.logspace(-3.5, -0.5, 24)
 _NEAR = 0.02
-_MOST_DECADES = 8.0
 _BOLD_PX = 7.8
 """Mean width of a letter in a title."""
 _LONGEST_SILENCE = 22
@@ -249,65 +249,16 @@ def _layout(
         legend=style.legend(),
         xaxis=_omega_axis("y2", [0.0, share], column_px),
         xaxis2=_omega_axis("y4", [1.0 - share, 1.0], column_px),
-        yaxis=_level_axis("|H|  (dB)", seen["y"]) | upper | {"anchor": "x"},
-        yaxis2=_phase_axis(seen["y2"]) | lower | {"anchor": "x"},
-        yaxis3=(_level_axis(view.unit, seen["y3"]) if _in_decibel(view) else _log_axis(view.unit, seen["y3"]))
+        yaxis=level_axis("|H|  (dB)", seen["y"]) | upper | {"anchor": "x"},
+        yaxis2=phase_axis(seen["y2"]) | lower | {"anchor": "x"},
+        yaxis3=(level_axis(view.unit, seen["y3"]) if _in_decibel(view) else log_axis(view.unit, seen["y3"]))
         | upper
         | {"anchor": "x2"},
-        yaxis4=_phase_axis(seen["y4"]) | lower | {"anchor": "x2"},
+        yaxis4=phase_axis(seen["y4"]) | lower | {"anchor": "x2"},
         annotations=annotations,
         shapes=[line for axis in ("x", "x2") for line in _marker_lines(run, axis)],
         meta={"aspect": aspect},
     )
-
-
-def _level_axis(title: str, curves: list[np.ndarray]) -> dict[str, Any]:
-    low, high = _range(curves, widest=160.0, least=6.0)
-    step = _tick_step(high - low, (1.0, 2.0, 5.0, 10.0, 20.0, 40.0))
-    return style.axis(title, range=_calm(low, high, step), dtick=step)
-
-
-def _phase_axis(curves: list[np.ndarray]) -> dict[str, Any]:
-    low, high = _range(curves, widest=1800.0, least=40.0)
-    step = _tick_step(high - low, (15.0, 30.0, 45.0, 90.0, 180.0, 360.0))
-    return style.axis("phase (deg)", range=_calm(low, high, step), dtick=step)
-
-
-def _log_axis(title: str, curves: list[np.ndarray]) -> dict[str, Any]:
-    low, high = _range([np.log10(c[c > 0.0]) for c in curves], widest=_MOST_DECADES, least=1.0)
-    step = int(_tick_step(high - low, (1.0, 2.0, 3.0, 4.0)))
-    low, high = _calm(low, high, 0.5)
-    decades = [k for k in range(math.ceil(low), math.floor(high) + 1) if k % step == 0]
-    return style.axis(
-        title,
-        type="log",
-        range=[low, high],
-        tickvals=[10.0**k for k in decades],
-        ticktext=[f"{10.0**k:g}" if -3 <= k <= 4 else f"10<sup>{k}</sup>" for k in decades],
-        minor={"showgrid": True, "dtick": 1, "gridcolor": style.GRID_FINE},
-    )
-
-
-def _tick_step(span: float, steps: tuple[float, ...], most: float = 5.0) -> float:
-    return next((step for step in steps if span <= most * step), steps[-1])
-
-
-def _calm(low: float, high: float, step: float) -> list[float]:
-    """Range out to half steps: the axis stands still while a slider moves the curves, and is not laid out."""
-    half = 0.5 * step
-    return [half * math.floor(low / half), half * math.ceil(high / half)]
-
-
-def _range(curves: list[np.ndarray], *, widest: float, least: float) -> tuple[float, float]:
-    """Range over all finite values: padded, at least ``least``, at most ``widest`` below the top."""
-    finite = [c[np.isfinite(c)] for c in curves]
-    values = np.concatenate(finite) if finite else np.array([])
-    if len(values) == 0:
-        return -least, least
-    top, bottom = float(np.max(values)), float(np.min(values))
-    bottom = max(bottom, top - widest)
-    pad = max(0.06 * (top - bottom), 0.5 * (least - (top - bottom)))
-    return bottom - pad, top + pad
 
 
 def _title(xref: str, content: str) -> dict[str, Any]:

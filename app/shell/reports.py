@@ -1,0 +1,73 @@
+"""What a page reports of itself: its window, the tabs in front, the picture it has painted."""
+
+from __future__ import annotations
+
+import re
+import threading
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from app.bridge.controls import id_of
+from app.shell.layout import Window, read_state
+
+if TYPE_CHECKING:
+    import viser
+
+PAGE_STATE = "page state"
+"""Label of the control through which the page reports its size and front tabs (static/page.js)."""
+
+PAGE_PAINTED = "page painted"
+"""Label of the control through which the page says which picture it has painted (static/drawn.js)."""
+
+
+class Reports:
+    """The two controls that the page's own scripts fill in.
+
+    Parameters
+    ----------
+    gui : viser.GuiApi
+        Of the page.
+    on_window : callable
+        ``on_window(window, front, told)``: its window, the tabs in front by title, and the report itself.
+    on_painted : callable
+        ``on_painted(picture, moving=...)``: it has painted this picture, and whether a slider moves.
+    """
+
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        on_window: Callable[[Window, frozenset[str], str], None],
+        on_painted: Callable[..., None],
+    ) -> None:
+        self._on_window, self._on_painted = on_window, on_painted
+        self._came = threading.Event()
+        self._window = gui.add_text(PAGE_STATE, "", order=1)
+        self._window.on_update(lambda _: self._take_window())
+        self._painted = gui.add_text(PAGE_PAINTED, "", order=1)
+        self._painted.on_update(lambda _: self._take_painted())
+
+    @property
+    def window_id(self) -> str:
+        """Id of the control that tells of the window and its tabs."""
+        return id_of(self._window)
+
+    @property
+    def painted_id(self) -> str:
+        """Id of the control that tells which picture is painted."""
+        return id_of(self._painted)
+
+    def wait_for_window(self, timeout_s: float) -> bool:
+        """Block until the page has told of its window; False after the timeout."""
+        return self._came.wait(timeout_s)
+
+    def _take_window(self) -> None:
+        told = self._window.value.strip()
+        window, front = read_state(told)
+        if window is not None:
+            self._on_window(window, frozenset(front), told)
+            self._came.set()
+
+    def _take_painted(self) -> None:
+        told = re.fullmatch(r"([0-9]{1,9}) ([01])", self._painted.value)
+        if told is not None:
+            self._on_painted(int(told[1]), moving=told[2] == "1")
