@@ -36,8 +36,10 @@ _SHOWN_LABELS = """() => [...document.querySelectorAll('[data-dock-region=left] 
 
 @pytest.fixture
 def large(bench: Bench) -> Iterator[Bench]:
-    """The shared page with the first preset; afterwards in its normal size and window."""
+    """The shared page with the first preset and no lesson open; afterwards in its normal size and window."""
     bench.reset("sikuliaq-like", selected=2)
+    bench.page.evaluate("() => schuler.command('lesson', 'list')")
+    bench.settle()
     yield bench
     bench.show(size="normal")
     resize(bench, (1920, 1080))
@@ -78,6 +80,4 @@ def test_the_controls_are_those_of_the_method_and_then_of_the_lesson(large: Benc
     page.wait_for_selector("#sb-size", state="detached")
     assert page.locator("[data-dock-region=left] [role=tablist]").is_visible()
     assert large.session.display.size == "normal"
-    page.evaluate("() => schuler.command('lesson', 'list')")
-    large.settle()
     assert large.faults == []
