@@ -1,4 +1,4 @@
-"""The figures that the strapdown engine is accurate to, as a table: ``make accuracy``.
+"""The figures that engine and budget are accurate to, as a table: ``make accuracy``.
 
 Each is held by a test of the acceptance or unit tests, with a limit; here it is printed.
 """
@@ -13,9 +13,11 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from navcore.alignment.fine import CompassLoop, fine_alignment, steady_misalignment
+from navcore.design.budget import budget
+from navcore.design.figures import Figures
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import WGS84
-from navcore.foundation.units import DEG, DEG_PER_HOUR, MICRO_G
+from navcore.foundation.units import ARCSEC, DEG, DEG_PER_HOUR, MICRO_G
 from navcore.mechanization.recorder import DV_E, DV_N, MAX_ABS, PHI_E, PHI_N
 from navcore.mechanization.strapdown.attitude import misalignment, quaternion_of
 from navcore.mechanization.strapdown.run import turned_by
@@ -25,6 +27,7 @@ from navcore.networks.compass import CompassNetwork
 from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
+from tests.acceptance.test_design_values import FLOOR, OPTIMA, OPTIMAL, TABLE, set_a
 from tests.acceptance.test_strapdown_against_error_model import METHODS, VOYAGE, both
 from tests.acceptance.test_strapdown_motions import ORDERS, worst
 from tests.motions import MANOEUVRES, SEA, SUN, ZHAO, circle_track
@@ -136,6 +139,26 @@ def fidelities() -> Iterator[Row]:
             yield f"error_model against strapdown, 6 h: {name}, {method}", f"{100 * off:.2f} % of peak", "2 %"
 
 
+def design() -> Iterator[Row]:
+    """Steady budgets of the reference sensors: the table by network, the optima, `optimal`, the floor."""
+    cases: list[tuple[dict[str, object], float, float | None]] = [
+        *((network, tilt, velocity) for network, _, tilt, velocity in TABLE),
+        *((network, tilt, None) for network, tilt in OPTIMA),
+        *(({"id": "optimal", "rho": rho}, tilt, velocity) for rho, tilt, velocity in OPTIMAL),
+    ]
+    for network, tilt, velocity in cases:
+        found = budget(set_a(network), steady=True)
+        name = ", ".join(str(value) for value in network.values())
+        wanted = f"{tilt:.3f} arcsec" + ("" if velocity is None else f", {velocity:.4g} m/s")
+        yield f"steady tilt and velocity: {name}", _figures(found.methods[0].total.rms), wanted
+        if network is cases[-1][0]:
+            yield "floor", _figures(found.floor.rms), f"{FLOOR[0]:.3f} arcsec, {FLOOR[1]:.4g} m/s"
+
+
+def _figures(rms: Figures) -> str:
+    return f"{(rms.tilt_rad or 0.0) / ARCSEC:.3f} arcsec, {rms.velocity_mps:.4g} m/s"
+
+
 def recorded(file: Path) -> Iterator[Row]:
     """A parked vehicle's ring-laser gyros: heading, and V_E free and damped with V_r = 0."""
     if not file.is_file():
@@ -166,7 +189,15 @@ def recorded(file: Path) -> Iterator[Row]:
 def main() -> int:
     """Print the table."""
     file = Path(__file__).resolve().parents[3] / "shared" / "data" / "imu" / "lasergyro.imu"
-    for part in (at_rest(), in_motion(), reference_values(), alignment(), fidelities(), recorded(file)):
+    for part in (
+        at_rest(),
+        in_motion(),
+        reference_values(),
+        alignment(),
+        fidelities(),
+        design(),
+        recorded(file),
+    ):
         for what, found, wanted in part:
             print(f"{what:<58} {found:<44} {wanted}", flush=True)
     return 0

@@ -55,6 +55,22 @@ TABLE = [
         0.1035,
     ),
 ]
+OPTIMA = [
+    ({"id": "compass", "sigma": 0.002945, "xi": 2.790}, 4.850),
+    ({"id": "unity2", "zeta": 0.7115, "r": 1.037, "zeta2": 2.0}, 4.882),
+    ({"id": "complementary", "zeta": 2.0, "eta": 2.0}, 6.016),
+]
+"""Networks whose parameters make the tilt least, and that tilt, arcsec."""
+OPTIMAL = [
+    (1.0, 6.147, 0.251),
+    (0.1, 5.217, 0.244),
+    (0.01, 4.874, 0.316),
+    (1e-3, 4.756, 0.506),
+    (1e-4, 4.717, 0.878),
+]
+"""Network `optimal`: rho, tilt in arcsec, velocity in m/s."""
+FLOOR = 4.699, 0.0934
+"""Tilt in arcsec and velocity in m/s."""
 
 
 def set_a(*networks: dict[str, object]) -> Scenario:
@@ -84,35 +100,19 @@ def test_tilt_by_source_and_total(found: Budget, row: int) -> None:
 
 def test_floor(found: Budget) -> None:
     """The Kalman filter on the same model; the famous compass setting is 2.8 times as bad."""
-    assert (found.floor.rms.tilt_rad or 0.0) / ARCSEC == pytest.approx(4.699, rel=5e-3)
-    assert found.floor.rms.velocity_mps == pytest.approx(0.0934, rel=5e-3)
+    assert (found.floor.rms.tilt_rad or 0.0) / ARCSEC == pytest.approx(FLOOR[0], rel=5e-3)
+    assert found.floor.rms.velocity_mps == pytest.approx(FLOOR[1], rel=5e-3)
     assert found.times_floor(found.methods[4])["tilt"] == pytest.approx(2.8, abs=0.05)
 
 
-@pytest.mark.parametrize(
-    ("network", "arcsec"),
-    [
-        ({"id": "compass", "sigma": 0.002945, "xi": 2.790}, 4.850),
-        ({"id": "unity2", "zeta": 0.7115, "r": 1.037, "zeta2": 2.0}, 4.882),
-        ({"id": "complementary", "zeta": 2.0, "eta": 2.0}, 6.016),
-    ],
-)
+@pytest.mark.parametrize(("network", "arcsec"), OPTIMA)
 def test_tilt_at_the_known_optima(network: dict[str, object], arcsec: float) -> None:
     """The least tilt of three networks, at the parameters that give it."""
     method = budget(set_a(network), steady=True).methods[0]
     assert (method.total.rms.tilt_rad or 0.0) / ARCSEC == pytest.approx(arcsec, rel=5e-3)
 
 
-@pytest.mark.parametrize(
-    ("rho", "arcsec", "velocity"),
-    [
-        (1.0, 6.147, 0.251),
-        (0.1, 5.217, 0.244),
-        (0.01, 4.874, 0.316),
-        (1e-3, 4.756, 0.506),
-        (1e-4, 4.717, 0.878),
-    ],
-)
+@pytest.mark.parametrize(("rho", "arcsec", "velocity"), OPTIMAL)
 def test_optimal_network(rho: float, arcsec: float, velocity: float) -> None:
     """LQG with the cost of the tilt only: the rows of the reference to 1 %, never below the floor."""
     found = budget(set_a({"id": "optimal", "rho": rho}), steady=True)
