@@ -90,7 +90,7 @@ class Translator:
             elif name in _LISTS:
                 changed[name] = tuple(self._say(text) for text in value)
             elif name == _PLOTLY:
-                changed[name] = self._plotly(value)
+                changed[name] = self.figure(value)
             elif name in _UPLOT:
                 changed[name] = tuple(self._uplot(part) for part in value)
         if "value" in fields and "options" not in fields and uuid in self._meant:
@@ -107,7 +107,8 @@ class Translator:
         self._meant[uuid] = meant
         return tuple(meant)
 
-    def _plotly(self, figure: str) -> str:
+    def figure(self, figure: str) -> str:
+        """Return a plotly figure (JSON) with its texts translated."""
         told = msgspec.json.decode(figure)
         return msgspec.json.encode(self._walk(told)).decode()
 
@@ -155,11 +156,15 @@ def meant(server: Any, client_id: int, uuid: str, value: object) -> object:
 
 def language_of(client: Any) -> str:
     """Language of a page, as a browser tells it."""
-    translator: Translator | None = client._websock_connection.get_message_buffer().translator
+    translator = _translator(client)
     return "en" if translator is None else translator.name
 
 
 def figure_said(client: Any, figure: str) -> str:
     """Return a plotly figure (JSON) in a page's language, where it stands in HTML of ours."""
-    translator: Translator | None = client._websock_connection.get_message_buffer().translator
-    return figure if translator is None else translator._plotly(figure)
+    translator = _translator(client)
+    return figure if translator is None else translator.figure(figure)
+
+
+def _translator(client: Any) -> Translator | None:
+    return client._websock_connection.get_message_buffer().translator

@@ -151,12 +151,17 @@ def text(x: float | str, y: float, content: str, **more: Any) -> dict[str, Any]:
     return made
 
 
+def legend_px(name: str) -> float:
+    """Width that a name takes in a legend, estimated from the number of letters."""
+    return 52.0 + 7.2 * len(name)
+
+
 def legend_rows(names: list[str], width_px: float) -> int:
-    """Rows that a horizontal plotly legend of these names needs, estimated from the number of letters.
+    """Rows that a horizontal plotly legend of these names needs.
 
     What does not fit in one row, plotly sets in columns of equal width.
     """
-    needs = [52.0 + 7.2 * len(name) for name in names]
+    needs = list(map(legend_px, names))
     if not needs or sum(needs) <= width_px:
         return 1
     columns = max(1, int(width_px // max(needs)))

@@ -25,6 +25,7 @@ _log = logging.getLogger("schuler.document")
 
 Document = dict[str, Any]
 _made: WeakKeyDictionary[Session, dict[int, tuple[Scenario, Document]]] = WeakKeyDictionary()
+"""What each session's last document holds: scenarios by their identity, as they are written."""
 Unreadable = (InputError, ValidationError, ValueError, TypeError, KeyError, IndexError, AttributeError)
 """What reading a document of strange content raises."""
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from app.bridge.controls import in_single, show_numbers
 from app.plots.enlarged import enlarged_time_plot
+from app.plots.style import legend_px
 from app.plots.uplot import UplotFigure
 from app.shell.layout import CHOOSER_PX, Layout
 from app.shell.view import Tab
@@ -58,10 +59,9 @@ def room_px(layout: Layout, names: list[str]) -> int:
 
 
 def _rows(names: list[str], width_px: float) -> int:
-    """Rows of a legend whose names follow each other, estimated from the number of letters."""
+    """Rows of a legend whose names follow each other."""
     rows, used = 1, 0.0
-    for name in names:
-        need = 52.0 + 7.2 * len(name)
+    for need in map(legend_px, names):
         if used and used + need > width_px:
             rows, used = rows + 1, 0.0
         used += need
