@@ -113,6 +113,11 @@ class Display(BaseModel):
     front_x: FrontAxis = "tilt_rms"
     front_y: FrontAxis = "velocity_rms"
 
+    @property
+    def enlarged(self) -> bool:
+        """Whether the page is in presentation size."""
+        return self.size == "presentation"
+
     def state_of(self, key: str) -> State:
         """How a curve is shown."""
         return dict(self.legend).get(key, "shown")

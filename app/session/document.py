@@ -83,6 +83,7 @@ class _Scenarios:
     def __init__(self, before: dict[int, tuple[Scenario, Document]]) -> None:
         self._before = before
         self.made: dict[int, tuple[Scenario, Document]] = {}
+        self._numbers: dict[int, int] = {}
 
     def number(self, scenario: Scenario) -> int:
         key = id(scenario)
@@ -91,7 +92,7 @@ class _Scenarios:
             if known is not scenario:
                 document = plain_names(scenario.canonical())
             self.made[key] = scenario, document
-        return list(self.made).index(key)
+        return self._numbers.setdefault(key, len(self._numbers))
 
 
 def _step(state: State, name: str, scenarios: _Scenarios) -> Document:

@@ -200,7 +200,7 @@ class Page:
         self._again_pictures()
 
     def _fold(self) -> None:
-        self.header.fold(self.session.display.size == "presentation")
+        self.header.fold(self.session.display.enlarged)
 
     def run_progressed(self, fraction: float, elapsed_s: float) -> None:
         """Mark the picture as old once a run takes its time."""
@@ -364,8 +364,7 @@ class Page:
 
     def wanted_layout(self) -> Layout:
         """Sizes for the window as it is, and as large as the session's display says."""
-        presentation = self.session.display.size == "presentation"
-        return layout_for(*self._window, presentation=presentation)
+        return layout_for(*self._window, presentation=self.session.display.enlarged)
 
     def _arrange(self, *, keeping_front: bool = False) -> None:
         """Lay the results out anew if the window, or what stands in it, has another size now.

@@ -63,6 +63,7 @@ class AppearanceView(View):
             format: Any = gui.add_button_group(
                 FORMAT, FORMATS, order=22, hint="CSV: the plotted numbers in full. SVG, PNG: the picture."
             )
+            gui.add_html(notices.heading("Page"), order=30)
             language.build()
             self._dark.build()
             self._size.build()
