@@ -30,6 +30,7 @@ _TEXTS = frozenset({"label", "hint", "title", "body", "description", "text", "co
 """Fields of viser's messages that hold a text."""
 _LISTS = frozenset({"options", "_tab_labels"})
 _PLOTLY, _UPLOT = "_plotly_json_str", frozenset({"series", "axes"})
+_KNOWN = _TEXTS | _LISTS | _UPLOT | {_PLOTLY}
 _PLOTLY_TEXTS = frozenset({"text", "name", "title", "hovertext", "hovertemplate", "ticktext", "label"})
 _UPLOT_TEXTS = frozenset({"label", "values"})
 
@@ -81,7 +82,7 @@ class Translator:
         """Translate those fields that hold texts; only what has changed is returned."""
         changed: dict[str, Any] = {}
         for name, value in fields.items():
-            if not value:
+            if name not in _KNOWN or not value:  # the points of a line, say, have no truth value
                 continue
             if name in _TEXTS and isinstance(value, str):
                 changed[name] = self._say(value)
@@ -106,6 +107,10 @@ class Translator:
             meant[option if said in meant else said] = option
         self._meant[uuid] = meant
         return tuple(meant)
+
+    def text(self, text: str) -> str:
+        """Return a text with its translation."""
+        return self._say(text)
 
     def figure(self, figure: str) -> str:
         """Return a plotly figure (JSON) with its texts translated."""
@@ -137,8 +142,7 @@ class Translator:
 
 
 def _names(kind: type) -> tuple[str, ...]:
-    known = _TEXTS | _LISTS | _UPLOT | {_PLOTLY}
-    return tuple(entry.name for entry in dataclasses.fields(kind) if entry.name in known)
+    return tuple(entry.name for entry in dataclasses.fields(kind) if entry.name in _KNOWN)
 
 
 def speak(server: Any, client_id: int, language: Language | None) -> None:
@@ -164,6 +168,12 @@ def figure_said(client: Any, figure: str) -> str:
     """Return a plotly figure (JSON) in a page's language, where it stands in HTML of ours."""
     translator = _translator(client)
     return figure if translator is None else translator.figure(figure)
+
+
+def text_said(client: Any, text: str) -> str:
+    """Return a text, HTML or not, in a page's language, where no message of viser carries it as such."""
+    translator = _translator(client)
+    return text if translator is None else translator.text(text)
 
 
 def _translator(client: Any) -> Translator | None:

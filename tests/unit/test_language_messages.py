@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
+import numpy as np
 import pytest
 from viser import _messages as messages
 from websockets.datastructures import Headers
@@ -62,6 +63,12 @@ def test_options_are_shown_in_the_page_s_language_and_read_back(page: Translator
     update = page.message(messages.GuiUpdateMessage("a", {"options": ("internal",), "value": "internal"}))
     assert update.updates == {"options": ("内",), "value": "内"}
     assert page.meant("a", "无") == "无"
+
+
+def test_changed_points_of_a_line_pass_as_they_are(page: Translator) -> None:
+    points = np.zeros((4, 2, 3), dtype=np.float32)
+    sent = messages.SceneNodeUpdateMessage("/map/grid", {"points": points})
+    assert page.message(sent) is sent
 
 
 def test_two_options_never_become_one() -> None:
