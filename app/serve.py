@@ -43,6 +43,7 @@ _SCRIPTS = (
     "access",
     "cursor",
     "pick",
+    "handle",
     "place",
     "lost",
 )

@@ -122,7 +122,7 @@ class Translator:
             return {
                 name: self._walk(value, name in _PLOTLY_TEXTS or (is_text and name == "text"))
                 if name != "meta"
-                else value
+                else self._meta(value)
                 for name, value in part.items()
             }
         if isinstance(part, list):
@@ -130,6 +130,11 @@ class Translator:
                 return part
             return [self._walk(one, is_text) for one in part]
         return self._say(part) if is_text and isinstance(part, str) else part
+
+    def _meta(self, meta: Any) -> Any:
+        """Of what a figure tells our scripts only ``told`` is for a reader."""
+        told = meta.get("told") if isinstance(meta, dict) else None
+        return {**meta, "told": self._say(told)} if told else meta
 
     def _uplot(self, part: Mapping[str, Any]) -> dict[str, Any]:
         told = {name: part[name] for name in _UPLOT_TEXTS & part.keys()}

@@ -96,7 +96,7 @@ class History:
         """What redo would bring back, in words; None when there is nothing."""
         return self._steps[self._at + 1].name if self._at + 1 < len(self._steps) else None
 
-    def push(self, state: State, name: str = "") -> None:
+    def push(self, state: State, name: str = "", gesture: str = "") -> None:
         """Note a change; what had been undone is forgotten. Nothing happens when nothing changed.
 
         Parameters
@@ -105,6 +105,8 @@ class History:
             After the change.
         name : str
             What was done, in words; else it is told from what changed.
+        gesture : str
+            Changes of one gesture that follow each other are one step, however long it takes.
         """
         before = self.state
         if state == before:
@@ -114,16 +116,18 @@ class History:
             self._replace(state)  # another method was selected: no step of its own
             return
         now, (dragged, last_s) = self._clock(), self._drag
-        self._drag = ((), 0.0) if name else (fields, now)
+        moved = (gesture,) if gesture else () if name else fields
+        self._drag = moved, now
         del self._steps[self._at + 1 :]
-        if not name and fields and fields == dragged and now - last_s < DRAG_S:
+        if moved and moved == dragged and (gesture or now - last_s < DRAG_S):
             start = self._steps[self._at - 1].state
             if start.scenario == state.scenario and start.origin == state.origin:
                 self._at -= 1  # dragged back to where it was
                 del self._steps[self._at + 1 :]
                 self._replace(state)
+                self._drag = ((), 0.0)  # its step is gone: what follows is another one
                 return
-            self._steps[self._at] = _Step(state, change_name(start, state))
+            self._steps[self._at] = _Step(state, name or change_name(start, state))
             return
         self._steps.append(_Step(state, name or change_name(before, state)))
         del self._steps[: max(0, len(self._steps) - MOST_STEPS - 1)]

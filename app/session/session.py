@@ -191,12 +191,13 @@ class Session:
         origin: str | None = None,
         selected: int | None = None,
         name: str = "",
+        gesture: str = "",
     ) -> bool:
         """Take over a checked scenario and run it; False when nothing changed.
 
         The single place where the scenario changes; each change can be undone. One that `runs_on_demand` is
         run when it is opened (``origin``) and when the user asks for it, not with every move of a control.
-        ``name`` says what was done where that is not "this field from here to there".
+        ``name`` says what was done, if not "this field from here to there"; a ``gesture`` is one step.
         """
         with self.lock:
             same = scenario == self.scenario and origin in (None, self.origin)
@@ -206,7 +207,7 @@ class Session:
                 return False
             opened = self.opened if origin is None else scenario
             state = State(scenario, origin or self.origin, self.selected, opened)
-            self.history.push(state, name or ("" if origin is None else f"open {origin}"))
+            self.history.push(state, name or ("" if origin is None else f"open {origin}"), gesture)
             self._go_to(state, by, opens=origin is not None)
             return True
 

@@ -85,6 +85,23 @@ class Editor:
                 said = f"reset {control.spec.label}" if name is None else name
                 self._session.change(changed, None, name=said)
 
+    def drag(self, changed: Scenario, name: str, gesture: str) -> None:
+        """Take over what a handle in a plot gives while it is dragged: as a slider, without a control.
+
+        Parameters
+        ----------
+        changed : Scenario
+            With the new values.
+        name : str
+            What undo calls it.
+        gesture : str
+            Marks the drag, which is one step of undo.
+        """
+        with self._session.lock:
+            if not self._closed:
+                self.moved, self.by_slider = None, True
+                self._session.change(changed, self._by, name=name, gesture=gesture)
+
     def close(self) -> None:
         """Let nothing follow any more."""
         with self._session.lock:

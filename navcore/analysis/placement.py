@@ -8,9 +8,8 @@ from navcore.analysis.loop import H0_TOLERANCE
 from navcore.foundation.errors import Fault, InputError
 from navcore.networks.base import NetworkParameters
 from navcore.networks.catalogue import NETWORKS
-from navcore.networks.pair import Placement
+from navcore.networks.pair import LARGEST_DAMPING, LEAST_DAMPING, Placement
 
-LEAST_DAMPING, LARGEST_DAMPING = 0.01, 1.0
 __all__ = ["LARGEST_DAMPING", "LEAST_DAMPING", "Placement", "place", "placeable"]
 
 

@@ -14,7 +14,8 @@ import numpy as np
 
 from navcore.analysis.loop import analyse
 from navcore.analysis.transfers import Output, Source, TransferOptions, transfer
-from navcore.networks.base import LinearNetwork, transfer_function
+from navcore.networks.base import LinearNetwork
+from navcore.networks.transfer_function import transfer_function
 
 if TYPE_CHECKING:
     from control import TransferFunction

@@ -17,12 +17,13 @@ from numpy.typing import NDArray
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.registry import Entry
 from navcore.networks.roots import sorted_roots
+from navcore.networks.transfer_function import transfer_function
 
 if TYPE_CHECKING:
     from control import TransferFunction
 
     from navcore.networks.lqg import SensorFigures
-    from navcore.networks.pair import Placement
+    from navcore.networks.pair import MainPair, Placement
 
 _T = TypeVar("_T", bound=np.generic)
 FloatArray = NDArray[np.float64]
@@ -153,25 +154,6 @@ class LinearNetwork:
         return transfer_function(self.num, self.den, self.omega_s if normalised else None)
 
 
-def transfer_function(num: np.ndarray, den: np.ndarray, omega_s: float | None = None) -> TransferFunction:
-    """Make a `control.TransferFunction` of polynomials in s (rad/s).
-
-    Parameters
-    ----------
-    num, den : ndarray
-        Coefficients in descending powers of s.
-    omega_s : float, optional
-        When given, the function of p = s / omega_s is returned.
-    """
-    import control
-
-    if omega_s is not None:
-        top = float(len(den) - 1)
-        num = num * omega_s ** (np.arange(len(num) - 1, -1, -1) - top)
-        den = den * omega_s ** (np.arange(len(den) - 1, -1, -1) - top)
-    return control.TransferFunction(num, den)
-
-
 class NetworkParameters(Entry):
     """Base of the ``network`` block of a method; subclasses narrow ``id`` to a Literal.
 
@@ -183,11 +165,14 @@ class NetworkParameters(Entry):
         Groups of fields that stand for each other: giving one group takes the others away.
     placeable : str
         Name in the list of networks that a pole pair can place (`with_pair`); empty: it cannot be placed.
+    no_handle : str
+        Why its pair cannot be placed, as the page says it; empty where it can.
     """
 
     title: ClassVar[str] = ""
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = ()
     placeable: ClassVar[str] = ""
+    no_handle: ClassVar[str] = "its parameters set no pair"
     id: Any  # a Literal in each subclass; str here would be narrowed against the rule for mutable fields
 
     def transfer(self, omega_s: float) -> LinearNetwork:
@@ -253,6 +238,18 @@ class NetworkParameters(Entry):
         ------
         InputError
             The pair needs a parameter outside its range.
+        """
+        return None
+
+    def main_pair(self, omega_s: float) -> MainPair | None:
+        """Return the closed-loop pair that `with_pair` sets, as it is; None where there is none to be set.
+
+        ``with_pair`` with the damping ratio and frequency of this pair gives the same loop again.
+
+        Parameters
+        ----------
+        omega_s : float
+            Schuler frequency, rad/s.
         """
         return None
 

@@ -19,6 +19,7 @@ class Classic2Network(NetworkParameters):
 
     title: ClassVar[str] = "Classic, second order"
     source: ClassVar[str] = "Liu 2, Sun 5, Zha 2"
+    no_handle: ClassVar[str] = "its coefficients are fixed"
     id: Literal["classic2"] = "classic2"
 
     def transfer(self, omega_s: float) -> LinearNetwork:
@@ -31,6 +32,7 @@ class Classic3Network(NetworkParameters):
 
     title: ClassVar[str] = "Classic, third order"
     source: ClassVar[str] = "Liu 3, Sun 4"
+    no_handle: ClassVar[str] = "its coefficients are fixed"
     id: Literal["classic3"] = "classic3"
 
     def transfer(self, omega_s: float) -> LinearNetwork:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar, Literal
 
+import numpy as np
 from pydantic import model_validator
 
-from navcore.foundation.parameters import choice, given, quantity
+from navcore.foundation.parameters import bounds_of, choice, given, quantity
 from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network, refuse
-from navcore.networks.pair import Placement, placement
+from navcore.networks.pair import MainPair, Placement, dampings, placement
 from navcore.networks.roots import pair
 
 GAINS_TOLERANCE = 1e-3
@@ -32,6 +33,7 @@ class CompassNetwork(NetworkParameters):
     source: ClassVar[str] = "Deng 1, 2; Zha 10"
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (_DESIGN, _GAINS)
     placeable: ClassVar[str] = "compass"
+    no_handle: ClassVar[str] = "its gains give three real poles; a click into the pole map places a pair"
     id: Literal["compass"] = "compass"
     sigma: float | None = quantity(
         0.0088,
@@ -151,6 +153,20 @@ class CompassNetwork(NetworkParameters):
         """Return the compass loop with this pair: xi and sigma = xi |p|."""
         data = {"realisation": self.realisation, "sigma": damping_ratio * frequency, "xi": damping_ratio}
         return placement(type(self), data, damping_ratio, frequency, "")
+
+    def main_pair(self, omega_s: float) -> MainPair | None:
+        """Return the pair of sigma and xi; of other gains the pair of the loop, None without one."""
+        if self.sigma is not None and self.xi is not None:
+            damping_ratio, frequency = self.xi, self.sigma / self.xi
+        else:
+            k1, k2, k3 = self.gains(omega_s)
+            roots = np.roots([1.0, k1 / omega_s, 1.0 + k2, k3 / omega_s])
+            found = next((root for root in roots if root.imag > 0.0), None)
+            if found is None:
+                return None
+            damping_ratio, frequency = float(-found.real / abs(found)), float(abs(found)) * omega_s
+        rates = bounds_of(type(self).model_fields["sigma"])
+        return MainPair(damping_ratio, frequency, dampings(type(self), "xi"), ((0.0, math.inf),), rates)
 
     def following(self, network: LinearNetwork) -> dict[str, Any]:
         """Return the gains, and sigma and xi if these gains have any."""

@@ -6,7 +6,7 @@ from typing import ClassVar, Literal
 
 from navcore.foundation.parameters import quantity
 from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network
-from navcore.networks.pair import Placement, placement_at_omega_s
+from navcore.networks.pair import MainPair, Placement, dampings, placement_at_omega_s
 from navcore.networks.roots import pair
 from navcore.networks.tuning_codes import COMPLEMENTARY
 
@@ -52,6 +52,10 @@ class ComplementaryNetwork(NetworkParameters):
     def with_pair(self, damping_ratio: float, frequency: float, omega_s: float) -> Placement:
         """Return the network with zeta = this damping ratio."""
         return placement_at_omega_s(self, {"zeta": damping_ratio}, damping_ratio, frequency, omega_s)
+
+    def main_pair(self, omega_s: float) -> MainPair:
+        """Return the pair of zeta: it always lies at omega_s."""
+        return MainPair(self.zeta, omega_s, dampings(type(self), "zeta"), ((omega_s, omega_s),))
 
     def tuning(self, omega_s: float) -> list[float]:
         """Return code, eta."""

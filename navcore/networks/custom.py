@@ -48,6 +48,7 @@ class CustomNetwork(NetworkParameters):
     title: ClassVar[str] = "Custom"
     source: ClassVar[str] = "theory.md 3"
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (_ROOTS, _POLYNOMIALS)
+    no_handle: ClassVar[str] = "its zeros and poles are given one by one"
     id: Literal["custom"] = "custom"
     zeros: _Roots | None = quantity(
         None,

@@ -70,6 +70,7 @@ class OptimalNetwork(NetworkParameters):
 
     title: ClassVar[str] = "Optimal for the sensors (LQG)"
     source: ClassVar[str] = "theory.md 17"
+    no_handle: ClassVar[str] = "its poles follow from the sensors, rho and q"
     id: Literal["optimal"] = "optimal"
     rho: float = quantity(
         1e-2,

@@ -1,4 +1,4 @@
-"""What became of a closed-loop pole pair that is wanted of a network."""
+"""The closed-loop pole pair that parameters set: where it is, where it can be, what became of a wish."""
 
 from __future__ import annotations
 
@@ -10,9 +10,89 @@ from pydantic import ValidationError
 
 from navcore.foundation.errors import InputError
 from navcore.foundation.faults import faults_from
+from navcore.foundation.parameters import bounds_of
 from navcore.networks.base import NetworkParameters
 
+LEAST_DAMPING, LARGEST_DAMPING = 0.01, 1.0
+"""Damping ratios that a pair can be placed at: above 1 there is no pair."""
 _SAME = 1e-6
+_ROUNDING = 1e-12
+"""A product that is to stay within a range is kept so far inside it."""
+Range = tuple[float, float]
+"""Lowest and highest value."""
+
+
+@dataclass(frozen=True)
+class MainPair:
+    """The closed-loop pair that a network's parameters set, and the pairs that they can set.
+
+    Attributes
+    ----------
+    damping_ratio : float
+        Of the pair as it is; above 1 its poles are real.
+    frequency : float
+        |p| of the pair as it is, rad/s.
+    dampings : (float, float)
+        Damping ratios that it can have.
+    frequencies : tuple of (float, float)
+        Frequencies that it can have, rad/s, ascending; one with equal ends where it always lies.
+    rates : (float, float)
+        Allowed products of both, 1/s: what is left of a range of sigma.
+    """
+
+    damping_ratio: float
+    frequency: float
+    dampings: Range
+    frequencies: tuple[Range, ...]
+    rates: Range = (0.0, math.inf)
+
+    def nearest(self, damping_ratio: float, frequency: float) -> tuple[float, float]:
+        """Return damping ratio and frequency (rad/s) of the pair that is possible next to a wanted one.
+
+        The damping ratio is met first; then the frequency that is nearest by its ratio to the wanted one.
+
+        Parameters
+        ----------
+        damping_ratio : float
+            Wanted.
+        frequency : float
+            Wanted, rad/s; above 0.
+        """
+        damping_ratio = _within(damping_ratio, self.dampings)
+        low = self.rates[0] / damping_ratio * (1.0 + _ROUNDING)
+        high = self.rates[1] / damping_ratio * (1.0 - _ROUNDING)
+        ranges = [(max(least, low), min(most, high)) for least, most in self.frequencies]
+        possible = [_within(frequency, ends) for ends in ranges if ends[0] <= ends[1]]
+        if not possible:
+            return self.damping_ratio, self.frequency
+        return damping_ratio, min(possible, key=lambda found: abs(math.log(found / frequency)))
+
+    def allowed(self, omega_s: float) -> str:
+        """Say which pairs are possible; frequencies in units of omega_s (rad/s).
+
+        Examples
+        --------
+        >>> MainPair(0.5, 1.2, (0.01, 1.0), ((0.1, 0.99), (1.01, 10.0))).allowed(1.0)
+        'ξ = 0.01…1, ω = 0.1…0.99 or 1.01…10 ω_s'
+        """
+        parts = [f"ξ = {self.dampings[0]:g}…{self.dampings[1]:g}"]
+        finite = [ends for ends in self.frequencies if ends[1] < math.inf]
+        if finite:
+            spans = " or ".join(f"{low / omega_s:g}…{high / omega_s:g}" for low, high in finite)
+            parts.append(f"ω = {spans} ω_s")
+        if self.rates[1] < math.inf:
+            parts.append(f"ξ ω = {self.rates[0]:g}…{self.rates[1]:g} 1/s")
+        return ", ".join(parts)
+
+
+def dampings(network: type[NetworkParameters], field: str) -> Range:
+    """Range of damping ratios that a field can give a pair."""
+    low, high = bounds_of(network.model_fields[field])
+    return max(low, LEAST_DAMPING), min(high, LARGEST_DAMPING)
+
+
+def _within(value: float, ends: Range) -> float:
+    return min(max(value, ends[0]), ends[1])
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from navcore.foundation.parameters import choice, quantity
 from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network, refuse
-from navcore.networks.pair import Placement, placement_at_omega_s
+from navcore.networks.pair import MainPair, Placement, dampings, placement_at_omega_s
 from navcore.networks.roots import pair
 from navcore.networks.tuning_codes import POLE2
 
@@ -24,6 +24,7 @@ class Pole2Network(NetworkParameters):
     title: ClassVar[str] = "Two poles (Sun)"
     source: ClassVar[str] = "Sun 12-18"
     placeable: ClassVar[str] = "pole2 (exact)"
+    no_handle: ClassVar[str] = "the printed variant moves its pair away from where it is asked for"
     id: Literal["pole2"] = "pole2"
     xi: float = quantity(
         0.5,
@@ -98,6 +99,12 @@ class Pole2Network(NetworkParameters):
         if self.variant != "exact":
             return None
         return placement_at_omega_s(self, {"xi": damping_ratio}, damping_ratio, frequency, omega_s)
+
+    def main_pair(self, omega_s: float) -> MainPair | None:
+        """Return the pair of xi, which always lies at omega_s; None as printed, where it moves."""
+        if self.variant != "exact":
+            return None
+        return MainPair(self.xi, omega_s, dampings(type(self), "xi"), ((omega_s, omega_s),))
 
     def tuning(self, omega_s: float) -> list[float]:
         """Return code, n1, n2, and 1 when as printed."""

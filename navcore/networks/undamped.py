@@ -12,6 +12,7 @@ class UndampedNetwork(NetworkParameters):
 
     title: ClassVar[str] = "Undamped"
     source: ClassVar[str] = "theory.md 3"
+    no_handle: ClassVar[str] = "H = 1 has no parameter"
     id: Literal["none"] = "none"
 
     def transfer(self, omega_s: float) -> LinearNetwork:

@@ -7,14 +7,14 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
-from navcore.foundation.parameters import given, quantity
+from navcore.foundation.parameters import bounds_of, given, quantity
 from navcore.networks.base import (
     LinearNetwork,
     NetworkParameters,
     linear_network,
     refuse,
 )
-from navcore.networks.pair import Placement, placement, same_frequency
+from navcore.networks.pair import MainPair, Placement, dampings, placement, same_frequency
 from navcore.networks.roots import pair, quadratic_roots
 from navcore.networks.tuning_codes import UNITY2
 
@@ -132,9 +132,7 @@ class Unity2Network(NetworkParameters):
 
     def with_pair(self, damping_ratio: float, frequency: float, omega_s: float) -> Placement:
         """Return the network with this damping ratio, and r within its range."""
-        bounds = type(self).model_fields["r"].metadata
-        least = next(limit.ge for limit in bounds if hasattr(limit, "ge"))
-        largest = next(limit.le for limit in bounds if hasattr(limit, "le"))
+        least, largest = bounds_of(type(self).model_fields["r"])
         r = min(max(frequency / omega_s, least), largest)
         low, high = FORBIDDEN
         if low < r < high:
@@ -145,6 +143,12 @@ class Unity2Network(NetworkParameters):
             note = f"the pair can only lie at {allowed}: {r:g} omega_s is taken"
         data = self.model_dump(exclude_none=True) | {"zeta": damping_ratio, "r": r}
         return placement(type(self), data, damping_ratio, r * omega_s, note)
+
+    def main_pair(self, omega_s: float) -> MainPair:
+        """Return the pair of zeta and r."""
+        (least, largest), (low, high) = bounds_of(type(self).model_fields["r"]), FORBIDDEN
+        ranges = ((least * omega_s, low * omega_s), (high * omega_s, largest * omega_s))
+        return MainPair(self.zeta, self.r * omega_s, dampings(type(self), "zeta"), ranges)
 
     def following(self, network: LinearNetwork) -> dict[str, Any]:
         """Return alpha and zeta2 of the second pair p^2 + alpha p + beta (theory.md 3.4)."""

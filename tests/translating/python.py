@@ -49,7 +49,8 @@ _SENTENCE = re.compile(r"(?:\b[A-Za-z]+[,:;]? ){5}")
 """Six words one after the other: no style or path has them."""
 _NO_TEXTS = frozenset(
     "Enter|Escape|Slider|Select|Schuler Bench|Infinity|Library|Application Support|page command|page state|"
-    "page painted|<span>{0}</span>|Hz|skip|height|alpha|{0} next|{0} open {1}|{0} list|{0}px {1}".split("|")
+    "page painted|pair handle|<span>{0}</span>|Hz|skip|height|alpha|{0} next|{0} open {1}|{0} list|"
+    "{0}px {1}".split("|")
 )
 """What looks like prose and is none: keys, labels and arguments for scripts."""
 _CITATION = re.compile(

@@ -154,3 +154,28 @@ def test_only_so_many_steps_are_kept():
     while history.undo():
         steps += 1
     assert steps == MOST_STEPS
+
+
+def test_a_gesture_is_one_step_however_long_it_takes():
+    clock = Clock()
+    history = History(FIRST, clock)
+    for hours, pause in ((5, 30.0), (6, 0.1), (7, 5.0)):
+        history.push(changed(FIRST, f"run.duration_h={hours}"), "placing", "pair 1")
+        clock.now += pause
+    assert (history.undo_name, history.at) == ("placing", 1)
+    history.push(changed(FIRST, "run.duration_h=8"), "placing", "pair 2")
+    assert history.at == 2
+    assert history.undo() == changed(FIRST, "run.duration_h=7")
+    assert history.undo() == FIRST
+
+
+def test_a_drag_over_its_beginning_can_be_undone():
+    for named in (("", ""), ("placing", "pair 1")):
+        history = History(FIRST, Clock())
+        history.push(changed(FIRST, "title=first"))
+        before = history.state
+        for hours in ("6", "4", "7"):
+            history.push(changed(before, "title=first", f"run.duration_h={hours}"), *named)
+        assert history.at == 2
+        assert history.undo() == before
+        assert history.undo() == FIRST

@@ -5,7 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.views.poles.placing import pair_at, read_point, typed_pair, with_pair
+from app.editing.placing import (
+    handle_of,
+    pair_at,
+    read_drag,
+    read_point,
+    typed_pair,
+    with_nearest_pair,
+    with_pair,
+)
 from navcore.analysis import analyse
 from navcore.foundation.errors import InputError
 from navcore.scenario.model import Scenario
@@ -112,3 +120,51 @@ def test_typed_numbers_are_checked(pair: tuple[float, float]) -> None:
     with pytest.raises(InputError):
         typed_pair(*pair)
     assert typed_pair(0.5, 1.2) == (0.5, 1.2)
+
+
+@pytest.mark.parametrize("network", NETWORKS, ids=lambda n: n["id"])
+def test_a_handle_gives_the_network_back(network: dict) -> None:
+    made = with_network(network)
+    handle = handle_of(made, 3)
+    assert (handle["method"], handle["name"]) == (3, "m")
+    placed = with_nearest_pair(made, 3, *handle["pair"])
+    assert placed.note == ""
+    after, before = placed.scenario.method[3].network, made.method[3].network
+    assert dict(after) == {
+        name: pytest.approx(value, rel=1e-12) if isinstance(value, float) else value for name, value in before
+    }
+
+
+def test_a_handle_out_of_reach_stands_still_at_the_range_and_says_so() -> None:
+    made = with_network({"id": "unity2"})
+    placed = with_nearest_pair(made, 3, 0.4, 1.001)
+    assert placed.scenario.method[3].network.model_dump()["r"] == 1.01
+    assert placed.note == "the parameters allow ξ = 0.01…1, ω = 0.1…0.99 or 1.01…10 ω_s"
+    fast = with_nearest_pair(with_network({"id": "compass"}), 3, 0.5, 1e5)
+    assert fast.scenario.method[3].network.model_dump()["sigma"] == pytest.approx(1.0)
+    assert fast.note == "the parameters allow ξ = 0.01…1, ξ ω = 1e-05…1 1/s"
+
+
+@pytest.mark.parametrize(
+    ("network", "more", "why"),
+    [
+        ({"id": "classic2"}, {}, "No handle for m: its coefficients are fixed."),
+        ({"id": "pole2", "variant": "as_printed"}, {}, "the printed variant moves its pair"),
+        ({"id": "custom"}, {}, "its zeros and poles are given one by one"),
+        ({"id": "optimal"}, {}, "its poles follow from the sensors, rho and q"),
+        ({"id": "compass", "k1": 0.1, "k2": 0.01, "k3": 1e-9}, {}, "its gains give three real poles"),
+        ({"id": "compass"}, {"damping": "free"}, "it runs without its network"),
+    ],
+)
+def test_a_network_without_a_handle_says_why(network: dict, more: dict, why: str) -> None:
+    handle = handle_of(with_network(network, **more), 3)
+    assert "pair" not in handle
+    assert why in handle["told"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "1 2 0.5", "1 2 0.5 -1 0", "1 2 inf 1 0", "1 2 0.5 1e9 0", "1 2 0 1 1", "x 2 0.5 1 1", "1 " * 500],
+)
+def test_hostile_places_of_a_handle_are_ignored(text: str) -> None:
+    assert read_drag(text) is None

@@ -181,7 +181,10 @@ def plain(value: Any) -> Any:
 @each_network
 def test_a_network_that_says_so_can_be_placed(name: str) -> None:
     parameters = NETWORKS[name].model_validate({"id": name})
+    pair_now = parameters.main_pair(OMEGA_S)
+    assert (pair_now is not None) == bool(parameters.placeable)
     if not parameters.placeable:
+        assert parameters.no_handle
         with pytest.raises(InputError, match="cannot be placed"):
             place(parameters, 0.5, 1.5 * OMEGA_S, OMEGA_S)
         return

@@ -1,4 +1,4 @@
-// Says which picture the page has painted, and whether a slider moves, by a way of its own (app/bridge/socket.js): the
+// Says which picture the page has painted, and whether a slider (or a handle in a plot) moves, by a way of its own (app/bridge/socket.js): the
 // server waits with the next picture until then, skips those for which there was no time, and while a slider moves sends
 // only what is in front (app/shell/pace.py). #sb-picture carries the picture's number and the control that hears.
 (() => {
@@ -40,7 +40,8 @@
     tell();
   }
 
-  const onSlider = (event) => event.target instanceof Element && event.target.closest(".mantine-Slider-root") !== null;
+  const MOVED = ".mantine-Slider-root, .sb-handle";
+  const onSlider = (event) => event.target instanceof Element && event.target.closest(MOVED) !== null;
   addEventListener("pointerdown", (event) => (held = onSlider(event)), true);
   addEventListener("pointermove", (event) => held && event.buttons !== 0 && set(true), true);
   addEventListener("keydown", (event) => event.repeat && onSlider(event) && set(true), true);

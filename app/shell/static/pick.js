@@ -37,8 +37,8 @@
       clearTimeout(waiting);
       waiting = 0;
       const plot = event.button === 0 && !second ? plotOf(event) : null;
-      const legend = plot && event.target.closest(".legend, .modebar");
-      pressed = plot && !legend ? { plot, x: event.clientX, y: event.clientY } : null;
+      const other = plot && event.target.closest(".legend, .modebar, .sb-handle");
+      pressed = plot && !other ? { plot, x: event.clientX, y: event.clientY } : null;
     },
     true,
   );

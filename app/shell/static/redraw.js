@@ -4,10 +4,12 @@
 (() => {
   let react = null;
   const drawn = new WeakMap();
+  const held = new WeakMap(); // ranges of the axes by name, of a figure whose axes are to stay
+  const given = new WeakMap(); // what a held figure was given last
 
   // What of a figure must be the same. Plotly changes the objects it is given, so they are compared as text.
   function frameOf(layout) {
-    const { run, ...meta } = layout?.meta ?? {};
+    const { run, handle, told, ...meta } = layout?.meta ?? {};
     return JSON.stringify({ ...layout, meta });
   }
   const styleOf = ({ x, y, ...style }) => JSON.stringify(style);
@@ -77,12 +79,36 @@
     return true;
   }
 
-  function draw(figure, data, layout, config) {
+  const isAxis = (name) => /^[xy]axis\d*$/.test(name);
+
+  function draw(figure, data, wanted, config) {
+    let layout = wanted;
+    const ranges = held.get(figure);
+    if (ranges !== undefined) {
+      given.set(figure, [data, wanted, config]);
+      layout = { ...wanted };
+      for (const [name, range] of Object.entries(ranges)) layout[name] = { ...wanted[name], range: [...range] };
+    }
     const now = remember(data, layout);
     const done = movedInPlace(figure, data, layout, now) ? Promise.resolve(figure) : react(figure, data, layout, config);
     drawn.set(figure, now);
-    return done;
+    // For what we lay over a figure (handle.js).
+    return Promise.resolve(done).finally(() => figure.dispatchEvent(new Event("drawn", { bubbles: true })));
   }
+
+  Object.assign(window.schuler, {
+    // The axes of a figure stay while a handle in it is dragged: else the place under the pointer would be another one.
+    holdAxes(figure) {
+      const names = Object.keys(figure._fullLayout ?? {}).filter(isAxis);
+      held.set(figure, Object.fromEntries(names.map((name) => [name, [...figure._fullLayout[name].range]])));
+    },
+    freeAxes(figure) {
+      const last = given.get(figure);
+      held.delete(figure);
+      given.delete(figure);
+      if (last !== undefined) draw(figure, ...last);
+    },
+  });
 
   // Once plotly is there (app/http/static/plotly.js).
   addEventListener("plotly", () => {

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from app.editing.placing import COMMAND
 from app.plots import style
 from app.plots.effective import closed_loop_poles, effective_network
 from app.plots.plotly_data import PlotlyFigure, figure, packed
@@ -24,7 +25,6 @@ from app.views.poles.grid import (
     settling_shapes,
 )
 from app.views.poles.locus import NO_LOCUS, locus_note, locus_traces
-from app.views.poles.placing import COMMAND
 from navcore.engine.run import MethodRun, Run
 
 ZOOM = 1.7
@@ -34,7 +34,9 @@ _RIGHT_SHARE = 0.14
 """Part of a panel's width that shows the right half plane."""
 _MARGIN = {"l": 58, "r": 16, "t": 32}
 _GAP = 0.09
-_PICK = {"command": COMMAND, "panels": (("xaxis", "yaxis"), ("xaxis2", "yaxis2"))}
+PANELS = (("xaxis", "yaxis"), ("xaxis2", "yaxis2"))
+"""Axes of the two panels: all poles, and those near the Schuler frequency."""
+_PICK = {"command": COMMAND, "panels": PANELS}
 """What pick.js does with a click: it is a wanted pole, in units of the Schuler frequency."""
 _KEYS = ("closed-loop pole", "zero of H")
 _TITLES = {

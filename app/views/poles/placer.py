@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from app.editing.placing import pair_at, read_point, typed_pair, with_pair
 from app.session.session import Session
 from app.shell import notices
-from app.views.poles.placing import pair_at, read_point, typed_pair, with_pair
 from navcore.foundation.errors import InputError
 
 if TYPE_CHECKING:

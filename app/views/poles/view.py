@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
+from app.editing.placing import COMMAND
 from app.plots.plotly_data import PlotlyFigure
 from app.session.display import Display
 from app.session.shown import Shown
 from app.shell.layout import CHOOSER_PX, TOOLS
+from app.shell.pair_handle import PairHandle
 from app.shell.plotly_view import PlotlyView
 from app.shell.view import Frame, if_user
-from app.views.poles.figure import allowed_poles, poles
+from app.views.poles.figure import PANELS, allowed_poles, poles
 from app.views.poles.locus import NO_LOCUS, locus_fields
 from app.views.poles.placer import Placer
-from app.views.poles.placing import COMMAND
 from app.views.poles.whole import whole_system_figure
 from navcore.engine.run import Run
 from navcore.scenario.model import Method
@@ -32,7 +33,8 @@ class PolesView(PlotlyView):
     title = "Poles"
     place = "upper"
     look_for = (
-        "Poles left of the axis die away: the farther left, the faster; the steeper, the more they swing."
+        "The farther left a pole, the faster it dies away; the steeper, the more it swings. "
+        "Drag the ring to move it."
     )
     plots = (title,)
     above_px = CHOOSER_PX + 10
@@ -40,6 +42,7 @@ class PolesView(PlotlyView):
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
         self._placer = Placer(frame.client, frame.session)
+        self._handle = PairHandle(frame, "poles", PANELS)
         frame.commands.register(COMMAND, self._placer.picked)
 
     def build_tools(self) -> None:
@@ -47,6 +50,7 @@ class PolesView(PlotlyView):
         gui, display = self.frame.gui, self.session.display
         self._fields = _offered(self._method)
         gui.add_html(TOOLS)
+        self._handle.build()
         self._system: Any = gui.add_dropdown(
             POLES_OF, tuple(SYSTEMS), initial_value=_system(display),
             hint="Channel: the closed loop of one level channel. System: the whole one, both channels with "
@@ -116,14 +120,14 @@ class PolesView(PlotlyView):
 
     @property
     def of_selected(self) -> bool:
-        """The locus is that of the selected method."""
-        return bool(self.session.display.locus)
+        """Locus and handle are those of the selected method."""
+        return self.session.display.poles != "whole" or bool(self.session.display.locus)
 
     def figure(self, both: Run, found: Shown) -> PlotlyFigure:
         """Pole map, or the modes of the whole system."""
         if found.display.poles == "whole":
             return whole_system_figure(both, self.aspect, width_px=self.width_px)
-        return poles(
+        made = poles(
             both,
             self.aspect,
             width_px=self.width_px,
@@ -131,6 +135,8 @@ class PolesView(PlotlyView):
             locus=found.display.locus,
             allowed=allowed_poles(found.display.requirements),
         )
+        made["layout"]["meta"] |= self._handle.meta(found)
+        return made
 
 
 def _offered(method: Method) -> dict[str, str]:

@@ -1,19 +1,23 @@
-"""A point picked on the pole map, or typed, becomes the parameters of the selected method's network."""
+"""A pair picked in a plot, dragged there, or typed, becomes parameters of the selected network."""
 
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
+from typing import Any
 
 from app.plots.units import number
 from navcore.analysis import analyse
 from navcore.analysis.placement import LEAST_DAMPING, place, placeable
 from navcore.foundation.errors import Fault, InputError
 from navcore.networks.base import NetworkParameters
+from navcore.networks.pair import MainPair
 from navcore.scenario.model import Method, Scenario
 
 COMMAND = "place"
 _FARTHEST = 1e6
+_SAME = 1e-6
 
 
 @dataclass(frozen=True)
@@ -113,6 +117,103 @@ def with_pair(
     changed = _with_network(scenario, index, placed.parameters)
     words = f"ξ = {number(placed.damping_ratio, 3)}, ω = {number(placed.frequency / omega_s, 3)} ω_s"
     return Placed(changed, f"{method.name}: pair at {words}", placed.note)
+
+
+@dataclass(frozen=True)
+class Drag:
+    """Where a handle is dragged to.
+
+    Attributes
+    ----------
+    gesture : str
+        Marks the drag; all its places are one step of undo.
+    method : int
+        Whose handle it is.
+    damping_ratio, ratio : float
+        Of the pair wanted: xi, and |p| / omega_s.
+    ends : bool
+        The handle is let go.
+    """
+
+    gesture: str
+    method: int
+    damping_ratio: float
+    ratio: float
+    ends: bool
+
+
+_NUMBER = r"([0-9]{1,12}(?:\.[0-9]{0,12})?(?:e[+-]?[0-9]{1,3})?)"
+_DRAG = re.compile(rf"([0-9]{{1,15}}) ([0-9]{{1,3}}) {_NUMBER} {_NUMBER} ([01])")
+
+
+def read_drag(text: str) -> Drag | None:
+    """Read what a page says of a handle that is dragged; None for anything else.
+
+    Examples
+    --------
+    >>> read_drag("17 2 0.5 1.25 0")
+    Drag(gesture='17', method=2, damping_ratio=0.5, ratio=1.25, ends=False)
+    >>> read_drag("17 2 nan 1.25 0"), read_drag("17 2 0.5 0 0")
+    (None, None)
+    """
+    found = _DRAG.fullmatch(text.strip())
+    if found is None:
+        return None
+    damping_ratio, ratio = float(found[3]), float(found[4])
+    if not (0.0 < damping_ratio <= _FARTHEST and 0.0 < ratio <= _FARTHEST):
+        return None
+    return Drag(found[1], int(found[2]), damping_ratio, ratio, found[5] == "1")
+
+
+def with_nearest_pair(
+    scenario: Scenario, index: int, damping_ratio: float, ratio: float, h_slope_limit_s: float | None = None
+) -> Placed:
+    """Give a method's network the possible pair that is next to a wanted one; ``note`` says if it is another.
+
+    Parameters
+    ----------
+    scenario, index, damping_ratio, ratio, h_slope_limit_s
+        As for `with_pair`.
+
+    Raises
+    ------
+    InputError
+        As `with_pair`, except for a pair out of the parameters' range.
+    """
+    pair, omega_s = main_pair(scenario, index), scenario.omega_s
+    if pair is None:
+        return with_pair(scenario, index, damping_ratio, ratio, h_slope_limit_s)
+    damping, frequency = pair.nearest(damping_ratio, ratio * omega_s)
+    placed = with_pair(scenario, index, damping, frequency / omega_s, h_slope_limit_s)
+    met = math.isclose(damping, damping_ratio, rel_tol=_SAME)
+    if met and math.isclose(frequency, ratio * omega_s, rel_tol=_SAME):
+        return placed
+    return Placed(placed.scenario, placed.words, f"the parameters allow {pair.allowed(omega_s)}")
+
+
+def main_pair(scenario: Scenario, index: int) -> MainPair | None:
+    """Pair of a method that can be placed, as it is; None where there is none."""
+    method = scenario.method[index]
+    return None if method.undamped else method.network.main_pair(scenario.omega_s)
+
+
+def handle_of(scenario: Scenario, index: int) -> dict[str, Any]:
+    """Describe the handle of a method's pair to a page, frequencies in units of omega_s.
+
+    Without a handle ``pair`` is missing, and ``told`` says why.
+    """
+    method, pair, omega_s = scenario.method[index], main_pair(scenario, index), scenario.omega_s
+    if pair is None:
+        reason = "it runs without its network" if method.undamped else method.network.no_handle
+        return {"told": f"No handle for {method.name}: {reason}."}
+    return {
+        "method": index,
+        "name": method.name,
+        "pair": [pair.damping_ratio, pair.frequency / omega_s],
+        "dampings": list(pair.dampings),
+        "frequencies": [[min(end / omega_s, _FARTHEST) for end in ends] for ends in pair.frequencies],
+        "omega_s": omega_s,
+    }
 
 
 def _with_network(scenario: Scenario, index: int, parameters: NetworkParameters) -> Scenario:

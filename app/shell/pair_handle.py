@@ -1,0 +1,84 @@
+"""The handle in a plot with which the pole pair of the method in hand is dragged to where it is wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Literal
+
+from app.bridge.controls import id_of
+from app.editing.placing import handle_of, read_drag, with_nearest_pair
+from app.plots import style
+from app.session.shown import Shown
+from app.shell import notices
+from app.shell.view import Frame
+from navcore.foundation.errors import InputError
+
+PAIR_HANDLE = "pair handle"
+"""Label of the hidden control that is told where the handle is (static/handle.js)."""
+Kind = Literal["poles", "bode"]
+"""What the axes of the plot are: real and imaginary part in units of omega_s, or frequency and damping."""
+
+
+class PairHandle:
+    """Takes what a dragged handle says; a figure carries in its ``meta`` where the handle stands.
+
+    The page sends the newest place through a control of its own, as it sends that of a slider.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of the page.
+    kind : {"poles", "bode"}
+        What the axes of the plot are.
+    panels : sequence of (str, str)
+        Names of the axes of each panel that has the handle.
+    """
+
+    def __init__(self, frame: Frame, kind: Kind, panels: Sequence[tuple[str, str]]) -> None:
+        self._frame, self._kind, self._panels = frame, kind, panels
+        self._control: Any = None
+        self._told = ""
+
+    def build(self) -> None:
+        """Make the control, in the present container."""
+        self._control = self._frame.gui.add_text(PAIR_HANDLE, "", visible=False)
+        self._control.on_update(lambda _: self.take(self._control.value))
+
+    def meta(self, found: Shown) -> dict[str, Any]:
+        """What a figure of the run says of the handle, for its ``meta``."""
+        handle = handle_of(found.run.scenario, found.selected)
+        told = {"told": handle.pop("told", "")}
+        where = {
+            "control": id_of(self._control),
+            "kind": self._kind,
+            "panels": [list(names) for names in self._panels],
+            "color": style.method_color(found.selected),
+        }
+        return told | {"handle": where | handle}
+
+    def take(self, text: str) -> None:
+        """Place the pair where the handle is; what could not be met is told once a drag, at its end."""
+        drag, session, client = read_drag(text), self._frame.session, self._frame.client
+        if drag is None:
+            return
+        gesture = f"{id_of(self._control)} {drag.gesture}"
+        words = lines = None
+        with session.lock:
+            if drag.method != session.selected:
+                return
+            try:
+                limit = session.display.requirements.h_slope_s
+                placed = with_nearest_pair(
+                    session.scenario, drag.method, drag.damping_ratio, drag.ratio, limit
+                )
+            except InputError as error:
+                words, lines = "The pair was not placed", notices.fault_lines(error)
+            else:
+                name = session.scenario.method[drag.method].name
+                self._frame.editor.drag(placed.scenario, f"placing the pair of {name}", gesture)
+                if placed.note:
+                    words, lines = "Placed in part", [placed.words, placed.note]
+        if drag.ends and words and lines and self._told != gesture:
+            self._told = gesture
+            notices.tell(client, words, lines, "warning")
+            client.flush()
