@@ -49,6 +49,8 @@ _ENDS = {".": "。", ":": "："}
 _WITH_UNIT = re.compile(r"(.+?) (\([^()]*\))((?:, [a-z]+)?)")
 _ENDED = re.compile(r"[.;:] ")
 _MOST_KEPT = 20_000
+_LONGEST_KEPT = 50_000
+"""Letters of a text with markup: a longer one, a whole page to be saved, is not kept with its translation."""
 
 
 @dataclass(frozen=True)
@@ -135,7 +137,9 @@ class Wording:
         """Translate a text of the page, HTML or not; what has no translation stays as it is."""
         if len(text) < 2 or _LETTERS.search(text) is None:
             return text
-        return self.markup(text) if markup.has_markup(text) else self.say(text)
+        if not markup.has_markup(text):
+            return self.say(text)
+        return self.markup(text) if len(text) <= _LONGEST_KEPT else self._markup(text)
 
     def _say(self, text: str) -> str:
         found = self._look_up(text)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
@@ -159,6 +159,14 @@ class View:
     def figures(self, found: Shown, plot: str) -> Figures:
         """Figures of one of `plots`, to be saved; raises LookupError, in words, where there are none."""
         raise NotImplementedError(plot)
+
+    def sheet(self, found: Shown) -> Sequence[tuple[str, Figures]]:
+        """What of it belongs in a report of the whole session: title and figures of each picture."""
+        pictures: list[tuple[str, Figures]] = []
+        for plot in self.plots:
+            with suppress(LookupError):  # there is nothing to show
+                pictures.append((plot, self.figures(found, plot)))
+        return pictures
 
     def close(self) -> None:
         """The browser has gone."""

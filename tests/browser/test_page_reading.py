@@ -128,7 +128,7 @@ def test_cursor_shows_values_in_all_plots_and_moves_the_ship(reading: Bench) -> 
         ("Frequency", "SVG", "<svg"),
         ("Frequency", "PNG", "\x89PNG"),
         ("Errors: Velocity error east δVE", "CSV", "# Schuler Bench: Errors"),
-        ("Errors: Velocity error east δVE", "SVG", "<?xml"),
+        ("Errors: Velocity error east δVE", "SVG", "<svg"),
         ("Errors: Velocity error east δVE", "PNG", "\x89PNG"),
     ],
 )

@@ -25,7 +25,7 @@ _NOT_ON_THE_PAGE = tuple(
     navcore/foundation/kernel_cache.py navcore/foundation/kernel_digest.py
     navcore/foundation/registry.py navcore/studies/tuning navcore/studies/filter_consistency.py
     navcore/analysis/report.py navcore/analysis/network_table.py navcore/analysis/python_control.py
-    navcore/io/column_names.py app/plots/fonts.py
+    navcore/io/column_names.py
     """.split()
 )
 """Python files whose texts are for a terminal, a report, a log or a file."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -13,9 +12,9 @@ import pytest
 
 from app.jobs.envelopes import SEEDS, Envelopes, with_seed
 from app.plots.envelope import Envelope, envelope
-from app.plots.fonts import installed_chinese
 from app.plots.plotly_data import packed, unpacked, values_of
-from app.plots.saved import plotly_csv, time_csv, time_picture
+from app.plots.saved import plotly_csv, time_csv
+from app.plots.time_figure import time_figure
 from app.session.display import Display
 from app.views.errors.figure import error_plots
 from app.views.frequency.figure import bode
@@ -263,25 +262,55 @@ def test_packed_numbers_are_remembered() -> None:
 
 
 @pytest.mark.parametrize("scale", ["linear", "log"])
-def test_time_plots_become_pictures(runs: list[Run], scale: str) -> None:
+def test_time_plots_become_one_figure_with_one_legend(runs: list[Run], scale: str) -> None:
     plots = error_plots(runs[0], envelope=envelope(runs[:3]), display=Display(scale=scale))
-    svg = time_picture([plots["dve"]], "svg", "a $title$ <x>")
-    text = "".join(ElementTree.fromstring(svg).itertext())
-    assert "classic2" in text and "time (min)" in text and "(m/s)" in text
-    png = time_picture([plots["dve"], plots["position"]], "png", "two")
-    assert png.startswith(b"\x89PNG")
+    chosen = [plots["dve"], plots["position"]]
+    made = time_figure(chosen)
+    curves = [trace for trace in made["data"] if "name" in trace]
+    names = [method.method.name for method in runs[0].methods]
+    assert [trace["name"] for trace in curves if trace["showlegend"]] == names
+    for plot, suffix in zip(chosen, ("", "2"), strict=True):
+        mine = [trace for trace in curves if trace["yaxis"] == f"y{suffix}"]
+        assert [trace["line"]["color"] for trace in mine] == list(plot.colors[: len(names)])
+        for trace, values in zip(mine, plot.data[1:], strict=False):
+            np.testing.assert_allclose(unpacked(trace["y"]), values, rtol=1e-6)
+        axis = made["layout"][f"yaxis{suffix}"]
+        assert axis["title"]["text"] == plot.axes()[1]["label"]
+        low, high = axis["range"]
+        if scale == "linear":
+            drawn = np.concatenate(plot.data[1:])
+            assert low <= np.nanmin(drawn) and np.nanmax(drawn) <= high <= 1.2 * np.nanmax(drawn)
+        else:
+            assert axis["type"] == "log" and (low, high) == plot.decades
+    titles = [made["layout"][f"xaxis{suffix}"]["title"]["text"] for suffix in ("", "2")]
+    assert titles == ["", "time (min)"]
+    bands = [trace for trace in made["data"] if "name" not in trace]
+    assert len(bands) == 2 * sum(len(plot.bands) for plot in chosen)
+    lower, upper = bands[:2]
+    assert upper["fill"] == "tonexty" and np.all(unpacked(lower["y"]) <= unpacked(upper["y"]))
 
 
-@pytest.mark.skipif(not installed_chinese(), reason="no font of this computer has Chinese characters")
-def test_chinese_names_are_drawn_not_boxes() -> None:
+def test_a_figure_over_time_shows_what_the_legend_left() -> None:
+    shown = Display(legend=(("free", "hidden"), ("classic2", "dimmed")))
+    made = time_figure([error_plots(static_run(), display=shown)["dve"]])
+    assert [trace["name"] for trace in made["data"]] == ["classic2", "compass"]
+    assert made["data"][0]["line"]["color"].startswith("rgba(")
+
+
+def test_a_name_with_markup_is_a_text_in_a_figure_over_time() -> None:
+    plot = replace(error_plots(static_run())["dve"], names=("<b>x</b>", "a $b$", "c"), title="<i>&")
+    made = time_figure([plot])
+    assert [trace["name"] for trace in made["data"]] == ["&lt;b&gt;x&lt;/b&gt;", "a $b$", "c"]
+    assert made["layout"]["annotations"][0]["text"] == "<b>&lt;i&gt;&amp;</b>"
+
+
+def test_switching_states_keep_their_words() -> None:
     plots = switching_plots(switching_run(), "min")
-    one, other = (time_picture(plots, "png", title) for title in ("\u963b\u5c3c", "\u8bef\u5dee"))
-    assert one != other
-    assert "\u963b\u5c3c" in "".join(
-        ElementTree.fromstring(time_picture(plots, "svg", "\u963b\u5c3c")).itertext()
-    )
-
-
-def test_switching_states_become_a_picture() -> None:
-    plots = switching_plots(switching_run(), "min")
-    assert time_picture(plots, "svg", "Switching").startswith(b"<?xml")
+    made = time_figure(plots)
+    words = [
+        list(axis.get("ticktext", ())) for name, axis in made["layout"].items() if name.startswith("yaxis")
+    ]
+    assert [word for _, word in next(plot.ticks for plot in plots if plot.ticks)] in words
+    domains = [axis["domain"] for name, axis in made["layout"].items() if name.startswith("yaxis")]
+    assert all(lower[1] < upper[0] for upper, lower in zip(domains, domains[1:], strict=False))
+    assert domains[0][1] == 1.0 and domains[-1][0] == pytest.approx(0.0)

@@ -2,17 +2,72 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from html import escape
+from typing import Any
 
-from app.bridge.texts import figure_said
-from app.plots.saved import plotly_csv, time_csv, time_picture
+from app.bridge.texts import figure_said, text_said
+from app.plots.plotly_data import PlotlyFigure
+from app.plots.saved import plotly_csv, time_csv
+from app.plots.time_figure import WIDTH_PX, time_figure
 from app.session.shown import Shown, shown
 from app.shell import notices
-from app.shell.plotly_view import PlotlyView
-from app.shell.view import Frame, View
+from app.shell.view import Figures, Frame
 from navcore.scenario.file import scenario_hash
 
 FORMATS = ("CSV", "SVG", "PNG")
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture that the page's script draws.
+
+    Attributes
+    ----------
+    title : str
+        What is shown.
+    figure : PlotlyFigure or None
+        As plotly reads it; None: the 3D view, as it is seen.
+    width_px : float
+        Width of the picture; its height follows from the figure.
+    """
+
+    title: str
+    figure: PlotlyFigure | None
+    width_px: float
+
+    def job(self, client: Any) -> dict[str, Any]:
+        """What the script needs of it, in the page's language."""
+        import orjson
+
+        told = {"title": text_said(client, self.title)}
+        if self.figure is None:
+            return told
+        return told | {
+            "view": self.figure["layout"]["meta"].get("view", ""),
+            "width": round(self.width_px),
+            "height": round(self.width_px * self.figure.aspect),
+            "figure": orjson.Fragment(figure_said(client, self.figure.to_json())),
+        }
+
+
+def picture_of(title: str, figures: Figures, width_px: float) -> Picture:
+    """Picture of what a view gives to be saved.
+
+    Parameters
+    ----------
+    title : str
+        What is shown.
+    figures : Figures
+        Of the view.
+    width_px : float
+        For which a plotly figure was made; plots over time have a width of their own.
+    """
+    plotly, plots = figures
+    if plotly is None:
+        return Picture(title, time_figure(plots), WIDTH_PX)
+    return Picture(title, plotly, width_px)
 
 
 class Export:
@@ -32,53 +87,75 @@ class Export:
     def __init__(self, frame: Frame) -> None:
         self._frame, self._client, self._session = frame, frame.client, frame.session
         self.plots = tuple(plot for kind in frame.kinds for plot in kind.plots)
-        frame.commands.register("unsaved", self._unsaved, watcher=True)
+        frame.commands.register("exported", self._exported, watcher=True)
         self._wanted = frame.gui.add_html("", order=40)
         self._count = 0
 
     def save(self, title: str, format: str) -> None:
-        """Save a plot: made here, or by the page where plotly draws it (export.js)."""
+        """Save a plot: its numbers from here, its picture by the page, which draws it."""
         found = shown(self._session)
         view = next((view for view in self._frame.views() if title in view.plots), None)
         if found is None or view is None:
-            notices.tell(self._client, "Nothing to save", ["there is no run yet"], "warning")
-            return
-        name = f"{title.split(': ')[-1].split(' (')[0]}".replace(" ", "-").lower()
-        if isinstance(view, PlotlyView) and format != "CSV":
-            try:
-                figure = view.picture(found)
-            except LookupError as error:
-                notices.tell(self._client, "Nothing to save", [str(error)], "warning")
-                return
-            self._count += 1
-            layout = self._frame.layout()
-            self._wanted.content = (
-                f'<div id="sb-export" hidden data-count="{self._count}" data-view="{escape(title)}" '
-                f'data-format="{format.lower()}" data-name="{escape(name)}" '
-                f'data-figure="{escape(figure_said(self._client, figure.to_json()))}" '
-                f'data-width="{layout.plot_px * layout.scale:.0f}" data-aspect="{figure.aspect:.4f}"></div>'
-            )
-            self._client.flush()
+            self.tell_no_run()
             return
         try:
-            content = _content(view, found, title, format)
+            figures = view.figures(found, title)
         except LookupError as error:
             notices.tell(self._client, "Nothing to save", [str(error)], "warning")
             return
-        self._client.send_file_download(f"{name}.{format.lower()}", content, save_immediately=True)
+        name = f"{title.split(': ')[-1].split(' (')[0]}".replace(" ", "-").lower()
+        if format == "CSV":
+            self._client.send_file_download(
+                f"{name}.csv", _numbers(figures, found, title), save_immediately=True
+            )
+            self._client.flush()
+            return
+        layout = self._frame.layout()
+        picture = picture_of(title, figures, layout.plot_px * layout.scale)
+        self.draw(format.lower(), f"{name}.{format.lower()}", [picture])
+
+    def draw(
+        self, format: str, name: str, pictures: Sequence[Picture], page: str = "", title: str = ""
+    ) -> None:
+        """Let the page draw pictures and save them as one file (export.js).
+
+        Parameters
+        ----------
+        format : {"svg", "png", "html", "overview"}
+            Of the file; "html": a page of ours with the pictures in it; "overview": PNG of all pictures.
+        name : str
+            Of the file.
+        pictures : sequence of Picture
+            One of them for a single plot.
+        page : str
+            HTML in which ``<img data-picture="2">`` stands for the third picture.
+        title : str
+            Above the overview.
+        """
+        import orjson
+
+        self._count += 1
+        drawn = [picture.job(self._client) for picture in pictures]
+        job = {"format": format, "name": name, "pictures": drawn, "page": page, "title": title}
+        told = escape(orjson.dumps(job).decode())
+        self._wanted.content = (
+            f'<div id="sb-export" hidden data-count="{self._count}" data-job="{told}"></div>'
+        )
         self._client.flush()
 
-    def _unsaved(self, view: str) -> None:
-        """The page cannot draw a picture yet."""
-        lines = [f"Bring the tab {view[:20]} to the front, and save it again."]
-        notices.tell(self._client, "Not saved", lines, "warning")
+    def tell_no_run(self) -> None:
+        """There is nothing to save yet."""
+        notices.tell(self._client, "Nothing to save", ["there is no run yet"], "warning")
+
+    def _exported(self, fault: str) -> None:
+        """The page has saved its file, or says why not."""
+        self._wanted.content = ""
+        if fault:
+            notices.tell(self._client, "Not saved", [fault[:200]], "warning")
+        self._client.flush()
 
 
-def _content(view: View, found: Shown, title: str, format: str) -> bytes:
+def _numbers(figures: Figures, found: Shown, title: str) -> bytes:
     about = (f"Schuler Bench: {title}", f"scenario_sha256 {scenario_hash(found.run.scenario)}")
-    plotly, plots = view.figures(found, title)
-    if plotly is not None:
-        return plotly_csv(plotly, about)
-    if format == "CSV":
-        return time_csv(plots, about)
-    return time_picture(plots, format.lower(), f"{title}, {about[1][:26]}")
+    plotly, plots = figures
+    return time_csv(plots, about) if plotly is None else plotly_csv(plotly, about)

@@ -7,11 +7,12 @@ from typing import Any, get_args
 from app.jobs.envelopes import SEEDS
 from app.session.display import Display
 from app.shell import notices
-from app.shell.view import Tab, View, if_user
+from app.shell.view import Frame, Tab, View, if_user
 from app.views.appearance.dark import DarkPage
 from app.views.appearance.export import FORMATS, Export
 from app.views.appearance.language import PageLanguage
 from app.views.appearance.presentation import PresentationSize
+from app.views.appearance.sheet import Sheet
 
 _CHOICES = {
     "angles in": ("angle", "Unit of tilts and headings in the plots over time, the spectrum and the table."),
@@ -26,6 +27,18 @@ _CHOICES = {
 BANDS = "bands"
 _BANDS = {"off": "none", "±1σ by covariance": "covariance", f"{SEEDS} seeds, 5 to 95 %": "seeds"}
 EXPORT, FORMAT = "export plot", "export as"
+_PAGE_HINT = (
+    "Numbers, verdicts, pins, warnings, all plots and the scenario on one page: it needs no server, and "
+    "prints on A4."
+)
+_OVERVIEW_HINT = "All plots side by side, also those whose tabs are not in front."
+_SESSION = (
+    '<div class="sb-export"><div class="sb-row">'
+    f'<button class="sb-do" data-command="save-page" title="{_PAGE_HINT}">Save as one page (HTML)</button>'
+    f'<button class="sb-do" data-command="save-overview" title="{_OVERVIEW_HINT}">Save all plots (PNG)'
+    "</button>"
+    '</div><div class="sb-making" role="status"></div></div>'
+)
 
 
 class AppearanceView(View):
@@ -34,9 +47,14 @@ class AppearanceView(View):
     title = "View"
     place = "edit"
 
+    def __init__(self, frame: Frame) -> None:
+        super().__init__(frame)
+        self._export = Export(frame)
+        Sheet(frame, self._export)
+
     def build(self, tab: Tab) -> None:
         """Make the widgets."""
-        gui, export = self.frame.gui, Export(self.frame)
+        gui, export = self.frame.gui, self._export
         self._dark, language = DarkPage(self.frame), PageLanguage(self.frame)
         self._size = PresentationSize(self.frame)
         self._choosers: dict[str, Any] = {}
@@ -63,6 +81,8 @@ class AppearanceView(View):
             format: Any = gui.add_button_group(
                 FORMAT, FORMATS, order=22, hint="CSV: the plotted numbers in full. SVG, PNG: the picture."
             )
+            gui.add_html(notices.heading("Export the whole session"), order=23)
+            gui.add_html(_SESSION, order=24)
             gui.add_html(notices.heading("Page"), order=30)
             language.build()
             self._dark.build()

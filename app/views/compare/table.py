@@ -111,7 +111,7 @@ def _numbers(method: MethodRun) -> dict[str, float]:
     }
 
 
-def pins_html(lines: Sequence[Line], by: str, baseline: int | None) -> str:
+def pins_html(lines: Sequence[Line], by: str, baseline: int | None, *, buttons: bool = True) -> str:
     """Return the table, sorted; its headings sort it otherwise.
 
     Parameters
@@ -122,6 +122,8 @@ def pins_html(lines: Sequence[Line], by: str, baseline: int | None) -> str:
         Key of `COLUMNS`, with a minus sign for the other way round.
     baseline : int or None
         Id of the pin with which numbers are compared.
+    buttons : bool
+        False for a file: its headings sort nothing.
     """
     column, falling = by.removeprefix("-"), by.startswith("-")
     ordered = sorted(lines, key=lambda line: line.key(column), reverse=falling)
@@ -131,7 +133,7 @@ def pins_html(lines: Sequence[Line], by: str, baseline: int | None) -> str:
         if len(found := [v for line in lines if math.isfinite(v := line.numbers.get(name, math.nan))]) > 1
         and min(found) < max(found)
     }
-    head = "".join(_head(name, title, column, falling) for name, title in COLUMNS.items())
+    head = "".join(_head(name, title, column, falling, buttons) for name, title in COLUMNS.items())
     body = "".join(_row(line, best, baseline) for line in ordered)
     return (
         f'<div class="sb-pins sb-table" style="margin:4px 10px 8px;overflow-x:auto"><table style="'
@@ -141,7 +143,9 @@ def pins_html(lines: Sequence[Line], by: str, baseline: int | None) -> str:
     )
 
 
-def _head(name: str, title: str, column: str, falling: bool) -> str:
+def _head(name: str, title: str, column: str, falling: bool, buttons: bool) -> str:
+    if not buttons:
+        return f'<th scope="col" style="{_CELL if name in _TEXTS else _NUMBER}">{title}</th>'
     mark, state = "", ""
     if name == column:
         mark = " ▾" if falling else " ▴"

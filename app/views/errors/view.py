@@ -116,6 +116,18 @@ class ErrorsView(PictureView[ErrorCurves]):
             return None, [_verified_curves(found.verified, found.display).plots[_VERIFIED_KEYS[plot]]]
         return None, [error_curves(found).plots[_KEYS[plot]]]
 
+    def sheet(self, found: Shown) -> list[tuple[str, Figures]]:
+        """Attitude, velocity and position, each in one picture; both models of a verification."""
+        plots = error_curves(found).plots
+        groups = {name: keys for name, keys in GROUPS.items() if name != OVERVIEW}
+        pictures: list[tuple[str, Figures]] = [
+            (f"Errors: {name}", (None, [plots[key] for key in keys])) for name, keys in groups.items()
+        ]
+        if found.verified is not None:
+            both = _verified_curves(found.verified, found.display).plots
+            pictures.append((VERIFICATION, (None, [both[f"both_{key}"] for key in VERIFIED])))
+        return pictures
+
 
 def error_curves(
     found: Shown, keys: Sequence[str] = tuple(QUANTITIES), two_abreast: bool = False

@@ -90,7 +90,7 @@ class MetricsView(PictureView[tuple[str, str]]):
 
     def picture(self, found: Shown) -> tuple[str, str]:
         """Make the table and the warnings, HTML."""
-        return self._table_html(found), _warnings_html(found.run, found.verified)
+        return self._table_html(found), warnings_html(found.run, found.verified)
 
     def show(self, picture: tuple[str, str]) -> None:
         """Show table and warnings; what dominates the run is looked for only now that they are in front."""
@@ -128,7 +128,8 @@ class MetricsView(PictureView[tuple[str, str]]):
         return told + tables + system_html(found.run)
 
 
-def _warnings_html(run: Run, verified: Verified | None) -> str:
+def warnings_html(run: Run, verified: Verified | None = None) -> str:
+    """Notes and warnings about a run and its methods, HTML."""
     parts = [notices.note(notices_for(run), "info")]
     if verified is not None and not verified.old:
         parts.append(notices.note([verdict(verified.verification)], "info"))

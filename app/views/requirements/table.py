@@ -17,7 +17,12 @@ PASSED, FAILED = style.PASSED, style.DANGER
 _DIGITS = 4
 
 
-def requirements_html(run: Run, requirements: Requirements, pins: Sequence[Pinned] = ()) -> str:
+def requirements_html(
+    run: Run,
+    requirements: Requirements,
+    pins: Sequence[Pinned] = (),
+    methods: Sequence[int] | None = None,
+) -> str:
     """Return a row a requirement and a column a method: measured value, and whether it meets the limit.
 
     Parameters
@@ -28,17 +33,20 @@ def requirements_html(run: Run, requirements: Requirements, pins: Sequence[Pinne
         Limits.
     pins : sequence of Pinned
         Runs that are judged beside it.
+    methods : sequence of int, optional
+        Places of the columns to show, the run's methods first; all when None.
     """
     judged = together(run, pins)
+    shown = range(len(judged.methods)) if methods is None else methods
     found = verdicts(judged, requirements)
     lines = [f"solid {style.method_color(i)}" for i in range(len(run.methods))]
     lines += [f"dashed {pinned.color}" for pinned in pinned_methods(pins)]
     head = "".join(
-        f'<th style="{_HEAD};border-bottom:3px {line}">{escape(method.method.name)}</th>'
-        for line, method in zip(lines, judged.methods, strict=True)
+        f'<th style="{_HEAD};border-bottom:3px {lines[i]}">{escape(judged.methods[i].method.name)}</th>'
+        for i in shown
     )
-    body = "".join(_row(verdict) for verdict in found)
-    foot = "".join(f'<td style="{_CELL}">{_overall(found, i)}</td>' for i in range(len(judged.methods)))
+    body = "".join(_row(verdict, shown) for verdict in found)
+    foot = "".join(f'<td style="{_CELL}">{_overall(found, i)}</td>' for i in shown)
     return (
         f'<div style="overflow-x:auto"><table style="{_TABLE}"><thead><tr>'
         f'<th style="{_LEFT}">requirement</th><th style="{_CELL}">limit</th>{head}</tr></thead>'
@@ -47,7 +55,7 @@ def requirements_html(run: Run, requirements: Requirements, pins: Sequence[Pinne
     )
 
 
-def _row(verdict: Verdict) -> str:
+def _row(verdict: Verdict, shown: Sequence[int]) -> str:
     info = Requirements.model_fields[verdict.name]
     extra = extra_of(info)
     unit = f' <span style="color:{style.MUTED}">({escape(extra["unit"])})</span>' if extra["unit"] else ""
@@ -57,7 +65,7 @@ def _row(verdict: Verdict) -> str:
     cells = "".join(
         f'<td data-measure="{verdict.name}" data-value="{_number(value)}" data-passed="{_word(verdict, ok)}" '
         f'style="{_CELL}">{_measured(value)}{_mark(verdict, ok)}</td>'
-        for value, ok in zip(verdict.measured, verdict.passed, strict=True)
+        for value, ok in ((verdict.measured[i], verdict.passed[i]) for i in shown)
     )
     return (
         f'<tr style="{_LINE}" title="{escape(info.description or "")}"><td style="{_LEFT}">'

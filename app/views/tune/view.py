@@ -8,7 +8,7 @@ from app.plots.plotly_data import PlotlyFigure
 from app.session.shown import Shown
 from app.shell.layout import CHOOSER_PX, TOOLS
 from app.shell.plotly_view import PlotlyView
-from app.shell.view import Frame, if_user
+from app.shell.view import Figures, Frame, if_user
 from app.views.tune.finder import FrontsPanel
 from app.views.tune.fronts import fronts_figure
 from app.views.tune.setting import SettingPanel
@@ -103,6 +103,12 @@ class TuneView(PlotlyView):
     def picture(self, found: Shown) -> PlotlyFigure:
         """Make the fronts; a figure without anything while the best setting is searched for."""
         return super().picture(found) if found.display.search == "fronts" else PlotlyFigure()
+
+    def figures(self, found: Shown, plot: str) -> Figures:
+        """Make the fronts, to be saved; raises LookupError while none have been found."""
+        if found.display.search != "fronts" or self._finder.found is None:
+            raise LookupError("No Pareto fronts have been found yet.")
+        return super().figures(found, plot)
 
     def show(self, picture: PlotlyFigure) -> None:
         """Send the fronts, or hide them."""
