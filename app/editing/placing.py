@@ -200,8 +200,10 @@ def main_pair(scenario: Scenario, index: int) -> MainPair | None:
 def handle_of(scenario: Scenario, index: int) -> dict[str, Any]:
     """Describe the handle of a method's pair to a page, frequencies in units of omega_s.
 
-    Without a handle ``pair`` is missing, and ``told`` says why.
+    Without a handle ``pair`` is missing, and ``told`` says why. The shown run may lack the method.
     """
+    if index >= len(scenario.method):
+        return {}
     method, pair, omega_s = scenario.method[index], main_pair(scenario, index), scenario.omega_s
     if pair is None:
         reason = "it runs without its network" if method.undamped else method.network.no_handle

@@ -33,6 +33,7 @@ _AT = f"""place => {{
   const at = ({_CENTRE})(rings.at(-1));
   return Math.hypot(at[0] - spot[0], at[1] - spot[1]) < 2;
 }}"""
+_AWAY = "() => [...document.querySelectorAll('.sb-handle')].every(r => !r.offsetParent)"
 NEAR = ("xaxis2", "yaxis2")
 
 
@@ -124,6 +125,37 @@ def test_a_pole_is_moved_by_keys_and_stops_at_its_range(handles: Bench) -> None:
     assert pair(handles)[0] == 0.01
     assert "the parameters allow ξ = 0.01…1" in handles.notice("Placed in part")
     undone(handles, before)
+    assert handles.faults == []
+
+
+def test_the_handle_of_the_bode_plot_is_frequency_across_and_damping_up(handles: Bench) -> None:
+    handles.tab("Method", "Frequency")
+    ring = handles.page.locator(".sb-handle:visible").last
+    ring.wait_for()
+    before = handles.session.scenario
+    x, _ = handles.page.evaluate(_SPOT, ["xaxis2", "yaxis3", 2.0 * before.omega_s, 1.0])
+    start = ring.evaluate(_CENTRE)
+    drag(handles, (x, start[1] - 20.0))
+    zeta, r = pair(handles)
+    assert r == pytest.approx(2.0, rel=0.02)
+    assert zeta < 0.45
+    assert (handles.value("zeta, exact"), handles.value("r, exact")) == pytest.approx((zeta, r))
+    assert handles.session.run is not None
+    assert handles.session.run.scenario == handles.session.scenario
+    undone(handles, before)
+    ring.press("ArrowDown")
+    ring.press("ArrowDown")
+    handles.settle()
+    damped = pair(handles)
+    assert damped[0] > 0.5
+    assert damped[1] == pytest.approx(1.2, rel=1e-3)
+    handles.page.wait_for_function(
+        """said => [...document.querySelectorAll('.sb-handle')].some(
+            r => r.offsetParent && r.ariaLabel.includes(said))""",
+        arg=f"damping ratio {damped[0]:.3g}",
+    )
+    handles.choose("transfer", "open loop: Nyquist plot and margins")
+    handles.page.wait_for_function(_AWAY)
     assert handles.faults == []
 
 

@@ -168,3 +168,7 @@ def test_a_network_without_a_handle_says_why(network: dict, more: dict, why: str
 )
 def test_hostile_places_of_a_handle_are_ignored(text: str) -> None:
     assert read_drag(text) is None
+
+
+def test_a_method_that_the_shown_run_lacks_has_no_handle() -> None:
+    assert handle_of(scenario(), 99) == {}

@@ -1,8 +1,8 @@
-// A ring over a plotly figure, at the pole pair of the method in hand: dragged by mouse or finger, or moved by the arrow
+// The handle over a plotly figure, a ring at the pole pair of the method in hand: dragged by mouse or finger, or moved by the arrow
 // keys, it places the pair. A figure says by layout.meta.handle where the pair is and which pairs are possible
 // (app/shell/pair_handle.py). The ring follows the hand at once, and the pictures follow as they do a slider: its newest
 // place goes to the server through a control of its own (app/bridge/socket.js). What is drawn is an element of ours, so
-// that plotly lays out nothing; while a ring is dragged the axes of its figure stay (redraw.js).
+// that plotly lays out nothing; while a pole is dragged the axes of its figure stay (redraw.js).
 (() => {
   const STEP_PX = 2;
   const FAST = 6; // with Shift
@@ -10,6 +10,7 @@
   const PAUSE_MS = 1000; // keys that follow each other faster are one step of undo
   const SETTLE_MS = 1500; // so long a picture of the pair is waited for
   const INSET = 0.06; // of the height, above and below the scale of the damping ratio in a Bode plot
+  const ABOVE_PX = 24; // what stands at the lower edge of a panel
   const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
   const figures = new Map(); // figure: {rings, told, pair, until}
   let dragged = null;
@@ -64,7 +65,20 @@
     made.append(tip);
     made.addEventListener("pointerdown", (event) => press(event, figure, panel, made));
     made.addEventListener("keydown", (event) => step(event, figure, panel));
-    return { made, numbers };
+    const scale = window.schuler.element("div", "", { class: "sb-handle-scale", "aria-hidden": "true" });
+    return { made, numbers, scale };
+  }
+
+  // While the handle of a Bode plot is in hand: the damping ratios along its way up and down.
+  function showScale(scale, made, handle, across, up) {
+    if (handle.kind !== "bode") return void scale.remove();
+    if (made.nextSibling !== scale) made.after(scale);
+    const [low, high] = handle.dampings;
+    const marks = [low, Math.sqrt(low * high), high].map((value) => `ξ ${short(value)}`);
+    while (scale.childElementCount < marks.length) scale.append(window.schuler.element("span", ""));
+    for (const [place, mark] of marks.entries()) scale.children[place].textContent = mark;
+    scale.style.height = `${(1 - 2 * INSET) * up._length}px`;
+    scale.style.transform = `translate(${across}px,${up._offset + INSET * up._length}px)`;
   }
 
   function name(element, pair, handle) {
@@ -86,17 +100,24 @@
     const there = handle?.pair !== undefined && !window.schuler.alone ? handle : undefined;
     explain(figure, frame, state);
     const count = there === undefined ? 0 : there.panels.length;
-    while (state.rings.length > count) state.rings.pop().made.remove();
+    while (state.rings.length > count) {
+      const { made, scale } = state.rings.pop();
+      made.remove();
+      scale.remove();
+    }
     while (state.rings.length < count) state.rings.push(ring(figure, state.rings.length));
     if (there === undefined) return;
     const pair = pairOf(figure);
-    for (const [panel, { made, numbers }] of state.rings.entries()) {
+    for (const [panel, { made, numbers, scale }] of state.rings.entries()) {
       if (made.parentElement !== frame) frame.append(made);
       const [across, up] = axes(figure, there.panels[panel]);
       const [left, top] = KINDS[there.kind].place(pair, across, up, there);
       const inside = left >= 0 && left <= across._length && top >= -1 && top <= up._length + 1;
       made.hidden = !inside && dragged?.made !== made;
-      made.style.transform = `translate(${(across._offset + within(left, [0, across._length])).toFixed(1)}px,${(up._offset + within(top, [0, up._length])).toFixed(1)}px)`;
+      const x = across._offset + within(left, [0, across._length]);
+      const y = up._offset + within(top, [0, up._length]);
+      made.style.transform = `translate(${x.toFixed(1)}px,${y.toFixed(1)}px)`;
+      showScale(scale, made, there, x, up);
       made.style.setProperty("--color", there.color);
       made.classList.toggle("sb-left", left > 0.7 * across._length);
       const said = `ξ ${short(pair[0])}  ω ${short(pair[1])} ω`;
@@ -114,7 +135,7 @@
     if (state.told.parentElement !== frame) frame.append(state.told);
     const [across, up] = axes(figure, meta.handle.panels.at(-1));
     if (state.told.textContent !== said) state.told.textContent = said;
-    state.told.style.transform = `translate(${across._offset + 6}px,${up._offset + up._length - 6}px) translateY(-100%)`;
+    state.told.style.transform = `translate(${across._offset + 6}px,${up._offset + up._length - ABOVE_PX}px) translateY(-100%)`;
     state.told.style.maxWidth = `${across._length - 12}px`;
   }
 
@@ -157,7 +178,7 @@
     const [left, top] = KINDS[handleOf(figure).kind].place(pairOf(figure), across, up, handleOf(figure));
     const [x, y] = [event.clientX, event.clientY];
     dragged = { figure, panel, made, id: event.pointerId, x, y, left, top, gesture: Date.now(), at: null, frame: 0, moved: false };
-    window.schuler.holdAxes(figure);
+    if (handleOf(figure).kind === "poles") window.schuler.holdAxes(figure); // a Bode plot's frequencies stand still
     made.classList.add("sb-held");
   }
 

@@ -28,6 +28,8 @@ from navcore.foundation.units import DEG
 
 OMEGA_MIN, OMEGA_MAX = 5e-6, 0.2
 """Range of the frequency axis, rad/s: periods from 14 days to 31 s."""
+HANDLE_PANEL = ("xaxis2", "yaxis3")
+"""Axes of the magnitude of the closed loop's transfer, where the handle of its pair stands."""
 _PLAIN_POINTS = 240
 _CLUSTER = np.logspace(-3.5, -0.5, 24)
 _NEAR = 0.02

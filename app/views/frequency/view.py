@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from app.plots.plotly_data import PlotlyFigure
-from app.plots.transfer_views import SHOWN
+from app.plots.transfer_views import OPEN_LOOP, SHOWN
 from app.session.shown import Shown
 from app.shell.layout import TOOLS
+from app.shell.pair_handle import PairHandle
 from app.shell.plotly_view import PlotlyView
-from app.shell.view import if_user
-from app.views.frequency.figure import frequency_view
+from app.shell.view import Frame, if_user
+from app.views.frequency.figure import HANDLE_PANEL, frequency_view
 from app.views.frequency.reference import optimal_reference
 from navcore.engine.run import Run
 
@@ -21,13 +22,20 @@ class FrequencyView(PlotlyView):
 
     title = "Frequency"
     place = "upper"
-    look_for = "What comes through at each period: below 0 dB an error is damped, above it is amplified."
+    look_for = (
+        "Below 0 dB an error is damped, above it is amplified. Handle: across frequency, up less damping."
+    )
     focus = "bode"
     plots = (title,)
+
+    def __init__(self, frame: Frame) -> None:
+        super().__init__(frame)
+        self._handle = PairHandle(frame, "bode", [HANDLE_PANEL])
 
     def build_tools(self) -> None:
         """Make chooser and switch."""
         gui, display = self.frame.gui, self.session.display
+        self._handle.build()
         self._transfer = gui.add_dropdown(
             "transfer", tuple(_IDS), initial_value=SHOWN[display.transfer],
             hint="Shown at the right, beside the network H; or the open loop with its margins.",
@@ -53,10 +61,15 @@ class FrequencyView(PlotlyView):
         self._discrete.value = display.discrete
         self._optimal.value = display.optimal
 
+    @property
+    def of_selected(self) -> bool:
+        """The handle is that of the selected method."""
+        return self.session.display.transfer != OPEN_LOOP
+
     def figure(self, both: Run, found: Shown) -> PlotlyFigure:
         """Bode plots, or Nyquist plot."""
         display = found.display
-        return frequency_view(
+        made = frequency_view(
             both,
             display.transfer,
             self.aspect,
@@ -64,6 +77,9 @@ class FrequencyView(PlotlyView):
             discrete=display.discrete,
             reference=optimal_reference(found.run.scenario) if display.optimal else None,
         )
+        if display.transfer != OPEN_LOOP:
+            made["layout"]["meta"] |= self._handle.meta(found)
+        return made
 
 
 VIEW = FrequencyView

@@ -34,7 +34,7 @@ class PolesView(PlotlyView):
     place = "upper"
     look_for = (
         "The farther left a pole, the faster it dies away; the steeper, the more it swings. "
-        "Drag the ring to move it."
+        "Drag the handle to move it."
     )
     plots = (title,)
     above_px = CHOOSER_PX + 10
