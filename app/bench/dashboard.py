@@ -6,6 +6,8 @@ import statistics
 
 from app.bench.process import Server
 from app.bench.visitor import PAGE_STATE, Visitor
+from app.editing import form
+from navcore.networks.complementary import ComplementaryNetwork
 
 STARTS = 5
 STEPS = 40
@@ -19,6 +21,8 @@ DESIGN = "1920x1080|Method|Design|Errors"
 _ALL_VIEWS = "1920x1080|Method|Frequency|Poles|Step|Errors|Metrics|Compare|Spectrum|Requirements|Scenario"
 """As if every tab were in front: more than any window shows at once."""
 _PINS = 2
+ZETA = form.full_label("zeta", ComplementaryNetwork.model_fields["zeta"])
+"""Label of the slider that is moved."""
 
 
 def measure_dashboard() -> dict[str, float]:
@@ -68,17 +72,17 @@ def slider_to_frame_ms(port: int, window: str = _WINDOW, pins: int = 0, steps: i
         _choose(visitor, "scenario", "sikuliaq-like")
         _choose(visitor, "duration (h), exact", 24.0)
         visitor.set("method", "complementary")
-        visitor.control("zeta")
+        visitor.control(ZETA)
         visitor.rest(1.0)
         for pin in range(pins):
-            visitor.set("zeta", 0.4 + 0.1 * pin)
+            visitor.set(ZETA, 0.4 + 0.1 * pin)
             visitor.wait_for_run(visitor.run_number + 1)
             visitor.set("Pin this run", True)
             visitor.rest(0.5)
         answers = []
         for step in range(_WARM_UP + steps):
             number = visitor.run_number
-            sent = visitor.set("zeta", round(0.6 + 0.01 * step, 3))
+            sent = visitor.set(ZETA, round(0.6 + 0.01 * step, 3))
             answers.append(1e3 * (visitor.wait_for_run(number + 1) - sent))
             visitor.rest(_PAUSE_S)
     return answers[_WARM_UP:]

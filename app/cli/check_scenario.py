@@ -106,7 +106,7 @@ def _text(scenario: Scenario) -> list[str]:
     lines = [f"  {head}"] if head else []
     lines += [
         f"  {run.fidelity}, {run.duration_h:g} h, {_steps(scenario)}, {run.earth}, "
-        f"latitude {site.lat_deg:g} deg, seed {run.seed}",
+        f"latitude {site.lat_deg:g}°, seed {run.seed}",
         f"  motion {scenario.motion.kind}, reference {scenario.reference.kind}",
     ]
     for m in scenario.method:

@@ -74,9 +74,9 @@ def network_text(report: dict[str, Any]) -> list[str]:
         ["natural frequency", number(report["natural_frequency_rad_s"]), "rad/s"],
         ["settling (2 %)", *(("never", "") if settling is None else (number(settling), "s"))],
     ]
-    lines = [f"{report['id']} on the sphere, omega_s = {omega_s:.6g} rad/s", "", *columns(rows), ""]
+    lines = [f"{report['id']} on the sphere, ωₛ = {omega_s:.6g} rad/s", "", *columns(rows), ""]
     for key, title in (("zeros", "zeros"), ("poles", "poles"), ("closed_loop_poles", "closed loop")):
-        lines += columns([[title, "rad/s", "/ omega_s"], *_roots(report[key], omega_s)]) + [""]
+        lines += columns([[title, "rad/s", "/ ωₛ"], *_roots(report[key], omega_s)]) + [""]
     lines += [*columns(facts), "", *_whole_system(report)]
     if "margins" in report:
         lines += ["", *_margins(report["margins"])]
@@ -94,7 +94,7 @@ def _whole_system(report: dict[str, Any]) -> list[str]:
         told = f"{'GROWS' if growth > 0.0 else 'decays'}, e-folding time {duration(1.0 / growth)}"
     slope = report["h_slope_s"]
     return [
-        f"whole system at latitude {report['lat_deg']:g} deg (--lat sets it)",
+        f"whole system at latitude {report['lat_deg']:g}° (--lat sets it)",
         *columns(
             [
                 ["H'(0)", number(slope), "" if slope is None else "s"],
@@ -107,7 +107,7 @@ def _whole_system(report: dict[str, Any]) -> list[str]:
 
 def _margins(margins: dict[str, float | None] | None) -> list[str]:
     """What may change of the open loop before the loop gets unstable."""
-    title = "margins of the open loop omega_s^2 H/s^2"
+    title = "margins of the open loop ωₛ² H/s²"
     if margins is None:
         return [title, "none: the loop is undamped or unstable"]
 
@@ -122,10 +122,10 @@ def _margins(margins: dict[str, float | None] | None) -> list[str]:
             [
                 ["gain up", shown("gain_up"), "times"],
                 ["gain down", shown("gain_down"), "times"],
-                ["phase", shown("phase_rad", degrees), "deg"],
+                ["phase", shown("phase_rad", degrees), "°"],
                 ["delay", shown("delay_s"), "s"],
                 ["disk margin: gain", shown("disk_gain"), "times"],
-                ["disk margin: phase", shown("disk_phase_rad", degrees), "deg"],
+                ["disk margin: phase", shown("disk_phase_rad", degrees), "°"],
             ]
         ),
     ]

@@ -13,16 +13,16 @@ if TYPE_CHECKING:
     from navcore.engine.run import LawInForce, MethodRun, Run
 
 _SHOWN = (
-    ("phi_e_rad", "phi_E", "arcsec", ARCSEC),
-    ("phi_n_rad", "phi_N", "arcsec", ARCSEC),
-    ("phi_u_rad", "phi_U", "arcmin", ARCMIN),
-    ("dve_mps", "dV_E", "m/s", 1.0),
-    ("dvn_mps", "dV_N", "m/s", 1.0),
+    ("phi_e_rad", "φE", "arcsec", ARCSEC),
+    ("phi_n_rad", "φN", "arcsec", ARCSEC),
+    ("phi_u_rad", "φU", "arcmin", ARCMIN),
+    ("dve_mps", "δVE", "m/s", 1.0),
+    ("dvn_mps", "δVN", "m/s", 1.0),
     ("position_m", "position", "m", 1.0),
 )
 _STATISTICS = (("rms", "RMS"), ("max_abs", "largest"), ("final", "at the end"))
 _LOOP_HEAD = (
-    ["loop", "damping", "H(0)", "settling", "24 h mode", "damped", "xi in", "status"],
+    ["loop", "damping", "H(0)", "settling", "24 h mode", "damped", "ζ in", "status"],
     ["", "ratio", "", "min", "e-folding", "%", "force", ""],
 )
 _EARTHS = {"wgs84": "WGS-84", "sphere": "sphere"}
@@ -61,7 +61,7 @@ def _loop_row(run: MethodRun) -> list[str]:
 
 
 def _coefficient(law: LawInForce) -> str:
-    """Damping coefficient in force: one value, or the range."""
+    """Damping ratio in force: one value, or the range."""
     if law.xi_min is None or law.xi_max is None:
         return "-"
     low, high = number(law.xi_min, 3), number(law.xi_max, 3)

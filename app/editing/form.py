@@ -14,6 +14,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from navcore.foundation.notation import unit_sign
 from navcore.foundation.parameters import allowed_range, bounds_of, element_of, extra_of
 
 Path = tuple[str | int, ...]
@@ -224,13 +225,13 @@ def choice(model: type[BaseModel], name: str, path: Path, label: str = "") -> Fi
     info = model.model_fields[name]
     offered = _literals(info.annotation)
     return FieldSpec(
-        (*path, name), label or _label(name, info, ""), _hint(info, ""), "choice", info.default, offered
+        (*path, name), label or full_label(name, info), _hint(info, ""), "choice", info.default, offered
     )
 
 
 def _field(name: str, info: FieldInfo, path: Path, prefix: str) -> list[FieldSpec]:
     annotation = _without_none(info.annotation)
-    label = _label(name, info, prefix)
+    label = full_label(name, info, prefix)
     offered = _literals(annotation)
     if offered:
         return [FieldSpec(path, label, _hint(info, ""), "choice", info.default, offered)]
@@ -269,7 +270,7 @@ def _sequence(
     return [
         FieldSpec(
             (*path, i),
-            _label(name, info, prefix, part),
+            full_label(name, info, prefix, part),
             hint,
             "number",
             info.default[i],
@@ -285,10 +286,12 @@ def _is_row(annotation: Any) -> bool:
     return isinstance(annotation, type) and len(getattr(annotation, "_fields", ())) == 2
 
 
-def _label(name: str, info: FieldInfo, prefix: str, part: str = "") -> str:
+def full_label(name: str, info: FieldInfo, prefix: str = "", part: str = "") -> str:
+    """Label of a control: a prefix, the field's name, the element's name and the unit."""
     extra = extra_of(info)
     words = [prefix, plain_label(name, info), part]
-    unit = f"({extra['unit']})" if extra.get("unit") not in (None, "", "1") else ""
+    sign = unit_sign(extra.get("unit", ""))
+    unit = f"({sign})" if sign else ""
     return " ".join(word for word in (*words, unit) if word)
 
 
@@ -303,7 +306,7 @@ def _hint(info: FieldInfo, allowed: str) -> str:
     bounds = f"{allowed[0].upper()}{allowed[1:]}." if allowed else ""
     # The elements of a vector may have units of their own, in their names.
     if bounds and not extra_of(info).get("elements") and extra_of(info).get("unit") in (None, "", "1"):
-        bounds = f"{bounds.removesuffix('.').removesuffix(' (1)')} (no unit)."
+        bounds = f"{bounds.removesuffix('.')} (no unit)."
     return " ".join(part for part in (text, bounds) if part)
 
 

@@ -51,13 +51,9 @@ def read_point(text: str) -> complex:
     try:
         re, im = (float(word) for word in words)
     except ValueError:
-        raise InputError(
-            Fault("", "point", text[:60], "must be two numbers: Re and Im of s/omega_s")
-        ) from None
+        raise InputError(Fault("", "point", text[:60], "must be two numbers: Re and Im of s/ωₛ")) from None
     if not (abs(re) <= _FARTHEST and abs(im) <= _FARTHEST) or re == im == 0.0:
-        raise InputError(
-            Fault("", "point", text[:60], f"must lie within {_FARTHEST:g} omega_s, and not at 0")
-        )
+        raise InputError(Fault("", "point", text[:60], f"must lie within {_FARTHEST:g} ωₛ, and not at 0"))
     return complex(re, im)
 
 
@@ -75,9 +71,9 @@ def pair_at(point: complex) -> tuple[float, float]:
         side = "grows without bound" if ratio < 0.0 else "is hardly damped"
         allowed = (
             f"must be >= {LEAST_DAMPING:g}: a pair there {side}; the nearest possible one at ω = "
-            f"{number(size, 3)} ω_s has ξ = {LEAST_DAMPING:g}"
+            f"{number(size, 3)} ωₛ has ζ = {LEAST_DAMPING:g}"
         )
-        raise InputError(Fault("", "damping ratio ξ", round(ratio, 4), allowed))
+        raise InputError(Fault("", "damping ratio ζ", round(ratio, 4), allowed))
     return ratio, size
 
 
@@ -107,7 +103,7 @@ def with_pair(
         allowed = f'{method.name} runs without its network: set its damping to "internal" or "external" first'
         raise InputError(Fault("", f"method.{index}.damping", method.damping, allowed))
     omega_s = scenario.omega_s
-    wanted = f"ξ = {number(damping_ratio, 3)}, ω = {number(ratio, 3)} ω_s"
+    wanted = f"ζ = {number(damping_ratio, 3)}, ω = {number(ratio, 3)} ωₛ"
     try:
         placed = place(
             method.network, damping_ratio, ratio * omega_s, omega_s, h_slope_limit_s=h_slope_limit_s
@@ -115,7 +111,7 @@ def with_pair(
     except InputError as error:
         raise _why_not(method, wanted, omega_s, error) from None
     changed = _with_network(scenario, index, placed.parameters)
-    words = f"ξ = {number(placed.damping_ratio, 3)}, ω = {number(placed.frequency / omega_s, 3)} ω_s"
+    words = f"ζ = {number(placed.damping_ratio, 3)}, ω = {number(placed.frequency / omega_s, 3)} ωₛ"
     return Placed(changed, f"{method.name}: pair at {words}", placed.note)
 
 
@@ -228,8 +224,8 @@ def _why_not(method: Method, wanted: str, omega_s: float, error: InputError) -> 
     """Say why the network cannot, what it does now, and what can."""
     loop = analyse(method.network.transfer(omega_s))
     now = (
-        f"its least damped pair stays at ξ = {number(loop.damping_ratio, 3)}, "
-        f"ω = {number(loop.natural_frequency / omega_s, 3)} ω_s"
+        f"its least damped pair stays at ζ = {number(loop.damping_ratio, 3)}, "
+        f"ω = {number(loop.natural_frequency / omega_s, 3)} ωₛ"
     )
     fault = error.faults[0]
     if fault.field == "network":
@@ -250,7 +246,7 @@ def typed_pair(damping_ratio: float, ratio: float) -> tuple[float, float]:
     """
     if not (math.isfinite(damping_ratio) and LEAST_DAMPING <= damping_ratio <= 1.0):
         allowed = f"must be >= {LEAST_DAMPING:g} and <= 1 (above 1 there is no pair)"
-        raise InputError(Fault("", "pair ξ", damping_ratio, allowed))
+        raise InputError(Fault("", "pair ζ", damping_ratio, allowed))
     if not (math.isfinite(ratio) and 0.0 < ratio <= _FARTHEST):
-        raise InputError(Fault("", "pair ω/ω_s", ratio, f"must be > 0 and <= {_FARTHEST:g}"))
+        raise InputError(Fault("", "pair ω/ωₛ", ratio, f"must be > 0 and <= {_FARTHEST:g}"))
     return damping_ratio, ratio

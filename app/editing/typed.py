@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 
+from navcore.foundation.notation import unit_sign
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG, HOUR, KNOT, MINUTE, NAUTICAL_MILE
 
 _G = 9.80665
@@ -20,7 +21,8 @@ _FAMILIES: tuple[dict[str, float], ...] = (
 _SPELLED = {
     "°": "deg", "degrees": "deg", "′": "arcmin", "'": "arcmin", "″": "arcsec", '"': "arcsec",
     "°/h": "deg/h", "°/s": "deg/s", "kt": "kn", "kts": "kn", "knots": "kn", "nm": "nmi",
-    "m/s2": "m/s^2", "m/s²": "m/s^2", "µg": "ug", "sec": "s", "minutes": "min", "hours": "h", "days": "d",
+    "m/s2": "m/s^2", "m/s²": "m/s^2", "µg": "ug", "μg": "ug",
+    "sec": "s", "minutes": "min", "hours": "h", "days": "d",
 }  # fmt: skip
 _FORM = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S*)\s*")
 
@@ -30,8 +32,8 @@ def unit_of(label: str) -> str:
 
     Examples
     --------
-    >>> unit_of("duration (h)"), unit_of("zeta")
-    ('h', '')
+    >>> unit_of("duration (h)"), unit_of("gyro bias x (°/h)"), unit_of("r")
+    ('h', '°/h', '')
     """
     found = re.search(r"\(([^()]*)\)$", label)
     return "" if found is None else found[1]
@@ -68,7 +70,9 @@ def read_typed(text: str, unit: str) -> float:
         return value
     family = next((units for units in _FAMILIES if mine in units), {mine: 1.0} if mine else {})
     if given not in family:
-        allowed = f"must be in one of {', '.join(family)}" if family else "takes a number without a unit"
+        allowed = "takes a number without a unit"
+        if family:
+            allowed = f"must be in one of {', '.join(map(unit_sign, family))}"
         raise ValueError(f"{allowed}, not in {given!r}")
     # Rounded to what a double holds safely: 30 min are 0.5 h, not 0.49999999999999994 h.
     return float(f"{value * family[given] / family[mine]:.14g}")

@@ -38,17 +38,17 @@ def _periods() -> Comparison:
         y_axis=Axis("Foucault period", "s"),
         x=lat,
         curves=(
-            Curve("2 pi/omega_ie sin(phi) as printed", "printed", day * np.sin(lat)),
-            Curve("2 pi/(omega_ie sin(phi))", "corrected", day / np.sin(lat)),
+            Curve("2π/ωᵢₑ sin(φ) as printed", "printed", day * np.sin(lat)),
+            Curve("2π/(ωᵢₑ sin(φ))", "corrected", day / np.sin(lat)),
         ),
         numbers=(
             Number("Schuler period", "s", printed_schuler, schuler),
             Number("Earth period", "s", printed_day, day),
-            Number("Foucault period at 32.06 deg", "s", day * here, day / here),
+            Number("Foucault period at 32.06°", "s", day * here, day / here),
         ),
         words=f"As printed the Schuler period would be {printed_schuler:.4f} s instead of "
         f"{schuler / MINUTE:.1f} min, the Earth's {printed_day / MINUTE:.1f} min instead of {day / HOUR:.1f} "
-        f"h, and Foucault's would fall towards the equator ({day * here / HOUR:.1f} h at 32 deg) instead of "
+        f"h, and Foucault's would fall towards the equator ({day * here / HOUR:.1f} h at 32°) instead of "
         f"rising ({day / here / HOUR:.1f} h).",
     )
 
@@ -60,7 +60,7 @@ def _extra_s() -> Comparison:
     assert loops.corrected.settling_s is not None
     return loops.compare(
         np.arange(0.0, 901.0, 2.0),
-        ("with the extra s", "((1+K2)s+K3)/(s+K1)"),
+        ("with the extra s", "((1+K₂)s+K₃)/(s+K₁)"),
         (loops.growth, loops.settling),
         f"Taken as the network, the printed H makes the loop unstable: e-fold in {loops.growth_s:.0f} s. "
         f"Without the extra s it settles in {loops.corrected.settling_s / MINUTE:.1f} min.",
@@ -73,7 +73,7 @@ def _radius() -> Comparison:
     loops = TwoLoops(printed, _COMPASS.transfer(OMEGA_S))
     return loops.compare(
         np.arange(0.0, 10.01, 0.05),
-        ("dp = K3 dv/s", "dp = K3 dv/(R s)"),
+        ("dp = K₃ dv/s", "dp = K₃ dv/(R s)"),
         (loops.growth,),
         f"A velocity added to an angular rate: the integral gain is {SEMI_MAJOR_AXIS:.1e} times too "
         f"large and the loop grows e-fold every {loops.growth_s:.2f} s.",
@@ -108,7 +108,7 @@ def _transport_rate() -> Comparison:
     peaks = float(np.nanmax(np.abs(printed))), float(np.nanmax(np.abs(corrected)))
     return Comparison(
         x_axis=TIME,
-        y_axis=Axis("tilt phi_N", "rad"),
+        y_axis=Axis("tilt φN", "rad"),
         x=t,
         curves=(
             Curve("Deng 4 as printed", "printed", printed),
@@ -149,7 +149,7 @@ def _coriolis() -> Comparison:
     ends = float(printed[-1]), float(corrected[-1])
     return Comparison(
         x_axis=TIME,
-        y_axis=Axis("heading error phi_U", "rad"),
+        y_axis=Axis("heading error φU", "rad"),
         x=t,
         curves=(
             Curve("no Coriolis, no up command", "printed", printed),
@@ -157,11 +157,11 @@ def _coriolis() -> Comparison:
         ),
         numbers=(
             Number("heading error after 2 h", "rad", ends[0], ends[1]),
-            Number("Coriolis term left out", "m/s^2", coriolis_north, 0.0),
+            Number("Coriolis term left out", "m/s²", coriolis_north, 0.0),
         ),
-        words="Due east at 10 m/s in 32 deg north the terms left out act like "
-        f"{coriolis_north / MICRO_G:.0f} ug and {transport_up / DEG_PER_HOUR:.2f} deg/h: "
-        f"after 2 h the heading is off by {abs(ends[0]) / DEG:.2f} deg.",
+        words="Due east at 10 m/s in 32° north the terms left out act like "
+        f"{coriolis_north / MICRO_G:.0f} µg and {transport_up / DEG_PER_HOUR:.2f} °/h: "
+        f"after 2 h the heading is off by {abs(ends[0]) / DEG:.2f}°.",
     )
 
 
@@ -170,8 +170,8 @@ DENG = (
         id="deng-intro",
         paper="Deng 2019",
         where="introduction",
-        printed="T_s = 2 pi/sqrt(R/g), T_e = 2 pi/sqrt(omega_ie), T_c = 2 pi/omega_ie sin(phi)",
-        right="2 pi sqrt(R/g), 2 pi/omega_ie, 2 pi/(omega_ie sin(phi))",
+        printed="T_s = 2π/√(R/g), T_e = 2π/√(ωᵢₑ), T_c = 2π/ωᵢₑ sin(φ)",
+        right="2π √(R/g), 2π/ωᵢₑ, 2π/(ωᵢₑ sin(φ))",
         consequence="none of the three periods comes out",
         compute=_periods,
     ),
@@ -180,7 +180,7 @@ DENG = (
         paper="Deng 2019",
         where="eq. 1",
         printed="H has an extra s in the denominator",
-        right="H = ((1+K2)s+K3)/(s+K1): that s is the velocity integrator",
+        right="H = ((1+K₂)s+K₃)/(s+K₁): that s is the velocity integrator",
         consequence="the loop is unstable",
         compute=_extra_s,
     ),
@@ -188,8 +188,8 @@ DENG = (
         id="deng-3",
         paper="Deng 2019",
         where="eq. 3 and 4",
-        printed="dp = K3 dv/s, added to a rate",
-        right="dp = K3 dv/(R s)",
+        printed="dp = K₃ dv/s, added to a rate",
+        right="dp = K₃ dv/(R s)",
         consequence="the integral gain is R times too large: the loop explodes within seconds",
         compute=_radius,
     ),
@@ -197,7 +197,7 @@ DENG = (
         id="deng-4-transport",
         paper="Deng 2019",
         where="eq. 3 and 4",
-        printed="omega_c from the difference dv alone",
+        printed="ω_c from the difference dv alone",
         right="plus the reference's transport rate V_r/R",
         consequence="a moving vehicle has transients at every change of speed",
         compute=_transport_rate,

@@ -34,9 +34,9 @@ def _power() -> Comparison:
     loops = TwoLoops(as_network(num, den), right)
     return loops.compare(
         np.arange(0.0, 6 * 3600.0 + 1.0, 30.0),
-        ("omega_s^3 s^3 (printed)", "omega_s s^3"),
+        ("ωₛ³ s³ (printed)", "ωₛ s³"),
         (loops.damping, loops.growth),
-        f"With the printed power the s^3 terms vanish and the loop grows e-fold in "
+        f"With the printed power the s³ terms vanish and the loop grows e-fold in "
         f"{loops.growth_s / MINUTE:.0f} min; mended its least damping ratio is "
         f"{loops.corrected.damping_ratio:.2f}.",
     )
@@ -54,7 +54,7 @@ def _transfer_powers() -> Comparison:
     gains = float(printed[here]), float(corrected[here])
     return Comparison(
         x_axis=Axis("frequency", "rad/s", log=True),
-        y_axis=Axis("R phi / dV_r", "s", log=True),
+        y_axis=Axis("R φ / δVr", "s", log=True),
         x=omega,
         curves=(
             Curve("Liu 6 as printed", "printed", printed),
@@ -188,8 +188,8 @@ LIU = (
         id="liu-5",
         paper="Liu 2021",
         where="eq. 5",
-        printed="omega_s^3 s^3 in numerator and denominator",
-        right="omega_s s^3",
+        printed="ωₛ³ s³ in numerator and denominator",
+        right="ωₛ s³",
         consequence="the loop is unstable",
         compute=_power,
     ),
@@ -197,8 +197,8 @@ LIU = (
         id="liu-6",
         paper="Liu 2021",
         where="eq. 6",
-        printed="3.4 omega_s^5 s^5 + 6.8 omega_s^4 s^4 + ... + 3.4 omega_s s + omega_s^6",
-        right="omega_s s^5, omega_s^2 s^4, ..., omega_s^5 s",
+        printed="3.4 ωₛ⁵ s⁵ + 6.8 ωₛ⁴ s⁴ + ... + 3.4 ωₛ s + ωₛ⁶",
+        right="ωₛ s⁵, ωₛ² s⁴, ..., ωₛ⁵ s",
         consequence="a gain that has nothing to do with fig. 3",
         compute=_transfer_powers,
     ),

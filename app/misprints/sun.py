@@ -41,14 +41,14 @@ def _radius() -> Comparison:
     gains = float(printed[here]), float(corrected[here])
     return Comparison(
         x_axis=Axis("frequency", "rad/s", log=True),
-        y_axis=Axis("tilt for 1 m/s^2 of acceleration", "rad", log=True),
+        y_axis=Axis("tilt for 1 m/s² of acceleration", "rad", log=True),
         x=omega,
         curves=(
-            Curve("(1-H)/(s^2 + omega_s^2 H)", "printed", printed),
-            Curve("(1-H)/(R (s^2 + omega_s^2 H))", "corrected", corrected),
+            Curve("(1-H)/(s² + ωₛ² H)", "printed", printed),
+            Curve("(1-H)/(R (s² + ωₛ² H))", "corrected", corrected),
         ),
-        numbers=(Number("gain at the Schuler frequency", "rad/(m/s^2)", gains[0], gains[1]),),
-        words=f"Without 1/R the tilt comes out {RADIUS:.1e} times too large: {gains[0]:.1e} rad for 1 m/s^2 "
+        numbers=(Number("gain at the Schuler frequency", "rad/(m/s²)", gains[0], gains[1]),),
+        words=f"Without 1/R the tilt comes out {RADIUS:.1e} times too large: {gains[0]:.1e} rad for 1 m/s² "
         f"at the Schuler frequency instead of {gains[1]:.2f} rad.",
     )
 
@@ -59,15 +59,15 @@ def _sign() -> Comparison:
     table = _table(knots)
     return Comparison(
         x_axis=_DIFFERENCE,
-        y_axis=Axis("damping coefficient xi"),
+        y_axis=Axis("damping ratio ζ"),
         x=knots * KNOT,
         curves=(
             Curve("Sun 9 as printed", "printed", printed),
             Curve("Sun 9, sign mended", "corrected", mended),
             Curve("Sun's Table 1, PCHIP", "corrected", table),
         ),
-        numbers=(Number("xi at 3 kn", "", float(printed[-1]), float(table[-1])),),
-        words=f"As printed xi rises with the difference, to {printed[-1]:.1f} at 3 kn where Sun's own table "
+        numbers=(Number("ζ at 3 kn", "", float(printed[-1]), float(table[-1])),),
+        words=f"As printed ζ rises with the difference, to {printed[-1]:.1f} at 3 kn where Sun's own table "
         f"has {table[-1]:.2f}: the worse the log, the harder it is believed.",
     )
 
@@ -93,9 +93,9 @@ def _negative() -> Comparison:
     low, high = negative_range()
     return loops.compare(
         np.arange(0.0, 1801.0, 5.0),
-        (f"quadratic at 1.8 kn: xi = {asked:.3f}", f"table at 1.8 kn: xi = {table:.2f}"),
+        (f"quadratic at 1.8 kn: ζ = {asked:.3f}", f"table at 1.8 kn: ζ = {table:.2f}"),
         (
-            Number("xi at 1.8 kn", "", asked, table),
+            Number("ζ at 1.8 kn", "", asked, table),
             loops.growth,
             Number("negative from", "m/s", low, None),
             Number("negative to", "m/s", high, None),
@@ -110,9 +110,9 @@ def _sigma() -> Comparison:
     loops = TwoLoops(_mirrored(right), right)
     return loops.compare(
         np.arange(0.0, 901.0, 2.0),
-        ("sigma = + xi omega_n (printed)", "sigma = - xi omega_n"),
+        ("σ = + ζ ωₙ (printed)", "σ = - ζ ωₙ"),
         (loops.damping, loops.growth),
-        f"With the positive sigma of Sun 16 all four poles of Sun 14 and 15 lie on the right: e-fold "
+        f"With the positive σ of Sun 16 all four poles of Sun 14 and 15 lie on the right: e-fold "
         f"in {loops.growth_s:.0f} s.",
     )
 
@@ -141,15 +141,15 @@ def _residue() -> Comparison:
         y_axis=Axis("damping ratio of the loop"),
         x=asked,
         curves=(
-            Curve("B = -A w2/w1 (printed)", "printed", real[:, 0]),
+            Curve("B = -A w₂/w₁ (printed)", "printed", real[:, 0]),
             Curve("B = (c-a) - A", "corrected", real[:, 1]),
         ),
         numbers=(
             Number("damping ratio when 0.5 is asked", "", printed, exact),
-            Number("unstable for xi up to", "", limit, None),
+            Number("unstable for ζ up to", "", limit, None),
         ),
         words=f"Forcing H(0) = 1 moves the pair: {printed:.2f} when 0.5 is asked, and no stability at all up "
-        f"to xi = {limit:.3f}.",
+        f"to ζ = {limit:.3f}.",
     )
 
 
@@ -161,9 +161,9 @@ def _small_xi() -> Comparison:
     entries = sum(real_damping(value)[0] < 0.0 for _, value in SUN_TABLE)
     return loops.compare(
         np.arange(0.0, 86401.0, 120.0),
-        ("xi = 0.08 as printed", "xi = 0.08 exact"),
+        ("ζ = 0.08 as printed", "ζ = 0.08 exact"),
         (loops.damping, loops.growth),
-        f"At xi = 0.08, an entry of Sun's own table, the loop as printed grows e-fold in "
+        f"At ζ = 0.08, an entry of Sun's own table, the loop as printed grows e-fold in "
         f"{loops.growth_s / HOUR:.0f} h (damping {loops.printed.damping_ratio:.3f}); so it does for "
         f"{entries} of the {len(SUN_TABLE)} entries.",
     )
@@ -174,7 +174,7 @@ SUN = (
         id="sun-3",
         paper="Sun 2017",
         where="eq. 3",
-        printed="phi/A = (1-H)/(s^2 + omega_s^2 H)",
+        printed="φ/A = (1-H)/(s² + ωₛ² H)",
         right="with 1/R",
         consequence="a tilt six million times too large",
         compute=_radius,
@@ -183,7 +183,7 @@ SUN = (
         id="sun-9",
         paper="Sun 2017",
         where="eq. 9",
-        printed="xi = 0.3076 d^2 + 1.1452 d + 0.8101",
+        printed="ζ = 0.3076 d² + 1.1452 d + 0.8101",
         right="- 1.1452 d; better the table itself",
         consequence="the damping rises with the difference instead of falling",
         compute=_sign,
@@ -192,7 +192,7 @@ SUN = (
         id="sun-9-negative",
         paper="Sun 2017",
         where="eq. 9, sign mended",
-        printed="xi = 0.3076 d^2 - 1.1452 d + 0.8101",
+        printed="ζ = 0.3076 d² - 1.1452 d + 0.8101",
         right="the table, interpolated monotonically and clamped to 0.04 .. 0.99",
         consequence="negative damping between 0.95 and 2.77 kn",
         compute=_negative,
@@ -201,8 +201,8 @@ SUN = (
         id="sun-16",
         paper="Sun 2017",
         where="eq. 16",
-        printed="sigma = xi omega_n",
-        right="sigma = -xi omega_n",
+        printed="σ = ζ ωₙ",
+        right="σ = -ζ ωₙ",
         consequence="all poles on the right",
         compute=_sigma,
     ),
@@ -210,7 +210,7 @@ SUN = (
         id="sun-18",
         paper="Sun 2017",
         where="eq. 18",
-        printed="B = -A w2/w1",
+        printed="B = -A w₂/w₁",
         right="B = (c-a) - A (pole2 exact), or unity2 for H(0) = 1",
         consequence="the loop is less damped than asked",
         compute=_residue,
@@ -219,7 +219,7 @@ SUN = (
         id="sun-18-unstable",
         paper="Sun 2017",
         where="eq. 18 with Table 1",
-        printed="B = -A w2/w1 at xi = 0.08",
+        printed="B = -A w₂/w₁ at ζ = 0.08",
         right="B = (c-a) - A",
         consequence="the loop is unstable",
         compute=_small_xi,

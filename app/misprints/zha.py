@@ -39,18 +39,18 @@ def _gain() -> Comparison:
         y_axis=TILT,
         x=t,
         curves=(
-            Curve(f"K2 = {PRINTED_K2:g} (printed)", "printed", y["printed"]),
-            Curve(f"K2 = {k2:.2f}", "corrected", y["corrected"]),
+            Curve(f"K₂ = {PRINTED_K2:g} (printed)", "printed", y["printed"]),
+            Curve(f"K₂ = {k2:.2f}", "corrected", y["corrected"]),
         ),
         numbers=(
-            Number("K2", "", PRINTED_K2, k2),
+            Number("K₂", "", PRINTED_K2, k2),
             Number("damping ratio", "", loop["printed"].damping_ratio, loop["corrected"].damping_ratio),
             Number("time in which the slowest pole decays to 0.5 %", "s", *slowest.values()),
             Number("last above 0.5 % of the initial tilt", "s", settled["printed"], settled["corrected"]),
             Number("last above 2 %", "s", loop["printed"].settling_s, loop["corrected"].settling_s),
         ),
-        words=f"With the printed K2 the damping is {loop['printed'].damping_ratio:.2f} instead of "
-        f"{loop['corrected'].damping_ratio:.2f}, and the 10 min of the design (sigma t = 5.25) become "
+        words=f"With the printed K₂ the damping is {loop['printed'].damping_ratio:.2f} instead of "
+        f"{loop['corrected'].damping_ratio:.2f}, and the 10 min of the design (σ t = 5.25) become "
         f"{slowest['printed'] / MINUTE:.0f}; 0.5 % of the tilt is last exceeded after "
         f"{settled['printed'] / MINUTE:.0f} min instead of {settled['corrected'] / MINUTE:.0f}.",
     )
@@ -70,16 +70,16 @@ def _design() -> Comparison:
         y_axis=TILT,
         x=t,
         curves=(
-            Curve("sigma t = 525 (printed)", "printed", y["printed"]),
-            Curve("sigma t = 5.25", "corrected", y["corrected"]),
+            Curve("σ t = 525 (printed)", "printed", y["printed"]),
+            Curve("σ t = 5.25", "corrected", y["corrected"]),
         ),
         numbers=(
-            Number("sigma for t = 600 s", "1/s", sigmas["printed"], sigmas["corrected"]),
-            Number("exp(-sigma t) at 600 s", "", left["printed"], left["corrected"]),
+            Number("σ for t = 600 s", "1/s", sigmas["printed"], sigmas["corrected"]),
+            Number("exp(-σ t) at 600 s", "", left["printed"], left["corrected"]),
         ),
-        words="The sigma = 0.0088 that Zha uses belongs to sigma t = 5.25: "
+        words="The σ = 0.0088 that Zha uses belongs to σ t = 5.25: "
         f"{100.0 * left['corrected']:.1f} % is left after 10 min. "
-        f"The printed 525 would ask for sigma = {sigmas['printed']:.3f}.",
+        f"The printed 525 would ask for σ = {sigmas['printed']:.3f}.",
     )
 
 
@@ -88,17 +88,17 @@ ZHA = (
         id="zha-3",
         paper="Zha 2019",
         where="section 3",
-        printed='"99.995 %" in 10 min, sigma t = 525',
-        right="sigma t = 5.25 gives 99.5 %; sigma = 0.0088",
-        consequence="taken at its word, sigma a hundred times too large",
+        printed='"99.995 %" in 10 min, σ t = 525',
+        right="σ t = 5.25 gives 99.5 %; σ = 0.0088",
+        consequence="taken at its word, σ a hundred times too large",
         compute=_design,
     ),
     Misprint(
         id="zha-4.1",
         paper="Zha 2019",
         where="section 4.1",
-        printed=f"K2 = {PRINTED_K2:g} for sigma = 0.0088, xi = 0.7",
-        right="K2 = 202.52 (K1 = 0.0264, K3 = 0.9045 agree)",
+        printed=f"K₂ = {PRINTED_K2:g} for σ = 0.0088, ζ = 0.7",
+        right="K₂ = 202.52 (K₁ = 0.0264, K₃ = 0.9045 agree)",
         consequence="less damped and twice as slow as designed",
         compute=_gain,
     ),

@@ -96,7 +96,7 @@ def _tilt_coefficient() -> Comparison:
     printed, corrected, tilt = _tilt(t, True), _tilt(t, False), float(_INITIAL[4])
     return Comparison(
         x_axis=TIME,
-        y_axis=Axis("tilt phi_E", "rad"),
+        y_axis=Axis("tilt φE", "rad"),
         x=t,
         curves=(
             Curve("Zhao 6 as printed", "printed", printed),
@@ -176,11 +176,11 @@ def _unit() -> Comparison:
         y_axis=Axis("east velocity error", "m/s"),
         x=t,
         curves=(
-            Curve("5e-4 g read per sqrt(Hz)", "printed", printed),
-            Curve("5e-4 g per 100 Hz sample: 50 ug/sqrt(Hz)", "corrected", corrected),
+            Curve("5e-4 g read per √Hz", "printed", printed),
+            Curve("5e-4 g per 100 Hz sample: 50 µg/√Hz", "corrected", corrected),
         ),
         numbers=(Number("RMS of the east velocity error", "m/s", rms[0], rms[1]),),
-        words=f"Read per sqrt(Hz) the random walk alone gives {rms[0]:.2f} m/s RMS in 24 h; read per sample "
+        words=f"Read per √Hz the random walk alone gives {rms[0]:.2f} m/s RMS in 24 h; read per sample "
         f"of 100 Hz it gives {rms[1]:.3f} m/s.",
     )
 
@@ -199,8 +199,8 @@ ZHAO = (
         id="zhao-6",
         paper="Zhao 2015",
         where="eq. 6",
-        printed="M4 contains -Phi_E0",
-        right="-(Omega/omega_s)^2 Phi_E0",
+        printed="M4 contains -ΦE₀",
+        right="-(Ω/ωₛ)² ΦE₀",
         consequence="the tilt does not start at its initial value and swings with 24 h",
         compute=_tilt_coefficient,
     ),
@@ -208,8 +208,8 @@ ZHAO = (
         id="zhao-7",
         paper="Zhao 2015",
         where="eq. 7",
-        printed="L4: + sin(phi) eps_N/Omega; L5: sin(phi) eps_E/Omega",
-        right="L4: - sin(phi) eps_N/Omega; L5: sin(phi) eps_N/Omega",
+        printed="L4: + sin(φ) εN/Ω; L5: sin(φ) εE/Ω",
+        right="L4: - sin(φ) εN/Ω; L5: sin(φ) εN/Ω",
         consequence="a latitude error of kilometres at t = 0",
         compute=_latitude_coefficients,
     ),
@@ -217,9 +217,9 @@ ZHAO = (
         id="zhao-5.1.2",
         paper="Zhao 2015",
         where="section 5.1.2",
-        printed="angle random walk in deg/h, velocity random walk 5e-4 g",
-        right="deg/sqrt(h); 5e-4 g per 100 Hz sample = 50 ug/sqrt(Hz)",
-        consequence="read per sqrt(Hz), ten times the velocity random walk",
+        printed="angle random walk in °/h, velocity random walk 5e-4 g",
+        right="°/√h; 5e-4 g per 100 Hz sample = 50 µg/√Hz",
+        consequence="read per √Hz, ten times the velocity random walk",
         compute=_unit,
     ),
 )

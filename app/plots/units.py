@@ -31,7 +31,7 @@ class Unit:
 
 ARCSECONDS = Unit("arcsec", ARCSEC)
 ARCMINUTES = Unit("arcmin", ARCMIN)
-DEGREES = Unit("deg", DEG)
+DEGREES = Unit("°", DEG)
 METRES_PER_SECOND = Unit("m/s", 1.0)
 METRES = Unit("m", 1.0)
 NAUTICAL_MILES = Unit("nmi", NAUTICAL_MILE)
@@ -40,12 +40,11 @@ KNOTS = Unit("kn", KNOT)
 MINUTES = Unit("min", MINUTE)
 HOURS = Unit("h", HOUR)
 AUTO = "auto"
-NAMED: dict[str, Unit] = {
+NAMED: dict[str, Unit] = {"deg": DEGREES} | {
     unit.name: unit
     for unit in (
         ARCSECONDS,
         ARCMINUTES,
-        DEGREES,
         METRES,
         KILOMETRES,
         NAUTICAL_MILES,

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
+from navcore.foundation.notation import symbol
 from navcore.scenario.model import Scenario
 
 MOST_STEPS = 200
@@ -206,7 +207,8 @@ def _named(field: str, scenario: Scenario) -> str:
     index, _, inner = rest.partition(".")
     if block != "method" or not inner:
         return field
-    return f"{inner.removeprefix('network.')} of {_short(scenario.method[int(index)].name)}"
+    inner = symbol(inner.removeprefix("network.")) if inner.startswith("network.") else inner
+    return f"{inner} of {_short(scenario.method[int(index)].name)}"
 
 
 def fields_of(scenario: Scenario) -> Mapping[str, Any]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from app.session.history import fields_of
 from app.session.pins import LONGEST_NAME, Pin
+from navcore.foundation.notation import symbol
 from navcore.scenario.model import Scenario
 
 _MOST_PARTS = 2
@@ -70,7 +71,7 @@ def _with_needed(pin: Pin, scenario: Scenario) -> Pin:
 
 
 def _parts(pin: Pin, scenario: Scenario) -> Iterator[str]:
-    """Differences, those of the edited method first: ``zeta 0.5``."""
+    """Differences, those of the edited method first: ``ζ 0.5``."""
     old, new = fields_of(pin.scenario), fields_of(scenario)
     present = {method.name: place for place, method in enumerate(scenario.method)}
     others: list[str] = []
@@ -113,7 +114,7 @@ def _words(path: str, value: Any) -> str:
         name = f"{block.rpartition('.')[2]} {name}"
     if name in _KINDS:
         return str(value)
-    name = name.replace("_", " ")
+    name = symbol(name)
     if value is None:
         return f"no {name}"
     return f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}"

@@ -230,7 +230,7 @@ def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, l
         start = made.motion.truth(1, 1.0, made.site.site(), made.earth, window.start_s).values[0]
         lat_deg, lon_deg = float(start[LAT]) / DEG, float(start[LON]) / DEG
         data["site"] |= {"lat_deg": round(lat_deg, 6), "lon_deg": round(lon_deg, 6)}
-        notes.append(f"The site is the track's start, {lat_deg:.4f} deg, {lon_deg:.4f} deg.")
+        notes.append(f"The site is the track's start, {lat_deg:.4f}°, {lon_deg:.4f}°.")
     data["title"], data["source"] = "Uploaded recording", ", ".join(uploads.files)[:300]
     return Scenario.parse(data), notes
 
@@ -256,7 +256,7 @@ def _on_recorded_imu(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, li
     ]
     if place is not None:
         data["site"] = place
-        notes.append(f"The site is that of the file, {place['lat_deg']:.4f} deg, {place['lon_deg']:.4f} deg.")
+        notes.append(f"The site is that of the file, {place['lat_deg']:.4f}°, {place['lon_deg']:.4f}°.")
     data["title"], data["source"] = "Recorded IMU", name[:300]
     return Scenario.parse(data), notes
 

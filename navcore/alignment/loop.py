@@ -45,7 +45,7 @@ def check_latitude(lat: float) -> None:
                 "",
                 "site.lat_deg",
                 round(lat / DEG, 6),
-                f"compass alignment needs |latitude| <= {LARGEST_LATITUDE_DEG:g} deg: the horizontal "
+                f"compass alignment needs |latitude| <= {LARGEST_LATITUDE_DEG:g}°: the horizontal "
                 "Earth rate, by which it finds north, is too small beyond",
             )
         )

@@ -62,7 +62,7 @@ def page() -> str:
     """Text of the page."""
     head = ["network", "parameters", "H(0)", "H'(0), s", "damping ratio"]
     rows = [
-        [*head, *(f"24 h mode at {lat:g} deg" for lat in LATITUDES)],
+        [*head, *(f"24 h mode at {lat:g}°" for lat in LATITUDES)],
         ["---"] * (len(head) + len(LATITUDES)),
     ]
     for name in NETWORKS:

@@ -60,7 +60,7 @@ def place(
 def _require_slope(placed: Placement, limit_s: float, omega_s: float) -> None:
     """Refuse a pair whose network does not have H(0) = 1 and a slope H'(0) within the limit."""
     network = placed.parameters.transfer(omega_s)
-    instead = "use complementary, or unity2 with a pair below omega_s"
+    instead = "use complementary, or unity2 with a pair below ωₛ"
     if not abs(network.h0 - 1.0) <= H0_TOLERANCE:
         allowed = f"must be 1 when H'(0) is limited, and is not with this pair: {instead}"
         raise InputError(Fault("", "H(0)", float(f"{network.h0:.4g}"), allowed))

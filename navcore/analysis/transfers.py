@@ -27,9 +27,9 @@ Channel = Literal["north", "east"]
 
 SOURCES: dict[Source, str] = {
     "eps": "gyro error, rad/s",
-    "nabla": "accelerometer error, m/s^2",
+    "nabla": "accelerometer error, m/s²",
     "dv_r": "reference velocity error, m/s",
-    "acceleration": "vehicle acceleration (no reference), m/s^2",
+    "acceleration": "vehicle acceleration (no reference), m/s²",
     "initial_tilt": "initial tilt, rad",
 }
 OUTPUTS: dict[Output, str] = {"phi": "tilt, rad", "dv": "velocity error, m/s"}

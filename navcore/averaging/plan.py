@@ -99,6 +99,6 @@ def _notices(chosen: Copies, forecast: Forecast, imu: Imu, seconds: int) -> tupl
     if noise > 0.0:
         found.append(
             f"the forecast of {max(chosen.ahead_s) / HOUR:.1f} h rests on {still:g} s of alignment: the "
-            f"gyros' random walk leaves {noise / DEG_PER_HOUR:.2g} deg/h (1 sigma) in it"
+            f"gyros' random walk leaves {noise / DEG_PER_HOUR:.2g} °/h (1 σ) in it"
         )
     return tuple(found)

@@ -63,14 +63,14 @@ def _text(details: dict[str, Any]) -> list[str]:
     lines = [
         f"  {details['samples']} samples at {details['rate_hz']:g} Hz, {details['span_s']:.1f} s, "
         "no gaps, no NaN",
-        f"  mean specific force {force[0]:g}, {force[1]:g}, {force[2]:g} m/s2, "
+        f"  mean specific force {force[0]:g}, {force[1]:g}, {force[2]:g} m/s², "
         f"size {details['mean_force_size_mps2']:g}; the {details['up_axis']} axis looks like up",
-        f"  mean turn {turn[0]:g}, {turn[1]:g}, {turn[2]:g} deg/h, size {details['mean_turn_size_dph']:g} "
+        f"  mean turn {turn[0]:g}, {turn[1]:g}, {turn[2]:g} °/h, size {details['mean_turn_size_dph']:g} "
         "(the Earth: 15.041)",
     ]
     if details["place"]:
         place = details["place"]
-        lines.append(f"  place {place['lat_deg']:.7g}, {place['lon_deg']:.7g} deg, {place['height_m']:g} m")
+        lines.append(f"  place {place['lat_deg']:.7g}, {place['lon_deg']:.7g}°, {place['height_m']:g} m")
     return lines
 
 
@@ -80,7 +80,7 @@ def _warnings(details: dict[str, Any]) -> list[str]:
     low, high = _GRAVITY
     if not low * (1.0 - _FORCE_ERROR) < size < high * (1.0 + _FORCE_ERROR):
         found.append(
-            f"the mean specific force is {size:g} m/s2, far from gravity: wrong units, scale, or not at rest"
+            f"the mean specific force is {size:g} m/s², far from gravity: wrong units, scale, or not at rest"
         )
     if up == "-z":
         found.append('the -z axis looks like up: forward, right, down? Then give imu.axes = "frd"')

@@ -65,8 +65,8 @@ def site_notices(scenario: Scenario, truth: Truth) -> list[str]:
     if abs(start - scenario.site.lat_deg) < FAR_FROM_SITE_DEG:
         return []
     return [
-        f"the track starts at latitude {start:.2f} deg, the site is at {scenario.site.lat_deg:g} deg: "
-        "omega_s, and with it every network, is that of the site"
+        f"the track starts at latitude {start:.2f}°, the site is at {scenario.site.lat_deg:g}°: "
+        "ωₛ, and with it every network, is that of the site"
     ]
 
 

@@ -189,13 +189,13 @@ def _parked_notices(scenario: Scenario, record: ImuRecord, site: Site) -> Iterat
     given = scenario.site
     if max(abs(site.lat / DEG - given.lat_deg), abs(site.lon / DEG - given.lon_deg)) > _SAME_PLACE_DEG:
         yield (
-            f"{record.source} gives its place, {site.lat / DEG:.4f}, {site.lon / DEG:.4f} deg: used for the "
-            "site's in all but omega_s, and with it the networks"
+            f"{record.source} gives its place, {site.lat / DEG:.4f}, {site.lon / DEG:.4f}°: used for the "
+            "site's in all but ωₛ, and with it the networks"
         )
     if scenario.alignment.kind == "compass":
         yield (
             "the true attitude of a recorded IMU is not known: that of the alignment's end stands for it, "
-            "phi tells what has changed since"
+            "φ tells what has changed since"
         )
     else:
         yield "the attitude of the recorded IMU is taken from motion.pitch_deg, roll_deg and heading_deg"

@@ -40,13 +40,13 @@ _STRAPDOWN_SHARE = 0.95
 _SMALLEST = {"rad": 0.1 * ARCSEC, "mps": 1e-3, "m": 1.0}
 """Differences below are nobody's concern, however small the peak."""
 _SHOWN = {
-    "phi_e_rad": ("phi_E", "arcsec", ARCSEC),
-    "phi_n_rad": ("phi_N", "arcsec", ARCSEC),
-    "phi_u_rad": ("phi_U", "arcmin", ARCMIN),
-    "dve_mps": ("dV_E", "m/s", 1.0),
-    "dvn_mps": ("dV_N", "m/s", 1.0),
-    "dlat_m": ("dL", "m", 1.0),
-    "dlon_m": ("dlambda", "m", 1.0),
+    "phi_e_rad": ("φE", "arcsec", ARCSEC),
+    "phi_n_rad": ("φN", "arcsec", ARCSEC),
+    "phi_u_rad": ("φU", "arcmin", ARCMIN),
+    "dve_mps": ("δVE", "m/s", 1.0),
+    "dvn_mps": ("δVN", "m/s", 1.0),
+    "dlat_m": ("δL", "m", 1.0),
+    "dlon_m": ("δλ", "m", 1.0),
     "position_m": ("the position", "m", 1.0),
 }
 
@@ -230,7 +230,7 @@ def _statements(
     latitude = float(np.abs(full.truth[:, LAT]).max()) / DEG
     if latitude > LATITUDE_DEG:
         yield (
-            f"The latitude reaches {latitude:.1f} deg: beyond {LATITUDE_DEG:g} deg a small error of position "
+            f"The latitude reaches {latitude:.1f}°: beyond {LATITUDE_DEG:g}° a small error of position "
             "turns north too far for a linear model."
         )
     if scenario.run.duration_h > LONG_H:
@@ -255,13 +255,13 @@ def _about_method(full: MethodRun, simple: MethodRun, differences: dict[str, Dif
     tilt = max(full.errors[NAMES[i]]["max_abs"] for i in (PHI_E, PHI_N)) / DEG
     if tilt > TILT_DEG:
         yield (
-            f"the tilt reaches {tilt:.2g} deg: beyond about {TILT_DEG:g} deg products of errors count, which "
+            f"the tilt reaches {tilt:.2g}°: beyond about {TILT_DEG:g}° products of errors count, which "
             "the linear model leaves out."
         )
     heading = full.errors[NAMES[PHI_U]]["max_abs"] / DEG
     if heading > HEADING_DEG:
         yield (
-            f"the heading errs by up to {heading:.2g} deg: beyond about {HEADING_DEG:g} deg sine and angle "
+            f"the heading errs by up to {heading:.2g}°: beyond about {HEADING_DEG:g}° sine and angle "
             "differ, and the platform's rates couple in ways the linear model leaves out."
         )
     rows = min(len(full.t_s), len(simple.t_s))

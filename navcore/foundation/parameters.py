@@ -14,6 +14,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from pydantic.fields import FieldInfo
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.notation import unit_sign
 
 
 class Parameters(BaseModel):
@@ -175,7 +176,7 @@ def allowed_range(info: FieldInfo) -> str:
         for rule in info.metadata
         if getattr(rule, name, None) is not None
     ]
-    unit = extra_of(info).get("unit", "")
+    unit = unit_sign(extra_of(info).get("unit", ""))
     return ("must be " + " and ".join(parts) + (f" ({unit})" if unit else "")) if parts else ""
 
 

@@ -71,7 +71,7 @@ class PoleReached(ValueError):
     """
 
     def __init__(self, time_s: float, leg: int) -> None:
-        super().__init__(f"leg {leg} passes +-89.5 deg of latitude at {time_s:g} s")
+        super().__init__(f"leg {leg} passes +-89.5° of latitude at {time_s:g} s")
         self.time_s, self.leg = time_s, leg
 
 

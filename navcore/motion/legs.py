@@ -60,7 +60,7 @@ class Leg(Parameters):
         slider=(0.0, 20.0),
         label="speed",
         help="First leg: the initial speed. Later legs: the speed to reach, at accel_mps2 (mean), else at a "
-        "mean of 0.1 m/s2. Negative is astern. Not together with speed_kn.",
+        "mean of 0.1 m/s². Negative is astern. Not together with speed_kn.",
     )
     speed_kn: float | None = quantity(
         None,
@@ -99,7 +99,7 @@ class Leg(Parameters):
         slider=(0.0, 360.0),
         label="heading",
         help="First leg: the initial heading, in place of that of the motion. Later legs: the heading to "
-        "reach, at turn_dps (mean) if given, else by the shorter way at a mean of 1 deg/s.",
+        "reach, at turn_dps (mean) if given, else by the shorter way at a mean of 1 °/s.",
     )
 
     @property
@@ -220,7 +220,7 @@ class LegsMotion(AttitudeMotion):
                     "",
                     f"leg.{reached.leg}",
                     None,
-                    f"passes 89.5 deg of latitude after {reached.time_s:.0f} s: must stay within +-89.5 deg",
+                    f"passes 89.5° of latitude after {reached.time_s:.0f} s: must stay within +-89.5°",
                 )
             ) from None
 
@@ -282,7 +282,7 @@ def _change_of_speed(leg: Leg, speed: float) -> _Change:
     if amount == 0.0:
         return _Change(0.0, 0.0)
     rate = DEFAULT_ACCELERATION if leg.accel_mps2 is None else abs(leg.accel_mps2)
-    what = f"the change from {speed:g} to {leg.speed:g} m/s at a mean of {rate:g} m/s2"
+    what = f"the change from {speed:g} to {leg.speed:g} m/s at a mean of {rate:g} m/s²"
     return _fitted(leg, amount, rate, what, leg.speed_field)
 
 
@@ -295,7 +295,7 @@ def _change_of_heading(leg: Leg, heading_deg: float) -> _Change:
     if amount == 0.0:
         return _Change(0.0, 0.0)
     rate = DEFAULT_TURN_RATE_DPS if turn is None else abs(turn)
-    what = f"the turn by {amount:g} deg at a mean of {rate:g} deg/s"
+    what = f"the turn by {amount:g}° at a mean of {rate:g} °/s"
     change = _fitted(leg, amount, rate, what, "heading_deg")
     return change._replace(amount=amount * DEG)
 

@@ -266,8 +266,8 @@ class ProfileMotion(AttitudeMotion):
                     "",
                     f"point.{reached.leg}",
                     None,
-                    f"the course from here passes 89.5 deg of latitude after {reached.time_s:.0f} s: "
-                    "must stay within +-89.5 deg",
+                    f"the course from here passes 89.5° of latitude after {reached.time_s:.0f} s: "
+                    "must stay within +-89.5°",
                 )
             ) from None
         return Kinematics(

@@ -80,8 +80,8 @@ class SwingMotion(AttitudeMotion):
                     "",
                     "pitch.amplitude_deg",
                     self.pitch.amplitude_deg,
-                    f"must be <= {room:g} (deg) about a mean pitch of {self.pitch_deg:g} deg: "
-                    f"pitch stays within +-{STEEPEST_PITCH_DEG:g} deg",
+                    f"must be <= {room:g} (°) about a mean pitch of {self.pitch_deg:g}°: "
+                    f"pitch stays within +-{STEEPEST_PITCH_DEG:g}°",
                 )
             )
         return self

@@ -92,7 +92,7 @@ class TrackMotion(MotionParameters):
         le=600.0,
         slider=(0.0, 60.0),
         label="smoothing",
-        help="Time constant of the smoothing of positions and angles: periods above 2 pi times this pass.",
+        help="Time constant of the smoothing of positions and angles: periods above 2π times this pass.",
     )
 
     def recording(self) -> Recording:

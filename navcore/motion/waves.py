@@ -102,7 +102,7 @@ class WavesMotion(AttitudeMotion):
         "bretschneider",
         label="spectrum",
         help="bretschneider: height and peak period are free; pierson_moskowitz: a fully developed sea, "
-        "whose peak period follows from the height, 5.0 s x sqrt(height in m).",
+        "whose peak period follows from the height, 5.0 s x √(height in m).",
     )
     height_m: float = quantity(
         2.5,
@@ -190,8 +190,8 @@ class WavesMotion(AttitudeMotion):
                     "",
                     "height_m",
                     self.height_m,
-                    f"pitch could reach {swing:.0f} deg about a mean of {self.pitch_deg:g} deg: must stay "
-                    f"within +-{STEEPEST_PITCH_DEG:g} deg; make height_m or pitch_gain smaller",
+                    f"pitch could reach {swing:.0f}° about a mean of {self.pitch_deg:g}°: must stay "
+                    f"within +-{STEEPEST_PITCH_DEG:g}°; make height_m or pitch_gain smaller",
                 )
             )
         return self
@@ -269,8 +269,8 @@ class WavesMotion(AttitudeMotion):
                     "",
                     "speed_mps",
                     self.speed_mps,
-                    f"the course passes 89.5 deg of latitude after {reached.time_s:.0f} s: "
-                    "must stay within +-89.5 deg",
+                    f"the course passes 89.5° of latitude after {reached.time_s:.0f} s: "
+                    "must stay within +-89.5°",
                 )
             ) from None
         return Kinematics(WAVES, rest, oscillations=self.packed(), nodes=nodes)

@@ -42,7 +42,7 @@ class CompassNetwork(NetworkParameters):
         le=1.0,
         slider=(5e-4, 0.2),
         log=True,
-        label="sigma",
+        label="decay rate σ",
         help="Decay rate of all three closed-loop poles (Deng 2, Zha 12): larger is faster, and lets more of "
         "the log's noise through.",
     )
@@ -51,8 +51,8 @@ class CompassNetwork(NetworkParameters):
         ge=0.01,
         le=10.0,
         slider=(0.05, 1.5),
-        label="xi",
-        help="Damping ratio of the closed-loop pair (Deng 2, Zha 14).",
+        label="damping ratio ζ",
+        help="Damping ratio of the closed-loop pair; Deng and Zha write ξ (Deng 2, Zha 14).",
     )
     k1: float | None = quantity(
         None,
@@ -61,8 +61,8 @@ class CompassNetwork(NetworkParameters):
         le=10.0,
         slider=(1e-3, 0.5),
         log=True,
-        label="K1",
-        help="Velocity feedback; 3 sigma (Deng 2).",
+        label="K₁",
+        help="Velocity feedback; 3σ (Deng 2).",
     )
     k2: float | None = quantity(
         None,
@@ -70,8 +70,8 @@ class CompassNetwork(NetworkParameters):
         le=1e10,
         slider=(1.0, 5e4),
         log=True,
-        label="K2",
-        help="Extra proportional gain of the platform rate; sigma^2 (2 + 1/xi^2)/omega_s^2 - 1 (Deng 2).",
+        label="K₂",
+        help="Extra proportional gain of the platform rate; σ² (2 + 1/ζ²)/ωₛ² - 1 (Deng 2).",
     )
     k3: float | None = quantity(
         None,
@@ -80,8 +80,8 @@ class CompassNetwork(NetworkParameters):
         le=1e10,
         slider=(1e-3, 1e3),
         log=True,
-        label="K3",
-        help="Integral gain of the platform rate; sigma^3/(omega_s^2 xi^2) (Deng 2).",
+        label="K₃",
+        help="Integral gain of the platform rate; σ³/(ωₛ² ζ²) (Deng 2).",
     )
     realisation: Literal["feedback", "network", "as_printed"] = choice(
         "feedback",
@@ -134,7 +134,7 @@ class CompassNetwork(NetworkParameters):
             s = self.sigma / omega_s
             closed_loop = [complex(-s), *pair(self.xi, s / self.xi)]
         elif sigma_xi_from_gains(k1, k2, k3, omega_s) is None:
-            warnings = ("no (sigma, xi) gives these K",)
+            warnings = ("no (σ, ζ) gives these K",)
         return linear_network(
             "compass",
             omega_s,

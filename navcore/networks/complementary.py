@@ -15,7 +15,7 @@ class ComplementaryNetwork(NetworkParameters):
     """H = N/D of fourth order; the loop has three pairs at omega_s with damping 0.5, eta and zeta."""
 
     title: ClassVar[str] = "Complementary filter"
-    source: ClassVar[str] = "Liu 5, 11 (powers of omega_s mended, theory.md 3.2)"
+    source: ClassVar[str] = "Liu 5, 11 (powers of ωₛ mended, theory.md 3.2)"
     placeable: ClassVar[str] = "complementary"
     id: Literal["complementary"] = "complementary"
     zeta: float = quantity(
@@ -23,15 +23,15 @@ class ComplementaryNetwork(NetworkParameters):
         gt=0.0,
         le=10.0,
         slider=(0.05, 2.0),
-        label="zeta",
-        help="Damping ratio of one closed-loop pair; 1 - H is proportional to it at eta = 0.5 (Liu 5).",
+        label="damping ratio ζ",
+        help="Damping ratio of one closed-loop pair; 1 - H is proportional to it at η = 0.5 (Liu 5).",
     )
     eta: float = quantity(
         0.5,
         gt=0.0,
         le=10.0,
         slider=(0.05, 2.0),
-        label="eta",
+        label="damping ratio η",
         help="Damping ratio of another closed-loop pair; Liu's optimum is 0.5.",
     )
 

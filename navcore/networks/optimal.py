@@ -70,7 +70,7 @@ class OptimalNetwork(NetworkParameters):
 
     title: ClassVar[str] = "Optimal for the sensors (LQG)"
     source: ClassVar[str] = "theory.md 17"
-    no_handle: ClassVar[str] = "its poles follow from the sensors, rho and q"
+    no_handle: ClassVar[str] = "its poles follow from the sensors, ρ and q"
     id: Literal["optimal"] = "optimal"
     rho: float = quantity(
         1e-2,
@@ -78,8 +78,8 @@ class OptimalNetwork(NetworkParameters):
         le=1e3,
         slider=(1e-5, 10.0),
         log=True,
-        label="rho",
-        help="Weight of the correction in phi^2 + q dV^2 + rho u_c^2: the smaller, the faster the loop and "
+        label="ρ",
+        help="Weight of the correction in φ² + q δV² + ρ u_c²: the smaller, the faster the loop and "
         "the nearer the tilt to the floor, and the larger the velocity error (theory.md 17).",
     )
     q: float = quantity(
@@ -93,7 +93,7 @@ class OptimalNetwork(NetworkParameters):
     realisation: Literal["network", "feedback"] = choice(
         "network",
         label="realisation",
-        help="network: the transport rate alone is corrected; feedback: the velocity too, as by K1 of "
+        help="network: the transport rate alone is corrected; feedback: the velocity too, as by K₁ of "
         "compass, which brings tilt and velocity near the floor; external damping only (theory.md 17).",
     )
     gyro_arw_dpsh: float | None = _figure("deg/sqrt(h)", "angular random walk", (0.0, 0.05), le=10.0)
@@ -172,7 +172,7 @@ class OptimalNetwork(NetworkParameters):
         self._check(found, law)
         margin = modulus_margin(found)
         if margin < FRAGILE:
-            fragile = f"fragile: modulus margin {margin:.2g}, below {FRAGILE:g}; change rho or q"
+            fragile = f"fragile: modulus margin {margin:.2g}, below {FRAGILE:g}; change ρ or q"
             warnings = (*warnings, fragile)
         return replace(found, warnings=warnings)
 

@@ -73,15 +73,15 @@ class MainPair:
         Examples
         --------
         >>> MainPair(0.5, 1.2, (0.01, 1.0), ((0.1, 0.99), (1.01, 10.0))).allowed(1.0)
-        'ξ = 0.01…1, ω = 0.1…0.99 or 1.01…10 ω_s'
+        'ζ = 0.01…1, ω = 0.1…0.99 or 1.01…10 ωₛ'
         """
-        parts = [f"ξ = {self.dampings[0]:g}…{self.dampings[1]:g}"]
+        parts = [f"ζ = {self.dampings[0]:g}…{self.dampings[1]:g}"]
         finite = [ends for ends in self.frequencies if ends[1] < math.inf]
         if finite:
             spans = " or ".join(f"{low / omega_s:g}…{high / omega_s:g}" for low, high in finite)
-            parts.append(f"ω = {spans} ω_s")
+            parts.append(f"ω = {spans} ωₛ")
         if self.rates[1] < math.inf:
-            parts.append(f"ξ ω = {self.rates[0]:g}…{self.rates[1]:g} 1/s")
+            parts.append(f"ζ ω = {self.rates[0]:g}…{self.rates[1]:g} 1/s")
         return ", ".join(parts)
 
 
@@ -169,6 +169,6 @@ def placement_at_omega_s(
     """
     note = ""
     if not same_frequency(wanted, omega_s):
-        note = "this network's pair always lies at omega_s: only the damping ratio is taken"
+        note = "this network's pair always lies at ωₛ: only the damping ratio is taken"
     data = parameters.model_dump(exclude_none=True) | changes
     return placement(type(parameters), data, damping_ratio, omega_s, note)

@@ -31,30 +31,30 @@ class Pole2Network(NetworkParameters):
         ge=1e-6,
         le=5.0,
         slider=(0.02, 1.5),
-        label="xi",
-        help="Damping ratio asked of the closed-loop pair (Sun 14); Sun's sigma is -xi omega_s.",
+        label="damping ratio ζ",
+        help="Damping ratio asked of the closed-loop pair (Sun 14); Sun writes ξ, and his σ is -ζ ωₛ.",
     )
     n1: float = quantity(
         14.0,
         gt=0.0,
         le=100.0,
         slider=(12.0, 30.0),
-        label="n1",
-        help="First real closed-loop pole at n1 xi omega_s (Sun 14).",
+        label="n₁",
+        help="First real closed-loop pole at n₁ ζ ωₛ (Sun 14).",
     )
     n2: float = quantity(
         5.0,
         gt=0.0,
         le=100.0,
         slider=(1.0, 6.0),
-        label="n2",
-        help="Second real closed-loop pole at n2 xi omega_s (Sun 14).",
+        label="n₂",
+        help="Second real closed-loop pole at n₂ ζ ωₛ (Sun 14).",
     )
     variant: Literal["exact", "as_printed"] = choice(
         "exact",
         label="variant",
         help="exact: poles where asked, H(0) below 1; as_printed: H(0) = 1, the pair less damped than asked "
-        "and unstable for small xi (theory.md 3.3).",
+        "and unstable for small ζ (theory.md 3.3).",
     )
 
     @model_validator(mode="after")
@@ -62,12 +62,12 @@ class Pole2Network(NetworkParameters):
         discriminant = (self.n1 - self.n2) ** 2 + 4.0 - 4.0 * (self.n1 + self.n2)
         if discriminant < 0.0:
             allowed = (
-                f"with n2 = {self.n2:g} the network's poles w1, w2 are complex: must satisfy "
-                f"(n1-n2)^2 + 4 - 4(n1+n2) >= 0, here {discriminant:g}"
+                f"with n₂ = {self.n2:g} the network's poles w₁, w₂ are complex: must satisfy "
+                f"(n₁-n₂)² + 4 - 4(n₁+n₂) >= 0, here {discriminant:g}"
             )
             raise refuse("n1", self.n1, allowed)
         if discriminant == 0.0 and self.variant == "as_printed":
-            allowed = f"with n2 = {self.n2:g} gives w1 = w2: A, B of the printed form do not exist"
+            allowed = f"with n₂ = {self.n2:g} gives w₁ = w₂: A, B of the printed form do not exist"
             raise refuse("n1", self.n1, allowed)
         return self
 

@@ -40,7 +40,7 @@ class Unity2Network(NetworkParameters):
         gt=0.0,
         le=5.0,
         slider=(0.02, 1.5),
-        label="zeta",
+        label="damping ratio ζ",
         help="Damping ratio of the main closed-loop pair (theory.md 3.4).",
     )
     r: float = quantity(
@@ -49,7 +49,7 @@ class Unity2Network(NetworkParameters):
         le=10.0,
         slider=(0.5, 3.0),
         label="r",
-        help="Frequency of the main pair over omega_s (theory.md 3.4); not within 0.99 to 1.01. Below 1 the "
+        help="Frequency of the main pair over ωₛ (theory.md 3.4); not within 0.99 to 1.01. Below 1 the "
         "24 h mode decays (theory.md 10).",
     )
     zeta2: float | None = quantity(
@@ -57,8 +57,8 @@ class Unity2Network(NetworkParameters):
         gt=0.0,
         le=5.0,
         slider=(0.1, 2.0),
-        label="zeta2",
-        help="Damping ratio of the second pair; max(0.7, zeta) when not given (theory.md 3.4).",
+        label="damping ratio ζ₂",
+        help="Damping ratio of the second pair; max(0.7, ζ) when not given (theory.md 3.4).",
     )
     alpha: float | None = quantity(
         None,
@@ -67,8 +67,8 @@ class Unity2Network(NetworkParameters):
         le=10.0,
         slider=(1e-4, 0.1),
         log=True,
-        label="alpha",
-        help="Sum of the second pair's poles, instead of zeta2 (theory.md 3.4).",
+        label="α",
+        help="Sum of the second pair's poles, instead of ζ₂ (theory.md 3.4).",
     )
 
     @model_validator(mode="before")
@@ -102,7 +102,7 @@ class Unity2Network(NetworkParameters):
             beta = (2.0 * zeta * r * alpha + excess) / excess
             if beta <= 0.0:
                 limit = -excess / (2.0 * zeta * r) * omega_s
-                raise refuse("alpha", self.alpha, f"must be < {limit:.4g} (rad/s) with this zeta and r < 1")
+                raise refuse("alpha", self.alpha, f"must be < {limit:.4g} (rad/s) with this ζ and r < 1")
             zeta2 = alpha / (2.0 * math.sqrt(beta))
             second = quadratic_roots(alpha, beta)
         c3 = 2.0 * zeta * r + alpha
@@ -139,8 +139,8 @@ class Unity2Network(NetworkParameters):
             r = low if r < 1.0 else high
         note = ""
         if not same_frequency(r * omega_s, frequency):
-            allowed = f"{least:g} to {low:g} or {high:g} to {largest:g} omega_s"
-            note = f"the pair can only lie at {allowed}: {r:g} omega_s is taken"
+            allowed = f"{least:g} to {low:g} or {high:g} to {largest:g} ωₛ"
+            note = f"the pair can only lie at {allowed}: {r:g} ωₛ is taken"
         data = self.model_dump(exclude_none=True) | {"zeta": damping_ratio, "r": r}
         return placement(type(self), data, damping_ratio, r * omega_s, note)
 

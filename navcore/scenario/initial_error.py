@@ -16,7 +16,7 @@ class InitialError(Parameters):
     """Block ``initial_error``: computed minus true at t = 0."""
 
     attitude_arcmin: tuple[_Tilt, _Tilt, _Tilt] = vector_quantity(
-        (0.0, 0.0, 0.0), unit="arcmin", elements=("phi_E", "phi_N", "phi_U"), slider=(-10.0, 10.0),
+        (0.0, 0.0, 0.0), unit="arcmin", elements=("φE", "φN", "φU"), slider=(-10.0, 10.0),
         label="initial misalignment", help="Misalignment at t = 0.",
     )  # fmt: skip
     velocity_mps: tuple[_Velocity, _Velocity] = vector_quantity(
@@ -30,13 +30,13 @@ class InitialError(Parameters):
 
     level_std_arcmin: float | None = quantity(
         None, unit="arcmin", ge=0.0, le=600.0, slider=(0.0, 10.0), label="initial tilt, standard deviation",
-        help="Standard deviation of phi_E and phi_N at t = 0 in the error budget and the tuning. Not given: "
+        help="Standard deviation of φE and φN at t = 0 in the error budget and the tuning. Not given: "
         "the size of the numbers in attitude_arcmin.",
     )  # fmt: skip
     heading_std_arcmin: float | None = quantity(
         None, unit="arcmin", ge=0.0, le=600.0, slider=(0.0, 60.0),
         label="initial heading error, standard deviation",
-        help="The same for phi_U. Not given: the size of the third number in attitude_arcmin.",
+        help="The same for φU. Not given: the size of the third number in attitude_arcmin.",
     )  # fmt: skip
     velocity_std_mps: float | None = quantity(
         None, unit="m/s", ge=0.0, le=100.0, slider=(0.0, 2.0),

@@ -133,7 +133,7 @@ class Alignment(Parameters):
     kind: Literal["none", "compass"] = choice(
         "none",
         help="none: navigation starts from initial_error at t = 0. compass: initial_error holds at the start "
-        "of an alignment before t = 0 (strapdown only; |latitude| <= 85 deg).",
+        "of an alignment before t = 0 (strapdown only; |latitude| <= 85°).",
     )
     duration_s: float = quantity(
         600.0, unit="s", ge=10.0, le=86400.0, help="Length of the alignment, before t = 0."
@@ -142,12 +142,22 @@ class Alignment(Parameters):
         120.0, unit="s", gt=0.0, le=86400.0, help="Length of its first part, level channels only."
     )
     level_sigma: float = quantity(
-        0.03, unit="1/s", gt=0.0, le=10.0, help="Decay rate of the level loops in the first part."
+        0.03,
+        unit="1/s",
+        gt=0.0,
+        le=10.0,
+        label="level decay rate σ",
+        help="Decay rate of the level loops in the first part.",
     )
     sigma: float = quantity(
-        0.02, unit="1/s", gt=0.0, le=10.0, help="Decay rate of level and azimuth loops in the second part."
+        0.02,
+        unit="1/s",
+        gt=0.0,
+        le=10.0,
+        label="decay rate σ",
+        help="Decay rate of level and azimuth loops in the second part.",
     )
-    xi: float = quantity(0.707, gt=0.0, le=5.0, help="Damping coefficient of the loops.")
+    xi: float = quantity(0.707, gt=0.0, le=5.0, label="damping ratio ζ", help="Damping ratio of the loops.")
     motion: tuple[AlignmentMotion, ...] = Field(
         default=(),
         max_length=100,

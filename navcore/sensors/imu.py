@@ -116,7 +116,7 @@ class Imu(Parameters):
         unit="ug",
         slider=(-200.0, 200.0),
         label="accelerometer bias",
-        help="Constant error of each accelerometer; 1 ug = 9.80665e-6 m/s2.",
+        help="Constant error of each accelerometer; 1 µg = 9.80665e-6 m/s².",
     )
     accel_vrw_ugpshz: float = quantity(
         0.0,
@@ -125,7 +125,7 @@ class Imu(Parameters):
         le=1e6,
         slider=(0.0, 100.0),
         label="velocity random walk",
-        help="White noise of the accelerometers: the mean over T s has the standard deviation VRW/sqrt(T).",
+        help="White noise of the accelerometers: the mean over T s has the standard deviation VRW/√(T).",
     )
     gyro_instability_dph: float = quantity(
         0.0,

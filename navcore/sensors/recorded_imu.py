@@ -134,7 +134,7 @@ def check_rest(record: ImuRecord, gravity: float, first_s: float = 0.0, last_s: 
                 record.source,
                 "imu.file",
                 None,
-                f"the mean specific force is {size:.4g} m/s2, gravity here is {gravity:.5g}: wrong units "
+                f"the mean specific force is {size:.4g} m/s², gravity here is {gravity:.5g}: wrong units "
                 "or scale, or not at rest",
             )
         )
@@ -145,7 +145,7 @@ def check_rest(record: ImuRecord, gravity: float, first_s: float = 0.0, last_s: 
                 "imu.file",
                 None,
                 f"the {upward_axis(force)} axis looks like up, but z must point up (x right, y forward): "
-                f"mean specific force {force[0]:.3f}, {force[1]:.3f}, {force[2]:.3f} m/s2",
+                f"mean specific force {force[0]:.3f}, {force[1]:.3f}, {force[2]:.3f} m/s²",
             )
         )
 

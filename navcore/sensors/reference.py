@@ -38,7 +38,7 @@ class LogEvent(Parameters):
         unit="m/s2",
         elements=("E", "N"),
         slider=(-0.1, 0.1),
-        label="acceleration of dV_r",
+        label="acceleration of δVr",
         help="East, north (Liu 2021, fig. 4). Its integral stays after the event; events add up.",
     )
     sine_hz: float = quantity(
@@ -48,7 +48,7 @@ class LogEvent(Parameters):
         le=10.0,
         slider=(0.0, 0.1),
         label="frequency",
-        help="0: constant acceleration; else the acceleration is a sin(2 pi f (t - t_h)).",
+        help="0: constant acceleration; else the acceleration is a sin(2π f (t - t_h)).",
     )
 
 
@@ -180,7 +180,7 @@ class Reference(Parameters):
         elements=("E", "N"),
         slider=(-2.0, 2.0),
         label="current",
-        help="Velocity of the water over the ground, east, north; the log misses it: dV_r = -current.",
+        help="Velocity of the water over the ground, east, north; the log misses it: δVr = -current.",
     )
     tide_mps: tuple[_Speed, _Speed] = vector_quantity(
         (0.0, 0.0),
@@ -188,7 +188,7 @@ class Reference(Parameters):
         elements=("E", "N"),
         slider=(-2.0, 2.0),
         label="tide",
-        help="Amplitude of the tidal stream, east, north: tide sin(2 pi t / period + phase) is added.",
+        help="Amplitude of the tidal stream, east, north: tide sin(2π t / period + phase) is added.",
     )
     tide_period_h: float = quantity(
         12.42,

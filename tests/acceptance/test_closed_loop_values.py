@@ -59,7 +59,7 @@ def test_zha_4_1_gain_k2_is_not_that_of_sigma_and_xi() -> None:
     text = 'id = "compass", k1 = 0.0264, k2 = 156.063, k3 = 0.904'
     assert sigma_xi_from_gains(0.0264, 156.063, 0.904, OMEGA_S) is None
     report = network_report(parse_network(text))
-    assert "no (sigma, xi) gives these K" in report["warnings"]
+    assert "no (σ, ζ) gives these K" in report["warnings"]
     poles = [pole * OMEGA_S for pole in poles_over_omega_s(text)]
     assert_poles(poles, [-0.0170, -0.0047 + 0.0077j, -0.0047 - 0.0077j], 6e-5)
     assert report["damping_ratio"] == pytest.approx(0.52, abs=0.005)
@@ -71,7 +71,7 @@ def test_zha_4_2_second_set_has_no_sigma_and_xi() -> None:
     text = 'id = "compass", k1 = 7.68e-3, k2 = 6.68, k3 = 7.68e-3'
     assert sigma_xi_from_gains(7.68e-3, 6.68, 7.68e-3, OMEGA_S) is None
     report = network_report(parse_network(text))
-    assert report["warnings"] == ["no (sigma, xi) gives these K"]
+    assert report["warnings"] == ["no (σ, ζ) gives these K"]
     poles = [pole * OMEGA_S for pole in poles_over_omega_s(text)]
     assert_poles(poles, [-0.00605, -0.00081 + 0.00113j, -0.00081 - 0.00113j], 7e-6)
     assert report["h0"] == pytest.approx(1.0, rel=1e-12)

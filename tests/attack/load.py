@@ -16,12 +16,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from app.bench.visitor import PAGE_COMMAND, PAGE_PAINTED, PAGE_STATE, Visitor
+from tests.browser.fields import box_labels, label_of
 
 if TYPE_CHECKING:
     from multiprocessing.synchronize import Barrier, Event
 
 WINDOW = "1920x1080|Method|Frequency|Errors|Scenario"
 ANSWER_S = 30.0
+ZETA, DURATION = label_of("network.zeta"), box_labels("run.duration_h")[0]
 LONG_RUN_H = 300.0
 """Some seconds of computing, within the memory that a run may take."""
 _PER_PROCESS = 8
@@ -108,14 +110,14 @@ def person(order: Order, number: int, ready: Callable[[], Any], seen: Seen) -> N
     with Visitor(order.port, f"soak-visitor-{number:06d}") as visitor:
         visitor.set(PAGE_STATE, WINDOW)
         visitor.wait(lambda: visitor.run_number >= 1, "its first run", 180.0)
-        visitor.control("zeta")
+        visitor.control(ZETA)
         ready()
         began, step = time.monotonic(), 0
         while time.monotonic() < began + order.seconds:
             visitor.rest(chance.uniform(*order.pause_s))
             step += 1
             value, before = value_of(number, step), visitor.run_number
-            sent = visitor.set("zeta", value)
+            sent = visitor.set(ZETA, value)
             try:
                 visitor.wait(lambda before=before: visitor.run_number > before, "an answer", ANSWER_S)
             except TimeoutError:
@@ -154,7 +156,7 @@ def browser(order: Order, number: int, ready: Callable[[], Any], seen: Seen) -> 
         sessions: Any = None
         bench = Bench(page, f"http://127.0.0.1:{order.port}/", sessions).open()
         bench.choose("method", "complementary")
-        bench.box("zeta, exact").wait_for()
+        bench.box("network.zeta").wait_for()
         ready()
         began, step = time.monotonic(), 0
         while time.monotonic() < began + order.seconds:
@@ -162,7 +164,7 @@ def browser(order: Order, number: int, ready: Callable[[], Any], seen: Seen) -> 
             step += 1
             value, before = value_of(number, step), bench.run
             sent = time.perf_counter()
-            bench.box("zeta, exact").fill(str(value))
+            bench.box("network.zeta").fill(str(value))
             try:
                 page.wait_for_function(later, arg=before, timeout=1e3 * ANSWER_S)
             except PlaywrightTimeout:
@@ -252,7 +254,7 @@ def crowds(
 
 def flood_of_a_slider(port: int, number: int, ended: Event) -> None:
     """Moves a slider as fast as the connection takes it, without waiting for any answer."""
-    _flood(port, number, ended, "zeta", lambda step: round(0.5 + 0.0001 * (step % 3000), 4))
+    _flood(port, number, ended, ZETA, lambda step: round(0.5 + 0.0001 * (step % 3000), 4))
 
 
 def flood_of_commands(port: int, number: int, ended: Event) -> None:
@@ -287,7 +289,7 @@ def _long_run(port: int, number: int, ended: Event) -> None:
     with Visitor(port, f"soak-visitor-{number}") as visitor:
         visitor.set(PAGE_STATE, WINDOW)
         visitor.wait(lambda: visitor.run_number >= 1, "its first run", 120.0)
-        visitor.set("duration (h), exact", LONG_RUN_H)
+        visitor.set(DURATION, LONG_RUN_H)
         visitor.rest(1.0)
         if visitor.notices:
             raise RuntimeError(f"the long run was refused: {visitor.notices[0]}")
@@ -295,7 +297,7 @@ def _long_run(port: int, number: int, ended: Event) -> None:
         while not ended.is_set():
             visitor.rest(3.0)
             step += 1
-            visitor.set("zeta", round(0.5 + 0.001 * (step % 300), 3))
+            visitor.set(ZETA, round(0.5 + 0.001 * (step % 300), 3))
 
 
 def long_under_way(port: int) -> float:
@@ -344,7 +346,7 @@ def dragging(port: int, cpu_s: Callable[[], float], seconds: float) -> float:
         while time.monotonic() < began + seconds:
             answers += 1
             last = visitor.picture_number
-            visitor.set("zeta", value_of(1, answers))
+            visitor.set(ZETA, value_of(1, answers))
             visitor.wait(lambda last=last: visitor.picture_number > last, "a picture", ANSWER_S)
             visitor.set(PAGE_PAINTED, f"{visitor.picture_number} 1")
         return 1e3 * (cpu_s() - before) / answers
@@ -353,14 +355,14 @@ def dragging(port: int, cpu_s: Callable[[], float], seconds: float) -> float:
 def pausing(port: int, cpu_s: Callable[[], float], moves: int, pause_s: float = 2.5) -> float:
     """Processor time of an answer and of all that follows it in a pause, ms; less what an idle page takes."""
     with _open(port, "rest") as visitor:
-        visitor.set("zeta", 0.4)
+        visitor.set(ZETA, 0.4)
         visitor.rest(8.0)
         before = cpu_s()
         visitor.rest(5.0)
         idle = (cpu_s() - before) / 5.0
         before, began = cpu_s(), time.monotonic()
         for step in range(moves):
-            visitor.set("zeta", value_of(2, step))
+            visitor.set(ZETA, value_of(2, step))
             visitor.rest(pause_s)
         return 1e3 * (cpu_s() - before - idle * (time.monotonic() - began)) / moves
 
@@ -370,7 +372,7 @@ def _open(port: int, name: str) -> Iterator[Visitor]:
     with Visitor(port, f"soak-visitor-{name}") as visitor:
         visitor.set(PAGE_STATE, WINDOW)
         visitor.wait(lambda: visitor.run_number >= 1, "its first run", 120.0)
-        visitor.control("zeta")
+        visitor.control(ZETA)
         yield visitor
 
 

@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable
 from itertools import count
 from typing import TYPE_CHECKING, Any, TypeVar
-from weakref import WeakKeyDictionary, WeakSet
+from weakref import WeakKeyDictionary
 
 from playwright.sync_api import Error as PlaywrightError
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
@@ -20,6 +20,7 @@ from app.session.sessions import first_scenario
 from app.shell.page import Page as OpenPage
 from navcore.scenario.file import load
 from tests.browser import scripts
+from tests.browser.fields import box_labels, slider_labels
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
@@ -74,7 +75,6 @@ class Bench:
         self.faults: list[str] = []
         self._marks: WeakKeyDictionary[Any, Any] = WeakKeyDictionary()
         self._mark_numbers = count(1)
-        self._answering: WeakSet[OpenPage] = WeakSet()
         page.set_default_timeout(PATIENCE_MS)
         if SLOW > 1.0:
             tools = page.context.new_cdp_session(page)
@@ -115,47 +115,56 @@ class Bench:
                 tab.click()
                 self.heard()
 
-    def id(self, label: str) -> str:
-        """Id of the control with exactly this label."""
-        script = (
-            "l => [...document.querySelectorAll('label')].find(e => e.textContent === l)?.htmlFor ?? null"
-        )
-        self.page.wait_for_function(f"l => ({script})(l) !== null", arg=label)
-        return self.page.evaluate(script, label)
+    # A control is named by its field's key in the scenario file, such as "network.xi" (tests.browser.fields);
+    # one that stands for no field by its label.
 
-    def slider(self, label: str) -> Locator:
-        return self.page.locator(f"[id='{self.id(label)}'] [role=slider]")
+    def id(self, name: str) -> str:
+        """Id of a field's slider, or of its only control."""
+        return self._id_of(slider_labels(name))
 
-    def box(self, label: str) -> Locator:
-        return self.page.locator(f"input[id='{self.id(label)}']")
+    def box_id(self, name: str) -> str:
+        """Id of a field's box: that of the exact value beside a slider."""
+        return self._id_of(box_labels(name))
 
-    def value(self, label: str) -> float:
-        """Number in an exact box."""
-        return float(self.box(label).input_value())
+    def _id_of(self, labels: list[str]) -> str:
+        script = """labels => [...document.querySelectorAll('label')]
+          .find(label => labels.includes(label.textContent))?.htmlFor ?? null"""
+        self.page.wait_for_function(f"labels => ({script})(labels) !== null", arg=labels)
+        return self.page.evaluate(script, labels)
 
-    def press(self, label: str, key: str = "ArrowRight") -> None:
+    def slider(self, name: str) -> Locator:
+        return self.page.locator(f"[id='{self.id(name)}'] [role=slider]")
+
+    def box(self, name: str) -> Locator:
+        return self.page.locator(f"input[id='{self.box_id(name)}']")
+
+    def value(self, name: str) -> float:
+        """Number in a field's box."""
+        return float(self.box(name).input_value())
+
+    def press(self, name: str, key: str = "ArrowRight") -> None:
         """Move a slider by a key and wait for the run that follows."""
         number = self.run
-        self.slider(label).press(key)
+        self.slider(name).press(key)
         self.wait_for_run(number)
         self.settle()
 
-    def type(self, label: str, text: str) -> None:
-        """Type into an exact box and wait for the run that follows."""
+    def type(self, name: str, text: str) -> None:
+        """Type into a field's box and wait for the run that follows."""
         number = self.run
-        self.box(label).fill(text)
+        self.box(name).fill(text)
         self.wait_for_run(number)
         self.settle()
 
-    def choose(self, label: str, option: str) -> None:
+    def choose(self, name: str, option: str) -> None:
         """Choose in a dropdown and wait until what follows is shown; a run need not follow."""
-        self.box(label).click()
+        self.box(name).click()
         self.page.get_by_role("option", name=option, exact=True).click()
         self.settle()
 
-    def choose_and_run(self, label: str, option: str) -> None:
+    def choose_and_run(self, name: str, option: str) -> None:
         number = self.run
-        self.choose(label, option)
+        self.choose(name, option)
         self.wait_for_run(number)
         self.settle()
 
@@ -260,11 +269,8 @@ class Bench:
 
     def sent(self) -> None:
         """Wait until the server has dealt with what was done on the page: a command after it is answered."""
-        for view in self._pages:
-            if view not in self._answering:
-                self._answering.add(view)
-                view.commands.register("nothing", lambda _: None)
-        number = self.page.evaluate("() => { schuler.command('nothing'); return schuler.asked(); }")
+        # One that every page knows from the beginning, also one that has just come back: it resets no field.
+        number = self.page.evaluate("() => { schuler.command('reset-named', ''); return schuler.asked(); }")
         self.page.wait_for_function("number => schuler.heard() >= number", arg=number)
         self.wait_until(lambda: not any(_has_callbacks(view) for view in self._pages))
 

@@ -27,13 +27,15 @@ from playwright.sync_api import sync_playwright
 from app.bench.dashboard import median_and_p95
 from app.bench.process import free_port
 from tests.browser.cpu import browser_cpu_ms
+from tests.browser.fields import slider_labels
 from tests.chromium import FLAGS, find_chromium
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 HERE = Path(__file__).parents[2]
-SLIDER = "zeta"
+SLIDER = ["zeta", *slider_labels("network.zeta")]
+"""Its labels, that of an earlier commit first."""
 SIZES: dict[str, tuple[Any, tuple[str, ...]]] = {
     "Frequency, Errors, 3D": ({"width": 1920, "height": 1080}, ("Method", "Frequency", "Errors")),
     "Errors alone": ({"width": 1366, "height": 768}, ("Method", "Errors")),
@@ -168,7 +170,7 @@ def open_page(browser: Browser, url: str, size: Any, tabs: tuple[str, ...], seen
 
 
 def _thumb(page: Page) -> Any:
-    script = "l => [...document.querySelectorAll('label')].find(e => e.textContent === l).htmlFor"
+    script = "l => [...document.querySelectorAll('label')].find(e => l.includes(e.textContent)).htmlFor"
     return page.locator(f"[id='{page.evaluate(script, SLIDER)}'] [role=slider]")
 
 

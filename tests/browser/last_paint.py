@@ -20,6 +20,7 @@ from app.editing import edits
 from app.serve import open_dashboard
 from navcore.engine.simulation import simulate
 from tests.browser.driver import THROTTLE_MS, Bench
+from tests.browser.fields import label_of
 from tests.browser.plain_page import SLIDER as PLAIN_SLIDER
 from tests.browser.plain_page import PlainPage
 from tests.chromium import FLAGS, find_chromium
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from navcore.scenario.model import Scenario
 
 SCENARIO = "sikuliaq-like"
-SLIDER = "zeta"
+SLIDER = "network.zeta"
 DURATION_H = 24
 PINS = 2
 _WARM_STEPS = 3
@@ -83,8 +84,8 @@ def times_ms(browser: Browser, steps: int) -> tuple[list[float], Scenario]:
     bench = Bench(page, server.url, dashboard.sessions).open()
     bench.reset(SCENARIO, selected=2)
     bench.tab("Run")
-    if bench.value("duration (h), exact") != DURATION_H:
-        bench.type("duration (h), exact", str(DURATION_H))
+    if bench.value("run.duration_h") != DURATION_H:
+        bench.type("run.duration_h", str(DURATION_H))
     bench.settle()
     bench.tab("Method")
     session = bench.session
@@ -94,7 +95,7 @@ def times_ms(browser: Browser, steps: int) -> tuple[list[float], Scenario]:
         for _ in range(2 + number):
             bench.press(SLIDER)
     bench.settle()
-    taken = _steps(page, SLIDER, steps)
+    taken = _steps(page, label_of(SLIDER), steps)
     scenario = session.scenario
     page.close()
     server.stop()

@@ -14,6 +14,7 @@ from app.plots.style import INK, method_color
 from app.views.appearance import theme
 from app.views.appearance.dark import DARK
 from tests.browser.driver import Bench
+from tests.browser.fields import label_of
 from tests.browser.test_page_layout import SIZES, resize
 
 pytestmark = pytest.mark.browser
@@ -73,8 +74,8 @@ def test_axe_finds_nothing_wrong(light: Bench, axe: str, tabs: tuple[str, ...]) 
 
 def test_a_slider_says_its_name_and_its_value_with_the_box(light: Bench) -> None:
     light.tab("Sensors")
-    slider = light.page.get_by_role("slider", name="angular random walk (deg/sqrt(h))", exact=True)
-    box = light.box("angular random walk (deg/sqrt(h)), exact")
+    slider = light.page.get_by_role("slider", name=label_of("imu.gyro_arw_dpsh"), exact=True)
+    box = light.box("imu.gyro_arw_dpsh")
     light.page.wait_for_function(
         "([slider, box]) => slider.getAttribute('aria-valuetext') === box.value",
         arg=[slider.element_handle(), box.element_handle()],
@@ -112,7 +113,7 @@ def test_keys_on_a_control_do_not_move_the_camera(light: Bench) -> None:
       document.addEventListener('keydown', event => window.reached.push(event.code), {once: false});
     }"""
     light.page.evaluate(reached)
-    slider = light.slider("zeta")
+    slider = light.slider("network.zeta")
     number = light.run
     slider.press("ArrowRight")
     light.wait_for_run(number)
@@ -177,29 +178,29 @@ def test_the_theme_survives_a_reload(light: Bench) -> None:
 # ------------------------------------------------------------ explanations
 
 
-def explained(bench: Bench, heading: str) -> str:
+def explained(bench: Bench, name: str) -> str:
     panel = bench.page.locator("#sb-explain")
-    panel.locator("h2", has_text=heading).wait_for()
+    panel.locator("h2", has_text=label_of(name)).wait_for()
     return panel.inner_text()
 
 
 def test_a_control_is_explained_by_key_mark_and_focus(light: Bench) -> None:
     page = light.page
-    light.slider("zeta").focus()
+    light.slider("network.zeta").focus()
     page.keyboard.press("e")
-    told = explained(light, "zeta")
+    told = explained(light, "network.zeta")
     assert "Must be > 0 and <= 10 (no unit)" in told
     assert "Liu 2021, eq. 5 and 11" in told
     assert page.locator("#sb-explain math").count() == 1
     # an open panel follows the focus, also into a box, where "e" is a letter
     light.tab("Sensors")
-    light.box("gyro bias x (deg/h), exact").focus()
-    assert "0.6 nmi/h" in explained(light, "gyro bias x (deg/h)")
+    light.box("imu.gyro_bias_dph.0").focus()
+    assert "0.6 nmi/h" in explained(light, "imu.gyro_bias_dph.0")
     page.keyboard.press("Escape")
     page.locator("#sb-explain").wait_for(state="detached")
-    page.locator(f"label[for='{light.id('gyro bias z (deg/h)')}']").hover()
-    page.get_by_role("button", name="Explain gyro bias z (deg/h)").click()
-    explained(light, "gyro bias z (deg/h)")
+    page.locator(f"label[for='{light.id('imu.gyro_bias_dph.2')}']").hover()
+    page.get_by_role("button", name=f"Explain {label_of('imu.gyro_bias_dph.2')}").click()
+    explained(light, "imu.gyro_bias_dph.2")
     page.get_by_role("button", name="Close the explanation").click()
     page.locator("#sb-explain").wait_for(state="detached")
 

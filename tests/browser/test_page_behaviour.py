@@ -17,6 +17,7 @@ from app.views.scene.track import HALF_WIDTH
 from navcore.networks.compass import gains_from_sigma_xi
 from navcore.scenario.file import load
 from tests.browser.driver import Bench
+from tests.browser.fields import label_of
 from tests.recordings import ship
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.browser
 
-GAINS = ("K1 (1/s)", "K2", "K3 (1/s)")
+GAINS = ("network.k1", "network.k2", "network.k3")
 
 
 # ------------------------------------------------------------ values
@@ -39,24 +40,24 @@ def test_gains_are_linked_both_ways_with_sigma_and_xi(fresh: Bench, session: Ses
 
     def shown(*labels: str) -> list[float]:
         fresh.settle()
-        return [fresh.value(f"{label}, exact") for label in labels]
+        return [fresh.value(label) for label in labels]
 
-    fresh.type("sigma (1/s), exact", "0.01")
+    fresh.type("network.sigma", "0.01")
     assert shown(*GAINS) == pytest.approx(gains_from_sigma_xi(0.01, 0.7, omega_s), rel=1e-8)
-    note = "no (sigma, xi) gives these K"
+    note = "no (σ, ζ) gives these K"
     assert note not in fresh.notes
     for label, value in zip(GAINS, gains_from_sigma_xi(0.02, 0.9, omega_s), strict=True):
-        fresh.type(f"{label}, exact", f"{value:.12g}")
-    assert shown("sigma (1/s)", "xi") == pytest.approx([0.02, 0.9], rel=1e-8)
+        fresh.type(label, f"{value:.12g}")
+    assert shown("network.sigma", "network.xi") == pytest.approx([0.02, 0.9], rel=1e-8)
     assert note not in fresh.notes
     # Zha's second set (theory.md 3.1)
     for label, text in zip(GAINS, ("0.00768", "6.68", "0.00768"), strict=True):
-        fresh.type(f"{label}, exact", text)
+        fresh.type(label, text)
     fresh.settle()
     assert note in fresh.notes
     loop = fresh.metrics["methods"][2]["loop"]
     assert loop["h0"] == pytest.approx(1.0)
-    fresh.type("xi, exact", "0.5")
+    fresh.type("network.xi", "0.5")
     fresh.settle()
     assert note not in fresh.notes
     assert edits.value_at(session.scenario, ("method", 2, "network", "xi")) == 0.5
@@ -65,31 +66,31 @@ def test_gains_are_linked_both_ways_with_sigma_and_xi(fresh: Bench, session: Ses
 @pytest.mark.parametrize("text", ["7", "0", "-5", "1000000000"])
 def test_a_wrong_number_is_restored_and_said(fresh: Bench, session: Session, text: str) -> None:
     number, before = fresh.run, session.scenario
-    fresh.box("sigma (1/s), exact").fill(text)
-    notice = fresh.notice("sigma (1/s): not taken over")
+    fresh.box("network.sigma").fill(text)
+    notice = fresh.notice(f"{label_of('network.sigma')}: not taken over")
     assert "must be >= 1e-05 and <= 1 (1/s)" in notice
-    assert fresh.value("sigma (1/s), exact") == 0.0088
+    assert fresh.value("network.sigma") == 0.0088
     assert any("was not taken over" in note for note in fresh.notes)
     assert (fresh.run, session.scenario) == (number, before)
 
 
 def test_a_number_may_be_typed_letter_by_letter_through_wrong_ones(fresh: Bench) -> None:
-    box = fresh.box("sigma (1/s), exact")
+    box = fresh.box("network.sigma")
     box.fill("")
     number = fresh.run
     box.press_sequentially("0.008", delay=100)
     fresh.wait_for_run(number)
     fresh.settle()
     assert box.input_value() == "0.008"
-    assert fresh.value("K1 (1/s), exact") == pytest.approx(0.024)
+    assert fresh.value("network.k1") == pytest.approx(0.024)
     assert fresh.page.locator(".mantine-Notification-root").count() == 0
 
 
 def test_a_refused_combination_names_the_reason_beside_the_control(fresh: Bench) -> None:
     fresh.choose_and_run("network", "pole2")
-    fresh.box("n1, exact").fill("10")
-    assert "(n1-n2)^2 + 4 - 4(n1+n2) >= 0" in fresh.notice("n1: not taken over")
-    assert fresh.value("n1, exact") == 14.0
+    fresh.box("network.n1").fill("10")
+    assert "(n₁-n₂)² + 4 - 4(n₁+n₂) >= 0" in fresh.notice("n₁: not taken over")
+    assert fresh.value("network.n1") == 14.0
 
 
 def test_external_damping_without_reference_is_refused(fresh: Bench) -> None:
@@ -108,7 +109,7 @@ def test_warnings_stand_beside_the_network(fresh: Bench) -> None:
 
 
 def test_of_two_sliders_moved_at_once_no_step_is_lost(fresh: Bench, session: Session) -> None:
-    labels = ("sigma (1/s)", "xi")
+    labels = ("network.sigma", "network.xi")
 
     def positions() -> np.ndarray:
         return np.array([float(fresh.slider(label).get_attribute("aria-valuenow")) for label in labels])
@@ -133,7 +134,7 @@ def test_of_two_sliders_moved_at_once_no_step_is_lost(fresh: Bench, session: Ses
     fresh.wait_for_run(number)
     fresh.settle()
     held: Any = session.scenario.method[2].network
-    assert [fresh.value(f"{label}, exact") for label in labels] == [held.sigma, held.xi]
+    assert [fresh.value(label) for label in labels] == [held.sigma, held.xi]
     shown = positions()
     assert shown == pytest.approx(once + 6 * (once - start), abs=1e-3)
     assert 10.0 ** shown[0] == pytest.approx(held.sigma, rel=0.02)
@@ -162,9 +163,9 @@ def test_methods_are_added_copied_renamed_and_removed(fresh: Bench, session: Ses
 
 
 def test_numbers_are_those_of_the_command_line(fresh: Bench, tmp_path: Path, repo_root: Path) -> None:
-    fresh.type("xi, exact", "0.6")
+    fresh.type("network.xi", "0.6")
     fresh.tab("Sensors")
-    fresh.type("angular random walk (deg/sqrt(h)), exact", "0.01")
+    fresh.type("imu.gyro_arw_dpsh", "0.01")
     fresh.settle()
     fresh.tab("Files")
     with fresh.page.expect_download() as download:
@@ -201,10 +202,10 @@ def test_a_long_run_marks_the_old_picture_and_is_stopped(
         return real(scenario, progress, cancelled)
 
     fresh.tab("Run")
-    fresh.type("output step (s)", "3600")
+    fresh.type("run.output_step_s", "3600")
     monkeypatch.setattr(session, "_simulate", slowly)
     number, digest = fresh.run, fresh.digest
-    fresh.box("duration (h), exact").fill("800")
+    fresh.box("run.duration_h").fill("800")
     stop = fresh.page.get_by_role("button", name="Stop the run")
     stop.wait_for()
     assert f"pictures still show run {number}" in fresh.status
@@ -215,7 +216,7 @@ def test_a_long_run_marks_the_old_picture_and_is_stopped(
     assert "Stopped" in fresh.status
     assert (fresh.run, fresh.digest) == (number, digest)
     monkeypatch.undo()
-    fresh.box("duration (h), exact").fill("4")
+    fresh.box("run.duration_h").fill("4")
     fresh.wait_for_run(number)
     fresh.page.wait_for_function("() => document.querySelector('#sb-status').textContent.startsWith('Run')")
     assert float(fresh.page.evaluate(opacity)) == 1.0
@@ -231,12 +232,12 @@ def test_a_fault_of_ours_is_told_and_the_last_picture_stays(
 
     whole = session._simulate
     monkeypatch.setattr(session, "_simulate", broken)
-    fresh.slider("xi").press("ArrowRight")
+    fresh.slider("network.xi").press("ArrowRight")
     assert "kernel on strike" in fresh.notice("Something went wrong")
     assert (fresh.run, fresh.digest) == (number, digest)
     assert fresh.plotly()
     monkeypatch.setattr(session, "_simulate", whole)
-    fresh.press("xi")
+    fresh.press("network.xi")
 
 
 def test_text_of_a_user_is_text_everywhere(fresh: Bench) -> None:
@@ -318,7 +319,7 @@ def test_a_scenario_file_is_opened(fresh: Bench, session: Session) -> None:
 def test_a_reload_keeps_the_work_and_another_visitor_has_none_of_it(
     fresh: Bench, session: Session, browser: Browser, dashboard: tuple[DashboardServer, Dashboard]
 ) -> None:
-    fresh.type("sigma (1/s), exact", "0.0123")
+    fresh.type("network.sigma", "0.0123")
     fresh.settle()
     digest, scenario = fresh.digest, session.scenario
     sessions = dashboard[1].sessions
@@ -328,12 +329,12 @@ def test_a_reload_keeps_the_work_and_another_visitor_has_none_of_it(
     page = context.new_page()
     other = Bench(page, fresh.url, sessions).open(f"s/{fresh.session_id}/")
     assert other.digest == digest
-    assert other.value("sigma (1/s), exact") == 0.0123
+    assert other.value("network.sigma") == 0.0123
     # a change in one window is seen in the other
-    fresh.type("xi, exact", "0.55")
+    fresh.type("network.xi", "0.55")
     fresh.settle()
     page.wait_for_function("d => document.querySelector('#sb-run').dataset.digest === d", arg=fresh.digest)
-    assert other.value("xi, exact") == 0.55
+    assert other.value("network.xi") == 0.55
     assert other.faults == []
     context.close()
     assert fresh.faults == []

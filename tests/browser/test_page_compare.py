@@ -38,13 +38,13 @@ def pinned(bench: Bench) -> Iterator[Bench]:
     )
     before = edits.value_at(session.scenario, ZETA)
     for _ in range(4):
-        bench.press("zeta")
+        bench.press("network.zeta")
     bench.settle()
     assert bench.session.pins.all[0].method == "complementary"
     # it is called by what differs
     bench.page.wait_for_function(
         f"label => ({_UPLOT_NAMES})().some(names => names.includes(label))",
-        arg=f"zeta {before:g}: complementary",
+        arg=f"ζ {before:g}: complementary",
     )
     yield bench
     for pin in session.pins.all:
@@ -69,7 +69,7 @@ def test_a_pin_lies_over_every_view(pinned: Bench) -> None:
     assert pin.run is not None and session.run is not None
     assert edits.value_at(pin.scenario, ZETA) != edits.value_at(session.scenario, ZETA)
     # only the method that was edited is laid over: the others are as they were
-    label = f"zeta {edits.value_at(pin.scenario, ZETA):g}: complementary"
+    label = f"ζ {edits.value_at(pin.scenario, ZETA):g}: complementary"
     count = len(pin.run.methods)
     for plot in names(pinned):
         assert plot[count:] == [label]
@@ -111,8 +111,8 @@ def test_b_flips_between_the_present_run_and_the_pin(pinned: Bench) -> None:
     page.locator("#sb-status").click()
     page.keyboard.press("b")
     page.wait_for_selector("#sb-flip", state="attached")
-    assert "zeta" in page.evaluate(_BANNER)
-    page.wait_for_function(f"() => !({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('zeta')))")
+    assert "ζ" in page.evaluate(_BANNER)
+    page.wait_for_function(f"() => !({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('ζ')))")
     (pin,) = session.pins.all
     assert pin.run is not None
     peak = pin.run.methods[2].errors["position_m"]["max_abs"]
@@ -123,7 +123,7 @@ def test_b_flips_between_the_present_run_and_the_pin(pinned: Bench) -> None:
     assert page.evaluate(outlined) == "solid"
     page.keyboard.press("b")
     page.wait_for_selector("#sb-flip", state="detached")
-    page.wait_for_function(f"() => ({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('zeta')))")
+    page.wait_for_function(f"() => ({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('ζ')))")
     assert page.evaluate(_BANNER) in ("none", "normal")
     assert pinned.curves() == before
 
@@ -168,7 +168,7 @@ def test_the_pins_are_sorted_and_judged(pinned: Bench) -> None:
         page.wait_for_function(f"wanted => String(({runs})()) === String(wanted)", arg=wanted)
     assert page.locator(".sb-pins").get_by_text("✗ misses 1 of 1").count() == 2
     pinned.tab("Requirements")
-    page.locator(".sb-verdicts th", has_text="zeta").wait_for()
+    page.locator(".sb-verdicts th", has_text="ζ").wait_for()
     pinned.show(requirements=Requirements(), pins_by="pinned")
 
 
@@ -216,7 +216,7 @@ def test_two_hundred_slider_steps_in_twenty_seconds_end_in_agreement(pinned: Ben
     }"""
     seen = []
     session_number = session.run_number
-    page.evaluate(moved, [pinned.id("zeta"), 200, 100])
+    page.evaluate(moved, [pinned.id("network.zeta"), 200, 100])
     pinned.settle()
     for _ in range(3):  # nothing that is older comes after it
         page.wait_for_timeout(400)
@@ -224,8 +224,8 @@ def test_two_hundred_slider_steps_in_twenty_seconds_end_in_agreement(pinned: Ben
     assert len(set(seen)) == 1 and pinned.run > session_number
     assert session.run is not None and session.run.scenario == session.scenario
     zeta = edits.value_at(session.scenario, ZETA)
-    assert pinned.value("zeta, exact") == pytest.approx(zeta)
-    assert float(pinned.slider("zeta").get_attribute("aria-valuenow") or "nan") == pytest.approx(
+    assert pinned.value("network.zeta") == pytest.approx(zeta)
+    assert float(pinned.slider("network.zeta").get_attribute("aria-valuenow") or "nan") == pytest.approx(
         zeta, abs=0.006
     )
     from app.shell.run_element import run_element

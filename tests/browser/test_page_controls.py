@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from tests.browser.driver import Bench
+from tests.browser.fields import label_of
 from tests.browser.scripts import LINE
 
 pytestmark = pytest.mark.browser
@@ -38,10 +39,10 @@ def damped(bench: Bench) -> Bench:
 
 
 NETWORKS = [
-    ("compass", ["sigma (1/s)", "xi", "K1 (1/s)", "K2", "K3 (1/s)"]),
-    ("complementary", ["zeta", "eta"]),
-    ("pole2", ["xi", "n1", "n2"]),
-    ("unity2", ["zeta", "r", "zeta2", "alpha (rad/s)"]),
+    ("compass", ["network.sigma", "network.xi", "network.k1", "network.k2", "network.k3"]),
+    ("complementary", ["network.zeta", "network.eta"]),
+    ("pole2", ["network.xi", "network.n1", "network.n2"]),
+    ("unity2", ["network.zeta", "network.r", "network.zeta2", "network.alpha"]),
 ]
 
 
@@ -52,9 +53,9 @@ def test_network_sliders_move_every_picture(damped: Bench, network: str, labels:
     for label in labels:
         # the tab of the poles takes seconds to come and go: it is looked at for the first slider
         poles = label == labels[0]
-        before, old = snapshot(damped, poles=poles), damped.value(f"{label}, exact")
+        before, old = snapshot(damped, poles=poles), damped.value(label)
         damped.press(label)
-        assert damped.value(f"{label}, exact") > old
+        assert damped.value(label) > old
         moved = {BODE, ERRORS, TRACK} | ({POLES} if poles else set())
         assert changed(before, snapshot(damped, poles=poles)) == moved, label
     assert damped.faults == []
@@ -62,9 +63,9 @@ def test_network_sliders_move_every_picture(damped: Bench, network: str, labels:
 
 def test_variant_and_realisation_change_the_loop(damped: Bench) -> None:
     damped.choose_and_run("network", "pole2")
-    damped.type("xi, exact", "0.08")
+    damped.type("network.xi", "0.08")
     before = snapshot(damped, poles=True)
-    damped.choose_and_run("variant", "as_printed")
+    damped.choose_and_run("network.variant", "as_printed")
     assert changed(before, snapshot(damped, poles=True)) == {BODE, POLES, ERRORS, TRACK}
     damped.page.wait_for_selector(".sb-note.sb-error")
     assert any("unstable" in note for note in damped.notes)
@@ -72,7 +73,7 @@ def test_variant_and_realisation_change_the_loop(damped: Bench) -> None:
 
 def test_custom_network_takes_zeros_and_poles_as_text(damped: Bench) -> None:
     damped.choose_and_run("network", "custom")
-    row = damped.page.get_by_text("zeros (rad/s)", exact=True).locator("xpath=ancestor::div[2]")
+    row = damped.page.get_by_text(label_of("network.zeros"), exact=True).locator("xpath=ancestor::div[2]")
     before = snapshot(damped, poles=True)
     number = damped.run
     row.locator("input").fill("-0.001, -0.08")
@@ -89,23 +90,23 @@ def test_threshold_decides_when_the_method_is_damped(damped: Bench) -> None:
     damped.choose("policy", "threshold")
     damped.settle()
     before = snapshot(damped, poles=False)
-    damped.type("threshold (m/s), exact", "0.1")
+    damped.type("policy.limit_mps", "0.1")
     assert changed(before, snapshot(damped, poles=False)) == {ERRORS, TRACK}
     before = snapshot(damped, poles=False)
-    damped.press("threshold (m/s)", "ArrowLeft")
+    damped.press("policy.limit_mps", "ArrowLeft")
     assert changed(before, snapshot(damped, poles=False)) == {ERRORS, TRACK}
 
 
 SHARED = [
-    ("Sensors", "gyro bias y (deg/h)"),
-    ("Sensors", "angular random walk (deg/sqrt(h))"),
-    ("Sensors", "accelerometer bias x (ug)"),
-    ("Sensors", "velocity random walk (ug/sqrt(Hz))"),
-    ("Log", "bias N / forward (m/s)"),
-    ("Log", "noise (m/s)"),
-    ("Log", "drift (m/s)"),
-    ("Run", "initial misalignment phi_U (arcmin)"),
-    ("Run", "initial velocity error E (m/s)"),
+    ("Sensors", "imu.gyro_bias_dph.1"),
+    ("Sensors", "imu.gyro_arw_dpsh"),
+    ("Sensors", "imu.accel_bias_ug.0"),
+    ("Sensors", "imu.accel_vrw_ugpshz"),
+    ("Log", "reference.bias_mps.1"),
+    ("Log", "reference.noise_mps"),
+    ("Log", "reference.drift_mps"),
+    ("Run", "initial_error.attitude_arcmin.2"),
+    ("Run", "initial_error.velocity_mps.0"),
 ]
 
 
@@ -120,12 +121,12 @@ def test_sensor_log_and_initial_errors_move_curves_and_track_only(damped: Bench)
 def test_latitude_duration_and_seed(damped: Bench) -> None:
     damped.tab("Run")
     before = snapshot(damped, poles=False)
-    damped.press("latitude (deg)", "ArrowLeft")
+    damped.press("site.lat_deg", "ArrowLeft")
     assert changed(before, snapshot(damped, poles=False)) == {BODE, ERRORS, TRACK}
-    damped.type("duration (h), exact", "7.5")
+    damped.type("run.duration_h", "7.5")
     assert max(damped.curves()[0]["data"][0]) == pytest.approx(7.5)
     before = snapshot(damped, poles=False)
-    damped.type("seed", "4")
+    damped.type("run.seed", "4")
     assert changed(before, snapshot(damped, poles=False)) == {ERRORS, TRACK}
 
 
@@ -135,7 +136,7 @@ def test_events_and_outages_of_the_log_come_and_go(damped: Bench) -> None:
     damped.page.get_by_role("button", name="add event", exact=True).click()
     damped.wait_for_run(number)
     before = snapshot(damped, poles=False)
-    damped.press("event 1 acceleration of dV_r E (m/s2)")
+    damped.press("event 1 acceleration of δVr E (m/s²)")
     assert changed(before, snapshot(damped, poles=False)) == {ERRORS, TRACK}
     number = damped.run
     damped.page.get_by_role("button", name="remove event", exact=True).click()
@@ -145,11 +146,12 @@ def test_events_and_outages_of_the_log_come_and_go(damped: Bench) -> None:
 
 def test_rarer_errors_are_shown_on_request(damped: Bench) -> None:
     damped.tab("Sensors")
-    assert damped.page.get_by_text("gyro misalignment xy (arcsec)", exact=True).count() == 0
+    rare = damped.page.get_by_text(label_of("imu.gyro_misalignment_arcsec.0"), exact=True)
+    assert rare.count() == 0
     damped.page.get_by_label("all errors").check()
-    damped.press("gyro misalignment xy (arcsec)")
+    damped.press("imu.gyro_misalignment_arcsec.0")
     damped.page.get_by_label("all errors").uncheck()
-    assert damped.page.get_by_text("gyro misalignment xy (arcsec)", exact=True).count() == 1  # it is set now
+    assert rare.count() == 1  # it is set now
 
 
 def test_transfer_is_chosen(damped: Bench) -> None:
@@ -177,5 +179,5 @@ def test_the_3d_view_is_drawn_anew_when_the_track_moves(damped: Bench) -> None:
     canvas = damped.page.locator("canvas").first
     before = canvas.screenshot()
     damped.tab("Sensors")
-    damped.type("gyro bias z (deg/h), exact", "0.05")
+    damped.type("imu.gyro_bias_dph.2", "0.05")
     damped.wait_for_change(canvas.screenshot, before)

@@ -83,11 +83,11 @@ def test_every_page_has_all_curves_after_a_drag_and_after_its_connection_was_los
 ) -> None:
     bench.reset("sikuliaq-like", selected=2)
     bench.tab("Frequency", "Errors", "Method")
-    bench.press("zeta")
+    bench.press("network.zeta")
     has_all_curves(bench)
     (first,) = views_of(bench)
 
-    bench.page.evaluate(_DRAG, bench.id("zeta"))
+    bench.page.evaluate(_DRAG, bench.id("network.zeta"))
     late.open(path=f"s/{bench.session_id}/")
     bench.page.evaluate(_LET_GO)
     bench.settle()
@@ -99,10 +99,10 @@ def test_every_page_has_all_curves_after_a_drag_and_after_its_connection_was_los
     lost = websockets._live_connections[second.client.client_id]
     lost.loop.call_soon_threadsafe(lost.transport.abort)
     # Meanwhile the session goes on; viser's page connects again by itself.
-    bench.press("zeta")
+    bench.press("network.zeta")
     late.wait_until(lambda: second not in views_of(late) and len(views_of(late)) > 1)
     has_all_curves(late)
-    bench.press("zeta")
+    bench.press("network.zeta")
     has_all_curves(bench)
     has_all_curves(late)
     assert bench.faults == []

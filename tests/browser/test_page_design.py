@@ -72,7 +72,7 @@ def test_a_band_of_one_sigma_follows_the_scenario_and_says_what_it_is(window: Be
     before = page.evaluate(_BAND)[1]
     window.tab("Method")
     window.select(2)
-    window.press("zeta")
+    window.press("network.zeta")
     fresh = f"old => !({_LEGEND})().includes('earlier') && ({_BAND})()[1] !== old"
     page.wait_for_function(fresh, arg=before, timeout=60_000)
     assert session.run is not None
@@ -84,7 +84,7 @@ def test_the_bars_follow_a_slider_and_the_run_has_four_panels(window: Bench) -> 
     page = window.page
     page.wait_for_function(f"() => ({_BARS})() > 0")
     before = page.evaluate(_BARS)
-    window.press("zeta")
+    window.press("network.zeta")
     page.wait_for_function(f"old => Math.abs(({_BARS})() - old) > 1e-4 * old", arg=before)
     window.choose(BUDGET_OF, CHOICES["run"])
     page.wait_for_function(f"() => ({_PANELS})() === 4", timeout=60_000)

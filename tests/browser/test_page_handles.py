@@ -85,7 +85,7 @@ def undone(bench: Bench, before: Scenario) -> None:
     bench.wait_for_run(number)
     bench.settle()
     assert bench.session.scenario == before
-    assert bench.value("zeta, exact") == pytest.approx(0.5)
+    assert bench.value("network.zeta") == pytest.approx(0.5)
 
 
 def test_a_dragged_pole_moves_sliders_and_run_and_is_one_step(handles: Bench) -> None:
@@ -99,7 +99,7 @@ def test_a_dragged_pole_moves_sliders_and_run_and_is_one_step(handles: Bench) ->
     made = handles.session.scenario
     poles = analyse(made.method[1].network.transfer(made.omega_s)).poles / made.omega_s
     assert np.abs(poles - complex(*pole(handles))).min() < 1e-6
-    assert (handles.value("zeta, exact"), handles.value("r, exact")) == pytest.approx((zeta, r))
+    assert (handles.value("network.zeta"), handles.value("network.r")) == pytest.approx((zeta, r))
     assert handles.session.run is not None
     assert handles.session.run.scenario.method[1] == made.method[1]
     handles.page.wait_for_function(_AT, arg=[*NEAR, *pole(handles)])
@@ -123,7 +123,7 @@ def test_a_pole_is_moved_by_keys_and_stops_at_its_range(handles: Bench) -> None:
     # into the right half plane: the least damping that can be placed, and a word about the range
     drag(handles, handles.page.evaluate(_SPOT, [*NEAR, 0.2, 1.25]))
     assert pair(handles)[0] == 0.01
-    assert "the parameters allow ξ = 0.01…1" in handles.notice("Placed in part")
+    assert "the parameters allow ζ = 0.01…1" in handles.notice("Placed in part")
     undone(handles, before)
     assert handles.faults == []
 
@@ -139,7 +139,7 @@ def test_the_handle_of_the_bode_plot_is_frequency_across_and_damping_up(handles:
     zeta, r = pair(handles)
     assert r == pytest.approx(2.0, rel=0.02)
     assert zeta < 0.45
-    assert (handles.value("zeta, exact"), handles.value("r, exact")) == pytest.approx((zeta, r))
+    assert (handles.value("network.zeta"), handles.value("network.r")) == pytest.approx((zeta, r))
     assert handles.session.run is not None
     assert handles.session.run.scenario == handles.session.scenario
     undone(handles, before)

@@ -42,7 +42,7 @@ SEEN = """() => {
 WORD = re.compile(r"[A-Za-z]{3,}")
 CHINESE = re.compile("[\u4e00-\u9fff]")
 SYMBOLS = frozenset(
-    "Schuler Bench CSV SVG PNG TOML JSON zeta eta xi sigma omega phi arcsec arcmin deg min nmi sqrt "
+    "Schuler Bench CSV SVG PNG TOML JSON arcsec arcmin min nmi "
     "page state painted "
     "command sin per log linear pole2 exact "
     "Deng Liu Zhao Sun Zha fig eq theory md starboard forward RMS".split()

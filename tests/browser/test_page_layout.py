@@ -140,8 +140,8 @@ def test_every_axis_is_labelled_with_its_unit(sized: Bench) -> None:
 @pytest.mark.parametrize("sized", [SIZES[-1]], indirect=True)
 def test_a_slider_and_its_exact_box_stand_in_one_row(sized: Bench) -> None:
     sized.tab("Sensors")
-    for label in ("gyro bias x (deg/h)", "velocity random walk (ug/sqrt(Hz))"):
-        slider, box = sized.slider(label).bounding_box(), sized.box(f"{label}, exact").bounding_box()
+    for label in ("imu.gyro_bias_dph.0", "imu.accel_vrw_ugpshz"):
+        slider, box = sized.slider(label).bounding_box(), sized.box(label).bounding_box()
         assert abs((slider["y"] + slider["height"] / 2) - (box["y"] + box["height"] / 2)) < 16
         assert slider["x"] + slider["width"] < box["x"]
         assert box["width"] > 55

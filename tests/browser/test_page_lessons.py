@@ -109,7 +109,7 @@ def test_a_slider_in_a_lesson_moves_the_curves_and_the_numbers(bench: Bench) -> 
     press(bench, "back")
     press(bench, "next")
     before = bench.metrics["methods"][0]["errors"]["dvn_mps"]["max_abs"]
-    bench.press("try: initial misalignment phi_E (arcmin)")
+    bench.press("try: initial misalignment φE (arcmin)")
     after = bench.metrics["methods"][0]["errors"]["dvn_mps"]["max_abs"]
     assert after > before
     # the question is still about the step's own scenario, and the button offers to go back to it

@@ -35,14 +35,14 @@ def test_a_misprint_is_shown_as_printed_corrected_and_both(bench: Bench) -> None
     assert len(drawn(bench, first, "both")) >= 2
     bench.choose("misprint", option("zha-4.1"))
     both = drawn(bench, "zha-4.1", "both")
-    assert [name for name, *_ in both] == ["K2 = 156.063 (printed)", "K2 = 202.52"]
+    assert [name for name, *_ in both] == ["K₂ = 156.063 (printed)", "K₂ = 202.52"]
     assert both[0][1] != "solid" and both[1][1] == "solid"
     bench.choose("form shown", "as printed")
     assert drawn(bench, "zha-4.1", "as printed") == both[:1]
     bench.choose("form shown", "corrected")
     assert drawn(bench, "zha-4.1", "corrected") == both[1:]
     words = bench.page.locator(".sb-misprint").inner_text()
-    assert "K2 = 156.063 for sigma = 0.0088" in words and "as printed" in words
+    assert "K₂ = 156.063 for σ = 0.0088" in words and "as printed" in words
     number = bench.run
     bench.tab("Method", "Frequency")
     assert bench.run == number

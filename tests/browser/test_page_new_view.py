@@ -14,6 +14,7 @@ from app.shell.reports import PAGE_STATE
 from app.views import VIEWS
 from tests.attack.wire import visit
 from tests.browser.driver import Bench
+from tests.browser.fields import label_of
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -95,7 +96,7 @@ def test_a_new_tab_follows_runs_and_its_own_control(served: tuple[DashboardServe
         eventually(lambda: session.run is not None)
         before = peaks_of(session)
         shows(before)
-        visitor.set(visitor.control("zeta"), 0.9)
+        visitor.set(visitor.control(label_of("network.zeta")), 0.9)
         eventually(lambda: peaks_of(session) != before)
         shows(peaks_of(session))
         visitor.set(visitor.control("peaks in kilometres"), True)

@@ -51,19 +51,19 @@ def test_a_failed_autosave_is_told_on_the_page(kept: tuple[Bench, Store]) -> Non
     bench.page.evaluate(_NOTE_ALL)
     assert store.flush(60.0)
     store.database._connection.execute("PRAGMA query_only = ON")
-    bench.type("zeta, exact", "0.6")
+    bench.type("network.zeta", "0.6")
     bench.page.wait_for_function("title => window.noticed.includes(title)", arg=TITLE)
     bench.page.wait_for_function("() => window.noticed.includes('A download keeps the scenario.')")
     assert str(store.folder) not in bench.page.evaluate("() => window.noticed")
 
     bench.settle()
-    assert bench.value("zeta, exact") == 0.6
+    assert bench.value("network.zeta") == 0.6
     assert store.flush(60.0)
     store.database._connection.execute("PRAGMA query_only = OFF")
-    bench.type("zeta, exact", "0.8")
+    bench.type("network.zeta", "0.8")
     bench.settle()
     assert store.flush(60.0)
     document = store.read(bench.session_id)
-    assert document is not None and document["steps"][document["at"]]["name"].startswith("zeta")
+    assert document is not None and document["steps"][document["at"]]["name"].startswith("ζ")
     assert bench.session.scenario.method[bench.session.selected].network.model_dump()["zeta"] == 0.8
     assert bench.faults == []

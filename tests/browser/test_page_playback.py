@@ -133,7 +133,7 @@ def test_a_slider_is_answered_while_it_plays(still: Bench) -> None:
     frames: list[str] = []
     first = now(still)
     for _ in range(3):
-        still.press("zeta")
+        still.press("network.zeta")
         frames.append(still.digest or "")
     assert len(set(frames)) == 3
     last = now(still)

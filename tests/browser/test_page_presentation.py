@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from tests.browser.driver import Bench
+from tests.browser.fields import label_of
 from tests.browser.test_page_layout import _TEXT_OUTSIDE, resize, wait_until_it_fits
 
 pytestmark = pytest.mark.browser
@@ -70,7 +71,9 @@ def test_the_controls_are_those_of_the_method_and_then_of_the_lesson(large: Benc
     large.heard()
     page.wait_for_function(f"() => ({_SHOWN_LABELS})().includes('network')")
     labels = page.evaluate(_SHOWN_LABELS)
-    assert not {"scenario", "methods", "as text", "duration (h)", "enlarge errors in 3D"} & set(labels)
+    assert not {"scenario", "methods", "as text", label_of("run.duration_h"), "enlarge errors in 3D"} & set(
+        labels
+    )
     assert page.locator("[data-dock-region=left] [role=tablist]").is_hidden()
     assert page.locator("[data-command=undo]").is_hidden()
     page.evaluate("() => schuler.command('lesson', 'open 1')")

@@ -80,7 +80,7 @@ def test_envelope_of_twenty_seeds_is_drawn_and_goes_with_the_scenario(reading: B
     reading.page.wait_for_function(f"() => ({bands})() === 3", timeout=120_000)
     assert "5 to 95 % of 20 seeds" in reading.page.locator("body").inner_text()
     reading.tab("Method")
-    reading.press("zeta")
+    reading.press("network.zeta")
     reading.settle()
     session = reading.session
     assert session.run is not None

@@ -21,7 +21,7 @@ _AXES = f"() => ['xaxis', 'yaxis', 'yaxis2', 'yaxis3', 'yaxis4'].map(name => {_P
 def test_a_slider_step_moves_the_curves_without_a_layout(bench: Bench) -> None:
     bench.reset("sikuliaq-like", selected=2)
     bench.tab("Frequency", "Errors", "Method")
-    bench.press("zeta")
+    bench.press("network.zeta")
     bench.plotly()
     page = bench.page
     page.evaluate(_COUNT)
@@ -29,7 +29,7 @@ def test_a_slider_step_moves_the_curves_without_a_layout(bench: Bench) -> None:
     in_place = 0
     for _ in range(4):
         was = page.evaluate("window.laidOut")
-        bench.press("zeta")
+        bench.press("network.zeta")
         bench.plotly()
         in_place += page.evaluate("window.laidOut") == was
     assert in_place >= 2, "an axis may be laid out anew now and then, not at each step"
@@ -46,7 +46,7 @@ def test_a_slider_step_moves_the_curves_without_a_layout(bench: Bench) -> None:
 def test_a_zoom_outlives_a_slider_step(bench: Bench) -> None:
     bench.reset("sikuliaq-like", selected=2)
     bench.tab("Frequency", "Errors", "Method")
-    bench.press("zeta")
+    bench.press("network.zeta")
     bench.plotly()
     page = bench.page
     box = page.locator(".js-plotly-plot:visible .nsewdrag").first.bounding_box()
@@ -57,7 +57,7 @@ def test_a_zoom_outlives_a_slider_step(bench: Bench) -> None:
     page.mouse.up()
     zoomed = bench.wait_for_change(lambda: page.evaluate(_AXES), whole)
     for _ in range(3):
-        bench.press("zeta")
+        bench.press("network.zeta")
         bench.plotly()
     assert page.evaluate(_AXES)[0] == pytest.approx(zoomed[0])
     x_axis = page.evaluate(_AXES)[0]
@@ -76,15 +76,15 @@ def test_of_two_hundred_steps_none_is_lost_and_everything_follows_at_rest(bench:
     bench.reset("sikuliaq-like", selected=2)
     bench.tab("Frequency", "Errors", "Method")
     bench.settle()
-    start, thumb = bench.value("zeta, exact"), bench.slider("zeta")
+    start, thumb = bench.value("network.zeta"), bench.slider("network.zeta")
     thumb.press("ArrowRight")
     bench.settle()
-    step = bench.value("zeta, exact") - start
+    step = bench.value("network.zeta") - start
     for key, count in (("ArrowRight", 119), ("ArrowLeft", 80)):
         for _ in range(count):
             thumb.press(key)
     bench.settle()
-    assert bench.value("zeta, exact") == pytest.approx(start + 40 * step)
+    assert bench.value("network.zeta") == pytest.approx(start + 40 * step)
     session = bench.session
     assert edits.network_values(session.scenario, 2)["zeta"] == pytest.approx(start + 40 * step)
     assert bench.run == session.run_number
@@ -111,12 +111,12 @@ def test_steps_that_a_busy_page_takes_late_are_not_lost(bench: Bench) -> None:
     bench.reset("sikuliaq-like", selected=2)
     bench.tab("Frequency", "Errors", "Method")
     bench.settle()
-    start = bench.value("zeta, exact")
-    bench.press("zeta")
-    step = bench.value("zeta, exact") - start
-    bench.page.evaluate(_BUSY, bench.id("zeta"))
+    start = bench.value("network.zeta")
+    bench.press("network.zeta")
+    step = bench.value("network.zeta") - start
+    bench.page.evaluate(_BUSY, bench.id("network.zeta"))
     bench.settle()
-    assert bench.value("zeta, exact") == pytest.approx(start + 7 * step)
+    assert bench.value("network.zeta") == pytest.approx(start + 7 * step)
     assert edits.network_values(bench.session.scenario, 2)["zeta"] == pytest.approx(start + 7 * step)
 
 

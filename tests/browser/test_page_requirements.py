@@ -75,7 +75,7 @@ def test_limits_give_verdicts_with_the_measured_values(asked: Bench) -> None:
     asked.tab("Method")
     asked.select(2)
     before = cells(asked, "overshoot_percent")[2][0]
-    asked.press("zeta")
+    asked.press("network.zeta")
     asked.page.wait_for_function(
         f"old => Math.abs(({_CELLS})().filter(c => c[0] === 'overshoot_percent')[2][1] - old) > 1e-6",
         arg=before,

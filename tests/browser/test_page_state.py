@@ -17,6 +17,7 @@ import pytest
 from app.editing import edits
 from navcore.scenario.file import load
 from tests.browser.driver import Bench
+from tests.browser.fields import label_of
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.browser
 
-XI = "xi, exact"
+XI = "network.xi"
 SIZE = {"width": 800, "height": 600}
 """Of further pages: small ones are drawn faster."""
 
@@ -65,10 +66,10 @@ def button(bench: Bench, name: str) -> Locator:
     return bench.page.get_by_role("button", name=name, exact=True)
 
 
-def wait_for_value(bench: Bench, label: str, value: float) -> None:
+def wait_for_value(bench: Bench, name: str, value: float) -> None:
     bench.page.wait_for_function(
         "([id, value]) => Number(document.getElementById(id)?.value) === value",
-        arg=[bench.id(label), value],
+        arg=[bench.box_id(name), value],
     )
 
 
@@ -99,13 +100,13 @@ def test_a_drag_is_undone_at_once_and_redone_by_a_key(
 ) -> None:
     monkeypatch.setattr(session.history, "_clock", lambda: 0.0)  # a drag on however slow a machine
     digest = fresh.digest
-    slider = fresh.slider("xi")
+    slider = fresh.slider("network.xi")
     for _ in range(4):
         slider.press("ArrowRight")
     fresh.settle()
     dragged = fresh.value(XI)
     assert dragged == pytest.approx(0.72)  # each of the four steps counts
-    assert f"xi of fast (compass): 0.7 → {dragged:g}" in (button(fresh, "Undo").get_attribute("title") or "")
+    assert f"ζ of fast (compass): 0.7 → {dragged:g}" in (button(fresh, "Undo").get_attribute("title") or "")
     button(fresh, "Undo").click()
     wait_for_value(fresh, XI, 0.7)
     fresh.settle()
@@ -146,20 +147,20 @@ def test_undo_brings_the_scenario_and_the_method_in_hand_back(fresh: Bench, sess
 
 
 def test_one_field_is_reset_and_all_of_them(fresh: Bench, session: Session) -> None:
-    fresh.type("sigma (1/s), exact", "0.02")
+    fresh.type("network.sigma", "0.02")
     fresh.type(XI, "0.5")
     changed = fresh.page.locator(".sb-changed")
-    changed.get_by_text("xi was 0.7").wait_for()
+    changed.get_by_text(f"{label_of('network.xi')} was 0.7").wait_for()
     button(fresh, "Reset").click()
     wait_for_value(fresh, XI, 0.7)
-    assert fresh.value("sigma (1/s), exact") == 0.02
+    assert fresh.value("network.sigma") == 0.02
     fresh.settle()
-    palette(fresh, "Reset sigma (1/s) to 0.0088")
-    wait_for_value(fresh, "sigma (1/s), exact", 0.0088)
+    palette(fresh, f"Reset {label_of('network.sigma')} to 0.0088")
+    wait_for_value(fresh, "network.sigma", 0.0088)
     changed.get_by_text("Unchanged since zha-fast was opened").wait_for()
     assert button(fresh, "Reset all").get_attribute("aria-disabled") == "true"
     fresh.type(XI, "0.4")
-    fresh.choose_and_run("damping", "free")
+    fresh.choose_and_run("method.damping", "free")
     button(fresh, "Reset all").click()
     wait_for_value(fresh, XI, 0.7)
     fresh.settle()
@@ -234,7 +235,7 @@ def test_the_page_may_ask_faster_than_viser_sends(fresh: Bench, session: Session
     )
     wait_for_value(fresh, XI, 0.6)
     fresh.settle()
-    assert session.history.redo_name == "xi of fast (compass): 0.6 → 0.5"
+    assert session.history.redo_name == "ζ of fast (compass): 0.6 → 0.5"
     assert fresh.faults == []
 
 
@@ -300,7 +301,7 @@ def test_one_presents_and_the_others_watch(
           Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set.call(box, '0.3');
           box.dispatchEvent(new Event('input', {bubbles: true}));
         }""",
-        other.id(XI),
+        other.box_id(XI),
     )
     other.settle()
     assert (session.scenario, session.display) == (before, shown)
@@ -330,7 +331,7 @@ def test_one_presents_and_the_others_watch(
     fresh.page.get_by_text("Another page presents: you watch").wait_for()
     other.page.close()
     fresh.page.get_by_text("Another page presents: you watch").wait_for(state="hidden")
-    fresh.type("xi, exact", "0.44")
+    fresh.type("network.xi", "0.44")
     assert fresh.faults == []
 
 

@@ -81,7 +81,7 @@ def test_p_pins_after_a_typed_value(bench: Bench, ends: str) -> None:
     """With or without Enter, the pin is of the typed value, not of the run before it."""
     bench.reset("zha-fast", selected=2)
     bench.tab("Method")
-    box = bench.box("xi, exact")
+    box = bench.box("network.xi")
     box.press("Control+a")
     bench.page.keyboard.type("0.53", delay=THROTTLE_MS)
     if ends:

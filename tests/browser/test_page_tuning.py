@@ -94,7 +94,7 @@ def test_a_search_is_stopped(adaptive: Bench, monkeypatch: pytest.MonkeyPatch) -
 def test_why_is_said_once_the_run_stands_still(bench: Bench) -> None:
     bench.reset("zha-fast", selected=2)
     bench.tab("Errors", "Method")
-    bench.press("xi")
+    bench.press("network.xi")
     assert not bench.session.searches.explainer.follows(bench.session.run), "nobody looks at it"
     bench.tab("Metrics")
     page = bench.page
@@ -113,7 +113,7 @@ def test_why_is_said_once_the_run_stands_still(bench: Bench) -> None:
 
     explainer._find = held
     try:
-        bench.press("xi")
+        bench.press("network.xi")
         page.wait_for_function(_WHY, arg="0")
         assert "of an earlier run" in page.locator("#sb-why").inner_text()
         assert page.locator("#sb-why .sb-old").count() == 1

@@ -56,11 +56,11 @@ def test_the_strapdown_is_drawn_dashed_and_becomes_old(short: Bench) -> None:
     assert len(table.inner_text().split("%)")) - 1 == 3 * 8
     short.tab("Errors")
     # the scenario changes: what was verified is of an earlier one, and says so
-    short.press("zeta")
+    short.press("network.zeta")
     short.page.get_by_text("The verification is of an earlier scenario: verify again.").wait_for()
     short.page.get_by_text("full strapdown of an earlier scenario").wait_for()
     short.page.wait_for_function(f"() => ({_DASHED})().flat().every(color => /66$/i.test(color))")
-    short.press("zeta", "ArrowLeft")
+    short.press("network.zeta", "ArrowLeft")
     short.page.get_by_text("Verified. Largest difference").wait_for()
     assert short.faults == []
 
@@ -89,7 +89,7 @@ def test_a_verification_is_stopped(short: Bench, monkeypatch: pytest.MonkeyPatch
     assert short.page.get_by_role("button", name=VERIFY).is_visible()
     short.page.get_by_role("button", name=VERIFY).click()
     stop.wait_for()
-    short.press("zeta")
+    short.press("network.zeta")
     short.page.get_by_text("Stopped: the scenario was changed meanwhile.").wait_for()
     assert verifier.wait_idle(60.0)
 
@@ -99,7 +99,7 @@ def test_why_a_scenario_cannot_be_verified_is_said(bench: Bench) -> None:
     bench.page.get_by_role("button", name=VERIFY).click()
     bench.page.get_by_text("leaves the Earth's rotation and the heading out").wait_for()
     bench.tab("Method")
-    bench.press("xi")  # the next change takes the reason away
+    bench.press("network.xi")  # the next change takes the reason away
     bench.page.get_by_text("leaves the Earth's rotation").wait_for(state="detached")
 
 
@@ -107,19 +107,19 @@ def test_a_strapdown_scenario_runs_when_short_and_waits_when_long(bench: Bench) 
     scenario = load("sikuliaq-like", ["run.duration_h=0.2", 'run.fidelity="strapdown"', "run.rate_hz=50"])
     bench.put(scenario, origin=f"test {bench.session.run_number}", selected=2)
     bench.tab("Method", "Errors")
-    bench.press("zeta")
+    bench.press("network.zeta")
     assert bench.metrics["methods"][2]["status"] == "ok"
     bench.tab("Run")
     number = bench.run
-    bench.box("duration (h), exact").fill("6")
+    bench.box("run.duration_h").fill("6")
     run = bench.page.get_by_role("button", name="Run the strapdown")
     run.wait_for()
     assert f"pictures still show run {number}" in bench.status
-    bench.type("duration (h), exact", "0.1")  # short again: it follows
+    bench.type("run.duration_h", "0.1")  # short again: it follows
     run.wait_for(state="hidden")
     # the other fidelity gives up what only the strapdown has
     bench.choose_and_run("alignment", "compass")
-    bench.choose_and_run("fidelity", "error_model")
+    bench.choose_and_run("run.fidelity", "error_model")
     assert bench.session.scenario.alignment.kind == "none"
     assert bench.faults == []
     bench.reset("sikuliaq-like")

@@ -35,7 +35,7 @@ def whole(bench: Bench) -> Iterator[Bench]:
     bench.wait_for_run(number)
     bench.show(requirements=Requirements(), poles="channel")
     bench.tab("Poles", "Method")
-    bench.box("pair ξ").wait_for()
+    bench.box("pair ζ").wait_for()
     yield bench
     bench.show(requirements=Requirements(), poles="channel")
     resize(bench, SIZES[0])
@@ -55,7 +55,7 @@ def test_modes_growth_and_the_line_under_the_network_are_the_engines(whole: Benc
         assert here == pytest.approx(method.whole.earth_growth * _DAY, rel=1e-6)
         assert len(traces[f"{name} 24 h"]["x"]) >= 1
     told = earth_mode_text(run.methods[1].whole.earth_growth)
-    line = f"Whole system: 24 h mode {told} at {abs(scenario.site.lat_deg):.3g} deg."
+    line = f"Whole system: 24 h mode {told} at {abs(scenario.site.lat_deg):.3g}°."
     whole.page.get_by_text(line).first.wait_for()
     for size in reversed(SIZES):
         resize(whole, size)
@@ -68,15 +68,15 @@ def test_modes_growth_and_the_line_under_the_network_are_the_engines(whole: Benc
 def test_a_pair_that_lets_the_24_h_mode_grow_is_not_placed_when_it_must_not(whole: Bench) -> None:
     before = whole.session.scenario
     whole.box("H'(0) ≤ 0").click()
-    whole.box("pair ω/ωs").fill("1.2")
+    whole.box("pair ω/ωₛ").fill("1.2")
     whole.page.get_by_role("button", name="Place", exact=True).click()
     told = whole.notice("The pair was not placed")
-    assert "H'(0)" in told and "the 24 h mode grows" in told and "unity2 with a pair below omega_s" in told
+    assert "H'(0)" in told and "the 24 h mode grows" in told and "unity2 with a pair below ωₛ" in told
     assert whole.session.scenario == before
     assert whole.session.display.requirements.h_slope_s == 0.0
     whole.close_notices()
     number = whole.run
-    whole.box("pair ω/ωs").fill("0.8")
+    whole.box("pair ω/ωₛ").fill("0.8")
     whole.page.get_by_role("button", name="Place", exact=True).click()
     whole.wait_for_run(number)
     assert whole.session.run.methods[1].whole.earth_growth < 0.0

@@ -68,7 +68,7 @@ def test_a_run_is_pinned_compared_and_flipped(window: Bench) -> None:
     window.tab("Compare")
     button(window, "Pin this run").click()
     try:
-        window.press("zeta")
+        window.press("network.zeta")
         window.tab("Errors")
         window.page.wait_for_function(_SHOWS, arg=["position", 4])
         away_from_text(window)
@@ -77,7 +77,7 @@ def test_a_run_is_pinned_compared_and_flipped(window: Bench) -> None:
         window.page.keyboard.press("b")
         window.page.wait_for_selector("#sb-flip", state="detached")
         window.tab("Metrics")
-        window.page.locator(".sb-table", has_text="this run minus zeta").first.wait_for()
+        window.page.locator(".sb-table", has_text="this run minus ζ").first.wait_for()
         within(window, ".sb-table table")
     finally:
         for pin in window.session.pins.all:
@@ -85,21 +85,21 @@ def test_a_run_is_pinned_compared_and_flipped(window: Bench) -> None:
         window.session.pins._next = 1
     window.tab("Errors")
     window.page.wait_for_function(
-        f"() => !({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('zeta')))"
+        f"() => !({_UPLOT_NAMES})().some(names => names.some(n => n.startsWith('ζ')))"
     )
 
 
 def test_a_change_is_undone_and_all_is_reset(window: Bench) -> None:
     before = edits.value_at(window.session.scenario, ZETA)
-    window.press("zeta")
+    window.press("network.zeta")
     window.settle()
     within(window, ".sb-row button")
     button(window, "Undo").click()
-    wait_for_value(window, "zeta, exact", before)
+    wait_for_value(window, "network.zeta", before)
     window.settle()
-    window.press("zeta")
+    window.press("network.zeta")
     palette(window, "Reset all")
-    wait_for_value(window, "zeta, exact", before)
+    wait_for_value(window, "network.zeta", before)
     window.settle()
     assert edits.value_at(window.session.scenario, ZETA) == before
 
@@ -126,7 +126,7 @@ def test_a_typed_pair_is_placed(window: Bench) -> None:
     window.choose_and_run("network", "unity2")
     window.tab("Poles")
     number = window.run
-    window.box("pair ξ").fill("0.35")
+    window.box("pair ζ").fill("0.35")
     button(window, "Place").click()
     window.wait_for_run(number)
     assert edits.value_at(window.session.scenario, ZETA) == pytest.approx(0.35)

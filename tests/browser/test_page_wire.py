@@ -18,6 +18,7 @@ from app.shell.reports import PAGE_STATE
 from app.views import load
 from app.views.tune.view import TuneView
 from tests.attack.wire import Visitor, decode, visit
+from tests.browser.fields import label_of
 
 if TYPE_CHECKING:
     from app.http.server import DashboardServer
@@ -102,7 +103,7 @@ def test_a_flood_of_slider_moves_becomes_a_few_runs_and_the_last_wins(dashboard:
     server, served = dashboard
     with visit(server.port, named(dashboard, "flood-of-moves")) as visitor:
         ready(visitor)
-        zeta = visitor.control("zeta")
+        zeta = visitor.control(label_of("network.zeta"))
         visitor.received.clear()
         for step in range(200):
             visitor.set(zeta, 0.5 + 0.005 * step)
@@ -133,7 +134,7 @@ def test_one_visitor_cannot_move_the_controls_of_another(dashboard: Served) -> N
         ready(owner)
         ready(other)
         before = served.sessions.get("the-owner-of-it").scenario
-        other.set(owner.control("zeta"), 1.5)
+        other.set(owner.control(label_of("network.zeta")), 1.5)
         assert runs(other, 0.8)[-1] is not None
         assert served.sessions.get("the-owner-of-it").scenario == before
         assert served.sessions.get("someone-curious").scenario == before

@@ -13,6 +13,7 @@ from navcore.analysis import analyse
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from tests.browser.driver import Bench
+from tests.browser.fields import label_of
 from tests.browser.test_page_layout import SIZES, resize
 
 pytestmark = pytest.mark.browser
@@ -86,7 +87,7 @@ def test_the_chooser_shows_nyquist_with_margins(workbench: Bench) -> None:
     assert any("free: no margin: undamped" in text for text in words)
     # a second method's slider moves the margin
     workbench.tab("Method")
-    workbench.press("zeta")
+    workbench.press("network.zeta")
     after = trace(workbench, "placed margin", 2)
     assert after["x"] != dot["x"]
     workbench.choose("transfer", "tilt from log error")
@@ -110,13 +111,13 @@ def test_measured_filter_lies_on_h(workbench: Bench) -> None:
 
 def test_locus_over_each_parameter_of_the_network_in_hand(workbench: Bench) -> None:
     workbench.tab("Poles")
-    workbench.choose("locus", "zeta")
+    workbench.choose("locus", label_of("network.zeta"))
     locus = trace(workbench, "placed locus")
     points = np.array(locus["x"], float) + 1j * np.array(locus["y"], float)
     for pole in poles_of(workbench, 1):
         assert np.nanmin(np.abs(points - pole)) < 0.1
-    assert workbench.page.get_by_text("over zeta: ○ 0.02 … □ 1.5, ✕ 0.5").count() == 1
-    workbench.choose("locus", "r")
+    assert workbench.page.get_by_text("over ζ: ○ 0.02 … □ 1.5, ✕ 0.5").count() == 1
+    workbench.choose("locus", label_of("network.r"))
     workbench.page.get_by_text("over r: ○ 0.5").wait_for()
     # a network without parameters has no locus
     workbench.select(0)
@@ -175,8 +176,8 @@ def test_what_cannot_be_placed_is_said(workbench: Bench) -> None:
 def test_a_typed_pair_is_placed(workbench: Bench) -> None:
     workbench.tab("Poles")
     number = workbench.run
-    workbench.box("pair ξ").fill("0.35")
-    workbench.box("pair ω/ωs").fill("1.6")
+    workbench.box("pair ζ").fill("0.35")
+    workbench.box("pair ω/ωₛ").fill("1.6")
     workbench.page.get_by_role("button", name="Place", exact=True).click()
     workbench.wait_for_run(number)
     wanted = 1.6 * (-0.35 + 1j * np.sqrt(1 - 0.35**2))
@@ -195,10 +196,10 @@ def test_margin_of_a_law_over_time_stands_in_the_switching_view(workbench: Bench
       .some(entry => entry.chart.axes[1].label.startsWith('least ζ'))"""
     workbench.page.wait_for_function(label)
     charts = {chart["label"]: chart["data"] for chart in workbench.curves()}
-    xi, margin = charts["ξ (–)"][1], charts["least ζ (–)"][1]
+    xi, margin = charts["ζ (–)"][1], charts["least ζ (–)"][1]
     # unity2 has the damping ratio that its coefficient says
     assert margin == pytest.approx(xi, rel=1e-3)
-    assert charts["least ζ (–)"][0] == charts["ξ (–)"][0]
+    assert charts["least ζ (–)"][0] == charts["ζ (–)"][0]
 
 
 def test_tools_stand_in_one_row_in_every_window(workbench: Bench) -> None:

@@ -124,9 +124,9 @@ def _pin(bench: Bench, take: Film) -> None:
 def _slide(bench: Bench, key: str) -> None:
     """Move a slider a good way by keys, and let the last run of it be shown."""
     for _ in range(8):
-        bench.slider("sigma (1/s)").press(key)
+        bench.slider("network.sigma").press(key)
     bench.page.wait_for_timeout(4 * THROTTLE_MS)
-    bench.press("sigma (1/s)", key)
+    bench.press("network.sigma", key)
     _rest(bench.page, 500)
 
 

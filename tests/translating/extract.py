@@ -45,10 +45,8 @@ _OF_VISER = (
     "Adaptive",
 )
 """What viser's page says by itself."""
-_SYMBOLS = frozenset(
-    {"sigma", "zeta", "zeta2", "omega", "alpha", "beta", "phi_E", "phi_N", "phi_U", "starboard"}
-)
-"""Field names that are symbols."""
+_SYMBOLS = frozenset({"starboard"})
+"""Element names that stay as they are."""
 
 
 def texts() -> list[Text]:

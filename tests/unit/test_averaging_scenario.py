@@ -68,7 +68,7 @@ def test_progress_reaches_the_end():
 
 def test_what_the_forecast_costs_is_told():
     run = simulate(scenario(imu={"gyro_arw_dpsh": 0.005}))
-    assert any("0.012 deg/h" in text for text in run.methods[0].warnings)
+    assert any("0.012 °/h" in text for text in run.methods[0].warnings)
     assert not any("forecast" in text for text in run.methods[2].warnings)
     unused = scenario(method=[{"damping": "averaging", "network": {"id": "classic2"}}])
     assert 'damping = "averaging": the network is not used' in simulate(unused).methods[0].warnings

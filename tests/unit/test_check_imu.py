@@ -49,7 +49,7 @@ def test_psins_gives_its_place(tmp_path, capsys):
     [
         ("0.1,0.2,-9.8", 'the -z axis looks like up: forward, right, down? Then give imu.axes = "frd"'),
         ("9.8,0.1,0.2", "the +x axis looks like up"),
-        ("0,0,1.0", "is 1 m/s2, far from gravity"),
+        ("0,0,1.0", "is 1 m/s², far from gravity"),
     ],
 )
 def test_wrong_axes_and_scales_are_warned_of(force, warning, tmp_path, capsys):

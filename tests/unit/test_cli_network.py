@@ -80,13 +80,13 @@ def test_pole2_with_complex_poles_is_refused_with_the_reason(capsys):
     captured = capsys.readouterr()
     assert captured.out == ""
     assert captured.err.count("\n") == 1
-    assert "(n1-n2)^2 + 4 - 4(n1+n2) >= 0" in captured.err
+    assert "(n₁-n₂)² + 4 - 4(n₁+n₂) >= 0" in captured.err
 
 
 def test_people_get_units_and_warnings(capsys):
     assert main(["network", 'id = "pole2", variant = "as_printed", xi = 0.08']) == 0
     out = capsys.readouterr().out
-    for word in ("rad/s", "/ omega_s", "closed loop", "NO", "never", "warning: unstable"):
+    for word in ("rad/s", "/ ωₛ", "closed loop", "NO", "never", "warning: unstable"):
         assert word in out
 
 

@@ -62,17 +62,17 @@ def scenario(method: dict[str, Any], **run: Any) -> Scenario:
         ),
         (
             {"network": {"id": "classic2"}, "switching": {"id": "ramp"}},
-            "switching.id = 'ramp': moves the damping coefficient, which network \"classic2\" has not or "
+            "switching.id = 'ramp': moves the damping ratio, which network \"classic2\" has not or "
             "cannot change while it runs: needs network complementary, pole2 or unity2",
         ),
         (
             {"network": {"id": "compass"}, "switching": {"id": "step"}},
-            "switching.id = 'step': moves the damping coefficient, which network \"compass\" has not or "
+            "switching.id = 'step': moves the damping ratio, which network \"compass\" has not or "
             "cannot change while it runs: needs network complementary, pole2 or unity2",
         ),
         (
             {"network": {"id": "pole2", "variant": "as_printed"}, "switching": {"id": "ramp"}},
-            "switching.id = 'ramp': passes damping coefficients below 0.104, at which the loop of \"pole2\" "
+            "switching.id = 'ramp': passes damping ratios below 0.104, at which the loop of \"pole2\" "
             "as printed is unstable",
         ),
         (
@@ -82,7 +82,7 @@ def scenario(method: dict[str, Any], **run: Any) -> Scenario:
         ),
         (
             {"network": {"id": "unity2"}, "policy": {"id": "schedule"}},
-            "policy.id = 'schedule': changes the gains K1, K2, K3: needs network.id = \"compass\", "
+            "policy.id = 'schedule': changes the gains K₁, K₂, K₃: needs network.id = \"compass\", "
             'not "unity2"',
         ),
         (
@@ -92,7 +92,7 @@ def scenario(method: dict[str, Any], **run: Any) -> Scenario:
         ),
         (
             {"network": {"id": "compass"}, "policy": {"id": "schedule", "from": [50.0, 1.0, 1.0]}},
-            "policy.from.0 = 50.0: K1 must be >= -10 and <= 10 (1/s)",
+            "policy.from.0 = 50.0: K₁ must be >= -10 and <= 10 (1/s)",
         ),
         (
             {"network": {"id": "unity2"}, "policy": {"id": "variation", "a": 0.4}},
@@ -115,7 +115,7 @@ def test_a_history_too_long_for_the_step_is_refused():
 
 def test_a_printed_form_that_is_unstable_everywhere_is_refused():
     with pytest.raises(
-        InputError, match=r"policy.network.variant = 'as_printed': is unstable up to xi = 1.73"
+        InputError, match=r"policy.network.variant = 'as_printed': is unstable up to ζ = 1.73"
     ):
         scenario({"policy": {"id": "adaptive", "network": {
             "id": "pole2", "n1": 0.1, "n2": 0.1, "variant": "as_printed"}}})  # fmt: skip
@@ -140,7 +140,7 @@ def test_flaws_of_a_choice_are_told_with_the_result():
     policy = {"id": "adaptive", "law": "quadratic", "network": {"id": "pole2", "variant": "as_printed"}}
     warnings = simulate(scenario({"policy": policy})).methods[0].warnings
     assert any("negative between 0.95 and 2.77 kn" in text for text in warnings)
-    assert any("below xi = 0.104 the printed form is unstable" in text for text in warnings)
+    assert any("below ζ = 0.104 the printed form is unstable" in text for text in warnings)
     exact, bumpless = parse_network({"id": "pole2"}), Bumpless()
     told = combination_warnings("external", exact, Constant(), bumpless)
     assert told == ("bumpless: H(0) differs from 1, so a change of the log acts for good",)

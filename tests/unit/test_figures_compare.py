@@ -113,6 +113,6 @@ def test_unchanged_numbers_say_so() -> None:
 def test_table_shows_the_wanted_units() -> None:
     rows = metrics_rows(static_run(), Display(angle="deg", length="km", speed="kn"))
     units = {row.label: row.unit for row in rows}
-    assert units["tilt φE"] == units["heading φU"] == "deg"
+    assert units["tilt φE"] == units["heading φU"] == "°"
     assert units["velocity δVE"] == "kn"
     assert [row.unit for row in rows if row.label == "position"] == ["km"]

@@ -46,7 +46,7 @@ def test_curves_are_drawn_in_the_wanted_unit(choice: dict[str, str], key: str, u
 
 def test_a_unit_that_is_too_large_is_drawn_in_thousandths_of_it() -> None:
     plot = error_plots(static_run(), display=Display(angle="deg"))["phi_e"]
-    assert plot.unit.name in ("10⁻³ deg", "deg") and np.nanmax(np.abs(plot.data[1])) >= 0.02
+    assert plot.unit.name in ("10⁻³ °", "°") and np.nanmax(np.abs(plot.data[1])) >= 0.02
 
 
 def test_time_axis_in_the_wanted_unit() -> None:

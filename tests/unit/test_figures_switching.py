@@ -60,7 +60,7 @@ def test_a_free_method_switches_nothing_whatever_its_policy() -> None:
 def test_one_plot_for_each_measure_then_states_and_xi() -> None:
     plots = switching_plots(switching_run())
     assert [plot.key for plot in plots] == ["measure0", "measure1", "measure2", STATE, XI, MARGIN]
-    assert [plot.unit.name for plot in plots[:3]] == ["m/s", "m/s", "deg"]
+    assert [plot.unit.name for plot in plots[:3]] == ["m/s", "m/s", "°"]
     assert plots[1].names == ("varied", "alike", "a", "b", "c", "a")
     colors = plots[1].colors
     assert colors[:2] == (style.method_color(2), style.method_color(4))
@@ -137,7 +137,7 @@ def test_legend_names_methods_thresholds_and_the_wish() -> None:
     run = switching_run()
     names = legend_names(run)
     assert names[:6] == [m.method.name for m in run.methods]
-    assert {"threshold = 0.5 m/s", "a = 0.25 m/s", "heading limit = 3 deg", "wanted state"} <= set(names)
+    assert {"threshold = 0.5 m/s", "a = 0.25 m/s", "heading limit = 3°", "wanted state"} <= set(names)
     assert all(name in switching_legend(run) for name in ("varied", "c = 0.45 m/s"))
 
 

@@ -131,7 +131,7 @@ def test_reason_of_an_early_end_comes_first_and_once() -> None:
         (angle_unit(5e-4 * ARCSEC), "mas"),
         (angle_unit(30.0 * ARCSEC), "arcsec"),
         (angle_unit(5.0 * ARCMIN), "arcmin"),
-        (angle_unit(np.deg2rad(20.0)), "deg"),
+        (angle_unit(np.deg2rad(20.0)), "°"),
         (speed_unit(0.5), "m/s"),
         (speed_unit(0.006), "mm/s"),
         (length_unit(900.0), "m"),

@@ -159,7 +159,7 @@ class TestLocus:
         pair = sigma * math.sqrt(1 / 0.05**2 - 1)
         assert np.max(np.imag(ends)) == pytest.approx(pair, rel=1e-5)
         notes = [note["text"] for note in figure["layout"]["annotations"]]
-        assert any("over xi: ○ 0.05 … □ 1.5, ✕ 0.7" in note for note in notes)
+        assert any("over ζ: ○ 0.05 … □ 1.5, ✕ 0.7" in note for note in notes)
 
     def test_gains_can_be_moved_while_sigma_and_xi_are_given(self) -> None:
         run = static_run()
@@ -177,7 +177,7 @@ class TestLocus:
         assert locus_of(run, 0, "xi") is None and locus_of(run, 2, "zeta") is None
         assert locus_of(run, 9, "xi") is None and locus_of(run, 2, "") is None
         assert locus_fields(run.methods[1].method.network) == {}
-        assert "sigma (1/s)" in locus_fields(run.methods[2].method.network).values()
+        assert "decay rate σ (1/s)" in locus_fields(run.methods[2].method.network).values()
         assert not any("locus" in str(t.get("name")) for t in poles(run, selected=0, locus="xi")["data"])
 
 

@@ -54,7 +54,7 @@ def test_every_field_has_a_label_a_help_and_a_slider_within_its_range(model: typ
 
 
 def test_label_carries_the_unit_and_hint_the_range() -> None:
-    sigma = spec(NETWORKS["compass"], "sigma (1/s)")
+    sigma = spec(NETWORKS["compass"], "decay rate σ (1/s)")
     assert sigma.path == ("x", "sigma")
     assert sigma.hint.endswith("Must be >= 1e-05 and <= 1 (1/s).")
     assert sigma.slider == Slider(5e-4, 0.2, True)
@@ -62,10 +62,10 @@ def test_label_carries_the_unit_and_hint_the_range() -> None:
 
 def test_vector_becomes_one_control_an_element() -> None:
     labels = [field.label for field in form.fields(Imu, ("imu",))]
-    assert labels[:3] == ["gyro bias x (deg/h)", "gyro bias y (deg/h)", "gyro bias z (deg/h)"]
-    bias = spec(Imu, "gyro bias y (deg/h)")
+    assert labels[:3] == ["gyro bias x (°/h)", "gyro bias y (°/h)", "gyro bias z (°/h)"]
+    bias = spec(Imu, "gyro bias y (°/h)")
     assert bias.path == ("x", "gyro_bias_dph", 1)
-    assert "<= 100000 (deg/h)" in bias.hint
+    assert "<= 100000 (°/h)" in bias.hint
 
 
 def test_literal_becomes_a_choice_and_discriminators_are_left_out() -> None:

@@ -87,7 +87,7 @@ def test_changes_are_named():
 
 def test_a_field_of_a_method_is_named_by_the_method():
     state = changed(FIRST, "method.2.network.xi=0.5")
-    assert change_name(FIRST, state) == "xi of fast (compass): 0.7 → 0.5"
+    assert change_name(FIRST, state) == "ζ of fast (compass): 0.7 → 0.5"
 
 
 def test_a_name_given_is_a_step_of_its_own():

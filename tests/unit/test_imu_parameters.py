@@ -39,18 +39,18 @@ def test_everything_is_zero_by_default() -> None:
     [
         (
             {"gyro_bias_dph": [0.0, 2e5, 0.0]},
-            "gyro_bias_dph.1 = 200000.0: must be >= -100000 and <= 100000 (deg/h)",
+            "gyro_bias_dph.1 = 200000.0: must be >= -100000 and <= 100000 (°/h)",
         ),
         (
             {"accel_bias_ug": [0.0, 0.0, -2e6]},
-            "accel_bias_ug.2 = -2000000.0: must be >= -1e+06 and <= 1e+06 (ug)",
+            "accel_bias_ug.2 = -2000000.0: must be >= -1e+06 and <= 1e+06 (µg)",
         ),
-        ({"gyro_arw_dpsh": -0.1}, "gyro_arw_dpsh = -0.1: must be >= 0 and <= 100 (deg/sqrt(h))"),
-        ({"accel_vrw_ugpshz": -1.0}, "accel_vrw_ugpshz = -1.0: must be >= 0 and <= 1e+06 (ug/sqrt(Hz))"),
-        ({"gyro_instability_dph": -1.0}, "gyro_instability_dph = -1.0: must be >= 0 and <= 10000 (deg/h)"),
+        ({"gyro_arw_dpsh": -0.1}, "gyro_arw_dpsh = -0.1: must be >= 0 and <= 100 (°/√h)"),
+        ({"accel_vrw_ugpshz": -1.0}, "accel_vrw_ugpshz = -1.0: must be >= 0 and <= 1e+06 (µg/√Hz)"),
+        ({"gyro_instability_dph": -1.0}, "gyro_instability_dph = -1.0: must be >= 0 and <= 10000 (°/h)"),
         ({"gyro_tau_s": 0.0}, "gyro_tau_s = 0.0: must be >= 1 and <= 1e+07 (s)"),
         ({"accel_tau_s": 0.5}, "accel_tau_s = 0.5: must be >= 1 and <= 1e+07 (s)"),
-        ({"accel_instability_ug": 1e6}, "accel_instability_ug = 1000000.0: must be >= 0 and <= 100000 (ug)"),
+        ({"accel_instability_ug": 1e6}, "accel_instability_ug = 1000000.0: must be >= 0 and <= 100000 (µg)"),
         (
             {"gyro_scale_ppm": [1e6, 0, 0]},
             "gyro_scale_ppm.0 = 1000000.0: must be >= -100000 and <= 100000 (ppm)",

@@ -55,11 +55,11 @@ def test_a_pin_is_called_by_what_differs_and_holds_what_a_picture_needs() -> Non
     now = edits.with_value(run.scenario, ("method", 2, "network", "xi"), 0.61)
     first, second = laid(pins.all, now)
     old = edits.network_values(run.scenario, 2)["xi"]
-    assert (first.name, second.name) == (f"xi {old:g}", "mine")
+    assert (first.name, second.name) == (f"ζ {old:g}", "mine")
     assert first.run is not None and [m.method.name for m in first.run.methods] == [edited]
     assert [pin.name for pin in titled(pins.all, run.scenario)] == ["pin 1", "mine"]
     other = edits.with_value(now, ("method", 1, "name"), "another")
     (both, _) = laid(pins.all, other)
     assert both.run is not None and len(both.run.methods) == 2, "a method that is gone is held too"
     longer = edits.with_value(now, ("run", "duration_h"), 1.5)
-    assert titled(pins.all, longer)[0].name.startswith(f"xi {old:g}, duration h ")
+    assert titled(pins.all, longer)[0].name.startswith(f"ζ {old:g}, duration h ")

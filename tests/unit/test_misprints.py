@@ -138,7 +138,7 @@ def test_sun_3_is_off_by_the_radius():
 
 
 def test_zha_gain():
-    assert number("zha-4.1", "K2").corrected == pytest.approx(202.520, abs=1e-3)
+    assert number("zha-4.1", "K₂").corrected == pytest.approx(202.520, abs=1e-3)
     assert number("zha-4.1", "damping").printed == pytest.approx(0.52, abs=0.005)
     slow = number("zha-4.1", "time in which")
     assert slow.printed == pytest.approx(19.0 * MINUTE, rel=0.03)
@@ -148,7 +148,7 @@ def test_zha_gain():
 
 
 def test_zha_design():
-    assert number("zha-3", "sigma").corrected == pytest.approx(0.0088, abs=1e-4)
+    assert number("zha-3", "σ").corrected == pytest.approx(0.0088, abs=1e-4)
     assert number("zha-3", "exp").corrected == pytest.approx(0.005, abs=3e-4)
 
 

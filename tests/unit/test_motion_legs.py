@@ -223,5 +223,5 @@ def test_the_leg_that_leads_to_a_pole_is_named(sign: float) -> None:
         motion.truth(20_001, 0.5, site, WGS84)
     (fault,) = caught.value.faults
     assert fault.field == "leg.1"
-    assert "89.5 deg of latitude" in fault.allowed
+    assert "89.5° of latitude" in fault.allowed
     assert motion.truth(7201, 0.5, site, WGS84).values.shape == (7201, 15)

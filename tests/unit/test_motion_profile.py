@@ -184,6 +184,6 @@ def test_impossible_profiles_are_refused_by_point_and_field(
 
 def test_a_course_over_the_pole_is_refused() -> None:
     motion = profile({"speed_mps": 100.0}, {"t_s": 3600.0, "speed_mps": 300.0})
-    with pytest.raises(InputError, match=r"89\.5 deg") as caught:
+    with pytest.raises(InputError, match=r"89\.5°") as caught:
         motion.truth(86401, 1.0, Site(80.0 * DEG, 0.0, 0.0), WGS84)
     assert caught.value.faults[0].field == "point.1"

@@ -105,7 +105,7 @@ def test_the_fastest_swing_and_a_swing_of_no_size_are_taken() -> None:
 
 def test_pitch_beyond_the_vertical_is_refused() -> None:
     SwingMotion(pitch_deg=-60.0, pitch={"amplitude_deg": 29.0})
-    with pytest.raises(ValueError, match=r"pitch\.amplitude_deg = 30\.0: must be <= 29 \(deg\)"):
+    with pytest.raises(ValueError, match=r"pitch\.amplitude_deg = 30\.0: must be <= 29 \(°\)"):
         SwingMotion(pitch_deg=-60.0, pitch={"amplitude_deg": 30.0})
 
 

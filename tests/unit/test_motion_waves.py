@@ -195,6 +195,6 @@ def test_a_sea_that_pitches_over_is_refused() -> None:
 
 
 def test_a_course_over_the_pole_is_refused() -> None:
-    with pytest.raises(InputError, match=r"89\.5 deg") as caught:
+    with pytest.raises(InputError, match=r"89\.5°") as caught:
         WavesMotion(speed_mps=50.0).rows(86401, 0.5, Site(88.0 * DEG, 0.0, 0.0), WGS84)
     assert caught.value.faults[0].field == "speed_mps"

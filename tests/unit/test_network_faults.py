@@ -91,7 +91,7 @@ def lines(data: Any) -> list[str]:
         ),
         (
             {"method": [{"name": "a", "network": {"id": "pole2", "n1": 10}}]},
-            "x.toml: method.0.network.n1 = 10: with n2 = 5 the network's poles w1, w2 are complex",
+            "x.toml: method.0.network.n1 = 10: with n₂ = 5 the network's poles w₁, w₂ are complex",
         ),
         (
             {"method": [{"name": "a", "network": {"id": "none", "xi": 1}}]},

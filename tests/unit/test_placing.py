@@ -37,7 +37,7 @@ def test_a_picked_point_becomes_a_pole(network: dict) -> None:
     assert np.abs(poles - point).min() < 1e-6
     assert np.abs(poles - point.conjugate()).min() < 1e-6
     assert made.method[:3] == with_network(network).method[:3]
-    assert "m: pair at ξ = 0.588, ω = 1.36 ω_s" in placed.words
+    assert "m: pair at ζ = 0.588, ω = 1.36 ωₛ" in placed.words
 
 
 def test_below_the_real_axis_it_is_the_same_pair() -> None:
@@ -47,8 +47,8 @@ def test_below_the_real_axis_it_is_the_same_pair() -> None:
 @pytest.mark.parametrize("network", NETWORKS[2:], ids=lambda n: n["id"])
 def test_a_network_whose_pair_stays_at_omega_s_takes_the_damping_and_says_so(network: dict) -> None:
     placed = with_pair(with_network(network), 3, 0.4, 2.0)
-    assert "always lies at omega_s" in placed.note
-    assert "ξ = 0.4, ω = 1 ω_s" in placed.words
+    assert "always lies at ωₛ" in placed.note
+    assert "ζ = 0.4, ω = 1 ωₛ" in placed.words
     assert analyse(placed.scenario.method[3].network.transfer(placed.scenario.omega_s)).damping_ratio == (
         pytest.approx(0.4)
     )
@@ -60,7 +60,7 @@ def test_a_network_whose_pair_stays_at_omega_s_takes_the_damping_and_says_so(net
         (0, "free runs without its network"),
         (
             1,
-            "no parameter that puts a pair at ξ = 0.5, ω = 1.2 ω_s; its least damped pair stays at ξ = 0.699",
+            "no parameter that puts a pair at ζ = 0.5, ω = 1.2 ωₛ; its least damped pair stays at ζ = 0.699",
         ),
     ],
 )
@@ -76,7 +76,7 @@ def test_a_limit_of_the_slope_refuses_what_lets_the_24_h_mode_grow() -> None:
         with_pair(made, 3, 0.5, 1.2, 0.0)
     told = str(refused.value)
     assert "m, H'(0) = " in told and "must be <= 0 (s)" in told and "the 24 h mode grows" in told
-    assert "use complementary, or unity2 with a pair below omega_s" in told
+    assert "use complementary, or unity2 with a pair below ωₛ" in told
     placed = with_pair(made, 3, 0.5, 0.8, 0.0)
     assert placed.scenario.method[3].network.transfer(made.omega_s).h_slope < 0.0
     with pytest.raises(InputError, match=r"m, H\(0\) = "):
@@ -110,7 +110,7 @@ def test_hostile_points_are_refused(text: str, said: str) -> None:
 def test_the_right_half_plane_is_refused_with_what_is_nearest() -> None:
     with pytest.raises(InputError) as refused:
         pair_at(read_point("0.5 1"))
-    assert "grows without bound" in str(refused.value) and "ξ = 0.01" in str(refused.value)
+    assert "grows without bound" in str(refused.value) and "ζ = 0.01" in str(refused.value)
 
 
 @pytest.mark.parametrize(
@@ -139,10 +139,10 @@ def test_a_handle_out_of_reach_stands_still_at_the_range_and_says_so() -> None:
     made = with_network({"id": "unity2"})
     placed = with_nearest_pair(made, 3, 0.4, 1.001)
     assert placed.scenario.method[3].network.model_dump()["r"] == 1.01
-    assert placed.note == "the parameters allow ξ = 0.01…1, ω = 0.1…0.99 or 1.01…10 ω_s"
+    assert placed.note == "the parameters allow ζ = 0.01…1, ω = 0.1…0.99 or 1.01…10 ωₛ"
     fast = with_nearest_pair(with_network({"id": "compass"}), 3, 0.5, 1e5)
     assert fast.scenario.method[3].network.model_dump()["sigma"] == pytest.approx(1.0)
-    assert fast.note == "the parameters allow ξ = 0.01…1, ξ ω = 1e-05…1 1/s"
+    assert fast.note == "the parameters allow ζ = 0.01…1, ζ ω = 1e-05…1 1/s"
 
 
 @pytest.mark.parametrize(
@@ -151,7 +151,7 @@ def test_a_handle_out_of_reach_stands_still_at_the_range_and_says_so() -> None:
         ({"id": "classic2"}, {}, "No handle for m: its coefficients are fixed."),
         ({"id": "pole2", "variant": "as_printed"}, {}, "the printed variant moves its pair"),
         ({"id": "custom"}, {}, "its zeros and poles are given one by one"),
-        ({"id": "optimal"}, {}, "its poles follow from the sensors, rho and q"),
+        ({"id": "optimal"}, {}, "its poles follow from the sensors, ρ and q"),
         ({"id": "compass", "k1": 0.1, "k2": 0.01, "k3": 1e-9}, {}, "its gains give three real poles"),
         ({"id": "compass"}, {"damping": "free"}, "it runs without its network"),
     ],

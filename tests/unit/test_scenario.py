@@ -83,7 +83,7 @@ def test_defaults_are_one_free_method_and_no_errors():
     [
         ({"run": {"duration_h": -1}}, "x.toml: run.duration_h = -1: must be > 0 and <= 8760 (h)"),
         ({"run": {"duration_h": 1e-9}}, "x.toml: run.duration_h = 1e-09: must hold at least one step of 1 s"),
-        ({"site": {"lat_deg": 95}}, "x.toml: site.lat_deg = 95: must be >= -89 and <= 89 (deg)"),
+        ({"site": {"lat_deg": 95}}, "x.toml: site.lat_deg = 95: must be >= -89 and <= 89 (°)"),
         (
             {"initial_error": {"attitude_arcmin": [0, 1e9, 0]}},
             "x.toml: initial_error.attitude_arcmin.1 = 1000000000.0: must be >= -600 and <= 600 (arcmin)",
@@ -109,7 +109,7 @@ def test_defaults_are_one_free_method_and_no_errors():
         ({"run": {"step_s": True}}, "x.toml: run.step_s = True: must be a number, >= 0.005 and <= 10 (s)"),
         (
             {"imu": {"gyro_bias_dph": [0, "0.7", 0]}},
-            "x.toml: imu.gyro_bias_dph.1 = '0.7': must be a number, >= -100000 and <= 100000 (deg/h)",
+            "x.toml: imu.gyro_bias_dph.1 = '0.7': must be a number, >= -100000 and <= 100000 (°/h)",
         ),
         ({"method": []}, "x.toml: method = 0: must be 1 to 12 blocks [[method]]"),
     ],

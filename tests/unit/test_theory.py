@@ -181,7 +181,7 @@ def test_adaptive_least_squares_and_where_the_quadratic_is_negative():
     rows = theory.table("s-4-4")
     header = re.search(r"\| \$d\$, kn \|(.*)\|", PAGE)
     assert header
-    fitted = np.polyfit(theory.numbers(header[1]), theory.numbers(" ".join(rows["$\\xi$"])), 2)
+    fitted = np.polyfit(theory.numbers(header[1]), theory.numbers(" ".join(rows["$\\zeta$"])), 2)
     np.testing.assert_allclose(fitted, (0.3057, -1.1383, 0.7981), atol=5e-5)
     np.testing.assert_allclose(sorted(np.roots([0.3076, -1.1452, 0.8101])), (0.95, 2.77), atol=6e-3)
 

@@ -73,9 +73,9 @@ def test_an_alignment_gives_both_the_same_start():
 @pytest.mark.parametrize(
     ("blocks", "said"),
     [
-        ({"initial_error": {"attitude_arcmin": [90.0, 0.0, 0.0]}}, "free: the tilt reaches 1.5 deg"),
-        ({"initial_error": {"attitude_arcmin": [0.0, 0.0, 600.0]}}, "the heading errs by up to 10 deg"),
-        ({"site": {"lat_deg": 80.0}}, "The latitude reaches 80.0 deg"),
+        ({"initial_error": {"attitude_arcmin": [90.0, 0.0, 0.0]}}, "free: the tilt reaches 1.5°"),
+        ({"initial_error": {"attitude_arcmin": [0.0, 0.0, 600.0]}}, "the heading errs by up to 10°"),
+        ({"site": {"lat_deg": 80.0}}, "The latitude reaches 80.0°"),
         ({"run": {"step_s": 0.1}}, "with steps of 1 s in place of 0.1 s"),
         ({"run": {"duration_h": 73.0, "rate_hz": 10.0}, "method": METHODS[:1]}, "The run is 73 h long"),
     ],

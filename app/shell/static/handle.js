@@ -74,7 +74,7 @@
     if (handle.kind !== "bode") return void scale.remove();
     if (made.nextSibling !== scale) made.after(scale);
     const [low, high] = handle.dampings;
-    const marks = [low, Math.sqrt(low * high), high].map((value) => `ξ ${short(value)}`);
+    const marks = [low, Math.sqrt(low * high), high].map((value) => `ζ ${short(value)}`);
     while (scale.childElementCount < marks.length) scale.append(window.schuler.element("span", ""));
     for (const [place, mark] of marks.entries()) scale.children[place].textContent = mark;
     scale.style.height = `${(1 - 2 * INSET) * up._length}px`;
@@ -82,7 +82,7 @@
   }
 
   function name(element, pair, handle) {
-    const told = `Pair of ${handle.name}: damping ratio ${short(pair[0])}, frequency ${short(pair[1])} ω_s. The arrow keys move it.`;
+    const told = `Pair of ${handle.name}: damping ratio ${short(pair[0])}, frequency ${short(pair[1])} ωₛ. The arrow keys move it.`;
     const said = window.schuler.say(told);
     if (element.ariaLabel !== said) element.ariaLabel = said;
   }
@@ -120,7 +120,7 @@
       showScale(scale, made, there, x, up);
       made.style.setProperty("--color", there.color);
       made.classList.toggle("sb-left", left > 0.7 * across._length);
-      const said = `ξ ${short(pair[0])}  ω ${short(pair[1])} ω`;
+      const said = `ζ ${short(pair[0])}  ω ${short(pair[1])} ω`;
       if (numbers.data !== said) numbers.data = said;
       name(made, pair, there);
     }

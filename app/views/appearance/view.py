@@ -13,6 +13,7 @@ from app.views.appearance.export import FORMATS, Export
 from app.views.appearance.language import PageLanguage
 from app.views.appearance.presentation import PresentationSize
 from app.views.appearance.sheet import Sheet
+from navcore.foundation.notation import unit_sign
 
 _CHOICES = {
     "angles in": ("angle", "Unit of tilts and headings in the plots over time, the spectrum and the table."),
@@ -93,16 +94,16 @@ class AppearanceView(View):
         )
 
     def _chooser(self, label: str, field: str, hint: str, order: int) -> Any:
-        options = get_args(Display.model_fields[field].annotation)
-        made: Any = self.frame.gui.add_dropdown(label, options, order=order, hint=hint)
-        made.on_update(if_user(lambda: self.frame.show(**{field: made.value})))
+        options = {unit_sign(key): key for key in get_args(Display.model_fields[field].annotation)}
+        made: Any = self.frame.gui.add_dropdown(label, tuple(options), order=order, hint=hint)
+        made.on_update(if_user(lambda: self.frame.show(**{field: options[made.value]})))
         return made
 
     def follow_display(self) -> None:
         """Show the session's choices."""
         display = self.session.display
         for field, chooser in self._choosers.items():
-            chooser.value = getattr(display, field)
+            chooser.value = unit_sign(getattr(display, field))
         self._bands.value = next(word for word, key in _BANDS.items() if key == display.envelope)
         self._dark.show(display)
         self._size.show(display)

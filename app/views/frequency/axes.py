@@ -23,7 +23,7 @@ def phase_axis(curves: list[np.ndarray]) -> dict[str, Any]:
     """Axis of phases in degrees."""
     low, high = _range(curves, widest=1800.0, least=40.0)
     step = _tick_step(high - low, (15.0, 30.0, 45.0, 90.0, 180.0, 360.0))
-    return style.axis("phase (deg)", range=_calm(low, high, step), dtick=step)
+    return style.axis("phase (°)", range=_calm(low, high, step), dtick=step)
 
 
 def log_axis(title: str, curves: list[np.ndarray]) -> dict[str, Any]:

@@ -229,7 +229,7 @@ def _layout(
             minor={"showgrid": True, "dtick": "D1", "gridcolor": style.GRID_FINE},
         ),
         yaxis=style.axis("|L|  (dB)", domain=[0.53, 1.0], anchor="x", range=[-80.0, top + 5.0], dtick=20.0),
-        yaxis2=style.axis("phase (deg)", domain=[0.0, 0.47], anchor="x", range=[-270.0, -90.0], dtick=45.0),
+        yaxis2=style.axis("phase (°)", domain=[0.0, 0.47], anchor="x", range=[-270.0, -90.0], dtick=45.0),
         xaxis2=style.axis("Re L", domain=[1.0 - _COLUMN, 1.0], anchor="y3", range=list(re), showgrid=False),
         yaxis3=style.axis(
             "Im L", domain=[0.0, 1.0], anchor="x2", range=list(im), scaleanchor="x2", showgrid=False

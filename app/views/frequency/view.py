@@ -43,7 +43,7 @@ class FrequencyView(PlotlyView):
         gui.add_html(TOOLS)
         self._discrete = gui.add_checkbox(
             DISCRETE, display.discrete,
-            hint="Dots on H: gain (dB) and phase (deg) of the filter that runs, at the step of the run, "
+            hint="Dots on H: gain (dB) and phase (°) of the filter that runs, at the step of the run, "
             "measured by driving it with sines. Gains that act as velocity feedback have no filter.",
         )  # fmt: skip
         self._optimal = gui.add_checkbox(

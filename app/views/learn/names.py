@@ -35,6 +35,7 @@ import numpy as np
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.errors import InputError
+from navcore.foundation.notation import with_unit
 from navcore.foundation.parameters import extra_of
 from navcore.foundation.units import ARCSEC, DEG, HOUR
 from navcore.mechanization.recorder import NAMES
@@ -81,7 +82,7 @@ class Named:
         shown = f"{value:.{self.digits}g}"
         if "e" in shown and abs(value) < 1e6:
             shown = f"{float(shown):.0f}" if abs(value) >= 1.0 else f"{value:.2e}"
-        return shown + (self.unit if self.unit == '"' else f" {self.unit}" if self.unit else "")
+        return with_unit(shown, self.unit)
 
 
 def named(name: str, run: Run) -> Named:
@@ -233,7 +234,7 @@ def _setting(rest: str, run: Run) -> Named:
         place = getattr(place, step)
     if isinstance(place, bool) or not isinstance(place, int | float):
         raise KeyError(rest)
-    return Named(float(place), "" if unit == "1" else unit)
+    return Named(float(place), unit)
 
 
 _FINDERS = {

@@ -42,7 +42,7 @@ def table_svg(tuning: Tuning, color: str) -> str:
     sun = [tuple(row) for row in SUN_TABLE]
     return (
         f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" role="img" '
-        f'style="max-width:100%" aria-label="damping coefficient over velocity difference, found and Sun\'s" '
+        f'style="max-width:100%" aria-label="damping ratio over velocity difference, found and Sun\'s" '
         f'font-family="{style.FONT_FAMILY.replace(chr(34), chr(39))}" font-size="12.5" fill="{style.INK}">'
         f"{_axes(across, high, at)}"
         f"{line(sun, style.MUTED, dash='6 4')}{line(rows, color)}{dots}"
@@ -66,7 +66,7 @@ def _axes(across: float, high: float, at) -> str:
             parts.append(f'<path d="M{x0} {y:.1f} H{x1}" stroke="{style.GRID}"/>')
     parts.append(
         f'<text x="{0.5 * (x0 + x1):.1f}" y="{HEIGHT - 4}" text-anchor="middle">'
-        f'velocity difference (kn)</text><text x="4" y="14">ξ (–)</text>'
+        f'velocity difference (kn)</text><text x="4" y="14">ζ (–)</text>'
     )
     return "".join(parts)
 
@@ -83,7 +83,7 @@ def table_html(tuning: Tuning, color: str) -> str:
         f"{table_svg(tuning, color)}<details><summary>table</summary>"
         '<table style="border-collapse:collapse;text-align:right;font-variant-numeric:tabular-nums">'
         '<thead><tr><th style="padding:1px 10px 1px 0">difference (kn)</th>'
-        '<th style="padding:1px 10px">ξ found</th><th style="padding:1px 0 1px 10px">Sun</th></tr></thead>'
+        '<th style="padding:1px 10px">ζ found</th><th style="padding:1px 0 1px 10px">Sun</th></tr></thead>'
         f"<tbody>{cells}</tbody></table></details>"
         + (f'<ul style="margin:4px 0 0;padding-left:18px">{warnings}</ul>' if warnings else "")
         + "</div>"

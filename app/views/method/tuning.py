@@ -25,7 +25,7 @@ _TITLE = "Table by Sun's double loop"
 _SHOWN = ("smallest", "largest", "step", "error", "drift_tau_s", "realisations")
 _LABELS = {"step": "coefficient step", "realisations": "drifts averaged"}
 _TOLD = (
-    "Runs this scenario with every damping coefficient, and takes for each velocity difference the one with "
+    "Runs this scenario with every damping ratio, and takes for each velocity difference the one with "
     "the least integral of the squared velocity errors (Sun 8)."
 )
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 ADD, COPY, REMOVE = "add", "copy", "remove"
 COPY_TEXT, PASTE_TEXT = "copy as TOML", "paste TOML"
-NO_DESIGN = "no (sigma, xi) gives these K"
+NO_DESIGN = "no (σ, ζ) gives these K"
 _CATALOGUES: Mapping[str, tuple[Mapping[str, type], str]] = {
     "network": (NETWORKS, "network"),
     "policy": (POLICIES, "policy"),
@@ -206,7 +206,7 @@ def loop_text(method: MethodRun, lat_deg: float) -> str:
     earth_mode = earth_mode_text(method.whole.earth_growth)
     return (
         f"One channel: least damping ratio {number(loop.damping_ratio, 3)}, {settles}. "
-        f"Whole system: 24 h mode {earth_mode} at {abs(lat_deg):.3g} deg."
+        f"Whole system: 24 h mode {earth_mode} at {abs(lat_deg):.3g}°."
     )
 
 

@@ -178,7 +178,7 @@ def system_html(run: Run) -> str:
         "",
         "24 h mode",
         "time damped",
-        "damping coefficient in force",
+        "damping ratio in force",
         "tilt, velocity: times the floor",
     )
     lines = "".join(

@@ -13,6 +13,7 @@ from app.misprints import Axis, Comparison, Curve, Misprint, Number
 from app.plots import style
 from app.plots.plotly_data import PlotlyFigure, figure, packed
 from app.plots.units import Unit, angle_unit, length_unit, number, speed_unit
+from navcore.foundation.notation import with_unit
 from navcore.foundation.units import HOUR, MINUTE
 
 Shown = Literal["both", "as printed", "corrected"]
@@ -183,4 +184,4 @@ def _number(found: Number, value: float | None) -> str:
         return "none"
     # each in its own unit: 0.03 s beside 84 min reads better than 0.0005 min
     unit = _unit(found, abs(value))
-    return escape(f"{number(value / unit.si, 4)} {unit.name}".rstrip())
+    return escape(with_unit(number(value / unit.si, 4), unit.name))

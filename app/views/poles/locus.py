@@ -8,11 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from app.editing import form
 from app.plots import style
 from app.plots.plotly_data import packed
 from app.plots.units import number
 from navcore.analysis.locus import Locus, root_locus
 from navcore.engine.run import Run
+from navcore.foundation.notation import symbol, unit_sign
 from navcore.foundation.parameters import extra_of
 from navcore.networks.base import NetworkParameters
 
@@ -27,8 +29,7 @@ def locus_fields(network: NetworkParameters) -> dict[str, str]:
     for name, info in type(network).model_fields.items():
         extra = extra_of(info)
         if "slider" in extra and "elements" not in extra:
-            unit = extra.get("unit", "")
-            found[name] = extra.get("label", name) + (f" ({unit})" if unit else "")
+            found[name] = form.full_label(name, info)
     return found
 
 
@@ -139,5 +140,5 @@ def locus_note(run: Run, index: int, field: str) -> str:
     first, last = (number(float(value), 3) for value in found.values[[0, -1]])
     now = network_values(run.scenario, index).get(field)
     present = "" if now is None else f", ✕ {number(float(now), 3)}"
-    unit = f" {extra['unit']}" if extra.get("unit") else ""
-    return f"over {extra.get('label', field)}: ○ {first} … □ {last}{present}{unit}"
+    unit = f" {unit_sign(extra['unit'])}" if extra.get("unit") else ""
+    return f"over {symbol(field)}: ○ {first} … □ {last}{present}{unit}"

@@ -21,7 +21,7 @@ from navcore.scenario.model import Method
 
 LOCUS = "locus"
 DECAYS = "H'(0) ≤ 0"
-PAIR_XI, PAIR_OMEGA, PLACE = "pair ξ", "pair ω/ωs", "Place"
+PAIR_XI, PAIR_OMEGA, PLACE = "pair ζ", "pair ω/ωₛ", "Place"
 POLES_OF = "poles of"
 SYSTEMS = {"channel": "channel", "system": "whole"}
 _NONE = "nothing"

@@ -156,7 +156,7 @@ def _layout(run: Run, margin: dict[str, int], aspect: float, growth: list[float]
     half = 0.5 * (1.0 - _GAP)
     made["xaxis"] = style.axis("Re s / ω<sub>s</sub>", domain=[0.0, half], range=list(_RE), anchor="y")
     made["yaxis"] = style.axis("Im s / ω<sub>s</sub>", range=list(_IM), anchor="x")
-    made["xaxis2"] = style.axis("latitude, deg", domain=[1.0 - half, 1.0], range=[0.0, 90.0], anchor="y2")
+    made["xaxis2"] = style.axis("latitude (°)", domain=[1.0 - half, 1.0], range=[0.0, 90.0], anchor="y2")
     made["yaxis2"] = style.axis("growth, 1/day", anchor="x2", range=growth)
     line = {"type": "line", "line": {"color": style.DANGER, "width": 1.4}, "layer": "below"}
     shapes = [

@@ -24,6 +24,7 @@ from app.plots.units import (
 from app.session.display import Display
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.earth import attitude_matrix
+from navcore.foundation.notation import with_unit
 from navcore.foundation.units import DEG
 from navcore.mechanization.recorder import DV_E, DV_N, PHI_E, PHI_U, POSITION, QUANTITIES
 from navcore.motion.base import HEADING, PITCH, ROLL, VE, VN
@@ -189,4 +190,4 @@ def _speed(speed: float, unit: Unit) -> str:
 
 def _signed(value: float, unit: Unit) -> str:
     shown = float(f"{value / unit.si:.3g}")
-    return f"{'+' if shown > 0 else ''}{number(shown)} {unit.name}"
+    return f"{'+' if shown > 0 else ''}{with_unit(number(shown), unit.name)}"

@@ -13,6 +13,7 @@ from app.plots.units import AUTO, Unit, number, time_unit
 from app.plots.uplot import LABEL_SIZE, Y_SIZE, Dash, UplotFigure
 from navcore.engine.in_force import damping_in_force
 from navcore.engine.run import MethodRun, Run
+from navcore.foundation.notation import with_unit
 from navcore.foundation.parameters import extra_of
 from navcore.law.policy.base import Limit, Measure
 
@@ -62,7 +63,7 @@ def switched_methods(run: Run) -> tuple[Switched, ...]:
 
 
 def switching_plots(run: Run, wanted_time: str = AUTO) -> tuple[UplotFigure, ...]:
-    """One plot for each kind of measure, then the states, xi and the damping ratio of the loop in force.
+    """One plot for each kind of measure, then the states, and the damping ratios asked for and of the loop.
 
     They share one time axis; there is none while every method is constant.
 
@@ -185,8 +186,8 @@ def _state_ticks(base: list[float]) -> tuple[tuple[float, str], ...]:
 
 
 def _xi_plot(pairs: _Pairs, time: np.ndarray, unit_of_time: Unit) -> UplotFigure:
-    title = "Damping coefficient in force"
-    return _column_plot(pairs, time, unit_of_time, _XI, key=XI, title=title, symbol="ξ")
+    title = "Damping ratio in force"
+    return _column_plot(pairs, time, unit_of_time, _XI, key=XI, title=title, symbol="ζ")
 
 
 def _margin_plot(pairs: _Pairs, time: np.ndarray, unit_of_time: Unit) -> UplotFigure:
@@ -282,6 +283,8 @@ def _legend(run: Run) -> list[tuple[str, str]]:
         if len(kind.label) > _LONGEST:
             items.append((f"{_symbol(place, kind)} {kind.label}", "display:none"))
         for name, value, color in shared_limits(mine):
-            items.append((f"{name} = {number(value, 4)} {kind.unit}", f"border-top:2px dashed {color}"))
+            items.append(
+                (f"{name} = {with_unit(number(value, 4), kind.unit)}", f"border-top:2px dashed {color}")
+            )
     items.append(("wanted state", f"border-top:2px dotted {style.INK}"))
     return [*items, ("least ζ: of the poles in force", "display:none")]

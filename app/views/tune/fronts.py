@@ -11,6 +11,7 @@ from app.plots.plotly_data import PlotlyFigure, figure
 from app.plots.units import number
 from navcore.design.pareto import Pareto, Point
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.notation import symbol
 from navcore.foundation.units import ARCSEC, MINUTE
 
 COMMAND = "front-point"
@@ -47,9 +48,9 @@ def setting_text(network: dict[str, Any]) -> str:
     Examples
     --------
     >>> setting_text({"id": "compass", "sigma": 0.002945, "xi": 2.79, "realisation": "network"})
-    'sigma = 0.002945, xi = 2.79'
+    'σ = 0.002945, ζ = 2.79'
     """
-    numbers = (f"{k} = {number(v, 4)}" for k, v in network.items() if isinstance(v, int | float))
+    numbers = (f"{symbol(k)} = {number(v, 4)}" for k, v in network.items() if isinstance(v, int | float))
     return ", ".join(numbers) or "no parameter"
 
 

@@ -138,7 +138,7 @@ class Adaptive(PolicyParameters):
     )
     table: tuple[TableRow, ...] = Field(
         default=SUN_TABLE,
-        description="Pairs [difference in kn, damping coefficient], in any order (Sun 2017, Table 1).",
+        description="Pairs [difference in kn, damping ratio], in any order (Sun 2017, Table 1).",
     )
     network: Annotated[
         Annotated[Unity2Network | Pole2Network, Field(discriminator="id")] | None, BeforeValidator(_by_id)
@@ -156,7 +156,7 @@ class Adaptive(PolicyParameters):
         log=True,
         label="low-pass",
         help="Time constant of the low-pass on each component of the difference: above waves, below 806 s = "
-        "1/omega_s.",
+        "1/ωₛ.",
     )
 
     @model_validator(mode="after")
@@ -201,7 +201,7 @@ class Adaptive(PolicyParameters):
             )
         least = self.network_in_force(network).least_coefficient()
         if least > LOWEST:
-            found.append(f"adaptive: below xi = {least:.3g} the printed form is unstable: held above it")
+            found.append(f"adaptive: below ζ = {least:.3g} the printed form is unstable: held above it")
         return tuple(found)
 
     def network_faults(self, network: NetworkParameters) -> Iterator[Fault]:
@@ -218,6 +218,6 @@ class Adaptive(PolicyParameters):
         """Refuse a printed form that is unstable wherever the law can go; it is held above that otherwise."""
         low = LOW_MARGIN * self.network_in_force(network).least_coefficient()
         if low > HIGHEST:
-            reason = f"is unstable up to xi = {low:.3g} with these n1, n2: must be stable below {HIGHEST}"
+            reason = f"is unstable up to ζ = {low:.3g} with these n₁, n₂: must be stable below {HIGHEST}"
             at = "network" if self.network is None else "policy.network"
             yield Fault("", f"{at}.variant", "as_printed", reason)

@@ -22,7 +22,7 @@ _LARGEST_K1 = 10.0
 
 
 def _gains(default: tuple[float, float, float], label: str, help: str) -> Any:
-    return vector_quantity(default, elements=("K1 (1/s)", "K2", "K3 (1/s)"), label=label, help=help)
+    return vector_quantity(default, elements=("K₁ (1/s)", "K₂", "K₃ (1/s)"), label=label, help=help)
 
 
 # `from` cannot be written as a class attribute, but it is the name of the field (scenario.md).
@@ -107,9 +107,9 @@ class Schedule(_From):
         for name in ("from", "to"):
             k1, k2, k3 = getattr(self, name)
             if not abs(k1) <= _LARGEST_K1:
-                raise refuse(f"{name}.0", k1, f"K1 must be >= -{_LARGEST_K1:g} and <= {_LARGEST_K1:g} (1/s)")
+                raise refuse(f"{name}.0", k1, f"K₁ must be >= -{_LARGEST_K1:g} and <= {_LARGEST_K1:g} (1/s)")
             if 1.0 + k2 == 0.0 and k3 == 0.0:
-                raise refuse(f"{name}.1", k2, "K2 must not be -1 while K3 = 0: H would be zero")
+                raise refuse(f"{name}.1", k2, "K₂ must not be -1 while K₃ = 0: H would be zero")
         return self
 
     def packed(self, law_step_s: float) -> dict[str, Any]:
@@ -119,7 +119,7 @@ class Schedule(_From):
     def network_faults(self, network: NetworkParameters) -> Iterator[Fault]:
         """Only `compass` has the gains."""
         if not isinstance(network, CompassNetwork):
-            allowed = f'changes the gains K1, K2, K3: needs network.id = "compass", not "{network.id}"'
+            allowed = f'changes the gains K₁, K₂, K₃: needs network.id = "compass", not "{network.id}"'
             yield Fault("", "policy.id", self.id, allowed)
 
     def network_in_force(self, network: NetworkParameters) -> NetworkParameters:

@@ -36,7 +36,7 @@ class YawRate(PolicyParameters):
     decide: ClassVar[Any] = _decide
     remembers: ClassVar[int] = USE_HEADING
     keeps_time: ClassVar[bool] = True
-    measure: ClassVar[Measure | None] = Measure("heading change", "deg", DEG)
+    measure: ClassVar[Measure | None] = Measure("heading change", "°", DEG)
     id: Literal["yaw_rate"] = "yaw_rate"
     window_s: float = quantity(
         60.0,

@@ -86,7 +86,7 @@ class SwitchingParameters(Parameters):
         if self.tunes and policy.follow is not None:
             yield self._begins_anew(policy)
         elif self.tunes and network.tuning(1.0) is None:
-            allowed = f'moves the damping coefficient, which network "{network.id}" has not or cannot change'
+            allowed = f'moves the damping ratio, which network "{network.id}" has not or cannot change'
             yield self._refused(f"{allowed} while it runs: needs network {_RETUNABLE}")
 
     def _begins_anew(self, policy: PolicyParameters) -> Fault:

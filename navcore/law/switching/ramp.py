@@ -63,7 +63,7 @@ class Ramp(SwitchingParameters):
         slider=(1.0, 600.0),
         log=True,
         label="ramp",
-        help="The coefficient is xi e^-(duration - 1 - m) m seconds after re-engagement (Liu 2021, fig. 10).",
+        help="The coefficient is ζ e^-(duration - 1 - m) m seconds after re-engagement (Liu 2021, fig. 10).",
     )
     form: Literal["state", "as_printed"] = choice(
         "state",
@@ -83,8 +83,6 @@ class Ramp(SwitchingParameters):
         """Refuse also a printed form whose loop is unstable at the small coefficients of the ramp."""
         found = list(super().network_faults(damping, network, realisation, policy))
         if not found and network.least_coefficient() > 0.0:
-            allowed = (
-                f"passes damping coefficients below {network.least_coefficient():.3g}, at which the loop of"
-            )
+            allowed = f"passes damping ratios below {network.least_coefficient():.3g}, at which the loop of"
             found.append(self._refused(f'{allowed} "{network.id}" as printed is unstable'))
         yield from found

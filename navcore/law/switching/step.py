@@ -60,7 +60,7 @@ class Step(SwitchingParameters):
         slider=(0.01, 1.0),
         log=True,
         label="step size",
-        help="Largest change of the damping coefficient at a time (Sun 2017, 4.2).",
+        help="Largest change of the damping ratio at a time (Sun 2017, 4.2).",
     )
     every_s: float = quantity(
         120.0,

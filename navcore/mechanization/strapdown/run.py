@@ -186,7 +186,7 @@ class StrapdownRun:
         """Why the run ended early; empty otherwise."""
         if self.code == at.DIVERGED:
             return "the errors left the range of navigation (tilt 1 rad, velocity 1e4 m/s)"
-        return "the computed latitude passed 89.9 deg" if self.code == at.POLE else ""
+        return "the computed latitude passed 89.9°" if self.code == at.POLE else ""
 
     def advance(self, increments: np.ndarray) -> bool:
         """Integrate a chunk; return True when the run is complete or has diverged.

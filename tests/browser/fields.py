@@ -1,0 +1,65 @@
+"""Names a control of the page by its key in the scenario file: a test does not depend on its label."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+
+from pydantic import BaseModel
+
+from app.editing import form
+from app.editing.form import FieldSpec
+from app.shell.control import EXACT
+from navcore.averaging.parameters import Averaging
+from navcore.law.policy import POLICIES
+from navcore.law.switching import SWITCHINGS
+from navcore.motion import MOTIONS
+from navcore.networks import NETWORKS
+from navcore.scenario.model import InitialError, Method, RunSettings, SiteSettings
+from navcore.sensors.imu import Imu
+from navcore.sensors.reference import Reference
+
+
+def slider_labels(name: str) -> list[str]:
+    """Labels under which a page may show the slider of a field, or its only control.
+
+    Parameters
+    ----------
+    name : str
+        Key of the field without the number of its method, such as ``network.xi`` or ``imu.gyro_bias_dph.2``;
+        what is no key stands for the label of a control that has none.
+    """
+    return list(dict.fromkeys(spec.label for spec in _specs().get(name, ()))) or [name]
+
+
+def box_labels(name: str) -> list[str]:
+    """The same for its box: that of the exact value beside a slider."""
+    found = (spec.label + EXACT * (spec.slider is not None) for spec in _specs().get(name, ()))
+    return list(dict.fromkeys(found)) or [name]
+
+
+def label_of(name: str) -> str:
+    """The only label of a field's slider, for a key such as ``network.zeta``."""
+    (label,) = slider_labels(name)
+    return label
+
+
+@lru_cache(maxsize=1)
+def _specs() -> dict[str, list[FieldSpec]]:
+    found: dict[str, list[FieldSpec]] = {}
+    for block, model in _blocks():
+        for spec in form.fields(model, (block,)):
+            found.setdefault(".".join(map(str, spec.path)), []).append(spec)
+    return found
+
+
+def _blocks() -> Iterator[tuple[str, type[BaseModel]]]:
+    yield from (("run", RunSettings), ("site", SiteSettings), ("imu", Imu), ("reference", Reference))
+    yield from (("initial_error", InitialError), ("method", Method), ("averaging", Averaging))
+    for block, members in (
+        ("network", NETWORKS),
+        ("policy", POLICIES),
+        ("switching", SWITCHINGS),
+        ("motion", MOTIONS),
+    ):
+        yield from ((block, model) for model in members.values())
