@@ -1,4 +1,8 @@
-"""Memory given back to the system: on Linux what is freed is kept, in an arena for every thread."""
+"""Memory of the server: how it is given back to the system, and how seldom the garbage collector looks at it.
+
+On Linux what is freed is kept, in an arena for every thread. Python's collector holds the interpreter while
+it looks through all objects, and nobody is answered meanwhile.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +14,8 @@ from collections.abc import Callable
 _ARENA_MAX = -8
 _ARENAS = 2
 _AFTER_S = 3.0
+_THRESHOLDS = 20_000, 20, 20
+"""Of new objects, and of rounds of the youngest and the middle generation (`gc.set_threshold`)."""
 
 
 def _glibc() -> ctypes.CDLL | None:
@@ -25,6 +31,16 @@ def bound_arenas() -> None:
     libc = _glibc()
     if libc is not None:
         libc.mallopt(_ARENA_MAX, _ARENAS)
+
+
+def collect_seldom() -> None:
+    """Leave what lives as long as the server out of the collector's rounds, and let it begin them less often.
+
+    The modules, the kernels and the prepared run are several hundred thousand objects, to be called when they
+    are there.
+    """
+    gc.freeze()
+    gc.set_threshold(*_THRESHOLDS)
 
 
 class GiveBack:

@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 from app.languages import LANGUAGE_SCRIPTS
 from app.logs import begin_logging
-from app.memory import GiveBack, bound_arenas
+from app.memory import GiveBack, bound_arenas, collect_seldom
 from app.views import VIEWS, load, scripts
 from navcore.foundation import guarded
 
@@ -132,6 +132,7 @@ class Dashboard:
             with self._lock:
                 sessions = self.sessions
             sessions.prepared = simulate(first_scenario()[0])
+            collect_seldom()
         except Exception:
             _log.exception("warming up failed")
 

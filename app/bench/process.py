@@ -36,6 +36,11 @@ def free_port() -> int:
 class Server:
     """A running dashboard, used as a context.
 
+    Parameters
+    ----------
+    workers : int
+        Processes that share the visitors (``schuler serve --workers``); 1: one process, without a door.
+
     Attributes
     ----------
     port : int
@@ -44,12 +49,14 @@ class Server:
         From the start of the process until the page was served.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, workers: int = 1) -> None:
         self.port = free_port()
+        self._workers = workers
         self.startup_s = 0.0
 
     def __enter__(self) -> Self:
         words = [sys.executable, "-m", "app", "serve", "--port", str(self.port)]
+        words += ["--workers", str(self._workers)] if self._workers > 1 else []
         began = time.perf_counter()
         # What the timed visitor did is not kept among the user's sessions.
         self._state = tempfile.TemporaryDirectory(prefix="schuler-bench-")
@@ -73,27 +80,33 @@ class Server:
         self._end()
 
     def rss_mb(self) -> float:
-        """Memory the process holds now, MiB."""
-        status = Path(f"/proc/{self._process.pid}/statm")
-        if status.exists():
-            return int(status.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / _MIB
+        """Memory that the server holds now, the door and all workers together, MiB."""
+        pages = [_statistic(pid, "statm").split() for pid in self._pids()]
+        if any(pages):
+            return sum(int(found[1]) for found in pages if found) * os.sysconf("SC_PAGE_SIZE") / _MIB
         listed = subprocess.run(
             ["ps", "-o", "rss=", "-p", str(self._process.pid)], capture_output=True, text=True, check=True
         )
         return int(listed.stdout) * 1024.0 / _MIB
 
     def cpu_s(self) -> float:
-        """Processor time the process has used, s; 0 where the system does not tell."""
-        status = Path(f"/proc/{self._process.pid}/stat")
-        if not status.exists():
-            return 0.0
-        fields = status.read_text().rpartition(") ")[2].split()
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+        """Processor time that the server has used, s; 0 where the system does not tell."""
+        found = [_after_name(pid) for pid in self._pids()]
+        ticks = sum(int(fields[11]) + int(fields[12]) for fields in found if fields)
+        return ticks / os.sysconf("SC_CLK_TCK")
 
     def threads(self) -> int:
-        """Threads of the process; 0 where the system does not tell."""
-        folder = Path(f"/proc/{self._process.pid}/task")
-        return len(list(folder.iterdir())) if folder.exists() else 0
+        """Most threads of one process of the server; 0 where the system does not tell."""
+        folders = [Path(f"/proc/{pid}/task") for pid in self._pids()]
+        return max((len(list(folder.iterdir())) for folder in folders if folder.exists()), default=0)
+
+    def _pids(self) -> list[int]:
+        """Process numbers: of the server, and of its workers."""
+        door = self._process.pid
+        if self._workers == 1:
+            return [door]
+        every = (int(folder.name) for folder in Path("/proc").glob("[0-9]*"))
+        return [door, *(pid for pid in every if _after_name(pid)[1:2] == [str(door)])]
 
     def _wait_for_page(self, seconds: float = 30.0) -> None:
         until = time.monotonic() + seconds
@@ -133,3 +146,16 @@ class Server:
                 self._process.kill()
                 self._process.wait()
         self._state.cleanup()
+
+
+def _statistic(pid: int, name: str) -> str:
+    """A file of the system about a process; empty for one that has ended, or where there is none."""
+    try:
+        return Path(f"/proc/{pid}/{name}").read_text()
+    except OSError:
+        return ""
+
+
+def _after_name(pid: int) -> list[str]:
+    """Fields of the process's ``stat`` after its name: state, parent, ..."""
+    return _statistic(pid, "stat").rpartition(") ")[2].split()

@@ -75,7 +75,7 @@ def _gather(first, values, recorder):
                 recorder.rows[row, q] = values[i, q]
             cursor.row = row + 1
         if (k + 1) % recorder.bin_width == 0 or k == last:
-            flush(k, recorder)
+            flush(recorder)
 
 
 def gather(recorder: Recorder, first: int, values: np.ndarray) -> None:

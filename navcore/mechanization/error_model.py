@@ -163,7 +163,7 @@ def _advance(first, last, final, h, half, law_input, gyro, accel, log, law, stat
     reached, code = last, UNDER_WAY
     for k in range(first, last):
         if not in_range(x):
-            flush(k - 1, recorder)
+            flush(recorder)
             reached, code = k, DIVERGED
             break
         t = k * h
@@ -175,7 +175,7 @@ def _advance(first, last, final, h, half, law_input, gyro, accel, log, law, stat
         watched = Watched(float(s.wanted), 1.0 if s.damped else 0.0, s.xi, s.measure)
         record(k, given_out(x, s), begin.m, begin.n_cos, watched, recorder)
         if (k + 1) % recorder.bin_width == 0 or k + 1 == last:
-            flush(k, recorder)
+            flush(recorder)
         if k == final:
             reached, code = k, COMPLETE
             break

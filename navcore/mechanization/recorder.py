@@ -137,13 +137,16 @@ def record(k, x, m, n_cos, watched, recorder):
 
 
 @inlined
-def flush(k, recorder):
-    """Empty the buffer, whose last entry is step k, into the statistics and the bin of step k.
+def flush(recorder):
+    """Empty the buffer into the statistics and the bin of its steps, the present one.
 
     One quantity at a time: with all eight in one pass every sum goes through memory, which took three times
     as long as the integration itself.
     """
-    b, count = k // recorder.bin_width, recorder.cursor.buffer
+    count = recorder.cursor.buffer
+    if count == 0:
+        return
+    b = recorder.cursor.count // recorder.bin_width
     buffer, stats = recorder.buffer, recorder.stats
     for q in range(QUANTITIES):
         total, squares, largest = stats[q, SUM], stats[q, SUM_SQUARES], stats[q, MAX_ABS]
@@ -159,8 +162,7 @@ def flush(k, recorder):
             if value > high:
                 high, order = value, 1
         stats[q, SUM], stats[q, SUM_SQUARES], stats[q, MAX_ABS] = total, squares, largest
-        if count > 0:
-            stats[q, FINAL] = buffer[q, count - 1]
+        stats[q, FINAL] = buffer[q, count - 1]
         recorder.bin_low[b, q], recorder.bin_high[b, q] = low, high
         recorder.bin_order[b, q] = order
     recorder.cursor.count += count

@@ -232,7 +232,7 @@ def coming_and_going(server: Server, arguments: argparse.Namespace) -> list[Row]
 def measure(arguments: argparse.Namespace) -> list[Row]:
     """All rows; each part is told as it ends."""
     rows: list[Row] = []
-    with Server() as server:
+    with Server(arguments.workers) as server:
         time.sleep(5.0)  # the kernels are loaded behind the first page
         parts = [
             lambda: answers(
@@ -265,6 +265,7 @@ def told_of_machine(arguments: argparse.Namespace) -> str:
     load = os.getloadavg()[0]
     return (
         f"{arguments.clients} visitors, {arguments.browsers} of them browsers, {arguments.minutes:g} min; "
+        f"{arguments.workers} server process{'es' * (arguments.workers > 1)}; "
         f"{os.cpu_count()} cores, load {load:.1f} before it began, Python {platform.python_version()}, "
         f"{time.strftime('%Y-%m-%d', time.gmtime())}"
     )
@@ -276,6 +277,7 @@ def main() -> int:
     parser.add_argument("--clients", type=int, default=30)
     parser.add_argument("--browsers", type=int, default=3, help="how many of them are headless Chromium")
     parser.add_argument("--minutes", type=float, default=3.0)
+    parser.add_argument("--workers", type=int, default=1, help="as of schuler serve")
     parser.add_argument("--shortest", type=float, default=0.5, help="pause between two moves, s")
     parser.add_argument("--longest", type=float, default=2.0)
     parser.add_argument("--long", type=int, default=40, help="visitors with a long run each; 0: none")

@@ -120,6 +120,27 @@ def test_a_schedule_that_stays_at_its_gains_is_the_compass_with_them_in_network_
         assert stays.step(float(d), float(d) - 0.2) == pytest.approx(expected, rel=1e-9, abs=1e-12)
 
 
+def test_a_schedule_rests_where_a_constant_difference_moves_it_no_more() -> None:
+    gains = list(GAINS.values())
+    run = LawRun(
+        {"id": "compass", "realisation": "network"},
+        {"id": "schedule", "from": gains, "to": gains},
+        {"id": "hard"},
+    )
+    run.step(0.1)
+    network = run.s["network"]  # dA is A - I
+    assert network["steady"][0] == pytest.approx(-network["B"][0] / network["dA"][0, 0], rel=1e-9)
+
+
+@pytest.mark.parametrize("step_s", [0.2, 1.0])
+def test_the_feedback_form_opposes_the_difference(step_s) -> None:
+    """c = -K2 d + P, P' = -K3 d: the first step, from rest, holds the mean of P over half a step."""
+    run = LawRun({"id": "compass", **GAINS}, {"id": "constant"}, {"id": "hard"}, step_s=step_s)
+    k2, k3 = GAINS["k2"], GAINS["k3"]
+    assert run.step(0.5, -0.2)[:2] == pytest.approx([-(k2 + 0.5 * k3 * step_s) * d for d in (0.5, -0.2)])
+    assert run.value("feedback_gain") == 0.0 and run.law.p["feedback_k1"] == pytest.approx(GAINS["k1"])
+
+
 def test_a_schedule_without_k1_has_no_state_to_rest_in() -> None:
     gains = [0.0, 1.0, 1e-3]
     run = LawRun(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from navcore.foundation.earth import WGS84
-from navcore.motion import MOTIONS
+from navcore.motion import MOTIONS, LegsMotion
 from navcore.motion.base import Truth
 from navcore.motion.inertial import inertial_signals
 from navcore.motion.kinematics import Kinematics
@@ -19,13 +19,17 @@ from tests.motions import MANOEUVRES, SEA, ZHAO, circle_track
 from tests.strapdown import DENG_SWING, DRIVE, SITE
 
 RATE = 100.0
+TURN = LegsMotion(leg=[{"duration_s": 60.0, "speed_mps": 20.0, "accel_mps2": 0.1, "turn_dps": 3.0}])
+"""Turns and gathers speed from the first sample on; the drive stands still for ten minutes."""
 FINE = 24
 """Sub-intervals of an interval: composite Boole's rule."""
 
 
-@pytest.fixture(params=["swing", "legs", "profile", "zhao", "waves", "track"])
+@pytest.fixture(params=["swing", "legs", "turn", "profile", "zhao", "waves", "track"])
 def motion(request, tmp_path):
-    fixed = {"swing": DENG_SWING, "legs": DRIVE, "profile": MANOEUVRES, "zhao": ZHAO, "waves": SEA}
+    fixed = {
+        "swing": DENG_SWING, "legs": DRIVE, "turn": TURN, "profile": MANOEUVRES, "zhao": ZHAO, "waves": SEA,
+    }  # fmt: skip
     return fixed[request.param] if request.param in fixed else circle_track(tmp_path)
 
 

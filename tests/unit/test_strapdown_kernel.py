@@ -127,6 +127,19 @@ def test_chunks_of_any_length_give_the_same_run():
     assert run.recorder.cursor["count"] == 701
 
 
+def test_a_run_ends_at_its_last_sample_whatever_it_is_given():
+    sim = ImuSimulation(DRIVE, SITE, WGS84, NOISY, RATE, 110, 1)
+    increments = np.concatenate([chunk.copy() for chunk, _ in sim.chunks()])
+    truth = sim.truth_rows(3, 1.0)
+    run = start_run(
+        start_from(truth[0], START_ERRORS), Settings(RATE, 100, 50, 50, 1.0), WGS84,
+        law("external", Classic2Network(), 1.0), truth, reference((0, 0), 3), sim.before(),
+    )  # fmt: skip
+    run.advance(increments[:40])
+    assert run.advance(increments[40:])
+    assert (run.position, run.code) == (100, at.COMPLETE)
+
+
 def test_navigation_rows_hold_the_solution():
     run = navigate(DRIVE, 50.0, 900.0)
     last = dict(zip(at.NAVIGATION, run.navigation[-1], strict=True))

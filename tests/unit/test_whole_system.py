@@ -147,3 +147,16 @@ def test_values_join_the_targets_that_are_closest_for_their_size() -> None:
     assert _nearest(np.array([1.0 + 0j, 1.1]), np.array([1.08 + 0j, 20.0])) == [1, 0]
     # apart by 30 of 130 and by 2 of 4: the large value has the target, though the small one is nearer to it
     assert _nearest(np.array([1.0 + 0j, 50.0]), np.array([20.0 + 0j, 1000.0])) == [1, 0]
+
+
+def test_the_main_mode_is_the_pair_that_swings_beside_a_slow_real_pole() -> None:
+    """Of the optimal network's poles, -0.93 +- 1.06j swing; -0.10 only fades."""
+    whole = whole_system(network('id = "optimal"'), "external", 45.0 * DEG)
+    found = [mode.eigenvalue / OMEGA_S for mode in whole.modes if mode.name == SCHULER_MODE]
+    assert len(found) == 2
+    assert np.array(found) == pytest.approx([-0.926 + 1.062j] * 2, abs=0.12)
+
+
+def test_heights_count_from_the_ellipsoid() -> None:
+    assert np.array_equal(inputs_of_law(0.6, OMEGA_S), inputs_of_law(0.6, OMEGA_S, SPHERE, 0.0))
+    assert not np.array_equal(inputs_of_law(0.6, OMEGA_S), inputs_of_law(0.6, OMEGA_S, SPHERE, 0.1))

@@ -49,7 +49,7 @@ def _advance(
     reached, code = last, UNDER_WAY
     for k in range(first, last):
         if not in_range(x):
-            flush(k - 1, recorder)
+            flush(recorder)
             reached, code = k, DIVERGED
             break
         told, true = law_input[k * law_stride], truth[2 * k * truth_stride]
@@ -68,7 +68,7 @@ def _advance(
         if recorder.cursor.row > row:
             keep_sigma(f, row)
         if (k + 1) % recorder.bin_width == 0 or k + 1 == last:
-            flush(k, recorder)
+            flush(recorder)
         if k == final:
             reached, code = k, COMPLETE
             break

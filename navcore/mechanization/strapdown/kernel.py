@@ -140,10 +140,10 @@ def advance_kernel(increments, first, pace, con, x, truth, heights, log, law, na
             to_record, r = record_every, record_number
             record_number += 1
             if not _record_state(r, con, x, truth, law, navigation, recorder):
-                flush(max(r - 1, 0), recorder)
+                flush(recorder)
                 return k, DIVERGED
             if (r + 1) % recorder.bin_width == 0 or k == final:
-                flush(r, recorder)
+                flush(recorder)
         if k == final:
             return k, COMPLETE
         if refresh:
@@ -167,6 +167,5 @@ def advance_kernel(increments, first, pace, con, x, truth, heights, log, law, na
         k += n
         to_law -= n
         to_record -= n
-    if recorder.cursor.buffer > 0:
-        flush(record_number - 1, recorder)
+    flush(recorder)
     return k, UNDER_WAY

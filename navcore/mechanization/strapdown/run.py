@@ -194,12 +194,12 @@ class StrapdownRun:
         Parameters
         ----------
         increments : ndarray, shape (n, 6)
-            Angle (rad) and velocity increments (m/s) in body axes, the sample after the last one first.
+            Angle (rad) and velocity increments (m/s) in body axes, the sample after the last one first; those
+            beyond the end of the run are not taken.
         """
-        room = self.settings.samples - self.position
         set_ = self.settings
         self.position, self.code = advance_kernel(
-            np.ascontiguousarray(increments[:room], dtype=float), self.position,
+            np.ascontiguousarray(increments, dtype=float), self.position,
             Pace(set_.samples, set_.law_every, set_.record_every, set_.record_step_s),
             self.con, self.x, self.truth, self._heights, self.reference, self.law, self.navigation,
             self.recorder,
