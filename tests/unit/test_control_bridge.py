@@ -141,6 +141,13 @@ def test_the_feedback_form_opposes_the_difference(step_s) -> None:
     assert run.value("feedback_gain") == 0.0 and run.law.p["feedback_k1"] == pytest.approx(GAINS["k1"])
 
 
+def test_a_network_without_velocity_feedback_asks_for_no_acceleration() -> None:
+    run = LawRun({"id": "complementary"}, {"id": "constant"}, {"id": "hard"})
+    for d in (0.3, -0.1, 0.2):
+        c_e, _, a_e, a_n = run.step(d, 0.1)
+        assert c_e != 0.0 and (a_e, a_n) == (0.0, 0.0)
+
+
 def test_a_schedule_without_k1_has_no_state_to_rest_in() -> None:
     gains = [0.0, 1.0, 1e-3]
     run = LawRun(

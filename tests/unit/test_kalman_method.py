@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,11 @@ from navcore.engine.drivers.strapdown import settings_of
 from navcore.engine.environment import environment
 from navcore.engine.simulation import simulate
 from navcore.engine.strapdown_environment import strapdown_environment
+from navcore.foundation.compiled import plain
 from navcore.foundation.errors import InputError
+from navcore.mechanization.kalman.strapdown import _correct
+from navcore.mechanization.strapdown.attitude import quaternion_of
+from navcore.mechanization.strapdown.run import turned_by
 from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import stochastic_model
 from navcore.studies.filter_consistency import consistency
@@ -145,3 +150,12 @@ def test_the_length_of_the_chunks_changes_nothing(chunk: int) -> None:
         ends.append((run.recorder.rows[-1], run.filter.P))
     np.testing.assert_array_equal(ends[1][0], ends[0][0])
     np.testing.assert_array_equal(ends[1][1], ends[0][1])
+
+
+def test_a_correction_turns_the_attitude_back_by_the_estimated_tilt() -> None:
+    quaternion = np.array(quaternion_of(0.2, -0.3, 1.0))
+    x = SimpleNamespace(q=quaternion.copy(), v=np.zeros(3), d_lat=0.0, d_lon=0.0)
+    found = np.array([0.3, -0.2, 1e-5, 2e-5, 2e-3, -1e-3, 5e-3])
+    plain(_correct)(x, found)
+    assert x.q == pytest.approx(turned_by(found[4:], quaternion), abs=1e-15)
+    assert (*x.v, x.d_lat, x.d_lon) == pytest.approx((-0.3, 0.2, 0.0, -1e-5, -2e-5), abs=1e-15)

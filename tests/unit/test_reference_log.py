@@ -88,6 +88,12 @@ def test_current_and_tide_are_missed_by_the_log():
 
 
 @pytest.mark.parametrize("frame", ["enu", "body"])
+def test_scale_error_enlarges_the_current_that_is_missed(frame):
+    found = errors(current_mps=(0.5, -0.4), scale_ppm=2000.0, frame=frame)
+    assert found.error == pytest.approx(np.tile([-0.501, 0.4008], (601, 1)), rel=1e-12)
+
+
+@pytest.mark.parametrize("frame", ["enu", "body"])
 def test_scale_error_is_a_share_of_the_velocity(frame):
     motion = truth()
     found = errors(motion, scale_ppm=2000.0, frame=frame)
