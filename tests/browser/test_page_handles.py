@@ -113,7 +113,7 @@ def test_a_pole_is_moved_by_keys_and_stops_at_its_range(handles: Bench) -> None:
     handles.page.wait_for_function(_AT, arg=[*NEAR, *pole(handles)])
     before, (re, im) = handles.session.scenario, pole(handles)
     ring = handles.page.locator(".sb-handle:visible").last
-    assert "damping ratio 0.5, frequency 1.2" in ring.get_attribute("aria-label")
+    assert "damping ratio 0.5, frequency 1.2" in (ring.get_attribute("aria-label") or "")
     ring.press("ArrowLeft")
     handles.settle()
     moved = pole(handles)
