@@ -15,6 +15,7 @@ import pytest
 from app.bench.process import Server
 from app.bench.visitor import PAGE_STATE, Visitor
 from tests.bombs import FILES, SCENARIOS
+from tests.browser.fields import label_of
 
 pytestmark = pytest.mark.attack
 
@@ -65,12 +66,12 @@ class Other:
         with Visitor(self._port, "beside-the-bombs") as visitor:
             visitor.set(PAGE_STATE, WINDOW)
             visitor.wait(lambda: visitor.run_number >= 1, "its first run", 120.0)
-            visitor.control("zeta")
+            visitor.control(label_of("network.zeta"))
             step = 0
             while not self._ended.is_set():
                 step += 1
                 before = visitor.run_number
-                sent = visitor.set("zeta", round(0.5 + 0.001 * (step % 400), 4))
+                sent = visitor.set(label_of("network.zeta"), round(0.5 + 0.001 * (step % 400), 4))
                 try:
                     visitor.wait(lambda before=before: visitor.run_number > before, "an answer", 60.0)
                 except TimeoutError:
@@ -99,7 +100,7 @@ def test_a_hostile_upload_is_told_in_short_and_others_go_on(
         assert title == "The file cannot be used; nothing was changed"
         assert 0 < len(text) <= 600 and "Traceback" not in text
         number = visitor.run_number
-        visitor.set("zeta", 0.7 if visitor.held("zeta") != 0.7 else 0.8)
+        visitor.set(label_of("network.zeta"), 0.7 if visitor.held(label_of("network.zeta")) != 0.7 else 0.8)
         visitor.wait(lambda: visitor.run_number > number, "an answer after it", 60.0)
         # However soon the file was refused, the other visitor has moved on since it came.
         until = time.monotonic() + 60.0

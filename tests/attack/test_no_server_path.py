@@ -13,6 +13,7 @@ from app.bench.visitor import PAGE_STATE
 from app.http.server import DashboardServer
 from app.serve import open_dashboard
 from tests.attack.wire import Visitor, ask, visit
+from tests.browser.fields import label_of
 
 pytestmark = pytest.mark.attack
 
@@ -51,7 +52,7 @@ def test_nothing_that_is_sent_holds_a_path_of_the_server(server: DashboardServer
         for path in (tmp_path / "state").rglob("log.csv"):
             path.unlink()
         before = len(page.received)
-        page.set(page.control("zeta"), 0.43)
+        page.set(page.control(label_of("network.zeta")), 0.43)
         page.wait_for(lambda m: m in page.received[before:] and m["type"] == "NotificationShowMessage", 30.0)
         sent = str(page.received)
     for secret in (str(tmp_path), str(Path(app.__file__).parents[1]), str(Path.home()) + "/"):

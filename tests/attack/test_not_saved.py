@@ -11,6 +11,7 @@ from app.bench.visitor import PAGE_STATE, Visitor
 from app.http.server import DashboardServer
 from app.serve import Dashboard, open_dashboard
 from navcore.foundation import guarded
+from tests.browser.fields import label_of
 
 pytestmark = pytest.mark.attack
 
@@ -36,7 +37,7 @@ def test_a_page_is_told_of_a_failed_autosave(served: tuple[DashboardServer, Dash
         visitor.wait(lambda: visitor.run_number >= 1, "its first run", 120.0)
         store = dashboard.sessions._store
         assert store is not None
-        visitor.set("zeta", 0.6)
+        visitor.set(label_of("network.zeta"), 0.6)
         visitor.wait(lambda: visitor.run_number >= 2, "an answer", 60.0)
         assert store.flush(60.0)
         (session,) = dashboard.sessions._by_id.values()
@@ -62,10 +63,10 @@ def test_a_page_is_told_of_a_failed_autosave(served: tuple[DashboardServer, Dash
         assert str(store.folder) not in told
 
         number = visitor.run_number
-        visitor.set("zeta", 0.7)
+        visitor.set(label_of("network.zeta"), 0.7)
         visitor.wait(lambda: visitor.run_number > number, "an answer although nothing is saved", 60.0)
         store.database._connection.execute("PRAGMA max_page_count = 1000000")
-        visitor.set("zeta", 0.8)
+        visitor.set(label_of("network.zeta"), 0.8)
         visitor.wait(lambda: visitor.run_number > number + 1, "an answer", 60.0)
         assert store.flush(60.0)
         after = store.read(session.id)

@@ -22,6 +22,7 @@ from app.http.limits import Limits
 from app.session.keys import session_key
 from app.session.store import open_store
 from tests.attack.wire import ask, shake_hands
+from tests.browser.fields import label_of
 
 pytestmark = pytest.mark.attack
 
@@ -100,7 +101,7 @@ def test_sessions_of_a_crashed_worker_reopen(door: Door) -> None:
     with Visitor(door.port, own) as page:
         page.set(PAGE_STATE, "1920x1080|Method|Errors")
         page.wait_for_run(1)
-        page.set("zeta", 0.37)
+        page.set(label_of("network.zeta"), 0.37)
         page.wait_for_run(2)
         page.rest(1.5)  # written down after half a second
     for pid in before:
@@ -108,9 +109,9 @@ def test_sessions_of_a_crashed_worker_reopen(door: Door) -> None:
     until(lambda: len(door.workers()) == 2 and not set(door.workers()) & set(before))
     until(lambda: _status(door.port, f"/s/{own}/") == 200)
     with Visitor(door.port, own) as page:
-        page.control("zeta")
+        page.control(label_of("network.zeta"))
         page.wait_for_run(1)
-        assert page.held("zeta") == pytest.approx(0.37)
+        assert page.held(label_of("network.zeta")) == pytest.approx(0.37)
 
 
 def test_silent_sockets_at_the_door_keep_nobody_out(door: Door) -> None:
