@@ -87,7 +87,7 @@ def test_forecast_noise_is_that_of_the_mean():
     signals = standing_signals(STANDING, WGS84)[:3]
     errors = [forecast_from(record(noise, seed=seed)).gyro - signals for seed in range(60)]
     assert np.std(errors) / DEG_PER_HOUR == pytest.approx(0.0122, rel=0.15)
-    assert "0.012 deg/h" in made(Averaging(), imu=noise).notices[0]
+    assert "0.012 °/h" in made(Averaging(), imu=noise).notices[0]
 
 
 def test_biases_and_drifts_of_the_run_are_in_the_forecast():

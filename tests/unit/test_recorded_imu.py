@@ -79,7 +79,7 @@ def test_missing_and_binary_files_are_named(tmp_path):
     [
         ("0,0,0,0.1,0.2,-9.8", r"the -z axis looks like up"),
         ("0,0,0,9.8,0.2,0.1", r"the \+x axis looks like up"),
-        ("0,0,0,0.0,0.0,1.0", r"mean specific force is 1 m/s2.*wrong units"),
+        ("0,0,0,0.0,0.0,1.0", r"mean specific force is 1 m/s².*wrong units"),
     ],
 )
 def test_wrong_axes_and_units_are_refused(tmp_path, row, wanted):

@@ -45,7 +45,7 @@ def test_without_a_log_the_law_runs_at_the_step():
     [
         (
             {"site": {"lat_deg": -86.0}, "alignment": {"kind": "compass"}},
-            "site.lat_deg = -86.0: compass alignment needs |latitude| <= 85 deg",
+            "site.lat_deg = -86.0: compass alignment needs |latitude| <= 85°",
         ),
         (
             {"run": {"rate_hz": 50.0}, "motion": {"kind": "swing", "roll": FAST}},
