@@ -168,8 +168,8 @@ def _about_pole(root: complex, omega_s: float) -> str:
         period = duration(2.0 * math.pi / (size * omega_s))
         lines.append(f"damping ratio {-root.real / size:.3f}, natural period {period}")
     if root.real != 0.0:
-        how = "decays to 1/e" if root.real < 0.0 else "grows e-fold"
-        lines.append(f"{how} in {duration(1.0 / abs(root.real * omega_s))}")
+        folding = duration(1.0 / abs(root.real * omega_s))
+        lines.append(f"decays to 1/e in {folding}" if root.real < 0.0 else f"grows e-fold in {folding}")
     return "<br>".join(lines)
 
 
