@@ -70,4 +70,4 @@ def test_a_page_is_told_of_a_failed_autosave(served: tuple[DashboardServer, Dash
         visitor.wait(lambda: visitor.run_number > number + 1, "an answer", 60.0)
         assert store.flush(60.0)
         after = store.read(session.id)
-        assert after is not None and after["steps"][after["at"]]["name"].startswith("zeta")
+        assert after is not None and after["steps"][after["at"]]["name"].startswith("ζ")
