@@ -6,8 +6,10 @@ import math
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from navcore.foundation.compiled import plain
+from navcore.law.policy import POLICIES
 from navcore.law.switching.bridge import _amplitude
 from navcore.networks import parse_network
 from navcore.networks.discrete import discretise
@@ -146,6 +148,14 @@ def test_a_network_without_velocity_feedback_asks_for_no_acceleration() -> None:
     for d in (0.3, -0.1, 0.2):
         c_e, _, a_e, a_n = run.step(d, 0.1)
         assert c_e != 0.0 and (a_e, a_n) == (0.0, 0.0)
+
+
+def test_gains_that_would_make_h_zero_are_refused_and_k3_zero_alone_is_not() -> None:
+    schedule = POLICIES["schedule"]
+    with pytest.raises(ValidationError, match="H would be zero"):
+        schedule.model_validate({"id": "schedule", "from": [1e-3, -1.0, 0.0]})
+    for gains in ([1e-3, 1.0, 0.0], [1e-3, -1.0, 1e-3]):
+        assert schedule.model_validate({"id": "schedule", "to": gains}).packed(1.0)["last"] == tuple(gains)
 
 
 def test_a_schedule_without_k1_has_no_state_to_rest_in() -> None:

@@ -11,7 +11,7 @@ from app.views.scene.playback import Playback, PlayState
 from app.views.scene.track import track
 from navcore.engine.run import Run
 
-_FIT = "fit"
+_FIT = "as needed"
 # What stands over the view (playback.css, playback.js), px.
 _PENDULUM_PX, _READOUT_PX, _TALL_PX = 195, 285, 900
 _BAR_PX, _CAPTION_PX, _KEY_ROW_PX, _KEY_ROWS = 88, 22, 22, 5
@@ -58,8 +58,8 @@ class SceneView(View):
         with tab:
             self._factor = gui.add_dropdown(
                 "enlarge errors in 3D", _FACTORS, order=18,
-                hint="Factor by which the 3D view enlarges the position errors; fit: chosen so that they "
-                "show.",
+                hint="Factor by which the 3D view enlarges the position errors; as needed: chosen so "
+                "that they show.",
             )  # fmt: skip
             self._panel = PlaybackPanel(gui, self.frame.commands, self.playback, self._look)
         self._factor.on_update(if_user(lambda: self.frame.show(exaggeration=_factor(self._factor.value))))
