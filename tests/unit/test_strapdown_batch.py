@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -37,10 +39,12 @@ def _make(motion, network, seconds=SECONDS):
 @pytest.mark.parametrize(
     "network", [CompassNetwork(sigma=0.05, xi=0.7), Classic2Network()], ids=["compass", "network"]
 )
-@pytest.mark.parametrize("seconds", [1, SECONDS])  # the mutation run makes the short one as Python
-def test_each_run_is_the_single_run(motion, network, seconds):
+# the mutation run makes the short ones as Python
+@pytest.mark.parametrize(("seconds", "law_s"), [(1, 1.0), (3, 0.5), (SECONDS, 1.0)])
+def test_each_run_is_the_single_run(motion, network, seconds, law_s):
     biases, sim, increments, truth, starts, settings, log = _make(motion, network, seconds)
-    laws = [law("external", network, 1.0) for _ in range(RUNS)]
+    settings = replace(settings, law_every=int(RATE * law_s))
+    laws = [law("external", network, law_s) for _ in range(RUNS)]
     batch = BatchRun(starts, laws, biases, settings, WGS84, truth, log, sim.before())
     piece = min(777, len(increments) * 2 // 5)
     ended = [batch.advance(increments[i : i + piece]) for i in range(0, len(increments), piece)]
@@ -50,7 +54,7 @@ def test_each_run_is_the_single_run(motion, network, seconds):
             starts[run],
             settings,
             WGS84,
-            law("external", network, 1.0),
+            law("external", network, law_s),
             truth,
             log,
             sim.before() + biases[run] / RATE,
