@@ -9,7 +9,7 @@ import pytest
 
 from app.session.display import Display
 from app.session.shown import Shown
-from app.views.appearance.export import _content
+from app.views.appearance.export import _numbers
 from app.views.poles.figure import poles
 from app.views.poles.grid import Allowed
 from app.views.switching.view import SwitchingView
@@ -32,10 +32,10 @@ def test_the_region_that_a_limit_rules_out_has_the_limit_as_its_only_edge() -> N
 
 def test_where_nothing_switches_no_other_plot_is_saved_under_that_title() -> None:
     view = SwitchingView(cast(Any, SimpleNamespace(session=None)))
-    for format in ("CSV", "SVG"):
-        with pytest.raises(LookupError, match="No method of this scenario switches"):
-            _content(view, Shown(static_run(), 1, Display()), "Switching", format)
+    with pytest.raises(LookupError, match="No method of this scenario switches"):
+        view.figures(Shown(static_run(), 1, Display()), "Switching")
     varied = {"name": "varied", "damping": "external", "network": {"id": "unity2", "zeta": 0.5},
               "policy": {"id": "variation"}}  # fmt: skip
-    saved = _content(view, Shown(run_of(method=[varied]), 1, Display()), "Switching", "CSV")
+    found = Shown(run_of(method=[varied]), 1, Display())
+    saved = _numbers(view.figures(found, "Switching"), found, "Switching")
     assert b"damped" in saved.lower() and b"\xcf\x86E" not in saved

@@ -57,7 +57,8 @@ def test_what_cannot_be_is_said(network, xi, omega, said):
     network=st.sampled_from(ALL),
 )
 def test_parameters_to_pair_to_parameters(xi, ratio, network):
-    before = place(network, *network.main_pair(OMEGA_S).nearest(xi, ratio * OMEGA_S), OMEGA_S).parameters
+    nearest = network.main_pair(OMEGA_S).nearest(xi, ratio * OMEGA_S)
+    before = place(network, nearest[0], nearest[1], OMEGA_S).parameters
     pair = before.main_pair(OMEGA_S)
     after = place(before, pair.damping_ratio, pair.frequency, OMEGA_S).parameters
     for name, value in before:
@@ -71,7 +72,7 @@ def test_parameters_to_pair_to_parameters(xi, ratio, network):
 def test_the_nearest_possible_pair_is_placed_without_a_note(xi, ratio, network):
     pair = network.main_pair(OMEGA_S)
     nearest = pair.nearest(xi, ratio * OMEGA_S)
-    placed = place(network, *nearest, OMEGA_S)
+    placed = place(network, nearest[0], nearest[1], OMEGA_S)
     assert placed.note == ""
     assert (placed.damping_ratio, placed.frequency) == pytest.approx(nearest, rel=1e-12)
     assert pair.nearest(*nearest) == pytest.approx(nearest, rel=1e-9)

@@ -7,6 +7,7 @@ and the time for twice the text is compared with the time for the text: 2 when l
 from __future__ import annotations
 
 import ast
+import math
 import re
 import time
 from collections.abc import Callable, Iterator
@@ -22,6 +23,8 @@ SMALL, LARGEST = 1 << 13, 1 << 20
 """Every text at the small size, the slowest of an expression at 1 MiB."""
 ENOUGH_S = 0.004
 """Shorter times cannot be compared."""
+TOO_LONG_S = 2.0
+"""Processor time for 1 MiB or less that shows by itself that an expression is not linear."""
 STEEPEST = 3.0
 LOOKS = 3
 """An expression is steep when it is so every time that it is looked at."""
@@ -113,9 +116,11 @@ def _units(pattern: str) -> list[str]:
 
 
 def _steepness(run: Callable[[Any], object], unit: Any, tail: Any, size: int) -> float:
-    """How much longer twice the text takes; 1 where both take too little to be compared."""
+    """How much longer twice the text takes; 1 where both take too little, inf where one takes too long."""
     half, whole = (unit * (n // len(unit) + 1) + tail for n in (size // 2, size))
     before, taken = _timed(run, half), _timed(run, whole)
+    if taken > TOO_LONG_S:
+        return math.inf
     if taken < ENOUGH_S or taken < STEEPEST * before:
         return 1.0
     ratio = STEEPEST

@@ -69,4 +69,4 @@ class YawRate(PolicyParameters):
 
     def limits(self) -> tuple[Limit, ...]:
         """The limit."""
-        return (Limit("limit_deg", self.limit_deg, "deg"),)
+        return (Limit("limit_deg", self.limit_deg, "°"),)
