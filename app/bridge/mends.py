@@ -23,11 +23,21 @@ _CAST = "_schuler_cast"
 
 
 class _LoopEvent(asyncio.Event):
-    """An event that is set in its event loop alone; from another thread nothing happens."""
+    """An event that is set in its own event loop alone; from anywhere else nothing happens.
+
+    Parameters
+    ----------
+    home : asyncio.AbstractEventLoop
+        Its event loop.
+    """
+
+    def __init__(self, home: asyncio.AbstractEventLoop) -> None:
+        super().__init__()
+        self._home = home
 
     def set(self) -> None:
-        """Set the event, if this is the thread of an event loop."""
-        if asyncio._get_running_loop() is not None:
+        """Set the event, if its event loop calls: another thread may have a loop of its own."""
+        if asyncio._get_running_loop() is self._home:
             super().set()
 
 
@@ -47,7 +57,7 @@ class MendedBuffer(AsyncMessageBuffer):
 
     def __post_init__(self) -> None:
         """Exchange the event."""
-        self.message_event = _LoopEvent()
+        self.message_event = _LoopEvent(self.event_loop)
 
     def push(self, message: Any) -> None:
         """Queue a message, in the page's language."""

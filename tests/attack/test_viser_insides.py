@@ -266,15 +266,25 @@ class _Interleaved(deque):
         super().append(waiter)
 
 
+def _in_a_loop_of_its_own(push: Callable[[], None]) -> None:
+    async def pushing() -> None:
+        push()
+
+    asyncio.run(pushing())
+
+
 @pytest.mark.parametrize("mended", [False, True])
-def test_a_message_pushed_while_the_loop_begins_to_wait_is_sent(mended: bool) -> None:
+@pytest.mark.parametrize("pushing", [lambda push: push(), _in_a_loop_of_its_own], ids=["thread", "loop"])
+def test_a_message_pushed_while_the_loop_begins_to_wait_is_sent(
+    mended: bool, pushing: Callable[[Callable[[], None]], None]
+) -> None:
     """viser alone loses the wake-up in this order of events; should it no longer, `MendedBuffer` can go."""
     kind = mends.MendedBuffer if mended else AsyncMessageBuffer
 
     async def first_window() -> bool:
         buffer = kind(asyncio.get_running_loop(), persistent_messages=False)
         message = _messages.GuiUpdateMessage("u", {"value": 1})
-        buffer.message_event._waiters = _Interleaved(lambda: buffer.push(message))
+        buffer.message_event._waiters = _Interleaved(lambda: pushing(lambda: buffer.push(message)))
         windows = buffer.window_generator(0)
         try:
             return len(await asyncio.wait_for(anext(windows), 1.0)) == 1
