@@ -14,7 +14,7 @@ from collections.abc import Callable
 _ARENA_MAX = -8
 _ARENAS = 2
 _AFTER_S = 3.0
-_THRESHOLDS = 20_000, 20, 20
+_THRESHOLDS = 5_000, 10, 10
 """Of new objects, and of rounds of the youngest and the middle generation (`gc.set_threshold`)."""
 
 
