@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from navcore.analysis import analyse
-from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from tests.browser.driver import Bench
+from tests.browser.placing import placing_scenario
 
 pytestmark = pytest.mark.browser
 
@@ -37,21 +37,10 @@ _AWAY = "() => [...document.querySelectorAll('.sb-handle')].every(r => !r.offset
 NEAR = ("xaxis2", "yaxis2")
 
 
-def scenario() -> Scenario:
-    """Two methods in hand by turns: one whose pair can be placed, one that cannot."""
-    data = load("sikuliaq-like").canonical()
-    data["run"] |= {"duration_h": 2.0}
-    data["method"] = [
-        {"name": "fixed", "damping": "external", "network": {"id": "classic2"}},
-        {"name": "placed", "damping": "external", "network": {"id": "unity2", "zeta": 0.5, "r": 1.2}},
-    ]
-    return Scenario.parse(data)
-
-
 @pytest.fixture
 def handles(bench: Bench) -> Bench:
     """The shared page on a scenario of its own; its second method in hand."""
-    bench.put(scenario(), origin=f"handles {bench.session.run_number}", selected=1)
+    bench.put(placing_scenario(), origin=f"handles {bench.session.run_number}", selected=1)
     bench.show(transfer="phi/dv_r", poles="channel", locus="")
     return bench
 

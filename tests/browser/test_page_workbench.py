@@ -10,10 +10,10 @@ import pytest
 
 from app.views.frequency.nyquist import margins_of
 from navcore.analysis import analyse
-from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from tests.browser.driver import Bench
 from tests.browser.fields import label_of
+from tests.browser.placing import placing_scenario
 from tests.browser.test_page_layout import SIZES, resize
 
 pytestmark = pytest.mark.browser
@@ -42,22 +42,13 @@ _TOOLS_IN_ROW = """() => {
 }"""
 
 
-def scenario() -> Scenario:
-    """Three methods: one with a filter, one whose pair can be placed, one that cannot."""
-    data = load("sikuliaq-like").canonical()
-    data["run"] |= {"duration_h": 2.0}
-    data["method"] = [
-        {"name": "fixed", "damping": "external", "network": {"id": "classic2"}},
-        {"name": "placed", "damping": "external", "network": {"id": "unity2", "zeta": 0.5, "r": 1.2}},
-        {"name": "free"},
-    ]
-    return Scenario.parse(data)
+FREE = {"name": "free"}
 
 
 @pytest.fixture
 def workbench(bench: Bench) -> Bench:
     """The shared page on a scenario of its own; its second method in hand, all choices as at first."""
-    bench.put(scenario(), origin=f"workbench {bench.session.run_number}", selected=1)
+    bench.put(placing_scenario(FREE), origin=f"workbench {bench.session.run_number}", selected=1)
     bench.show(transfer="phi/dv_r", discrete=False, locus="")
     return bench
 
@@ -188,7 +179,7 @@ def test_a_typed_pair_is_placed(workbench: Bench) -> None:
 
 
 def test_margin_of_a_law_over_time_stands_in_the_switching_view(workbench: Bench) -> None:
-    data = scenario().canonical()
+    data = placing_scenario(FREE).canonical()
     data["method"][1]["policy"] = {"id": "adaptive"}
     workbench.put(Scenario.parse(data), selected=1)
     workbench.tab("Switching")
