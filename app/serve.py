@@ -162,6 +162,7 @@ class Dashboard:
         if sessions is not None:
             from navcore.foundation.stage_cache import keep_only
 
+            sessions.forget_idle()
             keep_only(sessions.names_with_pages)
 
     def close(self) -> None:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
 from navcore.foundation.notation import symbol
+from navcore.foundation.parameters import sharing
 from navcore.scenario.model import Scenario
 
 MOST_STEPS = 200
@@ -116,6 +117,8 @@ class History:
         if not fields and state.origin == before.origin:
             self._replace(state)  # another method was selected: no step of its own
             return
+        # Two hundred scenarios that differ in a field each are kept as what differs.
+        state = replace(state, scenario=sharing(state.scenario, before.scenario))
         now, (dragged, last_s) = self._clock(), self._drag
         moved = (gesture,) if gesture else () if name else fields
         self._drag = moved, now

@@ -175,7 +175,12 @@ class Sessions:
             self._folder = Path(tempfile.mkdtemp(prefix="schuler-uploads-"))
         return self._folder / id
 
-    def _trim(self, keep: Session) -> None:
+    def forget_idle(self) -> None:
+        """Drop the runs, and the sessions, that are more than are held without an open page."""
+        with self._lock:
+            self._trim()
+
+    def _trim(self, keep: Session | None = None) -> None:
         idle = [s for s in self._by_id.values() if s is not keep and s.open_pages == 0]
         for session in idle[: max(0, len(idle) - MOST_SESSIONS)]:
             del self._by_id[session.id]

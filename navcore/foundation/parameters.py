@@ -23,6 +23,28 @@ class Parameters(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=False)
 
 
+def sharing(after: Any, before: Any) -> Any:
+    """Return ``after`` made of the very objects of ``before`` wherever the two are equal, to save memory.
+
+    Parameters
+    ----------
+    after, before : Parameters, tuple or a field's value
+        Neither is changed.
+    """
+    if type(after) is not type(before):
+        return after
+    if after == before:
+        return before
+    if type(after) is tuple:
+        return (*map(sharing, after, before), *after[len(before) :])
+    if isinstance(after, Parameters):
+        parts = {
+            name: sharing(getattr(after, name), getattr(before, name)) for name in after.model_fields_set
+        }
+        return after.model_copy(update=parts)
+    return after
+
+
 def quantity(
     default: Any,
     *,

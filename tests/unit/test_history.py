@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
+from app.editing import edits
 from app.session.history import MOST_STEPS, History, State, change_name
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
@@ -37,6 +40,26 @@ def test_undo_and_redo_walk_over_the_states():
     history.push(FIRST)
     assert history.redo() is None
     assert history.undo() == longer
+
+
+def test_states_share_what_they_have_in_common():
+    history = History(FIRST, Clock())
+    for name in ("first", "second"):
+        edited = edits.with_value(history.state.scenario, ("method", 1, "name"), name)
+        assert edited.method[0] is not history.state.scenario.method[0]
+        before = history.state.scenario
+        history.push(replace(FIRST, scenario=edited))
+    kept = history.state.scenario
+    assert kept == edited
+    assert kept.model_fields_set == edited.model_fields_set
+    assert kept.motion is before.motion
+    assert kept.method[0] is before.method[0]
+    assert kept.method[1] is not before.method[1]
+    fewer = edits.without_method(kept, 0)
+    history.push(replace(FIRST, scenario=fewer))
+    assert history.state.scenario == fewer
+    history.push(replace(FIRST, scenario=kept))
+    assert history.state.scenario == kept
 
 
 def test_a_drag_is_one_step():

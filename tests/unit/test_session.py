@@ -269,6 +269,22 @@ def test_only_a_bounded_number_of_sessions_without_a_page_is_kept(
     visitors.close()
 
 
+def test_runs_of_visitors_who_have_left_are_dropped(
+    scenario: Scenario, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sessions, "MOST_IDLE_RUNS", 2)
+    visitors = Sessions(lambda: (scenario, "preset"))
+    every = [visitors.get(f"visitor-{number}") for number in range(6)]
+    for session in every:
+        session._views.append(Watcher())
+        session.run = answer(scenario)
+    for session in every[1:]:
+        session._views.clear()
+    visitors.forget_idle()
+    assert [session.run is not None for session in every] == [True, False, False, False, True, True]
+    visitors.close()
+
+
 def test_uploads_go_with_their_session(scenario: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sessions, "MOST_SESSIONS", 1)
     visitors = Sessions(lambda: (scenario, "preset"))
