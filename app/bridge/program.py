@@ -26,8 +26,15 @@ SOCKET_SCRIPT = Path(__file__).parent / "socket.js"
 
 MENDS = (
     # After each change the 3D view is drawn for 250 ms, whether or not anything moves any more: some 15
-    # frames, and each costs 30 ms without a graphics card. What is made late asks for its own frames.
-    ("Bfe=250,", "Bfe=40,"),
+    # frames, and each costs 40 ms without a graphics card. What is made late asks for its own frame.
+    ("Bfe=250,", "Bfe=0,"),
+    # It is drawn once a second too, whether or not anything has changed.
+    ("Vfe=1e3;", "Vfe=1e4;"),
+    # Messages wait for the next frame of the 3D view, which is drawn as it was before them.
+    (
+        "i&&document.hidden?(r(),e.requestRender()):a?r():e.requestRender()",
+        "i?(r(),a||e.requestRender()):e.requestRender()",
+    ),
     # Messages that follow each other within 100 ms are held back, so that they are shown as evenly as they
     # were sent. Our server sends a picture when the page has painted the one before: waiting delays it.
     ("void 0||p>100||d-l.jsTimeMinusPythonTime", "void 0||p>=0||d-l.jsTimeMinusPythonTime"),

@@ -14,6 +14,20 @@ from tests.browser.test_page_playback import command, now, wait_for
 pytestmark = pytest.mark.browser
 
 _COLOR = "() => window.__viserSceneTree.getState()['/computed/hull'].message.props.color"
+# Counts the frames of the 3D view from now on: each begins by clearing its picture.
+_COUNT = """() => {
+  const { clear } = WebGL2RenderingContext.prototype;
+  window.framesOf3D = 0;
+  WebGL2RenderingContext.prototype.clear = function (...what) {
+    window.framesOf3D += 1;
+    return clear.apply(this, what);
+  };
+}"""
+_FRAMES = "() => window.framesOf3D"
+_DRAW_AGAIN = """() => new Promise(done => {
+  window.__viserMutable.requestRender();
+  requestAnimationFrame(() => requestAnimationFrame(done));
+})"""
 _VIEW = """() => {
   const box = document.querySelector('canvas[data-engine]').getBoundingClientRect();
   return [box.left, box.top, box.right, box.bottom];
@@ -70,6 +84,45 @@ def test_the_computed_ship_is_that_of_the_method_in_hand(moving: Bench) -> None:
     page.wait_for_function(f"c => String(({_COLOR})()) === c", arg=",".join(map(str, style.method_rgb(1))))
     page.locator("#sb-stage table").get_by_text("classic2").wait_for()
     assert moving.run == number
+
+
+def test_the_last_frame_shows_the_last_change(moving: Bench) -> None:
+    page = moving.page
+    left, top, right, bottom = page.evaluate(_VIEW)
+    view: Any = {"x": left, "y": top, "width": right - left, "height": bottom - top}
+
+    def seek(time_s: float) -> None:
+        command(moving, "seek", time_s)
+        wait_for(moving, "n.time === arg", time_s)
+
+    seek(20000)
+    page.evaluate(_COUNT)
+    before = page.screenshot(clip=view)
+    changes = (
+        lambda: moving.press("network.zeta", "End"),
+        lambda: moving.show(exaggeration=3000.0),
+        lambda: seek(9000),
+        lambda: moving.select(1),
+        lambda: command(moving, "camera-top"),
+    )
+    try:
+        for number, change in enumerate(changes):
+            change()
+            moving.settle()
+            shown = moving.wait_for_change(lambda: page.screenshot(clip=view))
+            assert shown != before, number
+            frames = page.evaluate(_FRAMES)
+            page.wait_for_timeout(1500)
+            assert page.evaluate(_FRAMES) - frames <= 2, "at rest it is drawn once in ten seconds"
+            page.evaluate(_DRAW_AGAIN)
+            assert page.evaluate(_FRAMES) > frames
+            assert page.screenshot(clip=view) == shown, (number, "nothing was left to be drawn")
+            before = shown
+    finally:
+        command(moving, "camera-map")
+        command(moving, "seek", 1e9)
+        moving.show(exaggeration=None)
+    assert moving.faults == []
 
 
 def test_a_pendulum_for_each_method(moving: Bench) -> None:
