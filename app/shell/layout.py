@@ -46,6 +46,8 @@ class Layout:
         By which type, lines and all sizes are enlarged; 1 but in presentation size.
     touch : bool
         A finger is the pointer.
+    alone : bool
+        One view fills the window.
     wide : bool
         Two panels above each other; else one.
     left_px, right_px : int
@@ -66,6 +68,7 @@ class Layout:
     view_px: tuple[int, int]
     scale: float = 1.0
     touch: bool = False
+    alone: bool = False
 
     def aspect(self, taken_px: int = 0) -> float:
         """Height / width of a plot that fills the panel, ``taken_px`` being used by something else."""
@@ -88,7 +91,8 @@ def layout_for(
     """
     if alone:
         size = width, height
-        return Layout(False, 320, width, width - _COLUMN_PADDING_PX, max(height - _MARGIN_PX, 120), size)
+        room = max(height - _MARGIN_PX, 120)
+        return Layout(False, 320, width, width - _COLUMN_PADDING_PX, room, size, alone=True)
     if presentation:
         return _presented(width, height)
     if touch:

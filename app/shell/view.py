@@ -105,6 +105,8 @@ class View:
         What to look for in it, in one line at the top of a tab of the right column.
     focus : str
         Name in a scenario's block ``view`` that brings its tab to the front.
+    alone : tuple of str
+        Of a view without a tab that may fill a window: names for ``?view=``, one for each way to see it.
     plots : tuple of str
         Titles of the plots that can be saved from it.
     always : bool
@@ -115,6 +117,7 @@ class View:
     place: ClassVar[Place] = "page"
     look_for: ClassVar[str] = ""
     focus: ClassVar[str] = ""
+    alone: ClassVar[tuple[str, ...]] = ()
     plots: ClassVar[tuple[str, ...]] = ()
     always: ClassVar[bool] = True
 

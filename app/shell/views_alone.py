@@ -10,12 +10,13 @@ from app.shell.view import View
 
 
 def view_names(kinds: Sequence[type[View]]) -> dict[str, str]:
-    """Names for ``?view=`` -> titles of the tabs of results.
+    """Names for ``?view=`` -> titles of the tabs of results; "" for what stands beside the tabs.
 
-    A scenario's block ``view`` uses the same names.
+    A scenario's block ``view`` uses the same names for the tabs.
     """
     results = [kind for kind in kinds if kind.place in ("upper", "lower")]
-    return {kind.focus or kind.title.lower(): kind.title for kind in results}
+    beside = [name for kind in kinds for name in kind.alone]
+    return {kind.focus or kind.title.lower(): kind.title for kind in results} | dict.fromkeys(beside, "")
 
 
 def views_element(kinds: Sequence[type[View]]) -> str:

@@ -98,7 +98,7 @@ def test_one_view_fills_the_window_without_controls(visitor: Callable[[int, int]
         assert page.evaluate(_CONTROLS) == []
     page.goto(f"{bench.url}?fixedDpr=0.25&view=boat")
     told = bench.notice("No such view")
-    assert "'boat'" in told and "bode, poles, step" in told
+    assert "'boat'" in told and "bode, poles, step" in told and "map, follow, top, side" in told
     assert page.evaluate(_CONTROLS) == []
     # the same session with all its controls: what is asked for above can be seen
     page.set_viewport_size({"width": 1280, "height": 720})
@@ -107,4 +107,32 @@ def test_one_view_fills_the_window_without_controls(visitor: Callable[[int, int]
     assert len(page.evaluate(_CONTROLS)) > 20
     page.keyboard.press("?")
     page.get_by_role("dialog", name="Keys").wait_for()
+    assert bench.faults == []
+
+
+# The 3D view fills the window, seen so; its key stands over it, without the bar.
+_STAGE = """camera => {
+  const now = JSON.parse(document.getElementById('sb-playback')?.dataset.now ?? '{}');
+  const box = document.querySelector('canvas[data-engine]')?.getBoundingClientRect();
+  const seen = selector => document.querySelector(selector)?.checkVisibility({visibilityProperty: true});
+  return !document.getElementById('sb-veil') && now.camera === camera && box?.width === innerWidth
+    && box.height === innerHeight && seen('#sb-stage .sb-key') && !seen('#sb-stage .sb-bar');
+}"""
+
+
+def test_the_map_fills_the_window_without_controls(visitor: Callable[[int, int], Bench]) -> None:
+    bench = visitor(600, 380)
+    page, looks = bench.page, []
+    for camera in ("map", "top"):
+        page.goto(f"{bench.url}?fixedDpr=0.25&view={camera}")
+        page.wait_for_function(_STAGE, arg=camera)
+        page.wait_for_function("() => window.__viserSceneTree.getState()['/track/truth'] !== undefined")
+        assert page.evaluate(_CONTROLS) == []
+        assert page.locator("#sb-stage button:visible").all_inner_texts() == [
+            entry.inner_text() for entry in page.locator("#sb-stage .sb-entry").all()
+        ]
+        looks.append(bench.wait_for_change(page.screenshot, *looks))
+    page.goto(f"{bench.url}?fixedDpr=0.25&view=bode")
+    page.wait_for_function(_FILLS, arg="bode")
+    assert not page.locator("#sb-stage").is_visible()
     assert bench.faults == []

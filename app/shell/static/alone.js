@@ -15,8 +15,9 @@
     told = true;
   }
 
-  // What is to be seen: the area of the view's tab.
+  // What is to be seen: the area of the view's tab, or what a view without one has named so (data-sb-views).
   function area(title) {
+    if (title === "") return document.querySelector(`[data-sb-views~="${CSS.escape(asked)}"]`);
     const tab = window.schuler.tab(title);
     window.schuler.open(tab);
     // A panel keeps one area for each of its tabs; those behind have no box.

@@ -17,9 +17,15 @@ MAP, FOLLOW, TOP, SIDE = CAMERAS = ("map", "follow", "top", "side")
 _TILT = {MAP: (78.0, 72.0, 66.0, 58.0, 50.0), TOP: (90.0,), SIDE: (22.0,)}
 """Elevation of the camera above the map, deg: the first at which the map's width fills the view."""
 _ROOM = 1.1
-"""Scene units around the map for its labels."""
-_SOUTH = -0.7
-"""North of the map's middle what is looked at: labels and scale bar stand south of the map."""
+"""Scene units east and west of the map for its labels."""
+_SOUTH, _NORTH = -HALF_WIDTH - 1.4, HALF_WIDTH + 0.5
+"""How far labels and scale bar, and the arrow to the north, reach beyond the map's edges."""
+_LABEL_PX = 18
+"""Height of the scale bar's label, which is as high from afar."""
+_UP_TO = 0.5
+"""Part of the way from the view's middle to the horizon that the map may reach up."""
+_LEAST_PX = 120
+"""Height that the map gets in the smallest view."""
 _BEHIND, _ABOVE, _AHEAD = 4.2, 2.1, 0.8
 """Of the camera behind the ship, scene units."""
 
@@ -42,14 +48,10 @@ class Window:
     below: int = 0
 
     @property
-    def free(self) -> int:
-        """Height that is left for the map."""
-        return max(self.height - self.above - self.below, 120)
-
-    @property
-    def off_middle(self) -> float:
-        """How far the middle of what is free lies above that of the view, as a part of half its height."""
-        return (self.below - self.above) / self.height
+    def free(self) -> tuple[float, float]:
+        """Lower and upper end of what is left for the map, from the view's middle, over half its height."""
+        low = min(self.below + _LABEL_PX, self.height - self.above - _LEAST_PX)
+        return 2.0 * low / self.height - 1.0, 1.0 - 2.0 * self.above / self.height
 
 
 class Cameras:
@@ -75,20 +77,13 @@ class Cameras:
                 self.follow(place)
             return
         half = math.tan(0.5 * self._camera.fov)
-        tilt = across = upright = 0.0
+        distance = north = tilt = 0.0
         for degrees in _TILT[name]:
             tilt = math.radians(degrees)
-            # The southern edge is nearest to the camera and looks largest.
-            nearer = HALF_WIDTH * math.cos(tilt)
-            across = (HALF_WIDTH + _ROOM) / (half * window.width / window.height) + nearer
-            upright = (HALF_WIDTH * math.sin(tilt) + _ROOM + 0.5) / (
-                half * window.free / window.height
-            ) + nearer
-            if upright <= across:
+            distance, north, wide = _fit(tilt, half, window)
+            if wide:
                 break
-        distance = max(across, upright)
-        shift = -window.off_middle * distance * half / math.sin(tilt)
-        centre = np.array([0.0, _SOUTH + (shift if name != SIDE else 0.5 * shift), 0.0])
+        centre = np.array([0.0, north, 0.0])
         away = distance * np.array([0.0, -math.cos(tilt), math.sin(tilt)])
         self._point(centre + away, centre, (0.0, 1.0, 0.0) if name == TOP else (0.0, 0.0, 1.0))
 
@@ -106,3 +101,23 @@ class Cameras:
         self._camera.up_direction = up
         self._camera.position = position
         self._camera.look_at = look_at
+
+
+def _fit(tilt: float, half: float, window: Window) -> tuple[float, float, bool]:
+    """Distance of a camera at an elevation (rad), how far north it looks, and whether the width is filled.
+
+    ``half`` is the tangent of half the camera's angle of view. What lies y north of the map's middle is seen
+    (y - n) sin(tilt) / (distance + (y - n) cos(tilt)) / half above the view's middle, as a part of half its
+    height, n being how far north it looks.
+    """
+    ends = np.minimum(np.array(window.free) * half, _UP_TO * math.tan(tilt))
+    sizes = math.sin(tilt) - ends * math.cos(tilt)  # near and far things look larger and smaller
+    low, high = ends / sizes
+    upright = float((_NORTH - _SOUTH) / (high - low))
+    # With as much room above as below n is ``middle + slope * distance``; the southern edge looks widest.
+    weights = sizes**2 / np.sum(sizes**2)
+    middle, slope = float(weights @ (_SOUTH, _NORTH)), -float(weights @ (low, high))
+    edge = (HALF_WIDTH + _ROOM) * window.height / (half * window.width)
+    across = (edge + (HALF_WIDTH + middle) * math.cos(tilt)) / (1.0 - slope * math.cos(tilt))
+    distance = max(across, upright)
+    return distance, middle + slope * distance, upright <= across

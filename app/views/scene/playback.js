@@ -64,6 +64,10 @@
       button.addEventListener("click", () => reveal(button, button.getAttribute("aria-pressed") !== "true"));
       reveal(button, innerHeight >= (button.dataset.shows === "pendulum" ? 560 : 900));
     }
+    const asked = window.schuler.alone && document.documentElement.dataset.alone;
+    if (!now.cameras.includes(asked)) return;
+    stage.classList.add("sb-alone");
+    window.schuler.command(`camera-${asked}`);
   }
 
   // A small view has room for one of them.
@@ -162,6 +166,8 @@
     const canvas = document.querySelector("canvas[data-engine]") ?? document.querySelector("canvas");
     const box = canvas?.getBoundingClientRect();
     if (!box || box.width < 40) return;
+    // alone.js lets it fill the window: viser's own frame of the canvas, of which the canvas takes its size.
+    canvas.parentElement.parentElement.dataset.sbViews = now.cameras.join(" ");
     const wanted = [box.left, box.bottom, box.width].map(Math.round);
     stage.style.left = `${wanted[0]}px`;
     stage.style.top = `${Math.round(box.top)}px`;

@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.session.shown import Shown
 from app.shell.view import Frame, Tab, View, if_user
 from app.views.scene.bar import MapKey, PlaybackPanel, map_key
-from app.views.scene.cameras import Cameras, Window
+from app.views.scene.cameras import CAMERAS, Cameras, Window
 from app.views.scene.drawer import SceneDrawer
 from app.views.scene.playback import Playback, PlayState
 from app.views.scene.track import track
@@ -13,8 +13,8 @@ from navcore.engine.run import Run
 
 _FIT = "as needed"
 # What stands over the view (playback.css, playback.js), px.
-_PENDULUM_PX, _READOUT_PX, _TALL_PX = 195, 285, 900
-_BAR_PX, _CAPTION_PX, _KEY_ROW_PX, _KEY_ROWS = 88, 22, 22, 5
+_PENDULUM_PX, _READOUT_PX, _LOW_PX, _TALL_PX = 195, 285, 560, 900
+_BAR_PX, _MARGIN_PX, _CAPTION_PX, _KEY_ROW_PX, _KEY_ROWS = 88, 8, 22, 22, 5
 _SMALL_PX = 480
 _MAP_SHARE, _LABEL_PX = 0.8, 62
 """Part of the view's width that the map's southern edge takes; width of a longitude with some room."""
@@ -43,6 +43,8 @@ class SceneView(View):
     playback : Playback
         The time that is shown; ``playback.seek(t_s)`` moves ship, pendulum, readout and the plots' lines.
     """
+
+    alone = CAMERAS
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
@@ -99,11 +101,14 @@ class SceneView(View):
     @property
     def _window(self) -> Window:
         """The view, and what of its height the instruments above and the key below the map take."""
-        width, height = self.frame.layout().view_px
+        layout = self.frame.layout()
+        width, height = layout.view_px
+        above = 0 if height < _LOW_PX else _PENDULUM_PX if height < _TALL_PX else _READOUT_PX
+        bar = _MARGIN_PX if layout.alone else _BAR_PX
         methods = 0 if self._run is None else len(self._run.methods)
         abreast = 1 if width < _SMALL_PX else 2
-        below = _BAR_PX + _CAPTION_PX + _KEY_ROW_PX * min(-(-methods // abreast), _KEY_ROWS)
-        return Window(width, height, _READOUT_PX if height >= _TALL_PX else _PENDULUM_PX, below)
+        below = bar + _CAPTION_PX + _KEY_ROW_PX * min(-(-methods // abreast), _KEY_ROWS)
+        return Window(width, height, above, below)
 
     def _show(self, state: PlayState) -> None:
         with self.session.lock, self.frame.client.atomic():
