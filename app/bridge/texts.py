@@ -13,6 +13,8 @@ from typing import Any, Protocol, cast
 import msgspec
 from viser import _messages as messages
 
+from app.languages.names import NONE, Names
+
 Say = Callable[[str], str]
 
 
@@ -21,8 +23,8 @@ class Language(Protocol):
 
     name: str
 
-    def text(self, text: str) -> str:
-        """Translate a text, HTML or not."""
+    def text(self, text: str, names: Names = ...) -> str:
+        """Translate a text, HTML or not, in which these names stay as they are."""
         ...
 
 
@@ -42,11 +44,25 @@ class Translator:
     ----------
     language : Language
         Of the page.
+
+    Attributes
+    ----------
+    names : callable
+        ``names()``: what users have called something, which stays as they wrote it.
     """
 
     def __init__(self, language: Language) -> None:
-        self.name, self._say = language.name, language.text
+        self.name, self._language = language.name, language
+        self.names: Callable[[], Names] = lambda: NONE
         self._meant: dict[str, dict[str, str]] = {}
+
+    def _say(self, text: str) -> str:
+        return self._language.text(text, self.names())
+
+    def _say_label(self, label: str) -> str:
+        """Translate what a control is called: it may hold a name, but is none."""
+        names = self.names()
+        return self._language.text(label, NONE if names.are(label) else names)
 
     def message(self, message: messages.Message) -> messages.Message:
         """Return a message to the page with its texts translated; the message itself stays as it is.
@@ -84,12 +100,14 @@ class Translator:
         for name, value in fields.items():
             if name not in _KNOWN or not value:  # the points of a line, say, have no truth value
                 continue
-            if name in _TEXTS and isinstance(value, str):
+            if name == "label" and isinstance(value, str):
+                changed[name] = self._say_label(value)
+            elif name in _TEXTS and isinstance(value, str):
                 changed[name] = self._say(value)
             elif name == "options":
                 changed[name] = self._offer(uuid, value)
             elif name in _LISTS:
-                changed[name] = tuple(self._say(text) for text in value)
+                changed[name] = tuple(self._say_label(text) for text in value)
             elif name == _PLOTLY:
                 changed[name] = self.figure(value)
             elif name in _UPLOT:
@@ -154,6 +172,13 @@ def speak(server: Any, client_id: int, language: Language | None) -> None:
     """Translate all that goes to a page from now on; None: it reads English."""
     buffer = server._websock_server._client_state_from_id[client_id].message_buffer
     buffer.translator = None if language is None else Translator(language)
+
+
+def keep_names(client: Any, names: Callable[[], Names]) -> None:
+    """Let a page's texts have these names in them as users wrote them, in whatever language it is."""
+    translator = _translator(client)
+    if translator is not None:
+        translator.names = names
 
 
 def meant(server: Any, client_id: int, uuid: str, value: object) -> object:

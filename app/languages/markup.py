@@ -27,6 +27,8 @@ _OPAQUE = re.compile(
     r"%\{[^{}]*\}|"
     r"<[a-z]++ (?>[^<>]*?translate=.no.)[^<>]*+>[^<]*</[a-z]+>"
 )
+_INSTEAD = re.compile(r"(<span class=.sb-live\b[^<>]*>)(\([^<]*\))")
+"""Where a lesson has no number to show: what the reader is to do for it."""
 _HIDDEN = "|".join(
     (
         _element("pre"),
@@ -37,7 +39,7 @@ _HIDDEN = "|".join(
 )
 _TOKEN = re.compile(rf"({_HIDDEN}|</?[a-zA-Z][^<>]*>|<!--(?>(?:[^-<]|-(?!->)|<(?!!--))*)-->)")
 _INLINE = re.compile(r"<(/?)(b|i|em|strong|code|sub|sup|a|span|kbd|small|var)\b([^>]*)>")
-_ATTRIBUTE = re.compile(r'\b(title|aria-label|aria-valuetext|alt|placeholder|data-told)="([^"]*)"')
+_ATTRIBUTE = re.compile(r'(?<![\w-])(title|aria-label|aria-valuetext|alt|placeholder|data-told)="([^"]*)"')
 _TAG = re.compile(r"</?[a-z]+>")
 _PARTS = re.compile(r"(</?[a-z]+>)")
 _AROUND = re.compile(r"<([a-z]+)>(.*)</\1>", re.DOTALL)
@@ -86,6 +88,9 @@ def translate(html: str, say: Say) -> str:
         values.append(found[0])
         return f"{OPEN}{len(values) - 1}{CLOSE}"
 
+    def instead(found: re.Match[str]) -> str:
+        return f"{found[1]}{escape(say(unescape(found[2])), quote=False)}"
+
     out: list[str] = []
     piece: list[str] = []
     for token in _TOKEN.split(_OPAQUE.sub(hide, html)):
@@ -97,7 +102,9 @@ def translate(html: str, say: Say) -> str:
         else:
             piece.append(token)
     out.append(_translate_piece("".join(piece), say))
-    return re.sub(f"{OPEN}([0-9]+){CLOSE}", lambda found: values[int(found[1])], "".join(out))
+    return re.sub(
+        f"{OPEN}([0-9]+){CLOSE}", lambda found: _INSTEAD.sub(instead, values[int(found[1])]), "".join(out)
+    )
 
 
 def _translate_piece(piece: str, say: Say) -> str:

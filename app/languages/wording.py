@@ -16,6 +16,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from app.languages import markup
+from app.languages.names import NAME, NONE, Names
 
 FOLDER = Path(__file__).parent
 DOMAIN = "schuler"
@@ -34,6 +35,7 @@ _SEPARATORS = tuple(
         r"(; )",
         r"(: )",
         r"(, (?:and |or )?)",
+        rf"(^{NAME} )(?=\()",
         r"( \(|\))",
         r"( / |/(?=[a-z]{3})| -> | → )",
         r"( and | or )",
@@ -43,10 +45,12 @@ _JOINTS = {"; ": "；", ": ": "：", ", ": "，", ", and ": "和", ", or ": "或
 _LONGEST = 6000
 _DEEPEST = 12
 _MOST_PARTS = 15
-_WEAK = 12
+_WEAK = 11
 _LONGEST_VALUE = 40
 _ENDS = {".": "。", ":": "："}
 _WITH_UNIT = re.compile(r"(.+?) (\([^()]*\))((?:, [a-z]+)?)")
+_PARENTHESIS, _CLOSED = re.compile("[()]"), re.compile(r"\([^()]*\)")
+_MANY = re.compile(r"[A-Za-z]{2,},? [A-Za-z]{2,}")
 _ENDED = re.compile(r"[.;:] ")
 _MOST_KEPT = 20_000
 _LONGEST_KEPT = 50_000
@@ -59,8 +63,8 @@ class _Pattern:
 
     Attributes
     ----------
-    pattern : re.Pattern
-        Matches the text with its values.
+    pattern, greedy : re.Pattern
+        Match the text with its values, as short and as long as can be.
     said : str
         Its translation, with the values as ``{0}``.
     weight : int
@@ -70,25 +74,29 @@ class _Pattern:
     """
 
     pattern: re.Pattern[str]
+    greedy: re.Pattern[str]
     said: str
     weight: int
     labels: bool
 
     def values(self, text: str) -> tuple[str, ...] | None:
         """Values in a text; None when it is another one."""
-        found = self.pattern.fullmatch(text)
-        if found is None:
-            return None
-        values = found.groups(default="")
+        for pattern in (self.pattern, self.greedy):  # the shortest values, else the longest ones
+            found = pattern.fullmatch(text)
+            values = None if found is None else self._fit(found.groups(default=""), text)
+            if found is None or values is not None:
+                return values
+        return None
+
+    def _fit(self, values: tuple[str, ...], text: str) -> tuple[str, ...] | None:
+        """Values that a text can mean, None when they cannot be meant."""
         if values and values[-1].endswith(".") and text.endswith(values[-1]):  # the sentence's own
             return None
         # "A: tilt from log error" is a label and a text: the label is not part of the text's first value.
         if self.pattern.pattern.startswith("(?P") and not self.labels and ": " in values[0]:
             return None
-        # A text of few letters fits much by chance: then its values must be words, not sentences.
         by_chance = self.weight < _WEAK and _TAGS.search(text) is not None
-        weak = self.weight < _WEAK and any(len(v) > _LONGEST_VALUE or _ENDED.search(v) for v in values)
-        return None if by_chance or weak or any(_is_torn(value) for value in values) else values
+        return None if by_chance or any(_is_torn(value) for value in values) else values
 
 
 class Wording:
@@ -133,13 +141,41 @@ class Wording:
                 return "<br>".join(said[at : at + width] for at in range(0, len(said), width))
         return markup.translate(html, self.say)
 
-    def text(self, text: str) -> str:
-        """Translate a text of the page, HTML or not; what has no translation stays as it is."""
+    def text(self, text: str, names: Names = NONE) -> str:
+        """Translate a text of the page, HTML or not; what has no translation stays as it is.
+
+        Parameters
+        ----------
+        text : str
+            In English.
+        names : Names
+            What users have called something: it stays as they wrote it.
+        """
         if len(text) < 2 or _LETTERS.search(text) is None:
             return text
-        if not markup.has_markup(text):
+        if not names.within(text):
+            if not markup.has_markup(text):
+                return self.say(text)
+            return self.markup(text) if len(text) <= _LONGEST_KEPT else self._markup(text)
+        if not markup.has_markup(names.hidden(text)[0]) and not text.lstrip().startswith("<"):
+            return self._around_names(text, names)
+        return markup.translate(text, lambda piece: self._around_names(piece, names))
+
+    def _around_names(self, text: str, names: Names) -> str:
+        """Translate a text without markup in which there may be names.
+
+        A name may also be a word of the text itself, such as "log". Of three readings, the name as a name,
+        the name as a word, and the text before and after it apart, the first that leaves least in English
+        is meant.
+        """
+        if names.are(text):
+            return text
+        around, found = names.hidden(text)
+        if not found:
             return self.say(text)
-        return self.markup(text) if len(text) <= _LONGEST_KEPT else self._markup(text)
+        apart = "".join(self.say(part) for part in re.split(f"({NAME})", around))
+        said = (self.say(around), names.hidden(self.say(text))[0], apart)
+        return names.shown(min(said, key=lambda one: len(_LETTERS.findall(one))), found)
 
     def _say(self, text: str) -> str:
         found = self._look_up(text)
@@ -181,13 +217,26 @@ class Wording:
         near = [pattern for word in words for pattern in self._by_word.get(word, ())]
         for one in sorted(near, key=lambda one: -one.weight):
             found = one.values(text)
-            if found is not None:
-                return _filled(one.said, [self._value(value, depth) for value in found])
+            if found is None:
+                continue
+            weak = one.weight < _WEAK
+            said = [self._value_of_weak(v, depth) if weak else self._value(v, depth) for v in found]
+            if all(value is not None for value in said):
+                return _filled(one.said, [value or "" for value in said])
         return None
 
     def _value(self, value: str, depth: int) -> str:
         found = self._look_up(value, depth + 1)
         return value if found is None else found
+
+    def _value_of_weak(self, value: str, depth: int) -> str | None:
+        """Translate a value of a text that fits much by chance, having few letters; None when it is no value.
+
+        It is a word, or several that are known, and a sentence only when it is one of the catalogue.
+        """
+        sentence = len(value) > _LONGEST_VALUE or _ENDED.search(value) is not None
+        found = self._whole(value, depth + 1) if sentence else self._look_up(value, depth + 1)
+        return value if found is None and not sentence and _MANY.search(value) is None else found
 
     def _take_apart(self, text: str, depth: int) -> str | None:
         for separator in _SEPARATORS:
@@ -249,14 +298,16 @@ def _joined(parts: list[str]) -> str:
 
 
 def _is_torn(value: str) -> bool:
-    """Whether an element begins or ends in a value, but not both."""
+    """Whether an element or a parenthesis begins or ends in a value, but not both."""
+    if _PARENTHESIS.search(_CLOSED.sub("", _CLOSED.sub("", value))):
+        return True
     return "<" in value and any(
         value.count(f"<{tag}>") != value.count(f"</{tag}>") for tag in _TAGS.findall(value)
     )
 
 
 def _is_wide(letter: str) -> bool:
-    return letter >= "\u3000" and not "\ue000" <= letter <= "\ue001"
+    return letter >= "\u3000" and not "\ue000" <= letter <= "\uf8ff"
 
 
 def words_of(text: str) -> list[str]:
@@ -282,7 +333,8 @@ def _pattern(key: str, said: str) -> _Pattern:
     for number, part in zip(order, parts[1:], strict=True):
         again = f"(?P=v{number})" if f"(?P<v{number}>" in pattern else f"(?P<v{number}>.*?)"
         pattern += again + re.escape(part)
-    return _Pattern(re.compile(pattern, re.DOTALL), said, sum(map(len, parts)), ":" in key)
+    shortest, longest = (re.compile(p, re.DOTALL) for p in (pattern, pattern.replace(">.*?)", ">.*)")))
+    return _Pattern(shortest, longest, said, sum(map(len, parts)), ":" in key)
 
 
 def read_texts(language: str) -> dict[str, str]:

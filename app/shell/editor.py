@@ -150,7 +150,8 @@ class Editor:
             if self._closed or control.removed or control.moving or self._doubts.pop(control, None) is None:
                 return
             control.show(control.value)
-            kept = f"{control.value:.9g}" if control.spec.kind == "number" else control.as_text(control.value)
+            number = control.spec.kind == "number" and control.value is not None
+            kept = f"{control.value:.9g}" if number else control.as_text(control.value)
             if isinstance(error, InputError):
                 field = ".".join(map(str, control.spec.path))
                 lines = [notices.refusal(fault, kept, field, shown) for fault in error.faults]

@@ -98,12 +98,11 @@ def refusal(fault: Fault, kept: str = "", field: str = "", entered: object = Non
     str
         The value, what it must be, what is kept.
     """
-    value = "" if fault.value is None else f"{_shown(fault.value)} was not taken over: "
+    told = f"{fault.allowed} ({kept} is kept)" if kept else fault.allowed
     if field and fault.field and not f"{field}.".startswith(f"{fault.field}."):
         other = fault.field if fault.value is None else f"{fault.field} = {_shown(fault.value)}"
-        value = f"{_shown(entered)} does not go with {other}: "
-    keeps = f" ({kept} is kept)" if kept else ""
-    return f"{value}{fault.allowed}{keeps}"
+        return f"{_shown(entered)} does not go with {other}: {told}"
+    return told if fault.value is None else f"{_shown(fault.value)} was not taken over: {told}"
 
 
 def fault_lines(error: InputError) -> list[str]:

@@ -15,7 +15,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.bridge.server import leaving_is_no_fault
+from app.bridge.texts import keep_names
 from app.plots import style
+from app.session.names import GivenNames
 from app.session.session import Session
 from app.session.shown import shown
 from app.shell import notices
@@ -74,6 +76,7 @@ class Page:
     def _build(self, kinds: Sequence[type[View]]) -> None:
         gui, session = self.gui, self.session
         leaving_is_no_fault(self.client)
+        keep_names(self.client, GivenNames(session))
         self._reports = Reports(gui, self._on_window, self._pace.told)
         self.commands = Commands(gui, self._command_failed)
         gui.add_html(f"<style>{self._styles(kinds)}</style>", order=0)

@@ -7,12 +7,12 @@ from typing import Any
 
 from app.editing.typed import read_typed, unit_of
 from app.shell.commands import Commands
-from app.shell.control import EXACT, Control
+from app.shell.control import Control
 from navcore.foundation.errors import Fault, InputError
 
 
 class Typing:
-    """Commands ``typed LABEL TAB TEXT`` and ``reset-named LABEL`` of one page (static/boxes.js).
+    """Commands ``typed ID TAB TEXT`` and ``reset-named ID`` of one page (static/boxes.js).
 
     Parameters
     ----------
@@ -37,13 +37,12 @@ class Typing:
         commands.register("typed", self._typed)
         commands.register("reset-named", self._reset_named)
 
-    def _of(self, label: str) -> Control | None:
-        name = label.strip().removesuffix(EXACT)
-        return next((control for control in self._controls() if control.spec.label == name), None)
+    def _of(self, id: str) -> Control | None:
+        return next((control for control in self._controls() if id.strip() in control.ids), None)
 
     def _typed(self, argument: str) -> None:
-        label, _, text = argument.partition("\t")
-        control = self._of(label)
+        id, _, text = argument.partition("\t")
+        control = self._of(id)
         if control is None or control.spec.kind not in ("number", "integer"):
             return
         name = control.spec.label
@@ -57,7 +56,7 @@ class Typing:
             value = int(value)
         self._put(control, value)
 
-    def _reset_named(self, label: str) -> None:
-        control = self._of(label)
+    def _reset_named(self, id: str) -> None:
+        control = self._of(id)
         if control is not None:
             self._reset(control)

@@ -132,7 +132,7 @@ def _refuse_unusable(path: Path, tally: Tally, readings: dict[Channel, list[tupl
         raise refuse(f"{back}: put the lines in order or split the file", line)
     total, bad = tally.intact.total() + tally.bad.total(), tally.bad.total()
     worst = [
-        f"{address} {count} of {count + tally.intact[address]}"
+        f"{address} {count}/{count + tally.intact[address]}"
         for address, count in tally.bad.items()
         if is_used(address) and count > MOST_BAD_CHECKSUMS * (count + tally.intact[address])
     ]

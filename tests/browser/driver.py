@@ -14,7 +14,9 @@ from playwright.sync_api import Error as PlaywrightError
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
 from app.bridge.server import pool_of
+from app.languages.wording import wording
 from app.session.display import Display
+from app.session.names import GivenNames
 from app.session.session import first_editable
 from app.session.sessions import first_scenario
 from app.shell.page import Page as OpenPage
@@ -73,6 +75,7 @@ class Bench:
         self.url = url
         self.sessions = sessions
         self.faults: list[str] = []
+        self.language = "en"
         self._marks: WeakKeyDictionary[Any, Any] = WeakKeyDictionary()
         self._mark_numbers = count(1)
         page.set_default_timeout(PATIENCE_MS)
@@ -91,6 +94,7 @@ class Bench:
         self.page.goto(f"{self.url}{path}{query}")
         self.page.wait_for_selector("#sb-run[data-run]", state="attached")
         self.page.wait_for_selector(".uplot canvas, .js-plotly-plot .trace", state="attached")
+        self.language = self.page.evaluate("() => schuler.language")
         self.close_notices()
         return self
 
@@ -107,10 +111,29 @@ class Bench:
 
     # ------------------------------------------------------------ acting
 
+    # Tests name what is on the page in English, whatever its language is.
+
+    def said(self, text: str) -> str:
+        """What an English text of the page is called in the page's language."""
+        language = wording(self.language)
+        if language is None:
+            return text
+        return (
+            language.text(text) if self.sessions is None else language.text(text, GivenNames(self.session)())
+        )
+
+    def button(self, name: str) -> Locator:
+        """The button of this name."""
+        return self.page.get_by_role("button", name=self.said(name), exact=True)
+
+    def dialog(self, name: str) -> Locator:
+        """The dialog of this title."""
+        return self.page.get_by_role("dialog", name=self.said(name))
+
     def tab(self, *names: str) -> None:
         """Bring tabs to the front; wait until the page holds what they show."""
         for name in names:
-            tab = self.page.get_by_role("tab", name=name, exact=True)
+            tab = self.page.get_by_role("tab", name=self.said(name), exact=True)
             if tab.get_attribute("aria-selected") != "true":
                 tab.click()
                 self.heard()
@@ -129,6 +152,7 @@ class Bench:
     def _id_of(self, labels: list[str]) -> str:
         script = """labels => [...document.querySelectorAll('label')]
           .find(label => labels.includes(label.textContent))?.htmlFor ?? null"""
+        labels = [self.said(label) for label in labels]
         self.page.wait_for_function(f"labels => ({script})(labels) !== null", arg=labels)
         return self.page.evaluate(script, labels)
 
@@ -159,7 +183,7 @@ class Bench:
     def choose(self, name: str, option: str) -> None:
         """Choose in a dropdown and wait until what follows is shown; a run need not follow."""
         self.box(name).click()
-        self.page.get_by_role("option", name=option, exact=True).click()
+        self.page.get_by_role("option", name=self.said(option), exact=True).click()
         self.settle()
 
     def choose_and_run(self, name: str, option: str) -> None:
@@ -359,7 +383,7 @@ class Bench:
 
     def notice(self, text: str) -> str:
         """Wait for a notice with this text; return all of it."""
-        found = self.page.locator(".mantine-Notification-root").filter(has_text=text).first
+        found = self.page.locator(".mantine-Notification-root").filter(has_text=self.said(text)).first
         found.wait_for()
         return found.inner_text()
 

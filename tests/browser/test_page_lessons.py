@@ -28,7 +28,7 @@ def press(bench: Bench, what: str) -> None:
 
 
 def heading(bench: Bench, text: str) -> None:
-    bench.page.locator(f"{SECTION} h3", has_text=text).wait_for()
+    bench.page.locator(f"{SECTION} h3", has_text=bench.said(text)).wait_for()
 
 
 def show_me(bench: Bench, lesson: Lesson, index: int) -> None:
@@ -38,7 +38,7 @@ def show_me(bench: Bench, lesson: Lesson, index: int) -> None:
     assert bench.session.scenario == lesson.scenario_of(index)
     bench.settle()
     tabs = lesson.steps[index].action.tabs
-    bench.page.wait_for_function(_IN_FRONT, arg=list(tabs))
+    bench.page.wait_for_function(_IN_FRONT, arg=[bench.said(tab) for tab in tabs])
     for field, value in lesson.steps[index].action.display.items():
         assert getattr(bench.session.display, field) == value
 
@@ -47,7 +47,7 @@ def answer(bench: Bench, given: str, *, choices: bool) -> None:
     if choices:
         press(bench, f"answer {given}")
         return
-    bench.page.get_by_label("Your answer").fill(given)
+    bench.page.get_by_label(bench.said("Your answer")).fill(given)
     bench.page.keyboard.press("Enter")
 
 

@@ -36,7 +36,11 @@ def asked(bench: Bench) -> Bench:
 
 
 def box(bench: Bench, label: str) -> Any:
-    return bench.page.get_by_text(label, exact=True).locator("xpath=ancestor::div[2]").locator("input")
+    return (
+        bench.page.get_by_text(bench.said(label), exact=True)
+        .locator("xpath=ancestor::div[2]")
+        .locator("input")
+    )
 
 
 def ask(bench: Bench, label: str, text: str) -> None:

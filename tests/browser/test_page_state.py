@@ -63,7 +63,7 @@ def xi_of(session: Session) -> Any:
 
 
 def button(bench: Bench, name: str) -> Locator:
-    return bench.page.get_by_role("button", name=name, exact=True)
+    return bench.button(name)
 
 
 def wait_for_value(bench: Bench, name: str, value: float) -> None:
@@ -80,10 +80,10 @@ def away_from_text(bench: Bench) -> None:
 
 def palette(bench: Bench, words: str) -> None:
     """Open the palette by its key, look for words, and take what stands first."""
-    page = bench.page
+    page, words = bench.page, bench.said(words)
     away_from_text(bench)
     page.keyboard.press("Control+k")
-    search = page.get_by_placeholder("Search commands...")
+    search = page.get_by_placeholder(bench.said("Search commands..."))
     search.wait_for()
     search.fill(words)
     first = page.locator(".mantine-Spotlight-action").first

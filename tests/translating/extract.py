@@ -40,6 +40,7 @@ _OF_VISER = (
     "Expand panel area",
     "Edit props for {0}",
     "Nothing found...",
+    "No matching commands...",
     "Uploading...",
     "Search commands...",
     "Adaptive",

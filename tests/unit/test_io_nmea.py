@@ -160,7 +160,7 @@ def test_too_many_wrong_checksums_refuse_the_file(tmp_path):
 def test_one_used_kind_with_too_many_wrong_checksums_refuses_the_file(tmp_path):
     lines = [stamped(k, "HEHDT,10.0,T") for k in range(100)]
     lines += [line.replace("VDVBW,", "VDVBW,0") for line in vbw_lines(10)]
-    assert "VDVBW 10 of 10" in refusal(write(tmp_path / "log.txt", lines))
+    assert "VDVBW 10/10" in refusal(write(tmp_path / "log.txt", lines))
 
 
 def test_time_running_backwards_is_refused_with_its_line(tmp_path):

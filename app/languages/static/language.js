@@ -34,9 +34,10 @@
     if (!/\{\d+\}/.test(key)) exact.set(key, said);
     else {
       const plain = key.split(/\{\d+\}/).map((part) => part.replace(/[.*+?^${}()|[\]\\]/g, "\\$&"));
-      patterns.push({ test: new RegExp(`^${plain.join("([^]*?)")}$`), said });
+      patterns.push({ test: new RegExp(`^${plain.join("([^]*?)")}$`), said, letters: plain.join("").length });
     }
   }
+  patterns.sort((one, other) => other.letters - one.letters); // of two that fit, the one that says more is meant
 
   function say(text) {
     const found = exact.get(text.trim());

@@ -65,6 +65,7 @@ window.schuler.words = {
   "Settings of the viewer": "视图设置",
   "Close": "关闭",
   "Quantity": "量",
+  "Plot: {0}; curves: {1}": "图：{0}；曲线：{1}",
   "Plot: {0}": "图：{0}",
   "Plot over time: {0}; curves: {1}": "时域图：{0}；曲线：{1}",
   "Plot over time": "时域图",
@@ -124,6 +125,7 @@ window.schuler.words = {
   "Expand panel area": "展开面板",
   "Edit props for {0}": "编辑 {0} 的属性",
   "Nothing found...": "未找到……",
+  "No matching commands...": "没有匹配的命令……",
   "Uploading...": "正在上传……",
   "Search commands...": "搜索命令……",
   "Adaptive": "自适应"

@@ -6,10 +6,8 @@
   const UNIT = /^[smhdknarguµ° ]$/i;
   let typed = null;
 
-  const labelOf = (inside) => {
-    const row = inside.closest(".mantine-Flex-root");
-    return window.schuler.english(row?.querySelector("label")?.textContent ?? "");
-  };
+  // The control in whose row something is: the server knows it by its id, whatever the page calls it.
+  const labelOf = (inside) => inside.closest(".mantine-Flex-root")?.querySelector("label");
 
   addEventListener(
     "wheel",
@@ -25,7 +23,7 @@
 
   addEventListener("dblclick", (event) => {
     const label = event.target instanceof Element && event.target.closest("label, .mantine-Slider-root");
-    if (label && label.closest(".mantine-Flex-root")) window.schuler.command("reset-named", labelOf(label));
+    if (label && label.closest(".mantine-Flex-root")) window.schuler.command("reset-named", labelOf(label)?.htmlFor ?? "");
   });
 
   // ------------------------------------------------------------ units
@@ -65,7 +63,7 @@
     const line = document.createElement("input");
     line.className = "sb-unit";
     line.value = text;
-    line.setAttribute("aria-label", `${label}: value with its unit, Enter takes it over`);
+    line.setAttribute("aria-label", `${label?.textContent ?? ""}: value with its unit, Enter takes it over`);
     line.style.cssText = `position:fixed;z-index:400;left:${at.left}px;top:${at.top}px;width:${Math.max(at.width, 96)}px;` +
       `height:${at.height}px;box-sizing:border-box;padding:0 6px;border:2px solid #1c7ed6;border-radius:4px;font:12.5px system-ui`;
     let open = true; // taking it off the page is a blur, too
@@ -76,7 +74,7 @@
       }
     };
     line.addEventListener("keydown", (event) => {
-      if (event.key === "Enter") window.schuler.command("typed", label, "\t", line.value);
+      if (event.key === "Enter") window.schuler.command("typed", label?.htmlFor ?? "", "\t", line.value);
       else if (event.key !== "Escape") return;
       event.stopPropagation();
       close();

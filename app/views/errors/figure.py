@@ -354,4 +354,4 @@ def _curve_on(time_s: np.ndarray, method: MethodRun, column: int, unit: Unit, li
 def legend_name(method: MethodRun) -> str:
     """Name of a method, with how it ended if that was not well."""
     name = method.method.name
-    return name if method.status == "ok" else f"{name} ({method.status})"
+    return name + {"ok": "", "diverged": " (diverged)", "stopped": " (stopped)"}[method.status]

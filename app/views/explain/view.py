@@ -30,7 +30,9 @@ class ExplainView(View):
         with self.session.lock:
             content = self._content(id.strip())
             self._count += 1
-            self._html.content = f'<div id="sb-explained" hidden data-count="{self._count}">{content}</div>'
+            # No div: what a hidden div holds is for scripts, and stays English (app.languages.markup).
+            told = f'<section id="sb-explained" hidden data-count="{self._count}">{content}</section>'
+            self._html.content = told
 
     def _content(self, id: str) -> str:
         control = next((c for c in self.frame.controls() if id in c.ids), None)

@@ -60,7 +60,7 @@
     }
     const content = element("div", "");
     content.innerHTML = found.innerHTML;
-    const made = dialog(title, content);
+    const made = dialog(found.title, content);
     made.classList.add("sb-broad");
     closing(made);
   }
@@ -69,9 +69,11 @@
 
   let tour = null;
 
-  function target({ label, find }) {
+  // A control is found by its label, which the server says in the page's language, as it does the label itself.
+  function target(step) {
+    const { find } = step.dataset;
     if (find !== "") return [...document.querySelectorAll(find)].find((each) => each.getClientRects().length > 0) ?? null;
-    const found = [...document.querySelectorAll("label")].find((each) => window.schuler.english(each.textContent) === label);
+    const found = [...document.querySelectorAll("label")].find((each) => each.textContent === step.title);
     return found?.closest(".mantine-Flex-root") ?? null;
   }
 
@@ -84,9 +86,10 @@
   function showStep(place) {
     endTour();
     const steps = [...(source()?.querySelectorAll("[data-step]") ?? [])];
-    const step = steps[place]?.dataset;
+    const step = steps[place];
     if (step === undefined) return;
-    if (step.tab !== "") window.schuler.open(window.schuler.tab(step.tab));
+    const { tab } = step.dataset;
+    if (tab !== "") window.schuler.open(window.schuler.tab(tab));
     const card = element("section", "", { class: "sb-tour", role: "dialog", "aria-label": "Guided tour", tabindex: "-1" });
     const row = element("p", "", { class: "sb-more" });
     row.append(element("span", `Step ${place + 1} of ${steps.length}`, { class: "sb-said" }));

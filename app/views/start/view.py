@@ -113,7 +113,8 @@ class StartView(View):
 
     def _show(self, title: str, cards: str) -> None:
         """Let the page show a gallery."""
-        self._gallery.content = f'<div id="sb-gallery" hidden data-title="{escape(title)}">{cards}</div>'
+        named = f'data-title="{escape(title)}" title="{escape(title)}"'  # the first stays English
+        self._gallery.content = f'<div id="sb-gallery" hidden {named}>{cards}</div>'
         self.frame.commands.ask_page("gallery", title)
         self.frame.client.flush()
 
@@ -165,7 +166,7 @@ def _doors_html() -> str:
 def _steps_html() -> str:
     return "".join(
         f'<div data-step="{number}" data-tab="{escape(step.get("tab", ""))}" '
-        f'data-label="{escape(step.get("label", ""))}" data-find="{escape(step.get("find", ""))}">'
+        f'title="{escape(step.get("label", ""))}" data-find="{escape(step.get("find", ""))}">'
         f"<h2>{escape(step['title'])}</h2><p>{escape(step['text'])}</p></div>"
         for number, step in enumerate(_STEPS)
     )

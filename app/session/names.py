@@ -1,0 +1,43 @@
+"""What the user of a session has called something: a page in another language leaves it as it is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from app.languages.names import Names, names_of
+
+if TYPE_CHECKING:
+    from app.session.session import Session
+
+_MOST_KEPT = 200
+
+
+class GivenNames:
+    """Names of methods and pins, the last ones that have gone among them: undo speaks of these.
+
+    Parameters
+    ----------
+    session : Session
+        Of the user.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._of: tuple[object, ...] = ()
+        self._kept: dict[str, None] = {}
+        self._names = names_of(frozenset())
+
+    def __call__(self) -> Names:
+        """Return all of them; asked for each message to a page."""
+        session = self._session
+        run, pins = session.run, session.pins.all
+        now = (session.scenario, None if run is None else run.scenario, pins)
+        if len(now) != len(self._of) or any(a is not b for a, b in zip(now, self._of, strict=True)):
+            scenarios = [session.scenario, *(pin.scenario for pin in pins)]
+            scenarios += [] if run is None else [run.scenario]
+            fresh = [method.name for scenario in scenarios for method in scenario.method]
+            fresh += [pin.name for pin in pins if not pin.unnamed]
+            kept = [name for name in self._kept if name not in fresh][-_MOST_KEPT:]
+            self._kept = dict.fromkeys([*kept, *fresh])
+            self._names, self._of = names_of(frozenset(self._kept)), now
+        return self._names
