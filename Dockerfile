@@ -7,12 +7,12 @@
 # Published on another port or under another name, it is told so: -e SCHULER_ALLOW_ORIGIN=http://localhost:9000.
 # deploy/compose.yml puts a proxy with TLS before it.
 #
-# NOT MET: the base is pinned by tag only. Its digest is read from the registry:
+# The base is an image index for all platforms, with Python 3.11.16. Its digest comes from the record that Docker keeps
+# of its official images (docker-library/repo-info, 25 August 2026). To renew it, write what this prints into both stages:
 #   docker buildx imagetools inspect python:3.11-slim-bookworm
-# Write it, @sha256:..., behind both tags below.
 # tests/docker carries these steps out without a Docker engine.
 
-FROM python:3.11-slim-bookworm AS builder
+FROM python:3.11-slim-bookworm@sha256:0bee7276f83efd4a1ee05bbbf4281d95ed28e079220a9457f25a93e3f1e3c31b AS builder
 WORKDIR /src
 
 COPY requirements.lock requirements-build.lock ./
@@ -34,7 +34,7 @@ ENV SCHULER_CACHE_DIR=/opt/schuler-kernels
 RUN mkdir -p /opt/schuler-kernels && /opt/schuler/bin/python -m navcore.warm
 
 
-FROM python:3.11-slim-bookworm
+FROM python:3.11-slim-bookworm@sha256:0bee7276f83efd4a1ee05bbbf4281d95ed28e079220a9457f25a93e3f1e3c31b
 RUN python -m pip uninstall --yes pip setuptools wheel
 RUN useradd --system --uid 10001 --home-dir /data --shell /usr/sbin/nologin schuler
 RUN install -d -o schuler -g schuler /data
