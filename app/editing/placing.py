@@ -49,12 +49,12 @@ def read_point(text: str) -> complex:
     """
     words = text.split()
     try:
-        re, im = (float(word) for word in words)
+        real, imag = (float(word) for word in words)
     except ValueError:
         raise InputError(Fault("", "point", text[:60], "must be two numbers: Re and Im of s/ωₛ")) from None
-    if not (abs(re) <= _FARTHEST and abs(im) <= _FARTHEST) or re == im == 0.0:
+    if not (abs(real) <= _FARTHEST and abs(imag) <= _FARTHEST) or real == imag == 0.0:
         raise InputError(Fault("", "point", text[:60], f"must lie within {_FARTHEST:g} ωₛ, and not at 0"))
-    return complex(re, im)
+    return complex(real, imag)
 
 
 def pair_at(point: complex) -> tuple[float, float]:
