@@ -92,12 +92,14 @@ class Toolbar:
 
     def show_banner(self, text: str, drives: bool) -> None:
         """Say who presents; nothing for an empty text."""
-        mine = " sb-drives" if drives else ""
-        content = f'<div class="sb-banner{mine}" role="status">{escape(text)}</div>' if text else ""
+        mine, style = (" sb-drives", "") if drives else ("", _WATCHING)
+        content = f'{style}<div class="sb-banner{mine}" role="status">{escape(text)}</div>' if text else ""
         if self._banner.content != content:
             self._banner.content = content
 
 
+_WATCHING = "<style>.sb-handle, .sb-handle-scale, .sb-handle-told { display: none; }</style>"
+"""For a page that watches: it sees no handle (static/handle.js), for one would do nothing."""
 _PRESENT = "Drive alone: other pages of this session watch until you press it again or leave"
 _COMMANDS = (
     '<button class="sb-do" data-palette title="All commands (Ctrl+K); their keys: ?">Commands</button>'

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,9 @@ from navcore.analysis import analyse
 from navcore.scenario.model import Scenario
 from tests.browser.driver import Bench
 from tests.browser.placing import placing_scenario
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 pytestmark = pytest.mark.browser
 
@@ -158,3 +163,25 @@ def test_a_network_that_cannot_be_placed_says_why_in_the_plot(handles: Bench) ->
     assert handles.page.locator(".sb-handle:visible").count() == 0
     handles.select(1)
     handles.page.wait_for_function(_AT, arg=[*NEAR, *pole(handles)])
+
+
+def test_a_page_that_watches_has_no_handle(handles: Bench, browser: Browser) -> None:
+    handles.tab("Poles")
+    context = browser.new_context(viewport=handles.page.viewport_size)  # it follows the presenter's tabs
+    try:
+        other = Bench(context.new_page(), handles.url, handles.sessions)
+        other.open(f"s/{handles.session_id}/")
+        other.tab("Poles")
+        other.page.wait_for_function(_AT, arg=[*NEAR, *pole(handles)])
+        present = handles.page.get_by_role("button", name="Present", exact=True)
+        present.click()
+        other.page.get_by_text("Another page presents: you watch").wait_for()
+        other.page.wait_for_function(_AWAY)
+        assert other.page.locator(".js-plotly-plot:visible").count() > 0
+        handles.page.wait_for_function(_AT, arg=[*NEAR, *pole(handles)])  # who drives keeps it
+        present.click()
+        other.page.get_by_text("Another page presents: you watch").wait_for(state="hidden")
+        other.page.wait_for_function(_AT, arg=[*NEAR, *pole(handles)])
+        assert other.faults == handles.faults == []
+    finally:
+        context.close()
