@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.browser.driver import Bench
+from tests.browser.placing import placing_scenario
+from tests.browser.test_page_handles import _AT, _CENTRE, _SPOT, NEAR, pair, pole
 from tests.browser.test_page_layout import _TEXT_OUTSIDE, wait_until_it_fits
 
 if TYPE_CHECKING:
@@ -115,3 +117,46 @@ def test_a_finger_zooms_a_plot_over_time_and_two_taps_show_it_whole(tablet: Benc
     back = f"span => {{ const [a, b] = ({_TIMES})(); return b - a > 0.99 * span; }}"
     page.wait_for_function(back, arg=span)
     assert tablet.faults == []
+
+
+@pytest.fixture
+def handles(tablet: Bench) -> Bench:
+    """The tablet on a scenario whose second method, in hand, has a pair that can be placed."""
+    tablet.put(placing_scenario(), origin=f"handles {tablet.session.run_number}", selected=1)
+    tablet.show(transfer="phi/dv_r", poles="channel", locus="")
+    return tablet
+
+
+def drag_ring(bench: Bench, drag: Drag, to: tuple[float, float]) -> None:
+    """Take the last ring in view with a finger to a place in the window; the run follows."""
+    number = bench.run
+    drag(bench.page.locator(".sb-handle:visible").last.evaluate(_CENTRE), to)
+    bench.wait_for_run(number)
+    bench.settle()
+
+
+def test_a_finger_drags_a_pole(handles: Bench, drag: Drag) -> None:
+    handles.page.get_by_role("tab", name="Poles", exact=True).tap()
+    handles.heard()
+    handles.page.wait_for_function(_AT, arg=[*NEAR, *pole(handles)])
+    before = handles.session.scenario
+    drag_ring(handles, drag, handles.page.evaluate(_SPOT, [*NEAR, -1.0, 1.25]))
+    assert pole(handles) == pytest.approx((-1.0, 1.25), abs=0.03)
+    handles.page.wait_for_function(_AT, arg=[*NEAR, *pole(handles)])
+    assert handles.session.undo()
+    assert handles.session.scenario == before, "a drag is one step"
+    assert handles.faults == []
+
+
+def test_a_finger_drags_the_handle_of_the_bode_plot(handles: Bench, drag: Drag) -> None:
+    handles.page.get_by_role("tab", name="Frequency", exact=True).tap()
+    handles.heard()
+    ring = handles.page.locator(".sb-handle:visible").last
+    ring.wait_for()
+    twice = 2.0 * handles.session.scenario.omega_s
+    x, _ = handles.page.evaluate(_SPOT, ["xaxis2", "yaxis3", twice, 1.0])
+    drag_ring(handles, drag, (x, ring.evaluate(_CENTRE)[1] - 20.0))
+    zeta, r = pair(handles)
+    assert r == pytest.approx(2.0, rel=0.03)
+    assert zeta < 0.45
+    assert handles.faults == []
