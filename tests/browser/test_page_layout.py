@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import pytest
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
 from app.shell.layout import WIDE_FROM_PX, layout_for
 from app.views import load
+from navcore.scenario.file import load as load_preset
+from navcore.scenario.model import Scenario
 from tests.browser.driver import Bench
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 pytestmark = pytest.mark.browser
 
@@ -44,6 +50,36 @@ _TEXT_OUTSIDE = """() => {
     const texts = [...plot.querySelectorAll('text')].map(t => [t.textContent, t.getBoundingClientRect()]);
     return texts.filter(([_, box]) => box.width > 0 && beyond(box, frame)).map(([text]) => text);
   });
+}"""
+
+# Texts of the figure of a view that lie over each other.
+_MET = """view => {
+  const plot = [...document.querySelectorAll('.js-plotly-plot')].find(
+    p => p.offsetParent !== null && p._fullLayout?.meta?.view === view);
+  const texts = [...plot.querySelectorAll('text')].map(t => [t.textContent, t.getBoundingClientRect()])
+    .filter(([text, box]) => text.trim() !== '' && box.width > 0);
+  const met = (a, b) => a.left < b.right - 2 && b.left < a.right - 2
+    && a.top < b.bottom - 3 && b.top < a.bottom - 3;
+  return texts.flatMap(([text, box], i) =>
+    texts.slice(i + 1).filter(([_, other]) => met(box, other)).map(([other]) => `${text} | ${other}`));
+}"""
+# Labels in view that the "?" covers when the pointer comes to their control, or to which none comes.
+_COVERED = """() => {
+  const met = (a, b) => b.width > 1 && a.left < b.right - 0.5 && b.left < a.right - 0.5
+    && a.top < b.bottom - 0.5 && b.top < a.bottom - 0.5;
+  const seen = l => l.offsetParent !== null && l.getBoundingClientRect().width > 2
+    && !l.closest('[data-sb-kind=slider] + [data-sb-kind=number], [data-sb-kind=hidden]');
+  const labels = [...document.querySelectorAll('label[for]')].filter(seen);
+  const found = [];
+  for (const label of labels) {
+    label.dispatchEvent(new PointerEvent('pointerover', {bubbles: true}));
+    const mark = document.querySelector('.sb-mark');
+    const text = document.createRange();
+    text.selectNodeContents(label);
+    const box = mark?.getBoundingClientRect();
+    if (!mark || [...text.getClientRects()].some(each => met(box, each))) found.push(label.textContent);
+  }
+  return [labels.length, found];
 }"""
 
 
@@ -148,3 +184,56 @@ def test_a_slider_and_its_exact_box_stand_in_one_row(sized: Bench) -> None:
     # viser's own rounded box of a slider, and the page's report of its size, are out of sight
     assert not sized.page.locator(".mantine-Slider-root ~ .mantine-NumberInput-root").first.is_visible()
     assert not sized.page.get_by_text("page state", exact=True).is_visible()
+
+
+def uncovered(bench: Bench) -> int:
+    """Number of labels in view on all tabs, the same one on each; none is covered by its "?"."""
+    count = 0
+    for place in range(bench.page.locator("[role=tab]").count()):
+        tab = bench.page.locator("[role=tab]").nth(place)
+        tab.click()
+        bench.heard()
+        labels, covered = bench.page.evaluate(_COVERED)
+        assert covered == [], tab.inner_text()
+        count += labels
+    return count
+
+
+def test_no_question_mark_covers_a_label(sized: Bench) -> None:
+    assert uncovered(sized) > 100
+    assert sized.faults == []
+
+
+def test_no_question_mark_covers_a_label_in_chinese(browser: Browser, resized: Bench) -> None:
+    context = browser.new_context(viewport={"width": 1280, "height": 720})
+    try:
+        bench = Bench(context.new_page(), resized.url, resized.sessions)
+        bench.open(query="?fixedDpr=0.25&start=no&lang=zh")
+        bench.heard()
+        assert uncovered(bench) > 100
+        assert bench.faults == []
+    finally:
+        context.close()
+
+
+@pytest.mark.parametrize("size", [(1600, 900), (1280, 720)], ids=str)
+def test_the_budgets_of_eight_methods_do_not_overlap(resized: Bench, size: tuple[int, int]) -> None:
+    data = load_preset("sikuliaq-like").canonical()
+    data["run"] |= {"duration_h": 2.0}
+    data["method"] = [data["method"][i % 3] | {"name": f"method {i}"} for i in range(8)]
+    resize(resized, size)
+    resized.put(Scenario.parse(data), origin="eight methods")
+    resized.tab("Design")
+    panels = """n => [...document.querySelectorAll('.js-plotly-plot')].some(p => p.offsetParent !== null
+      && p._fullLayout?.meta?.view === 'Design' && p._fullLayout[`xaxis${n}`])"""
+    try:
+        for budget, last in (("steady", 2), ("run", 4)):
+            resized.show(budget=budget)
+            resized.page.wait_for_function(panels, arg=last)
+            resized.page.wait_for_function(_DRAWN)
+            assert resized.page.evaluate(_MET, "Design") == []
+            assert resized.page.evaluate(_TEXT_OUTSIDE) == []
+        assert resized.faults == []
+    finally:
+        resized.show(budget="steady")
+        resized.put(load_preset("sikuliaq-like"), origin="sikuliaq-like", selected=2)

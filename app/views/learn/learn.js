@@ -67,10 +67,15 @@
     window.schuler.report("explain", label?.htmlFor ?? "");
   }
 
+  // Where a "?" covers no label: at the end of the room for the label, or where there is none, in the row of tools above
+  // a plot, at the end of the box.
+  const TIGHT = '[data-sb-holds~="tools"] > :is([data-sb-kind="select"], [data-sb-kind="number"])';
+  const placeOf = (label) => (label?.closest(TIGHT) ? label.closest(ROW) : label?.parentElement?.parentElement);
+
   // A "?" beside the label that the pointer is over; by key it is not needed.
   addEventListener("pointerover", (event) => {
     hovered = labelOf(event.target);
-    const place = hovered?.parentElement?.parentElement;
+    const place = placeOf(hovered);
     if (!place || place.querySelector(".sb-mark") || document.querySelector(`[id="${hovered.htmlFor}"]`) === null) return;
     for (const old of document.querySelectorAll(".sb-mark")) if (!old.matches(":hover")) old.remove();
     const mark = document.createElement("button");
