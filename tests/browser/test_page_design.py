@@ -20,7 +20,7 @@ pytestmark = pytest.mark.browser
 _AT_FIRST = {"budget": "steady", "objective": "tilt_rms", "search": "setting", "envelope": "none"}
 _BARS = """() => [...document.querySelectorAll('.js-plotly-plot')]
   .filter(p => p.offsetParent !== null && p._fullLayout?.meta?.view === 'Design')
-  .flatMap(p => p._fullData.filter(t => t.yaxis === 'y').map(t => t.y[2]))
+  .flatMap(p => p._fullData.filter(t => t.yaxis === 'y').map(t => t.x[2]))
   .reduce((a, b) => a + b, 0)"""
 # Bands of the plot of the east velocity, and the sum of the last one's upper edge.
 _BAND = """() => {

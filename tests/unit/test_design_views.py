@@ -10,7 +10,7 @@ import pytest
 from app.jobs.designer import Budgeter, Designer, TuningTask
 from app.plots.budgets import steady_budget
 from app.session.requirements import Requirements
-from app.views.design.figure import QUANTITIES, budget_figure, parts
+from app.views.design.figure import NOTHING, QUANTITIES, budget_figure, parts
 from app.views.tune.proposal import proposal_html, sentences_about
 from app.views.tune.setting import requirements_as_text
 from navcore.design.budget import budget
@@ -62,14 +62,14 @@ def test_every_quantity_has_its_bars_its_unit_and_the_floor(ship):
     layout = made["layout"]
     for k, (key, title, unit_name, unit) in enumerate(QUANTITIES):
         suffix = "" if k == 0 else str(k + 1)
-        assert layout[f"yaxis{suffix}"]["title"]["text"] == unit_name
+        assert layout[f"xaxis{suffix}"]["title"]["text"] == unit_name
         assert f"<b>{title}</b>" in [note["text"] for note in layout["annotations"]]
         bars = [trace for trace in made["data"] if trace["yaxis"] == f"y{suffix}"]
-        total = sum(trace["y"][1] for trace in bars)
+        total = sum(trace["x"][1] for trace in bars)
         # what is below half a per cent of every bar is left out
         assert total == pytest.approx(getattr(found.methods[1].total.rms, key) / unit, rel=0.05)
-        lines = [shape for shape in layout["shapes"] if shape["yref"] == f"y{suffix}"]
-        assert [line["y0"] for line in lines] == [getattr(found.floor.rms, key) / unit]
+        lines = [shape for shape in layout["shapes"] if shape["xref"] == f"x{suffix}"]
+        assert [line["x0"] for line in lines] == [getattr(found.floor.rms, key) / unit]
 
 
 def test_a_name_with_markup_is_shown_as_text(compass):
@@ -134,3 +134,35 @@ def test_the_legend_has_room_for_its_rows_in_a_narrow_window(ship):
     )
     # three to a row: seven sources stand in three rows of 20 px below the ticks
     assert narrow >= 30 + 3 * 20 and wide < narrow
+
+
+@pytest.mark.parametrize(("width", "aspect"), [(788.0, 0.41), (628.0, 0.94), (948.0, 0.43)])
+def test_eight_methods_have_room_for_their_bars_and_numbers(ship, width, aspect):
+    data = ship.canonical()
+    data["method"] = [data["method"][i % 3] | {"name": f"a method with a long name {i}"} for i in range(8)]
+    layout = budget_figure(budget(Scenario.parse(data)), aspect, width_px=width)["layout"]
+    margin = layout["margin"]
+    inner = width - margin["l"] - margin["r"], aspect * width - margin["t"] - margin["b"]
+    for suffix in ("", "2", "3", "4"):
+        across, up = layout[f"xaxis{suffix}"], layout[f"yaxis{suffix}"]
+        wide, high = (
+            size * (axis["domain"][1] - axis["domain"][0])
+            for size, axis in zip(inner, (across, up), strict=True)
+        )
+        assert high >= 8 * 15.0, "a row is as high as its text"
+        ends = [
+            note for note in layout["annotations"] if note.get("xref") == f"x{suffix}" and "×" in note["text"]
+        ]
+        assert len(ends) == 8
+        for note in ends:
+            assert note["x"] / across["range"][1] * wide + 6.4 * len(note["text"]) <= wide + 1.0, note["text"]
+
+
+@pytest.mark.parametrize("steady", [True, False])
+def test_where_no_source_makes_an_error_there_is_a_sentence_and_no_frame(steady):
+    data = load("zha-fast").canonical() | {"imu": {}, "reference": {"kind": "log"}}
+    data.pop("initial_error", None)
+    made = budget_figure(budget(Scenario.parse(data), steady=steady))
+    assert [note["text"] for note in made["layout"]["annotations"]] == [NOTHING[steady]]
+    assert made["data"] == []
+    assert not made["layout"]["xaxis"]["visible"] and not made["layout"]["yaxis"]["visible"]

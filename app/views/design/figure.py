@@ -1,9 +1,10 @@
-"""The error budget as stacked bars: one bar a method, one colour a source, the floor drawn in."""
+"""The error budget as stacked bars: one row a method, one colour a source, the floor drawn in."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from app.plots import style
@@ -39,14 +40,22 @@ QUANTITIES = (
     ("heading_rad", "Heading", "arcmin", ARCMIN),
     ("position_m", "Position", "m", 1.0),
 )
-_HEADROOM = {1: 1.2, 2: 1.4}
-"""Height of an axis over that of its bars, by the lines of text above a bar."""
-_ONE_LINE_PX = 112
-"""Room a bar needs for its text in one line."""
-_LEFT_PX, _RIGHT_PX, _TOP_PX = 62, 12, 52
+_LETTER_PX, _LONGEST = 7.0, 18
+"""Width of a letter of a method's name, and how many of them are shown."""
+_LONG_PX, _SHORT_PX = 128, 80
+"""Room right of a bar for "12.3 = 45.6 × floor", and for "12.3, 45.6×" where that is too much of a panel."""
+_LEAST_BAR_PX, _LEAST_ROW_PX = 130, 22
+"""Widths of the longest bar, and height of a row, below which the panels are arranged otherwise."""
+_GAP_PX, _RIGHT_PX, _TOP_PX = 18, 12, 52
 _NOTE_PX = 26
 """Of the line about the whole figure above the panels, so that it stands clear of their titles."""
-_TICKS_PX, _LEGEND_ROW_PX = 34, 21
+_TICKS_PX, _LEGEND_ROW_PX = 46, 21
+NOTHING = {
+    True: "At rest, in the steady state, no sensor makes a random error here.<br>The budget of this run has "
+    "the constant errors and those of the start.",
+    False: "No source makes an error in this run.",
+}
+"""In place of the bars where there are none: of the steady budget, and of that of a run."""
 
 
 def budget_figure(
@@ -70,22 +79,67 @@ def budget_figure(
     """
     shown = QUANTITIES[:2] if budget.steady else QUANTITIES
     names = _names(budget, [key for key, *_ in shown])
+    if not names:
+        return _without_bars(budget, aspect)
+    grid = _grid(budget, len(shown), names, aspect, width_px)
     data: list[dict[str, Any]] = []
-    layout = _layout(budget, shown, names, aspect, width_px, note)
+    layout = _layout(budget, shown, grid, aspect, width_px, note)
     for k, (key, _, _, unit) in enumerate(shown):
         suffix = "" if k == 0 else str(k + 1)
         for name in names:
             data.append(_bars(budget.methods, key, unit, name, suffix, legend=k == 0))
-        layout["annotations"] += _tops(budget, key, unit, suffix, _lines(budget, width_px))
+        layout["annotations"] += _ends(budget, key, unit, suffix, grid)
         floor = getattr(budget.floor.rms, key)
         if floor is not None:
             layout["shapes"].append(_floor_line(floor / unit, suffix))
     return figure(data, layout)
 
 
-def _lines(budget: Budget, width_px: float) -> int:
-    """Lines of the text above a bar: two where the bars stand close."""
-    return 1 if 0.43 * width_px >= _ONE_LINE_PX * len(budget.methods) else 2
+@dataclass(frozen=True)
+class _Grid:
+    """Where the panels stand, px: their columns and rows, their inner sizes, and what is beside them."""
+
+    columns: int
+    rows: int
+    wide: float
+    high: float
+    left: float
+    bottom: float
+
+    @property
+    def long(self) -> bool:
+        """Whether a bar has room for the longer text at its end."""
+        return self.wide - _LONG_PX >= _LEAST_BAR_PX
+
+    @property
+    def headroom(self) -> float:
+        """Length of an axis over that of its longest bar."""
+        return self.wide / max(self.wide - (_LONG_PX if self.long else _SHORT_PX), 20.0)
+
+
+def _grid(budget: Budget, panels: int, names: Sequence[str], aspect: float, width_px: float) -> _Grid:
+    """Two panels to a row; all of them where the rows of the methods would be too low."""
+    left = 22.0 + _LETTER_PX * max(min(len(method.name), _LONGEST) for method in budget.methods)
+    legend_px = _LEGEND_ROW_PX * style.legend_rows([_words(name) for name in names], width_px - left)
+    bottom = _TICKS_PX + legend_px
+
+    def made(columns: int) -> _Grid:
+        rows = panels // columns
+        wide = (width_px - left - _RIGHT_PX - _GAP_PX * (columns - 1)) / columns
+        between = (_TICKS_PX + _NOTE_PX) * (rows - 1)
+        high = (aspect * width_px - _TOP_PX - bottom - between) / rows
+        return _Grid(columns, rows, wide, high, left, bottom)
+
+    two = made(2)
+    return two if panels == 2 or two.high >= _LEAST_ROW_PX * len(budget.methods) else made(panels)
+
+
+def _without_bars(budget: Budget, aspect: float) -> PlotlyFigure:
+    """What there is to say where no source makes an error, in place of empty frames."""
+    told = style.text(0.5, 0.5, NOTHING[budget.steady], xref="paper", yref="paper")
+    hidden = {"visible": False}
+    made = style.layout(meta={"aspect": aspect}, annotations=[told], shapes=[], xaxis=hidden, yaxis=hidden)
+    return figure([], made)
 
 
 def _names(budget: Budget, keys: Sequence[str]) -> list[str]:
@@ -126,25 +180,26 @@ def parts(method: MethodBudget, key: str) -> dict[str, float]:
 def _bars(
     methods: Sequence[MethodBudget], key: str, unit: float, name: str, suffix: str, *, legend: bool
 ) -> dict[str, Any]:
-    heights = [parts(method, key).get(name, 0.0) / unit for method in methods]
+    lengths = [parts(method, key).get(name, 0.0) / unit for method in methods]
     color = SOURCES[name][1] if name in SOURCES else _OTHER
     return {
         "type": "bar",
         "name": _words(name),
         "legendgroup": name,
         "showlegend": legend,
-        "x": list(range(len(methods))),
-        "y": heights,
+        "orientation": "h",
+        "x": lengths,
+        "y": list(range(len(methods))),
         "xaxis": f"x{suffix}",
         "yaxis": f"y{suffix}",
         "marker": {"color": color, "line": {"color": "white", "width": 0.5}},
-        "hovertemplate": "%{fullData.name}: %{y:.3g}<extra></extra>",
+        "hovertemplate": "%{fullData.name}: %{x:.3g}<extra></extra>",
     }
 
 
-def _tops(budget: Budget, key: str, unit: float, suffix: str, lines: int) -> list[dict[str, Any]]:
-    """Text above each bar: its height and how many times the floor that is; without a bar above the floor."""
-    found, floor = [], getattr(budget.floor.rms, key) or 0.0
+def _ends(budget: Budget, key: str, unit: float, suffix: str, grid: _Grid) -> list[dict[str, Any]]:
+    """Text at the end of each bar: its length and how many times the floor that is."""
+    found = []
     for i, method in enumerate(budget.methods):
         total = getattr(method.total.rms, key)
         times = budget.times_floor(method).get(key.rsplit("_", 1)[0])
@@ -153,15 +208,19 @@ def _tops(budget: Budget, key: str, unit: float, suffix: str, lines: int) -> lis
         elif times is None:
             text = _short(total / unit)
         else:
-            text = f"{_short(total / unit)}{' = ' if lines == 1 else '<br>'}{_short(times)} × floor"
+            value, over = _short(total / unit), _short(times)
+            text = f"{value} = {over} × floor" if grid.long else f"{value}, {over}×"
         found.append(
             style.text(
+                (total or 0.0) / unit,
                 i,
-                (floor if total is None else total) / unit,
                 text,
                 xref=f"x{suffix}",
                 yref=f"y{suffix}",
-                yanchor="bottom",
+                xanchor="left",
+                xshift=2,
+                borderpad=0,
+                bgcolor="white" if total is None else "rgba(0,0,0,0)",
                 font={"size": style.FONT_SIZE - 1, "color": style.INK},
             )
         )
@@ -176,12 +235,12 @@ def _short(value: float) -> str:
 def _floor_line(value: float, suffix: str) -> dict[str, Any]:
     return {
         "type": "line",
-        "xref": f"x{suffix} domain",
-        "yref": f"y{suffix}",
-        "x0": 0.0,
-        "x1": 1.0,
-        "y0": value,
-        "y1": value,
+        "xref": f"x{suffix}",
+        "yref": f"y{suffix} domain",
+        "x0": value,
+        "x1": value,
+        "y0": 0.0,
+        "y1": 1.0,
         "line": {"color": style.INK, "width": 2, "dash": "dash"},
         "layer": "above",
     }
@@ -190,7 +249,7 @@ def _floor_line(value: float, suffix: str) -> dict[str, Any]:
 def _layout(
     budget: Budget,
     shown: Sequence[tuple[str, str, str, float]],
-    names: Sequence[str],
+    grid: _Grid,
     aspect: float,
     width_px: float,
     note: str,
@@ -202,41 +261,43 @@ def _layout(
     )
     if budget.floor.rms.tilt_rad is not None:
         what = f"{what}; the dashed line is the floor"
-    columns, rows = 2, (len(shown) + 1) // 2
-    legend_px = _LEGEND_ROW_PX * style.legend_rows([_words(name) for name in names], width_px - _LEFT_PX)
-    bottom_px = _TICKS_PX + legend_px
-    height_px = aspect * width_px - _TOP_PX - bottom_px
+        if not grid.long:
+            what = f"{what}, × how many times it"
     made = style.layout(
         meta={"aspect": aspect},
         barmode="stack",
-        bargap=0.35,
-        margin={"l": _LEFT_PX, "r": _RIGHT_PX, "t": _TOP_PX, "b": bottom_px},
+        bargap=0.3,
+        margin={"l": grid.left, "r": _RIGHT_PX, "t": _TOP_PX, "b": grid.bottom},
         legend=style.legend(traceorder="normal"),
         annotations=[],
         shapes=[],
     )
-    gap_x, gap_y = 84.0 / width_px, (70.0 / height_px if rows > 1 else 0.0)
-    wide, high = (1.0 - gap_x) / columns, (1.0 - gap_y * (rows - 1)) / rows
-    methods = [style.plain(method.name) for method in budget.methods]
+    inner_w = width_px - grid.left - _RIGHT_PX
+    inner_h = max(aspect * width_px - _TOP_PX - grid.bottom, 1.0)
+    methods = [style.plain(_cut(method.name)) for method in budget.methods]
     for k, (key, title, unit_name, unit) in enumerate(shown):
         suffix = "" if k == 0 else str(k + 1)
-        column, row = k % columns, k // columns
-        left, top = column * (wide + gap_x), 1.0 - row * (high + gap_y)
+        column, row = k % grid.columns, k // grid.columns
+        left = column * (grid.wide + _GAP_PX) / inner_w
+        top = 1.0 - row * (grid.high + _TICKS_PX + _NOTE_PX) / inner_h
         values = [getattr(method.total.rms, key) for method in budget.methods]
         values.append(getattr(budget.floor.rms, key))
         peak = max((v / unit for v in values if v is not None and math.isfinite(v)), default=0.0)
         made[f"xaxis{suffix}"] = style.axis(
-            domain=[left, left + wide],
+            unit_name,
+            domain=[left, left + grid.wide / inner_w],
             anchor=f"y{suffix}",
-            tickvals=list(range(len(methods))),
-            ticktext=methods,
-            range=[-0.6, len(methods) - 0.4],
+            range=[0.0, grid.headroom * peak if peak > 0.0 else 1.0],
+            nticks=max(3, int(grid.wide / 60)),
         )
         made[f"yaxis{suffix}"] = style.axis(
-            unit_name,
-            domain=[max(top - high, 0.0), top],
+            domain=[max(top - grid.high / inner_h, 0.0), top],
             anchor=f"x{suffix}",
-            range=[0.0, _HEADROOM[_lines(budget, width_px)] * peak if peak > 0.0 else 1.0],
+            tickvals=list(range(len(methods))),
+            ticktext=methods,
+            showticklabels=column == 0,
+            range=[len(methods) - 0.4, -0.6],
+            showgrid=False,
         )
         made["annotations"].append(style.panel_title(title, suffix))
     made["annotations"].append(
@@ -253,3 +314,7 @@ def _layout(
         )
     )
     return made
+
+
+def _cut(name: str) -> str:
+    return name if len(name) <= _LONGEST else f"{name[: _LONGEST - 1]}…"
