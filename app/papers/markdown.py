@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from app.papers.claim import KINDS, Claim, Exhibit, Paper, Table, Verdict, number
 from app.papers.estimate import Estimate, estimate
 from app.papers.runs import Runs
+from navcore.foundation.notation import in_symbols
 
 HEAD = """\
 # What the papers claim, and what we find
@@ -123,7 +124,7 @@ def exhibit_text(exhibit: Exhibit, checked: Sequence[Checked], tables: Sequence[
     parts.extend(table_text(table) for table in tables)
     if exhibit.draw is not None:
         parts.append(f"![{exhibit.title}](papers/{exhibit.name}.svg)\n")
-    return "\n".join(part for part in parts if part)
+    return in_symbols("\n".join(part for part in parts if part))
 
 
 def table_text(table: Table) -> str:

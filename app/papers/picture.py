@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from app.plots.style import GRID, INK, MUTED, REFERENCE, method_color
+from navcore.foundation.notation import in_symbols
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,7 +66,7 @@ def curve(axes: Axes, x: np.ndarray, y: np.ndarray, label: str, index: int, **mo
     """Draw one curve in the colour of a method's place, thinned to what the picture can show."""
     x, y = _thinned(np.asarray(x), np.asarray(y))
     options: dict[str, Any] = {"color": method_color(index)} | more
-    axes.plot(x, y, label=label, **options)
+    axes.plot(x, y, label=in_symbols(label), **options)
 
 
 def _thinned(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -82,8 +83,8 @@ def _thinned(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def panel(axes: Axes, title: str, x: str, y: str, legend: bool = True) -> None:
     """Title, labels and legend of one panel."""
-    axes.set_title(title)
-    axes.set_xlabel(x)
-    axes.set_ylabel(y)
+    axes.set_title(in_symbols(title))
+    axes.set_xlabel(in_symbols(x))
+    axes.set_ylabel(in_symbols(y))
     if legend:
         axes.legend(loc="best")

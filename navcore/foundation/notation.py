@@ -6,6 +6,8 @@ What a person reads has the sign (``°/h``, ``ζ``).
 
 from __future__ import annotations
 
+import re
+
 _UNITS = {
     "deg": "°",
     "deg/s": "°/s",
@@ -36,6 +38,9 @@ _SYMBOLS = {
     "t2": "T₂",
 }
 """Parameters of networks. The damping ratio is ζ; Deng, Sun and Zha write ξ for it, and so do the keys."""
+
+_SPELLED = _SYMBOLS | {"omega_s": "ωₛ"}
+_WORDS = re.compile(r"`[^`]*`|\b(" + "|".join(sorted(_SPELLED, key=len, reverse=True)) + r")\b")
 
 
 def unit_sign(unit: str) -> str:
@@ -70,3 +75,14 @@ def symbol(name: str) -> str:
     ('ζ', 'K₁', 'duration h')
     """
     return _SYMBOLS.get(name, name.replace("_", " "))
+
+
+def in_symbols(text: str) -> str:
+    """Prose in which parameters have their symbols; what stands in backticks is a key and stays.
+
+    Examples
+    --------
+    >>> in_symbols("sigma = 0.0088, xi = 0.7 at 10 omega_s: `network.xi`")
+    'σ = 0.0088, ζ = 0.7 at 10 ωₛ: `network.xi`'
+    """
+    return _WORDS.sub(lambda found: _SPELLED.get(found[1], found[0]), text)

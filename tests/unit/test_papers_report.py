@@ -16,6 +16,7 @@ from app.papers.markdown import Contradiction, check, exhibit_text, summary
 from app.papers.measure import interval, last_above
 from app.papers.runs import Runs, method, scenario_of
 from app.papers.write import papers, write_report
+from navcore.foundation.notation import in_symbols
 from navcore.scenario.file import presets
 
 OWN = {"sikuliaq-like", "sikuliaq-recorded"}
@@ -142,7 +143,8 @@ def test_the_report_in_docs_holds_every_exhibit_and_claim(every, repo_root: Path
         if exhibit.draw is not None:
             assert (repo_root / "docs" / "papers" / f"{exhibit.name}.svg").is_file()
         for stated in exhibit.claims:
-            assert stated.says in text
+            assert in_symbols(stated.says) in text
+    assert in_symbols(text) == text
 
 
 @pytest.mark.parametrize("name", CHEAP)
