@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -10,6 +10,12 @@ from app.shell.layout import layout_for
 from tests.browser.driver import Bench
 from tests.browser.test_page_layout import SIZES, resize
 from tests.browser.test_page_playback import command, now, wait_for
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+    from app.http.server import DashboardServer
+    from app.serve import Dashboard
 
 pytestmark = pytest.mark.browser
 
@@ -181,3 +187,20 @@ def test_the_key_below_the_map_hides_a_track(moving: Bench) -> None:
         moving.show(legend=())
     assert moving.line("/track/method0")
     assert moving.faults == []
+
+
+@pytest.mark.parametrize(("language", "said"), [("en", "3D drawn in software"), ("zh", "三维以软件绘制")])
+def test_software_rendering_is_told_below_the_map(
+    browser: Browser, dashboard: tuple[DashboardServer, Dashboard], language: str, said: str
+) -> None:
+    context = browser.new_context(viewport={"width": 1280, "height": 720})
+    page = context.new_page()
+    page.goto(f"{dashboard[0].url}?lang={language}&start=no")
+    page.wait_for_selector("#sb-run[data-run]", state="attached")
+    page.wait_for_function(
+        "said => document.querySelector('#sb-stage [data-is=caption]').textContent.includes(said)", arg=said
+    )
+    page.wait_for_function(
+        "() => [...document.querySelectorAll('.mantine-Notification-root')].every(n => !n.checkVisibility())"
+    )
+    context.close()

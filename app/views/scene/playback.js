@@ -86,7 +86,8 @@
   const SOFT = "Software WebGL rendering detected";
   const titles = document.getElementsByClassName("mantine-Notification-title");
   const watch = new MutationObserver(() => {
-    const told = [...titles].find((title) => title.textContent === SOFT)?.closest(".mantine-Notification-root");
+    const told = [...titles].find(({ textContent }) => window.schuler.english(textContent) === SOFT)
+      ?.closest(".mantine-Notification-root");
     if (!told) return;
     soft = true;
     watch.disconnect();
@@ -98,7 +99,7 @@
 
   // The entries stay what they are while only their errors change: a click ends on the button on which it began.
   function showKey() {
-    find("caption").textContent = now.caption + (soft ? "; 3D drawn in software" : "");
+    find("caption").textContent = now.caption + (soft ? window.schuler.say("; 3D drawn in software") : "");
     const box = find("key");
     const names = now.key.map((each) => each.key).join("\n");
     if (box.dataset.names !== names) {
