@@ -20,6 +20,8 @@ from app.bridge.texts import Translator
 _CALLBACK_THREADS = 16
 _CAST = "_schuler_cast"
 """Where viser's own method is kept."""
+_AT_ONCE = 2048
+"""Messages that go to a page in one piece: all that it is made of at its opening."""
 
 
 class _LoopEvent(asyncio.Event):
@@ -50,7 +52,12 @@ class MendedBuffer(AsyncMessageBuffer):
     is set, nobody is woken, and the second call does nothing, because the event is set already: the message
     stays in the queue until the next one comes, which may be never. Without the first call nothing is lost:
     whatever is pushed or ends an atomic block has the event loop set the event.
+
+    viser sends 128 messages at a time. A page is made of four times as many, and viser's page lays itself out
+    anew after each piece.
     """
+
+    max_window_size: int = _AT_ONCE
 
     translator: Translator | None = None
     """Translates what the page is sent; None: it reads English."""

@@ -58,6 +58,15 @@ class Column:
                 self._gui.add_html(f'<div class="sb-look" title="{told}">{told}</div>', order=-1)
         view.build(tab)
 
+    @property
+    def foremost(self) -> frozenset[str]:
+        """Titles of the first tab of each panel: those in front until the page says otherwise."""
+        first: dict[str, str] = {}
+        for view in self._views:
+            if view.title in self._tabs:
+                first.setdefault(view.place if len(self._panels) > 1 else "", view.title)
+        return frozenset(first.values())
+
     # ------------------------------------------------------------ what is out of date
 
     def mark_stale(self, titles: Iterable[str] | None = None) -> None:

@@ -2,8 +2,8 @@
 
 The page says which picture it has painted, and whether a slider moves (static/drawn.js). Until it has painted
 what it was sent, newer runs wait, and only the newest of them is shown. While a slider moves, a picture is
-what stands in front; 3D view, tables and readout follow when it rests: a change of the 3D view, or of viser's
-list of commands, makes viser's page draw the view for a quarter of a second.
+what stands in front; 3D view, tables and readout follow when it rests. They come last at the opening as well:
+without a graphics card the first frame of the 3D view takes half a second.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Pace:
     """Decides when the newest run is drawn, and how much of it.
 
     A page that never says what it has painted (a program that speaks viser's protocol) is sent every run,
-    whole.
+    whole; `expect_answers` tells that a page will.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class Pace:
         self._lock = threading.Lock()
         self._sent = self._painted = 0
         self._sent_s = -1e9
-        self._due = self._part = self._drawing = self._moving = self._closed = False
+        self._due = self._part = self._drawing = self._moving = self._closed = self._answers = False
         self._alarm: threading.Timer | None = None
 
     @property
@@ -59,6 +59,10 @@ class Pace:
             if self._painted < painted <= self._sent:
                 self._painted = painted
         self._go()
+
+    def expect_answers(self) -> None:
+        """Send what stands in front first, and all the rest once the page has painted it."""
+        self._answers = True
 
     def ended(self) -> None:
         """There is a run to show."""
@@ -78,7 +82,7 @@ class Pace:
             with self._lock:
                 if not self._may_draw():
                     return
-                whole = not self._moving
+                whole = not self._moving and (self._sent > 0 or not self._answers)
                 self._due, self._part, self._drawing = False, not whole, True
                 self._sent, self._sent_s = self._sent + 1, self._clock()
                 number = self._sent
@@ -93,7 +97,8 @@ class Pace:
         if self._closed or self._drawing or not (self._due or (self._part and not self._moving)):
             return False
         late_in_s = self._sent_s + LATE_S - self._clock()
-        if self._painted == 0 or self._sent - self._painted < AHEAD or late_in_s <= 0.0:
+        waits = self._part if self._painted == 0 else self._sent - self._painted >= AHEAD
+        if not waits or late_in_s <= 0.0:
             return True
         if self._alarm is not None:
             self._alarm.cancel()

@@ -60,7 +60,7 @@ class Page:
 
     def __init__(self, client: viser.ClientHandle, session: Session, kinds: Sequence[type[View]]) -> None:
         self.client, self.session, self.gui = client, session, client.gui
-        self._closed = self._built = False
+        self._closed = self._built = self._tells = False
         self._say_again_s = 0.0
         self._window: Window = (0, 0, False, False)
         self._shown_result = session.verifier.result
@@ -81,7 +81,10 @@ class Page:
         self.commands = Commands(gui, self._command_failed)
         gui.add_html(f"<style>{self._styles(kinds)}</style>", order=0)
         self.client.flush()
-        if not self._reports.wait_for_window(_SIZE_WAIT_S):
+        self._tells = self._reports.wait_for_window(_SIZE_WAIT_S)
+        if self._tells:
+            self._pace.expect_answers()
+        else:
             # No word from the script: the view covers the window as long as nothing is docked, but its size
             # counts device pixels.
             camera = self.client.camera
@@ -294,7 +297,7 @@ class Page:
         session, found = self.session, shown(self.session)
         if found is None or session.run is None or self._closed:
             return
-        run, wanted = session.run, self.column.wanted(self._front)
+        run, wanted = session.run, self.column.wanted(self._in_front)
         pictures = self.column.make(found, wanted)
         content = run_element(run, found.number) if whole else ""
         with session.lock, self.client.atomic():
@@ -311,7 +314,7 @@ class Page:
                 frame_ms = 1e3 * (run.elapsed_s + time.perf_counter() - began)
                 self.header.show_run(run, found.number, outdated=session.outdated, frame_ms=frame_ms)
                 self._run_element.content = content
-            else:
+            elif self._pace.moving:
                 self.header.show_moving()
             told = f'data-number="{number}" data-answer="{self._reports.painted_id}"'
             self._picture.content = f"<div id='sb-picture' hidden {told}></div>"
@@ -342,7 +345,7 @@ class Page:
     def _show_stale(self) -> None:
         session = self.session
         with session.lock:
-            found, wanted = shown(session), self.column.stale(self._front)
+            found, wanted = shown(session), self.column.stale(self._in_front)
         if found is None or not wanted:
             return
         pictures = self.column.make(found, wanted)
@@ -364,6 +367,11 @@ class Page:
             self._arrange()
             self._show_stale()
             self.column.tell_front(self._front)
+
+    @property
+    def _in_front(self) -> frozenset[str]:
+        """Tabs in front: as the page tells them, until then the first ones; none where it never tells."""
+        return self._front or (self.column.foremost if self._tells else frozenset())
 
     def wanted_layout(self) -> Layout:
         """Sizes for the window as it is, and as large as the session's display says."""

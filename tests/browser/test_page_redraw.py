@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 import pytest
 
 from app.editing import edits
 from tests.browser.driver import Bench
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 pytestmark = pytest.mark.browser
 
@@ -16,6 +21,28 @@ _PATHS = f"""() => [...{_PLOT}.querySelectorAll('.scatterlayer path.js-line')]
   .map(line => line.getAttribute('d').match(/-?[0-9.]+/g).map(Number))"""
 _ANEW = f"() => Plotly.redraw({_PLOT})"
 _AXES = f"() => ['xaxis', 'yaxis', 'yaxis2', 'yaxis3', 'yaxis4'].map(name => {_PLOT}._fullLayout[name].range)"
+
+
+# Titles of the figures, in the order in which they are drawn.
+_DRAWN = """window.drawn = [];
+addEventListener('drawn', ({target}) => window.drawn.push(target._fullLayout.meta.view));"""
+
+
+def test_only_what_is_in_sight_is_drawn(browser: Browser, dashboard: Any) -> None:
+    context = browser.new_context(viewport={"width": 1920, "height": 1080})
+    try:
+        context.add_init_script(_DRAWN)
+        opened = Bench(context.new_page(), dashboard[0].url, dashboard[1].sessions).open()
+        opened.settle()
+        opened.heard()
+        opened.plotly()
+        assert set(opened.page.evaluate("window.drawn")) == {"Frequency"}
+        opened.tab("Poles")
+        opened.plotly()
+        assert set(opened.page.evaluate("window.drawn")) == {"Frequency", "Poles"}
+        assert opened.faults == []
+    finally:
+        context.close()
 
 
 def test_a_slider_step_moves_the_curves_without_a_layout(bench: Bench) -> None:

@@ -89,6 +89,15 @@ def test_figures_out_of_sight_are_not_sent_until_their_tab_comes(dashboard: Serv
         visitor.wait_for(lambda message: message["type"] == "GuiPlotlyMessage", 10.0)
 
 
+def test_a_page_that_opens_has_the_pictures_in_front_before_all_else(dashboard: Served) -> None:
+    server, _ = dashboard
+    with visit(server.port, named(dashboard, "front-comes-first")) as visitor:
+        ready(visitor, "1920x1080")  # the tabs are not there yet
+        kinds = [message["type"] for message in visitor.received]
+        assert (kinds.count("GuiPlotlyMessage"), kinds.count("GuiUplotMessage")) == (1, 6)
+        assert kinds.index("GuiUplotMessage") < kinds.index("MeshMessage"), "the 3D view"
+
+
 def _pages(served: Dashboard, session_id: str) -> list[Page]:
     """Open pages of a session: one is listed once it is built, just after its first run is sent."""
     return [page for page in list(served._pages.values()) if page.session.id == session_id]

@@ -76,3 +76,26 @@ def test_a_closed_page_is_sent_nothing(page: Told) -> None:
     page.pace.close()
     page.pace.ended()
     assert page.drawn == []
+
+
+def test_a_page_that_opens_has_its_pictures_first(page: Told) -> None:
+    page.pace.expect_answers()
+    page.pace.ended()
+    assert page.drawn == [(1, False)]
+    page.pace.ended()
+    assert len(page.drawn) == 1, "the rest waits until they are painted"
+    page.pace.told(1, moving=False)
+    assert page.drawn[1:] == [(2, True)]
+    page.pace.told(2, moving=False)
+    assert len(page.drawn) == 2, "nothing is shown twice"
+
+
+def test_a_page_that_opens_out_of_sight_has_everything_soon(page: Told) -> None:
+    page.pace.expect_answers()
+    page.pace.ended()
+    page.now_s += LATE_S
+    page.pace.told(0, moving=False)
+    assert page.drawn[1:] == [(2, True)]
+    page.pace.ended()
+    assert page.drawn[2:] == [(3, True)], "it is not waited for again"
+    page.pace.close()

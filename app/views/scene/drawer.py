@@ -59,8 +59,6 @@ class SceneDrawer:
         scene.configure_default_lights(cast_shadow=False)
         scene.configure_environment_map(hdri=None)
         scene.add_light_ambient("/light", intensity=1.4)
-        self._make_sea()
-        self._make_ship()
 
     def enlarge(self, scale: float) -> None:
         """Write labels larger by ``scale``, and draw lines wider, from the next `draw` on."""
@@ -73,6 +71,9 @@ class SceneDrawer:
 
     def draw(self, track: TrackScene, time_s: float, selected: int = 0) -> None:
         """Show a run's map, the ships where they are at ``time_s``; ``selected`` has a computed one."""
+        if self.drawn is None:
+            self._make_sea()
+            self._make_ship()
         self._lines("/map/grid", track.graticule.segments, style.rgb("#FFFFFF"), _GRID_LINE)
         self._lines("/map/bar", track.bar + _BAR_SHIFT, style.rgb(style.INK), 2 * _GRID_LINE)
         south = (replace(label, position=_shifted(label)) for label in track.labels[:1])
