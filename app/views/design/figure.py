@@ -296,6 +296,7 @@ def _layout(
             tickvals=list(range(len(methods))),
             ticktext=methods,
             showticklabels=column == 0,
+            ticks="outside" if column == 0 else "",
             range=[len(methods) - 0.4, -0.6],
             showgrid=False,
         )

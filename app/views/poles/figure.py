@@ -33,7 +33,6 @@ _HEIGHTS = (4.0, 6.0, 10.0, 16.0, 25.0, 40.0, 60.0, 100.0, 160.0, 250.0, 400.0, 
 _RIGHT_SHARE = 0.14
 """Part of a panel's width that shows the right half plane."""
 _MARGIN = {"l": 58, "r": 16, "t": 32}
-_GAP = 0.09
 PANELS = (("xaxis", "yaxis"), ("xaxis2", "yaxis2"))
 """Axes of the two panels: all poles, and those near the Schuler frequency."""
 _PICK = {"command": COMMAND, "panels": PANELS}
@@ -89,8 +88,8 @@ def poles(
         for i, (method, (roots, zeros)) in enumerate(zip(run.methods, marks, strict=True)):
             data += _method_marks(method, i, roots, zeros, suffix)
     data += _key_entries()
-    width = 0.5 * (1.0 - _GAP) * (width_px - margin["l"] - margin["r"])
-    layout = _layout(panels, margin, aspect, locus_note(run, selected, locus), width)
+    share, width = _column(width_px, margin)
+    layout = _layout(panels, margin, aspect, locus_note(run, selected, locus), width, share)
     layout["annotations"] += _far_zeros([zeros for _, zeros in marks], panels[""][0][0])
     for suffix, (re, im) in panels.items():
         layout["annotations"] += settling_labels(suffix, re, run.scenario.omega_s, width)
@@ -106,8 +105,14 @@ def _scaled(method: MethodRun, roots: np.ndarray) -> np.ndarray:
 def _panel_shape(aspect: float, width_px: float, margin: dict[str, int]) -> float:
     """Width / height of one panel."""
     height = aspect * width_px - margin["t"] - margin["b"]
-    width = (width_px - margin["l"] - margin["r"]) * 0.5 * (1.0 - _GAP)
-    return width / max(height, 1.0)
+    return _column(width_px, margin)[1] / max(height, 1.0)
+
+
+def _column(width_px: float, margin: dict[str, int]) -> tuple[float, float]:
+    """Width of one panel: its part of the room between the margins, and px."""
+    inner_px = width_px - margin["l"] - margin["r"]
+    share = style.column(inner_px)
+    return share, share * inner_px
 
 
 def _half_height(roots: np.ndarray, shape: float) -> float:
@@ -201,16 +206,16 @@ def _layout(
     aspect: float,
     locus: str,
     room_px: float,
+    share: float,
 ) -> dict[str, Any]:
     made = style.layout(
         margin=margin, hovermode="closest", legend=style.legend(), meta={"aspect": aspect, "pick": _PICK}
     )
     titles = {suffix: style.fitting(texts, room_px) for suffix, texts in _TITLES.items()}
-    half = 0.5 * (1.0 - _GAP)
     shapes: list[dict[str, Any]] = []
     notes: list[dict[str, Any]] = []
     for suffix, (re, im) in panels.items():
-        domain = [0.0, half] if suffix == "" else [1.0 - half, 1.0]
+        domain = [0.0, share] if suffix == "" else [1.0 - share, 1.0]
         made[f"xaxis{suffix}"] = style.axis(
             "Re s / ω<sub>s</sub>", domain=domain, anchor=f"y{suffix}", range=list(re), showgrid=False
         )
