@@ -189,6 +189,7 @@ def drag(page: Page, seconds: float, what: str, seen: Followed) -> None:
     seconds = time.monotonic() - began
     found = page.evaluate("() => window.stopWatch()")
     painted = browser_cpu_ms()
+    page.mouse.move(x, y)  # the next drag begins here: at the slider's end it would move nothing
     page.mouse.up()
     pictures = max(len(found["curves"]), 1)
     for thread, before, after in zip(_THREADS, began_cpu, painted, strict=True):
