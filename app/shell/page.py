@@ -11,12 +11,10 @@ import time
 from collections.abc import Sequence, Set
 from contextlib import nullcontext
 from html import escape
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.bridge.server import leaving_is_no_fault
 from app.bridge.texts import keep_names
-from app.plots import style
 from app.session.names import GivenNames
 from app.session.session import Session
 from app.session.shown import shown
@@ -33,14 +31,14 @@ from app.shell.palette import Palette
 from app.shell.presenter import PresenterLock
 from app.shell.reports import Reports
 from app.shell.run_element import run_element
-from app.shell.view import Frame, View, styles_of
+from app.shell.styles import page_styles
+from app.shell.view import Frame, View
 from app.shell.views_alone import views_element
 from navcore.foundation.errors import InputError
 
 if TYPE_CHECKING:
     import viser
 
-_STATIC = Path(__file__).parent / "static"
 _SIZE_WAIT_S = 1.5
 _SAY_AGAIN_S = 120.0
 
@@ -79,7 +77,8 @@ class Page:
         keep_names(self.client, GivenNames(session))
         self._reports = Reports(gui, self._on_window, self._pace.told)
         self.commands = Commands(gui, self._command_failed)
-        gui.add_html(f"<style>{self._styles(kinds)}</style>", order=0)
+        css = page_styles(kinds, self._reports.window_id, self.commands.box_id)
+        gui.add_html(f"<style>{css}</style>", order=0)
         self.client.flush()
         self._tells = self._reports.wait_for_window(_SIZE_WAIT_S)
         if self._tells:
@@ -114,13 +113,6 @@ class Page:
             self.run_ended()
         if session.waits:
             self.run_waits()
-
-    def _styles(self, kinds: Sequence[type[View]]) -> str:
-        css = "".join(
-            (_STATIC / f"{name}.css").read_text(encoding="utf-8") for name in ("page", "commands", "touch")
-        )
-        css = css.replace("PAGE_STATE", self._reports.window_id).replace("PAGE_COMMAND", self.commands.box_id)
-        return css + styles_of(kinds) + style.UPLOT_CSS
 
     def _make_views(self, kinds: Sequence[type[View]]) -> None:
         gui, session, client = self.gui, self.session, self.client

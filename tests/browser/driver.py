@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 from collections.abc import Callable
 from itertools import count
@@ -23,6 +22,7 @@ from app.shell.page import Page as OpenPage
 from navcore.scenario.file import load
 from tests.browser import scripts
 from tests.browser.fields import box_labels, slider_labels
+from tests.browser.patience import GONE, PATIENCE_MS, SLOW, THROTTLE_MS
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
@@ -32,23 +32,6 @@ if TYPE_CHECKING:
     from navcore.scenario.model import Scenario
 
 T = TypeVar("T")
-
-THROTTLE_MS = 80
-"""More than the 30 ms in which the page sends at most one value of a control."""
-
-PATIENCE_MS = 90_000
-"""So long a page may take for one thing, on a machine that does much else."""
-
-SLOW = float(os.environ.get("SCHULER_BROWSER_SLOW", "1"))
-"""The page's processor is so many times slower: a test must not depend on its speed."""
-
-_GONE = ("Tried to update non-existent component", "_redrawFromAutoMarginCount")
-"""What viser and plotly say of a plot that goes while it is drawn; nothing is lost.
-
-viser's page removes at once what is removed, but changes what is changed at the end of a frame: a plot that
-was changed and then removed within one frame, when the page is behind, is reported so. And plotly goes on
-laying out a plot in several steps, whether or not it is still there.
-"""
 
 
 def _has_callbacks(view: OpenPage) -> bool:
@@ -86,7 +69,7 @@ class Bench:
         page.on("console", lambda m: self._note(m.text) if m.type == "error" else None)
 
     def _note(self, text: str) -> None:
-        if not any(gone in text for gone in _GONE):
+        if not any(gone in text for gone in GONE):
             self.faults.append(text)
 
     def open(self, path: str = "", query: str = "?fixedDpr=0.25&start=no") -> Bench:

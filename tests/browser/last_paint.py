@@ -19,8 +19,9 @@ from app.bench.process import free_port
 from app.editing import edits
 from app.serve import open_dashboard
 from navcore.engine.simulation import simulate
-from tests.browser.driver import THROTTLE_MS, Bench
+from tests.browser.driver import Bench
 from tests.browser.fields import label_of
+from tests.browser.patience import THROTTLE_MS
 from tests.browser.plain_page import SLIDER as PLAIN_SLIDER
 from tests.browser.plain_page import PlainPage
 from tests.chromium import FLAGS, find_chromium

@@ -12,7 +12,7 @@ import viser
 
 from app.http.server import DashboardServer, start
 from tests.attack.conftest import eventually
-from tests.browser.driver import PATIENCE_MS
+from tests.browser.patience import PATIENCE_MS
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -11,7 +11,8 @@ import pytest
 import app.shell
 from app.http.server import DashboardServer, start
 from app.views.files import view as files_view
-from tests.browser.driver import PATIENCE_MS, THROTTLE_MS, Bench
+from tests.browser.driver import Bench
+from tests.browser.patience import PATIENCE_MS, THROTTLE_MS
 
 if TYPE_CHECKING:
     import viser

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from app.editing import edits
-from tests.browser.driver import THROTTLE_MS, Bench
+from tests.browser.driver import Bench
+from tests.browser.patience import THROTTLE_MS
 
 if TYPE_CHECKING:
     from app.session.session import Session

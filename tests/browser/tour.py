@@ -15,7 +15,8 @@ from PIL import Image, ImageDraw, ImageFont
 from playwright.sync_api import Page, sync_playwright
 
 from app.serve import open_dashboard
-from tests.browser.driver import THROTTLE_MS, Bench
+from tests.browser.driver import Bench
+from tests.browser.patience import THROTTLE_MS
 from tests.chromium import FLAGS, find_chromium
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
