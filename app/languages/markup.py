@@ -27,8 +27,8 @@ _OPAQUE = re.compile(
     r"%\{[^{}]*\}|"
     r"<[a-z]++ (?>[^<>]*?translate=.no.)[^<>]*+>[^<]*</[a-z]+>"
 )
-_INSTEAD = re.compile(r"(<span class=.sb-live\b[^<>]*>)(\([^<]*\))")
-"""Where a lesson has no number to show: what the reader is to do for it."""
+_LIVE = re.compile(r"(<span class=.sb-live\b[^<>]*>)([^<]*)")
+"""A number of a lesson; it may have a word for its unit, and a title."""
 _HIDDEN = "|".join(
     (
         _element("pre"),
@@ -88,8 +88,8 @@ def translate(html: str, say: Say) -> str:
         values.append(found[0])
         return f"{OPEN}{len(values) - 1}{CLOSE}"
 
-    def instead(found: re.Match[str]) -> str:
-        return f"{found[1]}{escape(say(unescape(found[2])), quote=False)}"
+    def live(found: re.Match[str]) -> str:
+        return f"{_attributes(found[1], say)}{escape(say(unescape(found[2])), quote=False)}"
 
     out: list[str] = []
     piece: list[str] = []
@@ -103,7 +103,7 @@ def translate(html: str, say: Say) -> str:
             piece.append(token)
     out.append(_translate_piece("".join(piece), say))
     return re.sub(
-        f"{OPEN}([0-9]+){CLOSE}", lambda found: _INSTEAD.sub(instead, values[int(found[1])]), "".join(out)
+        f"{OPEN}([0-9]+){CLOSE}", lambda found: _LIVE.sub(live, values[int(found[1])]), "".join(out)
     )
 
 
@@ -122,18 +122,18 @@ def _translate_piece(piece: str, say: Say) -> str:
             key += short
     key = _BLANKS.sub(" ", key)
     lead, tail = key[: len(key) - len(key.lstrip())], key[len(key.rstrip()) :]
-    said = _say_inside(key.strip(), say) if tags else say(key.strip())
+    said = say_inside(key.strip(), say) if tags else say(key.strip())
     if said == key.strip():
         return _with_attributes(piece, say)
     return lead + _with_tags(said, tags) + tail
 
 
-def _say_inside(key: str, say: Say) -> str:
+def say_inside(key: str, say: Say) -> str:
     """Translate a piece with elements in it: without those around all of it, else part by part."""
     found = _AROUND.fullmatch(key)
     if found is not None and f"<{found[1]}>" not in found[2]:
         inner = found[2].strip()
-        said = _say_inside(inner, say) if _TAG.search(inner) else say(inner)
+        said = say_inside(inner, say) if _TAG.search(inner) else say(inner)
         return f"<{found[1]}>{found[2].replace(inner, said)}</{found[1]}>" if inner else key
     said = say(key)
     if said == key:

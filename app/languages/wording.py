@@ -31,7 +31,7 @@ _SEPARATORS = tuple(
     for separator in (
         r"(\n+)",
         r"( ┊ | · | \| | – | — )",
-        r"(?<=[.!?])( )(?=[A-Z0-9(])",
+        r"(?<=[.!?])(?<!eq\.)(?<!eqs\.)(?<!fig\.)(?<!figs\.)( )(?=[A-Z0-9(])",
         r"(; )",
         r"(: )",
         r"(, (?:and |or )?)",
@@ -50,6 +50,10 @@ _LONGEST_VALUE = 40
 _ENDS = {".": "。", ":": "："}
 _WITH_UNIT = re.compile(r"(.+?) (\([^()]*\))((?:, [a-z]+)?)")
 _PARENTHESIS, _CLOSED = re.compile("[()]"), re.compile(r"\([^()]*\)")
+_NUMBERED = re.compile(r"\d+ [a-z]{3,}")
+_FAULT = re.compile(r"((?:[\w-]+(?:\.[\w-]+)+(?: = [^:]*)?: )+)(.+)", re.DOTALL)
+"""What is wrong, behind the file or field in which it is, and its value."""
+_UNENDED = re.compile(r"(?:[A-Za-z]+,? ){2,}.*[A-Za-z%)]$", re.DOTALL)
 _MANY = re.compile(r"[A-Za-z]{2,},? [A-Za-z]{2,}")
 _ENDED = re.compile(r"[.;:] ")
 _MOST_KEPT = 20_000
@@ -164,8 +168,8 @@ class Wording:
     def _around_names(self, text: str, names: Names) -> str:
         """Translate a text without markup in which there may be names.
 
-        A name may also be a word of the text itself, such as "log". Of three readings, the name as a name,
-        the name as a word, and the text before and after it apart, the first that leaves least in English
+        A name may also be a word of the text itself, such as "log". Of the readings, the name as a name,
+        as a word, as a label, and the text before and after it apart, the first that leaves least in English
         is meant.
         """
         if names.are(text):
@@ -173,8 +177,11 @@ class Wording:
         around, found = names.hidden(text)
         if not found:
             return self.say(text)
-        apart = "".join(self.say(part) for part in re.split(f"({NAME})", around))
-        said = (self.say(around), names.hidden(self.say(text))[0], apart)
+        said = [self.say(around), names.hidden(self.say(text))[0]]
+        if _TAGS.search(text) is None:  # else `markup` takes it apart
+            label, _, rest = around.partition(": ")
+            said += [f"{label}：{self.say(rest)}"] if re.fullmatch(NAME, label) else []
+            said.append("".join(self.say(part) for part in re.split(f"({NAME})", around)))
         return names.shown(min(said, key=lambda one: len(_LETTERS.findall(one))), found)
 
     def _say(self, text: str) -> str:
@@ -206,6 +213,10 @@ class Wording:
                 said = self._exact.get(form) or self._match(form, depth)
                 if said is not None:
                     return said + end
+        if _UNENDED.search(key) is not None:  # the end of a sentence whose stop is another text's
+            said = self._exact.get(f"{key}.") or self._match(f"{key}.", depth)
+            if said is not None:
+                return said.rstrip("。.")
         label = _WITH_UNIT.fullmatch(key)
         said = None if label is None else self._exact.get(label[1])
         if label is None or said is None:
@@ -226,6 +237,8 @@ class Wording:
         return None
 
     def _value(self, value: str, depth: int) -> str:
+        if _TAGS.search(value) is not None and depth <= _DEEPEST:
+            return markup.say_inside(value, lambda text: self._look_up(text, depth + 1) or text)
         found = self._look_up(value, depth + 1)
         return value if found is None else found
 
@@ -236,9 +249,14 @@ class Wording:
         """
         sentence = len(value) > _LONGEST_VALUE or _ENDED.search(value) is not None
         found = self._whole(value, depth + 1) if sentence else self._look_up(value, depth + 1)
-        return value if found is None and not sentence and _MANY.search(value) is None else found
+        is_word = not sentence and _MANY.search(value) is None and _NUMBERED.match(value) is None
+        return value if found is None and is_word else found
 
     def _take_apart(self, text: str, depth: int) -> str | None:
+        fault = _FAULT.fullmatch(text)
+        told = None if fault is None else self._whole(fault[2], depth + 1)
+        if fault is not None and told is not None:
+            return fault[1] + told
         for separator in _SEPARATORS:
             parts = separator.split(text)
             if len(parts) > 1:
@@ -251,10 +269,12 @@ class Wording:
         """Translate a label before the name of an axis: "gyro bias x"."""
         words = text.split(" ")
         for count in range(len(words) - 1, max(0, len(words) - 4), -1):
-            said = self._exact.get(" ".join(words[:count]))
+            label = " ".join(words[:count])
+            said = self._exact.get(label)
             if said is not None:
-                rest = " ".join(words[count:])
-                return f"{said} {self._value(rest, depth)}"
+                number = [word for word in words[count : count + 1] if word.isdigit()]  # "event 2 begins"
+                rest = " ".join(words[count + len(number) :])
+                return " ".join([said, *number, *([self._value(rest, depth)] if rest else [])])
         return None
 
     def _part_by_part(self, parts: list[str], depth: int) -> str | None:

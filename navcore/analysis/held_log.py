@@ -200,5 +200,5 @@ def _warning(growth: float, period_s: float, step_s: float, calls: int, up_to: f
     every = duration(1.0 / growth)
     text = f"unstable as sampled: {what}, too long for this loop; the errors grow by e every {every}"
     if up_to > 0.0:
-        text += f"; stable up to about {up_to:.3g} s"
+        return "; ".join((text, f"stable up to about {up_to:.3g} s"))
     return text

@@ -41,6 +41,7 @@ _OF_VISER = (
     "Edit props for {0}",
     "Nothing found...",
     "No matching commands...",
+    "Uploading {0} ({1})",
     "Uploading...",
     "Search commands...",
     "Adaptive",
@@ -97,7 +98,8 @@ def _assets() -> Iterator[Text]:
     for lesson in lessons():
         where = f"lessons/{lesson.id}.md"
         yield from _pieces(f"<p>{lesson.title}</p><p>{lesson.about}</p>", where)
-        yield from _pieces(str(lesson.scenario.get("title", "")), where)
+        for name in ("title", "source"):
+            yield from _pieces(str(lesson.scenario.get(name, "")), where)
         for step in lesson.steps:
             yield from _pieces(f"<p>{step.title}</p>{to_html(step.text, None)}", where)
             if step.question is not None:

@@ -126,6 +126,7 @@ window.schuler.words = {
   "Edit props for {0}": "编辑 {0} 的属性",
   "Nothing found...": "未找到……",
   "No matching commands...": "没有匹配的命令……",
+  "Uploading {0} ({1})": "正在上传 {0}（{1}）",
   "Uploading...": "正在上传……",
   "Search commands...": "搜索命令……",
   "Adaptive": "自适应"

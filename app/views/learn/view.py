@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from functools import lru_cache
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 COMMAND = "lesson"
 """Command with which the panel's HTML asks: ``lesson open 2``, ``step 1``, ``next``, ``back``, ``list``,
 ``show``, ``answer TEXT``."""
-_TRY = "try:"
 _UNREADABLE = "Type a number, such as 84.4."
 
 
@@ -222,7 +222,7 @@ class LearnView(View):
             return f'<p class="sb-wrong"><b>{_UNREADABLE}</b></p>', False
         if right:
             why = to_html(question.why, run).removeprefix("<p>")
-            return f'<p class="sb-right"><b>&#10003; Right.</b> {why}', True
+            return f'<p class="sb-right"><b>&#10003; Right.</b><br>{why}', True
         told = "Look again: press Show me if the pictures are of something else."
         if not question.choices:
             told += f" Within {100.0 * question.tolerance:g} % counts as right."
@@ -270,9 +270,9 @@ def spec_at(scenario: Scenario, dotted: str) -> list[FieldSpec]:
     for depth, part in enumerate(path):
         model = type(place)
         if issubclass(model, BaseModel):
-            chosen = [spec for spec in form.fields(model, path[:depth], _TRY) if spec.path == path]
-            if chosen:
-                return chosen
+            chosen = [spec for spec in form.fields(model, path[:depth]) if spec.path == path]
+            if chosen:  # labels are unique on the page
+                return [replace(spec, label=f"try: {spec.label}") for spec in chosen]
         try:
             place = place[part] if isinstance(part, int) else getattr(place, part)
         except (AttributeError, IndexError, TypeError):
