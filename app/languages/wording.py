@@ -51,10 +51,11 @@ _ENDS = {".": "。", ":": "："}
 _WITH_UNIT = re.compile(r"(.+?) (\([^()]*\))((?:, [a-z]+)?)")
 _PARENTHESIS, _CLOSED = re.compile("[()]"), re.compile(r"\([^()]*\)")
 _NUMBERED = re.compile(r"\d+ [a-z]{3,}")
-_FAULT = re.compile(r"((?:[\w-]+(?:\.[\w-]+)+(?: = [^:]*)?: )+)(.+)", re.DOTALL)
-"""What is wrong, behind the file or field in which it is, and its value."""
-_UNENDED = re.compile(r"(?:[A-Za-z]+,? ){2,}.*[A-Za-z%)]$", re.DOTALL)
-_MANY = re.compile(r"[A-Za-z]{2,},? [A-Za-z]{2,}")
+_FIELD = re.compile(r"[\w-]+(?:\.[\w-]+)+(?: = [^:]*)?: ")
+"""The file or field in which something is wrong, and its value, before what is said of it."""
+_UNENDED = re.compile(r"[A-Za-z%)]\Z")
+_TWO_WORDS = re.compile(r"(?<![A-Za-z])[A-Za-z]+,? [A-Za-z]+,? ")
+_MANY = re.compile(r"(?<![A-Za-z])[A-Za-z]{2,},? [A-Za-z]{2}")
 _ENDED = re.compile(r"[.;:] ")
 _MOST_KEPT = 20_000
 _LONGEST_KEPT = 50_000
@@ -213,7 +214,7 @@ class Wording:
                 said = self._exact.get(form) or self._match(form, depth)
                 if said is not None:
                     return said + end
-        if _UNENDED.search(key) is not None:  # the end of a sentence whose stop is another text's
+        if _UNENDED.search(key) and _TWO_WORDS.search(key):  # its stop is another text's
             said = self._exact.get(f"{key}.") or self._match(f"{key}.", depth)
             if said is not None:
                 return said.rstrip("。.")
@@ -253,10 +254,12 @@ class Wording:
         return value if found is None and is_word else found
 
     def _take_apart(self, text: str, depth: int) -> str | None:
-        fault = _FAULT.fullmatch(text)
-        told = None if fault is None else self._whole(fault[2], depth + 1)
-        if fault is not None and told is not None:
-            return fault[1] + told
+        at = 0
+        while (field := _FIELD.match(text, at)) is not None:
+            at = field.end()
+        told = self._whole(text[at:], depth + 1) if 0 < at < len(text) else None
+        if told is not None:
+            return text[:at] + told
         for separator in _SEPARATORS:
             parts = separator.split(text)
             if len(parts) > 1:

@@ -10,7 +10,6 @@ from typing import Any
 from navcore.analysis.report import whole_system_report
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.version import __version__
-from navcore.scenario.file import scenario_hash
 from navcore.scenario.model import SCHEMA
 
 
@@ -40,7 +39,7 @@ def metrics(run: Run) -> dict[str, Any]:
     """
     return {
         "schema": SCHEMA,
-        "scenario_sha256": scenario_hash(run.scenario),
+        "scenario_sha256": run.scenario_sha256,
         "versions": versions(),
         "elapsed_s": round(run.elapsed_s, 4),
         "computed_on": run.computed_on,

@@ -145,6 +145,8 @@ class Run:
         Wall time of the simulation, s.
     sampling : Sampling or None
         Rates of a strapdown run.
+    scenario_sha256 : str
+        `navcore.scenario.file.scenario_hash`, taken when the run was made: its recordings may go later.
     """
 
     scenario: Scenario
@@ -154,6 +156,7 @@ class Run:
     warnings: tuple[str, ...]
     elapsed_s: float
     sampling: Sampling | None = None
+    scenario_sha256: str = ""
 
     @property
     def computed_on(self) -> str:

@@ -14,6 +14,7 @@ from navcore.engine.results import require_replaceable, timeseries, write_result
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
+from navcore.scenario.file import scenario_hash
 from navcore.scenario.model import Scenario
 
 
@@ -109,6 +110,16 @@ def test_what_is_infinite_becomes_null(run):
     assert document["methods"][0]["loop"]["h0"] is None
     assert document["methods"][0]["loop"]["poles"] == [[None, 1.0]]
     assert document["methods"][0]["errors"]["dve_mps"]["rms"] is None
+
+
+def test_metrics_need_no_recording_any_more(tmp_path):
+    recording = tmp_path / "log.csv"
+    recording.write_text("t_s,speed_mps,heading_deg\n" + "".join(f"{t},5.0,90.0\n" for t in range(7200)))
+    reference = {"kind": "log", "file": str(recording)}
+    made = simulate(Scenario.parse({"run": {"duration_h": 1.0}, "reference": reference}))
+    digest = scenario_hash(made.scenario)
+    recording.unlink()
+    assert metrics(made)["scenario_sha256"] == digest
 
 
 def test_metrics_say_which_steps_they_cover(run):

@@ -21,7 +21,7 @@ from app.views.metrics.table import metrics_html, system_html
 from app.views.metrics.view import warnings_html
 from app.views.requirements.table import requirements_html
 from navcore.foundation.version import __version__
-from navcore.scenario.file import load, presets, scenario_hash, to_toml
+from navcore.scenario.file import load, presets, to_toml
 
 _ABREAST = 3
 """Methods beside each other in a table, so that it fits on paper."""
@@ -99,7 +99,7 @@ def _about(session: Session) -> str:
         "Duration": f"{scenario.run.duration_h:g} h",
         "Date": f"{session.made:%Y-%m-%d %H:%M %Z}",
         "Program": f"Schuler Bench {__version__}",
-        "SHA-256": f"<code>{scenario_hash(scenario)}</code>",
+        "SHA-256": f"<code>{session.found.run.scenario_sha256}</code>",
         "Run it again": f'<code translate="no">{escape(command(session))}</code>',
     }
     rows = "".join(f"<dt>{name}</dt><dd>{value}</dd>" for name, value in lines.items())

@@ -14,7 +14,6 @@ from app.plots.time_figure import WIDTH_PX, time_figure
 from app.session.shown import Shown, shown
 from app.shell import notices
 from app.shell.view import Figures, Frame
-from navcore.scenario.file import scenario_hash
 
 FORMATS = ("CSV", "SVG", "PNG")
 
@@ -156,6 +155,6 @@ class Export:
 
 
 def _numbers(figures: Figures, found: Shown, title: str) -> bytes:
-    about = (f"Schuler Bench: {title}", f"scenario_sha256 {scenario_hash(found.run.scenario)}")
+    about = (f"Schuler Bench: {title}", f"scenario_sha256 {found.run.scenario_sha256}")
     plotly, plots = figures
     return time_csv(plots, about) if plotly is None else plotly_csv(plotly, about)

@@ -25,6 +25,7 @@ from navcore.engine.run import MethodRun, Run, Status
 from navcore.mechanization.error_model import ErrorModelRun
 from navcore.mechanization.kalman.error_model import FilteredErrorModel
 from navcore.mechanization.recorder import make_recorder, output_steps
+from navcore.scenario.file import scenario_hash
 from navcore.scenario.model import Method, Scenario
 
 CHUNK = 50_000
@@ -112,6 +113,7 @@ def run_methods(
         truth=truth_at(env.truth_half.values, 2 * steps),
         warnings=env.warnings,
         elapsed_s=time.perf_counter() - began,
+        scenario_sha256=scenario_hash(scenario),
     )
 
 

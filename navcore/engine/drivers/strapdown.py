@@ -27,6 +27,7 @@ from navcore.engine.strapdown_environment import StrapdownEnvironment, strapdown
 from navcore.mechanization.recorder import output_steps
 from navcore.mechanization.strapdown import Settings, StrapdownRun, start_run, velocity_reference
 from navcore.mechanization.strapdown.drive import drive
+from navcore.scenario.file import scenario_hash
 from navcore.scenario.model import Method, Scenario
 from navcore.scenario.sampling import Sampling
 
@@ -87,6 +88,7 @@ def run_methods(
         warnings=env.warnings,
         elapsed_s=time.perf_counter() - began,
         sampling=rates,
+        scenario_sha256=scenario_hash(scenario),
     )
 
 
