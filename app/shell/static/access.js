@@ -57,8 +57,9 @@
       const titles = (plot._fullLayout?.annotations ?? []).map((a) => a.text).filter((text) => text?.startsWith("<b>"));
       const names = [...new Set((plot._fullData ?? []).filter((t) => t.showlegend !== false).map((t) => t.name))];
       const words = [titles.join(", ").replace(/<[^>]*>/g, ""), names.filter(Boolean).join(", ")].filter(Boolean);
+      if (words.length === 0) continue; // nothing is drawn in it yet
       set(plot, "role", "figure");
-      set(plot, "aria-label", words.length > 1 ? `Plot: ${words[0]}; curves: ${words[1]}` : `Plot: ${words[0] ?? ""}`);
+      set(plot, "aria-label", words.length > 1 ? `Plot: ${words[0]}; curves: ${words[1]}` : `Plot: ${words[0]}`);
     }
     for (const { chart } of Object.values(window.__viserTestpoints?.uplots ?? {})) {
       const names = chart.series.slice(1).map((series) => series.label).join(", ");

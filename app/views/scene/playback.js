@@ -99,7 +99,7 @@
 
   // The entries stay what they are while only their errors change: a click ends on the button on which it began.
   function showKey() {
-    find("caption").textContent = now.caption + (soft ? window.schuler.say("; 3D drawn in software") : "");
+    find("caption").textContent = [now.caption, ...(soft ? ["; 3D drawn in software"] : [])].map(window.schuler.say).join("");
     const box = find("key");
     const names = now.key.map((each) => each.key).join("\n");
     if (box.dataset.names !== names) {
