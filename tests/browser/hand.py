@@ -47,7 +47,7 @@ _WARM_S = 5.0
 """So long the kernels may take that are loaded behind the page."""
 _SWING_PX = 90
 _AWAY = 6
-"""So many steps beyond the pins: one that equals the run has another name, and the legend is laid out anew."""
+"""Steps beyond the pins: one that equals the run has another name, and the legend is laid out anew."""
 
 _WATCH = """() => {
   const charts = () => Object.values(window.__viserTestpoints?.uplots ?? {}).map(entry => entry.chart);
