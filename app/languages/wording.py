@@ -12,7 +12,7 @@ import gettext
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 from app.languages import markup
@@ -68,8 +68,8 @@ class _Pattern:
 
     Attributes
     ----------
-    pattern, greedy : re.Pattern
-        Match the text with its values, as short and as long as can be.
+    pattern : re.Pattern
+        Matches the text with its values, as short as can be.
     said : str
         Its translation, with the values as ``{0}``.
     weight : int
@@ -79,19 +79,23 @@ class _Pattern:
     """
 
     pattern: re.Pattern[str]
-    greedy: re.Pattern[str]
     said: str
     weight: int
     labels: bool
 
+    @cached_property
+    def greedy(self) -> re.Pattern[str]:
+        """Matches it with its values as long as can be; few texts need it."""
+        return re.compile(self.pattern.pattern.replace(">.*?)", ">.*)"), re.DOTALL)
+
     def values(self, text: str) -> tuple[str, ...] | None:
-        """Values in a text; None when it is another one."""
-        for pattern in (self.pattern, self.greedy):  # the shortest values, else the longest ones
-            found = pattern.fullmatch(text)
-            values = None if found is None else self._fit(found.groups(default=""), text)
-            if found is None or values is not None:
-                return values
-        return None
+        """Values in a text, the shortest that fit, else the longest; None when it is another one."""
+        found = self.pattern.fullmatch(text)
+        if found is None:
+            return None
+        values = self._fit(found.groups(default=""), text)
+        longest = self.greedy.fullmatch(text) if values is None else None
+        return values if longest is None else self._fit(longest.groups(default=""), text)
 
     def _fit(self, values: tuple[str, ...], text: str) -> tuple[str, ...] | None:
         """Values that a text can mean, None when they cannot be meant."""
@@ -356,8 +360,7 @@ def _pattern(key: str, said: str) -> _Pattern:
     for number, part in zip(order, parts[1:], strict=True):
         again = f"(?P=v{number})" if f"(?P<v{number}>" in pattern else f"(?P<v{number}>.*?)"
         pattern += again + re.escape(part)
-    shortest, longest = (re.compile(p, re.DOTALL) for p in (pattern, pattern.replace(">.*?)", ">.*)")))
-    return _Pattern(shortest, longest, said, sum(map(len, parts)), ":" in key)
+    return _Pattern(re.compile(pattern, re.DOTALL), said, sum(map(len, parts)), ":" in key)
 
 
 def read_texts(language: str) -> dict[str, str]:
