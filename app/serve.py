@@ -32,6 +32,7 @@ _SCRIPTS = (
     "strokes",
     "touch",
     "widgets",
+    "paths",
     "drawn",
     "marks",
     "alone",

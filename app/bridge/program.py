@@ -43,6 +43,17 @@ MENDS = (
         "n=LL(50).send,r=b.useMemo(()=>({folderDepth:0",
         "n=window.schuler.send,r=b.useMemo(()=>({folderDepth:0",
     ),
+    # A plot's large window, which a button opens, is made anew with each of its pictures while it is closed.
+    (
+        "onExpand:n}),(0,Y.jsx)(pA,{opened:t,onClose:r,size:`xl`,children:(0,Y.jsx)(I0,{...e})})]})",
+        "onExpand:n}),b.useMemo(()=>(0,Y.jsx)(pA,{opened:t,onClose:r,size:`xl`,children:(0,Y.jsx)(I0,{...e})}),"
+        "[t,t&&e])]})",
+    ),
+    (
+        "onExpand:r}),(0,Y.jsx)(pA,{opened:n,onClose:i,size:`xl`,children:(0,Y.jsx)(SX,{jsonStr:e,aspectRatio:t})})",
+        "onExpand:r}),b.useMemo(()=>(0,Y.jsx)(pA,{opened:n,onClose:i,size:`xl`,children:(0,Y.jsx)(SX,{jsonStr:e,"
+        "aspectRatio:t})}),[n,n&&e,t])",
+    ),
     # A command's new title ("Undo ...") counts as a change of the 3D view.
     ("new Set([`GuiUpdateMessage`,", "new Set([`CommandUpdateMessage`,`GuiUpdateMessage`,"),
 )

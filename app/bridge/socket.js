@@ -16,6 +16,7 @@
       // Before viser's program listens: what our scripts change in a message, it finds changed.
       this.addEventListener("message", ({ data }) => {
         if (data?.type === "connected") window.dispatchEvent(new Event("connected"));
+        if (data?.type === "closed") window.dispatchEvent(new Event("disconnected"));
         if (data?.type === "message_batch") window.dispatchEvent(new CustomEvent("arrived", { detail: data.messages }));
       });
     }

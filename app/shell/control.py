@@ -49,7 +49,7 @@ class Control:
         self.value = value
         self._range = spec.slider
         self._slider: Widget | None = None
-        self._slider_moved = False
+        self._slider_moved = self._behind = False
         self._shown: Any = _UNKNOWN
         self.removed = False
         make = {
@@ -126,7 +126,7 @@ class Control:
         """Show a value; widgets that show it already send nothing. None leaves what is shown."""
         if (value is None and self.spec.kind == "number") or value == self._shown:
             return
-        self.value = value
+        self.value, self._behind = value, False
         self._box.show(self._as_shown(value))
         self._show_on_slider(value)
         self._shown = _UNKNOWN if self._awaited else value
@@ -138,18 +138,25 @@ class Control:
 
     def take(self, by_slider: bool) -> Any:
         """What the user has given: a number, a choice, or text as typed."""
-        self._slider_moved, self._shown = by_slider, _UNKNOWN
+        self._slider_moved, self._shown, self._behind = by_slider, _UNKNOWN, False
         if by_slider and self._slider is not None and self._range is not None:
             return self._range.value(self._slider.take())
         return self._box.take()
 
     def follow(self, value: Any) -> None:
-        """Take over the value the user has just given, leaving the widget in hand alone."""
-        self.value, self._shown = value, _UNKNOWN
-        if self._slider_moved:
-            self._box.show(self._as_shown(value))
-        else:
+        """Take over the value the user has just given, leaving the widget in hand alone.
+
+        The box follows its slider in `catch_up`, with the picture: alone it would cost the page a frame.
+        """
+        self.value, self._shown, self._behind = value, _UNKNOWN, self._slider_moved
+        if not self._slider_moved:
             self._show_on_slider(value)
+
+    def catch_up(self) -> None:
+        """Show in the box what its slider has given."""
+        if self._behind:
+            self._behind = False
+            self._box.show(self._as_shown(self.value))
 
     def _show_on_slider(self, value: Any) -> None:
         """Show a value that did not come from the slider; the range grows where it must hold the value."""
@@ -178,8 +185,8 @@ class Control:
 
     @property
     def held(self) -> Any:
-        """What the box holds."""
-        return self._box.handle.value
+        """What the box holds, or is to show."""
+        return self._as_shown(self.value) if self._behind else self._box.handle.value
 
     @property
     def moving(self) -> bool:

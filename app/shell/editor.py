@@ -102,6 +102,11 @@ class Editor:
                 self.moved, self.by_slider = None, True
                 self._session.change(changed, self._by, name=name, gesture=gesture)
 
+    def catch_up(self) -> None:
+        """Let the box of the slider in hand follow it."""
+        if self.moved is not None:
+            self.moved.catch_up()
+
     def close(self) -> None:
         """Let nothing follow any more."""
         with self._session.lock:

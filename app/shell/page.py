@@ -175,6 +175,7 @@ class Page:
     def refresh(self) -> None:
         """Let every view show the session's scenario; the control in hand stays as it is."""
         self._follow.done()
+        self.editor.catch_up()
         self.header.show_scenario()
         for view in self._views:
             view.follow_scenario()
@@ -295,6 +296,7 @@ class Page:
         with session.lock, self.client.atomic():
             self.column.mark_stale()
             self.column.show(found, pictures, wanted)
+            self.editor.catch_up()
             if whole:
                 if self._follow.due:
                     self.refresh()
@@ -320,13 +322,12 @@ class Page:
 
     def _refresh_late(self) -> None:
         """Let the controls follow a slider whose picture takes its time; while it moves they wait for it."""
-        if self._pace.moving:
+        if moving := self._pace.moving:
             self._follow.ask()
-            return
         with self.session.lock, self.client.atomic():
             if self._closed or not self._follow.due:
                 return
-            self.refresh()
+            self.editor.catch_up() if moving else self.refresh()
         self.client.flush()
 
     def _again_pictures(self) -> None:

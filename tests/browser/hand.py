@@ -46,6 +46,8 @@ _MOVES = 60
 _WARM_S = 5.0
 """So long the kernels may take that are loaded behind the page."""
 _SWING_PX = 90
+_PAUSE_MS = 700
+"""Between steps whose cost is counted: longer than the slowest takes."""
 _AWAY = 6
 """Steps beyond the pins: one that equals the run has another name, and the legend is laid out anew."""
 
@@ -206,18 +208,25 @@ def drag(page: Page, seconds: float, what: str, seen: Followed) -> None:
 
 
 def steps(page: Page, count: int, pid: int, seen: Followed, what: str) -> None:
-    """Single steps of the slider by a key: time to the last paint, and what they cost."""
+    """Single steps of the slider by a key: time to the last paint, and what they cost.
+
+    What looks for the last paint asks for frames and measures the page, so the cost is that of other steps,
+    at which nothing looks.
+    """
     thumb = _thumb(page)
     taken = []
-    cpu, painting = _server_cpu_ms(pid), browser_cpu_ms()
+    thumb.focus()
     for step in range(count):
-        thumb.focus()
         page.evaluate(f"window.paint = ({_STEP})({_SHOWN_RUN}); null")
         page.keyboard.press("ArrowRight" if step % 2 else "ArrowLeft")
         page.wait_for_function("() => window.paint.then(time => (window.painted = time))")
         taken.append(page.evaluate("() => window.painted"))
         page.wait_for_timeout(300)
     seen.note(f"step{what} to last paint (ms)", *taken[1:])
+    cpu, painting = _server_cpu_ms(pid), browser_cpu_ms()
+    for step in range(count):
+        page.keyboard.press("ArrowRight" if step % 2 else "ArrowLeft")
+        page.wait_for_timeout(_PAUSE_MS)
     for thread, before, after in zip(_THREADS, painting, browser_cpu_ms(), strict=True):
         seen.note(f"step{what}: {thread}, CPU (ms)", (after - before) / count)
     seen.note(f"step{what}: server, CPU (ms)", (_server_cpu_ms(pid) - cpu) / count)

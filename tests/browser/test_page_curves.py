@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from app.bridge.controls import in_single
+from app.editing import edits
 from app.session.shown import shown
 from app.views.errors.view import _OVERVIEW_KEYS, error_curves
 from tests.browser.driver import Bench
@@ -38,6 +39,14 @@ _DRAG = """id => {
       thumb.dispatchEvent(new KeyboardEvent(kind, {key, code: key, bubbles: true, cancelable: true}));
   }, 50);
 }"""
+# Which curves of the first plot over time have the path that they had at the last look.
+_PATHS = """() => {
+  const {series} = Object.values(window.__viserTestpoints.uplots)[0].chart;
+  const kept = series.slice(1).map(each => each._paths === each.lookedAt);
+  for (const each of series) each.lookedAt = each._paths;
+  return kept;
+}"""
+_LARGE = ".mantine-Modal-content .uplot canvas"
 _LET_GO = "() => clearInterval(window.drag)"
 
 
@@ -105,4 +114,35 @@ def test_every_page_has_all_curves_after_a_drag_and_after_its_connection_was_los
     bench.press("network.zeta")
     has_all_curves(bench)
     has_all_curves(late)
+    assert bench.faults == []
+
+
+def test_a_curve_that_stands_still_keeps_its_path(bench: Bench) -> None:
+    bench.reset("sikuliaq-like", selected=2)
+    bench.tab("Method", "Errors")
+    bench.press("network.zeta")
+    bench.page.evaluate(_PATHS)
+    bench.press("network.zeta")
+    assert bench.page.evaluate(_PATHS) == [True, True, False], "free, classic2, and the one whose ratio changes"
+    bench.press("network.zeta", "ArrowLeft")
+    has_all_curves(bench)
+    assert bench.faults == []
+
+
+def test_a_plot_in_its_large_window_follows_the_run(bench: Bench) -> None:
+    bench.reset("sikuliaq-like", selected=2)
+    bench.tab("Method", "Errors")
+    bench.settle()
+    page = bench.page
+    plot = page.locator(".uplot-container").first
+    plot.hover(position={"x": 30, "y": 30})
+    plot.locator("button").click()
+    page.wait_for_selector(_LARGE)
+    before = page.evaluate(f"document.querySelector('{_LARGE}').toDataURL()")
+    session = bench.session
+    session.change(edits.with_value(session.scenario, ("method", 2, "network", "zeta"), 1.2), None)
+    changed = f"before => document.querySelector('{_LARGE}').toDataURL() !== before"
+    page.wait_for_function(changed, arg=before)
+    page.keyboard.press("Escape")
+    page.wait_for_selector(_LARGE, state="detached")
     assert bench.faults == []

@@ -15,13 +15,16 @@
     return "";
   }
 
-  // What a slider stands at, as its exact box says it: on a logarithmic slider its own value is the logarithm.
-  function valueOf(label) {
-    const boxes = [...document.querySelectorAll("label[for]")].filter((other) => other.textContent === `${label}${window.schuler.say(", exact")}`);
-    return boxes.length ? document.getElementById(boxes[0].htmlFor)?.value ?? "" : "";
-  }
-
   function controls() {
+    const ids = new Map(); // of boxes, by label
+    const labelled = new Set();
+    for (const { textContent, htmlFor } of document.querySelectorAll("label[for]")) {
+      labelled.add(htmlFor);
+      if (!ids.has(textContent)) ids.set(textContent, htmlFor);
+    }
+    // What a slider stands at, as its exact box says it: on a logarithmic slider its own value is the logarithm.
+    const exact = window.schuler.say(", exact");
+    const valueOf = (label) => document.getElementById(ids.get(`${label}${exact}`))?.value ?? "";
     for (const slider of document.querySelectorAll('[role="slider"]')) {
       const label = rowLabel(slider) || slider.getAttribute("aria-label");
       if (!label) continue;
@@ -30,7 +33,7 @@
       if (value) set(slider, "aria-valuetext", value);
     }
     for (const box of document.querySelectorAll("input:not([type=hidden])")) {
-      if (box.labels?.length || box.ariaLabel) continue;
+      if (labelled.has(box.id) || box.ariaLabel) continue; // box.labels would look the whole page through
       const label = rowLabel(box);
       if (label) set(box, "aria-label", label);
     }
@@ -94,7 +97,12 @@
     if (moves && event.target instanceof Element && event.target.closest(CONTROL)) event.stopPropagation();
   });
 
+  let changed = true;
+  window.schuler.changed(() => (changed = true));
+  addEventListener("resize", () => (changed = true)); // what has become too long for its panel
   setInterval(() => {
+    if (!changed) return;
+    changed = false;
     controls();
     plots();
     landmarks();

@@ -194,7 +194,7 @@
   let answered = 0;
   let seen = "[]";
 
-  setInterval(() => {
+  window.schuler.changed(() => {
     const asked = document.getElementById("sb-asked")?.dataset.asked ?? "[]";
     if (asked === seen) return;
     seen = asked;
@@ -203,7 +203,7 @@
       answered = number;
       ACTIONS[what]?.(text);
     }
-  }, 100);
+  });
 
   // ------------------------------------------------------------ buttons in HTML of ours
 
@@ -218,11 +218,11 @@
   addEventListener("focusout", (event) => {
     if (focused !== "" && event.relatedTarget !== null) focused = "";
   });
-  setInterval(() => {
+  window.schuler.changed(() => {
     if (focused === "" || document.activeElement !== document.body) return;
     const wanted = KEEPS.map((where) => `${where} [data-command="${CSS.escape(focused)}"]`).join();
     document.querySelector(wanted)?.focus();
-  }, 100);
+  });
 
   addEventListener("click", (event) => {
     if (!(event.target instanceof Element) || !event.target.closest("[data-palette]")) return;

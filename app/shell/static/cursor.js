@@ -59,6 +59,6 @@
     }
   }
 
-  setInterval(watch, 400);
+  window.schuler.changed(watch);
   addEventListener("mouseover", watch, true);
 })();

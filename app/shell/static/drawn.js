@@ -25,12 +25,7 @@
     );
   }
 
-  new MutationObserver(look).observe(document.documentElement, {
-    attributes: true,
-    attributeFilter: ["data-number"],
-    childList: true,
-    subtree: true,
-  });
+  window.schuler.changed(look);
 
   function set(now) {
     clearTimeout(rest);

@@ -43,7 +43,7 @@
     soon();
   }
 
-  setInterval(openTab, 150);
+  window.schuler.changed(openTab);
   addEventListener("resize", () => soon(150));
   addEventListener("click", () => soon(), true);
   addEventListener("keyup", (event) => event.target instanceof Element && event.target.closest('[role="tab"]') && soon());

@@ -23,7 +23,10 @@
   function numbers(values) {
     if (Array.isArray(values)) return Float64Array.from(values, (value) => value ?? NaN);
     if (values?.dtype !== "f4") return null;
-    return new Float32Array(Uint8Array.from(atob(values.bdata), (letter) => letter.charCodeAt(0)).buffer);
+    const letters = atob(values.bdata);
+    const bytes = new Uint8Array(letters.length);
+    for (let place = 0; place < letters.length; place++) bytes[place] = letters.charCodeAt(place);
+    return new Float32Array(bytes.buffer);
   }
 
   // Places of the traces whose numbers have changed; null when something else has, too.

@@ -9,7 +9,22 @@
     addEventListener(kind, (event) => (kind !== "pointermove" || event.buttons) && (moved = performance.now()), true);
   }
 
+  const looks = [];
+  new MutationObserver(() => {
+    for (const look of looks) {
+      try {
+        look();
+      } catch (error) {
+        reportError(error); // one that fails does not keep the others from looking
+      }
+    }
+  }).observe(document.documentElement, { childList: true, subtree: true });
+
   Object.assign(window.schuler, {
+    // Call `look` whenever elements of the page have been changed, before they are painted. What the server has to say to
+    // our scripts comes in hidden elements.
+    changed: (look) => looks.push(look),
+
     // Whether the user is just moving something: whatever we write then may displace their value.
     busy: () => performance.now() - moved < AFTER_INPUT_MS,
 

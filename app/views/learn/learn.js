@@ -16,12 +16,12 @@
     const asked = event.target instanceof Element && event.target.closest(".sb-lesson [data-command]");
     if (asked) pressed = asked.dataset.command;
   });
-  new MutationObserver(() => {
+  window.schuler.changed(() => {
     if (pressed === "" || document.activeElement !== document.body) return;
     const again = [...document.querySelectorAll(".sb-lesson [data-command]")];
     (again.find((other) => other.dataset.command === pressed) ?? again[0])?.focus({ preventScroll: true });
     pressed = "";
-  }).observe(document.documentElement, { childList: true, subtree: true });
+  });
 
   // ------------------------------------------------------------ tabs in front
 
@@ -136,6 +136,6 @@
     place();
   }
 
-  setInterval(showExplained, 100);
+  window.schuler.changed(showExplained);
   addEventListener("resize", () => panel?.isConnected && place());
 })();

@@ -2,7 +2,7 @@
 // time as a line in every plot over time. All it shows comes from #sb-playback (app/views/scene/bar.py); what is
 // pressed goes back as commands (commands.js).
 (() => {
-  const PERIOD_MS = 100;
+  const PERIOD_MS = 300;
   const AFTER_SCRUB_MS = 500;
   const HEARD_MS = 250;
   const UNITS = { s: 1, min: 60, h: 3600, d: 86400 };
@@ -190,19 +190,19 @@
     window.schuler.report("shown", now.count);
   }
 
-  let turn = 0;
-  setInterval(() => {
+  // In the frame that shows the picture to which it belongs.
+  window.schuler.changed(() => {
     const source = document.getElementById("sb-playback");
-    if (source === null) return;
-    if (source.dataset.now !== shown) {
-      shown = source.dataset.now;
-      now = JSON.parse(shown);
-      if (stage === null) build();
-      update(source);
-      tellShown();
-    } else if (++turn % 3 === 0 && now !== null) {
-      if (performance.now() - scrubbed > AFTER_SCRUB_MS) mark(now.time); // a plot was zoomed or made anew
-    }
-    if (turn % 3 === 0) place();
+    if (source === null || source.dataset.now === shown) return;
+    shown = source.dataset.now;
+    now = JSON.parse(shown);
+    if (stage === null) build();
+    update(source);
+    tellShown();
+  });
+  setInterval(() => {
+    if (now === null) return;
+    place();
+    if (performance.now() - scrubbed > AFTER_SCRUB_MS) mark(now.time); // a plot was zoomed or made anew
   }, PERIOD_MS);
 })();
