@@ -123,7 +123,7 @@ def test_a_curve_that_stands_still_keeps_its_path(bench: Bench) -> None:
     bench.press("network.zeta")
     bench.page.evaluate(_PATHS)
     bench.press("network.zeta")
-    assert bench.page.evaluate(_PATHS) == [True, True, False], "free, classic2, and the one whose ratio changes"
+    assert bench.page.evaluate(_PATHS) == [True, True, False]  # free, classic2, the method in hand
     bench.press("network.zeta", "ArrowLeft")
     has_all_curves(bench)
     assert bench.faults == []
