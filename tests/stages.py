@@ -60,8 +60,8 @@ STAGES = {
     "browser": ["tests/browser", "-n2", "--dist=worksteal"],
 }
 
-BESIDE = (("container", "basedpyright"), ("extension",))
-"""Lanes that run side by side; each keeps one core busy, the stages of a lane one after the other."""
+BESIDE = (("container", "basedpyright"), ("extension", "attack"))
+"""Lanes that run side by side; each keeps at most one core busy, the stages of a lane one after the other."""
 
 
 def read_counts(stage: str, report: Path, exit_code: int, seconds: float) -> Count:
