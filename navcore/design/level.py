@@ -141,7 +141,8 @@ def steady_parts(channel: Level) -> dict[str, Part]:
     channel : Level
         Of `level`.
     """
-    from scipy.linalg import matrix_balance, solve_continuous_lyapunov
+    from scipy.linalg import matrix_balance, schur
+    from scipy.linalg.lapack import dtrsyl
 
     A = channel.A
     if np.max(np.real(np.linalg.eigvals(A))) >= -_MARGINAL:
@@ -149,12 +150,15 @@ def steady_parts(channel: Level) -> dict[str, Part]:
     balanced, (scale, order) = matrix_balance(A, separate=True)
     columns = np.stack([channel.drives[source] for source in RANDOM_SOURCES], axis=1)
     columns = (columns / scale[:, None])[order]
+    # Bartels and Stewart's method: both outputs, and all that is drawn from them, in one Schur basis.
+    T, U = schur(balanced.T, output="real")
+    columns = U.T @ columns
     deviations = {}
     for output in (DV, PHI):
-        row = np.zeros(len(A))
-        row[output] = scale[output]
-        X = solve_continuous_lyapunov(balanced.T, -np.outer(row[order], row[order]))
-        deviations[output] = np.sqrt(np.maximum(np.einsum("is,ij,js->s", columns, X, columns), 0.0))
+        row = U[order.tolist().index(output)] * scale[output]
+        X, size, _ = dtrsyl(T, T, -np.outer(row, row), tranb="T")
+        variance = size * np.sum(columns * (X @ columns), axis=0)
+        deviations[output] = np.sqrt(np.maximum(variance, 0.0))
     return {
         source: Part(float(deviations[PHI][k]) * channel.tilt_unit, float(deviations[DV][k]))
         for k, source in enumerate(RANDOM_SOURCES)

@@ -47,8 +47,9 @@ def _hermite(
     derivatives: tuple[int, ...],
 ) -> np.ndarray:
     u = fraction[:, None]
-    begin, end = values[left][:, columns], values[left + 1][:, columns]
-    slope_begin, slope_end = values[left][:, derivatives] * step_s, values[left + 1][:, derivatives] * step_s
+    rows = left[:, None]
+    begin, end = values[rows, columns], values[rows + 1, columns]
+    slope_begin, slope_end = values[rows, derivatives] * step_s, values[rows + 1, derivatives] * step_s
     rise = end - begin
     return begin + u * (
         slope_begin
