@@ -141,8 +141,7 @@ def steady_parts(channel: Level) -> dict[str, Part]:
     channel : Level
         Of `level`.
     """
-    from scipy.linalg import matrix_balance, schur
-    from scipy.linalg.lapack import dtrsyl
+    from scipy.linalg import get_lapack_funcs, matrix_balance, schur
 
     A = channel.A
     if np.max(np.real(np.linalg.eigvals(A))) >= -_MARGINAL:
@@ -151,12 +150,13 @@ def steady_parts(channel: Level) -> dict[str, Part]:
     columns = np.stack([channel.drives[source] for source in RANDOM_SOURCES], axis=1)
     columns = (columns / scale[:, None])[order]
     # Bartels and Stewart's method: both outputs, and all that is drawn from them, in one Schur basis.
-    T, U = schur(balanced.T, output="real")
+    T, U = schur(balanced.T, output="real")[:2]
+    (trsyl,) = get_lapack_funcs(("trsyl",), (T,))
     columns = U.T @ columns
     deviations = {}
     for output in (DV, PHI):
         row = U[order.tolist().index(output)] * scale[output]
-        X, size, _ = dtrsyl(T, T, -np.outer(row, row), tranb="T")
+        X, size, _ = trsyl(T, T, -np.outer(row, row), tranb="T")
         variance = size * np.sum(columns * (X @ columns), axis=0)
         deviations[output] = np.sqrt(np.maximum(variance, 0.0))
     return {
