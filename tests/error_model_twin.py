@@ -8,8 +8,6 @@ from `tests.law_twin`.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -42,61 +40,40 @@ def gravity(earth: Earth, lat: float, height: float) -> float:
     return at_surface + first * height + 3.0 * at_surface / SEMI_MAJOR_AXIS**2 * height**2
 
 
-@dataclass(frozen=True, eq=False)
-class Moment:
-    """What the truth alone decides at one time: radii, velocity, turn rates, specific force."""
-
-    lat: float
-    m: float
-    n: float
-    v: Vector
-    omega_ie: Vector
-    omega_en: Vector
-    force: Vector
-
-
-def moment_of(truth: Vector, earth: Earth) -> Moment:
-    """Work out a row of `Truth.values`, shape (15,)."""
-    lat, height = float(truth[LAT]), float(truth[HEIGHT])
-    meridian, prime = radii(earth, lat)
-    m, n = meridian + height, prime + height
-    v = truth[[VE, VN, VU]]
-    omega_ie = EARTH_RATE * np.array([0.0, math.cos(lat), math.sin(lat)])
-    omega_en = np.array([-v[1] / m, v[0] / n, v[0] * math.tan(lat) / n])
-    gravity_vector = np.array([0.0, 0.0, -gravity(earth, lat, height)])
-    force = truth[[AE, AN, AU]] + cross(2.0 * omega_ie + omega_en, v) - gravity_vector
-    return Moment(lat, m, n, v, omega_ie, omega_en, force)
-
-
-@lru_cache(maxsize=4)
-def _moments(rows: bytes, width: int, earth: Earth) -> tuple[Moment, ...]:
-    """Every row of a truth; kept, for many laws run along the same one."""
-    return tuple(moment_of(row, earth) for row in np.frombuffer(rows).reshape(-1, width))
-
-
-def model_rate(at: Moment, x: Vector, eps: Vector, nabla: Vector, c: Vector, a: Vector) -> Vector:
-    """Time derivative of the seven error states.
+def model_rate(
+    truth: Vector, x: Vector, eps: Vector, nabla: Vector, c: Vector, a: Vector, earth: Earth
+) -> Vector:
+    """Time derivative of the seven error states at one row of the truth table.
 
     Parameters
     ----------
-    at : Moment
-        Of the truth.
+    truth : ndarray, shape (15,)
+        Row of `Truth.values`.
     x : ndarray, shape (7,)
         dV_E, dV_N, dL, dlambda, phi_E, phi_N, phi_U.
     eps, nabla : ndarray, shape (3,)
         Sensor errors in the navigation frame.
     c, a : ndarray, shape (2,)
         The law's velocity correction and acceleration feedback, E and N.
+    earth : Earth
+        Earth model.
     """
-    lat, m, n, v, omega_ie, omega_en = at.lat, at.m, at.n, at.v, at.omega_ie, at.omega_en
+    lat, height = truth[LAT], truth[HEIGHT]
+    meridian, prime = radii(earth, lat)
+    m, n = meridian + height, prime + height
+    v = truth[[VE, VN, VU]]
     dv, d_lat, phi = np.array([x[0], x[1], 0.0]), x[2], x[4:7]
+    omega_ie = EARTH_RATE * np.array([0.0, math.cos(lat), math.sin(lat)])
+    omega_en = np.array([-v[1] / m, v[0] / n, v[0] * math.tan(lat) / n])
+    gravity_vector = np.array([0.0, 0.0, -gravity(earth, lat, height)])
+    force = truth[[AE, AN, AU]] + cross(2.0 * omega_ie + omega_en, v) - gravity_vector
     d_omega_ie = EARTH_RATE * np.array([0.0, -math.sin(lat), math.cos(lat)]) * d_lat
     d_omega_up = dv[0] * math.tan(lat) / n + v[0] / (n * math.cos(lat) ** 2) * d_lat
     d_omega_en = np.array([-dv[1] / m, dv[0] / n, d_omega_up])
     # The platform's horizontal transport rate is formed with V* = V_c + c (theory.md section 3).
     d_omega_platform = np.array([-(dv[1] + c[1]) / m, (dv[0] + c[0]) / n, d_omega_up])
     dv_rate = (
-        cross(at.force, phi)
+        cross(force, phi)
         + nabla
         - cross(2.0 * omega_ie + omega_en, dv)
         - cross(2.0 * d_omega_ie + d_omega_en, v)
@@ -148,18 +125,16 @@ def run_twin(
     out = np.empty((n + 1, 7))
     out[0] = x0
     none = np.zeros(2)
-    moments = _moments(np.ascontiguousarray(truth_half, dtype=float).tobytes(), truth_half.shape[1], earth)
     for k in range(n):
-        x, t0 = out[k], truth_half[2 * k]
+        x, t0, t1, t2 = out[k], truth_half[2 * k], truth_half[2 * k + 1], truth_half[2 * k + 2]
         v_c = t0[[VE, VN]] + x[:2]
         c = a = none
         if law is not None:
             c, a = law.step(dv_r[k] - x[:2], bool(valid[k]), v_c, float(t0[HEADING] + x[6]))
-        arguments = (eps[k], nabla[k], c, a)
-        begin, half, end = moments[2 * k : 2 * k + 3]
-        k1 = model_rate(begin, x, *arguments)
-        k2 = model_rate(half, x + 0.5 * step_s * k1, *arguments)
-        k3 = model_rate(half, x + 0.5 * step_s * k2, *arguments)
-        k4 = model_rate(end, x + step_s * k3, *arguments)
+        arguments = (eps[k], nabla[k], c, a, earth)
+        k1 = model_rate(t0, x, *arguments)
+        k2 = model_rate(t1, x + 0.5 * step_s * k1, *arguments)
+        k3 = model_rate(t1, x + 0.5 * step_s * k2, *arguments)
+        k4 = model_rate(t2, x + step_s * k3, *arguments)
         out[k + 1] = x + step_s / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
     return out
