@@ -18,6 +18,7 @@ from app.misprints.base import (
     run_scenario,
 )
 from app.misprints.two_loops import TwoLoops
+from app.plots.units import number
 from navcore.foundation.earth import EARTH_RATE, SEMI_MAJOR_AXIS
 from navcore.foundation.units import ARCSEC, DEG, DEG_PER_HOUR, HOUR, MICRO_G, MINUTE
 from navcore.mechanization.recorder import PHI_N, PHI_U
@@ -75,7 +76,7 @@ def _radius() -> Comparison:
         np.arange(0.0, 10.01, 0.05),
         ("dp = K₃ dv/s", "dp = K₃ dv/(R s)"),
         (loops.growth,),
-        f"A velocity added to an angular rate: the integral gain is {SEMI_MAJOR_AXIS:.1e} times too "
+        f"A velocity added to an angular rate: the integral gain is {number(SEMI_MAJOR_AXIS, 2)} times too "
         f"large and the loop grows e-fold every {loops.growth_s:.2f} s.",
     )
 
@@ -116,7 +117,7 @@ def _transport_rate() -> Comparison:
         ),
         numbers=(Number("largest tilt", "rad", peaks[0], peaks[1]),),
         words=f"Perfect sensors and log, 0 to 10 m/s and back: as printed every change of speed tilts the "
-        f"platform by up to {peaks[0] / ARCSEC:.0f} arcsec; with V_r/R the tilt stays "
+        f"platform by up to {peaks[0] / ARCSEC:.0f} arcsec; with Vᵣ/R the tilt stays "
         f"below {max(peaks[1] / ARCSEC, 1e-3):.2g} arcsec.",
     )
 
@@ -170,7 +171,7 @@ DENG = (
         id="deng-intro",
         paper="Deng 2019",
         where="introduction",
-        printed="T_s = 2π/√(R/g), T_e = 2π/√(ωᵢₑ), T_c = 2π/ωᵢₑ sin(φ)",
+        printed="2π/√(R/g), 2π/√(ωᵢₑ), 2π/ωᵢₑ sin(φ)",
         right="2π √(R/g), 2π/ωᵢₑ, 2π/(ωᵢₑ sin(φ))",
         consequence="none of the three periods comes out",
         compute=_periods,
@@ -197,8 +198,8 @@ DENG = (
         id="deng-4-transport",
         paper="Deng 2019",
         where="eq. 3 and 4",
-        printed="ω_c from the difference dv alone",
-        right="plus the reference's transport rate V_r/R",
+        printed="the platform turns with the difference dv alone",
+        right="plus the reference's transport rate Vᵣ/R",
         consequence="a moving vehicle has transients at every change of speed",
         compute=_transport_rate,
     ),

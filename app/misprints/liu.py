@@ -17,6 +17,7 @@ from app.misprints.base import (
 )
 from app.misprints.direct_form import direct_form_error, direct_form_growth, state_space_error
 from app.misprints.two_loops import TwoLoops
+from app.plots.units import number
 from navcore.analysis import RADIUS, frequency_response
 from navcore.foundation.units import MINUTE
 from navcore.mechanization.recorder import DV_E
@@ -61,8 +62,8 @@ def _transfer_powers() -> Comparison:
             Curve("powers mended", "corrected", corrected),
         ),
         numbers=(Number("gain at the Schuler frequency", "s", gains[0], gains[1]),),
-        words=f"At the Schuler frequency the printed transfer has the gain {gains[0]:.1e} s instead of "
-        f"{gains[1]:.0f} s: fig. 3 cannot have been drawn with it.",
+        words="At the Schuler frequency the printed transfer has the gain "
+        f"{number(gains[0], 2)} s instead of {gains[1]:.0f} s: fig. 3 cannot have been drawn with it.",
     )
 
 

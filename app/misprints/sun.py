@@ -14,6 +14,7 @@ from app.misprints.base import (
     as_network,
 )
 from app.misprints.two_loops import TwoLoops
+from app.plots.units import number
 from navcore.analysis import RADIUS, analyse, frequency_response
 from navcore.foundation.units import HOUR, KNOT, MINUTE
 from navcore.law.policy.adaptive import HIGHEST, LOWEST, QUADRATIC, SUN_TABLE
@@ -22,7 +23,7 @@ from navcore.networks.classic import Classic3Network
 from navcore.networks.pole2 import Pole2Network
 from navcore.networks.unity2 import Unity2Network
 
-_DIFFERENCE = Axis("|V_c - V_r|", "m/s")
+_DIFFERENCE = Axis("|V − Vᵣ|", "m/s")
 _PRINTED = (QUADRATIC[0], -QUADRATIC[1], QUADRATIC[2])
 
 
@@ -48,8 +49,8 @@ def _radius() -> Comparison:
             Curve("(1-H)/(R (s² + ωₛ² H))", "corrected", corrected),
         ),
         numbers=(Number("gain at the Schuler frequency", "rad/(m/s²)", gains[0], gains[1]),),
-        words=f"Without 1/R the tilt comes out {RADIUS:.1e} times too large: {gains[0]:.1e} rad for 1 m/s² "
-        f"at the Schuler frequency instead of {gains[1]:.2f} rad.",
+        words=f"Without 1/R the tilt comes out {number(RADIUS, 2)} times too large: "
+        f"{number(gains[0], 2)} rad for 1 m/s² at the Schuler frequency instead of {gains[1]:.2f} rad.",
     )
 
 

@@ -40,6 +40,7 @@ KNOTS = Unit("kn", KNOT)
 MINUTES = Unit("min", MINUTE)
 HOURS = Unit("h", HOUR)
 AUTO = "auto"
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 NAMED: dict[str, Unit] = {"deg": DEGREES} | {
     unit.name: unit
     for unit in (
@@ -136,11 +137,23 @@ def number(value: float, digits: int = 5) -> str:
     Examples
     --------
     >>> number(1234567.0), number(0.012345678), number(2.5), number(-1e-9)
-    ('1.2346e+06', '0.012346', '2.5', '-1e-09')
+    ('1.2346×10⁶', '0.012346', '2.5', '-1×10⁻⁹')
     """
     if not math.isfinite(value):
         return "∞" if value > 0 else "-∞" if value < 0 else "n/a"
-    return f"{value:.{digits}g}"
+    return in_powers(f"{value:.{digits}g}")
+
+
+def in_powers(text: str) -> str:
+    """Number with its exponent as a power of ten.
+
+    Examples
+    --------
+    >>> in_powers("6.4e+06"), in_powers("2.50e-05"), in_powers("0.1")
+    ('6.4×10⁶', '2.50×10⁻⁵', '0.1')
+    """
+    mantissa, has, exponent = text.partition("e")
+    return f"{mantissa}×10{str(int(exponent)).translate(_RAISED)}" if has else text
 
 
 def rounded(value: float, digits: int = 3) -> str:
@@ -149,14 +162,14 @@ def rounded(value: float, digits: int = 3) -> str:
     Examples
     --------
     >>> rounded(2820.2), rounded(9.558), rounded(0.91542), rounded(0.0), rounded(1.5e-7)
-    ('2820', '9.56', '0.915', '0', '1.50e-07')
+    ('2820', '9.56', '0.915', '0', '1.50×10⁻⁷')
     """
     if not math.isfinite(value) or value == 0.0:
         return number(value)
     text = f"{value:.{digits - 1}e}"
     size = abs(float(text))
     if not 1e-4 <= size < 1e7:
-        return text
+        return in_powers(text)
     return f"{float(text):.{max(0, digits - 1 - math.floor(math.log10(size)))}f}"
 
 

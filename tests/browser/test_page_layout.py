@@ -10,6 +10,7 @@ from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
 from app.shell.layout import WIDE_FROM_PX, layout_for
 from app.views import load
+from app.views.poles.figure import ZOOM
 from navcore.scenario.file import load as load_preset
 from navcore.scenario.model import Scenario
 from tests.browser.driver import Bench
@@ -63,6 +64,9 @@ _MET = """view => {
   return texts.flatMap(([text, box], i) =>
     texts.slice(i + 1).filter(([_, other]) => met(box, other)).map(([other]) => `${text} | ${other}`));
 }"""
+# Ends of the imaginary axis of the right one of the pole maps.
+_ZOOMED = """() => [...document.querySelectorAll('.js-plotly-plot')]
+  .find(p => p.offsetParent !== null && p._fullLayout?.meta?.view === 'Poles')._fullLayout.yaxis2.range"""
 # Labels in view that the "?" covers when the pointer comes to their control, or to which none comes.
 _COVERED = """() => {
   const met = (a, b) => b.width > 1 && a.left < b.right - 0.5 && b.left < a.right - 0.5
@@ -139,6 +143,9 @@ def test_every_tab_fits_its_panel(sized: Bench) -> None:
         if tab in ("Frequency", "Poles", "Step"):
             assert sized.plotly(), tab
             assert sized.page.evaluate(_TEXT_OUTSIDE) == [], tab
+        if tab == "Poles":  # and as large as it is made, also when plotly has drawn it in another size before
+            assert sized.page.evaluate(_ZOOMED) == pytest.approx([-ZOOM, ZOOM])
+            assert sized.page.evaluate(_MET, "Poles") == []
     assert sized.page.locator(".sb-table").first.inner_text()
     assert "schema = 1" in sized.page.locator("pre").first.inner_text()
     assert sized.faults == []

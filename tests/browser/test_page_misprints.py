@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import pytest
 
 from app.misprints import MISPRINTS
 from tests.browser.driver import Bench
+from tests.browser.test_page_layout import _TEXT_OUTSIDE
 
 pytestmark = pytest.mark.browser
 
@@ -46,4 +48,16 @@ def test_a_misprint_is_shown_as_printed_corrected_and_both(bench: Bench) -> None
     number = bench.run
     bench.tab("Method", "Frequency")
     assert bench.run == number
+    assert bench.faults == []
+
+
+def test_every_misprint_is_readable(bench: Bench) -> None:
+    bench.reset("sikuliaq-like")
+    bench.tab("Misprints")
+    for id in MISPRINTS:
+        bench.choose("misprint", option(id))
+        drawn(bench, id, "both")
+        assert bench.page.evaluate(_TEXT_OUTSIDE) == [], id
+        words = bench.page.locator(".sb-misprint").inner_text()
+        assert re.search(r"\b\w_\w|\de[+-]\d", words) is None, words
     assert bench.faults == []

@@ -146,6 +146,18 @@ def overlap(a: Any, b: Any) -> bool:
     return a[0] < b[2] - 1 and b[0] < a[2] - 1 and a[1] < b[3] - 1 and b[1] < a[3] - 1
 
 
+def test_a_narrow_readout_lies_clear_of_the_buttons(moving: Bench) -> None:
+    moving.reset("zha-fast", selected=0)
+    for hidden in moving.page.locator("#sb-stage [data-shows][aria-pressed=false]").all():
+        hidden.click()
+    layout = layout_for(*SIZES[0])
+    place = [layout.left_px, SIZES[0][0] - layout.left_px - layout.right_px]
+    boxes = moving.page.wait_for_function(_PLACED, arg=place).json_value()[1]
+    assert boxes[".sb-readout"][2] > boxes[".sb-readout"][0]
+    assert not overlap(boxes[".sb-readout"], boxes[".sb-shown"])
+    assert not overlap(boxes[".sb-pendulum"], boxes[".sb-shown"])
+
+
 def test_instruments_and_bar_fit_the_view(moving: Bench) -> None:
     try:
         for size in SIZES:

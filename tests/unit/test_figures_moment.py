@@ -88,7 +88,14 @@ def test_the_readout_has_units_and_names_the_method() -> None:
     assert re.search(r"position</th>.* nmi</td></tr>", other) and "arc" not in other
     for row in ("heading", "pitch", "roll", "speed", "position"):
         cells = re.search(rf"{row}</th>(.*?)</tr>", html)[1]
-        assert re.search(r"\d ?(°|arcsec|arcmin|deg|kn|m|km|nmi|m/s)<", cells), row
+        assert re.search(r"[\d⁰-⁹²³¹] ?(°|arcsec|arcmin|deg|kn|m|km|nmi|m/s)<", cells), row
+
+
+def test_rounding_is_no_error() -> None:
+    html = readout_html(moment(with_errors((2e-16, 0.0, 0.0)), 5000.0), 0)
+    assert (
+        re.search(r"pitch</th>.*<td>0 [µa][a-z]+</td></tr>", html) and "e-" not in html and "×10" not in html
+    )
 
 
 class TestPendulum:

@@ -208,6 +208,21 @@ class TestPoles:
     def test_far_zero_is_named_at_the_edge(self) -> None:
         assert any(text.startswith("◂ zero at -75.9") for text in texts(poles(static_run())))
 
+    @pytest.mark.parametrize("width_px", [940.0, 640.0, 360.0])
+    def test_labels_of_rays_and_settling_lines_stand_apart(self, width_px: float) -> None:
+        layout = poles(static_run(), width_px=width_px)["layout"]
+        for axis in ("x", "x2"):
+            (low, high), (left, right) = (layout[f"{axis[0]}axis{axis[1:]}"][k] for k in ("range", "domain"))
+            scale = (right - left) * (width_px - 74) / (high - low)  # px a unit
+            notes = [n for n in layout["annotations"] if n["xref"] == axis]
+            rays = sorted(n["x"] for n in notes if re.fullmatch(r"0\.\d", n["text"]) and n["x"] < -0.01)
+            lines = sorted(n["x"] for n in notes if re.fullmatch(r"\d+ (min|h)", n["text"]))
+            assert rays
+            level = max(n["y"] for n in notes if re.fullmatch(r"0\.\d", n["text"]))
+            top = sorted(n["x"] for n in notes if re.fullmatch(r"0\.\d", n["text"]) and n["y"] == level)
+            assert all(scale * (b - a) >= 27 for a, b in zip(top, top[1:], strict=False))
+            assert all(scale * (b - a) >= 62 for a, b in zip(lines, lines[1:], strict=False))
+
     def test_panels_have_equal_scales(self) -> None:
         layout = poles(static_run(), 0.46, width_px=940.0)["layout"]
         margin = layout["margin"]

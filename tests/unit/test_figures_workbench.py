@@ -189,7 +189,7 @@ class TestPoleMap:
         for minutes, at in lines.items():
             assert math.exp(at * omega_s * minutes * 60.0) == pytest.approx(0.02)
         places = sorted(lines.values())
-        assert min(b - a for a, b in zip(places, places[1:], strict=False)) >= 58.0 / 400.0 * 4.6
+        assert min(b - a for a, b in zip(places, places[1:], strict=False)) >= 62.0 / 400.0 * 4.6
         notes = [n["text"] for n in poles(static_run())["layout"]["annotations"] if n["xref"] == "x2"]
         assert "60 min" in notes
 

@@ -26,6 +26,8 @@ FORMS: dict[Shown, tuple[str, ...]] = {
 _COLORS = {"printed": "#D55E00", "corrected": "#0072B2"}
 _DASHES = {"printed": ("6px,4px", "2px,3px"), "corrected": ("solid", "dot", "dashdot")}
 _MOST_TICKS = 6
+_LETTER_PX = 7.0
+"""Width of a letter of an axis' title."""
 _LEAVES = 12.0
 """A printed curve that many times as large as the corrected one leaves the plot, not to flatten the other."""
 _SECONDS = (Unit("s", 1.0), Unit("min", MINUTE), Unit("h", HOUR))
@@ -59,12 +61,15 @@ def comparison_plot(
         counted[curve.form] += 1
     rows = style.legend_rows([curve.label for curve in curves], width_px - 84.0)
     margin = {"l": 76, "r": 18, "t": 30 if leaves else 12, "b": 46 + 22 * rows}
+    height = aspect * width_px - margin["t"] - margin["b"]
     layout = style.layout(
         margin=margin, hovermode="x unified", showlegend=True, legend=style.legend(), meta={"aspect": aspect}
     )
     layout["xaxis"] = _axis(comparison.x_axis, x_unit, 1)
     decades = _decades([curve.y for curve in curves])
-    layout["yaxis"] = _axis(comparison.y_axis, y_unit, decades) | {"zeroline": not comparison.y_axis.log}
+    layout["yaxis"] = _axis(comparison.y_axis, y_unit, decades, height) | {
+        "zeroline": not comparison.y_axis.log
+    }
     layout["yaxis"] |= {"zerolinecolor": style.REFERENCE, "zerolinewidth": 1, "nticks": 7}
     if not comparison.y_axis.log and high > low:
         pad = 0.06 * (high - low)
@@ -125,8 +130,13 @@ def _decades(values: Sequence[np.ndarray]) -> int:
     return max(1, math.ceil(spanned / _MOST_TICKS))
 
 
-def _axis(axis: Axis, unit: Unit, decades: int) -> dict[str, Any]:
-    title = style.plain(axis.label) + (f" ({unit.name})" if unit.name else "")
+def _axis(axis: Axis, unit: Unit, decades: int, room_px: float = math.inf) -> dict[str, Any]:
+    words = (axis.label + (f" ({unit.name})" if unit.name else "")).split(" ")
+    if len(" ".join(words)) * _LETTER_PX > room_px:  # in two lines of about the same length
+        breaks = range(1, len(words))
+        at = min(breaks, key=lambda n: max(len(" ".join(words[:n])), len(" ".join(words[n:]))), default=1)
+        words = [*words[: at - 1], "\n".join(words[at - 1 : at + 1]), *words[at + 1 :]]
+    title = style.plain(" ".join(words)).replace("\n", "<br>")
     made = style.axis(title)
     if not axis.log:
         return made

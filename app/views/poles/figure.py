@@ -37,6 +37,10 @@ PANELS = (("xaxis", "yaxis"), ("xaxis2", "yaxis2"))
 """Axes of the two panels: all poles, and those near the Schuler frequency."""
 _PICK = {"command": COMMAND, "panels": PANELS}
 """What pick.js does with a click: it is a wanted pole, in units of the Schuler frequency."""
+_INSIDE = 0.955
+"""Part of a panel's width within which the labels of the rays lie."""
+_RAY_PX = 27.0
+"""Least distance of two labels of rays at one height."""
 _KEYS = ("closed-loop pole", "zero of H")
 _TITLES = {
     "": ("All closed-loop poles (┊ settling time)", "All closed-loop poles", "All poles"),
@@ -216,18 +220,25 @@ def _layout(
     notes: list[dict[str, Any]] = []
     for suffix, (re, im) in panels.items():
         domain = [0.0, share] if suffix == "" else [1.0 - share, 1.0]
+        # "domain": else plotly widens the range for a size in which it draws once, and never takes that back
         made[f"xaxis{suffix}"] = style.axis(
-            "Re s / ω<sub>s</sub>", domain=domain, anchor=f"y{suffix}", range=list(re), showgrid=False
+            "Re s / ω<sub>s</sub>",
+            domain=domain,
+            anchor=f"y{suffix}",
+            range=list(re),
+            constrain="domain",
+            showgrid=False,
         )
         made[f"yaxis{suffix}"] = style.axis(
             "Im s / ω<sub>s</sub>",
             anchor=f"x{suffix}",
             range=list(im),
             scaleanchor=f"x{suffix}",
+            constrain="domain",
             showgrid=False,
         )
         shapes += _boundary(suffix)
-        notes += [style.panel_title(titles[suffix], suffix), *_panel_labels(suffix, re, im)]
+        notes += [style.panel_title(titles[suffix], suffix), *_panel_labels(suffix, re, im, room_px)]
     if locus:
         # in place of the title, in plain letters: those of a parameter's ends take more room
         notes = [note for note in notes if titles["2"] not in note["text"]]
@@ -248,8 +259,8 @@ def _boundary(suffix: str) -> list[dict[str, Any]]:
     ]
 
 
-def _panel_labels(suffix: str, re: Interval, im: Interval) -> list[dict[str, Any]]:
-    """Name the half plane and every second damping ray."""
+def _panel_labels(suffix: str, re: Interval, im: Interval, width_px: float) -> list[dict[str, Any]]:
+    """Name the half plane and every second damping ray, as far as the names have room beside each other."""
     font = {"size": style.FONT_SIZE, "color": style.MUTED}
     notes = [
         style.text(
@@ -265,12 +276,16 @@ def _panel_labels(suffix: str, re: Interval, im: Interval) -> list[dict[str, Any
             font=font | {"color": style.DANGER},
         )
     ]
+    last: tuple[float, float] | None = None
     for ratio in DAMPING[::2]:
         x, y = _ray_end(ratio, re, im)
+        if last is not None and last[0] - x < _RAY_PX / width_px * (re[1] - re[0]) and y == last[1]:
+            continue
+        last = x, y
         content = f"ζ = {ratio:.1f}" if ratio == DAMPING[-1] else f"{ratio:.1f}"
         where = {"xref": f"x{suffix}", "yref": f"y{suffix}", "bgcolor": PAPER, "borderpad": 0}
-        # centred, the outermost label would hang over the edge
-        where |= {"xanchor": "left", "xshift": -14} if ratio == DAMPING[-1] else {}
+        if x <= _INSIDE * re[0] + 1e-9:  # centred, a label at the left edge would hang over it
+            where |= {"xanchor": "left"}
         notes.append(style.text(x, y, content, font=font, **where))
     name = {"xref": f"x{suffix}", "yref": f"y{suffix}", "xanchor": "right", "yanchor": "top", "xshift": -3}
     if im[1] < 8.0:
@@ -281,7 +296,7 @@ def _panel_labels(suffix: str, re: Interval, im: Interval) -> list[dict[str, Any
 def _ray_end(ratio: float, re: Interval, im: Interval) -> tuple[float, float]:
     """Where a ray in the upper half leaves the panel, a little inside."""
     cosine, sine = ratio, math.sqrt(1.0 - ratio * ratio)
-    length = min(0.955 * -re[0] / cosine, 0.94 * im[1] / sine)
+    length = min(_INSIDE * -re[0] / cosine, 0.94 * im[1] / sine)
     return -cosine * length, sine * length
 
 

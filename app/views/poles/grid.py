@@ -42,7 +42,7 @@ _SETTLING_MIN = (
     1.0,
     0.5,
 )
-_LABEL_PX = 58.0
+_LABEL_PX = 62.0
 """Least distance of two settling lines: room for a label."""
 _BEYOND = 1e3
 """Extent of the shaded region in sizes of the panel."""

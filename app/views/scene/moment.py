@@ -30,6 +30,8 @@ from navcore.mechanization.recorder import DV_E, DV_N, PHI_E, PHI_U, POSITION, Q
 from navcore.motion.base import HEADING, PITCH, ROLL, VE, VN
 
 _AS_IT_FITS = Display()
+_LEAST = 0.01
+"""Of the smallest units, such as µas: no sensor and no plot knows less."""
 _COMPUTED = (6, 7, 8)
 """Pitch, roll and heading among the columns of `MethodRun.navigation`."""
 
@@ -189,5 +191,8 @@ def _speed(speed: float, unit: Unit) -> str:
 
 
 def _signed(value: float, unit: Unit) -> str:
+    """Error with its sign; what is below a hundredth of the smallest unit is rounding, and reads as 0."""
     shown = float(f"{value / unit.si:.3g}")
+    if unit.name.startswith("µ") and abs(shown) < _LEAST:
+        return f"0 {unit.name}"
     return f"{'+' if shown > 0 else ''}{with_unit(number(shown), unit.name)}"

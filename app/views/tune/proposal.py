@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from app.plots import style
 from app.plots.units import number
 from navcore.design.measures import read_requirement
+from navcore.foundation.notation import symbol
 from navcore.foundation.units import ARCMIN, ARCSEC, MINUTE
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ def proposal_html(task: TuningTask, found: Tuned) -> str:
         now = _value(data, field)
         rows.append(
             (
-                field.rsplit(".", 1)[-1],
+                symbol(field.rsplit(".", 1)[-1]),
                 "default" if now is None else number(now, 4),
                 number(value, 4),
                 f"{number(low, 3)} to {number(high, 3)}",
@@ -79,7 +80,7 @@ def sentences_about(task: TuningTask, found: Tuned) -> list[str]:
     if found.floor:
         told.append(f"The proposed setting is {number(found.objective / found.floor, 3)} times the floor.")
     for field in found.at_end_of_range:
-        name = field.rsplit(".", 1)[-1]
+        name = symbol(field.rsplit(".", 1)[-1])
         told.append(f"{name} stands at the end of its range: the true optimum may lie outside.")
     for text in found.active:
         without = found.cost.get(text)
