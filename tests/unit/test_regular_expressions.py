@@ -115,21 +115,29 @@ def _units(pattern: str) -> list[str]:
     return [unit for unit in dict.fromkeys(found) if unit]
 
 
-def _steepness(run: Callable[[Any], object], unit: Any, tail: Any, size: int) -> float:
-    """How much longer twice the text takes; 1 where both take too little, inf where one takes too long."""
+def _steepness(
+    run: Callable[[Any], object], unit: Any, tail: Any, size: int, before: float | None = None
+) -> tuple[float, float]:
+    """How much longer twice the text takes, and the time for all of it; ``before`` is that for half of it.
+
+    1 where both take too little, inf where one takes too long.
+    """
     half, whole = (unit * (n // len(unit) + 1) + tail for n in (size // 2, size))
-    before, taken = _timed(run, half), _timed(run, whole)
+    if before is None:
+        before = _timed(run, half)
+    taken = _timed(run, whole)
     if taken > TOO_LONG_S:
-        return math.inf
+        return math.inf, taken
     if taken < ENOUGH_S or taken < STEEPEST * before:
-        return 1.0
+        return 1.0, taken
     ratio = STEEPEST
+    times = 2 if taken > 20.0 * ENOUGH_S else 4
     for _ in range(LOOKS):  # the machine may have been busy
-        before = min(_timed(run, half) for _ in range(4))
-        ratio = min(_timed(run, whole) for _ in range(4)) / max(before, 1e-9)
+        before = min(_timed(run, half) for _ in range(times))
+        ratio = min(_timed(run, whole) for _ in range(times)) / max(before, 1e-9)
         if ratio <= STEEPEST:
             break
-    return ratio
+    return ratio, taken
 
 
 def _timed(run: Callable[[Any], object], text: Any) -> float:
@@ -157,17 +165,17 @@ def _worst(pattern: str | bytes, flags: int, methods: tuple[str, ...]) -> tuple[
         given: Any = unit if isinstance(pattern, str) else unit.encode("latin-1")
         for method in methods:
             run = _run(compiled, method)
-            steepest = max(steepest, (_steepness(run, given, tail, SMALL), f"{method} on {unit!r}"))
+            ratio, taken = _steepness(run, given, tail, SMALL)
+            steepest = max(steepest, (ratio, f"{method} on {unit!r}"))
             if steepest[0] > STEEPEST:
                 return steepest
-            taken = _timed(run, given * (SMALL // len(given)) + tail)
             slowest = max(slowest, (taken, given, run), key=lambda found: found[0])
     if slowest[1] is None or slowest[2] is None:
         return steepest
-    size = SMALL
+    size, taken = SMALL, slowest[0]
     while size < LARGEST:  # step by step: a quadratic one that a busy machine hid would take hours at 1 MiB
         size *= 2
-        ratio = _steepness(slowest[2], slowest[1], tail, size)
+        ratio, taken = _steepness(slowest[2], slowest[1], tail, size, before=taken)
         if ratio > STEEPEST:
             return ratio, f"{size} of {slowest[1]!r}"
     return steepest
