@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from navcore.foundation.compiled import kernel
 from navcore.foundation.earth import SPHERE
 from navcore.law.law import law_step, prepare_law
 from navcore.law.policy import POLICIES
@@ -16,6 +17,12 @@ from navcore.networks.base import NetworkParameters
 from navcore.networks.discrete import discretise
 
 OMEGA_S = SPHERE.schuler_frequency(0.0)
+
+
+@kernel
+def call_law(law: Any, sensed: Any) -> Any:
+    """Call `law_step`: this is kept on disk, while what kernels inline is compiled by each process anew."""
+    return law_step(law, sensed)
 
 
 class LawRun:
@@ -46,7 +53,7 @@ class LawRun:
     ) -> np.ndarray:
         """One call: c_E, c_N, a_E, a_N."""
         self.s["difference"], self.s["valid"] = (d_e, d_n), valid
-        return np.array(law_step(self.law, Sensed(*v_c, heading)))
+        return np.array(call_law(self.law, Sensed(*v_c, heading)))
 
     def value(self, path: str) -> float:
         """Number in the state: ``"xi"``, ``"policies.variation.count"``; of a pair, its east."""

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numba
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from navcore.analysis import analyse
+from navcore.foundation.compiled import kernel
 from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, KNOT
@@ -217,7 +217,7 @@ def test_the_adaptive_law_never_leaves_the_stable_region(network, law, omega_s, 
         assert sampled_radius(block.with_damping(xi), omega_s, step_s) < 1.0
 
 
-@numba.njit
+@kernel
 def closed_channel(law, log, omega_s):
     """Largest velocity error of a channel that the law damps at 1 Hz, and the range of its coefficient."""
     cos, sin = math.cos(omega_s), math.sin(omega_s)

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from navcore.law.law import Law, law_step
+from navcore.law.law import Law
 from navcore.law.records import Sensed
 from navcore.law.switching import SWITCHINGS
 from navcore.law.tuned_network import retune, tune
 from navcore.networks import parse_network
 from navcore.networks.discrete import discretise
-from tests.law_run import OMEGA_S, LawRun, sampled_radius
+from tests.law_run import OMEGA_S, LawRun, call_law, sampled_radius
 
 COMPLEMENTARY = {"id": "complementary", "zeta": 0.5}
 THRESHOLD = {"id": "threshold", "limit_mps": 1.0}
@@ -310,7 +310,7 @@ def test_sampled_radius_knows_a_stable_loop_from_an_unstable_one():
 
 def test_law_step_of_a_free_method_does_nothing():
     run = LawRun(COMPLEMENTARY, {"id": "variation"}, {"id": "bumpless"}, damping="free")
-    assert law_step(run.law, Sensed(1.0, 2.0, 0.2)) == (0.0, 0.0, 0.0, 0.0)
+    assert call_law(run.law, Sensed(1.0, 2.0, 0.2)) == (0.0, 0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("switching", list(SWITCHINGS))
