@@ -7,6 +7,7 @@ counts as one test. The exit code is 1 when anything failed or when a test stage
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -163,6 +164,8 @@ def main(arguments: list[str]) -> int:
     if wanted == "lint":
         counts = [run_check(name) for name in CHECKS]
     else:
+        # Hundreds of processes are started: they read the byte code that the first of them has written.
+        os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
         # Compiled before the first test, and once for all its processes.
         subprocess.run([sys.executable, "-m", "navcore.warm"], cwd=ROOT, check=True)
         first, *others = STAGES
