@@ -16,10 +16,6 @@ MOST_CELLS = 6_000_000
 """Cells of the columns that are used; more are refused before they are unpacked."""
 _TOGETHER = (("lat", "lon", "deg"), ("ve", "vn", "mps"), ("pitch", "roll", "deg"))
 _ACROSS = (("speed_starboard", "speed"), ("ground_starboard", "ground"))
-_OWN_NAMES = (
-    "lat_deg, lon_deg, height_m, heading_deg, pitch_deg, roll_deg, ve_mps, vn_mps, sog_kn with cog_deg, "
-    "speed_kn or speed_mps (through the water), speed_starboard_kn, ground_kn, ground_starboard_kn"
-)
 _MOST_FAULTS = 10
 _MOST_NAMED = 30
 _MISSING_NUMBERS = (-99.0, -999.0, -999.9, -9999.0, -99999.0, -8888.0, 999.9, 9999.0, 99999.0)
@@ -38,12 +34,18 @@ def require_columns(where: str, names: Sequence[str]) -> dict[str, Column]:
     if len(names) > MOST_COLUMNS:
         raise InputError(Fault(where, "", None, f"has more than {MOST_COLUMNS} columns: no log"))
     found = known_columns(names)
-    held = f"; columns found: {listed(names)}"
+    held = listed(names)
     faults: list[Fault] = []
     if not {UTC, UNIX, SECONDS} & found.keys() and not {DATE, CLOCK} <= found.keys():
-        faults.append(Fault(where, "", None, f"missing column: utc (ISO 8601) or t_s (seconds){held}"))
+        missing = f"missing column: utc (ISO 8601) or t_s (seconds); columns found: {held}"
+        faults.append(Fault(where, "", None, missing))
     if not QUANTITIES.keys() & found.keys():
-        faults.append(Fault(where, "", None, f"no column of a quantity; known: {_OWN_NAMES}{held}"))
+        missing = (
+            f"no column of a quantity; columns found: {held}; known: lat_deg, lon_deg, height_m, "
+            "heading_deg, pitch_deg, roll_deg, ve_mps, vn_mps, sog_kn with cog_deg, speed_kn or speed_mps "
+            "(through the water), speed_starboard_kn, ground_kn, ground_starboard_kn"
+        )
+        faults.append(Fault(where, "", None, missing))
     for first, second, unit in _TOGETHER:
         faults += [
             Fault(

@@ -33,6 +33,8 @@ GIVEN = (
     "a & b",
 )
 
+RECORDING = b"time_s,speed_mps\n" + b"".join(b"%d,2.0\n" % second for second in range(60))
+
 
 def named(text: str, *names: str) -> str:
     assert CHINESE is not None
@@ -92,6 +94,8 @@ def test_names_of_a_session_reach_the_page(tmp_path: Path) -> None:
         shown: Any = page.message(messages.GuiPlotlyMessage("p", "root", props))
         told = json.loads(shown.props._plotly_json_str)
         assert [line["name"] for line in told["data"]] == ["drift of log", "tilt and drift", "水平失准角"]
+        session.uploads.add("speed.log", RECORDING)
+        assert names().are("speed.log") and page.text("speed.log: heading") == "speed.log：航向"
         series = ({"label": "time (h)"}, {"label": "run with DVL"})
         sent: Any = page.message(messages.GuiUpdateMessage("u", {"series": series}))
         assert [line["label"] for line in sent.updates["series"]] == ["时间 (h)", "run with DVL"]

@@ -45,7 +45,8 @@ def requirements_html(
         f'<th style="{_HEAD};border-bottom:3px {lines[i]}">{escape(judged.methods[i].method.name)}</th>'
         for i in shown
     )
-    body = "".join(_row(verdict, shown) for verdict in found)
+    asked = any(verdict.limit is not None for verdict in found)
+    body = "".join(_row(verdict, shown, asked=asked) for verdict in found)
     foot = "".join(f'<td style="{_CELL}">{_overall(found, i)}</td>' for i in shown)
     return (
         f'<div style="overflow-x:auto"><table style="{_TABLE}"><thead><tr>'
@@ -55,7 +56,7 @@ def requirements_html(
     )
 
 
-def _row(verdict: Verdict, shown: Sequence[int]) -> str:
+def _row(verdict: Verdict, shown: Sequence[int], *, asked: bool) -> str:
     info = Requirements.model_fields[verdict.name]
     extra = extra_of(info)
     unit = f' <span style="color:{style.MUTED}">({escape(extra["unit"])})</span>' if extra["unit"] else ""
@@ -64,7 +65,7 @@ def _row(verdict: Verdict, shown: Sequence[int]) -> str:
     )
     cells = "".join(
         f'<td data-measure="{verdict.name}" data-value="{_number(value)}" data-passed="{_word(verdict, ok)}" '
-        f'style="{_CELL}">{_measured(value)}{_mark(verdict, ok)}</td>'
+        f'style="{_CELL}">{_measured(value)}{_mark(verdict, ok) if asked else ""}</td>'
         for value, ok in ((verdict.measured[i], verdict.passed[i]) for i in shown)
     )
     return (
