@@ -54,6 +54,16 @@ MENDS = (
         "onExpand:r}),b.useMemo(()=>(0,Y.jsx)(pA,{opened:n,onClose:i,size:`xl`,children:(0,Y.jsx)(SX,{jsonStr:e,"
         "aspectRatio:t})}),[n,n&&e,t])",
     ),
+    # A plotly figure is drawn before its width is known, or behind another tab without one, and anew then.
+    # Its frame has a name of its own, as that of a uPlot, by which marks.js finds it before it is drawn.
+    (
+        "Plotly.react(s.current,c.data,{...c.layout,width:o,height:o*t},c.config)},[c,o,t])",
+        "o>9&&Plotly.react(s.current,c.data,{...c.layout,width:o,height:o*t},c.config)},[c,o,t])",
+    ),
+    (
+        "t.purge(e)}},[]),(0,Y.jsxs)($C,{ref:a,className:yX,",
+        "t.purge(e)}},[]),(0,Y.jsxs)($C,{ref:a,className:yX+` plotly-container`,",
+    ),
     # A command's new title ("Undo ...") counts as a change of the 3D view.
     ("new Set([`GuiUpdateMessage`,", "new Set([`CommandUpdateMessage`,`GuiUpdateMessage`,"),
 )

@@ -23,9 +23,9 @@ _ANEW = f"() => Plotly.redraw({_PLOT})"
 _AXES = f"() => ['xaxis', 'yaxis', 'yaxis2', 'yaxis3', 'yaxis4'].map(name => {_PLOT}._fullLayout[name].range)"
 
 
-# Titles of the figures, in the order in which they are drawn.
+# Titles and widths (px) of the figures, in the order in which they are drawn.
 _DRAWN = """window.drawn = [];
-addEventListener('drawn', ({target}) => window.drawn.push(target._fullLayout.meta.view));"""
+addEventListener('drawn', ({target: {_fullLayout: {meta, width}}}) => drawn.push([meta.view, width]));"""
 
 
 def test_only_what_is_in_sight_is_drawn(browser: Browser, dashboard: Any) -> None:
@@ -36,10 +36,12 @@ def test_only_what_is_in_sight_is_drawn(browser: Browser, dashboard: Any) -> Non
         opened.settle()
         opened.heard()
         opened.plotly()
-        assert set(opened.page.evaluate("window.drawn")) == {"Frequency"}
+        drawn = opened.page.evaluate("window.drawn")
+        assert {title for title, _ in drawn} == {"Frequency"}
+        assert len({width for _, width in drawn}) == 1, "no figure is drawn before its width is known"
         opened.tab("Poles")
         opened.plotly()
-        assert set(opened.page.evaluate("window.drawn")) == {"Frequency", "Poles"}
+        assert {title for title, _ in opened.page.evaluate("window.drawn")} == {"Frequency", "Poles"}
         assert opened.faults == []
     finally:
         context.close()

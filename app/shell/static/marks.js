@@ -37,11 +37,11 @@
         if (!container) continue;
         hold(container, name);
         kinds.set(mark.parentElement, "mark");
-        for (const plot of container.getElementsByClassName("js-plotly-plot")) kinds.set(childWith(container, plot), "plot");
+        for (const paper of container.getElementsByClassName("plotly-container")) kinds.set(childWith(container, paper), "plot");
         for (const wide of container.querySelectorAll(WIDE)) kinds.set(childWith(container, wide), "wide");
       }
     }
-    for (const plot of document.getElementsByClassName("js-plotly-plot")) kinds.set(plot.parentElement, "paper");
+    for (const paper of document.getElementsByClassName("plotly-container")) kinds.set(paper, "paper");
     return [
       ["data-sb-kind", kinds, (kind) => kind],
       ["data-sb-holds", holds, (words) => [...words].join(" ")],
