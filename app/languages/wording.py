@@ -101,6 +101,8 @@ class _Pattern:
         """Values that a text can mean, None when they cannot be meant."""
         if values and values[-1].endswith(".") and text.endswith(values[-1]):  # the sentence's own
             return None
+        if "\n" not in self.said and any("\n" in value.strip() for value in values):  # a line is a text
+            return None
         # "A: tilt from log error" is a label and a text: the label is not part of the text's first value.
         if self.pattern.pattern.startswith("(?P") and not self.labels and ": " in values[0]:
             return None

@@ -90,7 +90,8 @@ def _word(verdict: Verdict, passed: bool) -> str:
 def _mark(verdict: Verdict, passed: bool) -> str:
     """Word beside the value, of one width, so that the values stand below each other."""
     word = "" if verdict.limit is None else _badge("✓ met", PASSED) if passed else _badge("✗ missed", FAILED)
-    return f'<span style="display:inline-block;width:5.6em;padding-left:8px;text-align:left">{word}</span>'
+    place = "display:inline-block;width:5.6em;padding-left:8px;text-align:left"
+    return f'<span class="sb-word" style="{place}">{word}</span>'
 
 
 def _overall(found: tuple[Verdict, ...], index: int) -> str:
