@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import pytest
@@ -61,6 +62,7 @@ SYMBOLS = frozenset(
 """Product, formats, symbols, units, keys, citations, the scene's nodes, the page's own hidden controls."""
 
 
+@lru_cache(maxsize=1)
 def as_written() -> frozenset[str]:
     """Words of a scenario file, which stay as they are: fields, choices, names and units."""
     words = set(SYMBOLS)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -17,7 +16,6 @@ from tests.browser import test_page_lessons as learning
 from tests.browser import test_page_playback as playing
 from tests.browser.driver import Bench
 from tests.browser.test_page_compare import _UPLOT_NAMES
-from tests.browser.test_page_layout import SIZES, resize
 from tests.browser.test_page_requirements import ask, wait_for
 from tests.browser.test_page_state import away_from_text, button, palette, wait_for_value
 
@@ -33,38 +31,6 @@ _WITHIN = """selector => {
 }"""
 _SHOWS = """([label, number]) => Object.values(window.__viserTestpoints?.uplots ?? {})
   .some(({chart}) => chart.axes[1].label.startsWith(label) && chart.series.length > number)"""
-
-
-@pytest.fixture(scope="module", params=("en", "zh"))
-def spoken(request: pytest.FixtureRequest, opened: Bench) -> Iterator[Bench]:
-    """The shared page in one of the languages."""
-    speak(opened, request.param)
-    yield opened
-    speak(opened, "en")
-
-
-@pytest.fixture(scope="module", params=SIZES, ids=lambda size: f"{size[0]}x{size[1]}")
-def resized(request: pytest.FixtureRequest, spoken: Bench) -> Iterator[Bench]:
-    resize(spoken, request.param)
-    yield spoken
-    resize(spoken, SIZES[0])
-
-
-def speak(bench: Bench, language: str) -> None:
-    """Open the visitor's page anew in a language, unless it is in that one."""
-    if not bench.language.startswith(language):
-        bench.open(f"s/{bench.session_id}/", query=f"?fixedDpr=0.25&start=no&lang={language}")
-        assert bench.language.startswith(language)
-
-
-@pytest.fixture
-def window(resized: Bench) -> Iterator[Bench]:
-    """The shared page in one of the windows, on a ship under way."""
-    resized.faults.clear()
-    resized.reset("sikuliaq-like", selected=2)
-    resized.tab("Method", "Errors")
-    yield resized
-    assert resized.faults == []
 
 
 def within(bench: Bench, selector: str) -> None:
