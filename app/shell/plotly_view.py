@@ -53,7 +53,9 @@ class PlotlyView(PictureView[PlotlyFigure]):
     @property
     def aspect(self) -> float:
         """Height over width of the plot."""
-        return self.frame.layout().aspect(self.above_px)
+        layout = self.frame.layout()
+        # of a view alone the choosers are hidden (static/page.css)
+        return layout.aspect(max(self.above_px - CHOOSER_PX, 0) if layout.alone else self.above_px)
 
     @property
     def width_px(self) -> float:

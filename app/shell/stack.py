@@ -53,9 +53,10 @@ class Stack:
 
 
 def room_px(layout: Layout, names: list[str]) -> int:
-    """Height for plots below a chooser and a legend of these names."""
+    """Height for plots below a chooser, which a view alone does not have, and a legend of these names."""
     rows = _rows(names, layout.plot_px - _LEGEND_INDENT_PX)
-    return layout.room_px - CHOOSER_PX - _LEGEND_MARGIN_PX - rows * _LEGEND_ROW_PX[layout.touch]
+    chooser = 0 if layout.alone else CHOOSER_PX
+    return layout.room_px - chooser - _LEGEND_MARGIN_PX - rows * _LEGEND_ROW_PX[layout.touch]
 
 
 def _rows(names: list[str], width_px: float) -> int:

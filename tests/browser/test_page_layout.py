@@ -85,6 +85,22 @@ _COVERED = """() => {
   }
   return [labels.length, found];
 }"""
+# Labels in view whose unit, in parentheses at their end, stands in two lines.
+_TORN = """() => [...document.querySelectorAll('label[for]')].filter(label => {
+  const text = label.firstChild;
+  const from = text?.data?.lastIndexOf('(') ?? -1;
+  if (label.offsetParent === null || from < 0 || !text.data.endsWith(')')) return false;
+  const unit = document.createRange();
+  unit.setStart(text, from);
+  unit.setEnd(text, text.data.length);
+  return new Set([...unit.getClientRects()].map(box => Math.round(box.top))).size > 1;
+}).map(label => label.textContent)"""
+# Rows in which the tabs of each panel stand.
+_ROWS = """() => [...document.querySelectorAll('[role=tablist]')].map(list => {
+  const boxes = [...list.querySelectorAll('[role=tab]')].map(tab => tab.getBoundingClientRect());
+  const tops = boxes.map(box => Math.round(box.top));
+  return new Set(tops).size;
+})"""
 
 
 def panels(width: int) -> int:
@@ -162,6 +178,17 @@ def test_plots_fill_their_panels(sized: Bench) -> None:
         assert height >= 0.75 * size["height"] / panels(size["width"]) - 60
 
 
+def test_all_tabs_stand_in_one_row(sized: Bench) -> None:
+    try:
+        sized.put(load_preset("liu-switching"), origin="liu-switching", selected=1)
+        sized.page.get_by_role("tab", name="Switching", exact=True).wait_for()
+        assert set(sized.page.evaluate(_ROWS)) == {1}
+        sized.tab("Design")
+        wait_until_it_fits(sized, "Design")
+    finally:
+        sized.put(load_preset("sikuliaq-like"), origin="sikuliaq-like", selected=2)
+
+
 @pytest.mark.parametrize("sized", [SIZES[-1]], indirect=True)
 def test_every_axis_is_labelled_with_its_unit(sized: Bench) -> None:
     for tab in ("Frequency", "Poles", "Step"):
@@ -202,6 +229,7 @@ def uncovered(bench: Bench) -> int:
         bench.heard()
         labels, covered = bench.page.evaluate(_COVERED)
         assert covered == [], tab.inner_text()
+        assert bench.page.evaluate(_TORN) == [], tab.inner_text()
         count += labels
     return count
 

@@ -37,6 +37,8 @@ PANELS = (("xaxis", "yaxis"), ("xaxis2", "yaxis2"))
 """Axes of the two panels: all poles, and those near the Schuler frequency."""
 _PICK = {"command": COMMAND, "panels": PANELS}
 """What pick.js does with a click: it is a wanted pole, in units of the Schuler frequency."""
+_UNSTABLE_PX = 58.0
+"""Width of the word."""
 _INSIDE = 0.955
 """Part of a panel's width within which the labels of the rays lie."""
 _RAY_PX = 27.0
@@ -273,6 +275,8 @@ def _panel_labels(suffix: str, re: Interval, im: Interval, width_px: float) -> l
             yanchor="bottom",
             xshift=-3,
             yshift=3,
+            # upright where the half plane is too narrow for it
+            textangle=0 if re[1] / (re[1] - re[0]) * width_px >= _UNSTABLE_PX else -90,
             font=font | {"color": style.DANGER},
         )
     ]
