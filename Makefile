@@ -15,7 +15,7 @@ endif
 
 KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
-.PHONY: help setup run test check docs format unit paint soak serving tour accuracy covariance tuning consistency design benchmarks mutation papers cards guide languages sbom audit lock clean REMAKE
+.PHONY: help setup run test check docs format unit windows paint soak serving tour accuracy covariance tuning consistency design benchmarks mutation papers cards guide languages sbom audit lock clean REMAKE
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'
@@ -23,6 +23,7 @@ help:
 	@echo 'make setup    .venv with the command .venv/bin/schuler, kernels compiled'
 	@echo 'make check    lint, format and types only'
 	@echo 'make unit     the fast tests only'
+	@echo 'make windows  the points of the page in all windows and languages; make test has half of these'
 	@echo 'make docs     build the site into build/docs: tutorial, theory, lessons, notebooks, API; a warning is an error'
 	@echo 'make benchmarks  time the strapdown engine beside python-ins, which it installs into .venv'
 	@echo 'make papers   run the presets of the five papers and write docs/papers.md with its pictures anew'
@@ -77,6 +78,10 @@ tour: setup $(STAMPS)/test
 mutation: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.mutation --sample $(or $(SAMPLE),60) --seed $(or $(SEED),1) \
 	  --folder $(or $(RESULTS),build/mutation)
+
+# Each point of the page in each of three windows in both languages: six runs; make test has three of them.
+windows: setup $(STAMPS)/test
+	@SCHULER_BROWSER_WINDOWS=all $(BIN)/python -m pytest -q -n2 --dist=worksteal tests/browser/windows
 
 unit: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.stages unit

@@ -6,6 +6,9 @@ import ast
 import tomllib
 from pathlib import Path
 
+from tests.browser.test_page_layout import SIZES
+from tests.browser.windows.conftest import FEW, LOCALES
+
 FIXTURES = {"window", "pinned", "another"}
 """Of tests/browser/windows: each gives a page in all windows and languages, one after the other."""
 BOTH = {"language", "size"}
@@ -45,3 +48,8 @@ def test_the_fixtures_take_all_windows_and_languages(repo_root: Path) -> None:
     assert "resized" in asked["window"] and "size" in asked["resized"] and "spoken" in asked["resized"]
     assert "language" in asked["spoken"] and asked["another"] >= BOTH
     assert text.count("params=SIZES") == 1 and text.count("params=tuple(LOCALES)") == 1
+
+
+def test_the_few_runs_of_make_test_take_each_window_and_both_languages() -> None:
+    assert sorted(size for _, size in FEW) == sorted(SIZES)
+    assert {language for language, _ in FEW} == set(LOCALES)

@@ -1,9 +1,14 @@
-"""The page in three windows and two languages: all tests run in one of them, then in the next."""
+"""The page in three windows and two languages: all tests run in one of them, then in the next.
+
+`make test` takes each test through all windows and both languages in three runs (`FEW`), `make windows`
+in six.
+"""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -20,6 +25,25 @@ LOCALES = {"en": "en-US", "zh": "zh-CN"}
 """Languages of the page, and what a browser asks for."""
 
 Open = Callable[..., Bench]
+
+FEW = {("zh", SIZES[0]), ("en", SIZES[1]), ("zh", SIZES[2])}
+"""Runs of a test: each window once. Most other tests of the page are in English, in the first window."""
+ALL = os.environ.get("SCHULER_BROWSER_WINDOWS") == "all"
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave the other runs to `make windows`."""
+    wanted = [item for item in items if ALL or run_of(item) in {None, *FEW}]
+    kept = set(wanted)
+    if len(wanted) < len(items):
+        config.hook.pytest_deselected(items=[item for item in items if item not in kept])
+        items[:] = wanted
+
+
+def run_of(item: pytest.Item) -> Any:
+    """Language and window of a test of this folder; None for any other test."""
+    params = item.callspec.params if isinstance(item, pytest.Function) and hasattr(item, "callspec") else {}
+    return (params["language"], params["size"]) if {"language", "size"} <= params.keys() else None
 
 
 @pytest.fixture(scope="session", params=tuple(LOCALES))

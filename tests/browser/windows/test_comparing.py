@@ -23,7 +23,8 @@ _RUNS = "() => [...document.querySelectorAll('.sb-pins tbody tr b')].map(b => b.
 _POINTS = """() => {
   const rows = [...document.querySelectorAll('.sb-table tbody tr')].map(row => [...row.cells]);
   const found = {};
-  for (const cells of rows.filter(row => row.length > 6)) for (const [place, cell] of cells.entries()) {
+  const shown = rows.filter(row => row.length > 6 && row[0].offsetParent !== null);
+  for (const cells of shown) for (const [place, cell] of cells.entries()) {
     const text = cell.querySelector('.sb-best')?.firstChild ?? cell.firstChild;
     if (place < 2 || text?.nodeType !== 3 || !/^-?[0-9]+[.][0-9]+$/.test(text.data)) continue;
     const range = document.createRange();

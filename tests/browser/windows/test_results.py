@@ -141,9 +141,10 @@ def test_a_limit_of_settling_is_one_edge_in_the_pole_map(window: Bench) -> None:
     window.show(requirements=Requirements(settling_min=90.0))
     window.tab("Poles")
     try:
-        window.page.wait_for_function(f"() => ({_SHAPES})().some(s => s[0] === 'settling')")
+        settling = window.said("settling")
+        window.page.wait_for_function(f"name => ({_SHAPES})().some(s => s[0] === name)", arg=settling)
         shapes = window.page.evaluate(_SHAPES)
-        (path,) = (path for name, across, _, _, path in shapes if (name, across) == ("settling", "x2"))
+        (path,) = (path for name, across, _, _, path in shapes if (name, across) == (settling, "x2"))
         at = [float(corner.split()[0]) for corner in re.split("[MLZ]", path) if corner.strip()]
         low, high = window.page.evaluate(_NEAR)
         # of the four sides only the limit itself can be seen, whatever a zoom shows

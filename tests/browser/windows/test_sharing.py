@@ -118,13 +118,13 @@ def test_a_lost_server_is_told(browser: Browser, language: str, size: tuple[int,
 
 
 def test_an_address_opens_tabs_and_one_view_alone(window: Bench, another: Open) -> None:
-    window.tab("Sensors", "Spectrum")
+    wide = window.page.viewport_size["width"] >= WIDE_FROM_PX
+    tabs = ["Sensors", *(["Frequency"] if wide else []), "Spectrum"]
+    window.tab(*tabs)
     window.page.evaluate("() => schuler.command('share-view')")
     dialog = window.dialog("Share this state")
     link = see(window, dialog.get_by_role("textbox")).input_value()
     window.page.keyboard.press("Escape")
-    wide = window.page.viewport_size["width"] >= WIDE_FROM_PX
-    tabs = ["Sensors", *(["Frequency"] if wide else []), "Spectrum"]
     assert link.endswith(f"?tab={','.join(tabs)}")
     path, _, query = link.removeprefix(window.url).partition("?")
     other = another(path, f"{PLAIN}&{query}")

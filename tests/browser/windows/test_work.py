@@ -170,5 +170,6 @@ def test_the_palette_opens_and_the_page_turns_dark(window: Bench) -> None:
     window.page.keyboard.press("Escape")
     dialog.wait_for(state="hidden")
     for shown in ("dark", "light"):
-        window.page.locator("body").press("d")
+        away_from_text(window)
+        window.page.keyboard.press("d")
         window.page.wait_for_selector(f"#sb-theme[data-theme={shown}]", state="attached")
