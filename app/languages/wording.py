@@ -182,7 +182,7 @@ class Wording:
         if names.are(text):
             return text
         around, found = names.hidden(text)
-        if not found:
+        if not found or " ".join(text.split()) in self._exact:  # the page's own text, all of it
             return self.say(text)
         said = [self.say(around), names.hidden(self.say(text))[0]]
         if _TAGS.search(text) is None:  # else `markup` takes it apart

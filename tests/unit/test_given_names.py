@@ -67,6 +67,8 @@ def test_the_program_s_own_sentences_are_translated_beside_names() -> None:
     for text in ("tilt from log error", "position error", "Nothing to undo", "Undo"):
         assert CHINESE is not None
         assert named(text) == CHINESE.text(text) != text
+    # the network "optimal" names the method in which it is chosen
+    assert named("optimal H", "optimal") == "最优 H"
 
 
 def test_markup_in_a_name_is_no_markup() -> None:
