@@ -102,7 +102,7 @@ def test_a_proposal_names_field_value_floor_and_what_holds_it(compass):
     grows = "whole system at latitude 45 deg: the 24 h mode grows, e-folding time 3.1 days"
     assert sentences_about(task, replace(found, warnings=(grows,)))[-1] == grows
     html = proposal_html(task, found)
-    assert ">sigma<" in html and "arcsec" in html and "0.0088" in html
+    assert ">σ<" in html and "arcsec" in html and "0.0088" in html
 
 
 def test_the_jobs_give_what_the_library_gives_and_forget_it(compass):
