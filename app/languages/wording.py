@@ -266,6 +266,9 @@ class Wording:
         told = self._whole(text[at:], depth + 1) if 0 < at < len(text) else None
         if told is not None:
             return text[:at] + told
+        head, _, part = text.partition(" ")
+        if head in self._exact and part in self._exact and " / " in part:  # "bias E / starboard"
+            return f"{self._exact[head]} {self._exact[part]}"
         for separator in _SEPARATORS:
             parts = separator.split(text)
             if len(parts) > 1:

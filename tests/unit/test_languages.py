@@ -156,6 +156,8 @@ def test_what_is_put_together_is_taken_apart(say: Wording) -> None:
     assert say.text("Damping ratio of the pair. Must be > 0.") == "极点对的阻尼比。须为> 0。"
     assert say.text("damping ratio (1/s)") == "阻尼比 (1/s)"
     assert say.text("Damping ratio") == "阻尼比"
+    assert (chinese := wording("zh-CN")) is not None
+    assert chinese.text("bias E / starboard (m/s)") == "零偏 E / 右舷 (m/s)"
 
 
 def test_texts_in_html_are_translated_and_the_rest_stays(say: Wording) -> None:
