@@ -54,6 +54,7 @@ def test_a_misprint_is_shown_as_printed_corrected_and_both(bench: Bench) -> None
 def test_every_misprint_is_readable(bench: Bench) -> None:
     bench.reset("sikuliaq-like")
     bench.tab("Misprints")
+    bench.choose("form shown", "both")
     for id in MISPRINTS:
         bench.choose("misprint", option(id))
         drawn(bench, id, "both")
