@@ -176,8 +176,8 @@ def _unit() -> Comparison:
         y_axis=Axis("east velocity error", "m/s"),
         x=t,
         curves=(
-            Curve("5e-4 g read per √Hz", "printed", printed),
-            Curve("5e-4 g per 100 Hz sample: 50 µg/√Hz", "corrected", corrected),
+            Curve("5×10⁻⁴ g read per √Hz", "printed", printed),
+            Curve("5×10⁻⁴ g per 100 Hz sample: 50 µg/√Hz", "corrected", corrected),
         ),
         numbers=(Number("RMS of the east velocity error", "m/s", rms[0], rms[1]),),
         words=f"Read per √Hz the random walk alone gives {rms[0]:.2f} m/s RMS in 24 h; read per sample "
@@ -217,8 +217,8 @@ ZHAO = (
         id="zhao-5.1.2",
         paper="Zhao 2015",
         where="section 5.1.2",
-        printed="angle random walk in °/h, velocity random walk 5e-4 g",
-        right="°/√h; 5e-4 g per 100 Hz sample = 50 µg/√Hz",
+        printed="angle random walk in °/h, velocity random walk 5×10⁻⁴ g",
+        right="°/√h; 5×10⁻⁴ g per 100 Hz sample = 50 µg/√Hz",
         consequence="read per √Hz, ten times the velocity random walk",
         compute=_unit,
     ),
