@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 # Sent with every figure, since the page's own way to set it re-parses the whole figure each time.
-CONFIG: dict[str, Any] = {"displayModeBar": False, "doubleClick": "reset+autosize", "responsive": False}
+CONFIG: dict[str, Any] = {"displayModeBar": False, "doubleClick": "reset", "responsive": False}
 
 
 class PlotlyFigure(dict[str, Any]):

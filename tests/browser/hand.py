@@ -69,6 +69,12 @@ _WATCH = """() => {
   });
   look();
 }"""
+_TRACK = """labels => {
+  const label = [...document.querySelectorAll('label')].find(e => labels.includes(e.textContent));
+  const track = document.getElementById(label.htmlFor).closest('.mantine-Slider-root')
+    .querySelector('.mantine-Slider-track').getBoundingClientRect();
+  return [track.left, track.right];
+}"""
 _STEP = """after => new Promise(resolve => {
   let start = null;
   addEventListener('keydown', () => { start = performance.now(); }, {capture: true, once: true});
@@ -180,8 +186,9 @@ def _thumb(page: Page) -> Any:
 
 def drag(page: Page, seconds: float, what: str, seen: Followed) -> None:
     """Move the slider to and fro with the mouse held down, and note the pictures that come meanwhile."""
-    box = _thumb(page).bounding_box()
+    box, track = _thumb(page).bounding_box(), page.evaluate(_TRACK, SLIDER)
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    swing = min(_SWING_PX, track[1] - x)  # beyond the slider's end a move changes nothing
     page.mouse.move(x, y)
     page.mouse.down()
     page.evaluate(_WATCH)
@@ -189,7 +196,7 @@ def drag(page: Page, seconds: float, what: str, seen: Followed) -> None:
     there = False
     while time.monotonic() - began < seconds:
         there = not there
-        page.mouse.move(x + _SWING_PX * there, y, steps=_MOVES)  # each waits until the page has heard it
+        page.mouse.move(x + swing * there, y, steps=_MOVES)  # each waits until the page has heard it
     seconds = time.monotonic() - began
     found = page.evaluate("() => window.stopWatch()")
     painted = browser_cpu_ms()

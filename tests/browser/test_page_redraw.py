@@ -21,7 +21,7 @@ _PATHS = f"""() => [...{_PLOT}.querySelectorAll('.scatterlayer path.js-line')]
   .map(line => line.getAttribute('d').match(/-?[0-9.]+/g).map(Number))"""
 _ANEW = f"() => Plotly.redraw({_PLOT})"
 _AXES = f"() => ['xaxis', 'yaxis', 'yaxis2', 'yaxis3', 'yaxis4'].map(name => {_PLOT}._fullLayout[name].range)"
-
+_MAP_AXES = f"() => ['xaxis', 'yaxis', 'xaxis2', 'yaxis2'].map(name => {_PLOT}._fullLayout[name].range)"
 
 # Titles and widths (px) of the figures, in the order in which they are drawn.
 _DRAWN = """window.drawn = [];
@@ -98,6 +98,39 @@ def test_a_zoom_outlives_a_slider_step(bench: Bench) -> None:
         return page.evaluate(_AXES)[0] != x_axis
 
     bench.wait_until(is_whole)
+    assert bench.faults == []
+
+
+def test_a_double_click_goes_back_to_the_ranges_of_the_figure_that_is_shown(bench: Bench) -> None:
+    """Both of a view's figures are drawn in one place: the first one's ranges would come back otherwise."""
+    bench.reset("sikuliaq-like", selected=2)
+    bench.tab("Frequency")
+    bench.show(poles="whole")
+    bench.tab("Poles")
+    bench.plotly()
+    bench.show(poles="channel")
+    bench.plotly()
+    page = bench.page
+    box = page.locator(".js-plotly-plot:visible .nsewdrag").first.bounding_box()
+    home = page.evaluate(_MAP_AXES)
+    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.3 * box["height"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 0.7 * box["height"], steps=5)
+    page.mouse.up()
+    zoomed = bench.wait_for_change(lambda: page.evaluate(_MAP_AXES), home)
+
+    def is_back() -> bool:
+        # a busy page may take the second click too late for a double click
+        page.mouse.dblclick(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+        bench.settle()
+        return page.evaluate(_MAP_AXES) == home
+
+    assert zoomed != home
+    bench.wait_until(is_back)
+    # one more leaves it there: all that is drawn, the ends of the rays with it, would be a point
+    page.mouse.dblclick(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    bench.settle()
+    assert page.evaluate(_MAP_AXES) == home
     assert bench.faults == []
 
 

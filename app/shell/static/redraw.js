@@ -6,6 +6,7 @@
   const drawn = new WeakMap();
   const held = new WeakMap(); // ranges of the axes by name, of a figure whose axes are to stay
   const given = new WeakMap(); // what a held figure was given last
+  const homes = new WeakMap(); // ranges with which axes came
 
   // What of a figure must be the same. Plotly changes the objects it is given, so they are compared as text.
   function frameOf(layout) {
@@ -84,6 +85,18 @@
 
   const isAxis = (name) => /^[xy]axis\d*$/.test(name);
 
+  // A double click goes back to the ranges that plotly drew first, also where another figure has taken the place since:
+  // it is told those of the present one, as they came, for a zoom changes the axes that were given.
+  async function redrawn(figure, data, layout, config, wanted) {
+    const axes = Object.entries(wanted).filter(([name]) => isAxis(name));
+    for (const [, axis] of axes) if (!homes.has(axis)) homes.set(axis, [...(axis.range ?? [])]);
+    await react(figure, data, layout, config);
+    for (const [name, axis] of axes) {
+      const shown = figure._fullLayout?.[name];
+      if (shown) [shown._rangeInitial0, shown._rangeInitial1] = homes.get(axis);
+    }
+  }
+
   function draw(figure, data, wanted, config) {
     let layout = wanted;
     const ranges = held.get(figure);
@@ -93,10 +106,10 @@
       for (const [name, range] of Object.entries(ranges)) layout[name] = { ...wanted[name], range: [...range] };
     }
     const now = remember(data, layout);
-    const done = movedInPlace(figure, data, layout, now) ? Promise.resolve(figure) : react(figure, data, layout, config);
+    const done = movedInPlace(figure, data, layout, now) ? Promise.resolve() : redrawn(figure, data, layout, config, wanted);
     drawn.set(figure, now);
     // For what we lay over a figure (handle.js).
-    return Promise.resolve(done).finally(() => figure.dispatchEvent(new Event("drawn", { bubbles: true })));
+    return done.finally(() => figure.dispatchEvent(new Event("drawn", { bubbles: true })));
   }
 
   Object.assign(window.schuler, {
