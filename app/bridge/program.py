@@ -23,6 +23,8 @@ _LARGEST = 1 << 25
 
 SOCKET_SCRIPT = Path(__file__).parent / "socket.js"
 """Script for the page, to run before viser's program, which sends through it: ``schuler.send(message)``."""
+FILL_SCRIPT = Path(__file__).parent / "fill.js"
+"""Script for the page, by which viser's program changes HTML: ``schuler.fill(element, html)``."""
 
 MENDS = (
     # After each change the 3D view is drawn for 250 ms, whether or not anything moves any more: some 15
@@ -63,6 +65,11 @@ MENDS = (
     (
         "t.purge(e)}},[]),(0,Y.jsxs)($C,{ref:a,className:yX,",
         "t.purge(e)}},[]),(0,Y.jsxs)($C,{ref:a,className:yX+` plotly-container`,",
+    ),
+    # HTML that changes is made anew whole. See fill.js.
+    (
+        "e.innerHTML=n}}break;case`multiple`:e.multiple=r&&",
+        "window.schuler.fill(e,n)}}break;case`multiple`:e.multiple=r&&",
     ),
     # A command's new title ("Undo ...") counts as a change of the 3D view.
     ("new Set([`GuiUpdateMessage`,", "new Set([`CommandUpdateMessage`,`GuiUpdateMessage`,"),

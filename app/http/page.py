@@ -10,10 +10,10 @@ from functools import cached_property
 from pathlib import Path
 
 from app.bridge.curves import CURVES_SCRIPT
-from app.bridge.program import SOCKET_SCRIPT, viser_program
+from app.bridge.program import FILL_SCRIPT, SOCKET_SCRIPT, viser_program
 
 _STATIC = Path(__file__).parent / "static"
-FIRST_SCRIPTS = (SOCKET_SCRIPT, CURVES_SCRIPT, _STATIC / "first.js", _STATIC / "plotly.js")
+FIRST_SCRIPTS = (SOCKET_SCRIPT, CURVES_SCRIPT, FILL_SCRIPT, _STATIC / "first.js", _STATIC / "plotly.js")
 """Ours that every page has; the last loads plotly.js."""
 PLOTLY = _STATIC / "plotly-basic.min.js"
 """plotly.js with scatter, bar and pie alone (npm: plotly.js-basic-dist-min): a fifth of the whole to read."""

@@ -1,4 +1,4 @@
-"""A plotly figure whose numbers alone have changed is drawn in place, as if it were drawn anew."""
+"""What a slider does not move stays as it is, and what it moves is drawn as if it were drawn anew."""
 
 from __future__ import annotations
 
@@ -210,3 +210,95 @@ def test_a_curve_of_hairlines_is_as_wide_as_its_line(bench: Bench) -> None:
         assert not found["same"] and 0.8 < found["ratio"] < 1.1
     for width in (1.0, 3.0):
         assert bench.page.evaluate(_INK, width)["same"], "drawn as it is"
+
+
+_STILL = """() => {
+  const wrap = Object.assign(document.createElement('div'), {className: 'u-wrap'});
+  const canvas = Object.assign(document.createElement('canvas'), {width: 300, height: 120});
+  wrap.append(canvas);
+  document.body.append(wrap);
+  const context = canvas.getContext('2d'), curve = new Path2D();
+  for (let x = 0; x <= 300; x++) curve.lineTo(x, 60 + 45 * Math.sin(x / 18));
+  context.lineWidth = 2;
+  const shades = color => {
+    context.resetTransform();
+    context.fillStyle = '#fff';
+    context.fillRect(0, 0, 300, 120);
+    context.strokeStyle = color;
+    context.setTransform(1, 0, 0, 1, 0.5, 0.5);
+    context.stroke(curve);
+    const {e, f} = context.getTransform();
+    return {left: [e, f], pixels: [...context.getImageData(0, 0, 300, 120).data]};
+  };
+  const drawn = ['#1a6fb5', '#1a6fb5', '#1a6fb5', '#b51a1a'].map(shades);
+  wrap.remove();
+  const [{pixels: first}] = drawn;
+  const most = pixels => pixels.reduce((worst, pixel, at) => Math.max(worst, Math.abs(pixel - first[at])), 0);
+  return {apart: drawn.map(({pixels}) => most(pixels)), left: drawn.map(({left}) => left)};
+}"""
+
+
+def test_the_picture_of_a_curve_that_stands_still_is_the_curve(bench: Bench) -> None:
+    found = bench.page.evaluate(_STILL)
+    first, second, third, red = found["apart"]
+    assert first == 0
+    assert max(second, third) <= 8, "of 255: but for rounding where the hairlines overlap"
+    assert red > 100, "another color is another picture"
+    assert found["left"] == [[0.5, 0.5]] * 4, "for the next curve"
+
+
+# The buttons above the panel with their texts, marked.
+_BUTTONS = "[...document.querySelectorAll('.sb-row[role=toolbar]:not(.sb-lecture) button')]"
+_NODES = f"{_BUTTONS}.flatMap(button => [button, ...button.childNodes])"
+_MARK = f"() => {_NODES}.forEach(node => {{ node.made = true; }})"
+_MARKED = f"() => {_NODES}.map(node => node.made === true)"
+
+
+def test_of_a_block_of_html_only_what_differs_is_made_anew(bench: Bench) -> None:
+    bench.reset("sikuliaq-like", selected=2)
+    bench.tab("Frequency", "Errors", "Method")
+    bench.press("network.zeta")
+    bench.settle()
+    page, undo = bench.page, bench.page.locator("[data-command=undo]")
+    page.evaluate(_MARK)
+    marked, title = page.evaluate(_MARKED), undo.get_attribute("title")
+    assert len(marked) > 8 and all(marked)
+    bench.press("network.zeta")
+    bench.wait_for_change(lambda: undo.get_attribute("title"), title)
+    assert page.evaluate(_MARKED) == marked
+
+
+_FILL = """() => {
+  const box = document.createElement('div');
+  document.body.append(box);
+  const seen = [];
+  const fill = html => {
+    schuler.fill(box, html);
+    seen.push(box.innerHTML);
+  };
+  fill('<p title="a" lang="en">one <b>1</b></p><i>two</i>');
+  const [p, b, i] = ['p', 'b', 'i'].map(name => box.querySelector(name));
+  fill('<p title="b">one <b>2</b></p><i>two</i>');
+  const stays = [p, b, i].every(node => box.contains(node));
+  i.textContent = 'zwei'; // as a script of ours may have put it
+  fill('<p title="b">one <b>3</b></p><i>two</i>');
+  fill('<p title="b">one</p><u>two</u><i>two</i>');
+  fill('<p title="b">one</p><s>two</s><i>three</i>');
+  const other = document.createElement('div'); // made and dropped by the page: nothing is known of it
+  schuler.fill(other, '<i>four</i>');
+  box.remove();
+  return {seen, stays, other: other.innerHTML};
+}"""
+
+
+def test_html_that_is_put_into_the_page_in_pieces_is_the_whole(bench: Bench) -> None:
+    found = bench.page.evaluate(_FILL)
+    assert found["stays"]
+    assert found["seen"] == [
+        '<p title="a" lang="en">one <b>1</b></p><i>two</i>',
+        '<p title="b">one <b>2</b></p><i>two</i>',
+        '<p title="b">one <b>3</b></p><i>zwei</i>',
+        '<p title="b">one</p><u>two</u><i>two</i>',
+        '<p title="b">one</p><s>two</s><i>three</i>',
+    ]
+    assert found["other"] == "<i>four</i>"

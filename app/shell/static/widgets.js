@@ -10,7 +10,8 @@
   }
 
   const looks = [];
-  new MutationObserver(() => {
+
+  function lookAll() {
     for (const look of looks) {
       try {
         look();
@@ -18,7 +19,10 @@
         reportError(error); // one that fails does not keep the others from looking
       }
     }
-  }).observe(document.documentElement, { childList: true, subtree: true });
+  }
+
+  new MutationObserver(lookAll).observe(document.documentElement, { childList: true, subtree: true });
+  addEventListener("filled", lookAll); // texts and attributes alone (app/bridge/fill.js)
 
   Object.assign(window.schuler, {
     // Call `look` whenever elements of the page have been changed, before they are painted. What the server has to say to

@@ -79,7 +79,9 @@
     find(button.dataset.shows).hidden = !shown;
   }
 
+  // Text and attributes are written when they differ: what is written is laid out anew.
   const set = (target, name, value) => target.getAttribute(name) !== value && target.setAttribute(name, value);
+  const write = (target, text) => target.textContent !== text && (target.textContent = text);
 
   // viser tells of software rendering in a notice that lies over the pendulum: one line below the map says it too.
   let soft = false;
@@ -99,7 +101,7 @@
 
   // The entries stay what they are while only their errors change: a click ends on the button on which it began.
   function showKey() {
-    find("caption").textContent = [now.caption, ...(soft ? ["; 3D drawn in software"] : [])].map(window.schuler.say).join("");
+    write(find("caption"), [now.caption, ...(soft ? ["; 3D drawn in software"] : [])].map(window.schuler.say).join(""));
     const box = find("key");
     const names = now.key.map((each) => each.key).join("\n");
     if (box.dataset.names !== names) {
@@ -115,8 +117,8 @@
       set(row, "data-state", each.state);
       set(row, "title", each.hint);
       set(line, "style", `height:3px;background:${each.color}`);
-      name.textContent = each.key;
-      error.textContent = each.said === "" ? each.error : `${each.error}, ${each.said}`;
+      write(name, each.key);
+      write(error, each.said === "" ? each.error : `${each.error}, ${each.said}`);
     }
   }
 
@@ -125,10 +127,10 @@
     const scrubbing = performance.now() - scrubbed < AFTER_SCRUB_MS;
     const play = find("play");
     set(play, "aria-label", now.playing ? "pause" : "play");
-    play.textContent = now.playing ? "❚❚" : "▶";
+    write(play, now.playing ? "❚❚" : "▶");
     if (!scrubbing) {
       find("time").value = now.span > 0 ? Math.round((1000 * now.time) / now.span) : 0;
-      find("clock").textContent = clock(now.time);
+      write(find("clock"), clock(now.time));
     }
     set(find("time"), "aria-valuetext", `${clock(now.time)} hours`);
     if (document.activeElement !== find("speed")) find("speed").value = String(now.speed);
@@ -137,7 +139,7 @@
       set(button, "aria-pressed", String(button.dataset.camera === now.camera));
     }
     for (const part of ["pendulum", "readout"]) {
-      find(part).innerHTML = source.querySelector(`[data-part="${part}"]`)?.innerHTML ?? "";
+      window.schuler.fill(find(part), source.querySelector(`[data-part="${part}"]`)?.innerHTML ?? "");
     }
     showKey();
     if (!scrubbing) mark(now.time);
