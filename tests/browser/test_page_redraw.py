@@ -72,6 +72,40 @@ def test_a_slider_step_moves_the_curves_without_a_layout(bench: Bench) -> None:
     assert bench.faults == []
 
 
+_LABELS = f"() => [...{_PLOT}.querySelectorAll('.ytick text')].map(label => label.textContent)"
+_HOMES = f"""() => ['yaxis', 'yaxis2'].map(name => {_PLOT}._fullLayout[name])
+  .map(axis => [axis._rangeInitial0, axis._rangeInitial1])"""
+# plotly keeps its points unless it lays out the whole figure
+_KEEP = f"() => {{ {_PLOT}.calcdata.kept = true; }}"
+_KEPT = f"() => {_PLOT}.calcdata.kept === true"
+
+
+def test_an_axis_that_a_slider_step_changes_is_laid_out_alone(bench: Bench) -> None:
+    bench.reset("sikuliaq-like", selected=2)
+    bench.tab("Frequency", "Errors", "Method")
+    bench.type("network.zeta", "0.6")
+    bench.plotly()
+    page = bench.page
+    before = page.evaluate(_AXES)
+    page.evaluate(_KEEP)
+    for zeta in ("0.9", "1.6"):
+        bench.type("network.zeta", zeta)
+        bench.plotly()
+    axes = page.evaluate(_AXES)
+    assert axes[1] != before[1], "otherwise nothing is shown here"
+    assert page.evaluate(_KEPT)
+    assert page.evaluate(_HOMES) == axes[1:3], "to which a double click goes back"
+    labels, lines = page.evaluate(_LABELS), page.evaluate(_PATHS)
+    assert len(labels) > 8
+    page.evaluate(_ANEW)
+    assert not page.evaluate(_KEPT)
+    assert page.evaluate(_AXES) == axes
+    assert page.evaluate(_LABELS) == labels
+    for line, anew in zip(lines, page.evaluate(_PATHS), strict=True):
+        assert line == pytest.approx(anew, abs=0.02), "as plotly draws it"
+    assert bench.faults == []
+
+
 def test_a_zoom_outlives_a_slider_step(bench: Bench) -> None:
     bench.reset("sikuliaq-like", selected=2)
     bench.tab("Frequency", "Errors", "Method")

@@ -1,6 +1,7 @@
 // Draws a plotly figure again without its layout while only the numbers of its lines have changed: Plotly.react lays out
-// axes, labels and legend anew for each slider step, 80 ms for a Bode plot. Everything else goes to Plotly.react. Leans
-// on what plotly keeps of a figure, as pinned: tests/browser/test_page_redraw.py compares with a figure drawn anew.
+// axes, labels and legend anew for each slider step, 80 ms for a Bode plot. An axis whose range has changed with them is
+// laid out alone, a third of that. Everything else goes to Plotly.react. Leans on what plotly keeps of a figure, as
+// pinned: tests/browser/test_page_redraw.py compares with a figure drawn anew.
 (() => {
   let react = null;
   const drawn = new WeakMap();
@@ -8,17 +9,30 @@
   const given = new WeakMap(); // what a held figure was given last
   const homes = new WeakMap(); // ranges with which axes came
 
-  // What of a figure must be the same. Plotly changes the objects it is given, so they are compared as text.
+  const SCALE = ["range", "dtick", "tickvals", "ticktext"]; // what an axis has of its own numbers
+  const isAxis = (name) => /^[xy]axis\d*$/.test(name);
+
+  // What of a figure must be the same, and the scales of its axes. Plotly changes the objects it is given, so they are
+  // compared as text.
   function frameOf(layout) {
     const { run, handle, told, ...meta } = layout?.meta ?? {};
-    return JSON.stringify({ ...layout, meta });
+    const frame = { ...layout, meta };
+    const scales = {};
+    for (const name of Object.keys(frame).filter(isAxis)) {
+      frame[name] = { ...frame[name] };
+      for (const key of SCALE) {
+        scales[`${name}.${key}`] = JSON.stringify(frame[name][key] ?? null);
+        delete frame[name][key];
+      }
+    }
+    return { frame: JSON.stringify(frame), scales };
   }
   const styleOf = ({ x, y, ...style }) => JSON.stringify(style);
   const text = (values) => values?.bdata ?? JSON.stringify(values);
 
   function remember(data, layout) {
     const lines = data.map((trace) => ({ style: styleOf(trace), x: text(trace.x), y: text(trace.y) }));
-    return { frame: frameOf(layout), lines };
+    return { ...frameOf(layout), lines };
   }
 
   function numbers(values) {
@@ -32,7 +46,7 @@
 
   // Places of the traces whose numbers have changed; null when something else has, too.
   function changed(before, after) {
-    if (before === undefined || before.frame !== after.frame || before.lines.length !== after.lines.length) return null;
+    if (before?.frame !== after.frame || before.lines.length !== after.lines.length) return null;
     const places = [];
     for (const [place, line] of after.lines.entries()) {
       const old = before.lines[place];
@@ -40,6 +54,20 @@
       if (old.x !== line.x || old.y !== line.y) places.push(place);
     }
     return places;
+  }
+
+  // Scales of axes that have changed, as Plotly.relayout takes them; null when the figure must be drawn anew: an axis in
+  // which someone has zoomed stays as it is.
+  function rescaled(figure, before, after) {
+    const wanted = {};
+    for (const [key, scale] of Object.entries(after)) {
+      if (before[key] === scale) continue;
+      const { range } = figure._fullLayout[key.split(".")[0]];
+      const had = JSON.parse(before[key.replace(/\..*/, ".range")]);
+      if (had === null || had.some((end, place) => Math.abs(end - range[place]) > 1e-9 * Math.abs(had[1] - had[0]))) return null;
+      wanted[key] = JSON.parse(scale);
+    }
+    return wanted;
   }
 
   // What is needed to move one trace: its numbers, points, axes and path; null where the trace is no plain line.
@@ -71,19 +99,35 @@
   }
 
   function movedInPlace(figure, data, layout, now) {
-    const places = changed(drawn.get(figure), now);
+    const before = drawn.get(figure);
+    const places = changed(before, now);
     if (places === null || !figure._fullLayout || figure._dragging || figure._transitioning) return false;
-    const groups = new Map();
-    for (const group of figure.querySelectorAll(".scatterlayer > g.trace")) groups.set(group.__data__?.[0]?.trace, group);
-    const lines = places.map((place) => lineOf(figure, groups, place, data[place]));
+    const scales = rescaled(figure, before.scales, now.scales);
+    if (scales === null) return false;
+    const find = () => {
+      const groups = new Map();
+      for (const group of figure.querySelectorAll(".scatterlayer > g.trace")) groups.set(group.__data__?.[0]?.trace, group);
+      return places.map((place) => lineOf(figure, groups, place, data[place]));
+    };
+    let lines = find();
     if (lines.includes(null)) return false;
+    const keys = Object.keys(scales);
+    if (keys.length > 0) {
+      Plotly.relayout(figure, scales);
+      for (const name of new Set(keys.map((key) => key.split(".")[0]))) goHomeTo(figure, name, layout[name].range);
+      lines = find(); // plotly may have made its axes anew
+      if (lines.includes(null)) return false;
+    }
     lines.forEach(move);
     figure.data = data;
     figure.layout.meta = figure._fullLayout.meta = layout.meta;
     return true;
   }
 
-  const isAxis = (name) => /^[xy]axis\d*$/.test(name);
+  function goHomeTo(figure, name, range) {
+    const shown = figure._fullLayout?.[name];
+    if (shown) [shown._rangeInitial0, shown._rangeInitial1] = range ?? [];
+  }
 
   // A double click goes back to the ranges that plotly drew first, also where another figure has taken the place since:
   // it is told those of the present one, as they came, for a zoom changes the axes that were given.
@@ -91,10 +135,7 @@
     const axes = Object.entries(wanted).filter(([name]) => isAxis(name));
     for (const [, axis] of axes) if (!homes.has(axis)) homes.set(axis, [...(axis.range ?? [])]);
     await react(figure, data, layout, config);
-    for (const [name, axis] of axes) {
-      const shown = figure._fullLayout?.[name];
-      if (shown) [shown._rangeInitial0, shown._rangeInitial1] = homes.get(axis);
-    }
+    for (const [name, axis] of axes) goHomeTo(figure, name, homes.get(axis));
   }
 
   function draw(figure, data, wanted, config) {
