@@ -34,10 +34,12 @@
     for (const [place, node] of nodes.entries()) exchange(lives[place], hads[place], node);
   }
 
+  // A button that does something else is another one: who has the focus on it would press what was not meant.
+  const isSame = (one, other) => one.nodeName === other.nodeName && one.dataset?.command === other.dataset?.command;
+
   function exchange(live, had, has) {
     if (had.isEqualNode(has)) return;
-    if (had.nodeName !== has.nodeName || live.nodeName !== has.nodeName || OWN.test(has.nodeName))
-      live.replaceWith(document.importNode(has, true));
+    if (!isSame(had, has) || !isSame(live, has) || OWN.test(has.nodeName)) live.replaceWith(document.importNode(has, true));
     else if (has instanceof Element) {
       name(live, had, has);
       follow(live, had, has);

@@ -27,6 +27,13 @@ def press(bench: Bench, what: str) -> None:
     bench.sent()
 
 
+def open_list(bench: Bench) -> None:
+    """Leave the lesson that is open, if one is."""
+    bench.page.locator("[data-command^='lesson ']").first.wait_for()
+    if bench.page.locator("[data-command='lesson list']").count():
+        press(bench, "list")
+
+
 def heading(bench: Bench, text: str) -> None:
     bench.page.locator(f"{SECTION} h3", has_text=bench.said(text)).wait_for()
 
@@ -83,8 +90,7 @@ def work_through(bench: Bench, lesson: Lesson, index: int) -> None:
 def test_a_lesson_is_worked_through(bench: Bench, number: int) -> None:
     lesson = lessons()[number]
     bench.tab("Learn")
-    if bench.page.locator("[data-command='lesson list']").count():
-        press(bench, "list")
+    open_list(bench)
     press(bench, f"open {number}")
     for index in range(len(lesson.steps)):
         work_through(bench, lesson, index)
@@ -100,7 +106,7 @@ def test_a_lesson_is_worked_through(bench: Bench, number: int) -> None:
 
 def test_a_slider_in_a_lesson_moves_the_curves_and_the_numbers(bench: Bench) -> None:
     bench.tab("Learn")
-    press(bench, "list")
+    open_list(bench)
     press(bench, "open 0")
     for _ in range(2):
         press(bench, "next")
@@ -122,7 +128,7 @@ def test_a_slider_in_a_lesson_moves_the_curves_and_the_numbers(bench: Bench) -> 
 
 def test_a_lesson_is_worked_by_keyboard_alone(bench: Bench) -> None:
     bench.tab("Learn")
-    press(bench, "list")
+    open_list(bench)
     first = bench.page.locator("[data-command='lesson open 4']")
     first.focus()
     first.press("Enter")
@@ -141,7 +147,7 @@ def test_a_lesson_is_worked_by_keyboard_alone(bench: Bench) -> None:
 )
 def test_what_no_lesson_knows_is_ignored(bench: Bench, argument: str) -> None:
     bench.tab("Learn")
-    press(bench, "list")
+    open_list(bench)
     bench.page.evaluate("text => window.schuler.command('lesson', text)", argument)
     press(bench, "open 0")
     heading(bench, lessons()[0].steps[0].title)
@@ -151,7 +157,7 @@ def test_what_no_lesson_knows_is_ignored(bench: Bench, argument: str) -> None:
 def test_no_number_of_another_scenario_is_told_before_show_me(bench: Bench) -> None:
     bench.reset("sikuliaq-like")
     bench.tab("Learn")
-    press(bench, "list")
+    open_list(bench)
     press(bench, "open 0")
     heading(bench, lessons()[0].steps[0].title)
     assert {text for _, text in bench.page.evaluate(_LIVE)} == {MISSING}
@@ -167,7 +173,7 @@ def test_in_one_panel_the_tab_that_a_step_speaks_of_is_in_front(bench: Bench) ->
     resize(bench, (1280, 720))
     try:
         bench.tab("Learn", "Poles")
-        press(bench, "list")
+        open_list(bench)
         press(bench, "open 1")
         press(bench, "show")
         bench.page.wait_for_function(_IN_FRONT, arg=["Errors"])

@@ -1,9 +1,10 @@
-// plotly.js is fetched with the page, but not read at once: that would keep the page from connecting. It is read while the
-// page waits for the server, or with the first figure. What viser asks of it before is done then; an event "plotly" at
-// the window comes first, so that other scripts may add to it.
+// plotly.js is fetched with the page, but not read at once: that takes a quarter of a second, in which the page would
+// neither connect nor show its first plots. It is read with the first figure, or when the page is at rest. What viser asks
+// of it before is done then; an event "plotly" at the window comes first, so that other scripts may add to it.
 (() => {
   const waiting = new Map();
   const whenIdle = window.requestIdleCallback ?? setTimeout;
+  const REST_MS = 4000;
   let asked = false;
 
   function begin() {
@@ -22,7 +23,7 @@
   }
 
   // viser connects (app/bridge/socket.js).
-  addEventListener("connecting", () => whenIdle(load), { once: true });
+  addEventListener("connecting", () => setTimeout(() => whenIdle(load), REST_MS), { once: true });
 
   window.Plotly = {
     react(figure, ...given) {
