@@ -140,10 +140,15 @@ class Palette:
         notices.tell(self._client, "Not all tabs of the address are here", lines, "warning")
 
     def _tell_no_view(self, name: str) -> None:
-        """Tell that the address names a view that the page does not have (static/alone.js)."""
+        """Tell that the address names a view that the page does not have, or not now (static/alone.js)."""
+        views = view_names(self._frame.kinds)
+        if name in views:
+            lines = [f"The view {views[name] or name} has nothing to show for this scenario."]
+            notices.tell(self._client, "Nothing to show", lines, "warning")
+            return
         lines = [
             f"The address names the view {name[:40]!r}, which this page does not have.",
-            f"The views are: {', '.join(view_names(self._frame.kinds))}.",
+            f"The views are: {', '.join(views)}.",
         ]
         notices.tell(self._client, "No such view", lines, "warning")
 

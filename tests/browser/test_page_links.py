@@ -100,6 +100,8 @@ def test_one_view_fills_the_window_without_controls(visitor: Callable[[int, int]
     told = bench.notice("No such view")
     assert "'boat'" in told and "bode, poles, step" in told and "map, follow, top, side" in told
     assert page.evaluate(_CONTROLS) == []
+    page.goto(f"{bench.url}?fixedDpr=0.25&view=switching")
+    assert "Switching" in bench.notice("Nothing to show")
     # the same session with all its controls: what is asked for above can be seen
     page.set_viewport_size({"width": 1280, "height": 720})
     bench.open(f"s/{bench.session_id}/")

@@ -8,6 +8,8 @@
   // In a narrow window viser leaves out the column in which the views stand.
   const matches = window.matchMedia.bind(window);
   window.matchMedia = (query) => matches(query.includes("max-width") ? "(max-width: 0px)" : query);
+  const PATIENCE = 50;
+  let looks = 0; // in vain: a tab may still have to come with the run
   let told = false;
 
   function tell() {
@@ -31,7 +33,8 @@
     if (names === null || document.querySelector("#sb-run[data-run]") === null) return;
     const title = names[asked];
     const wanted = title === undefined ? undefined : area(title);
-    if (title === undefined) tell();
+    looks = wanted ? 0 : looks + 1;
+    if (title === undefined || looks > PATIENCE) tell();
     for (const shown of document.querySelectorAll("[data-sb-alone]")) {
       if (shown !== wanted) delete shown.dataset.sbAlone;
     }
