@@ -328,7 +328,8 @@ def _warnings(growing: list[Mode], network: LinearNetwork, lat: float) -> list[s
     for mode in growing:
         reason = ""
         if mode.name == EARTH_MODE and math.isfinite(network.h_slope):
-            reason = f" (H(0) = {network.h0:.3g}, H'(0) = {network.h_slope:+.4g} s)"
+            slope = float(f"{network.h_slope:.4g}")
+            reason = f" (H(0) = {network.h0:.3g}, H'(0) = {slope:+g} s)"
         texts.append(
             f"whole system at latitude {lat / DEG:.4g}°: the {mode.name} mode grows, e-folding time "
             f"{duration(1.0 / mode.growth)}{reason}"

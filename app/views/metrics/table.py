@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 STATISTICS = ("rms", "max_abs", "final")
 _HEADINGS = ("rms", "max", "final")
+_OF_THE_DIFFERENCE = ("Δ rms", "Δ max", "Δ final")
 
 # Fixed units: numbers of two runs can be compared at a glance.
 _QUANTITIES: tuple[tuple[str, str, Unit], ...] = (
@@ -264,7 +265,7 @@ def metrics_html(
     )
     headings: list[str] = list(_HEADINGS)
     if compares:
-        headings.append(f"Δ {_HEADINGS[STATISTICS.index((display or Display()).delta)]}")
+        headings.append(_OF_THE_DIFFERENCE[STATISTICS.index((display or Display()).delta)])
     below = "".join(f'<th style="{_NUMBER};{_MUTED}">{name}</th>' for name in headings) * len(shown)
     rows = metrics_rows(run, display, baseline)
     decimals = _decimals(rows)

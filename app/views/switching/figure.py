@@ -13,7 +13,7 @@ from app.plots.units import AUTO, Unit, number, time_unit
 from app.plots.uplot import LABEL_SIZE, Y_SIZE, Dash, UplotFigure
 from navcore.engine.in_force import damping_in_force
 from navcore.engine.run import MethodRun, Run
-from navcore.foundation.notation import with_unit
+from navcore.foundation.notation import unit_sign, with_unit
 from navcore.foundation.parameters import extra_of
 from navcore.law.policy.base import Limit, Measure
 
@@ -117,7 +117,7 @@ def _measure_plot(
         quantity="measure",
         title=measure.label,
         symbol=_symbol(place, measure),
-        unit=Unit(measure.unit, measure.si),
+        unit=Unit(unit_sign(measure.unit), measure.si),
         time_unit=unit_of_time,
         names=(*(m.run.method.name for m, _ in pairs), *(name for name, _, _ in limits)),
         colors=(*(style.method_color(m.index) for m, _ in pairs), *(color for _, _, color in limits)),
