@@ -34,6 +34,8 @@ def test_a_misprint_is_shown_as_printed_corrected_and_both(bench: Bench) -> None
     bench.reset("sikuliaq-like")
     bench.tab("Misprints")
     first = next(iter(MISPRINTS))
+    bench.choose("misprint", option(first))
+    bench.choose("form shown", "both")
     assert len(drawn(bench, first, "both")) >= 2
     bench.choose("misprint", option("zha-4.1"))
     both = drawn(bench, "zha-4.1", "both")

@@ -72,7 +72,8 @@ def test_a_slider_step_moves_the_curves_without_a_layout(bench: Bench) -> None:
     assert bench.faults == []
 
 
-_LABELS = f"() => [...{_PLOT}.querySelectorAll('.ytick text')].map(label => label.textContent)"
+_LABELS = f"""() => [...{_PLOT}.querySelectorAll('.ytick text')]
+  .map(label => [label.textContent, label.getAttribute('y')]).sort()"""
 _HOMES = f"""() => ['yaxis', 'yaxis2'].map(name => {_PLOT}._fullLayout[name])
   .map(axis => [axis._rangeInitial0, axis._rangeInitial1])"""
 # plotly keeps its points unless it lays out the whole figure
