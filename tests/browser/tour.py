@@ -165,7 +165,7 @@ def _lesson(bench: Bench, take: Film) -> None:
     page.get_by_label("Your answer").fill("84.5")
     page.get_by_label("Your answer").scroll_into_view_if_needed()
     _rest(page)
-    take.shoot(1600, "Learn: seven lessons drive the page and ask about it")
+    take.shoot(1600, "Learn: each lesson drives the page and asks about it")
     page.keyboard.press("Enter")
     page.locator(".sb-question[data-right=true]").wait_for()
     page.locator("[data-command='lesson next']").scroll_into_view_if_needed()
