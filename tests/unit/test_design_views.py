@@ -136,6 +136,13 @@ def test_the_legend_has_room_for_its_rows_in_a_narrow_window(ship):
     assert narrow >= 30 + 3 * 20 and wide < narrow
 
 
+@pytest.mark.parametrize(("width", "aspect"), [(467.0, 0.94), (628.0, 0.94), (948.0, 0.43)])
+def test_the_note_above_the_panels_is_not_cut(ship, width, aspect):
+    layout = budget_figure(steady_budget(ship), aspect, width_px=width)["layout"]
+    (note,) = [note["text"] for note in layout["annotations"] if "dashed line" in note["text"]]
+    assert 6.0 * len(note) <= width - layout["margin"]["r"]
+
+
 @pytest.mark.parametrize(("width", "aspect"), [(788.0, 0.41), (628.0, 0.94), (948.0, 0.43)])
 def test_eight_methods_have_room_for_their_bars_and_numbers(ship, width, aspect):
     data = ship.canonical()

@@ -42,6 +42,8 @@ QUANTITIES = (
 )
 _LETTER_PX, _LONGEST = 7.0, 18
 """Width of a letter of a method's name, and how many of them are shown."""
+_NOTE_LETTER_PX = 6.0
+"""Mean width of a letter of the note above the panels."""
 _LONG_PX, _SHORT_PX = 128, 80
 """Room right of a bar for "12.3 = 45.6 × floor", and for "12.3, 45.6×" where that is too much of a panel."""
 _LEAST_BAR_PX, _LEAST_ROW_PX = 130, 22
@@ -263,6 +265,8 @@ def _layout(
         what = f"{what}; the dashed line is the floor"
         if not grid.long:
             what = f"{what}, × how many times it"
+            if _NOTE_LETTER_PX * len(what) > width_px - _RIGHT_PX:
+                what = "the dashed line is the floor, × how many times it"
     made = style.layout(
         meta={"aspect": aspect},
         barmode="stack",
