@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import cast
 
 import numpy as np
 
@@ -18,6 +17,33 @@ from navcore.networks.undamped import UndampedNetwork
 @lru_cache(maxsize=8)
 def _undamped(omega_s: float) -> LinearNetwork:
     return UndampedNetwork().transfer(omega_s)
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A network as the key of a cache: those with the same coefficients are equal.
+
+    Attributes
+    ----------
+    coefficients : tuple of bytes
+        Of the network.
+    omega_s : float
+        Schuler frequency, rad/s.
+    network : LinearNetwork
+        One of them.
+    """
+
+    coefficients: tuple[bytes, ...]
+    omega_s: float
+    network: LinearNetwork = field(compare=False)
+
+
+def loop_of(method: MethodRun) -> Loop:
+    """What acts in a method, as the key of a cache."""
+    network = effective_network(method)
+    feedback = b"" if network.feedback_p is None else network.feedback_p.tobytes()
+    coefficients = network.num_p.tobytes(), network.den_p.tobytes(), feedback
+    return Loop(coefficients, network.omega_s, network)
 
 
 def effective_network(method: MethodRun) -> LinearNetwork:
@@ -52,77 +78,47 @@ def frequency(method: MethodRun, source: Source, output: Output, omega: np.ndarr
     """Frequency response of a method at ``omega`` (rad/s), SI; None when the source does not enter it."""
     if not reacts(method, source):
         return None
-    return _at_frequencies(_question(method, source, output, 0.0, len(omega)), omega.tobytes())
-
-
-@dataclass(frozen=True)
-class _Question:
-    """What a response depends on; two runs with the same loop ask the same question."""
-
-    num: bytes
-    den: bytes
-    feedback: bytes
-    omega_s: float
-    form: str
-    source: str
-    output: str
-    span_s: float
-    count: int
-    network: LinearNetwork = field(compare=False)
+    return _at_frequencies(loop_of(method), realisation(method), source, output, omega.tobytes())
 
 
 def response(
     method: MethodRun, source: Source, output: Output, span_s: float, count: int
 ) -> np.ndarray | None:
     """Time response of a method to a unit source (SI) on `time_grid`; None where it does not enter."""
-    return _answer(_question(method, source, output, span_s, count)) if reacts(method, source) else None
+    if not reacts(method, source):
+        return None
+    return _over_time(loop_of(method), realisation(method), source, output, span_s, count)
 
 
 def network_step(method: MethodRun, span_s: float, count: int) -> np.ndarray:
     """Step response of H itself on `time_grid`."""
-    return _answer(_question(method, "H", "", span_s, count))
+    return _network_step(loop_of(method), span_s, count)
 
 
 @lru_cache(maxsize=32)
 def time_grid(span_s: float, count: int) -> np.ndarray:
     """``count`` even times from 0 to ``span_s``, s."""
-    grid = np.linspace(0.0, span_s, count)
-    grid.setflags(write=False)
-    return grid
-
-
-def _question(method: MethodRun, source: str, output: str, span_s: float, count: int) -> _Question:
-    network = effective_network(method)
-    return _Question(
-        num=network.num_p.tobytes(),
-        den=network.den_p.tobytes(),
-        feedback=b"" if network.feedback_p is None else network.feedback_p.tobytes(),
-        omega_s=network.omega_s,
-        form=realisation(method),
-        source=source,
-        output=output,
-        span_s=span_s,
-        count=count,
-        network=network,
-    )
+    return _frozen(np.linspace(0.0, span_s, count))
 
 
 # A slider of one method leaves the loops of the others as they were: half of the time of a figure.
 @lru_cache(maxsize=256)
-def _at_frequencies(q: _Question, omega: bytes) -> np.ndarray:
-    source, output = cast(Source, q.source), cast(Output, q.output)
-    values = frequency_response(q.network, source, output, np.frombuffer(omega), realisation=q.form)
-    values.setflags(write=False)
-    return values
+def _at_frequencies(loop: Loop, form: str, source: Source, output: Output, omega: bytes) -> np.ndarray:
+    return _frozen(frequency_response(loop.network, source, output, np.frombuffer(omega), realisation=form))
 
 
 @lru_cache(maxsize=256)
-def _answer(q: _Question) -> np.ndarray:
-    time_s = time_grid(q.span_s, q.count)
-    if q.source == "H":
-        values = network_step_response(q.network, time_s)
-    else:
-        source, output = cast(Source, q.source), cast(Output, q.output)
-        values = time_response(q.network, source, output, time_s, realisation=q.form)
+def _over_time(
+    loop: Loop, form: str, source: Source, output: Output, span_s: float, count: int
+) -> np.ndarray:
+    return _frozen(time_response(loop.network, source, output, time_grid(span_s, count), realisation=form))
+
+
+@lru_cache(maxsize=256)
+def _network_step(loop: Loop, span_s: float, count: int) -> np.ndarray:
+    return _frozen(network_step_response(loop.network, time_grid(span_s, count)))
+
+
+def _frozen(values: np.ndarray) -> np.ndarray:
     values.setflags(write=False)
     return values

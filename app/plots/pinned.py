@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Protocol
 
 from app.plots.plotly_data import PlotlyFigure
 from app.plots.units import Unit, number
@@ -23,17 +23,14 @@ class Pinned(Protocol):
     @property
     def name(self) -> str:
         """As the user calls it."""
-        ...
 
     @property
     def hex(self) -> str:
         """Colour, ``#RRGGBB``."""
-        ...
 
     @property
     def run(self) -> Run | None:
         """The run; None while it is not known."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -98,80 +95,32 @@ def restyled(figure: PlotlyFigure, run: Run, pins: Sequence[Pinned]) -> PlotlyFi
 
     Traces carry their method's place as ``legendgroup``.
     """
-    shown = pinned_methods(pins)
     first = len(run.methods)
+    pinned = {str(place): each for place, each in enumerate(pinned_methods(pins), start=first)}
     for trace in figure["data"]:
-        group = str(trace.get("legendgroup", ""))
-        if not group.isdigit() or not first <= int(group) < first + len(shown):
+        pin = pinned.get(str(trace.get("legendgroup", "")))
+        if pin is None:
             continue
-        pinned = shown[int(group) - first]
         if "line" in trace:
-            trace["line"] = trace["line"] | {
-                "color": pinned.color,
-                "width": PIN_WIDTH + 0.2,
-                "dash": pinned.plotly_dash,
-            }
+            line = {"color": pin.color, "width": PIN_WIDTH + 0.2, "dash": pin.plotly_dash}
+            trace["line"] = trace["line"] | line
         if "marker" in trace:
-            trace["marker"] = _restyled_marker(trace["marker"], pinned.color)
-    notes = figure["layout"].get("annotations")
-    if notes:  # notes that carry a method's place as their name are left out: there is room for its own only
-        figure["layout"]["annotations"] = [note for note in notes if not _is_pinned(note, first)]
+            marker = trace["marker"]
+            edge = marker.get("line", {})
+            if edge.get("color") not in (None, "white"):
+                edge = edge | {"color": pin.color, "width": 1.2}
+            size = 0.75 * float(marker.get("size", 10))
+            trace["marker"] = marker | {"color": pin.color, "line": edge, "size": size}
+    # notes that carry a method's place as their name are left out: there is room for the run's own only
+    notes = figure["layout"].get("annotations", ())
+    figure["layout"]["annotations"] = [note for note in notes if note.get("name") not in pinned]
     return figure
 
 
-def _is_pinned(note: dict[str, Any], first: int) -> bool:
-    name = str(note.get("name", ""))
-    return name.isdigit() and int(name) >= first
-
-
-def _restyled_marker(marker: dict[str, Any], color: str) -> dict[str, Any]:
-    line = marker.get("line", {})
-    if line.get("color") not in (None, "white"):
-        line = line | {"color": color, "width": 1.2}
-    return marker | {"color": color, "line": line, "size": 0.75 * float(marker.get("size", 10))}
-
-
-@dataclass(frozen=True)
-class Delta:
-    """A number of the present run minus that of the baseline.
-
-    Attributes
-    ----------
-    absolute : float
-        Difference, SI.
-    percent : float or None
-        Part of the baseline's number, %; None where that is zero.
-    """
-
-    absolute: float
-    percent: float | None
-
-    def text(self, unit: Unit) -> str:
-        """Difference in a unit and in per cent, with signs."""
-        value = number(self.absolute / unit.si, 3)
-        signed = value if value.startswith("-") or self.absolute == 0.0 else f"+{value}"
-        if self.percent is None:
-            return signed
-        return f"{signed} ({self.percent:+.1f} %)" if self.percent else f"{signed} (0 %)"
-
-
-def deltas(run: Run, baseline: Run, quantity: str, statistic: str) -> tuple[Delta | None, ...]:
-    """For every method its number minus that of the baseline's method of the same name; None without one.
-
-    Parameters
-    ----------
-    run, baseline : Run
-        Present and pinned.
-    quantity, statistic : str
-        Keys of `navcore.engine.run.MethodRun.errors`.
-    """
-    before = {method.method.name: method for method in baseline.methods}
-    found: list[Delta | None] = []
-    for method in run.methods:
-        other = before.get(method.method.name)
-        if other is None:
-            found.append(None)
-            continue
-        old, new = other.errors[quantity][statistic], method.errors[quantity][statistic]
-        found.append(Delta(new - old, 100.0 * (new - old) / abs(old) if old else None))
-    return tuple(found)
+def difference_text(new: float, old: float, unit: Unit) -> str:
+    """Difference of two numbers (SI) in a unit and, with its sign, in per cent of the old one."""
+    value = number((new - old) / unit.si, 3)
+    signed = value if value.startswith("-") or new == old else f"+{value}"
+    if not old:
+        return signed
+    return f"{signed} ({100.0 * (new - old) / abs(old):+.1f} %)" if new != old else f"{signed} (0 %)"

@@ -23,13 +23,12 @@ def time_csv(figures: Sequence[UplotFigure], about: Iterable[str]) -> bytes:
         Lines of comment above the header.
     """
     first = figures[0]
-    several = len(figures) > 1
-    columns, heads = [first.data[0]], [f"time ({first.time_unit.name})"]
+    columns, heads = [first.time], [f"time ({first.time_unit.name})"]
     for figure in figures:
-        for name, values in zip(figure.names, figure.data[1:], strict=True):
-            unit = f" ({figure.unit.name})" if figure.unit.name else ""
-            heads.append(f"{figure.symbol}: {name}{unit}" if several else f"{name}{unit}")
-            columns.append(values)
+        unit = f" ({figure.unit.name})" if figure.unit.name else ""
+        which = f"{figure.symbol}: " if len(figures) > 1 else ""
+        heads += [f"{which}{curve.name}{unit}" for curve in figure.curves]
+        columns += [curve.values for curve in figure.curves]
     quantity = "; ".join(f"{figure.symbol}: {figure.title}" for figure in figures)
     return _csv([*about, quantity], heads, zip(*(column.tolist() for column in columns), strict=True))
 

@@ -76,11 +76,6 @@ def method_color(index: int) -> str:
     return METHOD_COLORS[index % len(METHOD_COLORS)]
 
 
-def method_rgb(index: int) -> tuple[int, int, int]:
-    """Return the same colour as red, green, blue, 0..255, for the 3D scene."""
-    return rgb(method_color(index))
-
-
 def rgb(color: str) -> tuple[int, int, int]:
     """Red, green, blue of ``#RRGGBB``, 0..255."""
     return int(color[1:3], 16), int(color[3:5], 16), int(color[5:7], 16)
@@ -88,7 +83,7 @@ def rgb(color: str) -> tuple[int, int, int]:
 
 def axis(title: str = "", **more: Any) -> dict[str, Any]:
     """A plotly axis in the house style; ``more`` overrides."""
-    made: dict[str, Any] = {
+    return {
         "title": {"text": title, "standoff": 6, "font": {"size": FONT_SIZE, "color": INK}},
         "tickfont": {"size": FONT_SIZE, "color": MUTED},
         "gridcolor": GRID,
@@ -100,14 +95,12 @@ def axis(title: str = "", **more: Any) -> dict[str, Any]:
         "tickcolor": REFERENCE,
         "zeroline": False,
         "automargin": False,
-    }
-    made.update(more)
-    return made
+    } | more
 
 
 def legend(**more: Any) -> dict[str, Any]:
     """A horizontal plotly legend along the lower edge of the figure."""
-    made: dict[str, Any] = {
+    return {
         "orientation": "h",
         "x": 0.0,
         "xref": "paper",
@@ -119,36 +112,118 @@ def legend(**more: Any) -> dict[str, Any]:
         "itemwidth": 30,
         "bgcolor": "rgba(0,0,0,0)",
         "tracegroupgap": 0,
-    }
-    made.update(more)
-    return made
+    } | more
 
 
 def layout(**more: Any) -> dict[str, Any]:
     """What all plotly layouts share; ``more`` overrides."""
-    made: dict[str, Any] = {
+    return {
         "font": {"family": FONT_FAMILY, "size": FONT_SIZE, "color": INK},
         "paper_bgcolor": "white",
         "plot_bgcolor": "white",
         "hoverlabel": {"font": {"size": FONT_SIZE, "family": FONT_FAMILY}, "bgcolor": "white"},
         "dragmode": "zoom",
         "autosize": True,
-    }
-    made.update(more)
-    return made
+    } | more
 
 
 def text(x: float | str, y: float, content: str, **more: Any) -> dict[str, Any]:
     """A plotly annotation without an arrow; ``more`` overrides."""
-    made: dict[str, Any] = {
+    return {
         "x": x,
         "y": y,
         "text": content,
         "showarrow": False,
         "font": {"size": FONT_SIZE, "color": INK},
+    } | more
+
+
+def framed(
+    names: Sequence[str], aspect: float, width_px: float, margin: dict[str, int], **more: Any
+) -> dict[str, Any]:
+    """Layout with a legend of these names along its lower edge, for which ``margin["b"]`` gets room.
+
+    Parameters
+    ----------
+    names : sequence of str
+        In the legend.
+    aspect, width_px : float
+        Height / width of the figure, and its expected width on screen.
+    margin : dict
+        ``l``, ``r``, ``t``, ``b`` without the legend, px.
+    """
+    bottom = margin["b"] + 22 * legend_rows(names, width_px - 84.0)
+    return layout(margin=margin | {"b": bottom}, legend=legend(), meta={"aspect": aspect}) | more
+
+
+def lines(method: str, index: int, width: float = LINE_WIDTH) -> dict[str, Any]:
+    """What the curves of a method have in common, in all plotly figures."""
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "name": plain(method),
+        "legendgroup": str(index),
+        "line": {"color": method_color(index), "width": width, "simplify": False},
     }
-    made.update(more)
-    return made
+
+
+def marks(method: str, index: int, symbol: str, size: float, line: dict[str, Any]) -> dict[str, Any]:
+    """What the marks of a method have in common; they have no entry in the legend."""
+    return {
+        "type": "scatter",
+        "mode": "markers",
+        "name": plain(method),
+        "legendgroup": str(index),
+        "showlegend": False,
+        "marker": {"symbol": symbol, "size": size, "color": method_color(index), "line": line},
+    }
+
+
+def power(exponent: int) -> str:
+    """Label of a power of ten on a logarithmic axis."""
+    return f"{10.0**exponent:g}" if -3 <= exponent <= 4 else f"10<sup>{exponent}</sup>"
+
+
+def key(name: str, symbol: str, width: float) -> dict[str, Any]:
+    """Legend entry that says what a mark means."""
+    marker = {"symbol": symbol, "size": 10, "color": MUTED, "line": {"color": MUTED, "width": width}}
+    where = {"type": "scatter", "mode": "markers", "x": [None], "y": [None], "hoverinfo": "skip"}
+    return where | {"name": name, "marker": marker}
+
+
+def upright(at: float, axis: str = "x", yref: str = "paper", **line: Any) -> dict[str, Any]:
+    """Line through a whole figure, or through a panel, at a place of an x axis."""
+    return {
+        "type": "line",
+        "xref": axis,
+        "x0": at,
+        "x1": at,
+        "yref": yref,
+        "y0": 0.0,
+        "y1": 1.0,
+        "layer": "below",
+        "line": {"color": REFERENCE, "width": 1.2, "dash": "dot"} | line,
+    }
+
+
+def across(at: float, axis: str = "y", xref: str = "x domain", **line: Any) -> dict[str, Any]:
+    """Line through a panel at a place of a y axis."""
+    return upright(0.0, xref, axis, **line) | {"x1": 1.0, "y0": at, "y1": at}
+
+
+def heading(content: str, shift_px: float, xref: str = "paper") -> dict[str, Any]:
+    """Title above a figure or one of its columns, flush left."""
+    return text(
+        0.0,
+        1.0,
+        content,
+        xref=xref,
+        yref="paper",
+        xanchor="left",
+        yanchor="middle",
+        yshift=shift_px,
+        font={"size": TITLE_SIZE, "color": INK},
+    )
 
 
 def legend_px(name: str) -> float:
@@ -156,7 +231,7 @@ def legend_px(name: str) -> float:
     return 52.0 + 7.2 * len(name)
 
 
-def legend_rows(names: list[str], width_px: float) -> int:
+def legend_rows(names: Sequence[str], width_px: float) -> int:
     """Rows that a horizontal plotly legend of these names needs.
 
     What does not fit in one row, plotly sets in columns of equal width.
@@ -181,14 +256,4 @@ def fitting(titles: Sequence[str], room_px: float) -> str:
 
 def panel_title(content: str, suffix: str = "", shift_px: float = 13.0) -> dict[str, Any]:
     """Bold title above the subplot with axes ``x<suffix>``, ``y<suffix>``, flush left."""
-    return text(
-        0.0,
-        1.0,
-        f"<b>{content}</b>",
-        xref=f"x{suffix} domain",
-        yref=f"y{suffix} domain",
-        xanchor="left",
-        yanchor="middle",
-        yshift=shift_px,
-        font={"size": TITLE_SIZE, "color": INK},
-    )
+    return heading(f"<b>{content}</b>", shift_px, f"x{suffix} domain") | {"yref": f"y{suffix} domain"}

@@ -10,7 +10,7 @@ import numpy as np
 from app.plots import style
 from app.plots.legend import counts
 from app.plots.plotly_data import PlotlyFigure, figure, packed
-from app.plots.uplot import UplotFigure
+from app.plots.uplot import Curve, UplotFigure
 
 WIDTH_PX = 900.0
 _PANEL_PX, _ONLY_PANEL_PX = 150.0, 300.0
@@ -29,12 +29,12 @@ def time_figure(plots: Sequence[UplotFigure], *, width_px: float = WIDTH_PX) -> 
     width_px : float
         Width of the picture.
     """
-    names = list(dict.fromkeys(name for plot in plots for name in _drawn_names(plot)))
+    names = list(dict.fromkeys(curve.name for plot in plots for curve in _drawn(plot)))
     rows = style.legend_rows(names, width_px - _LEFT - _RIGHT)
     panel_px = _ONLY_PANEL_PX if len(plots) == 1 else _PANEL_PX
     inner_px = len(plots) * panel_px + (len(plots) - 1) * _GAP_PX
     height_px = _TOP + inner_px + _BOTTOM + rows * _ROW_PX
-    made = style.layout(
+    layout = style.layout(
         margin={"l": _LEFT, "r": _RIGHT, "t": _TOP, "b": _BOTTOM + round(rows * _ROW_PX)},
         showlegend=True,
         legend=style.legend(),
@@ -42,70 +42,59 @@ def time_figure(plots: Sequence[UplotFigure], *, width_px: float = WIDTH_PX) -> 
         meta={"aspect": height_px / width_px},
     )
     traces: list[dict[str, Any]] = []
-    shown: set[str] = set()
+    named: set[str] = set()
     for place, plot in enumerate(plots):
         suffix = "" if place == 0 else str(place + 1)
         top = 1.0 - place * (panel_px + _GAP_PX) / inner_px
         across, up = plot.axes()
         lowest = place == len(plots) - 1
-        time = plot.data[0]
-        made[f"xaxis{suffix}"] = style.axis(
+        layout[f"xaxis{suffix}"] = style.axis(
             across["label"] if lowest else "",
             anchor=f"y{suffix}",
-            range=[float(time[0]), float(np.nanmax(time)) or 1.0] if len(time) else [0.0, 1.0],
+            range=[float(plot.time[0]), float(np.nanmax(plot.time)) or 1.0] if len(plot.time) else [0.0, 1.0],
             showticklabels=lowest,
         )
-        made[f"yaxis{suffix}"] = style.axis(
+        layout[f"yaxis{suffix}"] = style.axis(
             up["label"],
             anchor=f"x{suffix}",
             domain=[max(top - panel_px / inner_px, 0.0), top],
             **_scale(plot, up),
         )
-        made["annotations"].append(style.panel_title(style.plain(plot.title), suffix))
-        traces += _traces(plot, suffix, shown)
-    return figure(traces, made)
+        layout["annotations"].append(style.panel_title(style.plain(plot.title), suffix))
+        traces += _traces(plot, suffix, named)
+    return figure(traces, layout)
 
 
-def _drawn(plot: UplotFigure) -> list[int]:
-    """Places of the curves that are to be seen."""
-    return [at for at in range(len(plot.names)) if at not in plot.edges and plot.state(at) != "hidden"]
+def _drawn(plot: UplotFigure) -> list[Curve]:
+    """Curves that are to be seen."""
+    return [c for place, c in enumerate(plot.curves) if place not in plot.edges and c.state != "hidden"]
 
 
-def _drawn_names(plot: UplotFigure) -> list[str]:
-    return [plot.names[at] for at in _drawn(plot)]
-
-
-def _traces(plot: UplotFigure, suffix: str, shown: set[str]) -> list[dict[str, Any]]:
-    """Bands, then curves; a name stands once in the legend of all plots (``shown`` is added to)."""
-    axes = {"type": "scatter", "mode": "lines", "xaxis": f"x{suffix}", "yaxis": f"y{suffix}"}
-    time = packed(plot.data[0])
-    made: list[dict[str, Any]] = []
+def _traces(plot: UplotFigure, suffix: str, named: set[str]) -> list[dict[str, Any]]:
+    """Bands, then curves; a name stands once in the legend of all plots (``named`` is added to)."""
+    common = {"type": "scatter", "mode": "lines", "xaxis": f"x{suffix}", "yaxis": f"y{suffix}"}
+    common["x"] = packed(plot.time)
+    traces: list[dict[str, Any]] = []
     for upper, lower, color in plot.bands:
-        edge = axes | {"x": time, "line": {"width": 0}, "showlegend": False}
-        filled = {"fill": "tonexty", "fillcolor": _rgba(color)}
-        made += [
-            edge | {"y": packed(plot.data[1 + lower])},
-            edge | {"y": packed(plot.data[1 + upper])} | filled,
-        ]
-    series = plot.series[1:]
-    for at in _drawn(plot):
-        line = {"color": _rgba(series[at]["stroke"]), "width": series[at]["width"]}
-        if "dash" in series[at]:
-            line["dash"] = ",".join(f"{part}px" for part in series[at]["dash"])
-        name = plot.names[at]
-        made.append(
-            axes
+        edge = common | {"line": {"width": 0}, "showlegend": False}
+        low, high = (packed(plot.curves[place].values) for place in (lower, upper))
+        traces += [edge | {"y": low}, edge | {"y": high, "fill": "tonexty", "fillcolor": _rgba(color)}]
+    for curve in _drawn(plot):
+        line = {"color": _rgba(curve.series["stroke"]), "width": curve.width}
+        if curve.dash:
+            line["dash"] = ",".join(f"{part}px" for part in curve.dash)
+        traces.append(
+            common
             | {
-                "x": time,
-                "y": packed(plot.data[1 + at]),
-                "name": style.plain(name),
-                "legendgroup": name,
-                "showlegend": name not in shown,
+                "y": packed(curve.values),
+                "name": style.plain(curve.name),
+                "legendgroup": curve.name,
+                "showlegend": curve.name not in named,
                 "line": line,
             }
         )
-        shown.add(name)
-    return made
+        named.add(curve.name)
+    return traces
 
 
 def _rgba(color: str) -> str:
@@ -118,19 +107,15 @@ def _rgba(color: str) -> str:
 
 def _scale(plot: UplotFigure, up: dict[str, Any]) -> dict[str, Any]:
     """Range and ticks of the y axis."""
-    made: dict[str, Any] = {"nticks": 6}
+    ticks: dict[str, Any] = {"nticks": 6}
     if "splits" in up:
-        made = {"tickvals": list(up["splits"]), "ticktext": list(up["values"])}
+        ticks = {"tickvals": list(up["splits"]), "ticktext": list(up["values"])}
     if plot.decades is not None:
-        return made | {"type": "log", "range": list(plot.decades)}
-    scaled = [at for at in _drawn(plot) if counts(plot.state(at))] or _drawn(plot)
-    scaled += [at for at in plot.edges]
-    values = [found for at in scaled if len(found := _finite(plot.data[1 + at]))]
-    low, high = (min(map(np.min, values)), max(map(np.max, values))) if values else (0.0, 0.0)
+        return ticks | {"type": "log", "range": list(plot.decades)}
+    scaled = [curve for curve in _drawn(plot) if counts(curve.state)] or _drawn(plot)
+    scaled += [plot.curves[place] for place in plot.edges]
+    values = np.concatenate([[], *(curve.values[np.isfinite(curve.values)] for curve in scaled)])
+    low, high = (values.min(), values.max()) if len(values) else (0.0, 0.0)
     pad = _PAD * (high - low) or 0.1
     floor = low - pad if plot.floor is None else plot.floor
-    return made | {"range": [float(floor), float(high + pad)]}
-
-
-def _finite(values: np.ndarray) -> np.ndarray:
-    return values[np.isfinite(values)]
+    return ticks | {"range": [float(floor), float(high + pad)]}

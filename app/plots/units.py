@@ -121,7 +121,7 @@ def scaled_unit(name: str, peak: float) -> Unit:
     if not math.isfinite(peak) or peak <= 0.0 or peak >= _LEAST * unit.si:
         return unit
     parts = ((1e-3, "10⁻³"), (1e-6, "10⁻⁶"), (1e-9, "10⁻⁹"))
-    part, word = next((found for found in parts if peak >= _LEAST * unit.si * found[0]), parts[-1])
+    part, word = next((each for each in parts if peak >= _LEAST * unit.si * each[0]), parts[-1])
     return Unit(f"{word} {unit.name}", unit.si * part)
 
 
@@ -196,3 +196,17 @@ def duration(seconds: float, digits: int = 3) -> str:
         if seconds < bound:
             return f"{seconds / size:.{digits}g} {name}"
     return f"{seconds / (24.0 * HOUR):.{digits}g} d"
+
+
+def round_down(value: float, mantissas: tuple[float, ...] = (1.0, 2.0, 5.0)) -> float:
+    """Largest number of the form mantissa x 10^k that is not above ``value`` (> 0)."""
+    power = 10.0 ** math.floor(math.log10(value))
+    scaled = value / power * (1.0 + 1e-12)
+    return max(m for m in mantissas if m <= scaled) * power
+
+
+def round_up(value: float, mantissas: tuple[float, ...] = (1.0, 2.0, 5.0)) -> float:
+    """Smallest number of the form mantissa x 10^k that is not below ``value`` (> 0)."""
+    power = 10.0 ** math.floor(math.log10(value))
+    scaled = value / power * (1.0 - 1e-12)
+    return next((m for m in mantissas if m >= scaled), 10.0 * mantissas[0]) * power

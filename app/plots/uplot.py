@@ -23,28 +23,9 @@ _TOP, _RIGHT = 8, 18
 _LOW_PX = 150
 # Steps of the time axis: those that divide an hour or a day, and a few finer ones for zooming in.
 _TIME_STEPS = (
-    1e-3,
-    2e-3,
-    5e-3,
-    0.01,
-    0.02,
-    0.05,
-    0.1,
-    0.25,
-    0.5,
-    1.0,
-    2.0,
-    3.0,
-    6.0,
-    12.0,
-    24.0,
-    48.0,
-    96.0,
-    168.0,
-    336.0,
-    720.0,
-    1440.0,
-)
+    1e-3, 2e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 3.0, 6.0,
+    12.0, 24.0, 48.0, 96.0, 168.0, 336.0, 720.0, 1440.0,
+)  # fmt: skip
 _MINUTE_STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 120.0)
 
 Dash = tuple[int, ...]
@@ -54,6 +35,45 @@ _FLAGS: dict[State, dict[str, bool]] = {
     "dimmed": {},
     "hidden": {"show": False, "auto": False},
 }
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """One curve of a plot over time.
+
+    Attributes
+    ----------
+    name : str
+        With what the legend says of a method that did not end well.
+    color : str
+        ``#RRGGBB``, or with an opacity ``#RRGGBBAA``.
+    values : ndarray, shape (m,)
+        float64, in the unit of the plot; NaN where there is nothing to show.
+    dash : tuple of int
+        Dash pattern, px; empty: solid.
+    width : float
+        px.
+    state : State
+        How it is shown (`app.plots.legend`).
+    """
+
+    name: str
+    color: str
+    values: np.ndarray
+    dash: Dash = ()
+    width: float = style.CURVE_WIDTH
+    state: State = "shown"
+
+    @property
+    def series(self) -> dict[str, Any]:
+        """Series for uPlot."""
+        # lines rounded to whole pixels look like stairs
+        return (
+            {"points": {"show": False}, "pxAlign": 0, "label": self.name, "width": self.width}
+            | {"stroke": self.color[:7] + FAINT if self.state == "dimmed" else self.color}
+            | ({"dash": self.dash} if self.dash else {})
+            | _FLAGS[self.state]
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,26 +92,18 @@ class UplotFigure:
         Short name on the axis.
     unit, time_unit : Unit
         Of the curves and of the time axis.
-    names : tuple of str
-        Of the curves, with what the legend says of a method that did not end well.
-    colors : tuple of str
-        Of the curves.
-    data : tuple of ndarray, each shape (m,)
-        Time and the curves, float64, in the units above; NaN where there is nothing to show.
-    dashes : tuple of tuple of int
-        Dash pattern of each curve, px; a curve beyond its end, or with an empty one, is solid.
+    time : ndarray, shape (m,)
+        Times, float64, in ``time_unit``.
+    curves : tuple of Curve
+        Drawn in this order.
     floor : float or None
         The y axis begins here, whatever is drawn.
     ticks : tuple of (float, str)
         Places and words on the y axis in the place of numbers.
-    widths : tuple of float
-        Width of each curve, px; one beyond its end has the width of all curves.
     decades : tuple of int or None
         The y axis is logarithmic, from and to these powers of ten.
     bands : tuple of (int, int, str)
-        Filled areas: places of the upper and the lower curve in ``names``, colour. Their edges are not drawn.
-    states : tuple of State
-        How each curve is shown (`app.plots.legend`); one beyond its end is simply shown.
+        Filled areas: places of the upper and the lower curve in ``curves``, colour.
     """
 
     key: str
@@ -100,20 +112,22 @@ class UplotFigure:
     symbol: str
     unit: Unit
     time_unit: Unit
-    names: tuple[str, ...]
-    colors: tuple[str, ...]
-    data: tuple[np.ndarray, ...]
-    dashes: tuple[Dash, ...] = ()
+    time: np.ndarray
+    curves: tuple[Curve, ...]
     floor: float | None = None
     ticks: tuple[tuple[float, str], ...] = ()
-    widths: tuple[float, ...] = ()
     decades: tuple[int, int] | None = None
     bands: tuple[tuple[int, int, str], ...] = ()
-    states: tuple[State, ...] = ()
 
-    def state(self, place: int) -> State:
-        """How the curve at a place in ``names`` is shown."""
-        return self.states[place] if place < len(self.states) else "shown"
+    @property
+    def data(self) -> tuple[np.ndarray, ...]:
+        """Time and the curves."""
+        return self.time, *(curve.values for curve in self.curves)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the curves."""
+        return tuple(curve.name for curve in self.curves)
 
     @property
     def edges(self) -> frozenset[int]:
@@ -122,26 +136,8 @@ class UplotFigure:
 
     @property
     def series(self) -> tuple[dict[str, Any], ...]:
-        """Series for uPlot: the time, then the methods."""
-        # lines rounded to whole pixels look like stairs
-        common = {"points": {"show": False}, "pxAlign": 0}
-        dashes = (*self.dashes, *((),) * (len(self.names) - len(self.dashes)))
-        widths = [*self.widths, *(style.CURVE_WIDTH,) * (len(self.names) - len(self.widths))]
-        for place in self.edges:
-            widths[place] = 0.0
-        lines = (
-            common
-            | {"label": name, "stroke": self._stroke(place, color), "width": width}
-            | ({"dash": dash} if dash else {})
-            | _FLAGS[self.state(place)]
-            for place, (name, color, dash, width) in enumerate(
-                zip(self.names, self.colors, dashes, widths, strict=True)
-            )
-        )
-        return ({"label": f"time ({self.time_unit.name})"}, *lines)
-
-    def _stroke(self, place: int, color: str) -> str:
-        return color[:7] + FAINT if self.state(place) == "dimmed" else color
+        """Series for uPlot: the time, then the curves."""
+        return ({"label": f"time ({self.time_unit.name})"}, *(curve.series for curve in self.curves))
 
     def axes(self, *, time_axis: bool = True, low: bool = False) -> tuple[dict[str, Any], ...]:
         """Axes for uPlot.
@@ -213,10 +209,8 @@ class UplotFigure:
         low: dict[str, Any] = {"pad": 0.08, "soft": -0.1, "mode": 2}
         if self.floor is not None:
             low = {"pad": 0.0, "hard": self.floor}
-        return {
-            "x": {"time": False},
-            "y": {"range": {"min": low, "max": {"pad": 0.08, "soft": 0.1, "mode": 2}}},
-        }
+        high = {"pad": 0.08, "soft": 0.1, "mode": 2}
+        return {"x": {"time": False}, "y": {"range": {"min": low, "max": high}}}
 
     def kwargs(
         self,
@@ -264,8 +258,9 @@ class UplotFigure:
 
     def config_key(self) -> tuple[Any, ...]:
         """Compare equal while only the numbers changed: then sending ``data`` alone is enough."""
-        shown = self.symbol, self.unit.name, self.time_unit.name, self.names, self.colors, self.dashes
-        return self.key, self.floor, self.ticks, self.widths, self.decades, self.bands, self.states, *shown
+        looks = tuple((c.name, c.color, c.dash, c.width, c.state) for c in self.curves)
+        scale = self.floor, self.ticks, self.decades, self.bands
+        return self.key, self.symbol, self.unit.name, self.time_unit.name, looks, scale
 
 
 def stack_heights(available_px: int, count: int, least_px: int = 84) -> tuple[int, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from app.plots import style
+from app.plots import style, table
 from app.shell.view import View, styles_of
 
 _STATIC = Path(__file__).parent / "static"
@@ -25,4 +25,4 @@ def page_styles(kinds: Sequence[type[View]], state_id: str, command_id: str) -> 
         (_STATIC / f"{name}.css").read_text(encoding="utf-8") for name in ("page", "commands", "touch")
     )
     css = css.replace("PAGE_STATE", state_id).replace("PAGE_COMMAND", command_id)
-    return css + styles_of(kinds) + style.UPLOT_CSS
+    return css + table.CSS + styles_of(kinds) + style.UPLOT_CSS

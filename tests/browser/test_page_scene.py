@@ -85,9 +85,11 @@ def test_the_computed_ship_is_that_of_the_method_in_hand(moving: Bench) -> None:
     from app.plots import style
 
     page, number = moving.page, moving.run
-    assert tuple(page.evaluate(_COLOR)) == style.method_rgb(2)
+    assert tuple(page.evaluate(_COLOR)) == style.rgb(style.method_color(2))
     moving.choose("method", "classic2")
-    page.wait_for_function(f"c => String(({_COLOR})()) === c", arg=",".join(map(str, style.method_rgb(1))))
+    page.wait_for_function(
+        f"c => String(({_COLOR})()) === c", arg=",".join(map(str, style.rgb(style.method_color(1))))
+    )
     page.locator("#sb-stage table").get_by_text("classic2").wait_for()
     assert moving.run == number
 

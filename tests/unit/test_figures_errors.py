@@ -139,7 +139,7 @@ def test_strapdown_is_drawn_dashed_over_the_methods() -> None:
         plot = plots["phi_e"]
         assert plot.names[3:] == tuple(f"{name}: full strapdown" for name in plot.names[:3])
         assert [len(series.get("dash", ())) for series in plot.series[1:]] == [0, 0, 0, 2, 2, 2]
-        assert (plot.colors[3] == plot.colors[0]) != old
+        assert (plot.curves[3].color == plot.curves[0].color) != old
         # the same bins: the same points
         np.testing.assert_array_equal(plot.data[4], plot.data[1])
         assert ("of an earlier scenario" in legend_html(run, Overlay(run, old))) == old

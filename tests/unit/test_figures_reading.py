@@ -119,7 +119,7 @@ def test_envelope_is_a_band_behind_its_own_curve(runs: list[Run]) -> None:
     plot = error_plots(runs[0], envelope=found)["dve"]
     assert plot.names[0] == "classic2" and len(plot.bands) == 1
     upper, lower, color = plot.bands[0]
-    assert plot.edges == {upper, lower} and color.startswith(plot.colors[0])
+    assert plot.edges == {upper, lower} and color.startswith(plot.curves[0].color)
     assert np.all(plot.data[1 + upper] >= plot.data[1 + lower])
     assert plot.series[1 + upper]["width"] == 0.0
     assert plot.kwargs()["bands"] == ({"series": (upper + 1, lower + 1), "fill": color},)
@@ -271,7 +271,7 @@ def test_time_plots_become_one_figure_with_one_legend(runs: list[Run], scale: st
     assert [trace["name"] for trace in curves if trace["showlegend"]] == names
     for plot, suffix in zip(chosen, ("", "2"), strict=True):
         mine = [trace for trace in curves if trace["yaxis"] == f"y{suffix}"]
-        assert [trace["line"]["color"] for trace in mine] == list(plot.colors[: len(names)])
+        assert [trace["line"]["color"] for trace in mine] == [c.color for c in plot.curves[: len(names)]]
         for trace, values in zip(mine, plot.data[1:], strict=False):
             np.testing.assert_allclose(unpacked(trace["y"]), values, rtol=1e-6)
         axis = made["layout"][f"yaxis{suffix}"]
@@ -298,7 +298,9 @@ def test_a_figure_over_time_shows_what_the_legend_left() -> None:
 
 
 def test_a_name_with_markup_is_a_text_in_a_figure_over_time() -> None:
-    plot = replace(error_plots(static_run())["dve"], names=("<b>x</b>", "a $b$", "c"), title="<i>&")
+    plot = error_plots(static_run())["dve"]
+    renamed = zip(plot.curves, ("<b>x</b>", "a $b$", "c"), strict=True)
+    plot = replace(plot, curves=tuple(replace(curve, name=name) for curve, name in renamed), title="<i>&")
     made = time_figure([plot])
     assert [trace["name"] for trace in made["data"]] == ["&lt;b&gt;x&lt;/b&gt;", "a $b$", "c"]
     assert made["layout"]["annotations"][0]["text"] == "<b>&lt;i&gt;&amp;</b>"

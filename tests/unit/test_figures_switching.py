@@ -62,7 +62,7 @@ def test_one_plot_for_each_measure_then_states_and_xi() -> None:
     assert [plot.key for plot in plots] == ["measure0", "measure1", "measure2", STATE, XI, MARGIN]
     assert [plot.unit.name for plot in plots[:3]] == ["m/s", "m/s", "°"]
     assert plots[1].names == ("varied", "alike", "a", "b", "c", "a")
-    colors = plots[1].colors
+    colors = tuple(curve.color for curve in plots[1].curves)
     assert colors[:2] == (style.method_color(2), style.method_color(4))
     # a differs, b and c are those of both
     assert colors[2:] == (style.method_color(2), style.INK, style.INK, style.method_color(4))
@@ -104,7 +104,7 @@ def test_margin_is_zero_while_undamped_and_the_networks_own_while_damped() -> No
     assert 0 < np.count_nonzero(damped) < len(damped)
     np.testing.assert_array_equal(plot.data[2][~damped], 0.0)
     np.testing.assert_allclose(plot.data[2][damped], varied.loop.damping_ratio, rtol=1e-9)
-    assert plot.colors[1] == style.method_color(2)
+    assert plot.curves[1].color == style.method_color(2)
 
 
 def test_margin_of_an_adaptive_law_follows_its_coefficient() -> None:

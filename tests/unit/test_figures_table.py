@@ -71,7 +71,7 @@ def test_the_best_of_each_row_is_marked_and_points_stand_below_each_other() -> N
     alone = metrics_rows(run_of(method=[THREE[1]]))
     assert not any(mark for row in alone for marks in row.best for mark in marks)
     shown = re.sub(r"</?span[^>]*>", "", metrics_html(run))
-    decimals = {len(text.partition(".")[2]) for text in re.findall(r"nowrap\">(-?[0-9.]+)</td>", shown)}
+    decimals = {len(text.partition(".")[2]) for text in re.findall(r"sb-n\">(-?[0-9.]+)</td>", shown)}
     assert len(decimals) == 1, "unseen figures fill every number up to the same decimals"
 
 
@@ -161,7 +161,7 @@ def test_differences_stand_below_the_errors_and_are_marked_when_old() -> None:
     assert rows[0].cells == (("1 (1 %)",), ("2 (2 %)",), ("3 (3 %)",))
     fresh, old = (metrics_html(static_run(), None, made, old=old) for old in (False, True))
     assert "Full strapdown minus linear model" in fresh and "of an earlier scenario" not in fresh
-    assert "of an earlier scenario" in old and old.count("sb-old") == 8
+    assert "of an earlier scenario" in old and old.count("sb-old") == 9
     assert "2 (2 %)" in metrics_html(static_run(), [1], made)
     assert "3 (3 %)" not in metrics_html(static_run(), [1], made)
 

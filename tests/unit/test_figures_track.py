@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.plots.rounding import round_down, round_up
-from app.plots.style import method_rgb, rgb
+from app.plots.style import method_color, rgb
+from app.plots.units import round_down, round_up
 from app.session.pins import Pin
 from app.views.scene.graticule import LocalMap, angle_text, graticule, scale_bar
 from app.views.scene.ship import ship_parts
@@ -85,7 +85,7 @@ class TestMoving:
         vectors = scene.place(float(scene.t_s[10])).error_vectors()
         np.testing.assert_array_equal(vectors[:, 0], np.repeat(scene.truth[10:11], 3, axis=0))
         np.testing.assert_array_equal(vectors[1, 1], scene.methods[1].points[10])
-        assert scene.methods[2].color == method_rgb(2)
+        assert scene.methods[2].color == rgb(method_color(2))
 
     def test_time_finds_its_point(self) -> None:
         scene = track(moving_run())

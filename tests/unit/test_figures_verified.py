@@ -38,7 +38,7 @@ def test_the_difference_that_is_drawn_is_the_one_in_the_table(verified: Verifica
     for key in KEYS:
         difference, both = plots[f"difference_{key}"], plots[f"both_{key}"]
         assert len(both.names) == 2 * len(difference.names)
-        assert [bool(dash) for dash in both.dashes] == [False] * 3 + [True] * 3
+        assert [bool(curve.dash) for curve in both.curves] == [False] * 3 + [True] * 3
         for place, told in enumerate(verified.differences):
             drawn = np.nanmax(np.abs(difference.data[1 + place])) * difference.unit.si
             assert drawn == pytest.approx(told[both.quantity].peak)

@@ -42,7 +42,7 @@ def test_what_is_off_the_scale_decides_no_unit_and_no_decade() -> None:
         assert series["auto"] is False and (series.get("show", True) is (state == "unscaled"))
         assert plot.config_key() != error_plots(run, display=Display(scale="log"))["position"].config_key()
     dimmed = error_plots(run, display=Display(legend=((name, "dimmed"),)))["position"]
-    assert dimmed.series[1 + largest]["stroke"] == whole.colors[largest] + "59"
+    assert dimmed.series[1 + largest]["stroke"] == whole.curves[largest].color + "59"
     assert dimmed.unit == whole.unit
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from string import Template
 
 from app.editing.edits import files_of
+from app.plots import table
 from app.session.laid import titled
 from app.session.pins import Pin
 from app.session.shown import Shown
@@ -27,7 +28,7 @@ _ABREAST = 3
 """Methods beside each other in a table, so that it fits on paper."""
 _STATIC = Path(__file__).parent / "static"
 _PAGE = Template((_STATIC / "document.html").read_text(encoding="utf-8"))
-_CSS = (_STATIC / "document.css").read_text(encoding="utf-8")
+_CSS = table.CSS + (_STATIC / "document.css").read_text(encoding="utf-8")
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from html import escape
 
 from app.plots import style
+from app.plots.table import cell, row, table
 from app.plots.units import rounded, settling
 from app.session.laid import edited
 from app.session.pins import Pin
 from app.session.requirements import MEASURES, Requirements, verdicts
 from app.session.window import Window
-from navcore.engine.run import MethodRun, Run
+from navcore.engine.run import Run
 from navcore.foundation.units import MINUTE
 
 COLUMNS: dict[str, str] = {
@@ -56,11 +57,11 @@ class Line:
 
     def key(self, column: str) -> tuple[bool, float, str]:
         """By what it is sorted: what is not known comes last."""
-        if column == "pinned":
-            return False, float(0 if self.pin is None else self.pin.id), ""
         if column == "method":
             return False, 0.0, self.method
         value = self.numbers.get(column, math.nan)
+        if column == "pinned":
+            value = 0.0 if self.pin is None else float(self.pin.id)
         return math.isnan(value), 0.0 if math.isnan(value) else value, ""
 
 
@@ -93,22 +94,16 @@ def lines_of(
 
 def _line(pin: Pin | None, color: str, run: Run, place: int, requirements: Requirements) -> Line:
     method = run.methods[place]
-    numbers = _numbers(method)
-    asked = 0
-    if requirements.any:
-        limits = [found for found in verdicts(run, requirements) if found.limit is not None]
-        asked = len(limits)
-        numbers["verdict"] = float(sum(not found.passed[place] for found in limits))
-    return Line(pin, color, method.method.name, numbers, asked)
-
-
-def _numbers(method: MethodRun) -> dict[str, float]:
-    return {
+    numbers = {
         "settling": MEASURES["settling_min"](method),
         "velocity": MEASURES["velocity_rms_mps"](method),
         "tilt": MEASURES["tilt_max_arcsec"](method),
         "position": method.errors["position_m"]["max_abs"],
     }
+    limits = [verdict for verdict in verdicts(run, requirements) if verdict.limit is not None]
+    if limits:
+        numbers["verdict"] = float(sum(not verdict.passed[place] for verdict in limits))
+    return Line(pin, color, method.method.name, numbers, len(limits))
 
 
 def pins_html(lines: Sequence[Line], by: str, baseline: int | None, *, buttons: bool = True) -> str:
@@ -127,73 +122,57 @@ def pins_html(lines: Sequence[Line], by: str, baseline: int | None, *, buttons: 
     """
     column, falling = by.removeprefix("-"), by.startswith("-")
     ordered = sorted(lines, key=lambda line: line.key(column), reverse=falling)
-    best = {
-        name: min(found)
-        for name in COLUMNS
-        if len(found := [v for line in lines if math.isfinite(v := line.numbers.get(name, math.nan))]) > 1
-        and min(found) < max(found)
-    }
-    head = "".join(_head(name, title, column, falling, buttons) for name, title in COLUMNS.items())
-    body = "".join(_row(line, best, baseline) for line in ordered)
-    return (
-        f'<div class="sb-pins sb-table" style="margin:4px 10px 8px;overflow-x:auto"><table style="'
-        f"border-collapse:collapse;width:100%;font-size:{style.FONT_SIZE}px;color:{style.INK};"
-        f'font-variant-numeric:tabular-nums"><thead><tr>{head}<th style="{_CELL}">note</th></tr></thead>'
-        f"<tbody>{body}</tbody></table></div>"
-    )
+    best: dict[str, float] = {}
+    for name in COLUMNS:
+        values = [line.numbers.get(name, math.nan) for line in lines]
+        finite = [value for value in values if math.isfinite(value)]
+        if len(finite) > 1 and min(finite) < max(finite):
+            best[name] = min(finite)
+    marks = {column: " ▾" if falling else " ▴"} if buttons else {}
+    head = [_head(name, title, marks.get(name, ""), buttons) for name, title in COLUMNS.items()]
+    head.append(cell("note", tag="th"))
+    rows = (_row(line, best, baseline) for line in ordered)
+    return cell(table([row(head)], rows), "sb-pins sb-table", tag="div")
 
 
-def _head(name: str, title: str, column: str, falling: bool, buttons: bool) -> str:
-    if not buttons:
-        return f'<th scope="col" style="{_CELL if name in _TEXTS else _NUMBER}">{title}</th>'
-    mark, state = "", ""
-    if name == column:
-        mark = " ▾" if falling else " ▴"
-        state = f' aria-sort="{"descending" if falling else "ascending"}"'
-    button = f'<button class="sb-sort" data-command="sort-pins {name}" title="Sort by this column">'
-    side = _CELL if name in _TEXTS else _NUMBER.replace("white-space:nowrap", "line-height:1.15")
-    return f'<th scope="col" style="{side}"{state}>{button}{title}{mark}</button></th>'
+def _head(name: str, title: str, mark: str, buttons: bool) -> str:
+    state = {" ▾": "descending", " ▴": "ascending"}.get(mark)
+    if buttons:
+        command = f'data-command="sort-pins {name}" title="Sort by this column"'
+        title = f'<button class="sb-sort" {command}>{title}{mark}</button>'
+    return cell(title, "" if name in _TEXTS else "sb-n", tag="th", scope="col", aria_sort=state)
 
 
 def _row(line: Line, best: dict[str, float], baseline: int | None) -> str:
     pin = line.pin
     dash = "solid" if pin is None else "dashed"
-    bar = (
-        f'<span style="display:inline-block;width:18px;border-top:3px {dash} {line.color};margin-right:6px;'
-        'vertical-align:middle"></span>'
-    )
-    name, marks, note = PRESENT, "", ""
-    if pin is not None:
-        name, note = pin.name, pin.note
-        marks = (", baseline" if pin.id == baseline else "") + ("" if pin.shown else ", hidden")
-    cells = [f'<td style="{_CELL};white-space:nowrap">{bar}<b>{escape(name)}</b>{marks}</td>']
-    cells.append(f'<td style="{_CELL}">{escape(line.method)}</td>')
-    if not line.numbers:
-        cells.append(f'<td style="{_CELL}" colspan="{len(COLUMNS) - 2}">being computed</td>')
+    name = f'<span class="sb-bar" style="border-top:3px {dash} {line.color}"></span>'
+    if pin is None:
+        name += f"<b>{PRESENT}</b>"
     else:
-        cells += [_cell(line, name, best) for name in list(COLUMNS)[2:]]
-    cells.append(f'<td style="{_CELL}">{escape(note)}</td>')
-    return f'<tr style="border-top:1px solid {style.GRID}">{"".join(cells)}</tr>'
+        marks = (", baseline" if pin.id == baseline else "") + ("" if pin.shown else ", hidden")
+        name += f"<b>{escape(pin.name)}</b>{marks}"
+    numbers = (
+        [_cell(line, column, best) for column in list(COLUMNS)[2:]]
+        if line.numbers
+        else [cell("being computed", colspan=len(COLUMNS) - 2)]
+    )
+    note = cell("" if pin is None else escape(pin.note))
+    return row([cell(name, "sb-name"), cell(escape(line.method)), *numbers, note])
 
 
 def _cell(line: Line, name: str, best: dict[str, float]) -> str:
     if name == "verdict":
-        return f'<td style="{_NUMBER}">{_verdict(line)}</td>'
+        return cell(_verdict(line), "sb-n")
     value = line.numbers[name]
     text = settling(value * MINUTE) if name == "settling" else rounded(value)
-    mark = f' class="sb-best" title="{style.BEST}"' if best.get(name) == value else ""
-    return f'<td style="{_NUMBER}"><span{mark}>{text}</span></td>'
+    mark = {"look": "sb-best", "title": style.BEST} if best.get(name) == value else {}
+    return cell(cell(text, tag="span", **mark), "sb-n")
 
 
 def _verdict(line: Line) -> str:
     if not line.asked:
-        return f'<span style="color:{style.MUTED}">nothing asked</span>'
+        return cell("nothing asked", "sb-muted", tag="span")
     missed = round(line.numbers["verdict"])
-    color, text = style.PASSED, "✓ meets all"
-    if missed:
-        color, text = style.DANGER, f"✗ misses {missed} of {line.asked}"
-    return f'<span style="color:{color};font-weight:600">{text}</span>'
-
-
-_CELL = "padding:3px 8px 3px 2px;vertical-align:top;text-align:left"
-_NUMBER = "padding:3px 8px 3px 2px;vertical-align:top;text-align:right;white-space:nowrap"
+    text = f"✗ misses {missed} of {line.asked}" if missed else "✓ meets all"
+    return cell(text, "sb-missed" if missed else "sb-met", tag="span")

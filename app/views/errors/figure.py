@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from app.plots import style
 from app.plots.envelope import Envelope
-from app.plots.legend import State, counts
+from app.plots.legend import counts
 from app.plots.pinned import PIN_WIDTH, Pinned, pinned_methods
 from app.plots.units import (
     AUTO,
     Unit,
     angle_unit,
     length_unit,
-    scaled_unit,
     speed_unit,
     time_unit,
     wanted_unit,
 )
-from app.plots.uplot import Dash, UplotFigure
+from app.plots.uplot import Curve, Dash, UplotFigure
 from app.session.display import Display
 from navcore.engine.run import MethodRun, PlotSeries, Run
 from navcore.mechanization.recorder import (
@@ -45,26 +45,40 @@ _DASH: Dash = (7, 5)
 _FAINT = "66"
 """Opacity of curves that belong to an earlier scenario, as colours carry it."""
 
-_TILT, _HEADING, _SPEED, _LENGTH = "tilt", "heading", "speed", "length"
-_CHOOSERS = {_TILT: angle_unit, _HEADING: angle_unit, _SPEED: speed_unit, _LENGTH: length_unit}
+_FAMILIES: dict[str, tuple[str, Callable[[float], Unit]]] = {
+    "tilt": ("angle", angle_unit),
+    "heading": ("angle", angle_unit),
+    "speed": ("speed", speed_unit),
+    "length": ("length", length_unit),
+}
+"""Field of the display that names a family's unit, and what suits a peak where that leaves it open."""
+_UNSEEN = "rgba(0,0,0,0)"
 _LIMIT_DASH: Dash = (12, 5)
 _FEWEST_DECADES, _MOST_DECADES = 3, 8
 _BAND = "2E"
 """Opacity of an envelope, as colours carry it."""
 
-# key -> column of the recorder, symbol on the axis, title, family that shares one unit
-_QUANTITIES: dict[str, tuple[int, str, str, str]] = {
-    "phi_e": (PHI_E, "φE", "Tilt about east φE", _TILT),
-    "phi_n": (PHI_N, "φN", "Tilt about north φN", _TILT),
-    "phi_u": (PHI_U, "φU", "Heading error φU", _HEADING),
-    "dve": (DV_E, "δVE", "Velocity error east δVE", _SPEED),
-    "dvn": (DV_N, "δVN", "Velocity error north δVN", _SPEED),
-    "dlat": (D_LAT, "δLat", "Latitude error", _LENGTH),
-    "dlon": (D_LON, "δLon", "Longitude error", _LENGTH),
-    "position": (POSITION, "position", "Position error", _LENGTH),
-}
 
-QUANTITIES = {key: title for key, (_, _, title, _) in _QUANTITIES.items()}
+class _Quantity(NamedTuple):
+    """Column of the recorder, symbol on the axis, title, and the family that shares one unit."""
+
+    column: int
+    symbol: str
+    title: str
+    family: str
+
+
+_QUANTITIES = {
+    "phi_e": _Quantity(PHI_E, "φE", "Tilt about east φE", "tilt"),
+    "phi_n": _Quantity(PHI_N, "φN", "Tilt about north φN", "tilt"),
+    "phi_u": _Quantity(PHI_U, "φU", "Heading error φU", "heading"),
+    "dve": _Quantity(DV_E, "δVE", "Velocity error east δVE", "speed"),
+    "dvn": _Quantity(DV_N, "δVN", "Velocity error north δVN", "speed"),
+    "dlat": _Quantity(D_LAT, "δLat", "Latitude error", "length"),
+    "dlon": _Quantity(D_LON, "δLon", "Longitude error", "length"),
+    "position": _Quantity(POSITION, "position", "Position error", "length"),
+}
+QUANTITIES = {key: quantity.title for key, quantity in _QUANTITIES.items()}
 """Titles of the plots of `error_plots` by key."""
 
 GROUPS: dict[str, tuple[str, ...]] = {
@@ -98,19 +112,17 @@ class _Line:
 
     Attributes
     ----------
-    own : bool
-        It is one of the run's own methods, whose times all curves share.
-    state : State
-        How it is shown.
+    curve : Curve
+        How they look.
+    method : MethodRun
+        Whose they are.
+    values : ndarray, shape (m, 8)
+        At the times of the plots, SI; NaN where there is nothing to show.
     """
 
+    curve: Curve
     method: MethodRun
-    name: str
-    color: str
-    dash: Dash
-    width: float
-    own: bool
-    state: State
+    values: np.ndarray
 
 
 def error_plots(
@@ -142,83 +154,59 @@ def error_plots(
     limits : mapping, optional
         Key -> largest allowed magnitude (SI), drawn as dashed lines.
     """
-    shown = display or Display()
-    longest = _time_axis(run)
-    unit_of_time = time_unit(float(longest[-1]) if len(longest) else 0.0, shown.time)
-    time = np.ascontiguousarray(longest / unit_of_time.si)
-    lines = _lines(run, overlay, pins, shown)
-    counted = [line for line in lines if counts(line.state)] or lines
-    deciding = [line.method for line in counted if line.method.status != "diverged"]
-    cut = len(deciding) < len(counted)
-    deciding = deciding or [line.method for line in counted]
-    peaks = {key: _peak(deciding, column) for key, (column, *_) in _QUANTITIES.items()}
-    units = _units(peaks, shown)
-    count = len(run.methods)
+    display = display or Display()
+    time_s = _time_axis(run)
+    unit_of_time = time_unit(float(time_s[-1]) if len(time_s) else 0.0, display.time)
+    time = np.ascontiguousarray(time_s / unit_of_time.si)
+    lines = _lines(run, overlay, pins, display, time_s)
+    scaled = [line.method for line in lines if counts(line.curve.state)] or [line.method for line in lines]
+    deciding = [method for method in scaled if method.status != "diverged"]
+    cut = len(deciding) < len(scaled)
+    peaks = {key: _peak(deciding or scaled, quantity.column) for key, quantity in _QUANTITIES.items()}
+    units = _units(peaks, display)
     plots: dict[str, UplotFigure] = {}
-    for key, (column, symbol, title, _) in _QUANTITIES.items():
-        unit, limit = units[key], _CUT * peaks[key] if cut else math.inf
-        curves = [
-            _curve(line.method, column, len(longest), unit, limit)
-            if line.own
-            else _curve_on(longest, line.method, column, unit, limit)
-            for line in lines
-        ]
-        made = UplotFigure(
+    for key, quantity in _QUANTITIES.items():
+        unit, most = units[key], _CUT * peaks[key] if cut else math.inf
+        plot = UplotFigure(
             key=key,
-            quantity=NAMES[column],
-            title=title,
-            symbol=symbol,
+            quantity=NAMES[quantity.column],
+            title=quantity.title,
+            symbol=quantity.symbol,
             unit=unit,
             time_unit=unit_of_time,
-            names=tuple(line.name for line in lines),
-            colors=tuple(line.color for line in lines),
-            data=(time, *curves),
-            dashes=tuple(line.dash for line in lines),
-            widths=tuple(line.width for line in lines),
+            time=time,
+            curves=tuple(
+                replace(line.curve, values=_drawn(line, quantity.column, unit, most)) for line in lines
+            ),
             floor=0.0 if key == "position" else None,
-            states=tuple(line.state for line in lines),
         )
         if envelope is not None and len(envelope.t_s):
-            made = _with_band(made, envelope, column, longest, count)
+            plot = _with_band(plot, envelope, quantity.column, time_s, len(run.methods))
         if limits and key in limits:
-            made = _with_limit(made, limits[key])
-        plots[key] = _logarithmic(made) if shown.scale == "log" else made
+            plot = _with_limit(plot, limits[key])
+        plots[key] = _logarithmic(plot) if display.scale == "log" else plot
     return plots
 
 
-def _lines(run: Run, overlay: Overlay | None, pins: Sequence[Pinned], display: Display) -> list[_Line]:
-    width = style.CURVE_WIDTH
-    states: list[State] = [display.state_of(m.method.name) for m in run.methods]
-    lines = [
-        _Line(m, legend_name(m), style.method_color(i), (), width, True, states[i])
-        for i, m in enumerate(run.methods)
-    ]
+def _lines(
+    run: Run, overlay: Overlay | None, pins: Sequence[Pinned], display: Display, time_s: np.ndarray
+) -> list[_Line]:
+    none = np.empty(0)
+    lines = []
+    for i, method in enumerate(run.methods):
+        state = display.state_of(method.method.name)
+        values = np.full((len(time_s), len(NAMES)), np.nan)
+        values[: len(method.plot.values)] = method.plot.values
+        curve = Curve(legend_name(method), style.method_color(i), none, state=state)
+        lines.append(_Line(curve, method, values))
     if overlay is not None:
-        faint = _FAINT if overlay.old else ""
-        lines += [
-            _Line(
-                m,
-                f"{legend_name(m)}: {STRAPDOWN}",
-                style.method_color(i) + faint,
-                _DASH,
-                width,
-                False,
-                states[i],
-            )
-            for i, m in enumerate(overlay.run.methods)
-        ]
-    lines += [
-        _Line(
-            found.method,
-            found.label,
-            found.color,
-            found.dash,
-            PIN_WIDTH,
-            False,
-            display.state_of(found.label),
-        )
-        for found in pinned_methods(pins)
-    ]
+        for line, method in zip(list(lines), overlay.run.methods, strict=True):
+            name, color = legend_name(method), line.curve.color + (_FAINT if overlay.old else "")
+            curve = replace(line.curve, name=f"{name}: {STRAPDOWN}", color=color, dash=_DASH)
+            lines.append(_Line(curve, method, _on_times(time_s, method.plot)))
+    for pin in pinned_methods(pins):
+        curve = Curve(pin.label, pin.color, none, pin.dash, PIN_WIDTH, display.state_of(pin.label))
+        lines.append(_Line(curve, pin.method, _on_times(time_s, pin.method.plot)))
     return lines
 
 
@@ -226,56 +214,46 @@ def _with_band(
     plot: UplotFigure, envelope: Envelope, column: int, time_s: np.ndarray, count: int
 ) -> UplotFigure:
     """Put the envelope's edges behind all curves, and a band between each pair."""
-    names, colors, edges, bands = list(plot.names), list(plot.colors), [], []
+    curves, bands = list(plot.curves), []
     for index, (low, high) in enumerate(zip(envelope.low[:count], envelope.high[:count], strict=True)):
-        if low is None or high is None or plot.state(index) == "hidden":
+        if low is None or high is None or curves[index].state == "hidden":
             continue
+        bands.append((len(curves), len(curves) + 1, style.method_color(index) + _BAND))
         for word, values in (("upper", high), ("lower", low)):
-            edges.append(np.interp(time_s, envelope.t_s, values[:, column]) / plot.unit.si)
-            names.append(f"band, {word}: {plot.names[index]}")
-            colors.append("rgba(0,0,0,0)")
-        bands.append((len(names) - 2, len(names) - 1, style.method_color(index) + _BAND))
-    widths = (*plot.widths, *(0.0,) * len(edges))
-    data = (*plot.data, *edges)
-    return replace(
-        plot, names=tuple(names), colors=tuple(colors), widths=widths, data=data, bands=tuple(bands)
-    )
+            edge = np.interp(time_s, envelope.t_s, values[:, column]) / plot.unit.si
+            curves.append(Curve(f"band, {word}: {curves[index].name}", _UNSEEN, edge, width=0.0))
+    return replace(plot, curves=tuple(curves), bands=tuple(bands))
 
 
 def _with_limit(plot: UplotFigure, limit: float) -> UplotFigure:
     """Add a line at the largest allowed value, and at its negative where that can be reached."""
-    signs = (1.0,) if plot.floor is not None else (1.0, -1.0)
-    count = len(plot.data[0])
-    places = len(plot.names) - len(plot.dashes)
-    return replace(
-        plot,
-        names=(*plot.names, *("limit" for _ in signs)),
-        colors=(*plot.colors, *(style.DANGER for _ in signs)),
-        dashes=(*plot.dashes, *((),) * places, *(_LIMIT_DASH for _ in signs)),
-        widths=(*plot.widths, *(1.0 for _ in signs)),
-        data=(*plot.data, *(np.full(count, sign * limit / plot.unit.si) for sign in signs)),
-    )
+    lines = [
+        Curve("limit", style.DANGER, np.full(len(plot.time), value / plot.unit.si), _LIMIT_DASH, 1.0)
+        for value in ((limit,) if plot.floor is not None else (limit, -limit))
+    ]
+    return replace(plot, curves=(*plot.curves, *lines))
 
 
 def _logarithmic(plot: UplotFigure) -> UplotFigure:
     """Magnitudes on an axis of decades that shows every curve's peak; what is smaller lies on its floor."""
-    edges = plot.edges
-    sizes = [np.abs(values) for values in plot.data[1:]]
+    sizes = [np.abs(curve.values) for curve in plot.curves]
     for upper, lower, _ in plot.bands:
         # between edges of both signs the magnitude comes down to zero
-        across = plot.data[1 + upper] * plot.data[1 + lower] < 0.0
+        across = plot.curves[upper].values * plot.curves[lower].values < 0.0
         sizes[upper], sizes[lower] = (
             np.maximum(sizes[upper], sizes[lower]),
             np.where(across, 0.0, np.minimum(sizes[upper], sizes[lower])),
         )
-    counted = [i for i in range(len(sizes)) if i not in edges and counts(plot.state(i))]
-    peaks = [float(np.nanmax(sizes[i], initial=0.0)) for i in counted]
-    peaks = [peak for peak in peaks if peak > 0.0] or [1.0]
+    scaled = [i for i, curve in enumerate(plot.curves) if i not in plot.edges and counts(curve.state)]
+    peaks = [peak for i in scaled if (peak := float(np.nanmax(sizes[i], initial=0.0))) > 0.0] or [1.0]
     last = math.ceil(math.log10(max(peaks)))
     first = min(last - _FEWEST_DECADES, math.floor(math.log10(min(peaks))) - 1)
     first = max(first, last - _MOST_DECADES)
-    data = (plot.data[0], *(np.maximum(size, 10.0**first) for size in sizes))
-    return replace(plot, symbol=f"|{plot.symbol}|", data=data, decades=(first, last), floor=None)
+    curves = tuple(
+        replace(curve, values=np.maximum(size, 10.0**first))
+        for curve, size in zip(plot.curves, sizes, strict=True)
+    )
+    return replace(plot, symbol=f"|{plot.symbol}|", curves=curves, decades=(first, last), floor=None)
 
 
 def _time_axis(run: Run) -> np.ndarray:
@@ -293,65 +271,52 @@ def _peak(methods: list[MethodRun], column: int) -> float:
 
 def _units(peaks: dict[str, float], display: Display) -> dict[str, Unit]:
     """Unit of each quantity: the wanted one, its family's, or its own where that would leave it no digits."""
-    wanted = {_TILT: display.angle, _HEADING: display.angle, _SPEED: display.speed, _LENGTH: display.length}
-    of_family: dict[str, float] = {}
-    for key, (_, _, _, family) in _QUANTITIES.items():
-        of_family[family] = max(of_family.get(family, 0.0), peaks[key])
+    families: dict[str, float] = {}
+    for key, quantity in _QUANTITIES.items():
+        families[quantity.family] = max(families.get(quantity.family, 0.0), peaks[key])
     units: dict[str, Unit] = {}
-    for key, (_, _, _, family) in _QUANTITIES.items():
-        if wanted[family] != AUTO:
-            units[key] = scaled_unit(wanted[family], peaks[key])
-            continue
-        choose = _CHOOSERS[family]
-        shared = choose(of_family[family])
-        units[key] = (
-            shared if peaks[key] >= _FEWEST_UNITS * shared.si or peaks[key] == 0.0 else choose(peaks[key])
-        )
+    for key, quantity in _QUANTITIES.items():
+        shared = quantity_unit(key, families[quantity.family], display)
+        legible = peaks[key] == 0.0 or peaks[key] >= _FEWEST_UNITS * shared.si
+        chosen = getattr(display, _FAMILIES[quantity.family][0]) != AUTO
+        units[key] = shared if legible and not chosen else quantity_unit(key, peaks[key], display)
     return units
 
 
 def quantity_unit(key: str, peak: float, display: Display) -> Unit:
     """Unit of one quantity alone: the wanted one, else what suits its peak (SI)."""
-    family = _QUANTITIES[key][3]
-    wanted = {_TILT: display.angle, _HEADING: display.angle, _SPEED: display.speed, _LENGTH: display.length}
-    return wanted_unit(wanted[family], peak, _CHOOSERS[family])
+    field, suitable = _FAMILIES[_QUANTITIES[key].family]
+    return wanted_unit(getattr(display, field), peak, suitable)
 
 
-def _curve(method: MethodRun, column: int, count: int, unit: Unit, limit: float) -> np.ndarray:
-    """One method's curve in ``unit``, NaN once it has ended or, diverging, has left ``limit`` (SI)."""
-    values = np.full(count, np.nan)
-    found = method.plot.values[:, column]
-    np.divide(found, unit.si, out=values[: len(found)])
-    if method.status == "diverged" and limit > 0.0:
-        beyond = np.flatnonzero(~(np.abs(found) <= limit))
-        if len(beyond):
-            values[beyond[0] :] = np.nan
-    return values
+def _drawn(line: _Line, column: int, unit: Unit, most: float) -> np.ndarray:
+    """Values in ``unit``, NaN once a diverging method has left ``most`` (SI)."""
+    values = line.values[:, column]
+    if line.method.status == "diverged" and most > 0.0:
+        values = np.where(np.maximum.accumulate(~(np.abs(values) <= most)), np.nan, values)
+    return np.ascontiguousarray(values / unit.si)
 
 
-def _curve_on(time_s: np.ndarray, method: MethodRun, column: int, unit: Unit, limit: float) -> np.ndarray:
-    """Return the same of a run with other plot bins, on the times of this one: each point the nearest one.
+def _on_times(time_s: np.ndarray, plot: PlotSeries) -> np.ndarray:
+    """Values of a run with other plot bins at the times of this one: each point the nearest one.
 
     Of a bin's two extremes the first goes to a first one, so that noise keeps its width on the screen.
     """
-    found = method.plot.t_s
-    if not len(found) or not len(time_s):
-        return np.full(len(time_s), np.nan)
-    pairs = 2 if found[0] > 0.0 and len(found) > 2 else 1
+    own_s = plot.t_s
+    if not len(own_s) or not len(time_s):
+        return np.full((len(time_s), len(NAMES)), np.nan)
+    pairs = 2 if own_s[0] > 0.0 and len(own_s) > 2 else 1
     places = np.empty(len(time_s), np.int64)
     for place in range(pairs):
-        mine, wanted = found[place::pairs], time_s[place::pairs]
+        mine, wanted = own_s[place::pairs], time_s[place::pairs]
         later = np.clip(np.searchsorted(mine, wanted), 1, max(len(mine) - 1, 1)) if len(mine) > 1 else 0
         nearer = np.where(wanted - mine[later - 1] < mine[later] - wanted, later - 1, later)
         places[place::pairs] = pairs * nearer + place
-    plot = PlotSeries(time_s, method.plot.values[places])
-    values = _curve(replace(method, plot=plot), column, len(time_s), unit, limit)
-    spacing = (found[-1] - found[0]) / max(len(found) - 1, 1)
-    values[time_s > found[-1] + pairs * spacing] = np.nan
-    return values
+    spacing = (own_s[-1] - own_s[0]) / max(len(own_s) - 1, 1)
+    ended = time_s > own_s[-1] + pairs * spacing
+    return np.where(ended[:, None], np.nan, plot.values[places])
 
 
 def legend_name(method: MethodRun) -> str:
     """Name of a method, with how it ended if that was not well."""
-    name = method.method.name
-    return name + {"ok": "", "diverged": " (diverged)", "stopped": " (stopped)"}[method.status]
+    return method.method.name + {"ok": "", "diverged": " (diverged)", "stopped": " (stopped)"}[method.status]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from html import escape
+from itertools import accumulate
 
 from app.plots import style
 from app.plots.envelope import Envelope
@@ -24,22 +25,22 @@ def legend_html(
     display: Display | None = None,
 ) -> str:
     """One legend for a stack of plots: a bar and the name of every method; a click dims or hides it."""
-    shown = display or Display()
+    state_of = (display or Display()).state_of
     items = [
         entry(
             method.method.name,
             legend_name(method),
             f"height:3px;background:{style.method_color(i)}",
-            shown.state_of(method.method.name),
+            state_of(method.method.name),
         )
         for i, method in enumerate(run.methods)
     ]
     if overlay is not None:
-        old = " of an earlier scenario" if overlay.old else ""
-        items.append(_legend_item(f"{STRAPDOWN}{old}", f"border-top:3px dashed {style.MUTED}"))
+        name = f"{STRAPDOWN} of an earlier scenario" if overlay.old else STRAPDOWN
+        items.append(_legend_item(name, f"border-top:3px dashed {style.MUTED}"))
     items += [
-        entry(found.label, found.label, css_dash(found.dash, found.color), shown.state_of(found.label))
-        for found in pinned_methods(pins)
+        entry(pin.label, pin.label, css_dash(pin.dash, pin.color), state_of(pin.label))
+        for pin in pinned_methods(pins)
     ]
     if envelope is not None:
         bar = f"height:10px;background:{style.MUTED}{'22' if envelope.old else '55'}"
@@ -61,18 +62,16 @@ def legend_names(
     names = [method.method.name for method in run.methods]
     if overlay is not None:
         names.append("full strapdown of an earlier scenario")
-    names += [found.label for found in pinned_methods(pins)]
+    names += [pin.label for pin in pinned_methods(pins)]
     # with the longest words: the plots keep their height while the band is an old one
     return names if envelope is None else [*names, replace(envelope, old=True).label]
 
 
 def css_dash(dash: Dash, color: str) -> str:
     """Style of a short bar that shows a dash pattern."""
-    stops, at = [], 0
-    for place, length in enumerate(dash):
-        shade = color if place % 2 == 0 else "transparent"
-        stops.append(f"{shade} {at}px {at + length}px")
-        at += length
+    ends = [0, *accumulate(dash)]
+    shades = (color if place % 2 == 0 else "transparent" for place in range(len(dash)))
+    stops = (f"{shade} {start}px {end}px" for shade, start, end in zip(shades, ends, ends[1:], strict=False))
     return f"height:2px;background:repeating-linear-gradient(90deg,{','.join(stops)})"
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from app.plots import style
-from app.plots.uplot import UplotFigure
+from app.plots.uplot import Curve, UplotFigure
 from app.session.display import Display
 from app.views.errors.figure import Overlay, error_plots, quantity_unit
 from navcore.engine.verification import Verification
@@ -37,27 +37,24 @@ def verification_plots(
         Key -> plot. A difference is strapdown minus linear model at the common output rows, as
         `Verification.differences` measures it.
     """
-    shown = display or Display()
-    overlay = Overlay(verification.strapdown, old)
-    both = error_plots(verification.linear, overlay, display=shown)
+    display = display or Display()
+    both = error_plots(verification.linear, Overlay(verification.strapdown, old), display=display)
     plots: dict[str, UplotFigure] = {}
     for key in KEYS:
         plots[f"both_{key}"] = replace(both[key], key=f"both_{key}")
-        plots[f"difference_{key}"] = _difference(verification, key, both[key], shown)
+        plots[f"difference_{key}"] = _difference(verification, key, both[key], display)
     return plots
 
 
 def _difference(verification: Verification, key: str, beside: UplotFigure, display: Display) -> UplotFigure:
-    pairs = list(zip(verification.strapdown.methods, verification.linear.methods, strict=True))
     time_s, column = verification.linear.t_s, NAMES.index(beside.quantity)
-    curves = []
-    for full, simple in pairs:
+    differences = np.full((len(verification.linear.methods), len(time_s)), np.nan)
+    pairs = zip(verification.strapdown.methods, verification.linear.methods, strict=True)
+    for values, (full, simple) in zip(differences, pairs, strict=True):
         rows = min(len(full.t_s), len(simple.t_s), len(time_s))
-        values = np.full(len(time_s), np.nan)
         values[:rows] = full.rows[:rows, column] - simple.rows[:rows, column]
-        curves.append(values)
-    peak = max((float(np.nanmax(np.abs(values), initial=0.0)) for values in curves), default=0.0)
-    unit = quantity_unit(key, peak, display)
+    unit = quantity_unit(key, float(np.nanmax(np.abs(differences), initial=0.0)), display)
+    names = [method.method.name for method in verification.strapdown.methods]
     return UplotFigure(
         key=f"difference_{key}",
         quantity=f"{beside.quantity} difference",
@@ -65,8 +62,9 @@ def _difference(verification: Verification, key: str, beside: UplotFigure, displ
         symbol=f"Δ {beside.symbol.strip('|')}",
         unit=unit,
         time_unit=beside.time_unit,
-        names=tuple(method.method.name for method, _ in pairs),
-        colors=tuple(style.method_color(i) for i in range(len(pairs))),
-        states=tuple(display.state_of(method.method.name) for method, _ in pairs),
-        data=(np.ascontiguousarray(time_s / beside.time_unit.si), *(values / unit.si for values in curves)),
+        time=np.ascontiguousarray(time_s / beside.time_unit.si),
+        curves=tuple(
+            Curve(name, style.method_color(i), values / unit.si, state=display.state_of(name))
+            for i, (name, values) in enumerate(zip(names, differences, strict=True))
+        ),
     )

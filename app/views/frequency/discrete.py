@@ -3,28 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
 
-from app.plots.effective import effective_network, realisation
+from app.plots.effective import Loop, effective_network, loop_of, realisation
 from navcore.engine.run import MethodRun, Run
-from navcore.networks.base import ComplexArray, LinearNetwork
+from navcore.networks.base import ComplexArray
 
 LOWEST, HIGHEST = 2e-4, 0.15
 """Range of the measured frequencies, rad/s: the slowest takes nine hours of the filter's time."""
 _COUNT = 14
 _OF_NYQUIST = 0.8
-
-
-@dataclass(frozen=True)
-class _Question:
-    num: bytes
-    den: bytes
-    omega_s: float
-    step_s: float
-    network: LinearNetwork = field(compare=False)
 
 
 def law_step_s(run: Run) -> float:
@@ -42,22 +32,19 @@ def measured_gain(method: MethodRun, step_s: float) -> tuple[np.ndarray, Complex
     gains = realisation(method) != "network" and network.feedback_p is None
     if network.order == 0 or gains:
         return None
-    return _measure(
-        _Question(network.num_p.tobytes(), network.den_p.tobytes(), network.omega_s, step_s, network)
-    )
+    return _measure(loop_of(method), step_s)
 
 
 # A slider of one method leaves the filters of the others as they were.
 @lru_cache(maxsize=32)
-def _measure(question: _Question) -> tuple[np.ndarray, ComplexArray] | None:
+def _measure(loop: Loop, step_s: float) -> tuple[np.ndarray, ComplexArray] | None:
     from navcore.analysis.measured import measured_response
     from navcore.foundation.errors import InputError
     from navcore.networks.discrete import discretise
 
-    highest = min(HIGHEST, _OF_NYQUIST * math.pi / question.step_s)
-    omega = np.geomspace(LOWEST, highest, _COUNT)
+    omega = np.geomspace(LOWEST, min(HIGHEST, _OF_NYQUIST * math.pi / step_s), _COUNT)
     try:
-        gain = measured_response(discretise(question.network, question.step_s), omega)
+        gain = measured_response(discretise(loop.network, step_s), omega)
     except InputError:
         return None
     return None if gain is None else (omega, gain)

@@ -16,8 +16,7 @@ from app.plots.transfer_views import SHOWN as SHOWN
 from app.plots.transfer_views import TRANSFERS as TRANSFERS
 from app.plots.transfer_views import VIEWS, TransferView
 from app.plots.units import duration
-from app.views.frequency.axes import level_axis, log_axis, phase_axis
-from app.views.frequency.curves import decibel, pair, phase
+from app.views.frequency.curves import decibel, level_axis, log_axis, pair, phase, phase_axis
 from app.views.frequency.discrete import law_step_s, measured_gain
 from app.views.frequency.nyquist import nyquist
 from app.views.frequency.reference import Reference
@@ -37,7 +36,7 @@ _BOLD_PX = 7.8
 """Mean width of a letter in a title."""
 _LONGEST_SILENCE = 22
 _LEAST_COLUMN_PX, _SMALL_COLUMN_PX = 240.0, 200.0
-_REFERENCE = {
+_REFERENCE = style.lines("", 0) | {
     "legendgroup": "reference",
     "line": {"color": style.INK, "width": style.LINE_WIDTH, "dash": "dash", "simplify": False},
 }
@@ -61,11 +60,11 @@ def _packed_grid(omega_s: float) -> dict[str, str]:
 
 def natural_frequencies(run: Run) -> dict[str, float]:
     """Schuler, Foucault and Earth frequencies at the site, rad/s; Foucault only where the axis reaches it."""
-    found = {"24 h": EARTH_RATE, "Schuler": run.scenario.omega_s}
+    frequencies = {"24 h": EARTH_RATE, "Schuler": run.scenario.omega_s}
     foucault = EARTH_RATE * abs(math.sin(run.scenario.site.lat_deg * DEG))
     if foucault > OMEGA_MIN:
-        found["Foucault"] = foucault
-    return found
+        frequencies["Foucault"] = foucault
+    return frequencies
 
 
 def frequency_view(
@@ -122,37 +121,31 @@ def bode(
     view = VIEWS[transfer_id]
     omega_s = run.scenario.omega_s
     omega, x = omega_grid(omega_s), _packed_grid(omega_s)
-    smooth = np.abs(omega / omega_s - 1.0) > _NEAR
+    hover = "%{y:.2f} dB" if _in_decibel(view) else "%{y:.4g} " + view.unit
     data: list[dict[str, Any]] = []
-    seen: dict[str, list[np.ndarray]] = {"y": [], "y2": [], "y3": [], "y4": []}
-    also = [] if reference is None else [reference.label]
-    lines = [(_line(method, i), *_responses(method, view, omega)) for i, method in enumerate(run.methods)]
-    pairs = zip(run.methods, lines, strict=True)
-    silent = [method.method.name for method, (_, _, value) in pairs if value is None]
+    drawn: dict[str, list[np.ndarray]] = {"y": [], "y2": [], "y3": [], "y4": []}
+    lines = [(style.lines(m.method.name, i), *_responses(m, view, omega)) for i, m in enumerate(run.methods)]
+    names = [method.method.name for method in run.methods]
+    silent = [name for name, (_, _, value) in zip(names, lines, strict=True) if value is None]
     if reference is not None:
         lines.append((_REFERENCE | {"name": reference.label}, *_of_reference(reference, view, omega)))
+        names.append(reference.label)
     for line, h, value in lines:
-        curves = None if h is None else (decibel(h), phase(h))
-        _see(seen, curves, ("y", "y2"), smooth)
-        data += pair(line, x, curves, "x", ("y", "y2"), "%{y:.2f} dB")
-        hover = "%{y:.2f} dB" if _in_decibel(view) else "%{y:.4g} " + view.unit
-        curves = None if value is None else (_magnitude(value, view), phase(value))
-        _see(seen, curves, ("y3", "y4"), smooth)
-        data += pair(line, x, curves, "x2", ("y3", "y4"), hover)
+        columns = (
+            ("x", ("y", "y2"), "%{y:.2f} dB", None if h is None else (decibel(h), phase(h))),
+            ("x2", ("y3", "y4"), hover, None if value is None else (_magnitude(value, view), phase(value))),
+        )
+        for xaxis, yaxes, told, curves in columns:
+            data += pair(line, x, curves, xaxis, yaxes, told)
+            if curves is not None:  # a resonance may leave its axis
+                drawn[yaxes[0]].append(curves[0][np.abs(omega / omega_s - 1.0) > _NEAR])
+                drawn[yaxes[1]].append(curves[1])
     if discrete:
         data += [dots for i, method in enumerate(run.methods) for dots in _discrete_dots(run, method, i)]
-    return figure(data, _layout(run, view, seen, silent, also, aspect, width_px))
+    return figure(data, _layout(run, view, drawn, silent, names, aspect, width_px))
 
 
 _Responses = tuple[np.ndarray | None, np.ndarray | None]
-
-
-def _line(method: MethodRun, index: int) -> dict[str, Any]:
-    return {
-        "name": style.plain(method.method.name),
-        "legendgroup": str(index),
-        "line": {"color": style.method_color(index), "width": style.LINE_WIDTH, "simplify": False},
-    }
 
 
 def _responses(method: MethodRun, view: TransferView, omega: np.ndarray) -> _Responses:
@@ -174,18 +167,6 @@ def _magnitude(value: np.ndarray, view: TransferView) -> np.ndarray:
     return decibel(value * view.scale) if _in_decibel(view) else np.abs(value) * view.scale
 
 
-def _see(
-    seen: dict[str, list[np.ndarray]],
-    curves: tuple[np.ndarray, np.ndarray] | None,
-    yaxes: tuple[str, str],
-    smooth: np.ndarray,
-) -> None:
-    """Note what the axes have to hold; a resonance may leave them."""
-    if curves is not None:
-        seen[yaxes[0]].append(curves[0][smooth])
-        seen[yaxes[1]].append(curves[1])
-
-
 def _discrete_dots(run: Run, method: MethodRun, index: int) -> list[dict[str, Any]]:
     """Gain and phase of the running filter; the phase is that turn of it which lies next to the curve."""
     measured = measured_gain(method, law_step_s(run))
@@ -193,28 +174,14 @@ def _discrete_dots(run: Run, method: MethodRun, index: int) -> list[dict[str, An
         return []
     omega, gain = measured
     grid = omega_grid(run.scenario.omega_s)
-    network = effective_network(method)
-    beside = np.interp(np.log(omega), np.log(grid), phase(network.response(grid)))
+    beside = np.interp(np.log(omega), np.log(grid), phase(effective_network(method).response(grid)))
     angle = beside + np.rad2deg(np.angle(gain * np.exp(-1j * np.deg2rad(beside))))
-    name = style.plain(method.method.name)
-    common: dict[str, Any] = {
-        "type": "scatter",
-        "mode": "markers",
-        "x": packed(omega),
-        "xaxis": "x",
-        "name": f"{name} measured",
-        "legendgroup": str(index),
-        "showlegend": False,
-        "marker": {
-            "symbol": "circle",
-            "size": 8,
-            "color": "white",
-            "line": {"color": style.method_color(index), "width": 2},
-        },
-    }
+    ring = {"color": style.method_color(index), "width": 2}
+    dots = style.marks(f"{method.method.name} measured", index, "circle", 8, ring)
+    dots |= {"x": packed(omega), "xaxis": "x", "marker": dots["marker"] | {"color": "white"}}
     return [
-        common | {"y": packed(decibel(gain)), "yaxis": "y", "hovertemplate": "%{y:.3f} dB measured"},
-        common | {"y": packed(angle), "yaxis": "y2", "hovertemplate": "%{y:.2f}° measured"},
+        dots | {"y": packed(decibel(gain)), "yaxis": "y", "hovertemplate": "%{y:.3f} dB measured"},
+        dots | {"y": packed(angle), "yaxis": "y2", "hovertemplate": "%{y:.2f}° measured"},
     ]
 
 
@@ -225,55 +192,41 @@ def _in_decibel(view: TransferView) -> bool:
 def _layout(
     run: Run,
     view: TransferView,
-    seen: dict[str, list[np.ndarray]],
+    drawn: dict[str, list[np.ndarray]],
     silent: list[str],
-    also: list[str],
+    names: list[str],
     aspect: float,
     width_px: float,
 ) -> dict[str, Any]:
-    names = [m.method.name for m in run.methods]
-    rows = style.legend_rows([*names, *also], width_px - 84.0)
     share = style.column(width_px - 84.0)
     column_px = share * (width_px - 84.0)
     annotations = [
-        _title("x domain", "<b>Damping network H(jω)</b>"),
-        _title("x2 domain", _transfer_title(view, silent, column_px)),
+        style.heading("<b>Damping network H(jω)</b>", 48, "x domain"),
+        style.heading(_transfer_title(view, silent, column_px), 48, "x2 domain"),
         *(note for axis in ("x", "x2") for note in _marker_labels(run, axis, column_px)),
     ]
-    if len(silent) == len(names):
+    if len(silent) == len(run.methods):
         annotations.append(
             style.text(0.5, 0.5, "no method reacts", xref="x2 domain", yref="y3 domain", font=_MUTED_FONT)
         )
     upper, lower = {"domain": [0.53, 1.0]}, {"domain": [0.0, 0.47]}
-    return style.layout(
-        margin={"l": 68, "r": 16, "t": 62, "b": 66 + 22 * rows},
+    size_axis = level_axis if _in_decibel(view) else log_axis
+    return style.framed(
+        names,
+        aspect,
+        width_px,
+        {"l": 68, "r": 16, "t": 62, "b": 66},
         hovermode="x unified",
-        legend=style.legend(),
         xaxis=_omega_axis("y2", [0.0, share], column_px),
         xaxis2=_omega_axis("y4", [1.0 - share, 1.0], column_px),
-        yaxis=level_axis("|H|  (dB)", seen["y"]) | upper | {"anchor": "x"},
-        yaxis2=phase_axis(seen["y2"]) | lower | {"anchor": "x"},
-        yaxis3=(level_axis(view.unit, seen["y3"]) if _in_decibel(view) else log_axis(view.unit, seen["y3"]))
-        | upper
-        | {"anchor": "x2"},
-        yaxis4=phase_axis(seen["y4"]) | lower | {"anchor": "x2"},
+        yaxis=level_axis("|H|  (dB)", drawn["y"]) | upper | {"anchor": "x"},
+        yaxis2=phase_axis(drawn["y2"]) | lower | {"anchor": "x"},
+        yaxis3=size_axis(view.unit, drawn["y3"]) | upper | {"anchor": "x2"},
+        yaxis4=phase_axis(drawn["y4"]) | lower | {"anchor": "x2"},
         annotations=annotations,
-        shapes=[line for axis in ("x", "x2") for line in _marker_lines(run, axis)],
-        meta={"aspect": aspect},
-    )
-
-
-def _title(xref: str, content: str) -> dict[str, Any]:
-    return style.text(
-        0.0,
-        1.0,
-        content,
-        xref=xref,
-        yref="paper",
-        xanchor="left",
-        yanchor="middle",
-        yshift=48,
-        font={"size": style.TITLE_SIZE, "color": style.INK},
+        shapes=[
+            style.upright(omega, axis) for axis in ("x", "x2") for omega in natural_frequencies(run).values()
+        ],
     )
 
 
@@ -294,38 +247,18 @@ def _omega_axis(anchor: str, domain: list[float], column_px: float) -> dict[str,
     )
 
 
-def _marker_lines(run: Run, axis: str) -> list[dict[str, Any]]:
-    return [
-        {
-            "type": "line",
-            "xref": axis,
-            "x0": omega,
-            "x1": omega,
-            "yref": "paper",
-            "y0": 0.0,
-            "y1": 1.0,
-            "layer": "below",
-            "line": {"color": style.REFERENCE, "width": 1.2, "dash": "dot"},
-        }
-        for omega in natural_frequencies(run).values()
-    ]
-
-
 def _marker_labels(run: Run, axis: str, column_px: float) -> list[dict[str, Any]]:
     """Labels above the plots; Foucault always lies left of 24 h, so it is written to the left."""
     notes = []
     for name, omega in natural_frequencies(run).items():
         if name == "24 h" and column_px < _SMALL_COLUMN_PX:
             continue  # no room between the two others
-        period = duration(2.0 * math.pi / omega)
-        content = name if name == "24 h" else f"{name}<br>{period}"
-        anchor = {"24 h": "left", "Foucault": "right", "Schuler": "center"}[name]
-        shift = {"left": 1, "right": -1, "center": 0}[anchor]
+        anchor, shift = {"24 h": ("left", 1), "Foucault": ("right", -1), "Schuler": ("center", 0)}[name]
         notes.append(
             style.text(
                 math.log10(omega),
                 1.0,
-                content,
+                name if name == "24 h" else f"{name}<br>{duration(2.0 * math.pi / omega)}",
                 xref=axis,
                 yref="paper",
                 xanchor=anchor,

@@ -6,8 +6,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from app.plots import style
-from app.plots.rounding import round_up
-from app.plots.units import number
+from app.plots.units import number, round_up
 from navcore.law.policy.adaptive import SUN_TABLE
 
 if TYPE_CHECKING:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 from app.plots import style
 from app.plots.budgets import times_the_floor
 from app.plots.earth_mode import earth_mode_text
-from app.plots.pinned import Pinned, deltas
+from app.plots.pinned import Pinned, difference_text
+from app.plots.table import cell, row, table
 from app.plots.units import (
     ARCMINUTES,
     ARCSECONDS,
@@ -26,30 +27,28 @@ from app.plots.units import (
     settling,
 )
 from app.session.display import Display
-from navcore.engine.run import LawInForce, MethodRun, Run
+from navcore.engine.run import LawInForce, Run
 
 if TYPE_CHECKING:
     from navcore.engine.verification import Difference, Verification
 
 STATISTICS = ("rms", "max_abs", "final")
-_HEADINGS = ("rms", "max", "final")
-_OF_THE_DIFFERENCE = ("Δ rms", "Δ max", "Δ final")
+_HEADINGS = {"rms": "rms", "max_abs": "max", "final": "final"}
+_OF_THE_DIFFERENCE = {"rms": "Δ rms", "max_abs": "Δ max", "final": "Δ final"}
 
-# Fixed units: numbers of two runs can be compared at a glance.
-_QUANTITIES: tuple[tuple[str, str, Unit], ...] = (
-    ("tilt φE", "phi_e_rad", ARCSECONDS),
-    ("tilt φN", "phi_n_rad", ARCSECONDS),
-    ("heading φU", "phi_u_rad", ARCMINUTES),
-    ("velocity δVE", "dve_mps", METRES_PER_SECOND),
-    ("velocity δVN", "dvn_mps", METRES_PER_SECOND),
-    ("latitude", "dlat_m", METRES),
-    ("longitude", "dlon_m", METRES),
-    ("position", "position_m", METRES),
-    ("position", "position_m", NAUTICAL_MILES),
+# Label, quantity, and the display's field for its unit. The units are fixed: numbers of two runs can be
+# compared at a glance.
+_QUANTITIES: tuple[tuple[str, str, Unit, str], ...] = (
+    ("tilt φE", "phi_e_rad", ARCSECONDS, "angle"),
+    ("tilt φN", "phi_n_rad", ARCSECONDS, "angle"),
+    ("heading φU", "phi_u_rad", ARCMINUTES, "angle"),
+    ("velocity δVE", "dve_mps", METRES_PER_SECOND, "speed"),
+    ("velocity δVN", "dvn_mps", METRES_PER_SECOND, "speed"),
+    ("latitude", "dlat_m", METRES, "length"),
+    ("longitude", "dlon_m", METRES, "length"),
+    ("position", "position_m", METRES, "length"),
+    ("position", "position_m", NAUTICAL_MILES, "length"),
 )
-
-
-_ANGLES, _SPEEDS = (ARCSECONDS, ARCMINUTES), (METRES_PER_SECOND,)
 
 
 @dataclass(frozen=True)
@@ -89,33 +88,31 @@ def metrics_rows(run: Run, display: Display | None = None, baseline: Pinned | No
     baseline : Pinned, optional
         What it is compared with.
     """
-    shown = display or Display()
-    loops = _loop_rows(run)
-    errors = [_error_row(run, *quantity) for quantity in _in_units(shown)]
-    if baseline is not None and baseline.run is not None:
-        loops = [replace(row, deltas=("",) * len(run.methods)) for row in loops]
-        errors = [
-            replace(row, deltas=_delta_texts(run, baseline.run, name, shown.delta, unit))
-            for row, (_, name, unit) in zip(errors, _in_units(shown), strict=True)
-        ]
-    return (*loops, *errors)
-
-
-def _in_units(display: Display) -> list[tuple[str, str, Unit]]:
-    """The quantities in the units that are wanted; lengths then have one line each."""
-    found: list[tuple[str, str, Unit]] = []
-    for label, name, unit in _QUANTITIES:
-        family = _ANGLES if unit in _ANGLES else _SPEEDS if unit in _SPEEDS else ()
-        wanted = display.angle if family == _ANGLES else display.speed if family else display.length
-        entry = (label, name, unit if wanted == AUTO else NAMED[wanted])
-        if entry not in found:
-            found.append(entry)
-    return found
+    display = display or Display()
+    before = None if baseline is None else baseline.run
+    # lengths in one unit have one line each
+    quantities = dict.fromkeys(
+        (label, name, unit if getattr(display, field) == AUTO else NAMED[getattr(display, field)])
+        for label, name, unit, field in _QUANTITIES
+    )
+    rows = _loop_rows(run)
+    if before is not None:
+        rows = [replace(row, deltas=("",) * len(run.methods)) for row in rows]
+    for label, name, unit in quantities:
+        row = _error_row(run, label, name, unit)
+        if before is not None:
+            row = replace(row, deltas=_delta_texts(run, before, name, display.delta, unit))
+        rows.append(row)
+    return tuple(rows)
 
 
 def _delta_texts(run: Run, baseline: Run, name: str, statistic: str, unit: Unit) -> tuple[str, ...]:
+    """For every method what has changed against the baseline's method of the same name."""
+    old = {method.method.name: method.errors[name][statistic] for method in baseline.methods}
+    new = {method.method.name: method.errors[name][statistic] for method in run.methods}
     return tuple(
-        "not in it" if delta is None else delta.text(unit) for delta in deltas(run, baseline, name, statistic)
+        difference_text(value, old[method], unit) if method in old else "not in it"
+        for method, value in new.items()
     )
 
 
@@ -123,24 +120,24 @@ def difference_rows(verification: Verification) -> tuple[Row, ...]:
     """Lines with the largest difference between full strapdown and linear model, and its part of the peak."""
     return tuple(
         Row(label, unit.name, tuple((_difference(d.get(name), unit),) for d in verification.differences))
-        for label, name, unit in _QUANTITIES[:-1]
+        for label, name, unit, _ in _QUANTITIES[:-1]
     )
 
 
-def _difference(found: Difference | None, unit: Unit) -> str:
-    if found is None:
+def _difference(difference: Difference | None, unit: Unit) -> str:
+    if difference is None:
         return "not known"
-    part = "" if found.of_peak is None else f" ({number(100.0 * found.of_peak, 2)} %)"
-    return f"{number(found.peak / unit.si, 3)}{part}"
+    part = "" if difference.of_peak is None else f" ({number(100.0 * difference.of_peak, 2)} %)"
+    return f"{number(difference.peak / unit.si, 3)}{part}"
 
 
 def verdict(verification: Verification) -> str:
     """Say in one line how far the linear model is from the full strapdown."""
     worst = [
-        (found.of_peak, label, method.method.name)
+        (difference.of_peak, label, method.method.name)
         for method, differences in zip(verification.linear.methods, verification.differences, strict=True)
-        for label, name, _ in _QUANTITIES[:-1]
-        if (found := differences.get(name)) is not None and found.of_peak is not None
+        for label, name, _, _ in _QUANTITIES[:-1]
+        if (difference := differences.get(name)) is not None and difference.of_peak is not None
     ]
     if not worst:
         return "The two models could not be compared."
@@ -149,7 +146,7 @@ def verdict(verification: Verification) -> str:
 
 
 def _loop_rows(run: Run) -> list[Row]:
-    settles = tuple((_settling(method),) for method in run.methods)
+    settles = tuple((settling(m.loop.settling_s) if m.loop.stable else "unstable",) for m in run.methods)
     times = [m.loop.settling_s if m.loop.stable else None for m in run.methods]
     best = _best([[math.inf if time is None else time] for time in times])
     rows = [
@@ -158,51 +155,36 @@ def _loop_rows(run: Run) -> list[Row]:
         # How far it is from 1 is what counts: three digits would hide it.
         Row("H(0)", "", tuple((number(m.loop.h0),) for m in run.methods)),
     ]
-    if run.status != "ok":
-        rows.insert(0, Row("run", "", tuple((m.status,) for m in run.methods)))
-    return rows
+    return rows if run.status == "ok" else [Row("run", "", tuple((m.status,) for m in run.methods)), *rows]
 
 
 def _best(sizes: Sequence[Sequence[float]]) -> tuple[tuple[bool, ...], ...]:
     """Mark the smallest size of each column; none where all are alike."""
     marks = []
     for column in zip(*sizes, strict=True):
-        found = [size for size in column if math.isfinite(size)]
-        least = min(found, default=math.nan)
+        least = min((size for size in column if math.isfinite(size)), default=math.nan)
         marks.append(tuple(size == least and min(column) < max(column) for size in column))
     return tuple(zip(*marks, strict=True))
 
 
 def system_html(run: Run) -> str:
     """Table with a line a method: whole system, law in force, and the steady errors over the floor."""
-    heads = (
-        "",
-        "24 h mode",
-        "time damped",
-        "damping ratio in force",
-        "tilt, velocity: times the floor",
-    )
-    lines = "".join(
-        f'<tr style="{_LINE};color:{style.method_color(i)}"><td style="padding:1px 8px 1px 2px">'
-        f"{escape(method.method.name)}</td>"
-        + "".join(
-            f'<td style="padding:1px 8px">{escape(text)}</td>'
-            for text in (
-                earth_mode_text(method.whole.earth_growth),
-                f"{number(100.0 * method.law_in_force.damped_share, 3)} %",
-                _coefficient(method.law_in_force),
-                floor,
-            )
+    heads = "", "24 h mode", "time damped", "damping ratio in force", "tilt, velocity: times the floor"
+    floors, lines = times_the_floor(run.scenario), []
+    for i, (method, floor) in enumerate(zip(run.methods, floors, strict=True)):
+        law = method.law_in_force
+        texts = (
+            method.method.name,
+            earth_mode_text(method.whole.earth_growth),
+            f"{number(100.0 * law.damped_share, 3)} %",
+            _coefficient(law),
+            floor,
         )
-        + "</tr>"
-        for i, (method, floor) in enumerate(zip(run.methods, times_the_floor(run.scenario), strict=True))
-    )
-    head = "".join(f'<th style="{_MUTED};text-align:left;padding:1px 8px">{text}</th>' for text in heads)
+        lines.append(row((cell(escape(text)) for text in texts), style=f"color:{style.method_color(i)}"))
+    head = row(cell(text, "sb-m", tag="th") for text in heads)
     return (
-        f'<details class="sb-system" style="{_SMALL}">'
-        f'<summary style="cursor:pointer">Whole system, law in force, floor'
-        f'</summary><div style="overflow-x:auto"><table style="{_TABLE}"><thead><tr>{head}</tr></thead>'
-        f"<tbody>{lines}</tbody></table></div></details>"
+        '<details class="sb-system"><summary>Whole system, law in force, floor</summary>'
+        f"{table([head], lines)}</details>"
     )
 
 
@@ -212,12 +194,6 @@ def _coefficient(law: LawInForce) -> str:
         return "none"
     low, high = number(law.xi_min, 3), number(law.xi_max, 3)
     return low if low == high else f"{low} to {high}"
-
-
-def _settling(method: MethodRun) -> str:
-    if not method.loop.stable:
-        return "unstable"
-    return settling(method.loop.settling_s)
 
 
 def _error_row(run: Run, label: str, name: str, unit: Unit) -> Row:
@@ -255,53 +231,54 @@ def metrics_html(
     baseline : Pinned, optional
         Adds a column of differences to each method.
     """
-    shown = range(len(run.methods)) if methods is None else methods
+    places = range(len(run.methods)) if methods is None else methods
     compares = baseline is not None and baseline.run is not None
-    columns = 4 if compares else 3
-    head = "".join(
-        f'<th colspan="{columns}" style="{_HEAD};border-bottom:3px solid {style.method_color(i)}">'
-        f"{escape(run.methods[i].method.name)}</th>"
-        for i in shown
-    )
-    headings: list[str] = list(_HEADINGS)
+    headings = list(_HEADINGS.values())
     if compares:
-        headings.append(_OF_THE_DIFFERENCE[STATISTICS.index((display or Display()).delta)])
-    below = "".join(f'<th style="{_NUMBER};{_MUTED}">{name}</th>' for name in headings) * len(shown)
+        headings.append(_OF_THE_DIFFERENCE[(display or Display()).delta])
+    columns = len(headings)
+    width = 2 + columns * len(places)
+    below = [cell(name, "sb-n sb-m", tag="th") for name in headings] * len(places)
+    head = [
+        row([cell(), cell(), *(_method_head(run, i, columns) for i in places)]),
+        row([cell(), cell("unit", "sb-m", tag="th"), *below]),
+    ]
     rows = metrics_rows(run, display, baseline)
     decimals = _decimals(rows)
-    body = "".join(_html_row(_part(row, shown), decimals=decimals) for row in rows)
-    if compares and baseline is not None:
-        body += (
-            f'<tr style="{_LINE}"><td colspan="{2 + columns * len(shown)}" style="padding:6px 2px;{_MUTED}">'
+    body = [_html_row(_part(each, places), columns, decimals) for each in rows]
+    if baseline is not None and compares:
+        foot = (
             f'Δ: this run minus <b style="color:{baseline.hex}">{escape(baseline.name)}</b>, the method of '
-            "the same name; in the unit of the line, and as a part of the baseline's number</td></tr>"
+            "the same name; in the unit of the line, and as a part of the baseline's number"
         )
+        body.append(row([cell(foot, "sb-foot", colspan=width)]))
     if verification is not None:
-        compared = "".join(_html_row(_part(row, shown), columns) for row in difference_rows(verification))
-        faint = "opacity:.5" if old else ""
         title = "Full strapdown minus linear model: largest difference (part of the strapdown's peak)"
         title += "; of an earlier scenario" if old else ""
-        body += (
-            f'<tr class="sb-difference" style="{_LINE};{faint}"><td colspan="{2 + columns * len(shown)}" '
-            f'style="padding:8px 2px 2px;font-weight:600">{title}</td></tr>'
-        )
-        body += compared.replace("<tr ", '<tr class="sb-old" ') if old else compared
-    return (
-        f'<div style="overflow-x:auto"><table style="{_TABLE}"><thead><tr><td></td><td></td>{head}</tr>'
-        f'<tr><td></td><th style="{_MUTED};text-align:left">unit</th>{below}</tr></thead>'
-        f"<tbody>{body}</tbody></table></div>"
-    )
+        look = "sb-old" if old else ""
+        body.append(row([cell(title, "sb-title", colspan=width)], f"sb-difference {look}".rstrip()))
+        body += [_html_row(_part(each, places), columns, look=look) for each in difference_rows(verification)]
+    return table(head, body)
 
 
-def _part(row: Row, methods: Sequence[int]) -> Row:
-    deltas = tuple(row.deltas[i] for i in methods) if row.deltas else ()
-    best = tuple(row.best[i] for i in methods) if row.best else ()
-    return replace(row, cells=tuple(row.cells[i] for i in methods), deltas=deltas, best=best)
+def _method_head(run: Run, index: int, columns: int) -> str:
+    name = f"<span>{escape(run.methods[index].method.name)}</span>"
+    return cell(name, "sb-h", tag="th", colspan=columns, style=f"color:{style.method_color(index)}")
+
+
+def _part(whole: Row, methods: Sequence[int]) -> Row:
+    """The cells of some methods."""
+    parts = {
+        name: tuple(values[i] for i in methods)
+        for name in ("cells", "deltas", "best")
+        if (values := getattr(whole, name))
+    }
+    return replace(whole, **parts)
 
 
 def _decimals(rows: Sequence[Row]) -> int:
     """Most decimals of the numbers that stand below each other."""
-    numbers = (text for row in rows for cell in row.cells if len(cell) > 1 for text in cell)
+    numbers = (text for line in rows for texts in line.cells if len(texts) > 1 for text in texts)
     return max((len(text.partition(".")[2]) for text in numbers if "e" not in text), default=0)
 
 
@@ -316,56 +293,34 @@ def method_px(rows: Sequence[Row], letter_px: float, padding_px: float) -> float
         Width of a digit, and left and right of a number together.
     """
     places = _decimals(rows)
-    widths = [0] * len(STATISTICS)
-    for row in rows:
-        for cell in row.cells:
-            if len(cell) == len(widths):
-                whole = (len(text.partition(".")[0]) + 1 + places for text in cell)
-                widths = [max(pair) for pair in zip(widths, whole, strict=True)]
-    return sum(letter_px * max(width, len("final")) + padding_px for width in widths)
+    widths = [len("final")] * len(STATISTICS)
+    for texts in (texts for line in rows for texts in line.cells if len(texts) > 1):
+        whole = (len(text.partition(".")[0]) + 1 + places for text in texts)
+        widths = [max(pair) for pair in zip(widths, whole, strict=True)]
+    return sum(letter_px * width + padding_px for width in widths)
 
 
-_TABLE = (
-    f"border-collapse:collapse;font-size:{style.FONT_SIZE}px;color:{style.INK};width:100%;"
-    "font-variant-numeric:tabular-nums;line-height:1.1"
-)
-_SMALL = f"margin:0 10px;font-size:12.5px;color:{style.INK}"
-_HEAD = "text-align:center;padding:2px 8px;font-weight:600"
-_NUMBER = "text-align:right;padding:1px 8px;white-space:nowrap"
-_MUTED = f"color:{style.MUTED};font-weight:400"
-_DELTA = f"background:{style.SEA}"
-_LINE = f"border-top:1px solid {style.GRID}"
-
-
-def _html_row(row: Row, columns: int = 3, decimals: int = 0) -> str:
-    cells = ""
-    for place, cell in enumerate(row.cells):
-        best = row.best[place] if row.best else (False,) * len(cell)
-        if len(cell) == 1:
-            span = columns + bool(row.deltas)
-            text = _marked(escape(cell[0]), best[0])
-            cells += f'<td colspan="{span}" style="text-align:center;padding:1px 8px">{text}</td>'
+def _html_row(line: Row, columns: int, decimals: int = 0, look: str = "") -> str:
+    cells = [cell(escape(line.label)), cell(escape(line.unit), "sb-m")]
+    for place, texts in enumerate(line.cells):
+        best = line.best[place] if line.best else (False,) * len(texts)
+        marked = [_marked(escape(text), mark) for text, mark in zip(texts, best, strict=True)]
+        if len(texts) == 1:
+            cells.append(cell(marked[0], "sb-c", colspan=columns))
             continue
-        for value, mark in zip(cell, best, strict=True):
-            cells += f'<td style="{_NUMBER}">{_marked(escape(value), mark)}{_filled(value, decimals)}</td>'
-        if row.deltas:
-            cells += f'<td class="sb-delta" style="{_NUMBER};{_DELTA}">{escape(row.deltas[place])}</td>'
-    return (
-        f'<tr style="{_LINE}"><td style="padding:1px 8px 1px 2px;white-space:nowrap">{escape(row.label)}</td>'
-        f'<td style="{_MUTED};padding:1px 8px 1px 0">{escape(row.unit)}</td>{cells}</tr>'
-    )
+        filled = [_filled(text, decimals) for text in texts]
+        cells += [cell("".join(parts), "sb-n") for parts in zip(marked, filled, strict=True)]
+        if line.deltas:
+            cells.append(cell(escape(line.deltas[place]), "sb-n sb-delta"))
+    return row(cells, look)
 
 
 def _marked(text: str, best: bool) -> str:
-    return f'<span class="sb-best" title="{style.BEST}">{text}</span>' if best else text
+    return cell(text, "sb-best", tag="span", title=style.BEST) if best else text
 
 
 def _filled(text: str, decimals: int) -> str:
     """Unseen figures behind a number, so that the points of a column stand below each other."""
     _, point, fraction = text.partition(".")
     rest = ("" if point or decimals == 0 else ".") + "0" * (decimals - len(fraction))
-    return (
-        f'<span style="visibility:hidden" aria-hidden="true">{rest}</span>'
-        if rest and "e" not in text
-        else ""
-    )
+    return cell(rest, "sb-fill", tag="span", aria_hidden="true") if rest and "e" not in text else ""

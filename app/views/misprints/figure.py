@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from html import escape
+from itertools import repeat
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from app.misprints import Axis, Comparison, Curve, Misprint, Number
 from app.plots import style
 from app.plots.plotly_data import PlotlyFigure, figure, packed
+from app.plots.table import cell, row, table
 from app.plots.units import Unit, angle_unit, length_unit, number, speed_unit
 from navcore.foundation.notation import with_unit
 from navcore.foundation.units import HOUR, MINUTE
@@ -50,32 +52,22 @@ def comparison_plot(
         Expected width on screen, for room for the legend.
     """
     curves = [curve for curve in comparison.curves if curve.form in FORMS[shown]]
-    low, high, leaves = _range(curves, log=comparison.y_axis.log)
-    x_unit = _unit(comparison.x_axis, _extent(comparison.x))
-    y_unit = _unit(comparison.y_axis, max(abs(low), abs(high)))
-    x = packed(comparison.x / x_unit.si)
-    counted = {"printed": 0, "corrected": 0}
-    data: list[dict[str, Any]] = []
-    for curve in curves:
-        data.append(_trace(curve, counted[curve.form], x, y_unit))
-        counted[curve.form] += 1
-    rows = style.legend_rows([curve.label for curve in curves], width_px - 84.0)
-    margin = {"l": 76, "r": 18, "t": 30 if leaves else 12, "b": 46 + 22 * rows}
-    height = aspect * width_px - margin["t"] - margin["b"]
-    layout = style.layout(
-        margin=margin, hovermode="x unified", showlegend=True, legend=style.legend(), meta={"aspect": aspect}
-    )
-    layout["xaxis"] = _axis(comparison.x_axis, x_unit, 1)
-    decades = _decades([curve.y for curve in curves])
-    layout["yaxis"] = _axis(comparison.y_axis, y_unit, decades, height) | {
-        "zeroline": not comparison.y_axis.log
-    }
-    layout["yaxis"] |= {"zerolinecolor": style.REFERENCE, "zerolinewidth": 1, "nticks": 7}
-    if not comparison.y_axis.log and high > low:
+    x_axis, y_axis = comparison.x_axis, comparison.y_axis
+    low, high, leaves = _range(curves, log=y_axis.log)
+    x_unit = _unit(x_axis, float(np.max(np.abs(comparison.x[np.isfinite(comparison.x)]), initial=0.0)))
+    y_unit = _unit(y_axis, max(abs(low), abs(high)))
+    margin = {"l": 76, "r": 18, "t": 30 if leaves else 12, "b": 46}
+    names = [curve.label for curve in curves]
+    layout = style.framed(names, aspect, width_px, margin, hovermode="x unified", showlegend=True)
+    height = aspect * width_px - margin["t"] - layout["margin"]["b"]
+    zero = {"zeroline": not y_axis.log, "zerolinecolor": style.REFERENCE, "zerolinewidth": 1, "nticks": 7}
+    layout["xaxis"] = _axis(x_axis, x_unit, 1)
+    layout["yaxis"] = _axis(y_axis, y_unit, _decades([curve.y for curve in curves]), height) | zero
+    if not y_axis.log and high > low:
         pad = 0.06 * (high - low)
         layout["yaxis"]["range"] = [(low - pad) / y_unit.si, (high + pad) / y_unit.si]
     layout["annotations"] = [style.panel_title("The printed form leaves the plot")] if leaves else []
-    return figure(data, layout)
+    return figure(_traces(curves, packed(comparison.x / x_unit.si), y_unit), layout)
 
 
 def _range(curves: list[Curve], *, log: bool) -> tuple[float, float, bool]:
@@ -95,38 +87,36 @@ def _range(curves: list[Curve], *, log: bool) -> tuple[float, float, bool]:
 
 
 def _span(values: list[np.ndarray]) -> tuple[float, float] | None:
-    finite = [y[np.isfinite(y)] for y in values]
-    found = [y for y in finite if len(y)]
-    return (min(float(y.min()) for y in found), max(float(y.max()) for y in found)) if found else None
+    finite = np.concatenate([[], *(y[np.isfinite(y)] for y in values)])
+    return (float(finite.min()), float(finite.max())) if len(finite) else None
 
 
-def _extent(values: np.ndarray) -> float:
-    finite = values[np.isfinite(values)]
-    return float(np.max(np.abs(finite))) if len(finite) else 0.0
-
-
-def _trace(curve: Curve, place: int, x: dict[str, str], unit: Unit) -> dict[str, Any]:
-    dashes = _DASHES[curve.form]
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "x": x,
-        "y": packed(curve.y / unit.si),
-        "name": style.plain(curve.label),
-        "hovertemplate": f"%{{y:.4g}} {unit.name}".rstrip(),
-        "line": {
-            "color": _COLORS[curve.form],
-            "dash": dashes[min(place, len(dashes) - 1)],
-            "width": style.LINE_WIDTH,
-            "simplify": False,
-        },
-    }
+def _traces(curves: list[Curve], x: dict[str, str], unit: Unit) -> list[dict[str, Any]]:
+    """Curves of one form have dashes of their own."""
+    dashes = {form: [*kinds, *repeat(kinds[-1], len(curves))] for form, kinds in _DASHES.items()}
+    return [
+        {
+            "type": "scatter",
+            "mode": "lines",
+            "x": x,
+            "y": packed(curve.y / unit.si),
+            "name": style.plain(curve.label),
+            "hovertemplate": f"%{{y:.4g}} {unit.name}".rstrip(),
+            "line": {
+                "color": _COLORS[curve.form],
+                "dash": dashes[curve.form].pop(0),
+                "width": style.LINE_WIDTH,
+                "simplify": False,
+            },
+        }
+        for curve in curves
+    ]
 
 
 def _decades(values: Sequence[np.ndarray]) -> int:
     """Decades between two ticks of a logarithmic axis, so that they stay apart."""
-    found = _span([np.where(v > 0.0, v, np.nan) for v in values])
-    spanned = 1.0 if found is None else math.log10(found[1] / found[0])
+    span = _span([np.where(v > 0.0, v, np.nan) for v in values])
+    spanned = 1.0 if span is None else math.log10(span[1] / span[0])
     return max(1, math.ceil(spanned / _MOST_TICKS))
 
 
@@ -137,11 +127,10 @@ def _axis(axis: Axis, unit: Unit, decades: int, room_px: float = math.inf) -> di
         at = min(breaks, key=lambda n: max(len(" ".join(words[:n])), len(" ".join(words[n:]))), default=1)
         words = [*words[: at - 1], "\n".join(words[at - 1 : at + 1]), *words[at + 1 :]]
     title = style.plain(" ".join(words)).replace("\n", "<br>")
-    made = style.axis(title)
     if not axis.log:
-        return made
+        return style.axis(title)
     small = {"size": style.FONT_SIZE - 2, "color": style.MUTED}
-    return made | {"type": "log", "exponentformat": "power", "dtick": decades, "tickfont": small}
+    return style.axis(title, type="log", exponentformat="power", dtick=decades, tickfont=small)
 
 
 def _unit(axis: Axis | Number, peak: float) -> Unit:
@@ -156,42 +145,34 @@ def _unit(axis: Axis | Number, peak: float) -> Unit:
 
 def words_html(misprint: Misprint, comparison: Comparison) -> str:
     """What is printed, what is right, what follows, and the numbers of both forms side by side."""
-    told = (
-        ("printed", misprint.printed, _COLORS["printed"]),
-        ("right", misprint.right, _COLORS["corrected"]),
+    printed, corrected = _COLORS["printed"], _COLORS["corrected"]
+    sentences = (
+        ("printed", misprint.printed, printed),
+        ("right", misprint.right, corrected),
         ("so", comparison.words or misprint.consequence, style.INK),
     )
-    line = "border-bottom:2.5px solid "
     lines = "".join(
-        f'<div><b style="{line}{color}">{name}:</b> {escape(text)}</div>'
-        for name, text, color in told
+        f'<div><b style="color:{color}"><span>{name}:</span></b> {escape(text)}</div>'
+        for name, text, color in sentences
         if text
     )
-    rows = "".join(_number_row(found) for found in comparison.numbers)
-    cell = "padding:0 0 0 14px;text-align:right;font-weight:600"
-    table = (
-        f'<table style="border-collapse:collapse;white-space:nowrap;font-variant-numeric:tabular-nums">'
-        f'<tr><td></td><td style="{cell};{line}{_COLORS["printed"]}">as printed</td>'
-        f'<td style="{cell};{line}{_COLORS["corrected"]}">corrected</td></tr>{rows}</table>'
+    head = row(
+        [
+            cell(),
+            cell("as printed", "sb-n", tag="th", style=f"border-color:{printed}"),
+            cell("corrected", "sb-n", tag="th", style=f"border-color:{corrected}"),
+        ]
     )
-    return (
-        f'<div class="sb-misprint" style="display:flex;gap:6px 28px;margin:0 12px;color:{style.INK};'
-        f'font-size:{style.FONT_SIZE}px;line-height:1.4"><div style="flex:1 1 0">{lines}</div>'
-        f"<div>{table}</div></div>"
+    rows = (
+        row([cell(escape(n.name), "sb-m"), *(cell(_number(n, v), "sb-n") for v in (n.printed, n.corrected))])
+        for n in comparison.numbers
     )
+    return f'<div class="sb-misprint"><div>{lines}</div>{table([head], rows)}</div>'
 
 
-def _number_row(found: Number) -> str:
-    cells = "".join(
-        f'<td style="padding:0 0 0 14px;text-align:right">{_number(found, value)}</td>'
-        for value in (found.printed, found.corrected)
-    )
-    return f'<tr><td style="color:{style.MUTED};white-space:normal">{escape(found.name)}</td>{cells}</tr>'
-
-
-def _number(found: Number, value: float | None) -> str:
+def _number(of: Number, value: float | None) -> str:
     if value is None:
         return "none"
     # each in its own unit: 0.03 s beside 84 min reads better than 0.0005 min
-    unit = _unit(found, abs(value))
+    unit = _unit(of, abs(value))
     return escape(with_unit(number(value / unit.si, 4), unit.name))

@@ -32,7 +32,6 @@ ZOOM = 1.7
 _HEIGHTS = (4.0, 6.0, 10.0, 16.0, 25.0, 40.0, 60.0, 100.0, 160.0, 250.0, 400.0, 1e3, 1e4, 1e5)
 _RIGHT_SHARE = 0.14
 """Part of a panel's width that shows the right half plane."""
-_MARGIN = {"l": 58, "r": 16, "t": 32}
 PANELS = (("xaxis", "yaxis"), ("xaxis2", "yaxis2"))
 """Axes of the two panels: all poles, and those near the Schuler frequency."""
 _PICK = {"command": COMMAND, "panels": PANELS}
@@ -43,7 +42,8 @@ _INSIDE = 0.955
 """Part of a panel's width within which the labels of the rays lie."""
 _RAY_PX = 27.0
 """Least distance of two labels of rays at one height."""
-_KEYS = ("closed-loop pole", "zero of H")
+_KEYS = {"closed-loop pole": ("x-thin", 2.6), "zero of H": ("circle-open", 2.0)}
+"""Legend entries that say what the two marks mean."""
 _TITLES = {
     "": ("All closed-loop poles (┊ settling time)", "All closed-loop poles", "All poles"),
     "2": ("Near the Schuler frequency", "Near Schuler"),
@@ -81,44 +81,43 @@ def poles(
     allowed : Allowed
         What the requirements ask of the poles.
     """
-    rows = style.legend_rows([m.method.name for m in run.methods] + list(_KEYS), width_px - 84.0)
-    margin = _MARGIN | {"b": 48 + 22 * rows}
-    shape = _panel_shape(aspect, width_px, margin)
+    names = [*(method.method.name for method in run.methods), *_KEYS]
+    layout = style.framed(names, aspect, width_px, {"l": 58, "r": 16, "t": 32, "b": 48}, hovermode="closest")
+    margin = layout["margin"]
+    inner_px = width_px - margin["l"] - margin["r"]
+    share = style.column(inner_px)
+    panel_px = share * inner_px
+    shape = panel_px / max(aspect * width_px - margin["t"] - margin["b"], 1.0)
     marks = [(_scaled(m, closed_loop_poles(m)), _scaled(m, effective_network(m).zeros)) for m in run.methods]
     full = _half_height(np.concatenate([roots for roots, _ in marks]), shape)
-    panels = {"": _panel(full, shape), "2": _panel(ZOOM, shape)}
-    data: list[dict[str, Any]] = []
-    for suffix, (re, im) in panels.items():
+    note, omega_s = locus_note(run, selected, locus), run.scenario.omega_s
+    panels = (("", full, [0.0, share]), ("2", ZOOM, [1.0 - share, 1.0]))
+    data, shapes = [], []
+    notes: list[dict[str, Any]] = []
+    for suffix, half, domain in panels:
+        re, im = _panel(half, shape)
         data.append(damping_lines(suffix, re, im))
         data += locus_traces(run, selected, locus, suffix)
         for i, (method, (roots, zeros)) in enumerate(zip(run.methods, marks, strict=True)):
             data += _method_marks(method, i, roots, zeros, suffix)
-    data += _key_entries()
-    share, width = _column(width_px, margin)
-    layout = _layout(panels, margin, aspect, locus_note(run, selected, locus), width, share)
-    layout["annotations"] += _far_zeros([zeros for _, zeros in marks], panels[""][0][0])
-    for suffix, (re, im) in panels.items():
-        layout["annotations"] += settling_labels(suffix, re, run.scenario.omega_s, width)
-        layout["shapes"] += settling_shapes(suffix, re, run.scenario.omega_s, width)
-        layout["shapes"] += forbidden(suffix, re, im, allowed, run.scenario.omega_s)
-    return figure(data, layout)
+        layout |= _axes(suffix, re, im, domain)
+        title = f"<b>{style.fitting(_TITLES[suffix], panel_px)}</b>"
+        if suffix and note:  # in plain letters: those of a parameter's ends take more room
+            title = f'<b><span style="font-weight:400">{note}</span></b>'
+        notes.append(style.heading(title, 13.0, f"x{suffix} domain") | {"yref": f"y{suffix} domain"})
+        notes += _panel_labels(suffix, re, im, panel_px)
+        notes += settling_labels(suffix, re, omega_s, panel_px)
+        shapes += _boundary(suffix)
+        shapes += settling_shapes(suffix, re, omega_s, panel_px)
+        shapes += forbidden(suffix, re, im, allowed, omega_s)
+    notes += _far_zeros([zeros for _, zeros in marks], _panel(full, shape)[0][0])
+    data += [style.key(name, symbol, width) for name, (symbol, width) in _KEYS.items()]
+    layout["meta"] |= {"pick": _PICK}
+    return figure(data, layout | {"shapes": shapes, "annotations": notes})
 
 
 def _scaled(method: MethodRun, roots: np.ndarray) -> np.ndarray:
     return np.asarray(roots, dtype=np.complex128) / method.network.omega_s
-
-
-def _panel_shape(aspect: float, width_px: float, margin: dict[str, int]) -> float:
-    """Width / height of one panel."""
-    height = aspect * width_px - margin["t"] - margin["b"]
-    return _column(width_px, margin)[1] / max(height, 1.0)
-
-
-def _column(width_px: float, margin: dict[str, int]) -> tuple[float, float]:
-    """Width of one panel: its part of the room between the margins, and px."""
-    inner_px = width_px - margin["l"] - margin["r"]
-    share = style.column(inner_px)
-    return share, share * inner_px
 
 
 def _half_height(roots: np.ndarray, shape: float) -> float:
@@ -144,32 +143,26 @@ def _panel(half_height: float, shape: float) -> tuple[Interval, Interval]:
 def _method_marks(
     method: MethodRun, index: int, roots: np.ndarray, zeros: np.ndarray, suffix: str
 ) -> list[dict[str, Any]]:
-    color, name = style.method_color(index), style.plain(method.method.name)
-    common: dict[str, Any] = {
-        "type": "scatter",
-        "mode": "markers",
-        "xaxis": f"x{suffix}",
-        "yaxis": f"y{suffix}",
-        "legendgroup": str(index),
-    }
-    cross = common | {
-        "name": name,
+    color, name = style.method_color(index), method.method.name
+    axes = {"xaxis": f"x{suffix}", "yaxis": f"y{suffix}"}
+    told = f"<b>{style.plain(name)}</b><br>"
+    cross = style.marks(name, index, "x-thin", 11, {"color": color, "width": 2.6}) | axes
+    cross |= {
         "x": packed(np.real(roots)),
         "y": packed(np.imag(roots)),
         "text": [_about_pole(complex(root), method.network.omega_s) for root in roots],
-        "hovertemplate": f"<b>{name}</b><br>%{{text}}<extra></extra>",
-        "marker": {"symbol": "x-thin", "size": 11, "line": {"color": color, "width": 2.6}, "color": color},
+        "hovertemplate": f"{told}%{{text}}<extra></extra>",
         "showlegend": suffix == "",
     }
-    ring = common | {
-        "name": f"{name} zeros",
+    if not len(zeros):
+        return [cross]
+    ring = style.marks(f"{name} zeros", index, "circle-open", 10, {"color": color, "width": 2}) | axes
+    ring |= {
         "x": packed(np.real(zeros)),
         "y": packed(np.imag(zeros)),
-        "hovertemplate": f"<b>{name}</b><br>zero of H: %{{x:.4g}} %{{y:+.4g}}j ω<sub>s</sub><extra></extra>",
-        "marker": {"symbol": "circle-open", "size": 10, "line": {"color": color, "width": 2}, "color": color},
-        "showlegend": False,
+        "hovertemplate": f"{told}zero of H: %{{x:.4g}} %{{y:+.4g}}j ω<sub>s</sub><extra></extra>",
     }
-    return [cross, ring] if len(zeros) else [cross]
+    return [cross, ring]
 
 
 def _about_pole(root: complex, omega_s: float) -> str:
@@ -184,86 +177,32 @@ def _about_pole(root: complex, omega_s: float) -> str:
     return "<br>".join(lines)
 
 
-def _key_entries() -> list[dict[str, Any]]:
-    """Legend entries that say what the two marks mean."""
-    marks = (("x-thin", 2.6), ("circle-open", 2.0))
-    return [
-        {
-            "type": "scatter",
-            "mode": "markers",
-            "x": [None],
-            "y": [None],
-            "name": name,
-            "hoverinfo": "skip",
-            "marker": {
-                "symbol": symbol,
-                "size": 10,
-                "color": style.MUTED,
-                "line": {"color": style.MUTED, "width": width},
-            },
-        }
-        for name, (symbol, width) in zip(_KEYS, marks, strict=True)
-    ]
-
-
-def _layout(
-    panels: dict[str, tuple[Interval, Interval]],
-    margin: dict[str, int],
-    aspect: float,
-    locus: str,
-    room_px: float,
-    share: float,
-) -> dict[str, Any]:
-    made = style.layout(
-        margin=margin, hovermode="closest", legend=style.legend(), meta={"aspect": aspect, "pick": _PICK}
-    )
-    titles = {suffix: style.fitting(texts, room_px) for suffix, texts in _TITLES.items()}
-    shapes: list[dict[str, Any]] = []
-    notes: list[dict[str, Any]] = []
-    for suffix, (re, im) in panels.items():
-        domain = [0.0, share] if suffix == "" else [1.0 - share, 1.0]
-        # "domain": else plotly widens the range for a size in which it draws once, and never takes that back
-        made[f"xaxis{suffix}"] = style.axis(
-            "Re s / ω<sub>s</sub>",
-            domain=domain,
-            anchor=f"y{suffix}",
-            range=list(re),
-            constrain="domain",
-            showgrid=False,
-        )
-        made[f"yaxis{suffix}"] = style.axis(
-            "Im s / ω<sub>s</sub>",
-            anchor=f"x{suffix}",
-            range=list(im),
-            scaleanchor=f"x{suffix}",
-            constrain="domain",
-            showgrid=False,
-        )
-        shapes += _boundary(suffix)
-        notes += [style.panel_title(titles[suffix], suffix), *_panel_labels(suffix, re, im, room_px)]
-    if locus:
-        # in place of the title, in plain letters: those of a parameter's ends take more room
-        notes = [note for note in notes if titles["2"] not in note["text"]]
-        notes.append(style.panel_title(f'<span style="font-weight:400">{locus}</span>', "2"))
-    return made | {"shapes": shapes, "annotations": notes}
+def _axes(suffix: str, re: Interval, im: Interval, domain: list[float]) -> dict[str, Any]:
+    # "domain": else plotly widens the range for a size in which it draws once, and never takes that back
+    common = {"constrain": "domain", "showgrid": False}
+    across = {"domain": domain, "anchor": f"y{suffix}", "range": list(re)}
+    up = {"anchor": f"x{suffix}", "range": list(im), "scaleanchor": f"x{suffix}"}
+    return {
+        f"xaxis{suffix}": style.axis("Re s / ω<sub>s</sub>", **common, **across),
+        f"yaxis{suffix}": style.axis("Im s / ω<sub>s</sub>", **common, **up),
+    }
 
 
 def _boundary(suffix: str) -> list[dict[str, Any]]:
     """Imaginary axis, real axis and the shaded right half plane."""
-    below: dict[str, Any] = {"xref": f"x{suffix}", "yref": f"y{suffix} domain", "y0": 0.0, "y1": 1.0}
-    below |= {"x0": 0.0, "x1": 0.0, "layer": "below"}
+    axes = f"x{suffix}", f"y{suffix} domain"
+    unstable = {"type": "rect", "x1": 1e6, "line": {"width": 0}, "fillcolor": "rgba(180,35,24,0.07)"}
     return [
-        below | {"type": "rect", "x1": 1e6, "line": {"width": 0}, "fillcolor": "rgba(180,35,24,0.07)"},
-        below | {"type": "line", "line": {"color": style.DANGER, "width": 1.4}},
-        below
-        | {"type": "line", "line": {"color": style.REFERENCE, "width": 1}}
-        | {"xref": f"x{suffix} domain", "x1": 1.0, "yref": f"y{suffix}", "y1": 0.0},
+        style.upright(0.0, *axes) | unstable,
+        style.upright(0.0, *axes, color=style.DANGER, width=1.4, dash="solid"),
+        style.across(0.0, f"y{suffix}", f"x{suffix} domain", width=1, dash="solid"),
     ]
 
 
 def _panel_labels(suffix: str, re: Interval, im: Interval, width_px: float) -> list[dict[str, Any]]:
     """Name the half plane and every second damping ray, as far as the names have room beside each other."""
     font = {"size": style.FONT_SIZE, "color": style.MUTED}
+    where = {"xref": f"x{suffix}", "yref": f"y{suffix}", "font": font}
     notes = [
         style.text(
             1.0,
@@ -280,20 +219,20 @@ def _panel_labels(suffix: str, re: Interval, im: Interval, width_px: float) -> l
             font=font | {"color": style.DANGER},
         )
     ]
-    last: tuple[float, float] | None = None
+    last = math.inf, math.nan
     for ratio in DAMPING[::2]:
         x, y = _ray_end(ratio, re, im)
-        if last is not None and last[0] - x < _RAY_PX / width_px * (re[1] - re[0]) and y == last[1]:
+        if last[0] - x < _RAY_PX / width_px * (re[1] - re[0]) and y == last[1]:
             continue
         last = x, y
         content = f"ζ = {ratio:.1f}" if ratio == DAMPING[-1] else f"{ratio:.1f}"
-        where = {"xref": f"x{suffix}", "yref": f"y{suffix}", "bgcolor": PAPER, "borderpad": 0}
-        if x <= _INSIDE * re[0] + 1e-9:  # centred, a label at the left edge would hang over it
-            where |= {"xanchor": "left"}
-        notes.append(style.text(x, y, content, font=font, **where))
-    name = {"xref": f"x{suffix}", "yref": f"y{suffix}", "xanchor": "right", "yanchor": "top", "xshift": -3}
+        # centred, a label at the left edge would hang over it
+        side = {"xanchor": "left"} if x <= _INSIDE * re[0] + 1e-9 else {}
+        notes.append(style.text(x, y, content, **where, bgcolor=PAPER, borderpad=0, **side))
     if im[1] < 8.0:
-        notes.append(style.text(-1.0, 0.0, "ω<sub>s</sub>", font=font, **name))
+        notes.append(
+            style.text(-1.0, 0.0, "ω<sub>s</sub>", **where, xanchor="right", yanchor="top", xshift=-3)
+        )
     return notes
 
 
@@ -308,8 +247,8 @@ def _far_zeros(zeros: list[np.ndarray], left: float) -> list[dict[str, Any]]:
     """Notes for real zeros so far out that showing them would press all poles together."""
     beyond = [
         (index, float(zero.real))
-        for index, found in enumerate(zeros)
-        for zero in found
+        for index, own in enumerate(zeros)
+        for zero in own
         if zero.real < left and abs(zero.imag) < 1e-6 * abs(zero)
     ]
     return [

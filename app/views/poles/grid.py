@@ -20,28 +20,9 @@ PAPER = "rgba(255,255,255,0.85)"
 _TO_SETTLE = math.log(50.0)
 """Time constants after which 2 % are left."""
 _SETTLING_MIN = (
-    10080.0,
-    2880.0,
-    1440.0,
-    720.0,
-    480.0,
-    360.0,
-    240.0,
-    180.0,
-    120.0,
-    90.0,
-    60.0,
-    45.0,
-    30.0,
-    20.0,
-    15.0,
-    10.0,
-    5.0,
-    3.0,
-    2.0,
-    1.0,
-    0.5,
-)
+    10080.0, 2880.0, 1440.0, 720.0, 480.0, 360.0, 240.0, 180.0, 120.0, 90.0, 60.0,
+    45.0, 30.0, 20.0, 15.0, 10.0, 5.0, 3.0, 2.0, 1.0, 0.5,
+)  # fmt: skip
 _LABEL_PX = 62.0
 """Least distance of two settling lines: room for a label."""
 _BEYOND = 1e3
@@ -124,29 +105,19 @@ def settling_lines(left: float, omega_s: float, width_px: float, span: float) ->
     width_px, span : float
         Width of the panel on screen and in units of omega_s.
     """
-    found: dict[float, float] = {}
-    last = 0.0
+    lines: dict[float, float] = {}
+    last, apart = 0.0, _LABEL_PX / width_px * span
     for minutes in _SETTLING_MIN:
         at = -_TO_SETTLE / (minutes * MINUTE * omega_s)
-        if at > left + _LABEL_PX / width_px * span and last - at >= _LABEL_PX / width_px * span:
-            found[minutes], last = at, at
-    return found
+        if at > left + apart and last - at >= apart:
+            lines[minutes] = last = at
+    return lines
 
 
 def settling_shapes(suffix: str, re: Interval, omega_s: float, width_px: float) -> list[dict[str, Any]]:
     """Draw the lines of `settling_lines` upright through one panel."""
     return [
-        {
-            "type": "line",
-            "xref": f"x{suffix}",
-            "x0": at,
-            "x1": at,
-            "yref": f"y{suffix} domain",
-            "y0": 0.0,
-            "y1": 1.0,
-            "layer": "below",
-            "line": {"color": "#CBD5E0", "width": 1, "dash": "dash"},
-        }
+        style.upright(at, f"x{suffix}", f"y{suffix} domain", color="#CBD5E0", width=1, dash="dash")
         for at in settling_lines(re[0], omega_s, width_px, re[1] - re[0]).values()
     ]
 
@@ -182,15 +153,15 @@ def forbidden(
     edge = axes | {"type": "line", "line": {"color": style.DANGER, "width": 1.2, "dash": "dash"}}
     # Far beyond whatever a zoom can show: only the limit itself is an edge.
     far = _BEYOND * math.hypot(re[0], im[1])
-    made: list[dict[str, Any]] = []
+    shapes: list[dict[str, Any]] = []
     if allowed.damping_ratio is not None:
         x, y = -allowed.damping_ratio * far, math.sqrt(1.0 - allowed.damping_ratio**2) * far
         path = f"M {x} {y} L 0 0 L {x} {-y} L {far} {-y} L {far} {y} Z"
-        made.append(fill | {"name": "damping", "path": path})
-        made += [edge | {"x0": 0.0, "y0": 0.0, "x1": x, "y1": side} for side in (y, -y)]
+        shapes.append(fill | {"name": "damping", "path": path})
+        shapes += [edge | {"x0": 0.0, "y0": 0.0, "x1": x, "y1": side} for side in (y, -y)]
     if allowed.rate is not None:
         at = -allowed.rate / omega_s
         path = f"M {at} {-far} L {at} {far} L {far} {far} L {far} {-far} Z"
-        made.append(fill | {"name": "settling", "path": path})
-        made.append(edge | {"x0": at, "y0": -far, "x1": at, "y1": far})
-    return made
+        shapes.append(fill | {"name": "settling", "path": path})
+        shapes.append(edge | {"x0": at, "y0": -far, "x1": at, "y1": far})
+    return shapes

@@ -20,17 +20,15 @@ from navcore.networks.base import NetworkParameters
 
 NO_LOCUS = ""
 _COUNT = 161
-_START, _END = "circle", "square"
 
 
 def locus_fields(network: NetworkParameters) -> dict[str, str]:
     """Parameters over which a locus can be drawn, those with a slider: field -> label with its unit."""
-    found: dict[str, str] = {}
-    for name, info in type(network).model_fields.items():
-        extra = extra_of(info)
-        if "slider" in extra and "elements" not in extra:
-            found[name] = form.full_label(name, info)
-    return found
+    return {
+        name: form.full_label(name, info)
+        for name, info in type(network).model_fields.items()
+        if "slider" in (extra := extra_of(info)) and "elements" not in extra
+    }
 
 
 def locus_of(run: Run, index: int, field: str) -> Locus | None:
@@ -40,104 +38,77 @@ def locus_of(run: Run, index: int, field: str) -> Locus | None:
     method = run.methods[index]
     if method.method.undamped or field not in locus_fields(method.method.network):
         return None
-    parameters = _giving(run, index, field)
-    found = _computed(_Key(parameters, field, run.scenario.omega_s))
-    return found if len(found.values) > 1 else None
+    locus = _computed(_giving(run, index, field), field, run.scenario.omega_s)
+    return locus if len(locus.values) > 1 else None
 
 
-def _giving(run: Run, index: int, field: str) -> NetworkParameters:
-    """The network given by that parameter: sigma and xi become the gains when one of them is to move."""
+def _giving(run: Run, index: int, field: str) -> Any:
+    """The network given by that parameter, at the low end of its slider: one for all its values.
+
+    Sigma and xi become the gains when one of them is to move.
+    """
     from app.editing.edits import network_values, with_value
 
-    path = ("method", index, "network", field)
     parameters = run.scenario.method[index].network
-    if getattr(parameters, field) is not None:
-        return parameters
     value = network_values(run.scenario, index).get(field)
-    return with_value(run.scenario, path, value).method[index].network if value is not None else parameters
-
-
-class _Key:
-    """A network apart from the value of one parameter: a slider of that parameter asks the same again."""
-
-    def __init__(self, parameters: NetworkParameters, field: str, omega_s: float) -> None:
-        self.parameters, self.field, self.omega_s = parameters, field, omega_s
-        others = sorted((k, repr(v)) for k, v in parameters if k != field)
-        self._same = type(parameters).__name__, field, omega_s, tuple(others)
-
-    def __hash__(self) -> int:
-        return hash(self._same)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Key) and self._same == other._same
+    if getattr(parameters, field) is None and value is not None:
+        parameters = (
+            with_value(run.scenario, ("method", index, "network", field), value).method[index].network
+        )
+    low, _ = extra_of(type(parameters).model_fields[field])["slider"]
+    return parameters.model_copy(update={field: low})
 
 
 @lru_cache(maxsize=32)
-def _computed(key: _Key) -> Locus:
-    extra = extra_of(type(key.parameters).model_fields[key.field])
-    low, high = extra["slider"]
+def _computed(parameters: Any, field: str, omega_s: float) -> Locus:
+    extra = extra_of(type(parameters).model_fields[field])
     spaced = np.geomspace if extra.get("log") else np.linspace
-    return root_locus(key.parameters, key.field, spaced(low, high, _COUNT), key.omega_s)
+    return root_locus(parameters, field, spaced(*extra["slider"], _COUNT), omega_s)
 
 
 def locus_traces(run: Run, index: int, field: str, suffix: str) -> list[dict[str, Any]]:
     """Branches of the locus in one panel of the pole map, with marks at both ends; empty without one."""
-    found = locus_of(run, index, field)
-    if found is None:
+    locus = locus_of(run, index, field)
+    if locus is None:
         return []
     method = run.methods[index]
-    scaled = found.poles / method.network.omega_s
-    color, name = style.method_color(index), style.plain(method.method.name)
+    scaled = locus.poles / method.network.omega_s
+    color, name, count = style.method_color(index), method.method.name, scaled.shape[1]
     label = locus_fields(method.method.network)[field]
-    gap = np.full((1, scaled.shape[1]), complex(math.nan, math.nan))
-    line = np.concatenate([scaled, gap]).T.ravel()
-    values = np.tile(np.append(found.values, math.nan), scaled.shape[1])
+    line = np.concatenate([scaled, np.full((1, count), complex(math.nan, math.nan))]).T.ravel()
+    ends = np.concatenate([scaled[0], scaled[-1]])
     common: dict[str, Any] = {
-        "type": "scatter",
         "xaxis": f"x{suffix}",
         "yaxis": f"y{suffix}",
-        "legendgroup": str(index),
         "showlegend": False,
-        "hovertemplate": f"<b>{name}</b><br>{label} = %{{customdata:.4g}}<extra></extra>",
+        "hovertemplate": f"<b>{style.plain(name)}</b><br>{label} = %{{customdata:.4g}}<extra></extra>",
     }
-    ends = np.concatenate([scaled[0], scaled[-1]])
-    count = scaled.shape[1]
-    return [
-        common
-        | {
-            "mode": "lines",
-            "name": f"{name} locus",
-            "x": packed(np.real(line)),
-            "y": packed(np.imag(line)),
-            "customdata": packed(values),
-            "line": {"color": color, "width": 1.6, "dash": "dot"},
-        },
-        common
-        | {
-            "mode": "markers",
-            "name": f"{name} locus ends",
-            "x": packed(np.real(ends)),
-            "y": packed(np.imag(ends)),
-            "customdata": packed(np.repeat(found.values[[0, -1]], count)),
-            "marker": {
-                "symbol": [f"{_START}-open"] * count + [f"{_END}-open"] * count,
-                "size": 7,
-                "color": color,
-                "line": {"width": 1.5, "color": color},
-            },
-        },
-    ]
+    branches = style.lines(f"{name} locus", index) | common
+    branches |= {
+        "x": packed(np.real(line)),
+        "y": packed(np.imag(line)),
+        "customdata": packed(np.tile(np.append(locus.values, math.nan), count)),
+        "line": {"color": color, "width": 1.6, "dash": "dot"},
+    }
+    marks = style.marks(f"{name} locus ends", index, "", 7, {"width": 1.5, "color": color}) | common
+    marks |= {
+        "x": packed(np.real(ends)),
+        "y": packed(np.imag(ends)),
+        "customdata": packed(np.repeat(locus.values[[0, -1]], count)),
+        "marker": marks["marker"] | {"symbol": ["circle-open"] * count + ["square-open"] * count},
+    }
+    return [branches, marks]
 
 
 def locus_note(run: Run, index: int, field: str) -> str:
     """Say what moves along the branches, from which end to which, and where it is; empty without a locus."""
     from app.editing.edits import network_values
 
-    found = locus_of(run, index, field)
-    if found is None:
+    locus = locus_of(run, index, field)
+    if locus is None:
         return ""
     extra = extra_of(type(run.methods[index].method.network).model_fields[field])
-    first, last = (number(float(value), 3) for value in found.values[[0, -1]])
+    first, last = (number(float(value), 3) for value in locus.values[[0, -1]])
     now = network_values(run.scenario, index).get(field)
     present = "" if now is None else f", ✕ {number(float(now), 3)}"
     unit = f" {unit_sign(extra['unit'])}" if extra.get("unit") else ""

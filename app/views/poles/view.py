@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
-from app.editing.placing import COMMAND
+from app.editing.placing import COMMAND, pair_at, read_point, typed_pair, with_pair
 from app.plots.plotly_data import PlotlyFigure
 from app.session.display import Display
 from app.session.shown import Shown
+from app.shell import notices
 from app.shell.layout import CHOOSER_PX, TOOLS
 from app.shell.pair_handle import PairHandle
 from app.shell.plotly_view import PlotlyView
 from app.shell.view import Frame, if_user
 from app.views.poles.figure import PANELS, allowed_poles, poles
 from app.views.poles.locus import NO_LOCUS, locus_fields
-from app.views.poles.placer import Placer
 from app.views.poles.whole import whole_system_figure
 from navcore.engine.run import Run
+from navcore.foundation.errors import InputError
 from navcore.scenario.model import Method
 
 LOCUS = "locus"
@@ -41,9 +43,8 @@ class PolesView(PlotlyView):
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
-        self._placer = Placer(frame.client, frame.session)
         self._handle = PairHandle(frame, "poles", PANELS)
-        frame.commands.register(COMMAND, self._placer.picked)
+        frame.commands.register(COMMAND, lambda text: self._place(lambda: pair_at(read_point(text))))
 
     def build_tools(self) -> None:
         """Make the chooser, the boxes and the button."""
@@ -83,7 +84,24 @@ class PolesView(PlotlyView):
         )
         self._locus.on_update(if_user(self._choose))
         self._placing = self._xi, self._ratio, button
-        button.on_click(if_user(lambda: self._placer.typed(self._xi.value, self._ratio.value)))
+        button.on_click(if_user(lambda: self._place(lambda: typed_pair(self._xi.value, self._ratio.value))))
+
+    def _place(self, wanted: Callable[[], tuple[float, float]]) -> None:
+        """Place the selected method's pair; one change of the session, with a word about what was done."""
+        session, client = self.session, self.frame.client
+        with session.lock:
+            try:
+                limit = session.display.requirements.h_slope_s
+                placed = with_pair(session.scenario, session.selected, *wanted(), limit)
+            except InputError as error:
+                notices.tell(client, "The pair was not placed", notices.fault_lines(error), "warning")
+                return
+            name = session.scenario.method[session.selected].name
+            session.change(placed.scenario, None, name=f"placing the pair of {name}")
+        if placed.note:
+            notices.tell(client, "Placed in part", [placed.words, placed.note], "warning")
+        else:
+            notices.tell(client, "Placed", [placed.words], "info")
 
     @property
     def _method(self) -> Method:
@@ -102,8 +120,7 @@ class PolesView(PlotlyView):
         """Offer the parameters of the selected method's network, and show which is chosen."""
         offered = _offered(self._method)
         if offered != self._fields:
-            self._fields = offered
-            self._locus.options = tuple(offered)
+            self._fields, self._locus.options = offered, tuple(offered)
         chosen = _chosen(offered, self.session.display)
         if self._locus.value != chosen:
             self._locus.value = chosen
@@ -127,7 +144,7 @@ class PolesView(PlotlyView):
         """Pole map, or the modes of the whole system."""
         if found.display.poles == "whole":
             return whole_system_figure(both, self.aspect, width_px=self.width_px)
-        made = poles(
+        plot = poles(
             both,
             self.aspect,
             width_px=self.width_px,
@@ -135,8 +152,8 @@ class PolesView(PlotlyView):
             locus=found.display.locus,
             allowed=allowed_poles(found.display.requirements),
         )
-        made["layout"]["meta"] |= self._handle.meta(found)
-        return made
+        plot["layout"]["meta"] |= self._handle.meta(found)
+        return plot
 
 
 def _offered(method: Method) -> dict[str, str]:

@@ -24,8 +24,6 @@ LATITUDES = np.linspace(0.0, 85.0, 18)
 """Of the curve, deg; north and south are alike."""
 _DAY = 86400.0
 _SYMBOLS = {EARTH_MODE: "diamond", SCHULER_MODE: "x-thin", NETWORK_MODE: "circle-open"}
-_RE, _IM = (-2.2, 0.5), (-0.09, 1.75)
-_MARGIN = {"l": 58, "r": 16, "t": 32}
 _GAP = 0.11
 
 
@@ -41,46 +39,65 @@ def whole_system_figure(run: Run, aspect: float = 0.46, *, width_px: float = 940
     width_px : float
         Expected width on screen.
     """
-    names = [m.method.name for m in run.methods]
-    rows = style.legend_rows([*names, *(f"{kind} mode" for kind in _SYMBOLS)], width_px - 84.0)
-    margin = _MARGIN | {"b": 56 + 22 * rows}
+    names = [*(m.method.name for m in run.methods), *(f"{kind} mode" for kind in _SYMBOLS)]
     data: list[dict[str, Any]] = []
-    rates = [_rates(run, method) for method in run.methods]
+    rates = []
     for index, method in enumerate(run.methods):
+        damping, latitudes = method.method.damping, LATITUDES * DEG
+        growth = growth_over_latitude(method.network, damping, latitudes, run.scenario.earth)
+        rates.append(_DAY * growth)
         data += _marks(method, index)
-        data += _growth(run, method, index, rates[index])
-    data += [_key(name) for name in _SYMBOLS]
-    return figure(data, _layout(run, margin, aspect, _growth_range(rates)))
+        data += _growth(run, method, index, rates[-1])
+    data += [style.key(f"{kind} mode", symbol, 2) for kind, symbol in _SYMBOLS.items()]
+    finite = np.concatenate([[0.0], *rates])
+    finite = finite[np.isfinite(finite)]
+    low, high = float(finite.min()), float(finite.max())
+    pad = max(0.08 * (high - low), 0.01)
+    half = 0.5 * (1.0 - _GAP)
+    lat = run.scenario.site.lat_deg
+    danger = {"color": style.DANGER, "width": 1.4, "dash": "solid"}
+    layout = style.framed(
+        names,
+        aspect,
+        width_px,
+        {"l": 58, "r": 16, "t": 32, "b": 56},
+        hovermode="closest",
+        xaxis=style.axis("Re s / ω<sub>s</sub>", domain=[0.0, half], range=[-2.2, 0.5], anchor="y"),
+        yaxis=style.axis("Im s / ω<sub>s</sub>", range=[-0.09, 1.75], anchor="x"),
+        xaxis2=style.axis("latitude (°)", domain=[1.0 - half, 1.0], range=[0.0, 90.0], anchor="y2"),
+        yaxis2=style.axis("growth, 1/day", anchor="x2", range=[low - pad, high + pad]),
+        shapes=[
+            style.upright(0.0, "x", "y domain", **danger),
+            style.across(0.0, "y2", "x2 domain", **danger),
+        ],
+        annotations=[
+            style.panel_title(f"Whole system at {abs(lat):.4g}° {'N' if lat >= 0.0 else 'S'}", ""),
+            style.panel_title("Growth of the 24 h mode", "2"),
+        ],
+    )
+    return figure(data, layout)
 
 
 def _marks(method: MethodRun, index: int) -> list[dict[str, Any]]:
     """Modes of one method in units of omega_s, one trace a kind of mode."""
-    color, name = style.method_color(index), style.plain(method.method.name)
-    made = []
+    name, traces = method.method.name, []
+    edge = {"color": style.method_color(index), "width": 2.4}
     for kind, symbol in _SYMBOLS.items():
-        modes = method.whole.named(kind)
+        modes, main = method.whole.named(kind), kind == SCHULER_MODE
         at = np.array([mode.eigenvalue for mode in modes], dtype=np.complex128) / method.network.omega_s
-        made.append(
-            {
-                "type": "scatter",
-                "mode": "markers",
-                "name": name if kind == SCHULER_MODE else f"{name} {kind}",
-                "legendgroup": str(index),
-                "showlegend": kind == SCHULER_MODE,
+        # The 24 h modes of all methods lie next to each other: the later ones are smaller.
+        size = max(15 - 4 * index, 5) if kind == EARTH_MODE else 11
+        traces.append(
+            style.marks(name if main else f"{name} {kind}", index, symbol, size, edge)
+            | {
+                "showlegend": main,
                 "x": packed(np.real(at)),
                 "y": packed(np.imag(at)),
                 "text": [_about(mode) for mode in modes],
-                "hovertemplate": f"<b>{name}</b><br>%{{text}}<extra></extra>",
-                "marker": {
-                    "symbol": symbol,
-                    # The 24 h modes of all methods lie next to each other: the later ones are smaller.
-                    "size": max(15 - 4 * index, 5) if kind == EARTH_MODE else 11,
-                    "color": color,
-                    "line": {"color": color, "width": 2.4},
-                },
+                "hovertemplate": f"<b>{style.plain(name)}</b><br>%{{text}}<extra></extra>",
             }
         )
-    return made
+    return traces
 
 
 def _about(mode: Mode) -> str:
@@ -92,80 +109,26 @@ def _about(mode: Mode) -> str:
     return "<br>".join(lines)
 
 
-def _rates(run: Run, method: MethodRun) -> np.ndarray:
-    """Growth of the 24 h mode at each of `LATITUDES`, 1/day."""
-    return _DAY * growth_over_latitude(
-        method.network, method.method.damping, LATITUDES * DEG, run.scenario.earth
-    )
-
-
-def _growth_range(rates: list[np.ndarray]) -> list[float]:
-    """Range of the axis: all curves and 0, with a margin."""
-    found = np.concatenate(rates)
-    found = found[np.isfinite(found)]
-    low, high = min(0.0, *found), max(0.0, *found)
-    margin = max(0.08 * (high - low), 0.01)
-    return [low - margin, high + margin]
-
-
 def _growth(run: Run, method: MethodRun, index: int, rates: np.ndarray) -> list[dict[str, Any]]:
     """Curve of the growth over the latitude, and the point of the site."""
-    color, name = style.method_color(index), style.plain(method.method.name)
-    here = method.whole.earth_growth
-    common: dict[str, Any] = {
-        "type": "scatter",
-        "xaxis": "x2",
-        "yaxis": "y2",
-        "legendgroup": str(index),
-        "showlegend": False,
-    }
+    name, here = method.method.name, method.whole.earth_growth
+    told = f"<b>{style.plain(name)}</b>"
+    common = {"xaxis": "x2", "yaxis": "y2", "showlegend": False}
+    curve = style.lines(f"{name} growth", index) | common
+    site = style.marks(f"{name} at the site", index, "diamond", 11, {}) | common
     return [
-        common
+        curve
         | {
-            "mode": "lines",
-            "name": f"{name} growth",
             "x": packed(LATITUDES),
             "y": packed(rates),
-            "line": {"color": color, "width": 2},
-            "hovertemplate": f"<b>{name}</b><br>%{{x:.0f}}°: %{{y:+.3f}} a day<extra></extra>",
+            "line": {"color": style.method_color(index), "width": 2},
+            "hovertemplate": f"{told}<br>%{{x:.0f}}°: %{{y:+.3f}} a day<extra></extra>",
         },
-        common
+        site
         | {
-            "mode": "markers",
-            "name": f"{name} at the site",
             "x": [abs(run.scenario.site.lat_deg)],
             "y": [here * _DAY],
-            "marker": {"symbol": "diamond", "size": 11, "color": color},
             "text": [f"24 h mode {earth_mode_text(here)}"],
-            "hovertemplate": f"<b>{name}</b> at the site<br>%{{text}}<extra></extra>",
+            "hovertemplate": f"{told} at the site<br>%{{text}}<extra></extra>",
         },
     ]
-
-
-def _key(name: str) -> dict[str, Any]:
-    """Legend entry that says what a mark means."""
-    marker = {"symbol": _SYMBOLS[name], "size": 10, "color": style.MUTED}
-    return {
-        "type": "scatter", "mode": "markers", "x": [None], "y": [None], "name": f"{name} mode",
-        "hoverinfo": "skip", "marker": marker | {"line": {"color": style.MUTED, "width": 2}},
-    }  # fmt: skip
-
-
-def _layout(run: Run, margin: dict[str, int], aspect: float, growth: list[float]) -> dict[str, Any]:
-    made = style.layout(margin=margin, hovermode="closest", legend=style.legend(), meta={"aspect": aspect})
-    half = 0.5 * (1.0 - _GAP)
-    made["xaxis"] = style.axis("Re s / ω<sub>s</sub>", domain=[0.0, half], range=list(_RE), anchor="y")
-    made["yaxis"] = style.axis("Im s / ω<sub>s</sub>", range=list(_IM), anchor="x")
-    made["xaxis2"] = style.axis("latitude (°)", domain=[1.0 - half, 1.0], range=[0.0, 90.0], anchor="y2")
-    made["yaxis2"] = style.axis("growth, 1/day", anchor="x2", range=growth)
-    line = {"type": "line", "line": {"color": style.DANGER, "width": 1.4}, "layer": "below"}
-    shapes = [
-        line | {"xref": "x", "yref": "y domain", "x0": 0.0, "x1": 0.0, "y0": 0.0, "y1": 1.0},
-        line | {"xref": "x2 domain", "yref": "y2", "x0": 0.0, "x1": 1.0, "y0": 0.0, "y1": 0.0},
-    ]
-    lat = run.scenario.site.lat_deg
-    notes = [
-        style.panel_title(f"Whole system at {abs(lat):.4g}° {'N' if lat >= 0.0 else 'S'}", ""),
-        style.panel_title("Growth of the 24 h mode", "2"),
-    ]
-    return made | {"shapes": shapes, "annotations": notes}

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.plots.rounding import round_down, round_up
-from app.plots.units import length_unit, number
+from app.plots.units import length_unit, number, round_down, round_up
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG
 
 # Steps of the lines, arcsec: 1-2-5 below a minute's 10, 20, 30, then the same in minutes and degrees.

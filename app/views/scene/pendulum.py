@@ -14,8 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 from app.plots import style
-from app.plots.rounding import round_down
-from app.plots.units import duration, number
+from app.plots.units import duration, number, round_down
 from app.views.scene.moment import row_at
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.units import DEG

@@ -11,8 +11,7 @@ import numpy as np
 from app.plots import style
 from app.plots.legend import State, counts
 from app.plots.pinned import Pinned, pinned_methods
-from app.plots.rounding import round_down, round_up
-from app.plots.units import length_unit, number, rounded
+from app.plots.units import length_unit, number, round_down, round_up, rounded
 from app.views.scene.graticule import MOST_BESIDE, Graticule, LocalMap, SceneLabel, graticule, scale_bar
 from app.views.scene.polyline import dashes, needed, segments
 from navcore.engine.run import MethodRun, Run
@@ -264,7 +263,9 @@ def track(
     north = SceneLabel("▲ N", (-HALF_WIDTH, HALF_WIDTH + 0.45, 0.0))
     lines = [_scene(computed, middle, metres, _LIFT) for computed in computed_m]
     tracks = tuple(
-        MethodTrack(m.method.name, style.method_rgb(i), points, error, needed(points, _UNSEEN), states[i])
+        MethodTrack(
+            m.method.name, style.rgb(style.method_color(i)), points, error, needed(points, _UNSEEN), states[i]
+        )
         for i, (m, points, error) in enumerate(zip(run.methods, lines, errors, strict=True))
     )
     return TrackScene(

@@ -50,24 +50,41 @@ def spectrum(
     plot = error_plots(run, display=display)[key]
     column = NAMES.index(plot.quantity)
     span_s = float(run.t_s[-1]) if len(run.t_s) else 0.0
-    axis_unit = _period_unit(display or Display(), span_s)
+    unit, period_unit = plot.unit, _period_unit(display or Display(), span_s)
     data, peaks, shortest = [], [], math.inf
     for index, method in enumerate(run.methods):
         period_s, amplitude = amplitude_spectrum(method, column)
         if not len(period_s):
             continue
-        size = amplitude / plot.unit.si
+        size = amplitude / unit.si
         peaks.append(float(size.max()))
         shortest = min(shortest, float(period_s.min()))
-        data.append(_trace(method, index, period_s / axis_unit.si, size, axis_unit, plot.unit))
-    names = [method.method.name for method in run.methods]
-    periods = (max(shortest, 60.0) if math.isfinite(shortest) else 60.0, max(1.1 * span_s, 3600.0))
-    return figure(
-        data,
-        _layout(
-            run, f"{plot.title}: amplitude", plot.unit, axis_unit, periods, peaks, names, aspect, width_px
-        ),
+        trace = style.lines(method.method.name, index, style.CURVE_WIDTH)
+        hover = (
+            f"<b>{trace['name']}</b><br>%{{x:.4g}} {period_unit.name}: %{{y:.4g}} {unit.name}<extra></extra>"
+        )
+        data.append(
+            trace | {"x": packed(period_s / period_unit.si), "y": packed(size), "hovertemplate": hover}
+        )
+    longest_s = max(1.1 * span_s, 3600.0)
+    periods_s = {name: 2.0 * math.pi / omega for name, omega in natural_frequencies(run).items()}
+    markers = {name: period_s for name, period_s in periods_s.items() if period_s <= longest_s}
+    layout = style.framed(
+        [method.method.name for method in run.methods],
+        aspect,
+        width_px,
+        {"l": 68, "r": 16, "t": 46, "b": 48},
+        hovermode="closest",
+        showlegend=True,
+        xaxis=_period_axis(period_unit, max(shortest, 60.0) if data else 60.0, longest_s),
+        yaxis=_amplitude_axis(unit, peaks),
+        annotations=[
+            style.heading(f"<b>{plot.title}: amplitude</b>", 34),
+            *(_marker_label(name, period_s, period_unit) for name, period_s in markers.items()),
+        ],
+        shapes=[style.upright(period_s / period_unit.si) for period_s in markers.values()],
     )
+    return figure(data, layout)
 
 
 def amplitude_spectrum(method: MethodRun, column: int) -> tuple[np.ndarray, np.ndarray]:
@@ -116,111 +133,43 @@ def _period_unit(display: Display, span_s: float) -> Unit:
     return MINUTES if span_s <= _MINUTES_BELOW_H * HOURS.si else HOURS
 
 
-def _trace(
-    method: MethodRun, index: int, x: np.ndarray, y: np.ndarray, x_unit: Unit, y_unit: Unit
-) -> dict[str, Any]:
-    name = style.plain(method.method.name)
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "x": packed(x),
-        "y": packed(y),
-        "name": name,
-        "legendgroup": str(index),
-        "line": {"color": style.method_color(index), "width": style.CURVE_WIDTH, "simplify": False},
-        "hovertemplate": f"<b>{name}</b><br>%{{x:.4g}} {x_unit.name}: %{{y:.4g}} {y_unit.name}"
-        "<extra></extra>",
-    }
-
-
-def _layout(
-    run: Run,
-    title: str,
-    unit: Unit,
-    period_unit: Unit,
-    periods_s: tuple[float, float],
-    peaks: list[float],
-    names: list[str],
-    aspect: float,
-    width_px: float,
-) -> dict[str, Any]:
-    rows = style.legend_rows(names, width_px - 84.0)
-    shortest, longest = (math.log10(period / period_unit.si) for period in periods_s)
-    top = math.log10(1.6 * max(peaks)) if peaks and max(peaks) > 0.0 else 0.0
-    lowest = min((math.log10(peak) for peak in peaks if peak > 0.0), default=top) - 4.0
+def _period_axis(unit: Unit, shortest_s: float, longest_s: float) -> dict[str, Any]:
+    shortest, longest = math.log10(shortest_s / unit.si), math.log10(longest_s / unit.si)
     decades = range(math.floor(shortest), math.ceil(longest) + 1)
     marks = [m * 10.0**k for k in decades for m in (1.0, 2.0, 5.0)]
     marks = [mark for mark in marks if shortest <= math.log10(mark) <= longest]
-    markers = {
-        name: 2.0 * math.pi / omega
-        for name, omega in natural_frequencies(run).items()
-        if 2.0 * math.pi / omega <= periods_s[1]
-    }
-    low = max(lowest, top - _DECADES)
-    powers = range(math.ceil(low), math.floor(top) + 1)
-    return style.layout(
-        margin={"l": 68, "r": 16, "t": 46, "b": 48 + 22 * rows},
-        hovermode="closest",
-        showlegend=True,
-        legend=style.legend(),
-        xaxis=style.axis(
-            f"period ({period_unit.name})",
-            type="log",
-            range=[longest, shortest],  # as in the Bode plots, slow is left
-            tickvals=marks,
-            ticktext=[f"{mark:g}" for mark in marks],
-        ),
-        yaxis=style.axis(
-            f"amplitude ({unit.name})",
-            type="log",
-            range=[low, top],
-            tickvals=[10.0**k for k in powers],
-            ticktext=[f"{10.0**k:g}" if -3 <= k <= 4 else f"10<sup>{k}</sup>" for k in powers],
-            minor={"showgrid": True, "dtick": "D1", "gridcolor": style.GRID_FINE},
-        ),
-        annotations=[
-            style.text(
-                0.0,
-                1.0,
-                f"<b>{title}</b>",
-                xref="paper",
-                yref="paper",
-                xanchor="left",
-                yanchor="middle",
-                yshift=34,
-                font={"size": style.TITLE_SIZE, "color": style.INK},
-            ),
-            *(_marker_label(name, period / period_unit.si, period) for name, period in markers.items()),
-        ],
-        shapes=[_marker_line(period / period_unit.si) for period in markers.values()],
-        meta={"aspect": aspect},
+    return style.axis(
+        f"period ({unit.name})",
+        type="log",
+        range=[longest, shortest],  # as in the Bode plots, slow is left
+        tickvals=marks,
+        ticktext=[f"{mark:g}" for mark in marks],
     )
 
 
-def _marker_line(at: float) -> dict[str, Any]:
-    return {
-        "type": "line",
-        "xref": "x",
-        "x0": at,
-        "x1": at,
-        "yref": "paper",
-        "y0": 0.0,
-        "y1": 1.0,
-        "layer": "below",
-        "line": {"color": style.REFERENCE, "width": 1.2, "dash": "dot"},
-    }
+def _amplitude_axis(unit: Unit, peaks: list[float]) -> dict[str, Any]:
+    powers = [math.log10(peak) for peak in peaks if peak > 0.0]
+    top = math.log10(1.6 * max(peaks)) if powers else 0.0
+    low = max(min(powers, default=top) - 4.0, top - _DECADES)
+    decades = range(math.ceil(low), math.floor(top) + 1)
+    return style.axis(
+        f"amplitude ({unit.name})",
+        type="log",
+        range=[low, top],
+        tickvals=[10.0**k for k in decades],
+        ticktext=[style.power(k) for k in decades],
+        minor={"showgrid": True, "dtick": "D1", "gridcolor": style.GRID_FINE},
+    )
 
 
-def _marker_label(name: str, at: float, period_s: float) -> dict[str, Any]:
-    anchor = {"24 h": "left", "Foucault": "right", "Schuler": "center"}[name]
-    content = name if name == "24 h" else f"{name} {duration(period_s)}"
+def _marker_label(name: str, period_s: float, unit: Unit) -> dict[str, Any]:
     return style.text(
-        math.log10(at),
+        math.log10(period_s / unit.si),
         1.0,
-        content,
+        name if name == "24 h" else f"{name} {duration(period_s)}",
         xref="x",
         yref="paper",
-        xanchor=anchor,
+        xanchor={"24 h": "left", "Foucault": "right", "Schuler": "center"}[name],
         yanchor="bottom",
         font={"size": style.FONT_SIZE, "color": style.MUTED},
     )

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from app.plots.plotly_data import PlotlyFigure, figure, packed
 from app.plots.units import Unit, angle_unit, speed_unit
 from app.session.requirements import Requirements
 from app.views.poles.grid import FORBIDDEN
-from navcore.analysis.transfers import Source
+from navcore.analysis.transfers import Output, Source
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.units import ARCSEC, DEG_PER_HOUR, MINUTE
 
@@ -29,23 +30,31 @@ _NO_UNIT = Unit("", 1.0)
 Curves = list[np.ndarray | None]
 
 
-@dataclass(frozen=True)
-class _Disturbance:
-    """What the lower panels respond to."""
+class _Disturbance(NamedTuple):
+    """What the lower panels respond to: source, its size (SI), in words and in fewer."""
 
     source: Source
     size: float
     words: str
-    short: tuple[str, str]
+    short: str
 
 
-_LOG = _Disturbance("dv_r", 1.0, "a log step of 1 m/s", ("Velocity error, log step", "Tilt, log step"))
-_GYRO = _Disturbance(
-    "eps", 0.01 * DEG_PER_HOUR, "a gyro step of 0.01 °/h", ("Velocity error, gyro step", "Tilt, gyro step")
-)
+_LOG = _Disturbance("dv_r", 1.0, "a log step of 1 m/s", "log step")
+_GYRO = _Disturbance("eps", 0.01 * DEG_PER_HOUR, "a gyro step of 0.01 °/h", "gyro step")
 _TILT = "Tilt after an initial tilt (◆ settled to 2 %)", "Tilt (◆ settled to 2 %)", "Tilt (◆ settled)"
 _NETWORK = "Step response of H itself", "Step response of H"
 """Titles, shorter ones for smaller panels."""
+
+
+class _Panel(NamedTuple):
+    """Axes' suffix, time shown (s), curves (SI), unit, titles, and name of the y axis."""
+
+    suffix: str
+    span_s: float
+    curves: Curves
+    unit: Unit
+    titles: tuple[str, ...]
+    y_title: str
 
 
 @dataclass(frozen=True)
@@ -90,32 +99,29 @@ def step(
     """
     loop_s, network_s = _loop_span(run), _network_span(run)
     cause = _LOG if any(reacts(m, "dv_r") for m in run.methods) else _GYRO
-    tilt: Curves = [response(m, "initial_tilt", "phi", loop_s, POINTS) for m in run.methods]
-    network: Curves = [network_step(m, network_s, POINTS) for m in run.methods]
-    caused_dv = _scaled([response(m, cause.source, "dv", loop_s, POINTS) for m in run.methods], cause.size)
-    caused_phi = _scaled([response(m, cause.source, "phi", loop_s, POINTS) for m in run.methods], cause.size)
-    stable = [m.loop.stable for m in run.methods]
-    units = speed_unit(_peak(caused_dv, stable)), angle_unit(_peak(caused_phi, stable))
+
+    def responses(source: Source, output: Output, size: float) -> Curves:
+        curves = [response(method, source, output, loop_s, POINTS) for method in run.methods]
+        return [None if curve is None else size * curve for curve in curves]
+
+    stable = [method.loop.stable for method in run.methods]
+    tilt = responses("initial_tilt", "phi", 1.0)
+    velocity, caused_tilt = (responses(cause.source, output, cause.size) for output in ("dv", "phi"))
+    speed, angle = speed_unit(_peak(velocity, stable)), angle_unit(_peak(caused_tilt, stable))
+    network: Curves = [network_step(method, network_s, POINTS) for method in run.methods]
+    of_velocity = f"Velocity error after {cause.words}", f"Velocity error, {cause.short}"
+    of_tilt = f"Tilt after {cause.words}", f"Tilt, {cause.short}"
     panels = (
-        ("", loop_s, tilt, _NO_UNIT),
-        ("2", network_s, network, _NO_UNIT),
-        ("3", loop_s, caused_dv, units[0]),
-        ("4", loop_s, caused_phi, units[1]),
+        _Panel("", loop_s, tilt, _NO_UNIT, _TILT, "φ/φ<sub>0</sub>"),
+        _Panel("2", network_s, network, _NO_UNIT, _NETWORK, "output / step"),
+        _Panel("3", loop_s, velocity, speed, of_velocity, f"δV ({speed.name})"),
+        _Panel("4", loop_s, caused_tilt, angle, of_tilt, f"φ ({angle.name})"),
     )
-    data: list[dict[str, Any]] = []
-    ranges: dict[str, list[float]] = {}
-    for suffix, span_s, curves, unit in panels:
-        for i, (method, curve) in enumerate(zip(run.methods, curves, strict=True)):
-            data.append(_trace(method, i, suffix, span_s, curve, unit))
-        ranges[suffix] = _range(_deciding(curves, stable), unit)
-    data += [_settled_mark(m, i, tilt[i], loop_s) for i, m in enumerate(run.methods)]
-    layout = _layout(run, cause, (loop_s, network_s), ranges, units, aspect, width_px)
-    layout["shapes"] += _forbidden(limits, loop_s, units[1], cause)
+    data = [_trace(method, i, panel) for panel in panels for i, method in enumerate(run.methods)]
+    data += [_settled_mark(method, i, tilt[i], loop_s) for i, method in enumerate(run.methods)]
+    layout = _layout(run, panels, stable, aspect, width_px)
+    layout["shapes"] += _forbidden(limits, loop_s, angle, cause)
     return figure(data, layout)
-
-
-def _scaled(curves: Curves, size: float) -> Curves:
-    return [None if curve is None else size * curve for curve in curves]
 
 
 def _loop_span(run: Run) -> float:
@@ -165,22 +171,15 @@ def _range(curves: list[np.ndarray], unit: Unit) -> list[float]:
     return [low - pad, high + pad]
 
 
-def _trace(
-    method: MethodRun, index: int, suffix: str, span_s: float, values: np.ndarray | None, unit: Unit
-) -> dict[str, Any]:
-    known = values is not None
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "x": _minutes(span_s) if known else [],
-        "y": packed(values / unit.si) if known else [],
-        "xaxis": f"x{suffix}",
-        "yaxis": f"y{suffix}",
-        "name": style.plain(method.method.name),
-        "legendgroup": str(index),
-        "showlegend": suffix == "",
-        "hovertemplate": f"%{{y:.4g}} {unit.name}".rstrip(),
-        "line": {"color": style.method_color(index), "width": style.LINE_WIDTH, "simplify": False},
+def _trace(method: MethodRun, index: int, panel: _Panel) -> dict[str, Any]:
+    values = panel.curves[index]
+    return style.lines(method.method.name, index) | {
+        "x": [] if values is None else _minutes(panel.span_s),
+        "y": [] if values is None else packed(values / panel.unit.si),
+        "xaxis": f"x{panel.suffix}",
+        "yaxis": f"y{panel.suffix}",
+        "showlegend": panel.suffix == "",
+        "hovertemplate": f"%{{y:.4g}} {panel.unit.name}".rstrip(),
     }
 
 
@@ -190,62 +189,26 @@ def _settled_mark(method: MethodRun, index: int, tilt: np.ndarray | None, span_s
     x, y = [], []
     if settles is not None and tilt is not None and settles <= span_s:
         x, y = [settles / MINUTE], [float(np.interp(settles, time_grid(span_s, POINTS), tilt))]
-    return {
-        "type": "scatter",
-        "mode": "markers",
-        "x": x,
-        "y": y,
-        "xaxis": "x",
-        "yaxis": "y",
-        "name": style.plain(f"{method.method.name} settled"),
-        "legendgroup": str(index),
-        "showlegend": False,
-        "marker": {
-            "symbol": "diamond",
-            "size": 11,
-            "color": style.method_color(index),
-            "line": {"width": 1.5, "color": "white"},
-        },
-        "hovertemplate": "settled to 2 % at %{x:.4g} min<extra></extra>",
-    }
+    edge = {"width": 1.5, "color": "white"}
+    mark = style.marks(f"{method.method.name} settled", index, "diamond", 11, edge)
+    hover = "settled to 2 % at %{x:.4g} min<extra></extra>"
+    return mark | {"x": x, "y": y, "xaxis": "x", "yaxis": "y", "hovertemplate": hover}
 
 
 def _layout(
-    run: Run,
-    cause: _Disturbance,
-    spans_s: tuple[float, float],
-    ranges: dict[str, list[float]],
-    units: tuple[Unit, Unit],
-    aspect: float,
-    width_px: float,
+    run: Run, panels: Sequence[_Panel], stable: list[bool], aspect: float, width_px: float
 ) -> dict[str, Any]:
-    rows = style.legend_rows([m.method.name for m in run.methods], width_px - 84.0)
-    margin = {"l": 68, "r": 18, "t": 30, "b": 46 + 22 * rows}
+    names = [method.method.name for method in run.methods]
+    margin = {"l": 68, "r": 18, "t": 30, "b": 46}
+    layout = style.framed(names, aspect, width_px, margin, hovermode="x unified", annotations=[])
     # room between the rows for tick labels, axis title and the title of the lower plot
-    gap = 68.0 / max(aspect * width_px - margin["t"] - margin["b"], 150.0)
-    upper, lower = [0.5 + 0.5 * gap, 1.0], [0.0, 0.5 - 0.5 * gap]
-    inner_px = width_px - margin["l"] - margin["r"]
-    share = style.column(inner_px)
-    left, right = [0.0, share], [1.0 - share, 1.0]
-    room_px = share * inner_px
-    loop_min, network_min = (span / MINUTE for span in spans_s)
-    panels = (
-        ("", left, upper, loop_min, _TILT, "φ/φ<sub>0</sub>"),
-        ("2", right, upper, network_min, _NETWORK, "output / step"),
-        (
-            "3",
-            left,
-            lower,
-            loop_min,
-            (f"Velocity error after {cause.words}", cause.short[0]),
-            f"δV ({units[0].name})",
-        ),
-        ("4", right, lower, loop_min, (f"Tilt after {cause.words}", cause.short[1]), f"φ ({units[1].name})"),
-    )
-    made = style.layout(margin=margin, hovermode="x unified", legend=style.legend(), meta={"aspect": aspect})
-    notes: list[dict[str, Any]] = []
-    for suffix, column, row, span_min, titles, y_title in panels:
-        made[f"xaxis{suffix}"] = style.axis(
+    gap = 68.0 / max(aspect * width_px - 30 - layout["margin"]["b"], 150.0)
+    share = style.column(width_px - 86)
+    domains = [(x, y) for y in ([0.5 + 0.5 * gap, 1.0], [0.0, 0.5 - 0.5 * gap])
+               for x in ([0.0, share], [1.0 - share, 1.0])]  # fmt: skip
+    for panel, (column, row) in zip(panels, domains, strict=True):
+        suffix, span_min = panel.suffix, panel.span_s / MINUTE
+        layout[f"xaxis{suffix}"] = style.axis(
             "time (min)",
             domain=column,
             anchor=f"y{suffix}",
@@ -253,38 +216,25 @@ def _layout(
             dtick=_tick(span_min),
             unifiedhovertitle={"text": "%{x:.1f} min"},
         )
-        made[f"yaxis{suffix}"] = style.axis(
-            y_title,
+        layout[f"yaxis{suffix}"] = style.axis(
+            panel.y_title,
             domain=row,
             anchor=f"x{suffix}",
-            range=ranges[suffix],
+            range=_range(_deciding(panel.curves, stable), panel.unit),
             nticks=6,
             zeroline=True,
             zerolinecolor=style.REFERENCE,
             zerolinewidth=1,
         )
-        notes.append(style.panel_title(style.fitting(titles, room_px), suffix))
-    return made | {"annotations": notes, "shapes": [_settled_band()]}
+        title = style.fitting(panel.titles, share * (width_px - 86))
+        layout["annotations"].append(style.panel_title(title, suffix))
+    settled = {"type": "rect", "y0": -_SETTLED, "y1": _SETTLED}  # in which a response counts as settled
+    look = {"line": {"width": 0}, "fillcolor": "rgba(154,169,184,0.3)"}
+    return layout | {"shapes": [style.across(0.0) | settled | look]}
 
 
 def _tick(span_min: float) -> float:
     return next(s for s in (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0) if span_min <= 6.5 * s)
-
-
-def _settled_band() -> dict[str, Any]:
-    """Band of +-2 %, in which a response counts as settled."""
-    return {
-        "type": "rect",
-        "xref": "x domain",
-        "x0": 0.0,
-        "x1": 1.0,
-        "yref": "y",
-        "y0": -_SETTLED,
-        "y1": _SETTLED,
-        "layer": "below",
-        "line": {"width": 0},
-        "fillcolor": "rgba(154,169,184,0.3)",
-    }
 
 
 def _forbidden(limits: StepLimits, span_s: float, unit: Unit, cause: _Disturbance) -> list[dict[str, Any]]:
@@ -319,11 +269,8 @@ def _forbidden(limits: StepLimits, span_s: float, unit: Unit, cause: _Disturbanc
 
 def step_limits(requirements: Requirements) -> StepLimits:
     """What the requirements ask of the responses in the tab "Step", SI."""
-    settling, overshoot, tilt = (
-        requirements.settling_min,
-        requirements.overshoot_percent,
-        requirements.log_tilt_arcsec,
-    )
+    settling, overshoot = requirements.settling_min, requirements.overshoot_percent
+    tilt = requirements.log_tilt_arcsec
     return StepLimits(
         settling_s=None if settling is None else settling * MINUTE,
         overshoot=None if overshoot is None else overshoot / 100.0,

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from html import escape
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from app.plots import style
 from app.plots.units import AUTO, Unit, number, time_unit
-from app.plots.uplot import LABEL_SIZE, Y_SIZE, Dash, UplotFigure
+from app.plots.uplot import LABEL_SIZE, Y_SIZE, Curve, Dash, UplotFigure
 from navcore.engine.in_force import damping_in_force
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.notation import unit_sign, with_unit
@@ -22,6 +23,11 @@ STATE, XI, MARGIN = "state", "xi", "margin"
 _WANTED, _DAMPED, _XI, _MEASURE, _MARGIN = range(5)
 _LANE = 1.4
 """Height of one method's on and off above the next one's."""
+_NUMBERS = {
+    _XI: (XI, "Damping ratio in force", "ζ"),
+    _MARGIN: (MARGIN, "Least damping ratio of the closed-loop poles in force", "least ζ"),
+}
+"""Column -> key, title and symbol of the plots of a number without unit."""
 _WANTED_DASH: Dash = (3, 4)
 _LIMIT_DASH: Dash = (10, 4)
 _NO_UNIT = Unit("–", 1.0)
@@ -31,26 +37,20 @@ _LONGEST = 8
 """Letters of a measure's name that fit on the axis of a low plot; a longer one stands in the legend."""
 
 
-@dataclass(frozen=True)
-class Switched:
-    """A method that does not always damp alike.
+class Switched(NamedTuple):
+    """A method that does not always damp alike: its place in the scenario, and what its policy measures.
 
-    Attributes
-    ----------
-    index : int
-        Its place in the scenario.
-    run : MethodRun
-        The method.
-    measure : Measure or None
-        What its policy measures.
-    limits : tuple of Limit
-        Its thresholds, in the unit of the measure.
+    The limits are its thresholds, in the unit of the measure.
     """
 
     index: int
     run: MethodRun
     measure: Measure | None
     limits: tuple[Limit, ...]
+
+
+_Pair = tuple[Switched, np.ndarray]
+"""A method, and its columns."""
 
 
 def switched_methods(run: Run) -> tuple[Switched, ...]:
@@ -78,21 +78,34 @@ def switching_plots(run: Run, wanted_time: str = AUTO) -> tuple[UplotFigure, ...
     if not methods:
         return ()
     unit_of_time = time_unit(float(run.t_s[-1]), wanted_time)
-    whole = np.hstack([_on_axis(_series(method.run), len(run.t_s)) for method in methods])
-    time_s, thinned = thin(run.t_s, whole)
-    time = np.ascontiguousarray(time_s / unit_of_time.si)
-    width = whole.shape[1] // len(methods)
-    pairs = [(m, thinned[:, width * place : width * (place + 1)]) for place, m in enumerate(methods)]
-    measures = []
-    for place, kind in enumerate(_kinds(methods)):
-        mine = [pair for pair in pairs if pair[0].measure == kind]
-        measures.append(_measure_plot(place, kind, mine, time, unit_of_time))
+    rows = [_on_axis(_series(method.run), len(run.t_s)) for method in methods]
+    time_s, thinned = thin(run.t_s, np.hstack(rows))
+    values = np.split(thinned, len(methods), axis=1)
+    axis = {"time": np.ascontiguousarray(time_s / unit_of_time.si), "time_unit": unit_of_time}
+    pairs = list(zip(methods, values, strict=True))
     return (
-        *measures,
-        _state_plot(pairs, time, unit_of_time),
-        _xi_plot(pairs, time, unit_of_time),
-        _margin_plot(pairs, time, unit_of_time),
+        *(_measure_plot(place, kind, pairs, axis) for place, kind in enumerate(_kinds(methods))),
+        _state_plot(pairs, axis),
+        *(
+            UplotFigure(
+                key=key,
+                quantity=key,
+                title=title,
+                symbol=symbol,
+                unit=_NO_UNIT,
+                curves=tuple(_curve(pair, column) for pair in pairs),
+                **axis,
+            )
+            for column, (key, title, symbol) in _NUMBERS.items()
+        ),
     )
+
+
+def _curve(pair: _Pair, column: int, si: float = 1.0, above: float = 0.0) -> Curve:
+    """One column of a method's values, in a unit of ``si``, drawn higher by ``above``."""
+    method, values = pair
+    color = style.method_color(method.index)
+    return Curve(method.run.method.name, color, np.ascontiguousarray(values[:, column] / si + above))
 
 
 def _series(method: MethodRun) -> np.ndarray:
@@ -105,28 +118,20 @@ def _kinds(methods: Sequence[Switched]) -> list[Measure]:
     return list(dict.fromkeys(method.measure for method in methods if method.measure is not None))
 
 
-_Pairs = list[tuple[Switched, np.ndarray]]
-
-
-def _measure_plot(
-    place: int, measure: Measure, pairs: _Pairs, time: np.ndarray, unit_of_time: Unit
-) -> UplotFigure:
-    limits = shared_limits([method for method, _ in pairs])
+def _measure_plot(place: int, measure: Measure, pairs: list[_Pair], axis: dict[str, Any]) -> UplotFigure:
+    mine = [pair for pair in pairs if pair[0].measure == measure]
+    limits = [
+        Curve(name, color, np.full(len(axis["time"]), value), _LIMIT_DASH)
+        for name, value, color in shared_limits([method for method, _ in mine])
+    ]
     return UplotFigure(
         key=f"measure{place}",
         quantity="measure",
         title=measure.label,
         symbol=_symbol(place, measure),
         unit=Unit(unit_sign(measure.unit), measure.si),
-        time_unit=unit_of_time,
-        names=(*(m.run.method.name for m, _ in pairs), *(name for name, _, _ in limits)),
-        colors=(*(style.method_color(m.index) for m, _ in pairs), *(color for _, _, color in limits)),
-        dashes=(*((),) * len(pairs), *(_LIMIT_DASH,) * len(limits)),
-        data=(
-            time,
-            *(np.ascontiguousarray(values[:, _MEASURE] / measure.si) for _, values in pairs),
-            *(np.full(len(time), value) for _, value, _ in limits),
-        ),
+        curves=(*(_curve(pair, _MEASURE, measure.si) for pair in mine), *limits),
+        **axis,
     )
 
 
@@ -155,60 +160,28 @@ def _name(method: Switched, limit: Limit) -> str:
     return extra_of(info).get("label", limit.name)
 
 
-def _state_plot(pairs: _Pairs, time: np.ndarray, unit_of_time: Unit) -> UplotFigure:
-    base = [_LANE * place for place in reversed(range(len(pairs)))]
-    lanes = list(zip(pairs, base, strict=True))
+def _state_plot(pairs: list[_Pair], axis: dict[str, Any]) -> UplotFigure:
+    lows = [_LANE * place for place in reversed(range(len(pairs)))]
+    lanes = list(zip(pairs, lows, strict=True))
+    wanted = [_curve(pair, _WANTED, above=low) for pair, low in lanes]
+    if len(lows) == 1:
+        ticks = (lows[0], "off"), (lows[0] + 1.0, "on")
+    else:  # each lane's on, as far as there is room for words
+        word = "on" if len(lows) <= _WORDED_LANES else ""
+        ticks = tuple((low + 1.0, word) for low in reversed(lows))
     return UplotFigure(
         key=STATE,
         quantity=STATE,
         title="Wanted and actual state",
         symbol="damped",
         unit=_WORDS,
-        time_unit=unit_of_time,
-        names=(*(m.run.method.name for m, _ in pairs), *(f"{m.run.method.name}, wanted" for m, _ in pairs)),
-        colors=(*(style.method_color(m.index) for m, _ in pairs), *(style.INK for _ in pairs)),
-        dashes=(*((),) * len(pairs), *(_WANTED_DASH,) * len(pairs)),
-        data=(
-            time,
-            *(np.ascontiguousarray(values[:, _DAMPED] + low) for (_, values), low in lanes),
-            *(np.ascontiguousarray(values[:, _WANTED] + low) for (_, values), low in lanes),
+        curves=(
+            *(_curve(pair, _DAMPED, above=low) for pair, low in lanes),
+            *(replace(c, name=f"{c.name}, wanted", color=style.INK, dash=_WANTED_DASH) for c in wanted),
         ),
         floor=-0.15,
-        ticks=_state_ticks(base),
-    )
-
-
-def _state_ticks(base: list[float]) -> tuple[tuple[float, str], ...]:
-    """On and off for one method; of several each lane's on, as far as there is room for words."""
-    if len(base) == 1:
-        return (base[0], "off"), (base[0] + 1.0, "on")
-    return tuple((low + 1.0, "on" if len(base) <= _WORDED_LANES else "") for low in reversed(base))
-
-
-def _xi_plot(pairs: _Pairs, time: np.ndarray, unit_of_time: Unit) -> UplotFigure:
-    title = "Damping ratio in force"
-    return _column_plot(pairs, time, unit_of_time, _XI, key=XI, title=title, symbol="ζ")
-
-
-def _margin_plot(pairs: _Pairs, time: np.ndarray, unit_of_time: Unit) -> UplotFigure:
-    title = "Least damping ratio of the closed-loop poles in force"
-    return _column_plot(pairs, time, unit_of_time, _MARGIN, key=MARGIN, title=title, symbol="least ζ")
-
-
-def _column_plot(
-    pairs: _Pairs, time: np.ndarray, unit_of_time: Unit, column: int, *, key: str, title: str, symbol: str
-) -> UplotFigure:
-    """Plot one column of each method's values, a number without unit."""
-    return UplotFigure(
-        key=key,
-        quantity=key,
-        title=title,
-        symbol=symbol,
-        unit=_NO_UNIT,
-        time_unit=unit_of_time,
-        names=tuple(m.run.method.name for m, _ in pairs),
-        colors=tuple(style.method_color(m.index) for m, _ in pairs),
-        data=(time, *(np.ascontiguousarray(values[:, column]) for _, values in pairs)),
+        ticks=ticks,
+        **axis,
     )
 
 

@@ -1,0 +1,44 @@
+"""Tables of the page and of its reports: cells as data, their look in table.css."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from html import escape
+from pathlib import Path
+
+CSS = (Path(__file__).parent / "table.css").read_text(encoding="utf-8")
+"""For the page, and for every file with tables, to add once."""
+
+
+def cell(content: str = "", look: str = "", *, tag: str = "td", **attributes: object) -> str:
+    """HTML of a cell, or of another element around a content.
+
+    Parameters
+    ----------
+    content : str
+        HTML.
+    look : str
+        Classes of table.css, such as ``sb-n`` for a number.
+    tag : str
+        ``th`` for a heading.
+    **attributes
+        Of the element, ``data_value`` for ``data-value``; None and "" are left out.
+    """
+    given = {"class": look} | attributes
+    words = (
+        f' {name.replace("_", "-")}="{escape(str(value))}"'
+        for name, value in given.items()
+        if value not in (None, "")
+    )
+    return f"<{tag}{''.join(words)}>{content}</{tag}>"
+
+
+def row(cells: Iterable[str], look: str = "", **attributes: object) -> str:
+    """HTML of a row; attributes as for `cell`."""
+    return cell("".join(cells), look, tag="tr", **attributes)
+
+
+def table(head: Iterable[str], body: Iterable[str], look: str = "") -> str:
+    """HTML of a table of rows, which scrolls where it is too wide; ``look``: more classes."""
+    rows = f"<thead>{''.join(head)}</thead><tbody>{''.join(body)}</tbody>"
+    return cell(cell(rows, f"sb-t {look}".rstrip(), tag="table"), "sb-scroll", tag="div")
