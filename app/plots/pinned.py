@@ -23,14 +23,17 @@ class Pinned(Protocol):
     @property
     def name(self) -> str:
         """As the user calls it."""
+        ...
 
     @property
     def hex(self) -> str:
         """Colour, ``#RRGGBB``."""
+        ...
 
     @property
     def run(self) -> Run | None:
         """The run; None while it is not known."""
+        ...
 
 
 @dataclass(frozen=True)

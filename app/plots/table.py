@@ -38,6 +38,12 @@ def row(cells: Iterable[str], look: str = "", **attributes: object) -> str:
     return cell("".join(cells), look, tag="tr", **attributes)
 
 
+def parts(count: int, most: int) -> list[range]:
+    """Columns of the tables in which ``count`` of them stand, at most ``most`` abreast."""
+    each = -(-count // -(-count // most))
+    return [range(first, min(first + each, count)) for first in range(0, count, each)]
+
+
 def table(head: Iterable[str], body: Iterable[str], look: str = "") -> str:
     """HTML of a table of rows, which scrolls where it is too wide; ``look``: more classes."""
     rows = f"<thead>{''.join(head)}</thead><tbody>{''.join(body)}</tbody>"

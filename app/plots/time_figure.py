@@ -72,8 +72,8 @@ def _drawn(plot: UplotFigure) -> list[Curve]:
 
 def _traces(plot: UplotFigure, suffix: str, named: set[str]) -> list[dict[str, Any]]:
     """Bands, then curves; a name stands once in the legend of all plots (``named`` is added to)."""
-    common = {"type": "scatter", "mode": "lines", "xaxis": f"x{suffix}", "yaxis": f"y{suffix}"}
-    common["x"] = packed(plot.time)
+    axes = {"type": "scatter", "mode": "lines", "xaxis": f"x{suffix}", "yaxis": f"y{suffix}"}
+    common = axes | {"x": packed(plot.time)}
     traces: list[dict[str, Any]] = []
     for upper, lower, color in plot.bands:
         edge = common | {"line": {"width": 0}, "showlegend": False}

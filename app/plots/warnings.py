@@ -11,17 +11,9 @@ Severity = Literal["error", "warning"]
 
 def warnings_for(run: Run) -> dict[int, list[str]]:
     """Warnings of each method that has any: place in the scenario -> texts, an early end first."""
-    found: dict[int, list[str]] = {}
-    for index, method in enumerate(run.methods):
-        texts = list(dict.fromkeys(text for text in (method.reason, *method.warnings) if text))
-        if texts:
-            found[index] = texts
-    return found
-
-
-def notices_for(run: Run) -> list[str]:
-    """Notices about the scenario as a whole, recorded data for example."""
-    return list(dict.fromkeys(run.warnings))
+    texts = ((method.reason, *method.warnings) for method in run.methods)
+    lists = (list(dict.fromkeys(text for text in own if text)) for own in texts)
+    return {index: own for index, own in enumerate(lists) if own}
 
 
 def severity(run: Run, index: int) -> Severity | None:

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from app.plots.style import INK, method_color
-from app.views.appearance import theme
-from app.views.appearance.dark import DARK
+from app.views.appearance.look import DARK
+from tests import dark_page as theme
 from tests.browser.driver import Bench
 from tests.browser.fields import label_of
 from tests.browser.test_page_layout import SIZES, resize

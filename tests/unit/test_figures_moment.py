@@ -101,9 +101,8 @@ def test_rounding_is_no_error() -> None:
 class TestPendulum:
     def test_it_hangs_along_the_computed_vertical(self) -> None:
         run = with_errors((3.0 * ARCMIN, 5.0 * ARCMIN, 0.0))
-        bob = pendulum(run, 5000.0).bobs[0]
-        assert (bob.east, bob.north) == pytest.approx((-5.0 * ARCMIN, 3.0 * ARCMIN))
-        np.testing.assert_allclose(bob.trail, [[bob.east, bob.north]] * len(bob.trail))
+        trail = pendulum(run, 5000.0).bobs[0].trail
+        np.testing.assert_allclose(trail, [[-5.0 * ARCMIN, 3.0 * ARCMIN]] * len(trail))
 
     def test_all_methods_share_one_factor_and_the_period_is_schulers(self) -> None:
         run = static_run()
@@ -127,7 +126,6 @@ class TestPendulum:
         free, damped = (float(np.linalg.norm(np.ptp(bob.trail, axis=0))) for bob in shown.bobs)
         assert free > 5.0 * ARCMIN  # from side to side within the trail
         assert damped < 0.1 * free
-        assert (shown.bobs[0].undamped, shown.bobs[1].undamped) == (True, False)
 
     def test_the_picture_stays_in_its_frame_and_says_what_it_is(self) -> None:
         for run in (moving_run(), static_run(), diverging(moving_run(), 0, rows=1000)):

@@ -9,7 +9,7 @@ import pytest
 
 from app.plots import style
 from app.plots.units import angle_unit, length_unit, rounded, settling, speed_unit, time_unit
-from app.plots.warnings import notices_for, severity, warnings_for
+from app.plots.warnings import severity, warnings_for
 from app.views.metrics.table import (
     STATISTICS,
     difference_rows,
@@ -18,6 +18,7 @@ from app.views.metrics.table import (
     system_html,
     verdict,
 )
+from app.views.metrics.view import warnings_html
 from navcore.engine.verification import Difference, Verification
 from navcore.foundation.units import ARCMIN, ARCSEC, NAUTICAL_MILE
 from navcore.mechanization.recorder import NAMES
@@ -121,7 +122,7 @@ def test_reason_of_an_early_end_comes_first_and_once() -> None:
     run = replace(run, methods=(*run.methods[:2], method))
     assert warnings_for(run)[2].count(reason) == 1
     assert warnings_for(run)[2][0] == reason
-    assert notices_for(replace(run, warnings=("a", "a", "b"))) == ["a", "b"]
+    assert warnings_html(replace(run, warnings=("a", "a", "b"))).count("a<br>b") == 1
 
 
 @pytest.mark.parametrize(

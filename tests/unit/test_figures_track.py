@@ -89,9 +89,9 @@ class TestMoving:
 
     def test_time_finds_its_point(self) -> None:
         scene = track(moving_run())
-        assert scene.index_at(-5.0) == 0
-        assert scene.index_at(1e9) == len(scene.t_s) - 1
-        assert scene.t_s[scene.index_at(7200.0)] <= 7200.0 < scene.t_s[scene.index_at(7200.0) + 1]
+        assert scene.place(-5.0).index == 0
+        assert scene.place(1e9).index == len(scene.t_s) - 1
+        assert scene.t_s[scene.place(7200.0).index] <= 7200.0 < scene.t_s[scene.place(7200.0).index + 1]
 
     def test_between_two_points_the_ship_is_between_them(self) -> None:
         scene = track(moving_run())

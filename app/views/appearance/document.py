@@ -37,7 +37,7 @@ class Session:
 
     Attributes
     ----------
-    found : Shown
+    shown : Shown
         The run, and how it is shown.
     pins : sequence of Pin
         All of the session.
@@ -47,7 +47,7 @@ class Session:
         When, with its time zone.
     """
 
-    found: Shown
+    shown: Shown
     pins: Sequence[Pin]
     origin: str
     made: datetime
@@ -55,7 +55,7 @@ class Session:
     @property
     def title(self) -> str:
         """Name of the scenario."""
-        return self.found.run.scenario.title or self.origin
+        return self.shown.run.scenario.title or self.origin
 
 
 def document(
@@ -74,11 +74,15 @@ def document(
     say : callable
         Translates HTML.
     """
+    figures = (
+        f'<figure><figcaption>{escape(title)}</figcaption><img data-picture="{place}" alt="{escape(title)}">'
+        "</figure>"
+        for place, title in enumerate(pictures)
+    )
     body = say(
         f"<header><h1>Schuler Bench: {escape(session.title)}</h1>{_about(session)}</header>"
         f"{_warnings(session)}{_metrics(session)}{_requirements(session)}{_pins(session)}"
-        f"<section><h2>Plots</h2>{''.join(_figure(i, title) for i, title in enumerate(pictures))}</section>"
-        f"{_scenario(session)}"
+        f"{_section('Plots', *figures)}{_scenario(session)}"
     )
     title = escape(session.title)
     return _PAGE.substitute(language=escape(language), title=title, style=_CSS, body=body)
@@ -86,87 +90,76 @@ def document(
 
 def command(session: Session) -> str:
     """Command that runs the scenario again: by its name while it is a preset, else from the file."""
-    scenario = session.found.run.scenario
+    scenario = session.shown.run.scenario
     if session.origin in presets() and load(session.origin) == scenario:
         return f"schuler run {session.origin}"
     return "schuler run scenario.toml"
 
 
 def _about(session: Session) -> str:
-    scenario = session.found.run.scenario
+    scenario = session.shown.run.scenario
     source = f"<p>{escape(scenario.source)}</p>" if scenario.source else ""
     lines = {
         "Scenario": escape(session.origin),
         "Duration": f"{scenario.run.duration_h:g} h",
         "Date": f"{session.made:%Y-%m-%d %H:%M %Z}",
         "Program": f"Schuler Bench {__version__}",
-        "SHA-256": f"<code>{session.found.run.scenario_sha256}</code>",
+        "SHA-256": f"<code>{session.shown.run.scenario_sha256}</code>",
         "Run it again": f'<code translate="no">{escape(command(session))}</code>',
     }
     rows = "".join(f"<dt>{name}</dt><dd>{value}</dd>" for name, value in lines.items())
     return f"{source}<dl>{rows}</dl>"
 
 
+def _section(title: str, *content: str) -> str:
+    return f"<section><h2>{title}</h2>{''.join(content)}</section>"
+
+
+def _tables(count: int, make: Callable[[range], str]) -> str:
+    """Tables that are about equally wide; ``make`` gives one of some of the methods."""
+    return "".join(f'<div class="table">{make(part)}</div>' for part in table.parts(count, _ABREAST))
+
+
 def _warnings(session: Session) -> str:
-    found = session.found
-    told = warnings_html(found.run, found.verified)
-    heading = "<h2>Warnings about the run</h2>" if "sb-note" in told else ""
-    return f"<section>{heading}{told}</section>" if heading else ""
-
-
-def _parts(count: int) -> list[range]:
-    """Columns of tables that are about equally wide."""
-    tables = -(-count // _ABREAST)
-    each = -(-count // max(tables, 1))
-    return [range(first, min(first + each, count)) for first in range(0, count, max(each, 1))]
+    warnings = warnings_html(session.shown.run, session.shown.verified)
+    return _section("Warnings about the run", warnings) if "sb-note" in warnings else ""
 
 
 def _metrics(session: Session) -> str:
-    found = session.found
-    window = window_of(found.run, found.display)
-    told = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
-    tables = "".join(
-        f'<div class="table">{metrics_html(window.run, part, display=found.display)}</div>'
-        for part in _parts(len(window.run.methods))
-    )
-    system = system_html(found.run).replace("<details ", "<details open ", 1)
-    return f'<section><h2>Metrics</h2>{told}{tables}<div class="table">{system}</div></section>'
+    run, display = session.shown.run, session.shown.display
+    window = window_of(run, display)
+    note = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
+    tables = _tables(len(run.methods), lambda part: metrics_html(window.run, part, display=display))
+    system = system_html(run).replace("<details ", "<details open ", 1)
+    return _section("Metrics", note, tables, f'<div class="table">{system}</div>')
 
 
 def _requirements(session: Session) -> str:
-    found = session.found
-    asked = found.display.requirements
-    if not asked.any:
-        return "<section><h2>Requirements</h2><p>No requirement is set.</p></section>"
-    run = window_of(found.run, found.display).run
-    tables = "".join(
-        f'<div class="table">{requirements_html(run, asked, methods=part)}</div>'
-        for part in _parts(len(run.methods))
+    display = session.shown.display
+    if not display.requirements.any:
+        return _section("Requirements", "<p>No requirement is set.</p>")
+    run = window_of(session.shown.run, display).run
+    tables = _tables(
+        len(run.methods), lambda part: requirements_html(run, display.requirements, methods=part)
     )
-    return f"<section><h2>Requirements</h2>{tables}</section>"
+    return _section("Requirements", tables)
 
 
 def _pins(session: Session) -> str:
-    found = session.found
-    pins = titled(session.pins, found.run.scenario)
+    run, display, baseline = session.shown.run, session.shown.display, session.shown.baseline
+    pins = titled(session.pins, run.scenario)
     if not pins:
-        return "<section><h2>Pins</h2><p>No run is pinned.</p></section>"
-    lines = lines_of(window_of(found.run, found.display), found.selected, pins, found.display.requirements)
-    baseline = None if found.baseline is None else found.baseline.id
-    table = pins_html(lines, found.display.pins_by, baseline, buttons=False)
-    return f'<section><h2>Pins</h2><div class="table">{table}</div></section>'
-
-
-def _figure(place: int, title: str) -> str:
-    return (
-        f'<figure><figcaption>{escape(title)}</figcaption><img data-picture="{place}" alt="{escape(title)}">'
-        "</figure>"
+        return _section("Pins", "<p>No run is pinned.</p>")
+    lines = lines_of(window_of(run, display), session.shown.selected, pins, display.requirements)
+    by = None if baseline is None else baseline.id
+    return _section(
+        "Pins", f'<div class="table">{pins_html(lines, display.pins_by, by, buttons=False)}</div>'
     )
 
 
 def _scenario(session: Session) -> str:
-    scenario = with_plain_names(session.found.run.scenario)
+    scenario = with_plain_names(session.shown.run.scenario)
     files = ", ".join(sorted(files_of(scenario)))
     beside = f"<p>It needs these recordings beside it: {escape(files)}.</p>" if files else ""
     how = "<p>To compute the run again, save this text as scenario.toml and give the command above.</p>"
-    return f"<section><h2>Scenario</h2>{how}{beside}<pre>{escape(to_toml(scenario))}</pre></section>"
+    return _section("Scenario", how, beside, f"<pre>{escape(to_toml(scenario))}</pre>")

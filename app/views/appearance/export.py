@@ -40,10 +40,11 @@ class Picture:
         """What the script needs of it, in the page's language."""
         import orjson
 
-        told = {"title": text_said(client, self.title)}
+        title = text_said(client, self.title)
         if self.figure is None:
-            return told
-        return told | {
+            return {"title": title}
+        return {
+            "title": title,
             "view": self.figure["layout"]["meta"].get("view", ""),
             "width": round(self.width_px),
             "height": round(self.width_px * self.figure.aspect),
@@ -52,21 +53,11 @@ class Picture:
 
 
 def picture_of(title: str, figures: Figures, width_px: float) -> Picture:
-    """Picture of what a view gives to be saved.
-
-    Parameters
-    ----------
-    title : str
-        What is shown.
-    figures : Figures
-        Of the view.
-    width_px : float
-        For which a plotly figure was made; plots over time have a width of their own.
-    """
+    """Picture of what a view gives to be saved; a plotly figure was made for ``width_px``."""
     plotly, plots = figures
-    if plotly is None:
-        return Picture(title, time_figure(plots), WIDTH_PX)
-    return Picture(title, plotly, width_px)
+    return (
+        Picture(title, time_figure(plots), WIDTH_PX) if plotly is None else Picture(title, plotly, width_px)
+    )
 
 
 class Export:
@@ -92,21 +83,20 @@ class Export:
 
     def save(self, title: str, format: str) -> None:
         """Save a plot: its numbers from here, its picture by the page, which draws it."""
-        found = shown(self._session)
+        now = shown(self._session)
         view = next((view for view in self._frame.views() if title in view.plots), None)
-        if found is None or view is None:
+        if now is None or view is None:
             self.tell_no_run()
             return
         try:
-            figures = view.figures(found, title)
+            figures = view.figures(now, title)
         except LookupError as error:
             notices.tell(self._client, "Nothing to save", [str(error)], "warning")
             return
-        name = f"{title.split(': ')[-1].split(' (')[0]}".replace(" ", "-").lower()
+        name = title.split(": ")[-1].split(" (")[0].replace(" ", "-").lower()
         if format == "CSV":
-            self._client.send_file_download(
-                f"{name}.csv", _numbers(figures, found, title), save_immediately=True
-            )
+            numbers = _numbers(figures, now, title)
+            self._client.send_file_download(f"{name}.csv", numbers, save_immediately=True)
             self._client.flush()
             return
         layout = self._frame.layout()
@@ -136,9 +126,9 @@ class Export:
         self._count += 1
         drawn = [picture.job(self._client) for picture in pictures]
         job = {"format": format, "name": name, "pictures": drawn, "page": page, "title": title}
-        told = escape(orjson.dumps(job).decode())
+        text = escape(orjson.dumps(job).decode())
         self._wanted.content = (
-            f'<div id="sb-export" hidden data-count="{self._count}" data-job="{told}"></div>'
+            f'<div id="sb-export" hidden data-count="{self._count}" data-job="{text}"></div>'
         )
         self._client.flush()
 
@@ -154,7 +144,7 @@ class Export:
         self._client.flush()
 
 
-def _numbers(figures: Figures, found: Shown, title: str) -> bytes:
-    about = (f"Schuler Bench: {title}", f"scenario_sha256 {found.run.scenario_sha256}")
+def _numbers(figures: Figures, now: Shown, title: str) -> bytes:
+    about = (f"Schuler Bench: {title}", f"scenario_sha256 {now.run.scenario_sha256}")
     plotly, plots = figures
     return time_csv(plots, about) if plotly is None else plotly_csv(plotly, about)

@@ -8,10 +8,8 @@ from app.jobs.envelopes import SEEDS
 from app.session.display import Display
 from app.shell import notices
 from app.shell.view import Frame, Tab, View, if_user
-from app.views.appearance.dark import DarkPage
 from app.views.appearance.export import FORMATS, Export
-from app.views.appearance.language import PageLanguage
-from app.views.appearance.presentation import PresentationSize
+from app.views.appearance.look import Looks, PageLanguage
 from app.views.appearance.sheet import Sheet
 from navcore.foundation.notation import unit_sign
 
@@ -56,8 +54,7 @@ class AppearanceView(View):
     def build(self, tab: Tab) -> None:
         """Make the widgets."""
         gui, export = self.frame.gui, self._export
-        self._dark, language = DarkPage(self.frame), PageLanguage(self.frame)
-        self._size = PresentationSize(self.frame)
+        self._looks, language = Looks(self.frame), PageLanguage(self.frame)
         self._choosers: dict[str, Any] = {}
         with tab:
             gui.add_html(notices.heading("Units and axes"), order=0)
@@ -86,8 +83,7 @@ class AppearanceView(View):
             gui.add_html(_SESSION, order=24)
             gui.add_html(notices.heading("Page"), order=30)
             language.build()
-            self._dark.build()
-            self._size.build()
+            self._looks.build()
         self._bands.on_update(if_user(lambda: self.frame.show(envelope=_BANDS[self._bands.value])))
         format.on_click(
             lambda event: export.save(plot.value, event.target.value) if event.client is not None else None
@@ -95,9 +91,9 @@ class AppearanceView(View):
 
     def _chooser(self, label: str, field: str, hint: str, order: int) -> Any:
         options = {unit_sign(key): key for key in get_args(Display.model_fields[field].annotation)}
-        made: Any = self.frame.gui.add_dropdown(label, tuple(options), order=order, hint=hint)
-        made.on_update(if_user(lambda: self.frame.show(**{field: options[made.value]})))
-        return made
+        chooser: Any = self.frame.gui.add_dropdown(label, tuple(options), order=order, hint=hint)
+        chooser.on_update(if_user(lambda: self.frame.show(**{field: options[chooser.value]})))
+        return chooser
 
     def follow_display(self) -> None:
         """Show the session's choices."""
@@ -105,13 +101,12 @@ class AppearanceView(View):
         for field, chooser in self._choosers.items():
             chooser.value = unit_sign(getattr(display, field))
         self._bands.value = next(word for word, key in _BANDS.items() if key == display.envelope)
-        self._dark.show(display)
-        self._size.show(display)
+        self._looks.show(display)
         self.follow_jobs()
 
     def follow_scenario(self) -> None:
         """Let the tab that leads now stand alone in presentation size: a lesson may have been opened."""
-        self._size.show(self.session.display)
+        self._looks.show(self.session.display)
 
     def follow_jobs(self) -> None:
         """Show how far the bands are, or why there are none."""

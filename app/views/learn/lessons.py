@@ -23,6 +23,7 @@ import operator
 import re
 import tomllib
 from collections.abc import Callable
+from contextlib import suppress
 from copy import deepcopy
 from functools import lru_cache
 from html import escape
@@ -41,7 +42,7 @@ _FRONT = re.compile(r"\A\+\+\+\n(.*?)\n\+\+\+\n(.*)\Z", re.DOTALL)
 _FENCE = re.compile(r"^```toml (action|question)\n(.*?)^```$\n?", re.DOTALL | re.MULTILINE)
 _MATH = re.compile(r"\$\$(.+?)\$\$|\$(.+?)\$", re.DOTALL)
 _NAME = re.compile(r"\{\{([a-z0-9_.]+)\}\}")
-_SIGN = re.compile(r"<=|>=|<|>")
+_COMPARISON = re.compile(r"\s*([^<>]*?)\s*(<=|>=|<|>)\s*(.*?)\s*")
 _TERM = re.compile(r"(?:([0-9.eE+-]+)\s*\*\s*)?([a-z][a-z0-9_.]*)")
 _MARK = "\ue000{}\ue001"
 """Stands for a formula while the Markdown around it is read."""
@@ -134,11 +135,8 @@ class Lesson(_Part):
 
     def scenario_of(self, step: int) -> Scenario:
         """Scenario in which a step plays: that of the nearest action up to it; raises `InputError`."""
-        acting = (s.action for s in reversed(self.steps[: step + 1]) if s.action is not None)
-        action = next(acting, None)
-        return self._with(() if action is None else action.set)
-
-    def _with(self, overrides: tuple[str, ...]) -> Scenario:
+        acting = (s.action.set for s in reversed(self.steps[: step + 1]) if s.action is not None)
+        overrides = next(acting, ())
         if self.preset:
             return load(self.preset, overrides)
         data = deepcopy(self.scenario)
@@ -170,14 +168,14 @@ def read_lesson(id: str, text: str) -> Lesson:
     InputError
         It is none; the fault says where.
     """
-    found = _FRONT.match(text)
-    if found is None:
+    match = _FRONT.match(text)
+    if match is None:
         raise InputError(Fault(id, "", None, "must begin with TOML between two lines +++"))
-    heading, *parts = re.split(r"^## (.+)$", found.group(2), flags=re.MULTILINE)
+    heading, *parts = re.split(r"^## (.+)$", match.group(2), flags=re.MULTILINE)
     if heading.strip() or not parts:
         raise InputError(Fault(id, "", None, 'must have its text in steps, each under a heading "## ..."'))
     steps = [_step(id, title, body) for title, body in zip(parts[::2], parts[1::2], strict=True)]
-    front = _toml(id, "", found.group(1))
+    front = _toml(id, "", match.group(1))
     return _checked(id, "", lambda: Lesson(id=id, steps=tuple(steps), **front))
 
 
@@ -220,7 +218,7 @@ def to_html(text: str, run: Run | None) -> str:
     run : Run or None
         Where the numbers come from; `MISSING` without one.
     """
-    return _NAME.sub(lambda found: _number_html(found.group(1), run), _markdown(text))
+    return _NAME.sub(lambda match: _number_html(match.group(1), run), _markdown(text))
 
 
 @lru_cache(maxsize=256)
@@ -229,13 +227,13 @@ def _markdown(text: str) -> str:
 
     formulas: list[str] = []
 
-    def keep(found: re.Match[str]) -> str:
-        block, inline = found.groups()
+    def keep(match: re.Match[str]) -> str:
+        block, inline = match.groups()
         formulas.append(formula_html(block or inline, block=block is not None))
         return _MARK.format(len(formulas) - 1)
 
     html = MarkdownIt("commonmark", {"html": False}).enable("table").render(_MATH.sub(keep, text))
-    return re.sub("\ue000([0-9]+)\ue001", lambda found: formulas[int(found.group(1))], html)
+    return re.sub("\ue000([0-9]+)\ue001", lambda match: formulas[int(match.group(1))], html)
 
 
 def formula_html(latex: str, *, block: bool = False) -> str:
@@ -253,11 +251,11 @@ def names_in(text: str) -> tuple[str, ...]:
 
 
 def _number_html(name: str, run: Run | None) -> str:
-    try:
-        shown = MISSING if run is None else named(name, run).text
-    except KeyError:
-        shown = MISSING
-    return f'<span class="sb-live" data-name="{escape(name)}">{escape(shown)}</span>'
+    number = MISSING
+    if run is not None:
+        with suppress(KeyError):
+            number = named(name, run).text
+    return f'<span class="sb-live" data-name="{escape(name)}">{escape(number)}</span>'
 
 
 # ------------------------------------------------------------ answers
@@ -271,22 +269,20 @@ def holds(comparison: str, run: Run) -> bool:
     KeyError
         It is no comparison, or a name is unknown.
     """
-    found = _SIGN.search(comparison)
-    if found is None:
+    match = _COMPARISON.fullmatch(comparison)
+    if match is None:
         raise KeyError(comparison)
-    left, right = comparison[: found.start()].strip(), comparison[found.end() :].strip()
-    return _SIGNS[found[0]](_term(left, run), _term(right, run))
+    left, sign, right = match.groups()
+    return _SIGNS[sign](_term(left, run), _term(right, run))
 
 
 def _term(text: str, run: Run) -> float:
-    try:
+    with suppress(ValueError):
         return float(text)
-    except ValueError:
-        pass
-    found = _TERM.fullmatch(text)
-    if found is None:
+    match = _TERM.fullmatch(text)
+    if match is None:
         raise KeyError(text)
-    factor, name = found.groups()
+    factor, name = match.groups()
     return float(factor or 1.0) * named(name, run).value
 
 

@@ -27,12 +27,12 @@ number, and nothing in a lesson is evaluated as code. ``N`` stands for the numbe
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from navcore.engine.run import MethodRun, Run
+from navcore.engine.run import Run
 from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.errors import InputError
 from navcore.foundation.notation import with_unit
@@ -55,19 +55,8 @@ _MIN, _DAY = 60.0, 86400.0
 _LINE_DIGITS = 4
 
 
-@dataclass(frozen=True)
-class Named:
-    """A number with its unit.
-
-    Attributes
-    ----------
-    value : float
-        In the unit.
-    unit : str
-        Empty for a pure number.
-    digits : int
-        Significant digits that are shown.
-    """
+class Named(NamedTuple):
+    """A number in a unit ("" for a pure one), and how many significant digits of it are shown."""
 
     value: float
     unit: str
@@ -79,10 +68,10 @@ class Named:
         if not math.isfinite(self.value):
             return "no number"
         value = 0.0 if abs(self.value) < 1e-12 else self.value
-        shown = f"{value:.{self.digits}g}"
-        if "e" in shown and abs(value) < 1e6:
-            shown = f"{float(shown):.0f}" if abs(value) >= 1.0 else f"{value:.2e}"
-        return with_unit(shown, self.unit)
+        text = f"{value:.{self.digits}g}"
+        if "e" in text and abs(value) < 1e6:
+            text = f"{float(text):.0f}" if abs(value) >= 1.0 else f"{value:.2e}"
+        return with_unit(text, self.unit)
 
 
 def named(name: str, run: Run) -> Named:
@@ -101,88 +90,101 @@ def named(name: str, run: Run) -> Named:
         There is no such name, or the run has no such method.
     """
     head, _, rest = name.partition(".")
-    find = _FINDERS.get(head)
-    if find is None or not rest:
-        raise KeyError(name)
+    number, _, what = rest.partition(".")
     try:
-        return find(rest, run)
-    except (IndexError, ValueError, AttributeError, TypeError, InputError):
-        raise KeyError(name) from None
+        if name in _OF_RUN:
+            return _OF_RUN[name](run)
+        if head in _OF_METHOD and number.isdigit():
+            return _OF_METHOD[head](what, int(number), run)
+        if head == "setting" and rest:
+            return _setting(rest, run)
+    except (KeyError, IndexError, ValueError, AttributeError, TypeError, InputError):
+        pass
+    raise KeyError(name)
 
 
-def _schuler(rest: str, run: Run) -> Named:
-    omega_s, up = run.scenario.omega_s, _up_rate(run)
-    split = math.hypot(omega_s, up)
-    values = {
-        "period": Named(2.0 * math.pi / omega_s / _MIN, "min", _LINE_DIGITS),
-        "half": Named(math.pi / omega_s / _MIN, "min", _LINE_DIGITS),
-        "omega": Named(omega_s, "rad/s", _LINE_DIGITS),
-        "fast": Named(2.0 * math.pi / (split + up) / _MIN, "min", _LINE_DIGITS),
-        "slow": Named(2.0 * math.pi / (split - up) / _MIN, "min", _LINE_DIGITS),
-    }
-    return values[rest]
+def _up_rate(run: Run) -> float:
+    """Up component of the Earth's rate at the site, rad/s, as a magnitude."""
+    return EARTH_RATE * math.sin(abs(run.scenario.site.lat_deg) * DEG)
 
 
-def _foucault(rest: str, run: Run) -> Named:
+def _minutes(omega: float, turns: float = 1.0) -> Named:
+    """Time of some turns at an angular rate (rad/s)."""
+    return Named(turns * 2.0 * math.pi / omega / _MIN, "min", _LINE_DIGITS)
+
+
+def _line(run: Run, sign: float) -> Named:
+    """Period of a line beside the Schuler frequency."""
     up = _up_rate(run)
-    period_h = 2.0 * math.pi / up / HOUR if up > 0.0 else math.inf
-    return Named({"period": period_h, "quarter": period_h / 4.0}[rest], "h", _LINE_DIGITS)
+    return _minutes(math.hypot(run.scenario.omega_s, up) + sign * up)
 
 
-def _day(rest: str, run: Run) -> Named:
-    del run
-    return {"period": Named(2.0 * math.pi / EARTH_RATE / HOUR, "h", _LINE_DIGITS)}[rest]
+def _foucault(run: Run, turns: float) -> Named:
+    up = _up_rate(run)
+    return Named(turns * 2.0 * math.pi / up / HOUR if up > 0.0 else math.inf, "h", _LINE_DIGITS)
 
 
-def _averaging(rest: str, run: Run) -> Named:
-    left = math.sin(0.5 * math.pi * _up_rate(run) / run.scenario.omega_s)
-    return {"left": Named(100.0 * left, "%")}[rest]
+def _floor(run: Run, what: str) -> Named:
+    from app.plots.budgets import steady_budget
+
+    field, unit, unit_name = _BUDGETED[what]
+    return Named(getattr(steady_budget(run.scenario).floor.rms, field) / unit, unit_name)
 
 
-def _loop(rest: str, run: Run) -> Named:
+_BUDGETED = {"tilt": ("tilt_rad", ARCSEC, '"'), "velocity": ("velocity_mps", 1.0, "m/s")}
+_OF_RUN: dict[str, Callable[[Run], Named]] = {
+    "schuler.period": lambda run: _minutes(run.scenario.omega_s),
+    "schuler.half": lambda run: _minutes(run.scenario.omega_s, 0.5),
+    "schuler.omega": lambda run: Named(run.scenario.omega_s, "rad/s", _LINE_DIGITS),
+    "schuler.fast": lambda run: _line(run, 1.0),
+    "schuler.slow": lambda run: _line(run, -1.0),
+    "foucault.period": lambda run: _foucault(run, 1.0),
+    "foucault.quarter": lambda run: _foucault(run, 0.25),
+    "day.period": lambda _: Named(2.0 * math.pi / EARTH_RATE / HOUR, "h", _LINE_DIGITS),
+    "averaging.left": lambda run: Named(
+        100.0 * math.sin(0.5 * math.pi * _up_rate(run) / run.scenario.omega_s), "%"
+    ),
+    "floor.tilt": lambda run: _floor(run, "tilt"),
+    "floor.velocity": lambda run: _floor(run, "velocity"),
+}
+
+
+def _loop(what: str, number: int, run: Run) -> Named:
     from app.plots.effective import effective_network
 
-    number, _, what = rest.partition(".")
-    method = _method(number, run)
+    method = run.methods[number]
     free, loop = effective_network(method) is not method.network, method.loop
+    if what == "period" and free:
+        return _minutes(run.scenario.omega_s)
     if what == "period":
         poles = loop.poles[np.abs(loop.poles.imag) > 1e-9]
-        if free or not len(poles):
-            return _schuler("period", run) if free else Named(math.inf, "min")
-        least = poles[np.argmin(-poles.real / np.abs(poles))]
-        return Named(2.0 * math.pi / abs(float(least.imag)) / _MIN, "min")
+        least = min(poles, key=lambda pole: -pole.real / abs(pole), default=0.0)
+        return Named(2.0 * math.pi / abs(float(least.imag)) / _MIN if least else math.inf, "min")
     if what == "settling":
         settled = None if free else loop.settling_s
         return Named(math.inf if settled is None else settled / _MIN, "min")
-    return Named({"damping": 0.0, "h0": 1.0}[what] if free else _of_loop(loop, what), "")
+    damping, h0 = (0.0, 1.0) if free else (loop.damping_ratio, loop.h0)
+    return Named(float({"damping": damping, "h0": h0}[what]), "")
 
 
-def _of_loop(loop: Any, what: str) -> float:
-    return float({"damping": loop.damping_ratio, "h0": loop.h0}[what])
+def _whole(what: str, number: int, run: Run) -> Named:
+    whole = run.methods[number].whole
+    days = Named(abs(whole.e_folding_s) / _DAY, "days")
+    return {"days": days, "slope": Named(whole.h_slope, "s", _LINE_DIGITS)}[what]
 
 
-def _whole(rest: str, run: Run) -> Named:
-    number, _, what = rest.partition(".")
-    whole = _method(number, run).whole
-    values = {
-        "days": Named(abs(whole.e_folding_s) / _DAY, "days"),
-        "slope": Named(whole.h_slope, "s", _LINE_DIGITS),
-    }
-    return values[what]
-
-
-def _error(rest: str, run: Run) -> Named:
-    number, quantity, statistic = rest.split(".")
+def _error(what: str, number: int, run: Run) -> Named:
+    quantity, statistic = what.split(".")
     column, unit, unit_name = QUANTITIES[quantity]
-    value = _method(number, run).errors[NAMES[column]][STATISTICS[statistic]] / unit
+    value = run.methods[number].errors[NAMES[column]][STATISTICS[statistic]] / unit
     return Named(abs(value) if statistic == "end" else value, unit_name)
 
 
-def _curve(rest: str, run: Run) -> Named:
-    number, quantity, what = rest.split(".")
-    if what != "period":
-        raise KeyError(rest)
-    plot = _method(number, run).plot
+def _curve(what: str, number: int, run: Run) -> Named:
+    quantity, period = what.split(".")
+    if period != "period":
+        raise KeyError(what)
+    plot = run.methods[number].plot
     values = plot.values[:, QUANTITIES[quantity][0]]
     signs = np.sign(values)
     # A start at exactly zero is no crossing.
@@ -194,70 +196,40 @@ def _curve(rest: str, run: Run) -> Named:
     return Named(2.0 * float(np.mean(np.diff(times))) / _MIN, "min", _LINE_DIGITS)
 
 
-_BUDGETED = {"tilt": ("tilt_rad", ARCSEC, '"'), "velocity": ("velocity_mps", 1.0, "m/s")}
-
-
-def _floor(rest: str, run: Run) -> Named:
+def _budget(what: str, number: int, run: Run) -> Named:
     from app.plots.budgets import steady_budget
 
-    field, unit, unit_name = _BUDGETED[rest]
-    return Named(getattr(steady_budget(run.scenario).floor.rms, field) / unit, unit_name)
-
-
-def _budget(rest: str, run: Run) -> Named:
-    from app.plots.budgets import steady_budget
-
-    number, _, what = rest.partition(".")
-    found = steady_budget(run.scenario)
-    if not number.isdigit():
-        raise KeyError(number)
-    method = found.methods[int(number)]
+    budget = steady_budget(run.scenario)
+    method = budget.methods[number]
     if what in _BUDGETED:
         field, unit, unit_name = _BUDGETED[what]
         return Named(getattr(method.total.rms, field) / unit, unit_name)
     if what.endswith("_times"):
-        return Named(float(found.times_floor(method)[what.removesuffix("_times")] or math.inf), "")
+        return Named(float(budget.times_floor(method)[what.removesuffix("_times")] or math.inf), "")
     own, total = method.sources[what].rms.tilt_rad, method.total.rms.tilt_rad
     if own is None or not total:
-        raise KeyError(rest)
+        raise KeyError(what)
     return Named(100.0 * (own / total) ** 2, "%")
 
 
-def _setting(rest: str, run: Run) -> Named:
+_OF_METHOD: dict[str, Callable[[str, int, Run], Named]] = {
+    "loop": _loop,
+    "whole": _whole,
+    "error": _error,
+    "curve": _curve,
+    "budget": _budget,
+}
+
+
+def _setting(path: str, run: Run) -> Named:
     place: Any = run.scenario
     unit = ""
-    for step in rest.split("."):
+    for step in path.split("."):
         if step.isdigit():
             place = place[int(step)]
             continue
         unit = str(extra_of(type(place).model_fields[step]).get("unit", ""))
         place = getattr(place, step)
     if isinstance(place, bool) or not isinstance(place, int | float):
-        raise KeyError(rest)
+        raise KeyError(path)
     return Named(float(place), unit)
-
-
-_FINDERS = {
-    "schuler": _schuler,
-    "foucault": _foucault,
-    "day": _day,
-    "averaging": _averaging,
-    "loop": _loop,
-    "whole": _whole,
-    "error": _error,
-    "curve": _curve,
-    "floor": _floor,
-    "budget": _budget,
-    "setting": _setting,
-}
-
-
-def _up_rate(run: Run) -> float:
-    """Up component of the Earth's rate at the site, rad/s, as a magnitude."""
-    return EARTH_RATE * math.sin(abs(run.scenario.site.lat_deg) * DEG)
-
-
-def _method(number: str, run: Run) -> MethodRun:
-    if not number.isdigit():
-        raise KeyError(number)
-    return run.methods[int(number)]

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import BaseModel
 
@@ -18,11 +18,9 @@ from app.shell.control import Control
 from app.shell.section import Section
 from app.shell.view import Frame, Tab, View
 from app.views.learn.lessons import Action, Lesson, Question, is_right, lessons, right_choice, to_html
+from app.views.learn.names import named
 from navcore.engine.run import Run
 from navcore.scenario.model import Scenario
-
-if TYPE_CHECKING:
-    import viser
 
 COMMAND = "lesson"
 """Command with which the panel's HTML asks: ``lesson open 2``, ``step 1``, ``next``, ``back``, ``list``,
@@ -48,12 +46,10 @@ class LearnView(View):
         frame.commands.register(COMMAND, self.command)
 
     def build(self, tab: Tab) -> None:
-        """Make the places of text, question and buttons."""
+        """Make the places of text, question and buttons, in this order."""
         gui = self.frame.gui
         with tab:
-            self._text = gui.add_html("", order=0)
-            self._question = gui.add_html("", order=50)
-            self._below = gui.add_html("", order=60)
+            self._places = [gui.add_html("", order=order) for order in (0, 50, 60)]
             self._front = gui.add_html("", order=70)
         self._section = Section(gui, tab, self.frame.editor.edit, 1.0)
 
@@ -106,10 +102,8 @@ class LearnView(View):
         if action.display:
             session.show(None, **action.display)
         self._asked += 1
-        tabs = escape("|".join(action.tabs))
-        self._front.content = (
-            f'<div id="sb-front" hidden data-count="{self._asked}" data-tabs="{tabs}"></div>'
-        )
+        data = f'data-count="{self._asked}" data-tabs="{escape("|".join(action.tabs))}"'
+        self._front.content = f'<div id="sb-front" hidden {data}></div>'
 
     def _answer(self, given: str) -> None:
         if self._lesson is not None and given and len(given) < 40:
@@ -130,14 +124,13 @@ class LearnView(View):
         scenario, run = self.session.scenario, self.session.run
         with self._lock:
             lesson, action = self._current(), self._action()
-            if lesson is None:
-                _say(self._text, _list_html())
-                _say(self._question, "")
-                _say(self._below, "")
-            else:
-                _say(self._text, self._step_html(lesson, scenario, run))
-                _say(self._question, self._question_html(lesson))
-                _say(self._below, self._below_html(lesson))
+            texts = (_list_html(), "", "")
+            if lesson is not None:
+                step = self._step_html(lesson, scenario, run)
+                texts = step, self._question_html(lesson), self._below_html(lesson)
+            for handle, html in zip(self._places, texts, strict=True):
+                if handle.content != html:
+                    handle.content, handle.visible = html, bool(html)
             specs = [spec for path in (action.sliders if action else ()) for spec in spec_at(scenario, path)]
             values = {spec.path: edits.value_at(scenario, spec.path) for spec in specs}
             self._section.show(specs, values, moved)
@@ -193,9 +186,7 @@ class LearnView(View):
         if question is None:
             return ""
         given = self._given.get((self._lesson or 0, self._step))
-        verdict, right = "", False
-        if given is not None:
-            verdict, right = self._verdict(question, given)
+        verdict, right = ("", False) if given is None else self._verdict(question, given)
         if question.choices:
             answers = "".join(
                 f'<button class="sb-choice{" sb-chosen" * (given == str(i))}" '
@@ -223,16 +214,16 @@ class LearnView(View):
         if right:
             why = to_html(question.why, run).removeprefix("<p>")
             return f'<p class="sb-right"><b>&#10003; Right.</b><br>{why}', True
-        told = "Look again: press Show me if the pictures are of something else."
+        advice = "Look again: press Show me if the pictures are of something else."
         if not question.choices:
-            told += f" Within {100.0 * question.tolerance:g} % counts as right."
-        return f'<p class="sb-wrong"><b>&#10007; Not so.</b> {told}</p>', False
+            advice += f" Within {100.0 * question.tolerance:g} % counts as right."
+        return f'<p class="sb-wrong"><b>&#10007; Not so.</b> {advice}</p>', False
 
     def _run_of(self, scenario: Scenario) -> Run:
         """Run of the step's own scenario: that on the page, or one made for the answer."""
-        shown = self.session.run
-        if shown is not None and shown.scenario == scenario:
-            return shown
+        present = self.session.run
+        if present is not None and present.scenario == scenario:
+            return present
         if self._run is None or self._run.scenario != scenario:
             from navcore.engine.simulation import simulate
 
@@ -240,10 +231,9 @@ class LearnView(View):
         return self._run
 
     def _below_html(self, lesson: Lesson) -> str:
-        last = self._step == len(lesson.steps) - 1
         following = (self._lesson or 0) + 1
         forward = f"{COMMAND} next", "Next"
-        if last:
+        if self._step == len(lesson.steps) - 1:
             more = following < len(lessons())
             forward = (f"{COMMAND} open {following}", "Next lesson") if more else (f"{COMMAND} list", "Done")
         back = (
@@ -268,26 +258,24 @@ def spec_at(scenario: Scenario, dotted: str) -> list[FieldSpec]:
     path: Path = tuple(int(part) if part.isdigit() else part for part in dotted.split("."))
     place: Any = scenario
     for depth, part in enumerate(path):
-        model = type(place)
-        if issubclass(model, BaseModel):
-            chosen = [spec for spec in form.fields(model, path[:depth]) if spec.path == path]
-            if chosen:  # labels are unique on the page
-                return [replace(spec, label=f"try: {spec.label}") for spec in chosen]
+        if isinstance(place, BaseModel):
+            fields = form.fields(type(place), path[:depth])
+            # labels are unique on the page
+            chosen = [replace(spec, label=f"try: {spec.label}") for spec in fields if spec.path == path]
+            if chosen:
+                return chosen
         try:
-            place = place[part] if isinstance(part, int) else getattr(place, part)
+            place = getattr(place, part) if isinstance(part, str) else place[part]  # pyright: ignore[reportIndexIssue]
         except (AttributeError, IndexError, TypeError):
             break
-    return []
     return []
 
 
 def right_answer(question: Question, run: Run) -> str:
     """An answer that counts as right, as it would be given."""
-    from app.views.learn.names import named
-
-    return (
-        str(right_choice(question, run)) if question.choices else f"{named(question.answer, run).value:.4g}"
-    )
+    if question.choices:
+        return str(right_choice(question, run))
+    return f"{named(question.answer, run).value:.4g}"
 
 
 def _list_html() -> str:
@@ -302,13 +290,6 @@ def _list_html() -> str:
         "Undo.</p>"
         f"<ol>{entries}</ol></section>"
     )
-
-
-def _say(handle: viser.GuiHtmlHandle, html: str) -> None:
-    if handle.content != html:
-        handle.content = html
-    if handle.visible != bool(html):
-        handle.visible = bool(html)
 
 
 VIEW = LearnView

@@ -7,7 +7,8 @@ from typing import Any
 
 from app.jobs.verifier import Verified
 from app.plots import style
-from app.plots.warnings import notices_for, severity, warnings_for
+from app.plots.table import parts
+from app.plots.warnings import severity, warnings_for
 from app.session.shown import Shown
 from app.session.window import window_of
 from app.shell import notices
@@ -101,43 +102,38 @@ class MetricsView(PictureView[tuple[str, str]]):
         if self.session.run is not None:
             self.session.searches.explain(self.session.run)
 
-    def _table_html(self, found: Shown) -> str:
+    def _table_html(self, shown: Shown) -> str:
         """Metrics of all methods, in as many tables below each other as the width asks for."""
-        window = window_of(found.run, found.display)
-        layout, run, verified = self.frame.layout(), window.run, found.verified
-        baseline = found.baseline
+        window = window_of(shown.run, shown.display)
+        layout, run, verified, baseline = self.frame.layout(), window.run, shown.verified, shown.baseline
         if baseline is not None and baseline.run is not None:
             baseline = replace(baseline, run=window.of(baseline.run))
-        rows = metrics_rows(run, found.display)
+        rows = metrics_rows(run, shown.display)
         each_px = method_px(rows, _LETTER_PX[layout.wide], _PADDING_PX[layout.wide])
-        each_px += 0 if found.baseline is None else _DELTA_PX[layout.wide]
+        each_px += 0 if baseline is None else _DELTA_PX[layout.wide]
         most = max(int((layout.plot_px - _ROW_NAME_PX - _MARGINS_PX) / each_px), 1)
-        count = len(run.methods)
-        tables = -(-count // most)
-        each = -(-count // tables)
-        parts = (range(first, min(first + each, count)) for first in range(0, count, each))
         beside = None if verified is None else verified.verification
         old = verified is not None and verified.old
-        told = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
+        note = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
         tables = "".join(
             '<div style="margin-bottom:2px">'
-            + metrics_html(run, part, beside, old=old, display=found.display, baseline=baseline)
+            + metrics_html(run, part, beside, old=old, display=shown.display, baseline=baseline)
             + "</div>"
-            for part in parts
+            for part in parts(len(run.methods), most)
         )
-        return told + tables + system_html(found.run)
+        return note + tables + system_html(shown.run)
 
 
 def warnings_html(run: Run, verified: Verified | None = None) -> str:
     """Notes and warnings about a run and its methods, HTML."""
-    parts = [notices.note(notices_for(run), "info")]
+    notes = [notices.note(dict.fromkeys(run.warnings), "info")]
     if verified is not None and not verified.old:
-        parts.append(notices.note([verdict(verified.verification)], "info"))
-        parts.append(notices.note(verified.verification.statements, "warning"))
+        notes.append(notices.note([verdict(verified.verification)], "info"))
+        notes.append(notices.note(verified.verification.statements, "warning"))
     for index, texts in warnings_for(run).items():
         name = run.methods[index].method.name
-        parts.append(notices.note([f"{name}: {text}" for text in texts], severity(run, index) or "warning"))
-    return f'<div style="padding-top:3px;color:{style.INK}">{"".join(parts)}</div>'
+        notes.append(notices.note([f"{name}: {text}" for text in texts], severity(run, index) or "warning"))
+    return f'<div style="padding-top:3px;color:{style.INK}">{"".join(notes)}</div>'
 
 
 VIEW = MetricsView

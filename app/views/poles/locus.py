@@ -63,7 +63,8 @@ def _giving(run: Run, index: int, field: str) -> Any:
 def _computed(parameters: Any, field: str, omega_s: float) -> Locus:
     extra = extra_of(type(parameters).model_fields[field])
     spaced = np.geomspace if extra.get("log") else np.linspace
-    return root_locus(parameters, field, spaced(*extra["slider"], _COUNT), omega_s)
+    low, high = extra["slider"]
+    return root_locus(parameters, field, spaced(low, high, _COUNT), omega_s)
 
 
 def locus_traces(run: Run, index: int, field: str, suffix: str) -> list[dict[str, Any]]:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING
 
@@ -18,47 +17,31 @@ from app.views.scene.cameras import CAMERAS
 from app.views.scene.moment import moment, readout_html
 from app.views.scene.pendulum import caption_of, pendulum, pendulum_svg
 from app.views.scene.playback import SPEEDS, Playback, PlayState
-from app.views.scene.track import Place, TrackScene
 from navcore.engine.run import Run
 
 if TYPE_CHECKING:
     import viser
 
     from app.shell.commands import Commands
+    from app.views.scene.drawer import SceneDrawer
 
 
-@dataclass(frozen=True)
-class MapKey:
-    """What stands below the map.
-
-    Attributes
-    ----------
-    caption : str
-        What is drawn.
-    entries : tuple of dict
-        For each method: key, name, colour, present error, and how it is shown.
-    """
-
-    caption: str = ""
-    entries: tuple[dict[str, str], ...] = ()
-
-
-def map_key(track: TrackScene, place: Place) -> MapKey:
-    """Key of a map with the errors that the ships have where they are."""
-    return MapKey(
-        track.caption,
-        tuple(
-            {
-                "key": method.name,
-                "color": "#{:02x}{:02x}{:02x}".format(*method.color),
-                "error": method.error_text(place.index),
-                "state": method.state,
-                "said": legend.word(method.state),
-                "hint": legend.hint(method.state),
-            }
-            for method in track.methods
-        ),
-    )
+def map_key(drawer: SceneDrawer) -> list[dict[str, str]]:
+    """Entries below the map: each method's key, colour, how it is shown, and the error that its ship has."""
+    drawn, place = drawer.drawn, drawer.place
+    if drawn is None or place is None:
+        return []
+    return [
+        {
+            "key": method.name,
+            "color": "#{:02x}{:02x}{:02x}".format(*method.color),
+            "error": method.error_text(place.index),
+            "state": method.state,
+            "said": legend.word(method.state),
+            "hint": legend.hint(method.state),
+        }
+        for method in drawn.methods
+    ]
 
 
 class PlaybackPanel:
@@ -80,7 +63,7 @@ class PlaybackPanel:
         self, gui: viser.GuiApi, commands: Commands, playback: Playback, look: Callable[[str], None]
     ) -> None:
         self._now = gui.add_html("", order=3)
-        self._playback, self._count = playback, 0
+        self._count = 0
 
         def number(text: str, use: Callable[[float], None]) -> None:
             try:
@@ -88,8 +71,11 @@ class PlaybackPanel:
             except (ValueError, OverflowError):
                 return
 
+        def heard(count: float) -> None:
+            playback.heard(self._count - int(count))
+
         # Hostile or torn arguments ask for nothing.
-        commands.register("shown", lambda text: number(text, self._heard), watcher=True)
+        commands.register("shown", lambda text: number(text, heard), watcher=True)
         commands.register("play", lambda _: playback.toggle(), "Play or pause", "Space", watcher=True)
         commands.register("seek", lambda text: number(text, playback.seek), watcher=True)
         commands.register("speed", lambda text: number(text, playback.set_speed), watcher=True)
@@ -99,17 +85,20 @@ class PlaybackPanel:
                 f"camera-{camera}", lambda _, camera=camera: look(camera), f"3D view: {camera}", watcher=True
             )
 
-    def _heard(self, count: float) -> None:
-        self._playback.heard(self._count - int(count))
-
     def show(
-        self, state: PlayState, run: Run, selected: int, camera: str, display: Display, key: MapKey
+        self,
+        state: PlayState,
+        run: Run,
+        selected: int,
+        camera: str,
+        display: Display,
+        drawer: SceneDrawer,
     ) -> None:
         """Show a time of a run, and below the map its key."""
         swung = pendulum(run, state.time_s)
         readout = readout_html(moment(run, state.time_s), selected, display)
         self._count += 1
-        told = {
+        now = {
             "count": self._count,
             "time": round(state.time_s, 3),
             "span": state.span_s,
@@ -119,11 +108,11 @@ class PlaybackPanel:
             "speeds": SPEEDS,
             "camera": camera,
             "cameras": CAMERAS,
-            "caption": key.caption,
-            "key": key.entries,
+            "caption": "" if drawer.drawn is None else drawer.drawn.caption,
+            "key": map_key(drawer),
         }
         self._now.content = (
-            f'<div id="sb-playback" hidden data-now="{escape(json.dumps(told))}">'
+            f'<div id="sb-playback" hidden data-now="{escape(json.dumps(now))}">'
             f'<div data-part="pendulum">{pendulum_svg(swung)}<p>{escape(caption_of(swung))}</p></div>'
             f'<div data-part="readout">{readout}</div></div>'
         )

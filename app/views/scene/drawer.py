@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,6 +22,7 @@ _FAINT = 0.6
 _TIP_POINTS = 60
 _HEADING_LENGTH = 1.6
 _LABEL = 0.9
+_UNSHADOWED: dict[str, Any] = {"cast_shadow": False, "receive_shadow": False}
 
 
 _BAR_SHIFT = np.array([0.0, -0.55, 0.0], dtype=np.float32)
@@ -48,7 +48,6 @@ class SceneDrawer:
     def __init__(self, scene: viser.SceneApi) -> None:
         self._scene = scene
         self._nodes: dict[str, Any] = {}
-        self._labels: dict[str, SceneLabel] = {}
         self.drawn: TrackScene | None = None
         self._selected = 0
         self._past: dict[str, tuple[object, int]] = {}
@@ -73,11 +72,13 @@ class SceneDrawer:
         """Show a run's map, the ships where they are at ``time_s``; ``selected`` has a computed one."""
         if self.drawn is None:
             self._make_sea()
-            self._make_ship()
+            self._nodes["/ship"] = self._make_ship("/ship")
+            self._make_heading()
         self._lines("/map/grid", track.graticule.segments, style.rgb("#FFFFFF"), _GRID_LINE)
         self._lines("/map/bar", track.bar + _BAR_SHIFT, style.rgb(style.INK), 2 * _GRID_LINE)
-        south = (replace(label, position=_shifted(label)) for label in track.labels[:1])
-        self._texts("/map/labels", (*track.graticule.labels, *south, *track.labels[1:]))
+        (scale, (x, y, z)), *others = track.labels
+        below = SceneLabel(scale, (x, y + float(_BAR_SHIFT[1]), z))
+        self._texts("/map/labels", (*track.graticule.labels, below, *others))
         self._lines("/track/truth", track.truth_dashes(), style.rgb(style.TRUTH_COLOR), LINE_WIDTH)
         for number, pinned in enumerate(track.pinned):
             color = _paler(pinned.color) if pinned.state == "dimmed" else pinned.color
@@ -94,9 +95,9 @@ class SceneDrawer:
         if track is None:
             return
         place = self.place = track.place(time_s)
-        ship, computed = self._nodes["/ship"], self._computed_ship(track.methods[self._selected].color)
+        ship = self._nodes["/ship"]
         ship.position, ship.wxyz = place.truth, place.wxyz
-        computed.position, computed.wxyz = place.computed[self._selected], place.wxyz
+        self._place_computed()
         under_way = time_s < track.t_s[-1]
         for number, (vector, method) in enumerate(zip(place.error_vectors(), track.methods, strict=True)):
             self._whole(number, method, faint=under_way)
@@ -108,15 +109,11 @@ class SceneDrawer:
 
     def select(self, method: int) -> bool:
         """Let another method have the computed ship; False when it has it already."""
-        if self.drawn is None or self.place is None:
+        if self.drawn is None:
             return False
-        method = min(method, len(self.drawn.methods) - 1)
-        if method == self._selected:
-            return False
-        self._selected = method
-        computed = self._computed_ship(self.drawn.methods[method].color)
-        computed.position, computed.wxyz = self.place.computed[method], self.place.wxyz
-        return True
+        before, self._selected = self._selected, min(method, len(self.drawn.methods) - 1)
+        self._place_computed()
+        return before != self._selected
 
     def _whole(self, number: int, method: MethodTrack, *, faint: bool) -> None:
         """The whole computed track; pale while what lies ahead is not yet past."""
@@ -130,9 +127,8 @@ class SceneDrawer:
         """The part of a track that is past: only its last few points are sent anew at each moment."""
         past, tip = f"/trail/past{number}", f"/trail/tip{number}"
         if not shown:
-            none = np.empty((0, 2, 3), dtype=np.float32)
-            self._lines(past, none, _color(method), LINE_WIDTH)
-            self._lines(tip, none, _color(method), LINE_WIDTH)
+            for name in (past, tip):
+                self._lines(name, np.empty((0, 2, 3), dtype=np.float32), _color(method), LINE_WIDTH)
             self._past.pop(past, None)
             return
         whole = place.index // _TIP_POINTS * _TIP_POINTS
@@ -146,65 +142,46 @@ class SceneDrawer:
     # ------------------------------------------------------------ nodes
 
     def _make_sea(self) -> None:
-        edge = HALF_WIDTH
-        corners = np.array([[-edge, -edge, 0], [edge, -edge, 0], [edge, edge, 0], [-edge, edge, 0]]) - [
-            0,
-            0,
-            0.03,
-        ]
+        corners = [[x * HALF_WIDTH, y * HALF_WIDTH, -0.03] for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        faces = np.array([[0, 1, 2], [0, 2, 3]])
+        color = style.rgb("#8FC3EE")
         self._scene.add_mesh_simple(
-            "/map/sea",
-            corners,
-            np.array([[0, 1, 2], [0, 2, 3]]),
-            color=style.rgb("#8FC3EE"),
-            side="double",
-            cast_shadow=False,
-            receive_shadow=False,
+            "/map/sea", np.array(corners), faces, color=color, side="double", **_UNSHADOWED
         )
 
-    def _make_ship(self) -> None:
-        self._nodes["/ship"] = self._scene.add_frame("/ship", show_axes=False)
+    def _make_ship(self, name: str, color: tuple[int, int, int] | None = None) -> Any:
+        """A ship; a translucent one in a method's colour."""
+        frame = self._scene.add_frame(name, show_axes=False)
         for part in ship_parts():
             self._scene.add_mesh_simple(
-                f"/ship/{part.name}",
+                f"{name}/{part.name}",
                 part.vertices,
                 part.faces,
-                color=part.color,
+                color=color or part.color,
                 scale=SHIP_LENGTH,
+                opacity=0.38 if color else None,
                 flat_shading=True,
-                cast_shadow=False,
-                receive_shadow=False,
+                **_UNSHADOWED,
             )
-        ahead = np.array([[[0.0, 0.5 * SHIP_LENGTH, 0.1], [0.0, _HEADING_LENGTH, 0.1]]])
-        self._scene.add_arrows(
-            "/ship/heading",
-            ahead,
-            style.rgb(style.TRUTH_COLOR),
-            shaft_radius=0.025,
-            head_radius=0.08,
-            head_length=0.2,
-        )
+        return frame
 
-    def _computed_ship(self, color: tuple[int, int, int]) -> Any:
-        """A translucent ship in a method's colour."""
+    def _make_heading(self) -> None:
+        ahead = np.array([[[0.0, 0.5 * SHIP_LENGTH, 0.1], [0.0, _HEADING_LENGTH, 0.1]]])
+        size: dict[str, Any] = {"shaft_radius": 0.025, "head_radius": 0.08, "head_length": 0.2}
+        self._scene.add_arrows("/ship/heading", ahead, style.rgb(style.TRUTH_COLOR), **size)
+
+    def _place_computed(self) -> None:
+        """Put a ship in the colour of the selected method where that takes it to be."""
+        if self.drawn is None or self.place is None:
+            return
+        color = self.drawn.methods[self._selected].color
         if self._ghost != color:
             self._ghost = color
             if "/computed" in self._nodes:
                 self._nodes.pop("/computed").remove()
-            self._nodes["/computed"] = self._scene.add_frame("/computed", show_axes=False)
-            for part in ship_parts():
-                self._scene.add_mesh_simple(
-                    f"/computed/{part.name}",
-                    part.vertices,
-                    part.faces,
-                    color=color,
-                    scale=SHIP_LENGTH,
-                    opacity=0.38,
-                    flat_shading=True,
-                    cast_shadow=False,
-                    receive_shadow=False,
-                )
-        return self._nodes["/computed"]
+            self._nodes["/computed"] = self._make_ship("/computed", color)
+        computed = self._nodes["/computed"]
+        computed.position, computed.wxyz = self.place.computed[self._selected], self.place.wxyz
 
     def _lines(self, name: str, points: np.ndarray, color: tuple[int, int, int], thickness: float) -> None:
         node = self._nodes.get(name)
@@ -217,28 +194,20 @@ class SceneDrawer:
             wide = thickness * self._scale**0.5  # the map itself is smaller on an enlarged page
             self._nodes[name] = self._scene.add_line_segments(name, points, color, thickness=wide)
 
-    def _texts(self, name: str, labels: tuple[SceneLabel, ...], size: float = _LABEL) -> None:
+    def _texts(self, name: str, labels: tuple[SceneLabel, ...]) -> None:
         for index, label in enumerate(labels):
-            self._text(f"{name}{index}", label, size)
+            node = self._nodes.get(f"{name}{index}")
+            if node is None:
+                size = _LABEL * self._scale
+                self._nodes[f"{name}{index}"] = self._scene.add_label(
+                    f"{name}{index}", label.text, position=label.position, font_screen_scale=size,
+                    anchor="top-center",
+                )  # fmt: skip
+            else:
+                node.position = label.position
+                if node.text != label.text:
+                    node.text = label.text
         self._drop_beyond(name, len(labels))
-
-    def _text(self, name: str, label: SceneLabel, size: float = _LABEL) -> None:
-        node = self._nodes.get(name)
-        if node is not None and self._labels.get(name) == label:
-            return
-        self._labels[name] = label
-        if node is None:
-            self._nodes[name] = self._scene.add_label(
-                name,
-                label.text,
-                position=label.position,
-                font_screen_scale=size * self._scale,
-                anchor="top-center",
-            )
-            return
-        if node.text != label.text:
-            node.text = label.text
-        node.position = label.position
 
     def _drop_beyond(self, name: str, count: int) -> None:
         while (node := self._nodes.pop(f"{name}{count}", None)) is not None:
@@ -253,8 +222,3 @@ def _color(method: MethodTrack) -> tuple[int, int, int]:
 def _paler(color: tuple[int, int, int]) -> tuple[int, int, int]:
     red, green, blue = (round(255 - 0.35 * (255 - part)) for part in color)
     return red, green, blue
-
-
-def _shifted(label: SceneLabel) -> tuple[float, float, float]:
-    x, y, z = (float(a + b) for a, b in zip(label.position, _BAR_SHIFT, strict=True))
-    return x, y, z

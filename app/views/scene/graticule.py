@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,63 +13,23 @@ from navcore.foundation.units import ARCMIN, ARCSEC, DEG
 
 # Steps of the lines, arcsec: 1-2-5 below a minute's 10, 20, 30, then the same in minutes and degrees.
 _STEPS_ARCSEC = (
-    0.01,
-    0.02,
-    0.05,
-    0.1,
-    0.2,
-    0.5,
-    1.0,
-    2.0,
-    5.0,
-    10.0,
-    20.0,
-    30.0,
-    60.0,
-    120.0,
-    300.0,
-    600.0,
-    1200.0,
-    1800.0,
-    3600.0,
-    7200.0,
-    18000.0,
-    36000.0,
-    72000.0,
-    162000.0,
-)
+    0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0,
+    1200.0, 1800.0, 3600.0, 7200.0, 18000.0, 36000.0, 72000.0, 162000.0,
+)  # fmt: skip
 _MOST_LINES = 7
 MOST_BESIDE = 4
 """Labels of meridians that fit beside each other in a small view: where there are more, some have none."""
 
 
-@dataclass(frozen=True, eq=False)
-class SceneLabel:
-    """A text at a place of the scene.
-
-    Attributes
-    ----------
-    text : str
-        What is written.
-    position : (float, float, float)
-        Scene units: east, north, up.
-    """
+class SceneLabel(NamedTuple):
+    """A text at a place of the scene: east, north, up."""
 
     text: str
     position: tuple[float, float, float]
 
 
-@dataclass(frozen=True, eq=False)
-class Graticule:
-    """Grid on the sea.
-
-    Attributes
-    ----------
-    segments : ndarray of float32, shape (n, 2, 3)
-        Lines, scene units.
-    labels : tuple of SceneLabel
-        Latitudes at the western edge, longitudes at the southern one.
-    """
+class Graticule(NamedTuple):
+    """Grid on the sea: lines, float32, shape (n, 2, 3); latitudes at the western edge, longitudes south."""
 
     segments: np.ndarray
     labels: tuple[SceneLabel, ...]
@@ -115,11 +76,9 @@ def graticule(area: LocalMap, half_width: float, beside: int = MOST_BESIDE) -> G
 def scale_bar(metres_per_unit: float, half_width: float) -> tuple[np.ndarray, SceneLabel]:
     """Bar of a round length at the south-eastern corner: its segments, shape (3, 2, 3), and its label."""
     unit = length_unit(half_width * metres_per_unit)
-    wanted = 0.4 * half_width * metres_per_unit / unit.si
-    value = round_down(wanted)
-    length = value * unit.si / metres_per_unit
+    value = round_down(0.4 * half_width * metres_per_unit / unit.si)
     right, y, tick = half_width, -half_width - 0.55, 0.12
-    left = right - length
+    left = right - value * unit.si / metres_per_unit
     bar = [
         [[left, y, 0.0], [right, y, 0.0]],
         [[left, y - tick, 0.0], [left, y + tick, 0.0]],
@@ -183,11 +142,8 @@ def _assemble(
     segments[len(x) :, :, 0] = (-half_width, half_width)
     segments[len(x) :, :, 1] = y[:, None]
     apart = max(1, -(-len(x) // beside))
-    south = [
-        SceneLabel(text, (float(at), -half_width - 0.12, 0.0))
-        for text, at in list(zip(x_texts, x, strict=True))[::apart]
-    ]
-    west = [
-        SceneLabel(text, (-half_width - 0.12, float(at), 0.0)) for text, at in zip(y_texts, y, strict=True)
-    ]
-    return Graticule(segments, (*south, *west))
+    edge = -half_width - 0.12
+    south = list(zip(x_texts, x.tolist(), strict=True))[::apart]
+    labels = [SceneLabel(text, (at, edge, 0.0)) for text, at in south]
+    labels += [SceneLabel(text, (edge, at, 0.0)) for text, at in zip(y_texts, y.tolist(), strict=True)]
+    return Graticule(segments, tuple(labels))

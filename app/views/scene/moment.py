@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from html import escape
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,17 +37,8 @@ _COMPUTED = (6, 7, 8)
 """Pitch, roll and heading among the columns of `MethodRun.navigation`."""
 
 
-@dataclass(frozen=True)
-class Pose:
-    """Attitude and speed.
-
-    Attributes
-    ----------
-    heading, pitch, roll : float
-        rad; heading clockwise from north, 0 to 2 pi.
-    speed : float
-        Over ground, m/s.
-    """
+class Pose(NamedTuple):
+    """Attitude (rad; heading clockwise from north, 0 to 2 pi) and speed over ground (m/s)."""
 
     heading: float
     pitch: float
@@ -56,14 +48,12 @@ class Pose:
 
 @dataclass(frozen=True, eq=False)
 class MethodMoment:
-    """What one method takes the vehicle for.
+    """Pose that one method computes, and its errors.
 
     Attributes
     ----------
-    name : str
+    name, color : str
         The method's.
-    color : str
-        The method's, as in every plot.
     pose : Pose
         As computed.
     errors : ndarray, shape (8,)
@@ -79,19 +69,8 @@ class MethodMoment:
     ended: bool
 
 
-@dataclass(frozen=True)
-class Moment:
-    """One moment.
-
-    Attributes
-    ----------
-    t_s : float
-        Time in the run, s.
-    truth : Pose
-        True attitude and speed.
-    methods : tuple of MethodMoment
-        In the scenario's order.
-    """
+class Moment(NamedTuple):
+    """One moment: its time in the run (s), the true pose, and the methods in the scenario's order."""
 
     t_s: float
     truth: Pose
@@ -100,14 +79,14 @@ class Moment:
 
 def moment(run: Run, t_s: float) -> Moment:
     """Attitude, speed and errors at a time, interpolated between the output rows."""
-    pitch, roll, heading, ve, vn = row_at(run.t_s, run.truth[:, [PITCH, ROLL, HEADING, VE, VN]], t_s)
-    truth = Pose(heading % math.tau, float(pitch), float(roll), math.hypot(ve, vn))
-    attitude = attitude_matrix(float(pitch), float(roll), float(heading))
-    made = []
+    truth = row_at(run.t_s, run.truth[:, [PITCH, ROLL, HEADING, VE, VN]], t_s)
+    pitch, roll, heading, ve, vn = truth.tolist()
+    attitude = attitude_matrix(pitch, roll, heading)
+    methods = []
     for index, method in enumerate(run.methods):
         errors = row_at(method.t_s, method.rows[:, :QUANTITIES], t_s)
         speed = math.hypot(ve + errors[DV_E], vn + errors[DV_N])
-        made.append(
+        methods.append(
             MethodMoment(
                 name=method.method.name,
                 color=style.method_color(index),
@@ -116,7 +95,7 @@ def moment(run: Run, t_s: float) -> Moment:
                 ended=len(method.t_s) == 0 or t_s > method.t_s[-1] + 1e-6,
             )
         )
-    return Moment(t_s, truth, tuple(made))
+    return Moment(t_s, Pose(heading % math.tau, pitch, roll, math.hypot(ve, vn)), tuple(methods))
 
 
 def row_at(t_s: np.ndarray, rows: np.ndarray, at_s: float) -> np.ndarray:
@@ -147,35 +126,34 @@ def _computed(
     return heading % math.tau, pitch, math.atan2(-c[2, 0], c[2, 2])
 
 
-def readout_html(shown: Moment, selected: int, display: Display = _AS_IT_FITS) -> str:
+def readout_html(now: Moment, selected: int, display: Display = _AS_IT_FITS) -> str:
     """True and computed attitude and speed of one method, and its errors, in the units that are asked for.
 
     Attitude is in degrees and speed in knots unless speeds are asked for in another unit.
     """
-    method = shown.methods[min(selected, len(shown.methods) - 1)]
-    true, made = shown.truth, method.pose
-    turned = math.remainder(made.heading - true.heading, math.tau)
-    faster = made.speed - true.speed
+    method = now.methods[min(selected, len(now.methods) - 1)]
+    true, computed = now.truth, method.pose
+    turned = math.remainder(computed.heading - true.heading, math.tau)
     attitude = (
-        ("heading", true.heading, made.heading, turned),
-        ("pitch", true.pitch, made.pitch, made.pitch - true.pitch),
-        ("roll", true.roll, made.roll, made.roll - true.roll),
+        ("heading", true.heading, computed.heading, turned),
+        ("pitch", true.pitch, computed.pitch, computed.pitch - true.pitch),
+        ("roll", true.roll, computed.roll, computed.roll - true.roll),
     )
     rows = [
         (name, _degrees(a), _degrees(b), _signed(off, wanted_unit(display.angle, abs(off), angle_unit)))
         for name, a, b, off in attitude
     ]
     way = KNOTS if display.speed == AUTO else NAMED[display.speed]
-    slip = _signed(faster, wanted_unit(display.speed, abs(faster), speed_unit))
-    rows.append(("speed", _speed(true.speed, way), _speed(made.speed, way), slip))
-    off = float(method.errors[POSITION])
+    a, b = (f"{pose.speed / way.si:.2f} {way.name}" for pose in (true, computed))
+    faster, off = computed.speed - true.speed, float(method.errors[POSITION])
+    rows.append(("speed", a, b, _signed(faster, wanted_unit(display.speed, abs(faster), speed_unit))))
     rows.append(("position", "", "", _signed(off, wanted_unit(display.length, off, length_unit)).lstrip("+")))
     cells = "".join(
         f"<tr><th scope='row'>{name}</th><td>{a}</td><td>{b}</td><td>{c}</td></tr>" for name, a, b, c in rows
     )
     ended = " (ended)" if method.ended else ""
     return (
-        f"<table data-t='{shown.t_s:.3f}'><thead><tr><th scope='col'>{duration(shown.t_s)}</th>"
+        f"<table data-t='{now.t_s:.3f}'><thead><tr><th scope='col'>{duration(now.t_s)}</th>"
         f"<th scope='col'>true</th><th scope='col'><span class='sb-name' style='border-color:{method.color}'>"
         f"{escape(method.name)}{ended}</span></th><th scope='col'>error</th></tr></thead>"
         f"<tbody>{cells}</tbody></table>"
@@ -186,13 +164,9 @@ def _degrees(angle: float) -> str:
     return f"{round(angle / DEG, 2) + 0.0:.2f}°"
 
 
-def _speed(speed: float, unit: Unit) -> str:
-    return f"{speed / unit.si:.2f} {unit.name}"
-
-
 def _signed(value: float, unit: Unit) -> str:
     """Error with its sign; what is below a hundredth of the smallest unit is rounding, and reads as 0."""
-    shown = float(f"{value / unit.si:.3g}")
-    if unit.name.startswith("µ") and abs(shown) < _LEAST:
+    rounded = float(f"{value / unit.si:.3g}")
+    if unit.name.startswith("µ") and abs(rounded) < _LEAST:
         return f"0 {unit.name}"
-    return f"{'+' if shown > 0 else ''}{with_unit(number(shown), unit.name)}"
+    return f"{'+' if rounded > 0 else ''}{with_unit(number(rounded), unit.name)}"

@@ -8,8 +8,8 @@ Foucault rotation turns, and a damped one a spiral or a point. All tilts are dra
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,43 +33,22 @@ _POINTS = "N NNE NE ENE E ESE SE SSE S SSW SW WSW W WNW NW NNW".split()
 _TRUE = "#6B7A89"
 
 
-@dataclass(frozen=True, eq=False)
-class Bob:
+class Bob(NamedTuple):
     """The lower end of one method's pendulum.
 
-    Attributes
-    ----------
-    color : str
-        The method's.
-    undamped : bool
-        Nothing damps the method at this time.
-    east, north : float
-        Where it is, rad of tilt, not exaggerated: the platform's down axis leans by -phi_N and +phi_E.
-    trail : ndarray, shape (k, 2)
-        Its way over the last Schuler period, the present end last.
+    ``trail``, shape (k, 2): its way east and north over the last Schuler period, rad of tilt, not
+    exaggerated, the present end last. The platform's down axis leans by -phi_N and +phi_E.
     """
 
     color: str
-    undamped: bool
-    east: float
-    north: float
     trail: np.ndarray
 
 
-@dataclass(frozen=True)
-class Pendulum:
-    """All methods' pendulums at a time.
+class Pendulum(NamedTuple):
+    """All methods' pendulums at a time, in the scenario's order.
 
-    Attributes
-    ----------
-    bobs : tuple of Bob
-        In the scenario's order.
-    factor : float
-        By which all tilts are drawn larger.
-    period_s : float
-        Schuler period of the site.
-    plane : tuple of float
-        East and north components of the unit vector to the right of the side view.
+    All tilts are drawn larger by ``factor``; ``plane``: east and north components of the unit vector to the
+    right of the side view.
     """
 
     bobs: tuple[Bob, ...]
@@ -119,45 +98,38 @@ def _peak(method: MethodRun) -> float:
 
 
 def _bob(index: int, method: MethodRun, t_s: float, period: float) -> Bob:
-    now = row_at(method.t_s, method.rows, t_s)
     first, last = np.searchsorted(method.t_s, [t_s - period, t_s])
     chosen = np.unique(np.linspace(first, max(last - 1, first), _TRAIL_POINTS).astype(int))
-    past = method.rows[chosen[chosen < len(method.rows)]][:, [PHI_N, PHI_E]] * (-1.0, 1.0)
-    here = np.array([-now[PHI_N], now[PHI_E]])
-    return Bob(
-        color=style.method_color(index),
-        undamped=method.method.undamped,
-        east=float(here[0]),
-        north=float(here[1]),
-        trail=np.vstack([past, here]),
-    )
+    past = method.rows[chosen[chosen < len(method.rows)]]
+    trail = np.vstack([past, row_at(method.t_s, method.rows, t_s)])
+    return Bob(style.method_color(index), trail[:, [PHI_N, PHI_E]] * (-1.0, 1.0))
 
 
-def pendulum_svg(shown: Pendulum) -> str:
+def pendulum_svg(now: Pendulum) -> str:
     """The picture, `WIDTH` x `HEIGHT` px: from the side, and from above."""
-    parts = [_background(), *_plane_marks(shown.plane)]
-    parts += [_swing(bob, shown.factor, shown.plane) for bob in shown.bobs]
-    parts += [_way(bob, shown.factor) for bob in shown.bobs]
-    caption = caption_of(shown)
+    parts = [_background(), *_plane_marks(now.plane)]
+    parts += [_swing(bob, now.factor, now.plane) for bob in now.bobs]
+    parts += [_way(bob, now.factor) for bob in now.bobs]
+    caption = caption_of(now)
     return (
         f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" role="img" '
-        f'aria-label="Schuler pendulum: platform {caption}" data-factor="{shown.factor:g}" '
+        f'aria-label="Schuler pendulum: platform {caption}" data-factor="{now.factor:g}" '
         f'font-family="{style.FONT_FAMILY.replace(chr(34), chr(39))}">{"".join(parts)}</svg>'
     )
 
 
-def caption_of(shown: Pendulum) -> str:
+def caption_of(now: Pendulum) -> str:
     """What is drawn, in words."""
-    larger = "to scale" if shown.factor == 1.0 else f"x {number(shown.factor)}"
-    return f"tilt {larger}; length R, period {duration(shown.period_s)}"
+    larger = "to scale" if now.factor == 1.0 else f"x {number(now.factor)}"
+    return f"tilt {larger}; length R, period {duration(now.period_s)}"
+
+
+_SMALL = f'font-size="12" fill="{style.MUTED}"'
 
 
 @lru_cache(maxsize=1)
 def _background() -> str:
-    x, y = _PIVOT
-    px, py = _PLAN
-    half = _PLAN_HALF
-    small = f'font-size="12" fill="{style.MUTED}"'
+    (x, y), (px, py), half = _PIVOT, _PLAN, _PLAN_HALF
     return (
         f'<path d="M8 {y + 8} Q{x} {y - 8} 140 {y + 8}" fill="none" stroke="#7FB2DC" stroke-width="2"/>'
         f'<path d="M{x - 11} {y - 4} h22 l-4 5 h-14 z M{x - 5} {y - 4} v-5 h9 v5 z" fill="{style.INK}"/>'
@@ -165,8 +137,8 @@ def _background() -> str:
         f'<circle cx="{px}" cy="{py}" r="{half}" fill="none" stroke="{style.GRID}"/>'
         f'<circle cx="{px}" cy="{py}" r="{half / 2}" fill="none" stroke="{style.GRID}"/>'
         f'<path d="M{px - half} {py} h{2 * half} M{px} {py - half} v{2 * half}" stroke="{style.GRID}"/>'
-        f'<text x="{px}" y="{py - half - 6}" text-anchor="middle" {small}>N</text>'
-        f'<text x="{px + half + 5}" y="{py + 4}" {small}>E</text>'
+        f'<text x="{px}" y="{py - half - 6}" text-anchor="middle" {_SMALL}>N</text>'
+        f'<text x="{px + half + 5}" y="{py + 4}" {_SMALL}>E</text>'
     )
 
 
@@ -174,10 +146,9 @@ def _plane_marks(plane: tuple[float, float]) -> tuple[str, str]:
     """Where the ends of the side view lie, and its plane in the view from above."""
     left, right = plane_ends(plane)
     (px, py), (east, north) = _PLAN, (_PLAN_HALF * part for part in plane)
-    small = f'font-size="12" fill="{style.MUTED}"'
     return (
-        f'<text x="2" y="{HEIGHT - 4}" {small}>{left}</text>'
-        f'<text x="146" y="{HEIGHT - 4}" text-anchor="end" {small}>{right}</text>',
+        f'<text x="2" y="{HEIGHT - 4}" {_SMALL}>{left}</text>'
+        f'<text x="146" y="{HEIGHT - 4}" text-anchor="end" {_SMALL}>{right}</text>',
         f'<path d="M{px - east:.1f} {py + north:.1f} L{px + east:.1f} {py - north:.1f}" '
         f'stroke="{_TRUE}" stroke-dasharray="4 4"/>',
     )
@@ -187,16 +158,13 @@ def _swing(bob: Bob, factor: float, plane: tuple[float, float]) -> str:
     """Rod and bob in the plane of the side view; how far it swung in the last period as an arc."""
     x, y = _PIVOT
     angles = np.clip(factor * (bob.trail @ np.array(plane)), -1.2, 1.2)
-    low, high, now = float(angles.min()), float(angles.max()), float(angles[-1])
-    tip = (x + _ROD * math.sin(now), y + _ROD * math.cos(now))
-    left, right = (f"{x + _ROD * math.sin(a):.1f} {y + _ROD * math.cos(a):.1f}" for a in (low, high))
-    arc = (
-        f'<path d="M{left} A{_ROD} {_ROD} 0 0 0 {right}" '
-        f'fill="none" stroke="{bob.color}" stroke-opacity=".35" stroke-width="5"/>'
-    )
+    shown = np.array([angles.min(), angles.max(), angles[-1]])
+    (x0, x1, tip_x), (y0, y1, tip_y) = x + _ROD * np.sin(shown), y + _ROD * np.cos(shown)
     return (
-        f'{arc}<line x1="{x}" y1="{y}" x2="{tip[0]:.1f}" y2="{tip[1]:.1f}" stroke="{bob.color}" '
-        f'stroke-width="1.8"/><circle class="sb-bob" cx="{tip[0]:.1f}" cy="{tip[1]:.1f}" r="5.5" '
+        f'<path d="M{x0:.1f} {y0:.1f} A{_ROD} {_ROD} 0 0 0 {x1:.1f} {y1:.1f}" '
+        f'fill="none" stroke="{bob.color}" stroke-opacity=".35" stroke-width="5"/>'
+        f'<line x1="{x}" y1="{y}" x2="{tip_x:.1f}" y2="{tip_y:.1f}" stroke="{bob.color}" '
+        f'stroke-width="1.8"/><circle class="sb-bob" cx="{tip_x:.1f}" cy="{tip_y:.1f}" r="5.5" '
         f'fill="{bob.color}"/>'
     )
 

@@ -63,28 +63,21 @@ def ship_parts() -> tuple[ShipPart, ...]:
 def _hull() -> ShipPart:
     """Shell: starboard deck edge, starboard keel, port keel, port deck edge at each station."""
     rings = [
-        [(deck, y, top), (keel, y, _KEEL), (-keel, y, _KEEL), (-deck, y, top)]
+        point
         for y, deck, keel, top in _STATIONS
+        for point in ((deck, y, top), (keel, y, _KEEL), (-keel, y, _KEEL), (-deck, y, top))
     ]
-    faces: list[tuple[int, int, int]] = []
-    for i in range(len(rings) - 1):
-        a, b = 4 * i, 4 * (i + 1)
-        for k in range(3):
-            faces += [(a + k, a + k + 1, b + k), (a + k + 1, b + k + 1, b + k)]
-    faces += [(0, 3, 2), (0, 2, 1)]
-    last = 4 * (len(rings) - 1)
-    faces += [(last, last + 1, last + 2), (last, last + 2, last + 3)]
-    return _part("hull", [point for ring in rings for point in ring], faces, _HULL)
+    last = len(rings) - 4
+    faces = [(0, 3, 2), (0, 2, 1), (last, last + 1, last + 2), (last, last + 2, last + 3)]
+    for a in (4 * i + k for i in range(len(_STATIONS) - 1) for k in range(3)):
+        faces += [(a, a + 1, a + 4), (a + 1, a + 5, a + 4)]
+    return _part("hull", rings, faces, _HULL)
 
 
 def _deck() -> ShipPart:
-    edges = [
-        point for y, beam, _, top in _STATIONS for point in ((beam, y, top - 0.004), (-beam, y, top - 0.004))
-    ]
-    faces: list[tuple[int, int, int]] = []
-    for i in range(len(_STATIONS) - 1):
-        a, b = 2 * i, 2 * (i + 1)
-        faces += [(a, b, a + 1), (b, b + 1, a + 1)]
+    edges = [(side * beam, y, top - 0.004) for y, beam, _, top in _STATIONS for side in (1, -1)]
+    starts = range(0, len(edges) - 2, 2)
+    faces = [face for a in starts for face in ((a, a + 2, a + 1), (a + 2, a + 3, a + 1))]
     return _part("deck", edges, faces, _DECK)
 
 

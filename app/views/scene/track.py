@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -40,7 +41,7 @@ _SCALES = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)
 
 @dataclass(frozen=True, eq=False)
 class MethodTrack:
-    """What one method computed.
+    """Track that one method computed.
 
     Attributes
     ----------
@@ -87,20 +88,10 @@ class MethodTrack:
         return f"{rounded(size / unit.si)} {unit.name}"
 
 
-@dataclass(frozen=True, eq=False)
-class PinnedTrack:
-    """What a method of a pinned run would compute on the way of the present one.
+class PinnedTrack(NamedTuple):
+    """Way that a method of a pinned run would compute beside the present one's truth.
 
-    Attributes
-    ----------
-    label : str
-        ``pin: method``.
-    color : (int, int, int)
-        The pin's.
-    segments : ndarray of float32, shape (n, 2, 3)
-        The line, its error exaggerated like all others, scene units.
-    state : State
-        How it is shown.
+    ``segments`` float32, shape (n, 2, 3): its error exaggerated like all others, scene units.
     """
 
     label: str
@@ -180,13 +171,9 @@ class TrackScene:
     labels: tuple[SceneLabel, ...]
     caption: str
 
-    def index_at(self, t_s: float) -> int:
-        """Index of the last point not later than ``t_s``, within the track."""
-        return int(np.clip(np.searchsorted(self.t_s, t_s, side="right") - 1, 0, len(self.t_s) - 1))
-
     def place(self, t_s: float) -> Place:
         """Where everything is at a time, between the points of the lines too."""
-        index = self.index_at(t_s)
+        index = int(np.clip(np.searchsorted(self.t_s, t_s, side="right") - 1, 0, len(self.t_s) - 1))
         after = min(index + 1, len(self.t_s) - 1)
         span = self.t_s[after] - self.t_s[index]
         part = min(max((t_s - self.t_s[index]) / span, 0.0), 1.0) if span > 0.0 else 0.0
@@ -229,8 +216,7 @@ def track(
     """
     pinned = [other for other in pinned_methods(pins) if state_of(other.label) != "hidden"]
     states: list[State] = [state_of(method.method.name) for method in run.methods]
-    every = [counts(state) for state in states]
-    framed = [found for found, counted in zip(run.methods, every, strict=True) if counted] or run.methods
+    others: list[State] = [state_of(other.label) for other in pinned]
     chosen = _chosen(len(run.t_s))
     t_s, rows = run.t_s[chosen], run.truth[chosen]
     lat, lon = rows[:, LAT], np.unwrap(rows[:, LON])
@@ -241,16 +227,15 @@ def track(
     true_m = np.column_stack([(lon - lon0) * per_lon, (lat - lat0) * (meridian + height)])
     half_m = float(np.max(np.abs(true_m), initial=0.0))
     static = half_m < _STATIC_M
-    counted = [other for other in pinned if counts(state_of(other.label))]
-    peak = _peak([*framed, *(other.method for other in counted)])
-    errors = [_errors(method, t_s, peak) for method in run.methods]
-    others = [_errors(other.method, t_s, peak) for other in pinned]
+    # what the map's scale is chosen for: all that is off it counts only where nothing else is there
+    own = [counts(state) for state in states]
+    scaled = [*(own if any(own) else (True for _ in own)), *(counts(state) for state in others)]
+    methods = [*run.methods, *(other.method for other in pinned)]
+    peak = _peak([method for method, counted in zip(methods, scaled, strict=True) if counted])
+    errors = [_errors(method, t_s, peak) for method in methods]
     factor = exaggeration or (1.0 if static else _exaggeration(half_m, peak))
-    computed_m, pinned_m = (
-        [true_m[: len(error)] + factor * error for error in found] for found in (errors, others)
-    )
-    within = [points for points, count in zip(computed_m, every, strict=True) if count or not any(every)]
-    within += [points for other, points in zip(pinned, pinned_m, strict=True) if other in counted]
+    tracks_m = [true_m[: len(error)] + factor * error for error in errors]
+    within = [points for points, counted in zip(tracks_m, scaled, strict=True) if counted]
     middle, metres = _frame([true_m, *within], static)
     area = LocalMap(
         lat0=float(lat0 + middle[1] / meridian),
@@ -260,34 +245,33 @@ def track(
         metres_per_unit=metres,
     )
     bar, bar_label = scale_bar(metres, HALF_WIDTH)
-    north = SceneLabel("▲ N", (-HALF_WIDTH, HALF_WIDTH + 0.45, 0.0))
-    lines = [_scene(computed, middle, metres, _LIFT) for computed in computed_m]
-    tracks = tuple(
-        MethodTrack(
-            m.method.name, style.rgb(style.method_color(i)), points, error, needed(points, _UNSEEN), states[i]
-        )
-        for i, (m, points, error) in enumerate(zip(run.methods, lines, errors, strict=True))
-    )
+    lines = [_scene(points, middle, metres, _LIFT) for points in tracks_m]
+    count = len(run.methods)
     return TrackScene(
         t_s=t_s,
         truth=_scene(true_m, middle, metres, 2.0 * _LIFT),
         wxyz=attitude_quaternions(rows[:, PITCH], rows[:, ROLL], rows[:, HEADING]),
-        methods=tracks,
-        pinned=tuple(
-            PinnedTrack(
-                other.label,
-                style.rgb(other.color),
-                _thinned(_scene(points, middle, metres, _LIFT)),
-                state_of(other.label),
+        methods=tuple(
+            MethodTrack(
+                name=method.method.name,
+                color=style.rgb(style.method_color(i)),
+                points=lines[i],
+                error_m=errors[i],
+                line=needed(lines[i], _UNSEEN),
+                state=states[i],
             )
-            for other, points in zip(pinned, pinned_m, strict=True)
+            for i, method in enumerate(run.methods)
+        ),
+        pinned=tuple(
+            PinnedTrack(other.label, style.rgb(other.color), segments(line[needed(line, _UNSEEN)]), state)
+            for other, line, state in zip(pinned, lines[count:], others, strict=True)
         ),
         exaggeration=factor,
         metres_per_unit=metres,
         static=static,
         graticule=graticule(area, HALF_WIDTH, beside),
         bar=bar,
-        labels=(bar_label, north),
+        labels=(bar_label, SceneLabel("▲ N", (-HALF_WIDTH, HALF_WIDTH + 0.45, 0.0))),
         caption=_caption(factor, static),
     )
 
@@ -349,14 +333,8 @@ def _frame(parts: list[np.ndarray], static: bool) -> tuple[np.ndarray, float]:
 
 
 def _scene(points_m: np.ndarray, middle: np.ndarray, metres_per_unit: float, lift: float) -> np.ndarray:
-    made = np.full((len(points_m), 3), lift, dtype=np.float32)
-    made[:, :2] = (points_m - middle) / metres_per_unit
-    return made
-
-
-def _thinned(points: np.ndarray) -> np.ndarray:
-    """Segments of a line without the points that nobody could see."""
-    return segments(points[needed(points, _UNSEEN)])
+    lifted = np.full(len(points_m), lift)
+    return np.column_stack([(points_m - middle) / metres_per_unit, lifted]).astype(np.float32)
 
 
 def _caption(factor: float, static: bool) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.session.shown import Shown
 from app.shell.view import Frame, Tab, View, if_user
-from app.views.scene.bar import MapKey, PlaybackPanel, map_key
+from app.views.scene.bar import PlaybackPanel
 from app.views.scene.cameras import CAMERAS, Cameras, Window
 from app.views.scene.drawer import SceneDrawer
 from app.views.scene.playback import Playback, PlayState
@@ -18,21 +18,7 @@ _BAR_PX, _MARGIN_PX, _CAPTION_PX, _KEY_ROW_PX, _KEY_ROWS = 88, 8, 22, 22, 5
 _SMALL_PX = 480
 _MAP_SHARE, _LABEL_PX = 0.8, 62
 """Part of the view's width that the map's southern edge takes; width of a longitude with some room."""
-_FACTORS: tuple[str, ...] = (
-    _FIT,
-    "1",
-    "2",
-    "5",
-    "10",
-    "20",
-    "50",
-    "100",
-    "200",
-    "500",
-    "1000",
-    "2000",
-    "5000",
-)
+_FACTORS: tuple[str, ...] = (_FIT, *"1 2 5 10 20 50 100 200 500 1000 2000 5000".split())
 
 
 class SceneView(View):
@@ -64,7 +50,11 @@ class SceneView(View):
                 "that they show.",
             )  # fmt: skip
             self._panel = PlaybackPanel(gui, self.frame.commands, self.playback, self._look)
-        self._factor.on_update(if_user(lambda: self.frame.show(exaggeration=_factor(self._factor.value))))
+        self._factor.on_update(if_user(self._enlarge))
+
+    def _enlarge(self) -> None:
+        factor = self._factor.value
+        self.frame.show(exaggeration=None if factor == _FIT else float(factor))
 
     def follow_display(self) -> None:
         """Show the chosen factor."""
@@ -84,9 +74,9 @@ class SceneView(View):
         state, selected = self.playback.state, self.session.selected
         display, layout = found.display, self.frame.layout()
         beside = max(2, int(_MAP_SHARE * layout.view_px[0] / _LABEL_PX))
-        made = track(run, display.exaggeration, found.pins, display.state_of, beside)
+        drawn = track(run, display.exaggeration, found.pins, display.state_of, beside)
         self._scene.enlarge(layout.scale)
-        self._scene.draw(made, state.time_s, selected)
+        self._scene.draw(drawn, state.time_s, selected)
         self._tell(state)
 
     def resize(self) -> None:
@@ -131,14 +121,7 @@ class SceneView(View):
             self._cameras.follow(self._scene.place)
         if self._run is not None:
             display, selected = self.session.display, self.session.selected
-            key = MapKey()
-            if self._scene.drawn is not None and self._scene.place is not None:
-                key = map_key(self._scene.drawn, self._scene.place)
-            self._panel.show(state, self._run, selected, self._cameras.chosen, display, key)
-
-
-def _factor(chosen: str) -> float | None:
-    return None if chosen == _FIT else float(chosen)
+            self._panel.show(state, self._run, selected, self._cameras.chosen, display, self._scene)
 
 
 VIEW = SceneView

@@ -31,16 +31,18 @@ Curves = list[np.ndarray | None]
 
 
 class _Disturbance(NamedTuple):
-    """What the lower panels respond to: source, its size (SI), in words and in fewer."""
+    """What the lower panels respond to: source, its size (SI), in words, and their short titles."""
 
     source: Source
     size: float
     words: str
-    short: str
+    short: tuple[str, str]
 
 
-_LOG = _Disturbance("dv_r", 1.0, "a log step of 1 m/s", "log step")
-_GYRO = _Disturbance("eps", 0.01 * DEG_PER_HOUR, "a gyro step of 0.01 °/h", "gyro step")
+_LOG = _Disturbance("dv_r", 1.0, "a log step of 1 m/s", ("Velocity error, log step", "Tilt, log step"))
+_GYRO = _Disturbance(
+    "eps", 0.01 * DEG_PER_HOUR, "a gyro step of 0.01 °/h", ("Velocity error, gyro step", "Tilt, gyro step")
+)
 _TILT = "Tilt after an initial tilt (◆ settled to 2 %)", "Tilt (◆ settled to 2 %)", "Tilt (◆ settled)"
 _NETWORK = "Step response of H itself", "Step response of H"
 """Titles, shorter ones for smaller panels."""
@@ -109,8 +111,8 @@ def step(
     velocity, caused_tilt = (responses(cause.source, output, cause.size) for output in ("dv", "phi"))
     speed, angle = speed_unit(_peak(velocity, stable)), angle_unit(_peak(caused_tilt, stable))
     network: Curves = [network_step(method, network_s, POINTS) for method in run.methods]
-    of_velocity = f"Velocity error after {cause.words}", f"Velocity error, {cause.short}"
-    of_tilt = f"Tilt after {cause.words}", f"Tilt, {cause.short}"
+    of_velocity = f"Velocity error after {cause.words}", cause.short[0]
+    of_tilt = f"Tilt after {cause.words}", cause.short[1]
     panels = (
         _Panel("", loop_s, tilt, _NO_UNIT, _TILT, "φ/φ<sub>0</sub>"),
         _Panel("2", network_s, network, _NO_UNIT, _NETWORK, "output / step"),

@@ -43,7 +43,7 @@ class Switched(NamedTuple):
     The limits are its thresholds, in the unit of the measure.
     """
 
-    index: int
+    place: int
     run: MethodRun
     measure: Measure | None
     limits: tuple[Limit, ...]
@@ -104,7 +104,7 @@ def switching_plots(run: Run, wanted_time: str = AUTO) -> tuple[UplotFigure, ...
 def _curve(pair: _Pair, column: int, si: float = 1.0, above: float = 0.0) -> Curve:
     """One column of a method's values, in a unit of ``si``, drawn higher by ``above``."""
     method, values = pair
-    color = style.method_color(method.index)
+    color = style.method_color(method.place)
     return Curve(method.run.method.name, color, np.ascontiguousarray(values[:, column] / si + above))
 
 
@@ -145,7 +145,7 @@ def shared_limits(methods: Sequence[Switched]) -> list[tuple[str, float, str]]:
     owners: dict[tuple[str, float], list[int]] = {}
     for method in methods:
         for limit in method.limits:
-            owners.setdefault((_name(method, limit), limit.value), []).append(method.index)
+            owners.setdefault((_name(method, limit), limit.value), []).append(method.place)
     return [
         (name, value, style.method_color(places[0]) if len(places) == 1 else style.INK)
         for (name, value), places in owners.items()

@@ -1,9 +1,8 @@
-"""Light and dark: one rule over the whole page, so that whatever stands on it follows, and keeps its hue.
+"""What colours of the light page become on the dark one, and how they contrast.
 
 The dark page is the light one with its lightness turned round (``invert``) and its hues turned back
 (``hue-rotate``): the blue method is blue in both, in plots, tables, controls and the 3D view. What a colour
-becomes is computed here with the browser's own matrices (CSS Filter Effects 1), so that contrast can be
-checked without one.
+becomes is computed here with the browser's own matrices (CSS Filter Effects 1).
 """
 
 from __future__ import annotations
@@ -12,10 +11,9 @@ import math
 from typing import Literal
 
 from app.plots.style import rgb
+from app.views.appearance.look import _INVERT
 
 Theme = Literal["light", "dark"]
-INVERT = 0.93
-"""White becomes a grey of 7 %, black one of 93 %."""
 HUE_DEG = 180.0
 LEAST_TEXT, LEAST_CURVE = 4.5, 3.0
 """Contrast that WCAG 2.2 asks for: of text (1.4.3, AA) and of graphical objects (1.4.11)."""
@@ -23,20 +21,12 @@ LEAST_TEXT, LEAST_CURVE = 4.5, 3.0
 Color = tuple[float, float, float]
 
 
-def css(theme: Theme) -> str:
-    """Style that gives the page this theme; empty for the light one."""
-    if theme == "light":
-        return ""
-    # The root's own filter leaves fixed elements where they are; those of other elements would not.
-    return f"html{{background:#fff;filter:invert({INVERT}) hue-rotate({HUE_DEG:g}deg)}}"
-
-
 def shown(color: str, theme: Theme) -> Color:
     """What the eye gets of a colour ``#RRGGBB``: red, green, blue, 0..1."""
     light = tuple(part / 255.0 for part in rgb(color))
     if theme == "light":
         return light[0], light[1], light[2]
-    inverted = [part * (1.0 - 2.0 * INVERT) + INVERT for part in light]
+    inverted = [part * (1.0 - 2.0 * _INVERT) + _INVERT for part in light]
     turned = [sum(a * b for a, b in zip(row, inverted, strict=True)) for row in _hue_matrix()]
     red, green, blue = (min(max(part, 0.0), 1.0) for part in turned)
     return red, green, blue
