@@ -7,7 +7,7 @@ import tomllib
 from pathlib import Path
 
 from tests.browser.test_page_layout import SIZES
-from tests.browser.windows.conftest import FEW, LOCALES
+from tests.browser.windows.conftest import LOCALES, RUNS
 
 FIXTURES = {"window", "pinned", "another"}
 """Of tests/browser/windows: each gives a page in all windows and languages, one after the other."""
@@ -50,6 +50,6 @@ def test_the_fixtures_take_all_windows_and_languages(repo_root: Path) -> None:
     assert text.count("params=SIZES") == 1 and text.count("params=tuple(LOCALES)") == 1
 
 
-def test_the_few_runs_of_make_test_take_each_window_and_both_languages() -> None:
-    assert sorted(size for _, size in FEW) == sorted(SIZES)
-    assert {language for language, _ in FEW} == set(LOCALES)
+def test_the_runs_take_each_window_in_both_languages() -> None:
+    assert set(RUNS) == {(language, size) for language in LOCALES for size in SIZES}
+    assert len(RUNS) == 6

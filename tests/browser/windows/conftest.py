@@ -1,13 +1,13 @@
 """The page in three windows and two languages: all tests run in one of them, then in the next.
 
-`make test` takes each test through all windows and both languages in three runs (`FEW`), `make windows`
-in six.
+`make test` takes each test through one window in one language, in turns, `make windows` through all six.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -26,18 +26,24 @@ LOCALES = {"en": "en-US", "zh": "zh-CN"}
 
 Open = Callable[..., Bench]
 
-FEW = {("zh", SIZES[0]), ("en", SIZES[1]), ("zh", SIZES[2])}
-"""Runs of a test: each window once. Most other tests of the page are in English, in the first window."""
+RUNS = tuple(product(LOCALES, SIZES))
+"""Language and window of each run. Most other tests of the page are in English, in the first window."""
 ALL = os.environ.get("SCHULER_BROWSER_WINDOWS") == "all"
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave the other runs to `make windows`."""
-    wanted = [item for item in items if ALL or run_of(item) in {None, *FEW}]
-    kept = set(wanted)
-    if len(wanted) < len(items):
-        config.hook.pytest_deselected(items=[item for item in items if item not in kept])
-        items[:] = wanted
+    """Leave one run of each test, the next one for the next test; `make windows` takes the others."""
+    if ALL:
+        return
+    turns: dict[str, int] = {}
+    kept = []
+    for item in items:
+        run = run_of(item)
+        turn = turns.setdefault(item.nodeid.partition("[")[0], len(turns)) if run else 0
+        if run in (None, RUNS[turn % len(RUNS)]):
+            kept.append(item)
+    config.hook.pytest_deselected(items=[item for item in items if item not in kept])
+    items[:] = kept
 
 
 def run_of(item: pytest.Item) -> Any:
