@@ -68,7 +68,8 @@ def program(tmp_path_factory: pytest.TempPathFactory, repo_root: Path) -> Iterat
 
 def python(program: Path, *arguments: str) -> str:
     """Run Python in the copy; return what it prints."""
-    environment = os.environ | {"PYTHONPATH": str(program), "SCHULER_CACHE_DIR": str(program.parent / "cache")}
+    cache = str(program.parent / "cache")
+    environment = os.environ | {"PYTHONPATH": str(program), "SCHULER_CACHE_DIR": cache}
     command = [sys.executable, *arguments]
     ended = subprocess.run(command, cwd=program, env=environment, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stdout[-10_000:] + ended.stderr[-10_000:]
