@@ -15,7 +15,7 @@ endif
 
 KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 
-.PHONY: help setup run test check docs format unit windows paint soak serving tour accuracy covariance tuning consistency design benchmarks mutation papers cards guide languages sbom audit lock clean REMAKE
+.PHONY: help setup run test nightly check docs format unit windows paint soak serving tour accuracy covariance tuning consistency design benchmarks mutation papers cards guide languages sbom audit lock clean REMAKE
 
 help:
 	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'
@@ -23,7 +23,8 @@ help:
 	@echo 'make setup    .venv with the command .venv/bin/schuler, kernels compiled'
 	@echo 'make check    lint, format and types only'
 	@echo 'make unit     the fast tests only'
-	@echo 'make windows  the points of the page in all windows and languages; make test has half of these'
+	@echo 'make nightly  every test, with the sweeps that make test leaves out'
+	@echo 'make windows  the points of the page in all windows and languages; make test has one of the six for each'
 	@echo 'make docs     build the site into build/docs: tutorial, theory, lessons, notebooks, API; a warning is an error'
 	@echo 'make benchmarks  time the strapdown engine beside python-ins, which it installs into .venv'
 	@echo 'make papers   run the presets of the five papers and write docs/papers.md with its pictures anew'
@@ -54,6 +55,9 @@ run: setup
 test: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.stages
 
+nightly: setup $(STAMPS)/test
+	@SCHULER_NIGHTLY=yes $(BIN)/python -m tests.stages
+
 check: $(STAMPS)/test
 	@$(BIN)/python -m tests.stages lint
 
@@ -79,9 +83,9 @@ mutation: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.mutation --sample $(or $(SAMPLE),60) --seed $(or $(SEED),1) \
 	  --folder $(or $(RESULTS),build/mutation)
 
-# Each point of the page in each of three windows in both languages: six runs; make test has three of them.
+# Each point of the page in each of three windows in both languages: six runs; make test has one of them for each.
 windows: setup $(STAMPS)/test
-	@SCHULER_BROWSER_WINDOWS=all $(BIN)/python -m pytest -q -n2 --dist=worksteal tests/browser/windows
+	@SCHULER_NIGHTLY=yes $(BIN)/python -m pytest -q -n2 --dist=worksteal tests/browser/windows
 
 unit: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.stages unit
@@ -164,8 +168,8 @@ $(STAMPS)/benchmarks: requirements-benchmarks.lock $(STAMPS)/project
 
 # ---------------------------------------------------------------- upkeep
 
-papers: setup
-	@$(BIN)/python -m app.papers
+papers: setup $(STAMPS)/test
+	@$(BIN)/python -m tests.papers
 
 cards: $(STAMPS)/project
 	@$(BIN)/python -m app.views.start.cards

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from app.papers.claim import Exhibit, Verdict
-from app.papers.markdown import check
-from app.papers.runs import Runs
+from tests.papers.claim import Exhibit, Verdict
+from tests.papers.markdown import check
+from tests.papers.runs import Runs
 
 
 def verdicts(exhibit: Exhibit, runs: Runs) -> list[Verdict]:

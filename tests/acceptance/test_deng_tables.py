@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.papers.deng import (
+from navcore.engine.run import Run
+from navcore.scenario.file import load
+from tests.papers.deng import (
     DAMPED,
     PRINTED,
     SLOW,
@@ -17,10 +19,8 @@ from app.papers.deng import (
     schuler_swing,
     tilt,
 )
-from app.papers.deng_alignment import tilt_difference
-from app.papers.runs import Runs
-from navcore.engine.run import Run
-from navcore.scenario.file import load
+from tests.papers.deng_alignment import tilt_difference
+from tests.papers.runs import Runs
 
 
 class CoarseRuns(Runs):

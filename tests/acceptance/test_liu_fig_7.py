@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from app.papers.liu_fig_7 import FIGURE_7
-from app.papers.liu_switching import fig_7, overshoot, switched
-from app.papers.runs import Runs
 from tests.acceptance.papers import verdicts
+from tests.papers.liu_fig_7 import FIGURE_7
+from tests.papers.liu_switching import fig_7, overshoot, switched
+from tests.papers.runs import Runs
 
 
 @pytest.fixture(scope="module")

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.papers import liu_switching
-from app.papers.liu_switching import (
+from navcore.scenario.file import load
+from tests.papers import liu_switching
+from tests.papers.liu_switching import (
     BEST,
     BRIDGE,
     HARD,
@@ -21,8 +22,7 @@ from app.papers.liu_switching import (
     ratio,
     turns,
 )
-from app.papers.runs import Runs
-from navcore.scenario.file import load
+from tests.papers.runs import Runs
 
 
 @pytest.fixture(scope="module")

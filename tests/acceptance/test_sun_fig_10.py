@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.papers.runs import Runs, method
-from app.papers.sun_ship import ANGLES, EQ_8_GYROS, METHODS, SHIP, SMALL_ERRORS, measured, over_conventional
-from app.papers.sun_vehicle import VEHICLE
 from navcore.foundation.units import HOUR, KNOT
 from navcore.motion.base import VE, VN
 from navcore.scenario.file import load
 from tests.acceptance.papers import verdicts
+from tests.papers.runs import Runs, method
+from tests.papers.sun_ship import ANGLES, EQ_8_GYROS, METHODS, SHIP, SMALL_ERRORS, measured, over_conventional
+from tests.papers.sun_vehicle import VEHICLE
 
 
 @pytest.fixture(scope="module")

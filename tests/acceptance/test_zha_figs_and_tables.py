@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.papers import zha, zha_drive
-from app.papers.runs import Runs
 from navcore.scenario.file import load
 from tests.acceptance.papers import verdicts
+from tests.papers import zha, zha_drive
+from tests.papers.runs import Runs
 
 
 @pytest.fixture(scope="module")

@@ -28,7 +28,7 @@ Open = Callable[..., Bench]
 
 RUNS = tuple(product(LOCALES, SIZES))
 """Language and window of each run. Most other tests of the page are in English, in the first window."""
-ALL = os.environ.get("SCHULER_BROWSER_WINDOWS") == "all"
+ALL = bool(os.environ.get("SCHULER_NIGHTLY"))
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

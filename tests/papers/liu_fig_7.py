@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.papers.claim import Claim, Exhibit, Table, about, at_most, number
-from app.papers.liu_switching import (
+from navcore.engine.run import Run
+from navcore.foundation.units import HOUR
+from navcore.mechanization.recorder import DV_E
+from tests.papers.claim import Claim, Exhibit, Table, about, at_most, number
+from tests.papers.liu_switching import (
     PRESET,
     STEPS_MPS,
     SWITCHED_S,
@@ -13,11 +16,8 @@ from app.papers.liu_switching import (
     overshoot,
     switched,
 )
-from app.papers.picture import curve, panel
-from app.papers.runs import Runs
-from navcore.engine.run import Run
-from navcore.foundation.units import HOUR
-from navcore.mechanization.recorder import DV_E
+from tests.papers.picture import curve, panel
+from tests.papers.runs import Runs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.papers.claim import Claim, Exhibit, Table, at_least, at_most, number
-from app.papers.liu_switching import (
+from navcore.mechanization.recorder import DAMPED_COLUMN, DV_E, POSITION
+from tests.papers.claim import Claim, Exhibit, Table, at_least, at_most, number
+from tests.papers.liu_switching import (
     BEST,
     METHODS,
     NOVEL,
@@ -23,10 +24,9 @@ from app.papers.liu_switching import (
     ratios,
     study,
 )
-from app.papers.measure import hours, mean_and_interval
-from app.papers.picture import curve, panel
-from app.papers.runs import Runs, method
-from navcore.mechanization.recorder import DAMPED_COLUMN, DV_E, POSITION
+from tests.papers.measure import hours, mean_and_interval
+from tests.papers.picture import curve, panel
+from tests.papers.runs import Runs, method
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

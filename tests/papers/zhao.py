@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.papers.claim import Claim, Exhibit, Paper, Table, about, at_most, number
-from app.papers.measure import hours, mean_and_interval
-from app.papers.picture import curve, panel
-from app.papers.runs import Runs, method
-from app.papers.zhao_forecast import FORECAST
-from app.papers.zhao_lines import PER_ROOT, PER_SAMPLE, READINGS, UNITS, left, lines
 from navcore.mechanization.recorder import D_LAT, D_LON, DV_E, DV_N, NAMES, PHI_E, PHI_N, PHI_U
+from tests.papers.claim import Claim, Exhibit, Paper, Table, about, at_most, number
+from tests.papers.measure import hours, mean_and_interval
+from tests.papers.picture import curve, panel
+from tests.papers.runs import Runs, method
+from tests.papers.zhao_forecast import FORECAST
+from tests.papers.zhao_lines import PER_ROOT, PER_SAMPLE, READINGS, UNITS, left, lines
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.papers.claim import number
-from app.papers.estimate import interval
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.units import HOUR
 from navcore.mechanization.recorder import PHI_E, PHI_N, PHI_U
 from navcore.motion.base import HEADING, PITCH
+from tests.papers.claim import number
+from tests.papers.estimate import interval
 
 
 def hours(run: MethodRun) -> np.ndarray:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from app.papers.claim import KINDS, Claim, Exhibit, Paper, Table, Verdict, number
-from app.papers.estimate import Estimate, estimate
-from app.papers.runs import Runs
 from navcore.foundation.notation import in_symbols
+from tests.papers.claim import KINDS, Claim, Exhibit, Paper, Table, Verdict, number
+from tests.papers.estimate import Estimate, estimate
+from tests.papers.runs import Runs
 
 HEAD = """\
 # What the papers claim, and what we find

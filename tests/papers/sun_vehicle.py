@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from app.papers.claim import Claim, Exhibit, Table, at_most
-from app.papers.measure import attitude_error, hours, mean_and_interval
-from app.papers.picture import curve, panel
-from app.papers.runs import Runs, method, scenario_of
-from app.papers.sun_ship import ANGLES, METHODS
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.units import ARCMIN
+from tests.papers.claim import Claim, Exhibit, Table, at_most
+from tests.papers.measure import attitude_error, hours, mean_and_interval
+from tests.papers.picture import curve, panel
+from tests.papers.runs import Runs, method, scenario_of
+from tests.papers.sun_ship import ANGLES, METHODS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,11 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.papers.claim import Claim, Exhibit, Paper, Table, about, at_least, number
-from app.papers.measure import attitude_error, hours, last_above, mean_and_interval, spread
-from app.papers.picture import curve, panel
-from app.papers.runs import Runs, method
-from app.papers.zha_drive import DRIVE
 from navcore.analysis import analyse, initial_tilt_response
 from navcore.foundation.earth import SPHERE
 from navcore.foundation.units import ARCMIN, ARCSEC, MINUTE
@@ -20,6 +15,11 @@ from navcore.mechanization.recorder import PHI_E
 from navcore.networks import parse_network
 from navcore.networks.base import LinearNetwork
 from navcore.networks.compass import CompassNetwork
+from tests.papers.claim import Claim, Exhibit, Paper, Table, about, at_least, number
+from tests.papers.measure import attitude_error, hours, last_above, mean_and_interval, spread
+from tests.papers.picture import curve, panel
+from tests.papers.runs import Runs, method
+from tests.papers.zha_drive import DRIVE
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

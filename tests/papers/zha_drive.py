@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.papers.claim import Claim, Exhibit, Table, order_of
-from app.papers.measure import hours, mean_and_interval
-from app.papers.picture import curve, panel
-from app.papers.runs import Runs, method
 from navcore.mechanization.recorder import DV_E, DV_N
+from tests.papers.claim import Claim, Exhibit, Table, order_of
+from tests.papers.measure import hours, mean_and_interval
+from tests.papers.picture import curve, panel
+from tests.papers.runs import Runs, method
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -1,4 +1,4 @@
-"""``python -m app.papers [--out FOLDER] [--only WORD]``: write the reproduction report."""
+"""``python -m tests.papers [--out FOLDER] [--only WORD]``: write the reproduction report."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import argparse
 import sys
 from pathlib import Path
 
-from app.papers.write import papers, write_report
+from tests.papers.write import papers, write_report
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Write papers.md and its pictures; 1 when a claim contradicts what stands beside it."""
-    parser = argparse.ArgumentParser(prog="python -m app.papers", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tests.papers", description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("docs"), help="folder to write papers.md into")
     parser.add_argument(
         "--only", default="", help="only exhibits whose name holds this; papers.md is printed"

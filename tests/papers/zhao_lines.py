@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.papers.runs import STRAPDOWN, Runs, method, scenario_of
 from navcore.averaging.lines import line_amplitudes, line_phases
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.units import ARCSEC
 from navcore.mechanization.recorder import D_LAT, DV_E, DV_N, PHI_E, PHI_N, PHI_U, POSITION
+from tests.papers.runs import STRAPDOWN, Runs, method, scenario_of
 
 UNITS = np.array([ARCSEC, ARCSEC, ARCSEC, 1.0, 1.0, 1.0, 1.0])
 LEVEL, SLOW = (PHI_E, PHI_N, DV_E, DV_N), (PHI_U, D_LAT)

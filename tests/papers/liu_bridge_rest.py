@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.papers.claim import Claim, Table, about, at_most
-from app.papers.liu_switching import BEST, BRIDGE, SEEDS, sea, without_changes
-from app.papers.measure import mean_and_interval, rms
-from app.papers.runs import Runs
 from navcore.engine.simulation import simulate
 from navcore.mechanization.recorder import DV_E, DV_N
 from navcore.scenario.model import Scenario
+from tests.papers.claim import Claim, Table, about, at_most
+from tests.papers.liu_switching import BEST, BRIDGE, SEEDS, sea, without_changes
+from tests.papers.measure import mean_and_interval, rms
+from tests.papers.runs import Runs
 
 CORRECTED = f"{BRIDGE}, output corrected"
 METHODS = (BEST, BRIDGE, CORRECTED)

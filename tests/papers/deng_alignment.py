@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from app.papers.claim import Claim, Exhibit, Table, at_most, number, order_of
-from app.papers.estimate import rms_estimate
-from app.papers.measure import attitude_error, mean_and_interval, rms
-from app.papers.runs import Runs, method, scenario_of
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.units import DEG, DEG_PER_HOUR
 from navcore.mechanization.recorder import DV_E, DV_N, PHI_E, PHI_N
+from tests.papers.claim import Claim, Exhibit, Table, at_most, number, order_of
+from tests.papers.estimate import rms_estimate
+from tests.papers.measure import attitude_error, mean_and_interval, rms
+from tests.papers.runs import Runs, method, scenario_of
 
 PRESET = "deng-static"
 SEEDS, FORM_SEEDS = range(1, 97), range(1, 9)

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.papers import liu_bridge_rest
-from app.papers.claim import Claim, Exhibit, Table, at_least, at_most, number
-from app.papers.liu_switching import (
+from tests.papers import liu_bridge_rest
+from tests.papers.claim import Claim, Exhibit, Table, at_least, at_most, number
+from tests.papers.liu_switching import (
     BEST,
     BRIDGE,
     DAYS,
@@ -23,10 +23,10 @@ from app.papers.liu_switching import (
     ratio,
     ratios,
 )
-from app.papers.liu_tables import added_table, study_table
-from app.papers.measure import mean_and_interval
-from app.papers.picture import curve, panel
-from app.papers.runs import Runs
+from tests.papers.liu_tables import added_table, study_table
+from tests.papers.measure import mean_and_interval
+from tests.papers.picture import curve, panel
+from tests.papers.runs import Runs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

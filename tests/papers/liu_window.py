@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from app.papers.claim import Claim, Exhibit, Table, at_least, number
-from app.papers.liu_switching import BEST, BRIDGE, METHODS, NOVEL, PRESET, QUANTITIES, errors, sea
-from app.papers.measure import mean_and_interval
-from app.papers.runs import Runs
 from navcore.engine.simulation import simulate
 from navcore.mechanization.recorder import DAMPED_COLUMN
 from navcore.scenario.model import Scenario
+from tests.papers.claim import Claim, Exhibit, Table, at_least, number
+from tests.papers.liu_switching import BEST, BRIDGE, METHODS, NOVEL, PRESET, QUANTITIES, errors, sea
+from tests.papers.measure import mean_and_interval
+from tests.papers.runs import Runs
 
 SEEDS = range(1, 9)
 PRINTED = {"n_s": 20.0, "t0_s": 80.0, "count": 20}

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.papers.claim import Claim, Exhibit, Table, at_least, at_most, number
-from app.papers.measure import attitude_error, hours, mean_and_interval
-from app.papers.picture import curve, panel
-from app.papers.runs import Runs, method
 from navcore.analysis import analyse
 from navcore.foundation.earth import SPHERE
 from navcore.foundation.units import ARCMIN, HOUR, KNOT
 from navcore.mechanization.recorder import XI_COLUMN
 from navcore.networks import parse_network
+from tests.papers.claim import Claim, Exhibit, Table, at_least, at_most, number
+from tests.papers.measure import attitude_error, hours, mean_and_interval
+from tests.papers.picture import curve, panel
+from tests.papers.runs import Runs, method
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -6,20 +6,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.papers.claim import Claim, Exhibit, Paper, Table, about, at_least, at_most, number
-from app.papers.liu_bumpless import BUMPLESS
-from app.papers.liu_fig_7 import FIGURE_7
-from app.papers.liu_fig_11 import LONG
-from app.papers.liu_tables import TABLES
-from app.papers.liu_window import WINDOW
-from app.papers.measure import departure, hours
-from app.papers.picture import curve, panel
-from app.papers.runs import Runs
 from navcore.analysis import RADIUS, frequency_response
 from navcore.foundation.earth import SPHERE
 from navcore.foundation.units import HOUR
 from navcore.mechanization.recorder import DV_E
 from navcore.networks import parse_network
+from tests.papers.claim import Claim, Exhibit, Paper, Table, about, at_least, at_most, number
+from tests.papers.liu_bumpless import BUMPLESS
+from tests.papers.liu_fig_7 import FIGURE_7
+from tests.papers.liu_fig_11 import LONG
+from tests.papers.liu_tables import TABLES
+from tests.papers.liu_window import WINDOW
+from tests.papers.measure import departure, hours
+from tests.papers.picture import curve, panel
+from tests.papers.runs import Runs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from app.misprints import MISPRINTS, Comparison, Misprint
-from app.papers.claim import Exhibit, Paper, Table, number
-from app.papers.picture import panel
-from app.papers.runs import Runs
+from tests.papers.claim import Exhibit, Paper, Table, number
+from tests.papers.picture import panel
+from tests.papers.runs import Runs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.papers.claim import Claim, Exhibit, Paper, Table, at_least, at_most, number, order_of
-from app.papers.deng_alignment import ALIGNMENT
-from app.papers.measure import attitude_error, hours, mean_and_interval, rms
-from app.papers.picture import curve, panel
-from app.papers.runs import Runs, method
 from navcore.foundation.units import ARCSEC, DEG, HOUR
 from navcore.mechanization.recorder import D_LAT, D_LON, DV_E, DV_N, PHI_E, PHI_N
 from navcore.mechanization.strapdown.records import NAVIGATION
 from navcore.motion.base import LAT, LON
+from tests.papers.claim import Claim, Exhibit, Paper, Table, at_least, at_most, number, order_of
+from tests.papers.deng_alignment import ALIGNMENT
+from tests.papers.measure import attitude_error, hours, mean_and_interval, rms
+from tests.papers.picture import curve, panel
+from tests.papers.runs import Runs, method
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

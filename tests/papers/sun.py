@@ -6,19 +6,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.papers.claim import Claim, Exhibit, Paper, Table, about, at_least, at_most, number
-from app.papers.measure import hours, peak
-from app.papers.picture import curve, panel
-from app.papers.runs import Runs, method
-from app.papers.sun_optimum import OPTIMUM
-from app.papers.sun_ship import SHIP
-from app.papers.sun_vehicle import VEHICLE
 from navcore.analysis import analyse, network_step_response
 from navcore.foundation.earth import SPHERE
 from navcore.foundation.units import ARCSEC, HOUR
 from navcore.mechanization.recorder import PHI_N
 from navcore.networks import parse_network
 from navcore.networks.base import LinearNetwork
+from tests.papers.claim import Claim, Exhibit, Paper, Table, about, at_least, at_most, number
+from tests.papers.measure import hours, peak
+from tests.papers.picture import curve, panel
+from tests.papers.runs import Runs, method
+from tests.papers.sun_optimum import OPTIMUM
+from tests.papers.sun_ship import SHIP
+from tests.papers.sun_vehicle import VEHICLE
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

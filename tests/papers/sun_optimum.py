@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from app.papers.claim import Claim, Exhibit, Table, about, number
-from app.papers.picture import curve, panel
-from app.papers.runs import Runs
 from navcore.studies.tuning import Tuning, TuningSettings, tune
+from tests.papers.claim import Claim, Exhibit, Table, about, number
+from tests.papers.picture import curve, panel
+from tests.papers.runs import Runs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from app.papers.estimate import Estimate
-from app.papers.runs import Runs
+from tests.papers.estimate import Estimate
+from tests.papers.runs import Runs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

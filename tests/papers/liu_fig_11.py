@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.papers.claim import Claim, Exhibit, Table, at_least, at_most, number
-from app.papers.liu_switching import PRESET
-from app.papers.measure import mean_and_interval, rms
-from app.papers.picture import curve, panel
-from app.papers.runs import Runs, method, scenario_of
 from navcore.analysis.whole_system import WholeSystem, whole_system
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.units import DEG, HOUR
 from navcore.mechanization.recorder import POSITION
+from tests.papers.claim import Claim, Exhibit, Table, at_least, at_most, number
+from tests.papers.liu_switching import PRESET
+from tests.papers.measure import mean_and_interval, rms
+from tests.papers.picture import curve, panel
+from tests.papers.runs import Runs, method, scenario_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

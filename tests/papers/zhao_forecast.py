@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.papers.claim import Claim, Exhibit, Table, at_most
-from app.papers.measure import mean_and_interval
-from app.papers.picture import panel
-from app.papers.runs import Runs, scenario_of
-from app.papers.zhao_lines import PER_SAMPLE, READINGS
 from navcore.averaging.forecast import base_motion, forecast_from
 from navcore.averaging.record import alignment_record, standing_row
 from navcore.engine.environment import truth_of
 from navcore.foundation.units import DEG, HOUR
+from tests.papers.claim import Claim, Exhibit, Table, at_most
+from tests.papers.measure import mean_and_interval
+from tests.papers.picture import panel
+from tests.papers.runs import Runs, scenario_of
+from tests.papers.zhao_lines import PER_SAMPLE, READINGS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,15 +7,15 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
-from app.papers.claim import Exhibit, Paper
-from app.papers.markdown import HEAD, Checked, Contradiction, check, exhibit_text, summary, table_text
-from app.papers.picture import save
-from app.papers.runs import Runs
+from tests.papers.claim import Exhibit, Paper
+from tests.papers.markdown import HEAD, Checked, Contradiction, check, exhibit_text, summary, table_text
+from tests.papers.picture import save
+from tests.papers.runs import Runs
 
 
 def papers() -> tuple[Paper, ...]:
     """All papers, in the order in which they are read."""
-    from app.papers import deng, liu, misprints, sun, zha, zhao
+    from tests.papers import deng, liu, misprints, sun, zha, zhao
 
     return tuple(paper.PAPER for paper in (deng, liu, zhao, sun, zha, misprints))
 
