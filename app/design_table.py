@@ -7,14 +7,13 @@ of its first damped method is in the steady state, before and after tuning, and 
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from navcore.design.budget import budget
 from navcore.design.pareto import LEFT_OUT
 from navcore.design.tune import tune
 from navcore.foundation.errors import InputError
+from navcore.foundation.markdown import markdown_table
 from navcore.networks import NETWORKS
 from navcore.scenario.file import load, presets
 from navcore.scenario.model import Method, Scenario
@@ -23,47 +22,14 @@ PAGE = Path(__file__).resolve().parents[1] / "docs" / "design.md"
 MARK = "<!-- the table below is written by `make design` -->"
 
 
-@dataclass(frozen=True)
-class Row:
-    """One preset.
-
-    Attributes
-    ----------
-    preset, method, source : str
-        Names; the source that contributes most along the run.
-    before, after : str
-        Times the floor.
-    best, optimal : str
-        The network that comes nearest apart from `optimal`, and how near that comes.
-    note : str
-        Why numbers are missing.
-    """
-
-    preset: str
-    method: str
-    source: str
-    before: str = "-"
-    after: str = "-"
-    best: str = "-"
-    optimal: str = "-"
-    note: str = ""
-
-    def cells(self) -> list[str]:
-        """Cells of the table."""
-        return [
-            self.preset,
-            self.method,
-            self.source,
-            self.before,
-            self.after,
-            self.best,
-            self.optimal,
-            self.note,
-        ]
+HEAD = (
+    *("preset", "method", "largest source of tilt", "x floor", "x floor, tuned"),
+    *("best network", "`optimal`", ""),
+)
 
 
-def row(name: str) -> Row:
-    """Compute the row of one preset."""
+def row(name: str) -> list[str]:
+    """Compute the cells of one preset; a dash where its note says why there is no number."""
     scenario = load(name)
     damped = [i for i, m in enumerate(scenario.method) if m.damping in ("external", "internal")]
     index = damped[0] if damped else 0
@@ -72,16 +38,16 @@ def row(name: str) -> Row:
     source = budget(alone, seeds=2).methods[0].largest or "not split: shown by seeds"
     steady = budget(alone, steady=True)
     if steady.floor_reason or not steady.floor.rms.tilt_rad:
-        return Row(name, method.name, source, note=steady.floor_note)
+        return [name, method.name, source, *"----", steady.floor_note]
     if method.damping != "external":
-        return Row(name, method.name, source, note="no method is damped by the log")
+        return [name, method.name, source, *"----", "no method is damped by the log"]
     found = {n: _least(alone, n) for n in NETWORKS if n not in LEFT_OUT}
     times = {n: value / steady.floor.rms.tilt_rad for n, value in found.items() if value is not None}
     optimal = times.pop("optimal")
     best = min(times, key=lambda n: times[n])
     before = steady.times_floor(steady.methods[0])["tilt"]
     own = times.get(method.network.id)
-    return Row(
+    return [
         name,
         method.name,
         source,
@@ -90,7 +56,7 @@ def row(name: str) -> Row:
         f"`{best}` {times[best]:.3g}",
         f"{optimal:.3g}",
         "the recorded log counts as free of error" if scenario.reference.kind == "file" else "",
-    )
+    ]
 
 
 def _least(scenario: Scenario, network: str) -> float | None:
@@ -108,16 +74,6 @@ def _least(scenario: Scenario, network: str) -> float | None:
         return None
 
 
-def table(rows: Sequence[Sequence[str]]) -> str:
-    """Markdown of the cells of the rows."""
-    head = [
-        *("preset", "method", "largest source of tilt", "x floor", "x floor, tuned"),
-        *("best network", "`optimal`", ""),
-    ]
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
-
-
 def main() -> int:
     """Write the table into docs/design.md, whose text above it stays; names of presets: only their rows."""
     text, _, old = PAGE.read_text("utf-8").partition(MARK)
@@ -125,9 +81,10 @@ def main() -> int:
     kept = {cells[0].strip(): [cell.strip() for cell in cells] for cells in parts}
     names = list(presets())
     for name in sys.argv[1:] or names:
-        kept[name] = row(name).cells()
+        kept[name] = row(name)
         print(" | ".join(kept[name]), file=sys.stderr, flush=True)
-    PAGE.write_text(f"{text}{MARK}\n\n{table([kept[name] for name in names if name in kept])}\n", "utf-8")
+    table = markdown_table(HEAD, [kept[name] for name in names if name in kept])
+    PAGE.write_text(f"{text}{MARK}\n\n{table}\n", "utf-8")
     return 0
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from navcore.analysis.loop import analyse
 from navcore.analysis.whole_system import duration, whole_system
 from navcore.foundation.earth import SPHERE
+from navcore.foundation.markdown import markdown_table
 from navcore.foundation.units import DEG
 from navcore.networks import NETWORKS, parse_network
 
@@ -61,15 +62,12 @@ velocity feedback nothing.
 def page() -> str:
     """Text of the page."""
     head = ["network", "parameters", "H(0)", "H'(0), s", "damping ratio"]
-    rows = [
-        [*head, *(f"24 h mode at {lat:g}°" for lat in LATITUDES)],
-        ["---"] * (len(head) + len(LATITUDES)),
-    ]
+    head += [f"24 h mode at {lat:g}°" for lat in LATITUDES]
+    rows = []
     for name in NETWORKS:
         if name not in LEFT_OUT:
             rows += [_row(name, parameters) for parameters in VARIANTS.get(name, ("",))]
-    lines = ["| " + " | ".join(row) + " |" for row in rows]
-    return _HEAD + "\n".join(lines) + "\n" + _FOOT
+    return f"{_HEAD}{markdown_table(head, rows)}\n{_FOOT}"
 
 
 def _row(name: str, parameters: str) -> list[str]:

@@ -13,6 +13,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 from navcore.averaging import AlignmentMotion, Averaging
+from navcore.foundation.markdown import markdown_table
 from navcore.foundation.parameters import Parameters, allowed_range, element_of, extra_of
 from navcore.foundation.registry import blocks_of
 from navcore.law.policy import POLICIES
@@ -91,12 +92,12 @@ def _allowed(info: FieldInfo) -> str:
     return allowed_range(element_of(info) or info).removeprefix("must be ")
 
 
-def _row(name: str, info: FieldInfo) -> str:
+def _row(name: str, info: FieldInfo) -> list[str]:
     text = " ".join((info.description or "").split())
     elements = extra_of(info).get("elements")
     if elements:
         text = f"{', '.join(elements)}. {text}"
-    return f"| `{info.alias or name}` | {_default(info)} | {_allowed(info)} | {text} |".replace("|V", "\\|V")
+    return [f"`{info.alias or name}`", _default(info), _allowed(info), text.replace("|V", "\\|V")]
 
 
 def guide() -> str:
@@ -107,7 +108,7 @@ def guide() -> str:
         rows = [_row(name, info) for name, info in model.model_fields.items() if info.description]
         parts.append(f"## `{heading}`\n\n{about}\n")
         if rows:
-            parts.append("| field | default | allowed | what |\n|---|---|---|---|\n" + "\n".join(rows) + "\n")
+            parts.append(markdown_table(("field", "default", "allowed", "what"), rows) + "\n")
     return _linked("\n".join(parts))
 
 

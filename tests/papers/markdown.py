@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from navcore.foundation.markdown import markdown_table
 from navcore.foundation.notation import in_symbols
 from tests.papers.claim import KINDS, Claim, Exhibit, Paper, Table, Verdict, number
 from tests.papers.estimate import Estimate, estimate
@@ -129,11 +130,8 @@ def exhibit_text(exhibit: Exhibit, checked: Sequence[Checked], tables: Sequence[
 
 def table_text(table: Table) -> str:
     """Markdown of a table."""
-    lines = [f"{table.caption}\n"] if table.caption else []
-    lines.append("| " + " | ".join(table.head) + " |")
-    lines.append("|" + "---|" * len(table.head))
-    lines.extend("| " + " | ".join(row) + " |" for row in table.rows)
-    return "\n".join(lines) + "\n"
+    caption = f"{table.caption}\n\n" if table.caption else ""
+    return f"{caption}{markdown_table(table.head, table.rows)}\n"
 
 
 def _presets(exhibit: Exhibit) -> str:
