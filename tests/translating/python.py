@@ -43,7 +43,7 @@ _PROSE = re.compile(
 _NAME = re.compile(r"[A-Z][a-z]+")
 _CODE = re.compile(
     r"^[#.]?[\w-]+\s*\{[^0-9]|[a-z-]+:\s*[^;{}]*;|^--|\bvar\(|^[MmLl]\d|^/|^\w+(\.\w+)+$|\d+px\b|\}px\b"
-    r"|^<?tr |^pointer-|HTTP/|^Content-|-apple-system|^<|\\[a-z]+\{|^data-"
+    r"|^<?tr |^sb-|^pointer-|HTTP/|^Content-|-apple-system|^<|\\[a-z]+\{|^data-"
 )
 _SENTENCE = re.compile(r"(?:\b[A-Za-z]+[,:;]? ){5}")
 """Six words one after the other: no style or path has them."""

@@ -138,8 +138,8 @@ def pins_html(lines: Sequence[Line], by: str, baseline: int | None, *, buttons: 
 def _head(name: str, title: str, mark: str, buttons: bool) -> str:
     state = {" ▾": "descending", " ▴": "ascending"}.get(mark)
     if buttons:
-        command = f'data-command="sort-pins {name}" title="Sort by this column"'
-        title = f'<button class="sb-sort" {command}>{title}{mark}</button>'
+        button = f'<button class="sb-sort" data-command="sort-pins {name}" title="Sort by this column">'
+        title = f"{button}{title}{mark}</button>"
     return cell(title, "" if name in _TEXTS else "sb-n", tag="th", scope="col", aria_sort=state)
 
 

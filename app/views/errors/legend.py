@@ -36,8 +36,8 @@ def legend_html(
         for i, method in enumerate(run.methods)
     ]
     if overlay is not None:
-        name = f"{STRAPDOWN} of an earlier scenario" if overlay.old else STRAPDOWN
-        items.append(_legend_item(name, f"border-top:3px dashed {style.MUTED}"))
+        old = " of an earlier scenario" if overlay.old else ""
+        items.append(_legend_item(f"{STRAPDOWN}{old}", f"border-top:3px dashed {style.MUTED}"))
     items += [
         entry(pin.label, pin.label, css_dash(pin.dash, pin.color), state_of(pin.label))
         for pin in pinned_methods(pins)

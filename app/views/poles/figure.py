@@ -145,13 +145,13 @@ def _method_marks(
 ) -> list[dict[str, Any]]:
     color, name = style.method_color(index), method.method.name
     axes = {"xaxis": f"x{suffix}", "yaxis": f"y{suffix}"}
-    told = f"<b>{style.plain(name)}</b><br>"
+    plain = style.plain(name)
     cross = style.marks(name, index, "x-thin", 11, {"color": color, "width": 2.6}) | axes
     cross |= {
         "x": packed(np.real(roots)),
         "y": packed(np.imag(roots)),
         "text": [_about_pole(complex(root), method.network.omega_s) for root in roots],
-        "hovertemplate": f"{told}%{{text}}<extra></extra>",
+        "hovertemplate": f"<b>{plain}</b><br>%{{text}}<extra></extra>",
         "showlegend": suffix == "",
     }
     if not len(zeros):
@@ -160,7 +160,7 @@ def _method_marks(
     ring |= {
         "x": packed(np.real(zeros)),
         "y": packed(np.imag(zeros)),
-        "hovertemplate": f"{told}zero of H: %{{x:.4g}} %{{y:+.4g}}j ω<sub>s</sub><extra></extra>",
+        "hovertemplate": f"<b>{plain}</b><br>zero of H: %{{x:.4g}} %{{y:+.4g}}j ω<sub>s</sub><extra></extra>",
     }
     return [cross, ring]
 

@@ -112,7 +112,7 @@ def _about(mode: Mode) -> str:
 def _growth(run: Run, method: MethodRun, index: int, rates: np.ndarray) -> list[dict[str, Any]]:
     """Curve of the growth over the latitude, and the point of the site."""
     name, here = method.method.name, method.whole.earth_growth
-    told = f"<b>{style.plain(name)}</b>"
+    plain = style.plain(name)
     common = {"xaxis": "x2", "yaxis": "y2", "showlegend": False}
     curve = style.lines(f"{name} growth", index) | common
     site = style.marks(f"{name} at the site", index, "diamond", 11, {}) | common
@@ -122,13 +122,13 @@ def _growth(run: Run, method: MethodRun, index: int, rates: np.ndarray) -> list[
             "x": packed(LATITUDES),
             "y": packed(rates),
             "line": {"color": style.method_color(index), "width": 2},
-            "hovertemplate": f"{told}<br>%{{x:.0f}}°: %{{y:+.3f}} a day<extra></extra>",
+            "hovertemplate": f"<b>{plain}</b><br>%{{x:.0f}}°: %{{y:+.3f}} a day<extra></extra>",
         },
         site
         | {
             "x": [abs(run.scenario.site.lat_deg)],
             "y": [here * _DAY],
             "text": [f"24 h mode {earth_mode_text(here)}"],
-            "hovertemplate": f"{told} at the site<br>%{{text}}<extra></extra>",
+            "hovertemplate": f"<b>{plain}</b> at the site<br>%{{text}}<extra></extra>",
         },
     ]
