@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from app.plots.plotly_data import PlotlyFigure, values_of
 from navcore.engine.run import MethodRun, PlotSeries, Run
 from navcore.engine.simulation import simulate
 from navcore.scenario.model import Scenario
@@ -80,3 +81,28 @@ def diverging(run: Run, index: int, rows: int) -> Run:
         plot=PlotSeries(method.plot.t_s[:kept], method.plot.values[:kept] * growth),
     )
     return replace(run, methods=(*run.methods[:index], ended, *run.methods[index + 1 :]))
+
+
+@dataclass
+class Pinned:
+    """What a figure needs of a pin."""
+
+    name: str
+    hex: str
+    run: Run | None
+
+
+def of_trace(figure: PlotlyFigure, name: str, yaxis: str = "y") -> tuple[np.ndarray, np.ndarray]:
+    """Numbers of the trace with this name on an axis."""
+    trace = trace_of(figure, name, yaxis)
+    return np.array(values_of(trace["x"]), float), np.array(values_of(trace["y"]), float)
+
+
+def trace_of(figure: PlotlyFigure, name: str, yaxis: str = "y") -> dict[str, Any]:
+    """The trace with this name on an axis."""
+    return next(t for t in figure["data"] if t.get("name") == name and t.get("yaxis", "y") == yaxis)
+
+
+def texts_of(figure: PlotlyFigure) -> list[str]:
+    """Texts of the annotations."""
+    return [note["text"] for note in figure["layout"]["annotations"]]

@@ -3,30 +3,18 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
+from app.editing import edits
 from app.plots.pinned import pinned_methods, restyled, together
-from app.plots.plotly_data import unpacked
 from app.session.display import Display
-from app.views.errors.figure import error_plots
-from app.views.errors.legend import legend_html
+from app.session.laid import laid, titled
+from app.session.pins import Pins
 from app.views.frequency.figure import bode
 from app.views.metrics.table import metrics_html, metrics_rows
-from app.views.poles.figure import poles
-from app.views.spectrum.figure import spectrum
-from app.views.step.figure import step
-from navcore.engine.run import Run
-from tests.unit.figures_runs import run_of, static_run
-
-
-@dataclass
-class Pinned:
-    name: str
-    hex: str
-    run: Run | None
+from tests.unit.figures_runs import Pinned, of_trace, run_of, static_run
 
 
 @pytest.fixture(scope="module")
@@ -34,53 +22,15 @@ def pin() -> Pinned:
     return Pinned("before <b>", "#C2185B", run_of())
 
 
-def test_a_pin_is_drawn_over_every_time_plot_in_its_own_style(pin: Pinned) -> None:
-    run = static_run()
-    for plot in error_plots(run, pins=(pin,)).values():
-        assert plot.names[3:] == ("before <b>: free", "before <b>: classic2", "before <b>: compass")
-        own, pinned = plot.curves[:3], plot.curves[3:]
-        assert {curve.color for curve in pinned} == {"#C2185B"}
-        assert len({curve.dash for curve in pinned} - {()}) == 3
-        assert max(curve.width for curve in pinned) < min(curve.width for curve in own)
-        hours, curve = plot.data[0], plot.data[4]
-        assert np.isnan(curve[hours > 1.1]).all() and np.isfinite(curve[hours < 0.99]).all()
-    html = legend_html(run, None, (pin,))
-    assert "before &lt;b&gt;: compass" in html and "#C2185B" in html
-
-
 def test_a_pin_whose_run_is_not_known_yet_is_left_out() -> None:
     assert pinned_methods([Pinned("a", "#000000", None)]) == ()
     assert together(static_run(), [Pinned("a", "#000000", None)]) is static_run()
 
 
-@pytest.mark.parametrize("figure", [bode, poles, step, spectrum])
-def test_a_pin_is_drawn_over_the_plotly_figures(figure, pin: Pinned) -> None:
-    run = static_run()
-    alone, both = figure(run), restyled(figure(together(run, (pin,))), run, (pin,))
-    mine = [t for t in both["data"] if str(t.get("legendgroup", "")) in "012" and t.get("legendgroup")]
-    others = [t for t in both["data"] if str(t.get("legendgroup", "")) in ("3", "4", "5")]
-    assert others and all("before &lt;b&gt;" in t["name"] for t in others)
-    for trace in others:
-        style = trace.get("line") or trace["marker"]
-        assert style["color"] == "#C2185B"
-    # how many settling times are named follows from the room that the legend leaves
-    counts = [
-        sum(not note["text"].endswith(" min") for note in made["layout"]["annotations"])
-        for made in (both, alone)
-    ]
-    assert counts[0] == counts[1]
-    before = [t for t in alone["data"] if str(t.get("legendgroup", "")) in "012" and t.get("legendgroup")]
-    assert [t.get("line", t.get("marker")) for t in mine] == [t.get("line", t.get("marker")) for t in before]
-
-
 def test_pinned_loop_is_the_pinned_one(pin: Pinned) -> None:
     run = static_run()
-    made = restyled(bode(together(run, (pin,))), run, (pin,))
-    assert pin.run is not None
-    alone = bode(pin.run)
-    mine = [t for t in made["data"] if t["legendgroup"] == "5" and t["yaxis"] == "y"]
-    theirs = [t for t in alone["data"] if t["legendgroup"] == "2" and t["yaxis"] == "y"]
-    np.testing.assert_array_equal(unpacked(mine[0]["y"]), unpacked(theirs[0]["y"]))
+    both, alone = restyled(bode(together(run, (pin,))), run, (pin,)), bode(pin.run)
+    np.testing.assert_array_equal(of_trace(both, "before &lt;b&gt;: compass"), of_trace(alone, "compass"))
 
 
 def test_differences_are_those_of_methods_of_the_same_name() -> None:
@@ -120,3 +70,22 @@ def test_table_shows_the_wanted_units() -> None:
     assert units["tilt φE"] == units["heading φU"] == "°"
     assert units["velocity δVE"] == "kn"
     assert [row.unit for row in rows if row.label == "position"] == ["km"]
+
+
+def test_a_pin_is_called_by_what_differs_and_holds_what_a_picture_needs() -> None:
+    run = static_run()
+    edited = run.scenario.method[2].name
+    pins = Pins(lambda: None, lambda *_: run)
+    pins.add(run, "static", method=edited)
+    pins.add(run, "static", "mine", method=edited)
+    now = edits.with_value(run.scenario, ("method", 2, "network", "xi"), 0.61)
+    first, second = laid(pins.all, now)
+    old = edits.network_values(run.scenario, 2)["xi"]
+    assert (first.name, second.name) == (f"ζ {old:g}", "mine")
+    assert first.run is not None and [m.method.name for m in first.run.methods] == [edited]
+    assert [pin.name for pin in titled(pins.all, run.scenario)] == ["pin 1", "mine"]
+    other = edits.with_value(now, ("method", 1, "name"), "another")
+    (both, _) = laid(pins.all, other)
+    assert both.run is not None and len(both.run.methods) == 2, "a method that is gone is held too"
+    longer = edits.with_value(now, ("run", "duration_h"), 1.5)
+    assert titled(pins.all, longer)[0].name.startswith(f"ζ {old:g}, duration h ")

@@ -1,3 +1,5 @@
+"""Error curves over time: units, scales, pins, verification and what the legend makes of them."""
+
 from __future__ import annotations
 
 import inspect
@@ -5,13 +7,24 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
+from app.jobs.verifier import Verified
 from app.plots import style
-from app.plots.uplot import UplotFigure, stack_heights
+from app.plots.legend import STATES, after
+from app.plots.uplot import stack_heights
+from app.session.display import Display
+from app.session.shown import Shown
 from app.views.errors.figure import GROUPS, Overlay, error_plots
 from app.views.errors.legend import legend_html
+from app.views.errors.verified import KEYS as VERIFIED
+from app.views.errors.verified import verification_plots
+from app.views.errors.view import error_curves
+from navcore.engine.simulation import simulate
+from navcore.engine.verification import Verification, verify
 from navcore.mechanization.recorder import NAMES
-from tests.unit.figures_runs import diverging, run_of, static_run
+from navcore.scenario.file import load
+from tests.unit.figures_runs import Pinned, diverging, run_of, static_run
 
 KEYS = ("phi_e", "phi_n", "phi_u", "dve", "dvn", "dlat", "dlon", "position")
 
@@ -22,44 +35,51 @@ def test_keys_are_the_agreed_ones_and_every_group_uses_them() -> None:
 
 
 @pytest.mark.parametrize("key", KEYS)
-def test_curves_are_the_runs_in_the_labelled_unit(key: str) -> None:
-    run = static_run()
-    plot = error_plots(run)[key]
-    column = NAMES.index(plot.quantity)
+def test_curves_are_the_runs_in_the_labelled_unit_with_their_peaks(key: str) -> None:
+    run, plot = static_run(), error_plots(static_run())[key]
+    assert plot.names == ("free", "classic2", "compass") and plot.unit.name in plot.axes()[1]["label"]
     for curve, method in zip(plot.data[1:], run.methods, strict=True):
-        np.testing.assert_allclose(curve * plot.unit.si, method.plot.values[:, column], rtol=1e-12)
-    assert plot.names == ("free", "classic2", "compass")
-    assert plot.unit.name in plot.axes()[1]["label"]
+        values = method.plot.values[:, NAMES.index(plot.quantity)]
+        np.testing.assert_allclose(curve * plot.unit.si, values, rtol=1e-12)
+        peak = method.errors[plot.quantity]["max_abs"]
+        assert np.max(np.abs(curve)) * plot.unit.si == pytest.approx(peak, rel=1e-9)
 
 
-def test_time_axis_runs_from_start_to_end_in_hours() -> None:
-    time = error_plots(static_run())["phi_e"].data[0]
-    assert time[0] == 0.0
-    assert time[-1] == pytest.approx(6.0)
-    assert np.all(np.diff(time) > 0.0)
-    np.testing.assert_allclose(time[1:-1] * 3600.0, static_run().methods[0].plot.t_s[1:-1])
-
-
-def test_short_run_is_shown_in_minutes() -> None:
-    plot = error_plots(run_of())["phi_e"]
-    assert plot.time_unit.name == "min"
-    assert plot.data[0][-1] == pytest.approx(60.0)
-    assert plot.axes()[0]["label"] == "time (min)"
-
-
-def test_peak_of_a_curve_is_the_peak_of_the_metrics() -> None:
-    run = static_run()
-    for plot in error_plots(run).values():
-        for curve, method in zip(plot.data[1:], run.methods, strict=True):
-            peak = method.errors[plot.quantity]["max_abs"]
-            assert np.max(np.abs(curve)) * plot.unit.si == pytest.approx(peak, rel=1e-9)
+@pytest.mark.parametrize(
+    ("run", "display", "unit", "end"),
+    [
+        (static_run, Display(), "h", 6.0),
+        (static_run, Display(time="min"), "min", 360.0),
+        (run_of, Display(), "min", 60.0),
+    ],
+)
+def test_time_axis_runs_from_start_to_end_in_its_unit(run, display: Display, unit: str, end: float) -> None:
+    plot = error_plots(run(), display=display)["phi_e"]
+    assert (plot.time[0], plot.time[-1]) == pytest.approx((0.0, end))
+    assert np.all(np.diff(plot.time) > 0.0) and plot.axes()[0]["label"] == f"time ({unit})"
+    np.testing.assert_allclose(plot.time[1:-1] * plot.time_unit.si, run().methods[0].plot.t_s[1:-1])
 
 
 def test_one_unit_for_each_family() -> None:
-    plots = error_plots(static_run())
-    assert plots["phi_e"].unit == plots["phi_n"].unit
-    assert plots["dve"].unit == plots["dvn"].unit
-    assert plots["position"].unit == plots["dlat"].unit == plots["dlon"].unit
+    units = {key: plot.unit for key, plot in error_plots(static_run()).items()}
+    assert units["phi_e"] == units["phi_n"] and units["dve"] == units["dvn"]
+    assert units["position"] == units["dlat"] == units["dlon"]
+
+
+@pytest.mark.parametrize(
+    ("choice", "key", "unit"),
+    [
+        ({"angle": "arcsec"}, "phi_u", "arcsec"),
+        ({"angle": "arcmin"}, "phi_e", "arcmin"),
+        ({"angle": "deg"}, "phi_e", "°"),
+        ({"length": "nmi"}, "position", "nmi"),
+        ({"speed": "kn"}, "dve", "kn"),
+    ],
+)
+def test_curves_are_drawn_legibly_in_the_wanted_unit(choice: dict[str, str], key: str, unit: str) -> None:
+    auto, wanted = (error_plots(static_run(), display=d)[key] for d in (Display(), Display(**choice)))
+    assert wanted.unit.name.removeprefix("10⁻³ ") == unit and np.nanmax(np.abs(wanted.data[1])) >= 0.02
+    np.testing.assert_allclose(wanted.data[1] * wanted.unit.si, auto.data[1] * auto.unit.si, rtol=1e-12)
 
 
 def test_three_decimals_are_enough_on_every_axis() -> None:
@@ -72,85 +92,156 @@ def test_three_decimals_are_enough_on_every_axis() -> None:
 
 
 def test_ended_method_is_padded_and_named_and_does_not_set_the_scale() -> None:
-    run = diverging(static_run(), 0, rows=800)
-    plots = error_plots(run)
-    whole = error_plots(static_run())
-    plot = plots["dve"]
-    assert plot.names[0] == "free (diverged)"
-    assert len({len(values) for values in plot.data}) == 1
-    assert np.isnan(plot.data[1][-1]) and np.isfinite(plot.data[2]).all()
-    assert plot.unit == whole["dve"].unit
-    assert np.nanmax(np.abs(plot.data[1])) <= 3.0 * max(np.max(np.abs(values)) for values in plot.data[2:])
-    np.testing.assert_array_equal(plot.data[2], whole["dve"].data[2])
-
-
-def test_all_methods_diverged_is_still_drawn() -> None:
-    run = run_of(method=[{"name": "free"}])
-    plot = error_plots(diverging(run, 0, rows=100))["phi_n"]
-    assert np.isfinite(plot.data[1]).all()
+    whole, plot = (error_plots(run)["dve"] for run in (static_run(), diverging(static_run(), 0, rows=800)))
+    ended, *others = plot.data[1:]
+    assert plot.names[0] == "free (diverged)" and plot.unit == whole.unit
+    assert np.isnan(ended[-1]) and np.nanmax(np.abs(ended)) <= 3.0 * np.max(np.abs(others))
+    np.testing.assert_array_equal(others, whole.data[2:])
+    alone = diverging(run_of(method=[{"name": "free"}]), 0, rows=100)
+    assert np.isfinite(error_plots(alone)["phi_n"].data[1]).all()
 
 
 def test_viser_takes_the_arguments() -> None:
     from viser import GuiApi, uplot
 
-    plot = error_plots(static_run())["position"]
-    arguments = plot.kwargs(height=100)
+    arguments = error_plots(static_run())["position"].kwargs(height=100)
     assert set(arguments) <= set(inspect.signature(GuiApi.add_uplot).parameters)
     assert len(arguments["series"]) == len(arguments["data"]) == 4
-    assert all(set(series) <= set(uplot.Series.__annotations__) for series in arguments["series"])
-    assert all(set(axis) <= set(uplot.Axis.__annotations__) for axis in arguments["axes"])
-    assert all(set(scale) <= set(uplot.Scale.__annotations__) for scale in arguments["scales"].values())
-    assert set(arguments["cursor"]) <= set(uplot.Cursor.__annotations__)
+    for kind, parts in (
+        (uplot.Series, arguments["series"]),
+        (uplot.Axis, arguments["axes"]),
+        (uplot.Scale, arguments["scales"].values()),
+        (uplot.Cursor, [arguments["cursor"]]),
+    ):
+        assert all(set(part) <= set(kind.__annotations__) for part in parts)
     assert all(values.dtype == np.float64 and values.flags.c_contiguous for values in arguments["data"])
 
 
 def test_configuration_is_equal_while_only_numbers_change() -> None:
     run = static_run()
-    quieter = replace(
-        run.methods[0], plot=replace(run.methods[0].plot, values=run.methods[0].plot.values * 0.9)
-    )
-    again = error_plots(replace(run, methods=(quieter, *run.methods[1:])))["phi_e"]
-    first = error_plots(run)["phi_e"]
-    assert first.config_key() == again.config_key()
-    assert first.series == again.series and first.axes() == again.axes() and first.scales == again.scales
+    quieter = replace(run.methods[0].plot, values=run.methods[0].plot.values * 0.9)
+    changed = replace(run, methods=(replace(run.methods[0], plot=quieter), *run.methods[1:]))
+    first, again = (error_plots(each)["phi_e"] for each in (run, changed))
+    for part in ("config_key", "axes"):
+        assert getattr(first, part)() == getattr(again, part)()
+    assert first.series == again.series and first.scales == again.scales
     assert not np.array_equal(first.data[1], again.data[1])
 
 
 def test_colours_fonts_and_legend() -> None:
-    plot: UplotFigure = error_plots(static_run())["phi_u"]
+    plot = error_plots(static_run())["phi_u"]
     assert [series["stroke"] for series in plot.series[1:]] == [style.method_color(i) for i in range(3)]
     assert all("13px" in axis["font"] for axis in plot.axes())
     html = legend_html(run_of(method=[{"name": "<script>x"}]))
-    assert "&lt;script&gt;x" in html and "<script>" not in html
-    assert style.method_color(0) in html
+    assert "&lt;script&gt;x" in html and "<script>" not in html and style.method_color(0) in html
 
 
 def test_stack_fills_the_height_and_leaves_room_for_the_time_labels() -> None:
     heights = stack_heights(400, 3)
-    assert sum(heights) <= 400 and sum(heights) >= 396
-    assert heights[2] > heights[0] == heights[1]
+    assert 396 <= sum(heights) <= 400 and heights[2] > heights[0] == heights[1]
     assert min(stack_heights(100, 6)) >= 84
 
 
-def test_strapdown_is_drawn_dashed_over_the_methods() -> None:
+@pytest.mark.parametrize("old", [False, True])
+def test_strapdown_is_drawn_dashed_over_the_methods(old: bool) -> None:
     run = static_run()
-    for old in (False, True):
-        plots = error_plots(run, Overlay(run, old))
-        plot = plots["phi_e"]
-        assert plot.names[3:] == tuple(f"{name}: full strapdown" for name in plot.names[:3])
-        assert [len(series.get("dash", ())) for series in plot.series[1:]] == [0, 0, 0, 2, 2, 2]
-        assert (plot.curves[3].color == plot.curves[0].color) != old
-        # the same bins: the same points
-        np.testing.assert_array_equal(plot.data[4], plot.data[1])
-        assert ("of an earlier scenario" in legend_html(run, Overlay(run, old))) == old
+    plot = error_plots(run, Overlay(run, old))["phi_e"]
+    assert plot.names[3:] == tuple(f"{name}: full strapdown" for name in plot.names[:3])
+    assert [bool(curve.dash) for curve in plot.curves] == [False] * 3 + [True] * 3
+    assert (plot.curves[3].color == plot.curves[0].color) != old
+    # the same bins: the same points
+    np.testing.assert_array_equal(plot.data[4], plot.data[1])
+    assert ("of an earlier scenario" in legend_html(run, Overlay(run, old))) == old
     assert "strapdown" not in legend_html(run)
 
 
-def test_an_overlay_with_other_bins_keeps_its_peaks_and_ends_where_it_ends() -> None:
+def test_pins_and_overlays_with_other_bins_keep_their_peaks_and_end_where_they_end() -> None:
     run, shorter = static_run(), run_of()
-    plot = error_plots(run, Overlay(shorter, False))["phi_e"]
-    curve = plot.data[4]
-    hours = plot.data[0]
-    assert np.isnan(curve[hours > 1.1]).all() and np.isfinite(curve[hours < 0.99]).all()
-    peak = shorter.methods[0].errors["phi_e_rad"]["max_abs"] / plot.unit.si
-    assert np.nanmax(np.abs(curve)) == pytest.approx(peak, rel=0.02)
+    pin = Pinned("before <b>", "#C2185B", shorter)
+    for plot in error_plots(run, Overlay(shorter, False), pins=(pin,)).values():
+        own, pinned = plot.curves[:3], plot.curves[6:]
+        assert [curve.name for curve in pinned] == [f"before <b>: {curve.name}" for curve in own]
+        assert {curve.color for curve in pinned} == {pin.hex} and len(
+            {curve.dash for curve in pinned} - {()}
+        ) == 3
+        assert max(curve.width for curve in pinned) < min(curve.width for curve in own)
+        for curve, method in zip(plot.curves[3:], 2 * shorter.methods, strict=True):
+            assert np.isnan(curve.values[plot.time > 1.1]).all()
+            assert np.isfinite(curve.values[plot.time < 0.99]).all()
+            peak = method.errors[plot.quantity]["max_abs"] / plot.unit.si
+            assert np.nanmax(np.abs(curve.values)) == pytest.approx(peak, rel=0.02)
+    html = legend_html(run, None, (pin,))
+    assert "before &lt;b&gt;: compass" in html and pin.hex in html
+
+
+def test_limits_are_lines_at_both_signs() -> None:
+    plots = error_plots(static_run(), limits={"dve": 0.5, "position": 1852.0})
+    lines = {
+        key: [curve.values[0] * plot.unit.si for curve in plot.curves if curve.name == "limit"]
+        for key, plot in plots.items()
+    }
+    drawn = {key: pytest.approx(values) for key, values in {"dve": [0.5, -0.5], "position": [1852.0]}.items()}
+    assert {key: values for key, values in lines.items() if values} == drawn
+
+
+def test_logarithmic_axis_shows_magnitudes_over_whole_decades() -> None:
+    linear, log = (error_plots(static_run(), display=Display(scale=s))["dve"] for s in ("linear", "log"))
+    first, last = log.decades or (0, 0)
+    peak = max(np.max(np.abs(values)) for values in linear.data[1:])
+    assert 10.0 ** (last - 1) < peak <= 10.0**last and last - first >= 3
+    np.testing.assert_allclose(log.data[2], np.maximum(np.abs(linear.data[2]), 10.0**first))
+    ticks = log.axes()[1]
+    assert len(ticks["splits"]) == last - first + 1 and ticks["label"].startswith("|")
+    assert log.scales["y"]["range"] == (10.0**first, 10.0**last) and log.config_key() != linear.config_key()
+
+
+def test_clicks_go_through_all_states_and_come_back() -> None:
+    display, seen = Display(), []
+    for _ in STATES:
+        display = display.with_(legend=display.clicked("free"))
+        seen.append(display.state_of("free"))
+    assert seen == [*STATES[1:], "shown"] and display == Display() and after("shown") == "unscaled"
+    with pytest.raises(ValidationError):
+        Display().with_(legend=[("free", "gone")])
+
+
+@pytest.mark.parametrize("state", ["unscaled", "hidden"])
+def test_what_is_off_the_scale_decides_no_unit_and_no_decade(state: str) -> None:
+    run = static_run()
+    whole = error_plots(run)["position"]
+    largest = int(np.argmax([np.nanmax(np.abs(curve)) for curve in whole.data[1:]]))
+    name = whole.names[largest]
+    plot = error_plots(run, display=Display(legend=((name, state),), scale="log"))["position"]
+    peak = max(float(np.nanmax(curve.values)) for curve in plot.curves if curve.name != name)
+    assert plot.decades is not None and 10.0 ** plot.decades[1] < 10.0 * peak
+    series = plot.series[1 + largest]
+    assert series["auto"] is False and (series.get("show", True) is (state == "unscaled"))
+    assert plot.config_key() != error_plots(run, display=Display(scale="log"))["position"].config_key()
+    dimmed = error_plots(run, display=Display(legend=((name, "dimmed"),)))["position"]
+    assert dimmed.series[1 + largest]["stroke"] == whole.curves[largest].color + "59"
+    assert dimmed.unit == whole.unit
+
+
+@pytest.fixture(scope="module")
+def verified() -> Verification:
+    return verify(load("sikuliaq-like", ["run.duration_h=0.3"]))
+
+
+def test_the_curves_of_a_verified_run_stay_what_they_were(verified: Verification) -> None:
+    run = simulate(load("sikuliaq-like", ["run.duration_h=0.3"]))
+    before = error_curves(Shown(run, 1, Display()))
+    after = error_curves(Shown(run, 1, Display(), verified=Verified(verified, old=False)))
+    assert after.names == before.names
+    for key, plot in before.plots.items():
+        np.testing.assert_array_equal(plot.data, after.plots[key].data)
+
+
+def test_the_difference_that_is_drawn_is_the_one_in_the_table(verified: Verification) -> None:
+    plots = verification_plots(verified)
+    assert list(plots) == [f"{which}_{key}" for key in VERIFIED for which in ("both", "difference")]
+    for key in VERIFIED:
+        difference, both = plots[f"difference_{key}"], plots[f"both_{key}"]
+        assert [bool(curve.dash) for curve in both.curves] == [False] * 3 + [True] * 3
+        drawn = [np.nanmax(np.abs(curve.values)) * difference.unit.si for curve in difference.curves]
+        peaks = [differences[both.quantity].peak for differences in verified.differences]
+        assert drawn == pytest.approx(peaks) and min(drawn) > 0.0

@@ -26,67 +26,6 @@ from navcore.scenario.model import Scenario
 from tests.unit.figures_runs import THREE, diverging, run_of, scenario, static_run
 from tests.unit.test_figures_switching import switching_run
 
-# ---------------------------------------------------------------- units
-
-
-@pytest.mark.parametrize(
-    ("choice", "key", "unit"),
-    [
-        ({"angle": "arcsec"}, "phi_u", "arcsec"),
-        ({"angle": "arcmin"}, "phi_e", "arcmin"),
-        ({"length": "nmi"}, "position", "nmi"),
-        ({"speed": "kn"}, "dve", "kn"),
-    ],
-)
-def test_curves_are_drawn_in_the_wanted_unit(choice: dict[str, str], key: str, unit: str) -> None:
-    auto, wanted = error_plots(static_run())[key], error_plots(static_run(), display=Display(**choice))[key]
-    assert wanted.unit.name.endswith(unit)
-    np.testing.assert_allclose(wanted.data[1] * wanted.unit.si, auto.data[1] * auto.unit.si, rtol=1e-12)
-
-
-def test_a_unit_that_is_too_large_is_drawn_in_thousandths_of_it() -> None:
-    plot = error_plots(static_run(), display=Display(angle="deg"))["phi_e"]
-    assert plot.unit.name in ("10⁻³ °", "°") and np.nanmax(np.abs(plot.data[1])) >= 0.02
-
-
-def test_time_axis_in_the_wanted_unit() -> None:
-    plots = error_plots(static_run(), display=Display(time="min"))
-    assert plots["dve"].data[0][-1] == pytest.approx(360.0)
-    assert plots["dve"].axes()[0]["label"] == "time (min)"
-
-
-# ---------------------------------------------------------------- logarithmic axis
-
-
-def test_logarithmic_axis_shows_magnitudes_over_whole_decades() -> None:
-    linear, log = (error_plots(static_run(), display=Display(scale=s))["dve"] for s in ("linear", "log"))
-    first, last = log.decades or (0, 0)
-    peak = max(np.max(np.abs(values)) for values in linear.data[1:])
-    assert 10.0 ** (last - 1) < peak <= 10.0**last and last - first >= 3
-    np.testing.assert_allclose(log.data[2], np.maximum(np.abs(linear.data[2]), 10.0**first))
-    assert log.scales["y"]["range"] == (10.0**first, 10.0**last)
-    ticks = log.axes()[1]
-    assert len(ticks["splits"]) == last - first + 1 and ticks["label"].startswith("|")
-    assert log.config_key() != linear.config_key()
-
-
-def test_nothing_but_zeros_on_a_logarithmic_axis() -> None:
-    run = static_run()
-    zero = replace(run.methods[0].plot, values=0.0 * run.methods[0].plot.values)
-    errors = {name: dict.fromkeys(stats, 0.0) for name, stats in run.methods[0].errors.items()}
-    still = replace(run, methods=(replace(run.methods[0], plot=zero, errors=errors),))
-    for plot in error_plots(still, display=Display(scale="log")).values():
-        assert plot.decades is not None and np.isfinite(plot.data[1]).all()
-
-
-def test_limits_are_lines_at_both_signs() -> None:
-    plots = error_plots(static_run(), limits={"dve": 0.5, "position": 1852.0})
-    assert plots["dve"].names[-2:] == ("limit", "limit")
-    np.testing.assert_allclose(plots["dve"].data[-1] * plots["dve"].unit.si, -0.5)
-    assert plots["position"].names[-1] == "limit" and plots["position"].names.count("limit") == 1
-    assert "limit" not in plots["phi_e"].names
-
-
 # ---------------------------------------------------------------- envelope
 
 
@@ -255,10 +194,10 @@ def test_csv_of_a_plotly_figure_holds_more_than_its_float32() -> None:
     assert any(float(row[4]) != float(np.float32(row[4])) for row in mine)
 
 
-def test_packed_numbers_are_remembered() -> None:
-    value = packed(np.array([0.1, 0.2]))
-    assert values_of(value) == [0.1, 0.2] and values_of([1.0, None]) == [1.0, None]
-    np.testing.assert_allclose(unpacked(value), [0.1, 0.2], rtol=1e-7)
+def test_packed_numbers_are_remembered_and_infinity_is_a_gap() -> None:
+    value = packed(np.array([0.1, -0.2, np.inf]))
+    assert values_of(value) == [0.1, -0.2, np.inf] and values_of([1.0, None]) == [1.0, None]
+    np.testing.assert_array_equal(unpacked(value), np.float32([0.1, -0.2, np.nan]))
 
 
 @pytest.mark.parametrize("scale", ["linear", "log"])

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from app.plots import style
+from app.session.display import Display
+from app.session.shown import Shown
+from app.views.appearance.export import _numbers
 from app.views.switching.figure import (
     MARGIN,
     STATE,
@@ -18,6 +23,7 @@ from app.views.switching.figure import (
     switching_plots,
     thin,
 )
+from app.views.switching.view import SwitchingView
 from navcore.engine.run import Run
 from navcore.law.policy import POLICIES
 from tests.unit.figures_runs import THREE, run_of, static_run
@@ -82,14 +88,10 @@ def test_measures_and_thresholds_are_in_the_labelled_unit() -> None:
 def test_states_stand_in_lanes_the_first_method_on_top() -> None:
     run = switching_run()
     plot = next(plot for plot in switching_plots(run) if plot.key == STATE)
-    actual, wanted = plot.data[1:5], plot.data[5:9]
-    lows = [
-        float(np.min(np.round(line, 3) - s.run.law_series[:, 1]))
-        for line, s in zip(actual, switched_methods(run), strict=True)
-    ]
-    assert lows == pytest.approx([4.2, 2.8, 1.4, 0.0])
-    for low, line, switched in zip(lows, wanted, switched_methods(run), strict=True):
-        np.testing.assert_allclose(line - low, switched.run.law_series[:, 0], atol=1e-12)
+    lanes = zip(plot.data[1:5], plot.data[5:9], switched_methods(run), (4.2, 2.8, 1.4, 0.0), strict=True)
+    for actual, wanted, switched, low in lanes:
+        drawn = np.column_stack([wanted, actual]) - low
+        np.testing.assert_allclose(drawn, switched.run.law_series[:, :2], atol=1e-12)
     # the variation leaves the damping for a while, and comes back
     state = run.methods[2].law_series[:, 1]
     assert state[0] == state[-1] == 1.0
@@ -166,3 +168,12 @@ def test_thinning_keeps_every_extreme_in_its_order() -> None:
     assert np.all(np.diff(rising) > 0.0)
     short = np.arange(10.0)
     assert thin(short, values[:10])[0] is short
+
+
+def test_where_nothing_switches_no_other_plot_is_saved_under_that_title() -> None:
+    view = SwitchingView(cast(Any, SimpleNamespace(session=None)))
+    with pytest.raises(LookupError, match="No method of this scenario switches"):
+        view.figures(Shown(static_run(), 1, Display()), "Switching")
+    now = Shown(switching_run(), 1, Display())
+    saved = _numbers(view.figures(now, "Switching"), now, "Switching")
+    assert b"damped" in saved.lower() and b"\xcf\x86E" not in saved
