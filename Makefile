@@ -106,7 +106,7 @@ design: setup
 	@$(BIN)/python -m app.design_table
 
 consistency: setup
-	@$(BIN)/python -m navcore.studies.filter_consistency --seeds $(or $(SEEDS),500)
+	@$(BIN)/python -m tests.filter_consistency --seeds $(or $(SEEDS),500)
 
 # YARDSTICK=FILE: a Python file whose quick(samples, repeats) gives the ns a sample of a reference.
 benchmarks: setup $(STAMPS)/benchmarks

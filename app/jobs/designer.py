@@ -1,4 +1,4 @@
-"""Error budgets along a run and searches for the best setting, one at a time, in the background."""
+"""Error budgets along a run and searches for the best setting: what each asks for, and who computes it."""
 
 from __future__ import annotations
 
@@ -6,33 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.jobs.load import heavy_load
 from app.jobs.search import Search
 from navcore.scenario.model import Scenario
 
 if TYPE_CHECKING:
     from navcore.design.budget import Budget
     from navcore.design.pareto import Pareto
+    from navcore.design.sun import Tuning, TuningSettings
     from navcore.design.tune import Tuned
 
-
-class Budgeter(Search[Scenario, "Budget"]):
-    """Computes the error budget along one scenario's run at a time.
-
-    Parameters
-    ----------
-    tell : callable
-        ``tell()`` whenever there is something new to show.
-    name : str
-        Of the visitor, for the turns.
-    """
-
-    def __init__(self, tell: Callable[[], None], name: str = "budgeter") -> None:
-        super().__init__(tell, _budget, lambda found: True, "Stopped: no budget.", name, heavy_load)
-
-    def beside(self, scenario: Scenario) -> Budget | None:
-        """Budget of exactly this scenario; None when there is none."""
-        return self.result if self.asked == scenario else None
+Progress = Callable[[float], None]
+Cancelled = Callable[[], bool]
 
 
 @dataclass(frozen=True)
@@ -57,32 +41,20 @@ class TuningTask:
     require: tuple[str, ...]
 
 
-class Designer(Search[TuningTask, "Tuned"]):
-    """Searches for the best setting of one method at a time.
+@dataclass(frozen=True)
+class TableTask:
+    """For which scenario to find an adaptive damping table.
 
-    Parameters
+    Attributes
     ----------
-    tell : callable
-        ``tell()`` whenever there is something new to show.
-    name : str
-        Of the visitor, for the turns.
+    scenario : Scenario
+        As it stands.
+    settings : TuningSettings
+        Differences, coefficients and network.
     """
 
-    def __init__(self, tell: Callable[[], None], name: str = "designer") -> None:
-        super().__init__(
-            tell,
-            _tune,
-            lambda found: True,
-            "Stopped: there is no proposal.",
-            name,
-            lambda task: heavy_load(task.scenario),
-        )
-
-    def discard(self) -> None:
-        """Forget the proposal."""
-        self.result = self.asked = None
-        self.words = ()
-        self._tell()
+    scenario: Scenario
+    settings: TuningSettings
 
 
 @dataclass(frozen=True)
@@ -117,29 +89,68 @@ class FrontsTask:
         )
 
 
-class Fronts(Search[FrontsTask, "Pareto"]):
-    """Finds the Pareto fronts of all networks in place of one method's.
+class Budgeter(Search[Scenario, "Budget"]):
+    """Computes the error budget along one scenario's run at a time; ``tell`` and ``name`` as of `Search`."""
 
-    Parameters
-    ----------
-    tell : callable
-        ``tell()`` whenever there is something new to show.
-    name : str
-        Of the visitor, for the turns.
-    """
+    def __init__(self, tell: Callable[[], None], name: str = "budgeter") -> None:
+        super().__init__(tell, _budget, stopped="Stopped: no budget.", name=name)
 
-    def __init__(self, tell: Callable[[], None], name: str = "fronts") -> None:
+    def beside(self, scenario: Scenario) -> Budget | None:
+        """Budget of exactly this scenario; None when there is none."""
+        return self.result if self.asked == scenario else None
+
+
+class Designer(Search[TuningTask, "Tuned"]):
+    """Searches for the best setting of one method at a time; ``tell`` and ``name`` as of `Search`."""
+
+    def __init__(self, tell: Callable[[], None], name: str = "designer") -> None:
+        super().__init__(tell, _tune, stopped="Stopped: there is no proposal.", name=name)
+
+    def discard(self) -> None:
+        """Forget the proposal."""
+        self.forget()
+        self._tell()
+
+
+class Tuner(Search[TableTask, "Tuning"]):
+    """Searches for one table (Sun's double loop) at a time; ``tell`` and ``name`` as of `Search`."""
+
+    def __init__(self, tell: Callable[[], None], name: str = "tuner") -> None:
         super().__init__(
-            tell,
-            _fronts,
-            lambda found: not found.stopped,
-            "Stopped: no fronts were found.",
-            name,
-            lambda task: heavy_load(task.scenario),
+            tell, _table, lambda found: found.status == "ok", "Stopped: no table was found.", name
         )
 
 
-def _fronts(task: FrontsTask, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Pareto:
+class Fronts(Search[FrontsTask, "Pareto"]):
+    """Searches for the Pareto fronts of all networks; ``tell`` and ``name`` as of `Search`."""
+
+    def __init__(self, tell: Callable[[], None], name: str = "fronts") -> None:
+        super().__init__(
+            tell, _fronts, lambda found: not found.stopped, "Stopped: no fronts were found.", name
+        )
+
+
+def _budget(scenario: Scenario, progress: Progress, cancelled: Cancelled) -> Budget:
+    from navcore.design.budget import budget
+
+    return budget(scenario, progress=progress, cancelled=cancelled)
+
+
+def _tune(task: TuningTask, progress: Progress, cancelled: Cancelled) -> Tuned:
+    from navcore.design.tune import tune
+
+    return tune(
+        task.scenario, task.objective, task.vary, task.require, progress=progress, cancelled=cancelled
+    )
+
+
+def _table(task: TableTask, progress: Progress, cancelled: Cancelled) -> Tuning:
+    from navcore.design.sun import tune_table
+
+    return tune_table(task.scenario, task.settings, progress, cancelled)
+
+
+def _fronts(task: FrontsTask, progress: Progress, cancelled: Cancelled) -> Pareto:
     from navcore.design.pareto import pareto
 
     return pareto(
@@ -149,18 +160,4 @@ def _fronts(task: FrontsTask, progress: Callable[[float], None], cancelled: Call
         networks=task.networks,
         progress=progress,
         cancelled=cancelled,
-    )
-
-
-def _budget(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Budget:
-    from navcore.design.budget import budget
-
-    return budget(scenario, progress=progress, cancelled=cancelled)
-
-
-def _tune(task: TuningTask, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Tuned:
-    from navcore.design.tune import tune
-
-    return tune(
-        task.scenario, task.objective, task.vary, task.require, progress=progress, cancelled=cancelled
     )

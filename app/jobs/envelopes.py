@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-import logging
-import threading
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from app.jobs.elsewhere import LOST, carried_out, carried_out_all
-from app.jobs.load import heavy_load
+from app.jobs.elsewhere import carried_out_all
 from app.jobs.rows import few_rows
 from app.jobs.scheduler import Lane
-from app.jobs.words import for_a_page
-from app.jobs.worker import ElsewhereLost, Watch, Worker
+from app.jobs.search import Search
+from app.jobs.worker import Watch
 from app.plots.envelope import BandKind, Envelope, covariance_envelope, envelope
 from navcore.engine.run import Run
-from navcore.foundation.errors import InputError
 from navcore.scenario.model import Scenario
 
 SEEDS = 20
 STILL_S = 0.7
 """A scenario must stand still for so long before its bands are begun."""
-_log = logging.getLogger("schuler.envelopes")
 
 Simulate = Callable[[Scenario, Callable[[float], None], Callable[[], bool]], Run]
 
@@ -32,13 +27,7 @@ class _Asked:
     kind: BandKind
 
 
-@dataclass(frozen=True)
-class _Found:
-    asked: _Asked
-    envelope: Envelope
-
-
-class Envelopes:
+class Envelopes(Search[_Asked, Envelope]):
     """The bands of one session's scenario; a change of the scenario stops what is under way.
 
     Parameters
@@ -46,15 +35,14 @@ class Envelopes:
     simulate : callable
         ``simulate(scenario, progress, cancelled)``.
     came_further, ended : callable
-        Called without arguments: there is more progress to show; there is a new envelope, or none any more.
-
-    Attributes
-    ----------
-    fraction : float or None
-        Part that is done while one is under way.
-    words : str
-        Why there is none, or what is to be known while one is under way; empty otherwise.
+        Called without arguments: there is more progress to show; there is a new envelope.
+    still_s : float
+        A scenario must stand still for so long before its bands are begun.
+    name : str
+        Of the visitor, for the turns.
     """
+
+    report_after_s = report_every_s = 0.0
 
     def __init__(
         self,
@@ -62,86 +50,48 @@ class Envelopes:
         came_further: Callable[[], None],
         ended: Callable[[], None],
         still_s: float = STILL_S,
-        visitor: object = None,
+        name: str = "envelopes",
     ) -> None:
-        self._simulate, self._came_further, self._ended = simulate, came_further, ended
-        self._lock = threading.Lock()
-        self._worker: Worker[_Asked] = Worker(
-            self._work, visitor=visitor, load=lambda asked: heavy_load(asked.scenario), still_s=still_s
-        )
-        self._found: _Found | None = None
-        self.fraction: float | None = None
-        self.words = ""
+        super().__init__(came_further, _covariance, name=name, still_s=still_s)
+        self._simulate, self._told_ended = simulate, ended
 
     def follow(self, scenario: Scenario, kind: BandKind) -> None:
         """Make the bands of this scenario, if any are wanted and they are not there yet."""
-        asked, found = _Asked(scenario, kind), self._found
-        if kind == "none" or (found is not None and found.asked == asked):
+        asked = _Asked(scenario, kind)
+        if kind == "none":
             self.cancel()
-            with self._lock:
-                self.words = ""
-                self._found = None if kind == "none" else found
-            return
-        if kind == "seeds" and scenario.strapdown:
+            self.forget()
+        elif self.asked == asked:
             self.cancel()
-            with self._lock:
-                self.words = f"Not for strapdown runs: it would take {SEEDS} of them."
-            self._came_further()
-            return
-        with self._lock:
-            self.fraction, self.words = 0.0, ""
-        self._worker.submit(asked)
-
-    def cancel(self) -> None:
-        """Stop one that is under way."""
-        with self._lock:
-            self.fraction = None
-        self._worker.cancel()
+            self.words = ()
+        elif kind == "seeds" and scenario.strapdown:
+            self.cancel()
+            self.words = (f"Not for strapdown runs: it would take {SEEDS} of them.",)
+            self._tell()
+        else:
+            self._submit(asked, 0.0)
 
     def beside(self, scenario: Scenario, kind: BandKind) -> Envelope | None:
         """The bands of this scenario, or those of an earlier one with the same methods, marked as old."""
-        found = self._found
-        if found is None or found.asked.kind != kind:
-            return None
-        if found.asked.scenario == scenario:
-            return found.envelope
-        return replace(found.envelope, old=True) if _alike(found.asked.scenario, scenario) else None
-
-    def stop(self) -> None:
-        """End the thread."""
-        self._worker.stop()
-
-    def wait_idle(self, timeout_s: float | None = None) -> bool:
-        """Block until none is under way; False after the timeout."""
-        return self._worker.wait_idle(timeout_s)
-
-    def _work(self, asked: _Asked, watch: Watch) -> None:
-        try:
-            made = self._over_seeds(asked, watch) if asked.kind == "seeds" else self._covariance(asked, watch)
-        except ElsewhereLost:
-            with self._lock:
-                self.fraction, self.words = 0.0, LOST
-            self._came_further()
-            raise
-        except InputError as error:
-            self._give_up(str(for_a_page(error).faults[0]))
-            return
-        except Exception as error:
-            _log.exception("an envelope failed")
-            self._give_up(f"Something went wrong: {type(error).__name__}: {error}")
-            return
-        if made is None:
-            return
         with self._lock:
-            self.fraction, self.words, self._found = None, "", _Found(asked, made)
-        self._ended()
+            found, asked = self.result, self.asked
+        if found is None or asked is None or asked.kind != kind:
+            return None
+        if asked.scenario == scenario:
+            return found
+        return replace(found, old=True) if _alike(asked.scenario, scenario) else None
 
-    def _over_seeds(self, asked: _Asked, watch: Watch) -> Envelope | None:
+    def _ended(self) -> None:
+        self._told_ended()
+
+    def _carry_out(self, asked: _Asked, progress: Callable[[float], None], watch: Watch) -> Envelope | None:
+        if asked.kind == "covariance":
+            return super()._carry_out(asked, progress, watch)
         scenario = asked.scenario
         seeds = [with_seed(scenario, scenario.run.seed + number) for number in range(1, SEEDS + 1)]
         # On a cluster all of them side by side; here each takes over what the last one had in common with it.
         one = _of_a_seed if watch.lane is Lane.CLUSTER else self._of_a_seed
-        runs = carried_out_all(one, seeds, self._tell, watch)
+        runs = carried_out_all(one, seeds, progress, watch)
         if runs is None or watch.unwanted() or any(run.status == "stopped" for run in runs):
             return None
         return envelope(runs)
@@ -149,25 +99,18 @@ class Envelopes:
     def _of_a_seed(
         self, scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]
     ) -> Run:
-        found = few_rows(self._simulate(scenario, _silent, cancelled), 2)
+        found = few_rows(self._simulate(scenario, lambda _: None, cancelled), 2)
         progress(1.0)
         return found
 
-    def _covariance(self, asked: _Asked, watch: Watch) -> Envelope | None:
-        from navcore.design.bands import covariance_bands
 
-        found = carried_out(covariance_bands, asked.scenario, self._tell, watch)
-        return None if found is None or watch.unwanted() else covariance_envelope(asked.scenario, found)
+def _covariance(
+    asked: _Asked, progress: Callable[[float], None], cancelled: Callable[[], bool]
+) -> Envelope | None:
+    from navcore.design.bands import covariance_bands
 
-    def _tell(self, fraction: float) -> None:
-        with self._lock:
-            self.fraction = fraction
-        self._came_further()
-
-    def _give_up(self, words: str) -> None:
-        with self._lock:
-            self.fraction, self.words = None, words
-        self._came_further()
+    found = covariance_bands(asked.scenario, progress, cancelled)
+    return None if found is None else covariance_envelope(asked.scenario, found)
 
 
 def _of_a_seed(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Run:
@@ -186,7 +129,3 @@ def _alike(one: Scenario, other: Scenario) -> bool:
 def with_seed(scenario: Scenario, seed: int) -> Scenario:
     """The same scenario with other noise."""
     return scenario.model_copy(update={"run": scenario.run.model_copy(update={"seed": seed})})
-
-
-def _silent(_: float) -> None:
-    pass

@@ -1,4 +1,4 @@
-"""One thing computed at a time in the background, at a user's word: progress, end, what came of it."""
+"""One thing computed at a time in the background: progress, cancel, newest wins; the last result stays."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Generic, TypeVar
 
 from app.jobs.elsewhere import LOST, carried_out
+from app.jobs.load import heavy_load
 from app.jobs.scheduler import Load
 from app.jobs.words import for_a_page
 from app.jobs.worker import ElsewhereLost, Watch, Worker
@@ -15,7 +16,6 @@ from navcore.foundation.errors import InputError
 
 Asked = TypeVar("Asked")
 Found = TypeVar("Found")
-_REPORT_EVERY_S = 0.15
 _log = logging.getLogger("schuler.search")
 
 
@@ -32,63 +32,79 @@ class Search(Generic[Asked, Found]):
     complete : callable
         ``complete(found)``: it came to its end; else it was stopped.
     stopped : str
-        What is said when it was stopped.
+        What is said when it was stopped; empty: nothing.
     name : str
         Of the visitor, for the turns and for the log.
     load : callable
-        ``load(asked)``: what it will take.
+        ``load(asked)``: what it will take; by default that of heavy work on the scenario that is asked about.
+    still_s : float
+        Nothing newer must have been asked for so long before it is begun.
 
     Attributes
     ----------
+    report_after_s, report_every_s : float
+        How long it must have been under way before its progress is told, and then how seldom.
     fraction : float or None
         Part that is done while it is under way.
     result
         The last complete one, or None.
     asked
         What that is of.
+    under_way
+        What is being computed now, or None.
     words : tuple of str
         Why there is no newer result: stopped, refused, failed. While one is under way: what is to be known.
     """
 
+    report_after_s = report_every_s = 0.15
+
     def __init__(
         self,
         tell: Callable[[], None],
-        compute: Callable[[Asked, Callable[[float], None], Callable[[], bool]], Found],
-        complete: Callable[[Found], bool],
-        stopped: str,
-        name: str,
-        load: Callable[[Asked], Load],
+        compute: Callable[[Asked, Callable[[float], None], Callable[[], bool]], Found | None],
+        complete: Callable[[Found], bool] = lambda found: True,
+        stopped: str = "",
+        name: str = "search",
+        load: Callable[[Any], Load] = lambda asked: heavy_load(getattr(asked, "scenario", asked)),
+        still_s: float = 0.0,
     ) -> None:
         self._tell, self._compute, self._complete = tell, compute, complete
         self._stopped, self._name = stopped, name
         self._lock = threading.Lock()
-        self._worker: Worker[Asked] = Worker(self._work, visitor=name, load=load)
-        self._under_way: Asked | None = None
+        self._worker: Worker[Asked] = Worker(self._work, visitor=name, load=load, still_s=still_s)
+        self.under_way: Asked | None = None
         self.fraction: float | None = None
         self.result: Found | None = None
         self.asked: Asked | None = None
         self.words: tuple[str, ...] = ()
 
-    @property
-    def under_way(self) -> Asked | None:
-        """What is being computed now."""
-        return self._under_way
-
     def begin(self, asked: Asked) -> None:
         """Compute this, in place of what is under way."""
-        with self._lock:
-            self.fraction, self.words, self._under_way = 0.0, (), asked
-        self._worker.submit(asked)
+        self._submit(asked, 0.0)
         self._tell()
+
+    def _submit(self, asked: Asked, fraction: float | None) -> None:
+        self._set(fraction, (), asked)
+        self._worker.submit(asked)
+
+    def _set(self, fraction: float | None, words: tuple[str, ...], under_way: Asked | None) -> None:
+        with self._lock:
+            self.fraction, self.words, self.under_way = fraction, words, under_way
 
     def cancel(self, why: str = "") -> None:
         """Stop, and say why; an earlier result stays."""
-        with self._lock:
-            if self.fraction is None:
-                return
-            self.fraction, self.words, self._under_way = None, (why or self._stopped,), None
+        if self.fraction is None and self.under_way is None:
+            return
+        self._set(None, self._because(why), None)
         self._worker.cancel()
-        self._tell()
+        if self.words:
+            self._tell()
+
+    def forget(self) -> None:
+        """Drop the result and what was said of it."""
+        with self._lock:
+            self.result = self.asked = None
+            self.words = ()
 
     def stop(self) -> None:
         """End the thread."""
@@ -98,27 +114,32 @@ class Search(Generic[Asked, Found]):
         """Block until nothing is under way; False after the timeout."""
         return self._worker.wait_idle(timeout_s)
 
+    def _because(self, why: str = "") -> tuple[str, ...]:
+        return tuple(words for words in (why or self._stopped,) if words)
+
+    def _carry_out(self, asked: Asked, progress: Callable[[float], None], watch: Watch) -> Found | None:
+        return carried_out(self._compute, asked, progress, watch)
+
+    def _ended(self) -> None:
+        """Tell that there is a new result."""
+        self._tell()
+
     def _work(self, asked: Asked, watch: Watch) -> None:
-        last_s = 0.0
+        last_s = self.report_after_s - self.report_every_s
 
         def progress(fraction: float) -> None:
             nonlocal last_s
-            if watch.elapsed_s - last_s < _REPORT_EVERY_S:
-                return
-            last_s = watch.elapsed_s
-            with self._lock:
-                if self._under_way is not asked:
-                    return
+            if watch.elapsed_s - last_s >= self.report_every_s and self.under_way is asked:
+                last_s = watch.elapsed_s
                 self.fraction = fraction
-            self._tell()
+                self._tell()
 
         found, words = None, ()
         try:
-            found = carried_out(self._compute, asked, progress, watch)
+            found = self._carry_out(asked, progress, watch)
         except ElsewhereLost:
-            with self._lock:
-                if self._under_way is asked:
-                    self.fraction, self.words = 0.0, (LOST,)
+            if self.under_way is asked:
+                self._set(0.0, (LOST,), asked)
             self._tell()
             raise
         except InputError as error:
@@ -126,12 +147,12 @@ class Search(Generic[Asked, Found]):
         except Exception as error:
             _log.exception("%s failed", self._name)
             words = (f"Something went wrong: {type(error).__name__}: {error}",)
+        complete = found is not None and self._complete(found)
         with self._lock:
-            if self._under_way is not asked:  # stopped, or another one waits
+            if self.under_way is not asked:  # stopped, or another one waits
                 return
-            self.fraction, self._under_way, self.words = None, None, words
-            if found is not None and self._complete(found):
+            self.fraction = self.under_way = None
+            self.words = words if complete or found is None else self._because()
+            if complete:
                 self.result, self.asked = found, asked
-            elif found is not None:
-                self.words = (self._stopped,)
-        self._tell()
+        self._ended() if complete else self._tell()

@@ -1,4 +1,4 @@
-"""What is looked for beside the runs of a session: what dominates the result, and a damping table."""
+"""What is computed beside the runs of a session: what dominates the result, budgets, tuning, fronts."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ import logging
 import threading
 from collections.abc import Callable
 
-from app.jobs.designer import Budgeter, Designer, Fronts
-from app.jobs.tuner import Tuner
+from app.jobs.designer import Budgeter, Designer, Fronts, Tuner
 from app.jobs.why import Explainer
 from navcore.engine.run import Run
 
@@ -39,11 +38,12 @@ class Searches:
     def __init__(self, name: str) -> None:
         self._lock = threading.Lock()
         self._watchers: list[Callable[[], None]] = []
-        self.explainer = Explainer(self._tell, name=name)
-        self.tuner = Tuner(self._tell, name=name)
-        self.budgeter = Budgeter(self._tell, name=name)
-        self.designer = Designer(self._tell, name=name)
-        self.fronts = Fronts(self._tell, name=name)
+        self.explainer = Explainer(self._tell, name)
+        self.tuner = Tuner(self._tell, name)
+        self.budgeter = Budgeter(self._tell, name)
+        self.designer = Designer(self._tell, name)
+        self.fronts = Fronts(self._tell, name)
+        self._all = (self.explainer, self.tuner, self.budgeter, self.designer, self.fronts)
 
     def watch(self, changed: Callable[[], None]) -> None:
         """Tell an open page whenever there is something new."""
@@ -56,30 +56,24 @@ class Searches:
             self._watchers = [other for other in self._watchers if other != changed]
             alone = not self._watchers
         if alone:
-            self.explainer.cancel()
-            self.tuner.cancel()
-            self.budgeter.cancel()
-            self.designer.cancel()
-            self.fronts.cancel()
+            for search in self._all:
+                search.cancel()
 
     def changed(self) -> None:
         """The scenario has changed: the processors belong to its run."""
         self.explainer.cancel()
 
     def explain(self, run: Run) -> None:
-        """Look for what dominates a run: a view that says so is in front and shows the run."""
+        """Compute what dominates a run: a view that says so is in front and shows the run."""
         with self._lock:
             watched = bool(self._watchers)
-        if watched and not self.explainer.follows(run):
+        if watched:
             self.explainer.follow(run)
 
     def stop(self) -> None:
         """End the threads."""
-        self.explainer.stop()
-        self.tuner.stop()
-        self.budgeter.stop()
-        self.designer.stop()
-        self.fronts.stop()
+        for search in self._all:
+            search.stop()
 
     def _tell(self) -> None:
         with self._lock:

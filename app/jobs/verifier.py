@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.jobs.load import heavy_load
 from app.jobs.search import Search
 from navcore.scenario.model import Scenario
 
@@ -51,35 +50,12 @@ class Verifier(Search[Scenario, "Verification"]):
     def __init__(
         self, tell: Callable[[], None], verify: Verify | None = None, name: str = "verifier"
     ) -> None:
-        super().__init__(
-            tell,
-            verify or _verify,
-            lambda found: found.complete,
-            STOPPED,
-            name,
-            heavy_load,
-        )
-
-    @property
-    def scenario(self) -> Scenario | None:
-        """What the result is of."""
-        return self.asked
-
-    def start(self, scenario: Scenario) -> None:
-        """Verify a scenario, in place of one that is under way."""
-        self.begin(scenario)
-
-    def forget(self) -> None:
-        """Drop the result: quite another scenario was opened."""
-        with self._lock:
-            self.result = self.asked = None
+        super().__init__(tell, verify or _verify, lambda found: found.complete, STOPPED, name)
 
     def follow(self, scenario: Scenario) -> None:
         """Take note that this is the scenario now."""
-        with self._lock:
-            self.words = ()
-            outdated = self._under_way is not None and self._under_way != scenario
-        if outdated:
+        self.words = ()
+        if self.under_way is not None and self.under_way != scenario:
             self.cancel(CHANGED)
 
     def beside(self, scenario: Scenario) -> Verified | None:

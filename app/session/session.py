@@ -127,7 +127,7 @@ class Session:
             self._simulate,
             lambda: self._tell(lambda view: view.envelope_progressed()),
             self._pictures_changed,
-            visitor=name,
+            name=name,
         )
 
     # ------------------------------------------------------------ pages

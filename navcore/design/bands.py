@@ -12,14 +12,9 @@ from typing import Literal
 
 import numpy as np
 
-from navcore.design.along import along
-from navcore.design.constants import shared_columns
-from navcore.design.course import Course, course
-from navcore.design.filter import filter_variance
-from navcore.design.scheduled import scheduled_times
 from navcore.design.seeds import no_covariance
-from navcore.scenario.model import Scenario
-from navcore.scenario.stochastic import StochasticModel, stochastic_model
+from navcore.design.ship import Ship
+from navcore.scenario.model import Method, Scenario
 
 Kind = Literal["covariance", "filter", "none"]
 
@@ -85,35 +80,26 @@ def covariance_bands(
     InputError
         The motion cannot be carried out.
     """
-    model = stochastic_model(scenario)
-    times = tuple(time for method in scenario.method for time in scheduled_times(method))
-    way = course(scenario, extra_s=times)
-    columns = shared_columns(scenario, way, model)
-    found: list[Band] = []
+    ship, bands = Ship(scenario), []
     for method in scenario.method:
         if cancelled is not None and cancelled():
             return None
-        if method.damping == "kalman":
-            found.append(_own(scenario, way, model))
-        else:
-            reason = no_covariance(scenario, method)
-            found.append(
-                Band("none", reason=reason)
-                if reason
-                else _band("covariance", along(scenario, method, way, model, columns).total)
-            )
+        bands.append(_band(ship, method))
         if progress is not None:
-            progress(len(found) / len(scenario.method))
-    return Bands(way.t_s, tuple(found))
+            progress(len(bands) / len(scenario.method))
+    return Bands(ship.course.t_s, tuple(bands))
 
 
-def _own(scenario: Scenario, way: Course, model: StochasticModel) -> Band:
-    if model.silent or not model.log:
-        return Band("none", reason="the filter is told of no random error, or has no log")
-    return _band("filter", filter_variance(scenario, way, model))
-
-
-def _band(kind: Kind, variance: np.ndarray) -> Band:
+def _band(ship: Ship, method: Method) -> Band:
+    if method.damping == "kalman":
+        own = ship.floor_series
+        if own is None:
+            return Band("none", reason="the filter is told of no random error, or has no log")
+        kind, variance = "filter", own.total
+    elif reason := no_covariance(ship.scenario, method):
+        return Band("none", reason=reason)
+    else:
+        kind, variance = "covariance", ship.along(method).total
     if not np.all(np.isfinite(variance)):
         return Band("none", reason="the loop is unstable: its variance overflows")
     return Band(kind, np.sqrt(np.maximum(variance, 0.0)))

@@ -7,22 +7,18 @@ from concurrent.futures import Future, ThreadPoolExecutor
 
 import numpy as np
 
-from navcore.design.along import along
-from navcore.design.constants import UNTOLD, shared_columns
-from navcore.design.course import Course, course
+from navcore.design.constants import UNTOLD
 from navcore.design.figures import Entry, Figures, Series, entry_of
-from navcore.design.filter import filter_variance
 from navcore.design.floor import steady_floor
 from navcore.design.form import law_form
 from navcore.design.level import level
 from navcore.design.result import Budget, MethodBudget, Shown
-from navcore.design.scheduled import scheduled_times
 from navcore.design.seeds import SEEDS, no_covariance, seed_variance
+from navcore.design.ship import Ship
 from navcore.design.steady import instability, steady_budget
 from navcore.design.unmodelled import recorded_warnings
 from navcore.foundation.errors import InputError
 from navcore.scenario.model import Method, Scenario
-from navcore.scenario.stochastic import StochasticModel, stochastic_model
 
 
 def budget(
@@ -61,22 +57,10 @@ def budget(
     >>> found.floor.rms.tilt_rad < found.methods[1].total.rms.tilt_rad
     True
     """
-    model = stochastic_model(scenario)
+    ship = Ship(scenario)
     if steady:
-        return steady_budget(scenario, model)
-    return _along_budget(scenario, model, seeds, progress, cancelled)
-
-
-def _along_budget(
-    scenario: Scenario,
-    model: StochasticModel,
-    seeds: int,
-    progress: Callable[[float], None] | None,
-    cancelled: Callable[[], bool] | None,
-) -> Budget:
-    times = tuple(time for method in scenario.method for time in scheduled_times(method))
-    way = course(scenario, extra_s=times)
-    columns = shared_columns(scenario, way, model)
+        return steady_budget(scenario, ship.model)
+    untold = any(column.source in UNTOLD for column in ship.columns)
     done = [0.0] * (len(scenario.method) + 1)
 
     def report(index: int, fraction: float) -> None:
@@ -84,31 +68,31 @@ def _along_budget(
         if progress is not None:
             progress(sum(done) / len(done))
 
-    def one(index: int, floor: Future[tuple[Series | None, str]]) -> MethodBudget:
+    def one(index: int, least: Future[Series | None]) -> MethodBudget:
         method = scenario.method[index]
-        reason, filtered = no_covariance(scenario, method), None
-        if method.damping == "kalman" and not any(column.source in UNTOLD for column in columns):
-            filtered = floor.result()[0]
-        if filtered is not None:
-            told = "its own covariance, which is the floor: it is told of every error of this scenario"
-            found = _of_series(method, "covariance", filtered, (told, *_warnings(scenario)))
+        reason = no_covariance(scenario, method)
+        own = least.result() if method.damping == "kalman" and not untold else None
+        if own is not None:
+            note = "its own covariance, which is the floor: it is told of every error of this scenario"
+            result = _of_series(method, "covariance", own, (note, *_warnings(scenario)))
         elif reason:
-            found = _from_seeds(scenario, method, reason, seeds, lambda f: report(index, f), cancelled)
+            result = _from_seeds(scenario, method, reason, seeds, lambda f: report(index, f), cancelled)
         else:
-            result = along(scenario, method, way, model, columns)
-            series = Series(result.t_s, result.variance, result.total)
-            growth = instability(level(law_form(method, scenario.omega_s), model, scenario.omega_s))
+            variances = ship.along(method)
+            series = Series(variances.t_s, variances.variance, variances.total)
+            growth = instability(level(law_form(method, scenario.omega_s), ship.model, scenario.omega_s))
             warnings = (f"{growth}: the errors grow without bound",) if growth else ()
-            found = _of_series(method, "covariance", series, (*warnings, *_warnings(scenario)))
+            result = _of_series(method, "covariance", series, (*warnings, *_warnings(scenario)))
         report(index, 1.0)
-        return found
+        return result
 
     with ThreadPoolExecutor(2) as pool:
-        least = pool.submit(_floor_along, scenario, way, model)
+        least = pool.submit(lambda: ship.floor_series)
         methods = tuple(pool.map(lambda index: one(index, least), range(len(scenario.method))))
-        floor, reason = least.result()
+        floor = least.result()
     report(len(scenario.method), 1.0)
     if floor is None:
+        reason = steady_floor(ship.model, scenario.omega_s).reason
         return Budget(False, Entry(Figures(), Figures()), reason, None, methods)
     return Budget(False, entry_of(floor.t_s, floor.total), "", floor, methods)
 
@@ -120,13 +104,6 @@ def _warnings(scenario: Scenario) -> tuple[str, ...]:
     if scenario.alignment.kind == "compass":
         found.append("alignment: what biases leave after it is in the budget, its own noise is not")
     return tuple(found)
-
-
-def _floor_along(scenario: Scenario, way: Course, model: StochasticModel) -> tuple[Series | None, str]:
-    if model.silent or not model.log:
-        return None, steady_floor(model, scenario.omega_s).reason
-    variance = filter_variance(scenario, way, model)
-    return Series(way.t_s, {}, variance), ""
 
 
 def _from_seeds(

@@ -12,22 +12,16 @@ import numpy as np
 
 from navcore.analysis import Loop, analyse, time_response
 from navcore.analysis.whole_system import WholeSystem, whole_system
-from navcore.design.along import along
-from navcore.design.constants import Column, shared_columns
-from navcore.design.course import Course, course
 from navcore.design.figures import Figures, mean_figures
-from navcore.design.filter import filter_variance
-from navcore.design.floor import steady_floor
 from navcore.design.form import law_form
 from navcore.design.level import level, steady_parts
-from navcore.design.scheduled import scheduled_times
 from navcore.design.seeds import no_covariance, seed_variance
+from navcore.design.ship import Ship
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG, HOUR, MINUTE
 from navcore.law.combination import network_in_force, realisation_of
 from navcore.networks.base import LinearNetwork
-from navcore.scenario.model import Method, Scenario
-from navcore.scenario.stochastic import StochasticModel, stochastic_model
+from navcore.scenario.model import Method
 
 TUNING_INTERVALS = 360
 """Of a run during a search: coarser than the budget, which is made once."""
@@ -46,46 +40,6 @@ UNITS = {
     "m": 1.0,
     "km": 1000.0,
 }
-
-
-@dataclass(frozen=True, eq=False)
-class Ship:
-    """What does not change while a method of a scenario is tuned.
-
-    Attributes
-    ----------
-    scenario : Scenario
-    along_run : bool
-        Root mean squares over the scenario's run, else in the steady state at rest.
-    """
-
-    scenario: Scenario
-    along_run: bool
-
-    @cached_property
-    def model(self) -> StochasticModel:
-        """The sensors."""
-        return stochastic_model(self.scenario)
-
-    @cached_property
-    def course(self) -> Course:
-        """The motion, coarser than for a budget."""
-        times = tuple(time for method in self.scenario.method for time in scheduled_times(method))
-        return course(self.scenario, TUNING_INTERVALS, times)
-
-    @cached_property
-    def columns(self) -> tuple[Column, ...]:
-        """Responses that all settings share."""
-        return shared_columns(self.scenario, self.course, self.model)
-
-    def floor(self) -> Figures:
-        """Least that any causal linear damping can reach; empty where there is no floor."""
-        least = steady_floor(self.model, self.scenario.omega_s)
-        if not self.along_run:
-            return Figures(least.tilt_rad, least.velocity_mps)
-        if self.model.silent or not self.model.log:
-            return Figures()
-        return mean_figures(self.course.t_s, filter_variance(self.scenario, self.course, self.model))
 
 
 class Setting:
@@ -141,7 +95,7 @@ class Setting:
             except InputError:
                 return Figures(math.inf, math.inf, math.inf, math.inf)
             return mean_figures(t_s, variance)
-        found = along(ship.scenario, self.method, ship.course, ship.model, ship.columns)
+        found = ship.along(self.method)
         total = np.where(np.isfinite(found.total), found.total, np.inf)
         return mean_figures(found.t_s, total)
 

@@ -9,7 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from navcore.design.measures import ALONG_ONLY, FLOORED, MEASURES, OBJECTIVES, Setting, Ship, read_objective
+from navcore.design.measures import (
+    ALONG_ONLY,
+    FLOORED,
+    MEASURES,
+    OBJECTIVES,
+    TUNING_INTERVALS,
+    Setting,
+    Ship,
+    read_objective,
+)
 from navcore.design.search import MISSED, Effort, Search
 from navcore.design.vary import read_varied
 from navcore.foundation.errors import Fault, InputError
@@ -145,7 +154,7 @@ def pareto(
         told = f'damping = "{scenario.method[method].damping}" uses no network'
         raise InputError(Fault("", f"method.{method}.damping", None, told))
     along = along or any(name in ALONG_ONLY for name in objectives)
-    ship = Ship(scenario, along)
+    ship = Ship(scenario, along, TUNING_INTERVALS)
     if ship.model.silent and not along:
         told = "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
         raise InputError(Fault("", "objectives", objectives[0], told))
@@ -187,7 +196,7 @@ def measured(
         As of `pareto`.
     """
     along = along or any(name in ALONG_ONLY for name in objectives)
-    return _both(Setting(Ship(scenario, along), scenario.method[method]), objectives)
+    return _both(Setting(Ship(scenario, along, TUNING_INTERVALS), scenario.method[method]), objectives)
 
 
 def _checked(objectives: tuple[str, str], networks: Sequence[str] | None) -> list[str]:
@@ -237,7 +246,7 @@ def _front(
     with_network = with_network.model_copy(update={"network": with_network.network.with_sensors(figures)})
     methods = tuple(with_network if i == index else m for i, m in enumerate(scenario.method))
     other = scenario.model_copy(update={"method": methods})
-    ship = Ship(other, along)
+    ship = Ship(other, along, TUNING_INTERVALS)
     own = _both(Setting(ship, with_network), names)
     dumped = with_network.network.model_dump(mode="json", exclude_none=True)
     seen = [] if own is None else [(own, dumped)]

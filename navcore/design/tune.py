@@ -13,6 +13,7 @@ from navcore.design.measures import (
     ALONG_ONLY,
     FLOORED,
     MEASURES,
+    TUNING_INTERVALS,
     Objective,
     Requirement,
     Setting,
@@ -136,7 +137,7 @@ def tune(
     wanted, limits = read_objective(objective), [read_requirement(text) for text in require]
     along = along or any(name in ALONG_ONLY for name in (*wanted.names, *(one.name for one in limits)))
     varied = read_varied(scenario, vary)
-    ships = [Ship(one, along) for one in (scenario, *worst_of)]
+    ships = [Ship(one, along, TUNING_INTERVALS) for one in (scenario, *worst_of)]
     _check(ships, varied, wanted)
     search = Search(ships, varied, wanted, limits, progress, cancelled)
     start, before = _begin(search)

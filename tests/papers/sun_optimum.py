@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from navcore.studies.tuning import Tuning, TuningSettings, tune
+from navcore.design.sun import Tuning, TuningSettings, tune_table
 from tests.papers.claim import Claim, Exhibit, Table, about, number
 from tests.papers.picture import curve, panel
 from tests.papers.runs import Runs
@@ -28,7 +28,7 @@ def optimum(runs: Runs, name: str) -> np.ndarray:
     """Difference (kn), our best xi, Sun's xi, shape (10, 3), falling difference."""
 
     def make() -> np.ndarray:
-        found: Tuning = tune(settings=TuningSettings.model_validate({"step": STEP, **SETTINGS[name]}))
+        found: Tuning = tune_table(settings=TuningSettings.model_validate({"step": STEP, **SETTINGS[name]}))
         return np.array(found.beside_sun())
 
     return runs.keep(("tuning", name), make)

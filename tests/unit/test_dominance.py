@@ -11,12 +11,12 @@ import pytest
 from app.jobs.why import Explainer
 from app.views.metrics.why import cause_text, why_html
 from navcore.averaging.lines import line_phases
+from navcore.design.dominance import HEADING, POSITION, TILT, swing, why
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.mechanization.recorder import PHI_E, PHI_N
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
-from navcore.studies.dominance import HEADING, POSITION, TILT, swing, why
 
 DAY = {"run": {"duration_h": 30.0, "step_s": 10.0, "output_step_s": 60.0}}
 
@@ -127,7 +127,7 @@ def test_a_recorded_imu_is_told_by_its_periods_alone() -> None:
 
 
 def test_cancelled_it_is_not_complete() -> None:
-    run = run_of(imu={"gyro_bias_dph": [0.0, 0.01, 0.0], "accel_bias_ug": [20.0, 0.0, 0.0]})
+    run = run_of(imu={"gyro_bias_dph": [0.0, 0.01, 0.0]}, method=[{"name": "a"}, {"name": "b"}])
     fractions: list[float] = []
     told = why(run, fractions.append, lambda: len(fractions) >= 1)
     assert not told.complete and fractions == [0.5]
@@ -140,7 +140,7 @@ def test_the_line_is_marked_while_it_is_of_another_run_and_folds_where_there_is_
     )
     explainer = Explainer(lambda: None)
     assert 'data-fits="0"' in why_html(explainer, run)
-    explainer.result, explainer._of = why(run), run
+    explainer.result, explainer.asked = why(run), run
     html = why_html(explainer, run)
     assert 'data-fits="1"' in html and "sb-old" not in html and "from gyro bias" in html
     folded = why_html(explainer, run, folded=True)
@@ -149,5 +149,5 @@ def test_the_line_is_marked_while_it_is_of_another_run_and_folds_where_there_is_
     assert 'data-fits="0"' in old and 'class="sb-old"' in old and "of an earlier run" in old
     explainer.fraction = 0.25
     assert "25 %" in why_html(explainer, later)
-    explainer.failed, explainer.result = True, None
+    explainer.words, explainer.result = ("failed",), None
     assert "could not be found" in why_html(explainer, later)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 
 from app.views.method.tuned import HEIGHT, WIDTH, table_html
-from navcore.studies.tuning import TuningSettings, tune
+from navcore.design.sun import TuningSettings, tune_table
 
 
 def test_every_row_is_a_dot_in_the_frame_and_stands_beside_suns() -> None:
-    found = tune(settings=TuningSettings(differences_kn=(0.0, 0.5, 3.0), smallest=0.2, step=0.4))
+    found = tune_table(settings=TuningSettings(differences_kn=(0.0, 0.5, 3.0), smallest=0.2, step=0.4))
     html = table_html(found, "#0072B2")
     dots = re.findall(r'class="sb-found" cx="([\d.]+)" cy="([\d.]+)"', html)
     assert len(dots) == 3

@@ -9,14 +9,12 @@ from typing import Any
 
 import pytest
 
-from app.jobs import tuner as tuner_module
-from app.jobs import why as why_module
+from app.jobs.designer import TableTask, Tuner
 from app.jobs.scheduler import Lane, Load
 from app.jobs.searches import Searches
-from app.jobs.tuner import STOPPED, Tuner
 from app.jobs.why import Explainer
+from navcore.design.sun_settings import TuningSettings
 from navcore.foundation.errors import Fault, InputError
-from navcore.studies.tuning import TuningSettings
 
 
 class Finder:
@@ -40,18 +38,23 @@ class Finder:
 
 
 @pytest.fixture
-def finder(monkeypatch: pytest.MonkeyPatch) -> Finder:
-    monkeypatch.setattr(why_module, "STILL_S", 0.1)
-    monkeypatch.setattr(why_module, "_REPORT_AFTER_S", 0.05)
-    monkeypatch.setattr(why_module, "_load", lambda _: Load(Lane.SPARE))
+def finder() -> Finder:
     return Finder()
+
+
+def with_finder(explainer: Explainer, finder: Finder) -> Explainer:
+    explainer._compute = finder
+    explainer._worker._load = lambda _: Load(Lane.SPARE)
+    explainer._worker._still_s = 0.1
+    explainer.report_after_s = 0.05
+    return explainer
 
 
 @pytest.fixture
 def made(finder: Finder) -> Iterator[tuple[Explainer, list[Any]]]:
     told: list[Any] = []
-    explainer = Explainer(lambda: told.append((explainer.fraction, explainer.result)), finder)
-    yield explainer, told
+    explainer = Explainer(lambda: told.append((explainer.fraction, explainer.result)))
+    yield with_finder(explainer, finder), told
     explainer.cancel()
     explainer.stop()
 
@@ -63,7 +66,7 @@ def test_a_run_that_stands_still_is_explained_once(finder: Finder, made: Any) ->
     explainer.follow(second)  # the first has not stood still
     assert explainer.wait_idle(5.0)
     assert finder.asked == [second]
-    assert explainer.fits(second) and not explainer.fits(first)
+    assert explainer.asked is second
     assert len(told) == 1
 
 
@@ -83,22 +86,22 @@ def test_a_change_ends_the_search_at_once_and_the_old_result_stays(finder: Finde
     explainer.cancel()
     assert finder.ended.wait(5.0) and explainer.wait_idle(5.0)
     assert explainer.result is old and explainer.fraction is None
-    assert explainer.fits(first)
+    assert explainer.asked is first
 
 
 def test_a_fault_is_told_and_forgotten_with_the_next_run(finder: Finder, made: Any, caplog: Any) -> None:
     explainer, _ = made
     explainer.follow("fault")
     assert explainer.wait_idle(5.0)
-    assert explainer.failed and "could not be explained" in caplog.text
+    assert "ZeroDivisionError" in explainer.words[0] and "explainer failed" in caplog.text
     explainer.follow("run")
-    assert not explainer.failed
-    assert explainer.wait_idle(5.0) and explainer.fits("run")
+    assert not explainer.words
+    assert explainer.wait_idle(5.0) and explainer.asked == "run"
 
 
 def test_without_a_page_nothing_is_looked_for(finder: Finder) -> None:
     searches = Searches("test")
-    searches.explainer._find = finder
+    with_finder(searches.explainer, finder)
     run: Any = object()
     searches.explain(run)
     assert not searches.explainer._worker.busy
@@ -108,7 +111,7 @@ def test_without_a_page_nothing_is_looked_for(finder: Finder) -> None:
     assert not searches.explainer._worker.busy, "nobody looks at it"
     searches.explain(run)
     assert searches.explainer.wait_idle(5.0)
-    assert told and searches.explainer.fits(run)
+    assert told and searches.explainer.asked is run
     finder.quick = False
     finder.begun.clear()
     searches.explain(object())  # pyright: ignore[reportArgumentType]
@@ -120,7 +123,7 @@ def test_without_a_page_nothing_is_looked_for(finder: Finder) -> None:
 
 def test_a_run_that_several_pages_show_is_looked_at_once(finder: Finder) -> None:
     searches = Searches("test")
-    searches.explainer._find = finder
+    with_finder(searches.explainer, finder)
     run: Any = object()
     searches.watch(lambda: None)
     finder.quick = False
@@ -141,7 +144,8 @@ def test_a_run_that_several_pages_show_is_looked_at_once(finder: Finder) -> None
 # ------------------------------------------------------------ the table
 
 
-def tune(scenario: Any, settings: Any, progress: Any, cancelled: Any) -> Any:
+def compute(task: TableTask, progress: Any, cancelled: Any) -> Any:
+    scenario = task.scenario
     if scenario == "refused":
         raise InputError(Fault("", "imu.file", "a.csv", "must be empty"))
     if scenario == "fault":
@@ -152,26 +156,29 @@ def tune(scenario: Any, settings: Any, progress: Any, cancelled: Any) -> Any:
     return SimpleNamespace(status="stopped" if cancelled() else "ok", of=scenario)
 
 
-def test_a_table_is_found_stopped_refused_and_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tuner_module, "heavy_load", lambda _: Load(Lane.SPARE))
+def test_a_table_is_found_stopped_refused_and_kept() -> None:
     told: list[float | None] = []
-    tuner = Tuner(lambda: told.append(tuner.fraction), tune)  # pyright: ignore[reportArgumentType]
-    settings = TuningSettings()
-    tuner.start("one", settings)  # pyright: ignore[reportArgumentType]
+    tuner = Tuner(lambda: told.append(tuner.fraction))
+    tuner._compute = compute
+    tuner._worker._load = lambda _: Load(Lane.SPARE)
+
+    def begin(scenario: Any) -> None:
+        tuner.begin(TableTask(scenario, TuningSettings()))
+
+    begin("one")
     assert tuner.wait_idle(5.0)
     kept = tuner.result
-    assert kept is not None and tuner.scenario == "one" and told == [0.0, None]
-    tuner.start("endless", settings)  # pyright: ignore[reportArgumentType]
+    assert kept is not None and tuner.asked is not None and tuner.asked.scenario == "one"
+    assert told == [0.0, None]
+    begin("endless")
     while 0.5 not in told:
         threading.Event().wait(0.002)
     tuner.cancel()
     assert tuner.wait_idle(0.3)  # answered at once
-    assert tuner.words == (STOPPED,) and tuner.result is kept
-    tuner.start("refused", settings)  # pyright: ignore[reportArgumentType]
-    assert tuner.wait_idle(5.0)
-    assert "imu.file" in tuner.words[0] and tuner.fraction is None
-    tuner.start("fault", settings)  # pyright: ignore[reportArgumentType]
-    assert tuner.wait_idle(5.0)
-    assert "Something went wrong" in tuner.words[0]
-    assert tuner.result is kept
+    assert tuner.words == ("Stopped: no table was found.",) and tuner.result is kept
+    for scenario, words in (("refused", "imu.file"), ("fault", "Something went wrong")):
+        begin(scenario)
+        assert tuner.wait_idle(5.0)
+        assert words in tuner.words[0] and tuner.fraction is None
+        assert tuner.result is kept
     tuner.stop()

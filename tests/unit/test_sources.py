@@ -1,15 +1,17 @@
-"""Sources run apart: what is switched on, that their errors add up, and which one is said to dominate."""
+"""Sources of a method's errors: the budget where it models the method, else the scenario run apart."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from navcore.design import sources
+from navcore.design.ship import Ship
+from navcore.design.sources import active_sources, contributions, only
 from navcore.engine.simulation import simulate
+from navcore.mechanization.recorder import NAMES
 from navcore.scenario.file import load
-from navcore.scenario.model import Method, Scenario
-from navcore.studies import alone
-from navcore.studies.sources import active_sources, apart, only
+from navcore.scenario.model import Scenario
 
 SCENARIO = {
     "run": {"duration_h": 3.0, "step_s": 5.0},
@@ -44,92 +46,49 @@ def test_errors_of_the_sources_add_up_to_the_whole():
         assert np.abs(together - method.rows[:, :7]).max(axis=0) == pytest.approx(0.0, abs=1e-9 * scale.max())
 
 
-def test_the_largest_source_comes_first():
-    scenario = load("zha-fast", ["imu.accel_bias_ug=[0.01, 0, 0]"])
-    free = apart(scenario, simulate(scenario))[0]
-    assert free.method == "free"
-    (first, share), (second, rest) = free.shares("position_m")
-    assert (first, second) == ("gyro bias", "accelerometer bias")
-    assert share > 0.99
-    assert share + rest == pytest.approx(1.0)
+def test_by_covariance_the_sources_are_those_of_the_scenario_run_apart() -> None:
+    """Each source errs on one axis, so that its square is the same in both; noise by its mean over seeds."""
+    ship = Ship(Scenario.parse(SCENARIO))
+    damped = ship.scenario.method[1]
+    by_covariance = contributions(ship, damped)
+    apart = [
+        sources._run_apart(one, damped, lambda _: None, lambda: False)
+        for one in (
+            ship.scenario.model_copy(update={"run": ship.scenario.run.model_copy(update={"seed": seed})})
+            for seed in range(20)
+        )
+    ]
+    assert set(by_covariance) == set(ALL) == set(apart[0])
+    for name in ALL:
+        tolerance = 0.5 if "noise" in name else 0.01
+        mean = np.mean([squares[name] for squares in apart], axis=0)
+        assert by_covariance[name][:7].sum() == pytest.approx(mean.sum(), rel=tolerance)
+        for k in (0, 3):  # tilt and velocity of the east channel
+            if mean[k] > 0.02 * max(squares[k] for squares in apart[0].values()):
+                assert by_covariance[name][k] == pytest.approx(mean[k], rel=tolerance)
 
 
-@pytest.mark.parametrize("preset", ["sikuliaq-like", "liu-networks", "zha-external", "liu-switching"])
-def test_shares_at_the_pace_of_the_loop_are_those_of_every_step(preset: str, monkeypatch: pytest.MonkeyPatch):
-    from navcore.studies import sources
-
-    scenario = load(preset, ["run.duration_h=5"])
-    whole = simulate(scenario)
-    sources._apart.clear()
-    quick = apart(scenario, whole)
-    monkeypatch.setattr(alone, "_LONGEST_STRIDE", 1)
-    sources._apart.clear()
-    exact = apart(scenario, whole)
-    for one, other in zip(quick, exact, strict=True):
-        assert [c.source for c in one.contributions] == [c.source for c in other.contributions]
-        for quantities in (("dlat_m", "dlon_m"), ("phi_e_rad", "phi_n_rad"), ("phi_u_rad",)):
-            found, right = dict(one.shares(*quantities)), dict(other.shares(*quantities))
-            assert found == pytest.approx(right, abs=0.01)
-
-
-def test_a_method_that_switches_is_run_at_every_step():
-    scenario = load("liu-switching")
-    switching = [m for m in scenario.method if m.policy.id != "constant"]
-    assert switching and all(alone.Alone(scenario, m)._stride == 1 for m in switching)
-    constant = load("sikuliaq-like")
-    assert all(alone.Alone(constant, m)._stride > 1 for m in constant.method)
-
-
-def test_a_recorded_log_is_a_source(tmp_path):
+@pytest.mark.parametrize("field", ["policy", "imu", "log"])
+def test_what_the_budget_does_not_model_is_run_apart(field: str, tmp_path) -> None:
     log = tmp_path / "log.csv"
     log.write_text("t_s,speed_mps,speed_starboard_mps\n" + "".join(f"{t},0.3,0\n" for t in range(0, 400)))
-    data = {
-        "run": {"duration_h": 0.1},
-        "reference": {"kind": "file", "file": str(log), "frame": "body"},
-        "method": [{"damping": "external", "network": {"id": "classic2"}}],
-    }
-    scenario = Scenario.parse(data)
-    assert active_sources(scenario) == ("recorded log",)
-    (method,) = apart(scenario, simulate(scenario))
-    assert method.contributions[0].rms == pytest.approx(method.whole)
+    policy, imu, reference, expected = {
+        "policy": ("threshold", {}, {"kind": "log", "bias_mps": [0.3, 0.0]}, "log bias"),
+        "imu": ("constant", {"gyro_lsb": [1e-3] * 3}, {"kind": "log"}, "IMU quantisation"),
+        "log": ("constant", {}, {"kind": "file", "file": str(log), "frame": "body"}, "recorded log"),
+    }[field]
+    method = {"damping": "external", "network": {"id": "classic2"}, "policy": {"id": policy}}
+    data = {"imu": imu, "reference": reference, "method": [method]}
+    scenario = Scenario.parse({"run": {"duration_h": 0.1}} | data)
+    assert active_sources(scenario) == (expected,)
+    squares = contributions(Ship(scenario), scenario.method[0])
+    errors = simulate(scenario).methods[0].errors
+    np.testing.assert_allclose(np.sqrt(squares[expected]), [errors[name]["rms"] for name in NAMES[:7]])
 
 
-def test_cancel_leaves_out_what_has_not_run():
-    scenario = Scenario.parse(SCENARIO)
-    whole = simulate(scenario)
-    asked = iter([False, False, False, True])
-    (free, _) = apart(scenario, whole, cancelled=lambda: next(asked, True))
-    assert len(free.contributions) < len(ALL)
-
-
-def test_an_unchanged_method_is_not_run_apart_again(monkeypatch: pytest.MonkeyPatch):
-    from navcore.studies import sources
-
-    scenario = Scenario.parse(SCENARIO | {"run": {"duration_h": 2.5, "step_s": 5.0}})
-    ran: list[str] = []
-    made = sources.Alone
-
-    def noted(one: Scenario, method: Method):
-        ran.append(method.name)
-        return made(one, method)
-
-    monkeypatch.setattr(sources, "Alone", noted)
-    first = apart(scenario, simulate(scenario))
-    assert ran == ["free", "damped"]
-    data = scenario.canonical()
-    data["method"][1]["network"] = {"id": "compass"}
-    moved = Scenario.parse(data)
-    ran.clear()
-    second = apart(moved, simulate(moved))
-    assert ran == ["damped"]
-    assert (
-        [c.source for c in second[1].contributions] == [c.source for c in first[1].contributions] == list(ALL)
-    )
-    for old, new in zip(first[0].contributions, second[0].contributions, strict=True):
-        assert np.array_equal(old.rms, new.rms)
-    sources._apart.clear()
-    afresh = apart(moved, simulate(moved))
-    for one, other in zip(afresh, second, strict=True):
-        assert all(
-            np.array_equal(a.rms, b.rms) for a, b in zip(one.contributions, other.contributions, strict=True)
-        )
+def test_cancel_leaves_out_what_has_not_run() -> None:
+    scenario = load("liu-switching", ["run.duration_h=0.5"])
+    (method,) = [one for one in scenario.method if one.policy.id != "constant"][:1]
+    asked: list[float] = []
+    squares = contributions(Ship(scenario), method, asked.append, lambda: bool(asked))
+    assert len(squares) == len(asked) == 1 < len(active_sources(scenario))

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from navcore.design.sun import TuningSettings, sun_scenario, tune_table, with_table
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import HOUR, KNOT
 from navcore.networks import parse_network
 from navcore.scenario.model import Scenario
-from navcore.studies.tuning import TuningSettings, sun_scenario, tune, with_table
 
 COARSE = TuningSettings(differences_kn=(0.0, 0.5, 3.0), smallest=0.1, step=0.3)
 
@@ -37,7 +37,7 @@ def direct_cost(base: Scenario, bias: tuple[float, float], zeta: float) -> float
 
 def test_the_double_loop_equals_the_mean_of_direct_runs():
     base = scenario()
-    found = tune(base, COARSE)
+    found = tune_table(base, COARSE)
     np.testing.assert_allclose(found.coefficients, [0.1, 0.4, 0.7, 1.0])
     for row, knots in enumerate(COARSE.differences_kn):
         size = knots * KNOT
@@ -51,7 +51,7 @@ def test_the_double_loop_equals_the_mean_of_direct_runs():
 def test_superposition_holds_for_a_moving_ship_with_a_body_log():
     motion = {"kind": "legs", "leg": [{"speed_mps": 8.0, "heading_deg": 40.0}]}
     base = scenario(motion=motion, reference={"kind": "log", "rate_hz": 0.1, "frame": "body"})
-    found = tune(base, COARSE)
+    found = tune_table(base, COARSE)
     size = 3.0 * KNOT
     biases = [(size, 0.0), (-size, 0.0), (0.0, size), (0.0, -size)]
     mean = np.mean([direct_cost(base, bias, 0.4) for bias in biases])
@@ -62,7 +62,7 @@ def test_same_input_same_table():
     settings = TuningSettings(
         differences_kn=(0.0, 1.0), step=0.2, error="drift", realisations=2, network={"id": "complementary"}
     )
-    first, second = tune(scenario(), settings), tune(scenario(), settings)
+    first, second = tune_table(scenario(), settings), tune_table(scenario(), settings)
     np.testing.assert_array_equal(first.cost, second.cost)
     assert first.rows() == second.rows()
 
@@ -73,7 +73,7 @@ def test_drift_has_the_asked_rms_over_both_axes():
         differences_kn=(0.0, 3.0), smallest=0.5, largest=0.5, error="drift", drift_tau_s=1e6, realisations=64
     )
     constant = slow.model_copy(update={"error": "constant"})
-    drift_cost, constant_cost = (np.diff(tune(scenario(), s).cost[:, 0])[0] for s in (slow, constant))
+    drift_cost, constant_cost = (np.diff(tune_table(scenario(), s).cost[:, 0])[0] for s in (slow, constant))
     # 64 drifts of 2 axes: the mean square of 128 normal numbers is within 12.5 % (1 sigma) of 1
     assert drift_cost == pytest.approx(constant_cost, rel=0.4)
 
@@ -83,7 +83,7 @@ def test_unstable_loops_are_never_the_best():
     settings = TuningSettings(
         differences_kn=(0.0, 3.0), smallest=0.02, largest=0.2, step=0.02, network=network, error="drift"
     )
-    found = tune(scenario(), settings)
+    found = tune_table(scenario(), settings)
     # theory.md 3.3: unstable for xi <= 0.104
     np.testing.assert_array_equal(np.isinf(found.cost[1]), found.coefficients <= 0.104)
     assert np.all(found.best > 0.104)
@@ -92,9 +92,9 @@ def test_unstable_loops_are_never_the_best():
 
 def test_progress_rises_to_one_and_cancel_stops():
     seen: list[float] = []
-    found = tune(scenario(), COARSE, progress=seen.append)
+    found = tune_table(scenario(), COARSE, progress=seen.append)
     assert found.status == "ok" and seen == sorted(seen) and seen[-1] == pytest.approx(1.0)
-    stopped = tune(scenario(), COARSE, cancelled=lambda: True)
+    stopped = tune_table(scenario(), COARSE, cancelled=lambda: True)
     assert stopped.status == "stopped" and stopped.rows() == [] and np.all(np.isnan(stopped.best))
     with pytest.raises(InputError, match="stopped"):
         with_table(scenario(), stopped)
@@ -102,7 +102,7 @@ def test_progress_rises_to_one_and_cancel_stops():
 
 def test_the_table_goes_into_the_scenario():
     base = scenario(method=[{"name": "free"}])
-    found = tune(base, COARSE)
+    found = tune_table(base, COARSE)
     made = with_table(base, found)
     assert [m.name for m in made.method] == ["free", "adaptive (tuned)"]
     policy = made.method[1].policy
@@ -121,15 +121,17 @@ def test_the_table_goes_into_the_scenario():
 def test_a_scenario_without_reference_is_tuned_with_a_perfect_log():
     with_log, without = scenario(), scenario(reference={"kind": "none"})
     # 1 Hz instead of 0.1 Hz, averaged to the step: both are perfect
-    np.testing.assert_allclose(tune(without, COARSE).cost[0], tune(with_log, COARSE).cost[0], rtol=1e-12)
-    assert with_table(without, tune(without, COARSE)).reference.kind == "log"
+    np.testing.assert_allclose(
+        tune_table(without, COARSE).cost[0], tune_table(with_log, COARSE).cost[0], rtol=1e-12
+    )
+    assert with_table(without, tune_table(without, COARSE)).reference.kind == "log"
 
 
 def test_a_strapdown_scenario_is_tuned_on_the_error_model():
     plain = scenario(site={"lat_deg": 40.0})
     run = {**plain.canonical()["run"], "fidelity": "strapdown"}
     strapdown = scenario(site={"lat_deg": 40.0}, run=run, alignment={"kind": "compass"})
-    np.testing.assert_array_equal(tune(strapdown, COARSE).cost, tune(plain, COARSE).cost)
+    np.testing.assert_array_equal(tune_table(strapdown, COARSE).cost, tune_table(plain, COARSE).cost)
 
 
 @pytest.mark.parametrize(

@@ -46,14 +46,14 @@ def made() -> Iterator[tuple[Verifier, list[float | None]]]:
 
 
 def under_way(verifier: Verifier, told: list[float | None]) -> None:
-    verifier.start(hours(5.0))
+    verifier.begin(hours(5.0))
     while 0.5 not in told:
         threading.Event().wait(0.002)
 
 
 def test_a_result_is_of_its_scenario_until_that_changes(made: tuple[Verifier, list]) -> None:
     verifier, told = made
-    verifier.start(hours(1.0))
+    verifier.begin(hours(1.0))
     assert verifier.wait_idle(5.0)
     assert told == [0.0, None]
     beside = verifier.beside(hours(1.0))
@@ -68,7 +68,7 @@ def test_a_result_is_of_its_scenario_until_that_changes(made: tuple[Verifier, li
 
 def test_progress_is_told_and_a_stop_keeps_the_earlier_result(made: tuple[Verifier, list]) -> None:
     verifier, told = made
-    verifier.start(hours(1.0))
+    verifier.begin(hours(1.0))
     assert verifier.wait_idle(5.0)
     kept = verifier.result
     under_way(verifier, told)
@@ -94,7 +94,7 @@ def test_a_change_of_the_scenario_stops_it_and_says_so(made: tuple[Verifier, lis
 @pytest.mark.parametrize(("length", "words"), [(3.0, "leaves the Earth out"), (4.0, "ZeroDivisionError")])
 def test_what_is_wrong_is_said(made: tuple[Verifier, list], length: float, words: str) -> None:
     verifier, _ = made
-    verifier.start(hours(length))
+    verifier.begin(hours(length))
     assert verifier.wait_idle(5.0)
     assert words in verifier.words[0]
     assert verifier.result is None
@@ -103,7 +103,7 @@ def test_what_is_wrong_is_said(made: tuple[Verifier, list], length: float, words
 def test_a_second_start_takes_the_place_of_the_first(made: tuple[Verifier, list]) -> None:
     verifier, told = made
     under_way(verifier, told)
-    verifier.start(hours(1.0))
+    verifier.begin(hours(1.0))
     assert verifier.wait_idle(5.0)
-    assert verifier.scenario == hours(1.0)
+    assert verifier.asked == hours(1.0)
     assert verifier.words == ()

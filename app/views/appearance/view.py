@@ -114,7 +114,7 @@ class AppearanceView(View):
         self._progress.visible = fraction is not None
         self._progress.value = round(100.0 * (fraction or 0.0), 1)
         self._words.content, self._words.visible = (
-            notices.note([words] if words else [], "warning"),
+            notices.note(words, "warning"),
             bool(words),
         )
 

@@ -10,7 +10,7 @@ from app.plots.units import number, round_up
 from navcore.law.policy.adaptive import SUN_TABLE
 
 if TYPE_CHECKING:
-    from navcore.studies.tuning import Tuning
+    from navcore.design.sun import Tuning
 
 WIDTH, HEIGHT = 312, 190
 _LEFT, _RIGHT, _TOP, _BOTTOM = 40, 10, 24, 36

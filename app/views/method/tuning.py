@@ -9,16 +9,17 @@ from pydantic import ValidationError
 
 from app.editing import form
 from app.editing.form import FieldSpec
+from app.jobs.designer import TableTask
 from app.plots import style
 from app.shell import notices
 from app.shell.control import Control
 from app.shell.section import Section
 from app.shell.view import Frame, Tab
 from app.views.method.tuned import table_html
+from navcore.design.sun_settings import TuningSettings
 from navcore.foundation.errors import InputError
 from navcore.foundation.faults import faults_from
 from navcore.scenario.model import Method
-from navcore.studies.tuning.settings import TuningSettings
 
 FIND, STOP, USE = "Find the table for this scenario", "Stop the search", "Use this table"
 _TITLE = "Table by Sun's double loop"
@@ -85,8 +86,8 @@ class TuningPanel:
             if handle.visible != shown:
                 handle.visible = shown
         html = notices.note(tuner.words, "warning")
-        if result is not None:
-            if tuner.scenario != scenario:
+        if result is not None and tuner.asked is not None:
+            if tuner.asked.scenario != scenario:
                 html += notices.note(["Found for the scenario as it was before: find it anew."], "warning")
             html += table_html(result, style.method_color(index))
         if self._found.content != html:
@@ -99,11 +100,11 @@ class TuningPanel:
     def _find(self) -> None:
         with self._session.lock:
             scenario = self._session.scenario
-        self._tuner.start(scenario, self._settings())
+        self._tuner.begin(TableTask(scenario, self._settings()))
 
     def _take(self) -> None:
         """Give the method the table that was found."""
-        from navcore.studies.tuning import with_table
+        from navcore.design.sun import with_table
 
         session = self._session
         with session.lock:

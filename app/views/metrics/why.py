@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 from app.plots import style
 from app.plots.units import duration
-from navcore.studies.dominance import HEADING, POSITION, TILT
+from navcore.design.dominance import HEADING, POSITION, TILT
 
 if TYPE_CHECKING:
     from app.jobs.why import Explainer
+    from navcore.design.dominance import Cause, Why
     from navcore.engine.run import Run
-    from navcore.studies.dominance import Cause, Why
 
 _WAITS = "What dominates this result is looked for as soon as it stands still."
 
@@ -32,11 +32,11 @@ def why_html(explainer: Explainer, run: Run, selected: int = 0, *, folded: bool 
     folded : bool
         One line in the place of all, which opens: there is little room.
     """
-    result, fits = explainer.result, explainer.fits(run)
+    result, fits = explainer.result, explainer.asked is run
     if fits and result is not None:
         name, causes = result.methods[min(selected, len(result.methods) - 1)]
         return _box(_lines(result, run), "", f"{name}: {_words(causes, result)}", folded=folded)
-    if explainer.failed:
+    if explainer.words:
         return _box("", "What dominates this result could not be found.", "", folded=folded)
     if explainer.fraction is not None:
         told = f"Running the error sources apart: {100.0 * explainer.fraction:.0f} %."

@@ -46,7 +46,7 @@ class VerificationView(View):
     def _verify(self) -> None:
         with self.session.lock:
             scenario = self.session.scenario
-        self.session.verifier.start(scenario)
+        self.session.verifier.begin(scenario)
 
     def follow_jobs(self) -> None:
         """Show how far a verification is, or what the last one gave, and of which scenario."""
@@ -72,7 +72,7 @@ def _html(verifier: Verifier, scenario: Scenario) -> str:
     result = verifier.result
     if result is None:
         return ""
-    if verifier.scenario != scenario:
+    if verifier.asked != scenario:
         return notices.note(["The verification is of an earlier scenario: verify again."], "warning")
     trusted = notices.note([f"Verified. {verdict(result)}", _WHERE], "info")
     against = ["The linear model is not to be trusted here:", *result.statements] if result.statements else []

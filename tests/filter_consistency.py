@@ -1,7 +1,7 @@
 """Whether the Kalman filter's own covariance holds: its errors over many seeds against what it says of them.
 
 The normalised error e^T P^-1 e of n states has the mean n when P is right (Bar-Shalom, Li and Kirubarajan
-2001, 5.4). ``python -m navcore.studies.filter_consistency --seeds 500`` prints it at the end of a run.
+2001, 5.4). ``python -m tests.filter_consistency --seeds 500`` prints it at the end of a run.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ _COEFFICIENT_FIELDS = ("zeta", "xi")
 
 
 class TuningSettings(Parameters):
-    """Settings of `navcore.studies.tuning.tune`; the defaults are Sun's (2017, 3.2 and Table 1)."""
+    """Settings of `navcore.design.sun.tune_table`; the defaults are Sun's (2017, 3.2 and Table 1)."""
 
     differences_kn: tuple[_Difference, ...] = Field(
         default=(0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 1.8, 3.0),

@@ -1,6 +1,6 @@
-"""What a result is made of: the error source and the natural period that dominate each method's errors.
+"""Which error source and which natural period dominate each method's errors.
 
-The source by running the sources apart (`navcore.studies.sources`), the period by least squares on the
+The source by the error budget (`navcore.design.sources`), the period by least squares on the
 natural lines (`navcore.averaging.lines`). The parts of the fit are not orthogonal on a short record: the
 share of a part is its mean product with the whole curve, so that all shares and that of what the fit leaves
 are 1 together.
@@ -15,14 +15,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from navcore.averaging.lines import line_phases
+from navcore.design.along import QUANTITIES
+from navcore.design.ship import Ship
+from navcore.design.sources import contributions
 from navcore.engine.run import MethodRun, Run
-from navcore.engine.simulation import simulate
 from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.stage_cache import file_state, kept
 from navcore.mechanization.recorder import NAMES
 from navcore.motion.base import LAT
 from navcore.scenario.model import Scenario
-from navcore.studies.sources import Apart, apart
 
 POSITION, TILT, HEADING = "position error", "tilt", "heading error"
 _QUANTITIES = {
@@ -112,7 +113,7 @@ def why(
     progress: Callable[[float], None] = lambda fraction: None,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> Why:
-    """Say what dominates a run, by running its sources apart on the linear error model.
+    """Say what dominates a run; its sources by the error budget, on the linear error model.
 
     Parameters
     ----------
@@ -124,47 +125,55 @@ def why(
         Asked often; True ends the search.
     """
     scenario = run.scenario
-    parts, remarks = _sources(run, progress, cancelled)
-    stop = cancelled()
-    made = []
+    remarks = _remarks(scenario)
+    ship = Ship(_as_error_model(scenario))
+    known, count = scenario.imu.file is None, len(run.methods)
+    methods = []
     for index, method in enumerate(run.methods):
-        causes = () if stop else _causes(run, method, parts[index] if parts else None)
-        made.append((method.method.name, causes))
-    if any(m.method.policy.id != "constant" and not m.method.undamped for m in run.methods):
-        remarks.append("Where a policy switches, the sources do not simply add up: shares are approximate.")
+        if cancelled():
+            break
+
+        def partly(fraction: float, index: int = index) -> None:
+            progress((index + fraction) / count)
+
+        squares = contributions(ship, method.method, partly, cancelled) if known else {}
+        methods.append((method.method.name, _causes(run, method, squares)))
+        partly(1.0)
     rate = EARTH_RATE * math.sin(float(run.truth[0, LAT])) if len(run.truth) else 0.0
     return Why(
-        methods=tuple(made),
+        methods=tuple(methods),
         schuler_s=math.tau / scenario.omega_s,
         foucault_s=math.tau / abs(rate) if rate else math.inf,
-        remarks=tuple(remarks),
-        complete=not stop,
+        remarks=remarks,
+        complete=not cancelled(),
     )
 
 
-def _sources(
-    run: Run, progress: Callable[[float], None], cancelled: Callable[[], bool]
-) -> tuple[tuple[Apart, ...], list[str]]:
-    """Contributions for each method; none when the errors of the sensors are not known."""
-    scenario = run.scenario
-    if scenario.imu.file is not None:
-        return (), ["A recorded IMU: its errors are not known one by one, so only the periods are told."]
-    remarks = []
-    if scenario.reference.kind == "file":
-        remarks.append("The recorded log counts as one source: what it errs by is not known part by part.")
-    if scenario.strapdown:
-        remarks.append("The sources were run apart on the linear error model, not on the strapdown.")
-        scenario = _as_error_model(scenario)
-        run = simulate(scenario, cancelled=cancelled)
-    return apart(scenario, run, progress, cancelled), remarks
+def _remarks(scenario: Scenario) -> tuple[str, ...]:
+    switches = any(method.policy.id != "constant" and not method.undamped for method in scenario.method)
+    remarks = {
+        "A recorded IMU: its errors are not known one by one, so only the periods are told.": (
+            scenario.imu.file is not None
+        ),
+        "The recorded log counts as one source: what it errs by is not known part by part.": (
+            scenario.imu.file is None and scenario.reference.kind == "file"
+        ),
+        "The sources were run apart on the linear error model, not on the strapdown.": (
+            scenario.imu.file is None and scenario.strapdown
+        ),
+        "Where a policy switches, the sources do not simply add up: shares are approximate.": switches,
+    }
+    return tuple(text for text, holds in remarks.items() if holds)
 
 
 def _as_error_model(scenario: Scenario) -> Scenario:
+    if not scenario.strapdown:
+        return scenario
     settings = scenario.run.model_copy(update={"fidelity": "error_model"})
     return scenario.model_copy(update={"run": settings})
 
 
-def _causes(run: Run, method: MethodRun, parts: Apart | None) -> tuple[Cause, ...]:
+def _causes(run: Run, method: MethodRun, squares: dict[str, np.ndarray]) -> tuple[Cause, ...]:
     if len(method.t_s) < 3:
         return ()
     causes = []
@@ -174,11 +183,11 @@ def _causes(run: Run, method: MethodRun, parts: Apart | None) -> tuple[Cause, ..
         moved = _swing_once(run, method, names)
         if moved is None:
             continue
-        source, share = "", 0.0
-        if parts is not None:
-            shares = parts.shares(*names)
-            source, share = shares[0] if shares else ("", 0.0)
-        causes.append(Cause(quantity, source, share, moved))
+        places = [QUANTITIES.index(name) for name in names]
+        sizes = {source: float(np.sum(values[places])) for source, values in squares.items()}
+        total, source = sum(sizes.values()), max(sizes, key=sizes.__getitem__, default="")
+        share = sizes[source] / total if total > 0.0 else 0.0
+        causes.append(Cause(quantity, source if share else "", share, moved))
     return tuple(causes)
 
 

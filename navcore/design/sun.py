@@ -17,13 +17,14 @@ does, `unity2` does not.
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import chain, count
 from typing import Literal
 
 import numpy as np
 
+from navcore.design.sun_settings import TuningSettings
 from navcore.engine.simulation import Cancelled, Progress, simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.units import HOUR, KNOT
@@ -31,7 +32,6 @@ from navcore.law.policy.adaptive import HIGHEST, LOWEST, SUN_TABLE
 from navcore.scenario.model import MAX_METHODS, Alignment, InitialError, Method, Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import Reference
-from navcore.studies.tuning.settings import TuningSettings
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +99,7 @@ def sun_scenario() -> Scenario:
     )
 
 
-def tune(
+def tune_table(
     scenario: Scenario | None = None,
     settings: TuningSettings | None = None,
     progress: Progress | None = None,
@@ -115,7 +115,7 @@ def tune(
     settings : TuningSettings, optional
         Differences, coefficients, network; Sun's by default.
     progress : callable, optional
-        Called with the fraction done, 0..1, from any thread.
+        Called with the fraction done, 0..1.
     cancelled : callable, optional
         Asked often; when it says True the search ends with status "stopped".
 
@@ -126,14 +126,13 @@ def tune(
 
     Examples
     --------
-    >>> from navcore.studies.tuning import TuningSettings, tune
-    >>> found = tune(settings=TuningSettings(differences_kn=(0.0, 3.0), step=0.33))
+    >>> from navcore.design.sun import TuningSettings, tune_table
+    >>> found = tune_table(settings=TuningSettings(differences_kn=(0.0, 3.0), step=0.33))
     >>> found.status, len(found.rows())
     ('ok', 2)
     """
     scenario, settings = scenario or sun_scenario(), settings or TuningSettings()
-    progress = None if progress is None else _rising(progress)
-    if getattr(scenario.imu, "file", None):
+    if scenario.imu.file is not None:
         raise InputError(Fault("", "imu.file", scenario.imu.file, "must be empty: tuning simulates the IMU"))
     coefficients = settings.coefficients()
     methods = tuple(
@@ -144,12 +143,17 @@ def tune(
     )
     problems = [_base(scenario), *_unit_errors(scenario, settings)]
     costs = np.full((len(problems), len(coefficients)), np.nan)
+    pieces = [(i, first) for i in range(len(problems)) for first in range(0, len(methods), MAX_METHODS)]
     stopped = False
-    for index, problem in enumerate(problems):
-        share = _shared(progress, index, len(problems))
-        stopped = not _inner_loop(problem, methods, costs[index], share, cancelled)
-        if stopped:
+    for done, (index, first) in enumerate(pieces, start=1):
+        some = slice(first, first + MAX_METHODS)
+        part = _costs(problems[index], methods[some], cancelled)
+        stopped = part is None
+        if part is None:
             break
+        costs[index, some] = part
+        if progress is not None:
+            progress(done / len(pieces))
     base, unit = costs[0], np.mean(costs[1:], axis=0)
     differences = settings.differences()
     usable = np.isfinite(base) & np.isfinite(unit) | np.isnan(unit)
@@ -189,51 +193,20 @@ def _unit_errors(scenario: Scenario, settings: TuningSettings) -> Iterator[Scena
         yield silent.model_copy(update={"reference": drift, "run": run})
 
 
-def _inner_loop(
-    problem: Scenario,
-    methods: tuple[Method, ...],
-    costs: np.ndarray,
-    progress: Progress | None,
-    cancelled: Cancelled | None,
-) -> bool:
-    """Fill the objective of every method, m^2/s; False when cancelled."""
-    seconds = problem.run.duration_h * HOUR
-    for first in range(0, len(methods), MAX_METHODS):
-        if cancelled is not None and cancelled():
-            return False
-        some = methods[first : first + MAX_METHODS]
-        share = None if progress is None else _part(progress, first / len(methods), len(some) / len(methods))
-        run = simulate(problem.model_copy(update={"method": some}), share, cancelled)
-        for index, result in enumerate(run.methods, start=first):
-            if result.status == "stopped":
-                return False
-            squares = result.errors["dve_mps"]["rms"] ** 2 + result.errors["dvn_mps"]["rms"] ** 2
-            # an unstable loop may still have the least J before it has grown
-            usable = result.status == "ok" and result.loop.stable
-            costs[index] = seconds * squares if usable else np.inf
-    return True
-
-
-def _rising(progress: Progress) -> Progress:
-    """Leave out what comes late from another thread: the fraction never falls."""
-    lock, highest = threading.Lock(), 0.0
-
-    def report(fraction: float) -> None:
-        nonlocal highest
-        with lock:
-            if fraction > highest:
-                highest = fraction
-                progress(fraction)
-
-    return report
-
-
-def _part(progress: Progress, start: float, size: float) -> Progress:
-    return lambda fraction: progress(start + size * fraction)
-
-
-def _shared(progress: Progress | None, index: int, count: int) -> Progress | None:
-    return None if progress is None else _part(progress, index / count, 1.0 / count)
+def _costs(problem: Scenario, methods: tuple[Method, ...], cancelled: Cancelled | None) -> list[float] | None:
+    """Objective of every method, m^2/s; None when cancelled."""
+    if cancelled is not None and cancelled():
+        return None
+    run = simulate(problem.model_copy(update={"method": methods}), cancelled=cancelled)
+    if any(method.status == "stopped" for method in run.methods):
+        return None
+    costs = []
+    for result in run.methods:
+        squares = result.errors["dve_mps"]["rms"] ** 2 + result.errors["dvn_mps"]["rms"] ** 2
+        # an unstable loop may still have the least J before it has grown
+        usable = result.status == "ok" and result.loop.stable
+        costs.append(problem.run.duration_h * HOUR * squares if usable else np.inf)
+    return costs
 
 
 def _warnings(cost: np.ndarray, best: np.ndarray, coefficients: np.ndarray) -> Iterator[str]:
@@ -248,3 +221,42 @@ def _warnings(cost: np.ndarray, best: np.ndarray, coefficients: np.ndarray) -> I
         yield "the best coefficient rises with the difference somewhere"
     if np.any((best < LOWEST) | (best > HIGHEST)):
         yield f"the adaptive law holds the coefficient within {LOWEST:g} and {HIGHEST:g}"
+
+
+def with_table(scenario: Scenario, tuning: Tuning, method: int | None = None) -> Scenario:
+    """Return the scenario with a method whose policy is `adaptive` with the table that was found.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Where the table goes.
+    tuning : Tuning
+        From `tune_table`, not stopped.
+    method : int, optional
+        Index of the method that takes the table (its network becomes the tuned one); a new method at the end
+        when left out.
+
+    Raises
+    ------
+    InputError
+        The search was stopped, there is no such method, or the policy cannot re-tune the network.
+    """
+    table = tuning.rows()
+    if not table:
+        raise InputError(Fault("", "table", None, "the search was stopped: there is no table"))
+    data = scenario.canonical()
+    methods = data["method"]
+    if method is None:
+        numbered = (f"adaptive (tuned {number})" for number in count(2))
+        taken = {m["name"] for m in methods}
+        name = next(name for name in chain(["adaptive (tuned)"], numbered) if name not in taken)
+        methods.append({"name": name})
+        method = len(methods) - 1
+    if not 0 <= method < len(methods):
+        raise InputError(Fault("", "method", method, f"must be 0 to {len(methods) - 1}"))
+    network = tuning.settings.network.model_dump(mode="json", exclude_none=True)
+    policy = {"id": "adaptive", "table": table}
+    methods[method] |= {"damping": "external", "network": network, "policy": policy}
+    if data["reference"]["kind"] == "none":
+        data["reference"] = {"kind": "log"}
+    return Scenario.parse(data)

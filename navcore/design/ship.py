@@ -1,0 +1,70 @@
+"""What all methods of a scenario share in budget, bands and tuning: sensors, motion, responses, floor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from navcore.design.along import Along, along
+from navcore.design.constants import Column, shared_columns
+from navcore.design.course import MOST_INTERVALS, Course, course
+from navcore.design.figures import Figures, Series, mean_figures
+from navcore.design.filter import filter_variance
+from navcore.design.floor import steady_floor
+from navcore.design.scheduled import scheduled_times
+from navcore.scenario.model import Method, Scenario
+from navcore.scenario.stochastic import StochasticModel, stochastic_model
+
+
+@dataclass(frozen=True, eq=False)
+class Ship:
+    """A scenario as its methods' covariances see it; everything is made when it is first asked for.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        Complete and checked; a strapdown scenario counts as the error model along its motion.
+    along_run : bool
+        Root mean squares over the scenario's run, else in the steady state at rest.
+    intervals : int
+        Of the run at most (`navcore.design.course.course`).
+    """
+
+    scenario: Scenario
+    along_run: bool = True
+    intervals: int = MOST_INTERVALS
+
+    @cached_property
+    def model(self) -> StochasticModel:
+        """The sensors."""
+        return stochastic_model(self.scenario)
+
+    @cached_property
+    def course(self) -> Course:
+        """The motion; raises InputError when it cannot be carried out."""
+        times = tuple(time for method in self.scenario.method for time in scheduled_times(method))
+        return course(self.scenario, self.intervals, times)
+
+    @cached_property
+    def columns(self) -> tuple[Column, ...]:
+        """Responses that all methods share."""
+        return shared_columns(self.scenario, self.course, self.model)
+
+    def along(self, method: Method) -> Along:
+        """Variances of each source along the run, for a method whose law is known in advance."""
+        return along(self.scenario, method, self.course, self.model, self.columns)
+
+    @cached_property
+    def floor_series(self) -> Series | None:
+        """Covariance of a Kalman filter along the run; None where it is told of no error, or has no log."""
+        if self.model.silent or not self.model.log:
+            return None
+        return Series(self.course.t_s, {}, filter_variance(self.scenario, self.course, self.model))
+
+    def floor(self) -> Figures:
+        """Least that any causal linear damping can reach; empty where there is no floor."""
+        if not self.along_run:
+            least = steady_floor(self.model, self.scenario.omega_s)
+            return Figures(least.tilt_rad, least.velocity_mps)
+        least = self.floor_series
+        return Figures() if least is None else mean_figures(least.t_s, least.total)
