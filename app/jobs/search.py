@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import threading
 from collections.abc import Callable
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from app.jobs.elsewhere import LOST, carried_out
 from app.jobs.load import heavy_load
@@ -65,13 +65,13 @@ class Search(Generic[Asked, Found]):
         complete: Callable[[Found], bool] = lambda found: True,
         stopped: str = "",
         name: str = "search",
-        load: Callable[[Any], Load] = lambda asked: heavy_load(getattr(asked, "scenario", asked)),
+        load: Callable[[Asked], Load] | None = None,
         still_s: float = 0.0,
     ) -> None:
         self._tell, self._compute, self._complete = tell, compute, complete
         self._stopped, self._name = stopped, name
         self._lock = threading.Lock()
-        self._worker: Worker[Asked] = Worker(self._work, visitor=name, load=load, still_s=still_s)
+        self._worker: Worker[Asked] = Worker(self._work, visitor=name, load=load or _heavy, still_s=still_s)
         self.under_way: Asked | None = None
         self.fraction: float | None = None
         self.result: Found | None = None
@@ -156,3 +156,7 @@ class Search(Generic[Asked, Found]):
             if complete:
                 self.result, self.asked = found, asked
         self._ended() if complete else self._tell()
+
+
+def _heavy(asked: Any) -> Load:
+    return heavy_load(getattr(asked, "scenario", asked))
