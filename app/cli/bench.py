@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.cli.terminal import emit, emit_json, on_terminal, say
+from app.cli.terminal import emit_result, on_terminal, say
 
 
 @dataclass(frozen=True)
@@ -33,8 +33,6 @@ class BenchCommand:
         except (FileNotFoundError, RuntimeError, TimeoutError) as error:
             say(f"bench: stopped: {error}")
             return 3
-        if self.json:
-            emit_json({key: round(value, 4) for key, value in numbers.items()})
-        else:
-            emit("\n".join(bench_text(numbers)))
+        rounded = {key: round(value, 4) for key, value in numbers.items()}
+        emit_result(self.json, rounded, lambda: bench_text(numbers))
         return 0

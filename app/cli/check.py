@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from tyro.conf import Positional, arg
 
-from app.cli.terminal import emit, emit_json, say
+from app.cli.terminal import emit_result, say
 
 if TYPE_CHECKING:
     from navcore.checks.file import FileReport
@@ -40,10 +40,8 @@ class CheckCommand:
     def execute(self) -> int:
         """Print the report; 0 when the file was understood, else 2."""
         report = guarded_check(self.file)
-        if self.json:
-            emit_json(report.as_dict())
-        elif report.ok:
-            emit("\n".join(report.lines()))
+        if self.json or report.ok:
+            emit_result(self.json, report.as_dict(), report.lines)
         for fault in report.faults:
             say(str(fault))
         return 0 if report.ok else 2

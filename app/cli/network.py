@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from tyro.conf import Positional, arg
 
 from app.cli.table import columns, number
-from app.cli.terminal import emit, emit_json
+from app.cli.terminal import emit_result
 
 
 @dataclass(frozen=True)
@@ -47,16 +47,15 @@ class NetworkCommand:
         parameters = parse_network(self.network)
         log_period_s = self.log_period_s or None
         report = network_report(parameters, self.lat, log_period_s, self.law_step_s, self.margins)
-        if self.json:
-            emit_json(report)
-        else:
-            emit("\n".join(network_text(report)))
+        emit_result(self.json, report, lambda: network_text(report))
         return 0
 
 
 def network_text(report: dict[str, Any]) -> list[str]:
     """Lines for people; rates in rad/s and in units of the Schuler frequency."""
-    omega_s = _schuler_frequency()
+    from navcore.foundation.earth import SPHERE
+
+    omega_s = SPHERE.schuler_frequency(0.0)
     settling = report["settling_s"]
     rows = [
         ["numerator", *(number(c, 6) for c in report["num"])],
@@ -129,12 +128,6 @@ def _margins(margins: dict[str, float | None] | None) -> list[str]:
             ]
         ),
     ]
-
-
-def _schuler_frequency() -> float:
-    from navcore.foundation.earth import SPHERE
-
-    return SPHERE.schuler_frequency(0.0)
 
 
 def _roots(roots: list[list[float]], omega_s: float) -> list[list[str]]:

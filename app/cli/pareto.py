@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from tyro.conf import Positional, UseAppendAction, arg
 
-from app.cli.table import columns, number
-from app.cli.terminal import emit, emit_json, on_terminal, say
-
-if TYPE_CHECKING:
-    from navcore.design.pareto import Pareto
+from app.cli.terminal import emit_result, say
 
 
 @dataclass(frozen=True)
@@ -50,59 +46,23 @@ class ParetoCommand:
 
     def execute(self) -> int:
         """Search and print; 3 when it was stopped."""
-        from app.cli.progress import Bar
-        from app.cli.stop import stop_on_signal
+        from app.cli.design_text import pareto_text
+        from app.cli.progress import working
         from navcore.design.pareto import pareto
         from navcore.scenario.file import load
 
         scenario = load(self.scenario, self.set)
-        with stop_on_signal() as stopped, Bar("pareto", on_terminal() and not self.quiet) as bar:
-            found = pareto(
+        with working("pareto", self.quiet) as (progress, stopped):
+            result = pareto(
                 scenario,
                 (self.x, self.y),
                 self.method,
                 networks=self.network or None,
                 along=self.along,
-                progress=bar.advance,
+                progress=progress,
                 cancelled=stopped,
             )
-        if self.json:
-            emit_json(found.as_dict())
-        else:
-            emit("\n".join(pareto_text(found)))
-        if found.stopped:
+        emit_result(self.json, result.as_dict(), lambda: pareto_text(result))
+        if result.stopped:
             say(f"{self.scenario}: stopped; these are the fronts so far")
-        return 3 if found.stopped else 0
-
-
-def pareto_text(found: Pareto) -> list[str]:
-    """Lines: for each network the ends of its front and the settings there, the present design, the floor."""
-    first, second = found.objectives
-    rows = [["", first, second, ""], ["", _unit(first), _unit(second), ""]]
-    for name, points in found.fronts.items():
-        chosen = [points[0], points[len(points) // 2], points[-1]] if len(points) > 2 else list(points)
-        for k, point in enumerate(chosen):
-            setting = ", ".join(
-                f"{field} = {value:.4g}" for field, value in point.network.items() if isinstance(value, float)
-            )
-            if point.earth_growth > 0.0:
-                setting = f"{setting or 'no parameter'}; its 24 h mode grows"
-            rows.append([name if k == 0 else "", *_values(found, point.values), setting])
-    if found.present is not None:
-        rows.append(["as it is", *_values(found, found.present), ""])
-    rows.append(["floor", *_values(found, found.floor), ""])
-    lines = columns([row[:3] for row in rows])
-    return [f"{line}  {row[3]}".rstrip() for line, row in zip(lines, rows, strict=True)]
-
-
-def _unit(name: str) -> str:
-    from navcore.design.measures import in_display_unit
-
-    return in_display_unit(name, None)[1]
-
-
-def _values(found: Pareto, values: tuple[float | None, float | None]) -> list[str]:
-    from navcore.design.measures import in_display_unit
-
-    pairs = zip(found.objectives, values, strict=True)
-    return [number(in_display_unit(name, value)[0]) for name, value in pairs]
+        return 3 if result.stopped else 0

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from app.cli.table import columns
-from app.cli.terminal import emit, emit_json
+from app.cli.terminal import emit_result
 
 
 @dataclass(frozen=True)
@@ -24,13 +23,11 @@ class PresetsCommand:
     def execute(self) -> int:
         """Print the list."""
         document = presets_document()
-        if self.json:
-            emit_json(document)
-        else:
-            listed = document["presets"]
-            width = max(len(preset["name"]) for preset in listed)
-            lines = [f"{p['name']:<{width}}  {p['title']} ({p['source']})" for p in listed]
-            emit("\n".join([*lines, "", *columns([["schema of a scenario:", document["schema_file"]]])]))
+        listed = document["presets"]
+        width = max(len(preset["name"]) for preset in listed)
+        lines = [f"{p['name']:<{width}}  {p['title']} ({p['source']})" for p in listed]
+        lines += ["", f"schema of a scenario:  {document['schema_file']}"]
+        emit_result(self.json, document, lambda: lines)
         return 0
 
 

@@ -3,13 +3,41 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
+
+from app.cli.stop import stop_on_signal
+from app.cli.terminal import on_terminal
+from navcore.foundation.errors import InputError
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
 _APPEARS_AFTER_S = 0.5
+
+
+@contextmanager
+def working(
+    title: str, quiet: bool, source: str | None = None
+) -> Iterator[tuple[Callable[[float], None], Callable[[], bool]]]:
+    """Give ``progress(fraction)``, shown on a terminal, and ``stopped()``, which Ctrl-C makes True.
+
+    Parameters
+    ----------
+    title : str
+        Shown beside the bar.
+    quiet : bool
+        No bar.
+    source : str, optional
+        What a fault of the input is located in.
+    """
+    with stop_on_signal() as stopped, Bar(title, on_terminal() and not quiet) as bar:
+        try:
+            yield bar.advance, stopped
+        except InputError as error:
+            raise error if source is None else error.located(source) from None
 
 
 class Bar:

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 from tyro.conf import Positional, UseAppendAction, arg
 
-from app.cli.terminal import emit, emit_json, on_terminal, say
-
-if TYPE_CHECKING:
-    from navcore.engine.run import Run
+from app.cli.terminal import emit_result, say
 
 
 @dataclass(frozen=True)
@@ -43,38 +40,22 @@ class RunCommand:
 
     def execute(self) -> int:
         """Run, write, print; 0 when every method went through, else 3."""
+        from app.cli.progress import working
+        from app.cli.run_text import run_text
         from navcore.engine.measures import metrics
         from navcore.engine.results import require_replaceable, write_results
-        from navcore.foundation.errors import InputError
+        from navcore.engine.simulation import simulate
         from navcore.scenario.file import load
 
         if self.out is not None:
             require_replaceable(self.out)
         scenario = load(self.scenario, self.set)
-        try:
-            run = _simulate(scenario, show=on_terminal() and not self.quiet)
-        except InputError as error:
-            raise error.located(self.scenario) from None
+        with working(scenario.title or "running", self.quiet, self.scenario) as (progress, stopped):
+            run = simulate(scenario, progress, stopped)
         if self.out is not None:
             write_results(run, self.out, self.format)
-        if self.json:
-            emit_json(metrics(run))
-        else:
-            from app.cli.run_text import run_text
-
-            emit("\n".join(run_text(run)))
+        emit_result(self.json, metrics(run), lambda: run_text(run))
         for method in run.methods:
             if method.reason:
                 say(f"{self.scenario}: {method.method.name}: {method.status}: {method.reason}")
         return 0 if run.status == "ok" else 3
-
-
-def _simulate(scenario: object, show: bool) -> Run:
-    from app.cli.progress import Bar
-    from app.cli.stop import stop_on_signal
-    from navcore.engine.simulation import simulate
-    from navcore.scenario.model import Scenario
-
-    assert isinstance(scenario, Scenario)
-    with stop_on_signal() as stopped, Bar(scenario.title or "running", show) as bar:
-        return simulate(scenario, bar.advance, stopped)

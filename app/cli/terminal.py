@@ -6,6 +6,7 @@ import io
 import json
 import os
 import sys
+from collections.abc import Callable, Iterable
 from typing import Any, TextIO
 
 _lost: list[str] = []
@@ -24,9 +25,9 @@ def emit(text: str) -> None:
     _write(sys.stdout, text)
 
 
-def emit_json(document: Any) -> None:
-    """Print one JSON document to stdout; NaN and infinity must have been replaced before."""
-    emit(json.dumps(document, indent=2, allow_nan=False))
+def emit_result(as_json: bool, document: Any, lines: Callable[[], Iterable[str]]) -> None:
+    """Print a result to stdout: one JSON document, without NaN and infinity, or its lines for people."""
+    emit(json.dumps(document, indent=2, allow_nan=False) if as_json else "\n".join(lines()))
 
 
 def say(text: str) -> None:

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from tyro.conf import Positional, UseAppendAction, arg
 
-from app.cli.table import columns, number
-from app.cli.terminal import emit, emit_json, on_terminal, say
-
-if TYPE_CHECKING:
-    from navcore.design.tune import Tuned
+from app.cli.terminal import emit_result, say
 
 
 @dataclass(frozen=True)
@@ -60,67 +56,32 @@ class TuneCommand:
 
     def execute(self) -> int:
         """Search and print; 3 when it was stopped."""
-        from app.cli.progress import Bar
-        from app.cli.stop import stop_on_signal
+        from app.cli.design_text import tune_text
+        from app.cli.progress import working
         from navcore.design.tune import tune
         from navcore.foundation.errors import Fault, InputError
         from navcore.scenario.file import load, to_toml
 
         scenario = load(self.scenario, self.set)
         others = [load(other) for other in self.worst_of]
-        with stop_on_signal() as stopped, Bar("tuning", on_terminal() and not self.quiet) as bar:
-            found = tune(
+        with working("tuning", self.quiet) as (progress, stopped):
+            result = tune(
                 scenario,
                 self.objective,
                 self.vary,
                 self.require,
                 along=self.along,
                 worst_of=others,
-                progress=bar.advance,
+                progress=progress,
                 cancelled=stopped,
             )
         if self.out is not None:
             try:
-                self.out.write_text(to_toml(found.scenario), encoding="utf-8")
+                self.out.write_text(to_toml(result.scenario), encoding="utf-8")
             except OSError as error:
-                raise InputError(
-                    Fault("", "--out", str(self.out), f"cannot be written: {error.strerror}")
-                ) from None
-        if self.json:
-            emit_json(found.as_dict())
-        else:
-            emit("\n".join(tune_text(self.objective, found)))
-        if found.stopped:
+                allowed = f"cannot be written: {error.strerror}"
+                raise InputError(Fault("", "--out", str(self.out), allowed)) from None
+        emit_result(self.json, result.as_dict(), lambda: tune_text(self.objective, result))
+        if result.stopped:
             say(f"{self.scenario}: stopped; this is the best so far")
-        return 3 if found.stopped else 0
-
-
-def tune_text(objective: str, found: Tuned) -> list[str]:
-    """Lines: the best values and how flat the optimum is, the objective before and after, what holds it."""
-    rows = [["parameter", "best", "within 5 %", ""]]
-    for field, value in found.best.items():
-        low, high = found.flat.get(field, (value, value))
-        end = "at the end of its range" if field in found.at_end_of_range else ""
-        rows.append([field, number(value, 5), f"{number(low, 3)} to {number(high, 3)}", end])
-    lines = [*columns(rows), ""]
-    lines += columns(
-        [
-            [objective, "", ""],
-            ["  before", *_shown(objective, found.before)],
-            ["  after", *_shown(objective, found.objective)],
-            ["  floor", *_shown(objective, found.floor)],
-            ["  times the floor", number(found.objective / found.floor, 4) if found.floor else "-", ""],
-        ]
-    )
-    for text in found.active:
-        cost = found.cost.get(text)
-        value, unit = _shown(objective, cost)
-        lines.append(f"active: {text}" + ("" if cost is None else f"; without it {value} {unit}".rstrip()))
-    return [*lines, *(f"warning: {text}" for text in found.warnings)]
-
-
-def _shown(objective: str, value: float | None) -> tuple[str, str]:
-    from navcore.design.measures import in_display_unit
-
-    shown, unit = in_display_unit(objective, value)
-    return number(shown), unit
+        return 3 if result.stopped else 0

@@ -1,0 +1,130 @@
+"""Budgets, best settings and fronts as tables for people."""
+
+from __future__ import annotations
+
+from app.cli.table import columns, number
+from navcore.design.figures import Figures
+from navcore.design.measures import in_display_unit
+from navcore.design.pareto import Pareto
+from navcore.design.result import Budget
+from navcore.design.tune import Tuned
+from navcore.foundation.units import ARCMIN, ARCSEC
+
+
+def budget_text(budget: Budget) -> list[str]:
+    """Lines: for each method its sources, their sum, and how many times the floor that is."""
+    lines = [
+        "one level channel at rest, steady state, standard deviations"
+        if budget.steady
+        else "along the scenario, root mean square over the run",
+        "",
+        *_floor(budget),
+    ]
+    for method in budget.methods:
+        rows = [_head(budget, method.name), _units(budget)]
+        rows += [[f"  {name}", *_cells(budget, entry.rms)] for name, entry in method.sources.items()]
+        rows.append(["  all", *_cells(budget, method.total.rms)])
+        times = budget.times_floor(method)
+        if any(value is not None for value in times.values()):
+            rows.append(["  times the floor", *(number(value, 3) for value in times.values())])
+        if method.total.final is not None:
+            rows.append(["  at the end", *_cells(budget, method.total.final)])
+        rows += [
+            [f"  {name}, constant", *_cells(budget, entry.rms)] for name, entry in method.constants.items()
+        ]
+        lines += ["", *columns(rows)]
+        lines += [
+            f"  {name}: grows to {_over(entry.growth.tilt_rad, ARCSEC)} arcsec, "
+            f"{number(entry.growth.velocity_mps)} m/s in one hour, with the square root of time"
+            for name, entry in method.sources.items()
+            if entry.growth is not None
+        ]
+        lines += [f"warning: {method.name}: {text}" for text in method.warnings]
+    return lines
+
+
+def _floor(budget: Budget) -> list[str]:
+    if budget.floor_reason:
+        return [f"no floor: {budget.floor_reason}"]
+    rows = [
+        _head(budget, "floor"),
+        _units(budget),
+        ["  any causal linear damping", *_cells(budget, budget.floor.rms)],
+    ]
+    if budget.floor.final is not None:
+        rows.append(["  at the end", *_cells(budget, budget.floor.final)])
+    lines = columns(rows)
+    return [*lines, f"note: {budget.floor_note}"] if budget.floor_note else lines
+
+
+def _head(budget: Budget, name: str) -> list[str]:
+    return [name, "tilt", "velocity", *([] if budget.steady else ["heading", "position"])]
+
+
+def _units(budget: Budget) -> list[str]:
+    return ["", "arcsec", "m/s", *([] if budget.steady else ["arcmin", "m"])]
+
+
+def _cells(budget: Budget, figures: Figures) -> list[str]:
+    cells = [_over(figures.tilt_rad, ARCSEC), number(figures.velocity_mps)]
+    return (
+        cells if budget.steady else [*cells, _over(figures.heading_rad, ARCMIN), number(figures.position_m)]
+    )
+
+
+def _over(angle: float | None, unit: float) -> str:
+    return number(None if angle is None else angle / unit)
+
+
+def tune_text(objective: str, found: Tuned) -> list[str]:
+    """Lines: the best values and how flat the optimum is, the objective before and after, what holds it."""
+    rows = [["parameter", "best", "within 5 %", ""]]
+    for field, value in found.best.items():
+        low, high = found.flat.get(field, (value, value))
+        end = "at the end of its range" if field in found.at_end_of_range else ""
+        rows.append([field, number(value, 5), f"{number(low, 3)} to {number(high, 3)}", end])
+    lines = [*columns(rows), ""]
+    lines += columns(
+        [
+            [objective, "", ""],
+            ["  before", *_in_unit(objective, found.before)],
+            ["  after", *_in_unit(objective, found.objective)],
+            ["  floor", *_in_unit(objective, found.floor)],
+            ["  times the floor", number(found.objective / found.floor, 4) if found.floor else "-", ""],
+        ]
+    )
+    for text in found.active:
+        cost = found.cost.get(text)
+        without = " ".join(_in_unit(objective, cost)).rstrip()
+        lines.append(f"active: {text}" + ("" if cost is None else f"; without it {without}"))
+    return [*lines, *(f"warning: {text}" for text in found.warnings)]
+
+
+def pareto_text(found: Pareto) -> list[str]:
+    """Lines: for each network the ends of its front and the settings there, the present design, the floor."""
+    first, second = found.objectives
+    rows = [["", first, second, ""], ["", *(in_display_unit(name, None)[1] for name in found.objectives), ""]]
+    for name, points in found.fronts.items():
+        chosen = [points[0], points[len(points) // 2], points[-1]] if len(points) > 2 else list(points)
+        for k, point in enumerate(chosen):
+            setting = ", ".join(
+                f"{field} = {value:.4g}" for field, value in point.network.items() if isinstance(value, float)
+            )
+            if point.earth_growth > 0.0:
+                setting = f"{setting or 'no parameter'}; its 24 h mode grows"
+            rows.append([name if k == 0 else "", *_values(found, point.values), setting])
+    if found.present is not None:
+        rows.append(["as it is", *_values(found, found.present), ""])
+    rows.append(["floor", *_values(found, found.floor), ""])
+    lines = columns([row[:3] for row in rows])
+    return [f"{line}  {row[3]}".rstrip() for line, row in zip(lines, rows, strict=True)]
+
+
+def _values(found: Pareto, values: tuple[float | None, float | None]) -> list[str]:
+    return [_in_unit(name, value)[0] for name, value in zip(found.objectives, values, strict=True)]
+
+
+def _in_unit(name: str, value: float | None) -> list[str]:
+    """A value of a measure and its unit."""
+    shown, unit = in_display_unit(name, value)
+    return [number(shown), unit]
