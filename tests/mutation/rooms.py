@@ -34,8 +34,8 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
             "test_loop_*", "test_whole_system*", "test_held_log", "test_network_report", "test_sun_step",
         ),
         (
-            "test_network_*", "test_pages", "test_placing", "test_any_network", "test_figures_whole_system",
-            "test_figures_workbench", "test_closed_loop_values", "test_liu_networks", "test_zha_transient",
+            "test_network_*", "test_pages", "test_placing", "test_any_network", "test_figures_poles",
+            "test_figures_frequency", "test_closed_loop_values", "test_liu_networks", "test_zha_transient",
         ),
     ),
 }  # fmt: skip

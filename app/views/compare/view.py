@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
+from html import escape
 from typing import Any
 
+from app.plots import style
 from app.session.laid import titled
-from app.session.pins import COLORS, Pin
+from app.session.pins import COLORS, MOST_PINS, Pin
+from app.session.session import first_editable
 from app.session.shown import Shown
 from app.session.window import window_of
 from app.shell import notices
 from app.shell.view import Frame, PictureView, Tab, if_user
-from app.views.compare.comparing import Comparing
 from app.views.compare.table import COLUMNS, lines_of, pins_html
+from navcore.foundation.errors import InputError
 
 PIN, FLIP = "Pin this run", "Flip to the baseline"
 CHOSEN, NAME, NOTE, COLOR, SHOWN = "pin", "pin name", "pin note", "pin colour", "pin shown"
@@ -35,15 +39,16 @@ class CompareView(PictureView[str]):
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
-        self._comparing = Comparing(frame.client, frame.session)
-        self._comparing.register(frame.commands)
-        frame.commands.register("sort-pins", self._sort)
+        self._mark = frame.gui.add_html("", order=4)
+        add = frame.commands.register
+        add("pin", lambda _: self._pin_run(), "Pin the present run", "P")
+        add("flip", lambda _: self._flip(), "Flip between this run and the baseline", "B")
+        add("sort-pins", self._sort)
 
     def build(self, tab: Tab) -> None:
         """Make the widgets."""
-        gui, comparing = self.frame.gui, self._comparing
+        gui, pins = self.frame.gui, self.session.pins
         self._options: dict[str, int] = {}
-        pins = self.session.pins
         with tab:
             gui.add_html('<div class="sb-compare"></div>', order=0)
             pin = gui.add_button(PIN, hint="Keep the present run as a baseline. Key: P.", order=1)
@@ -75,17 +80,17 @@ class CompareView(PictureView[str]):
             )
             remove = gui.add_button(REMOVE, order=12, color="orange", hint="Its curves go from every plot.")
         self._details = [self._chosen, self._name, self._color, self._shown, self._note, back, remove]
-        pin.on_click(lambda _: comparing.pin())
-        flip.on_click(lambda _: comparing.flip())
-        back.on_click(lambda _: self._with_chosen(comparing.go_back))
+        pin.on_click(lambda _: self._pin_run())
+        flip.on_click(lambda _: self._flip())
+        back.on_click(lambda _: self._with_chosen(self._go_back))
         remove.on_click(lambda _: self._with_chosen(lambda chosen: pins.remove(chosen.id)))
         self._chosen.on_update(if_user(self._show))
-        self._baseline.on_update(if_user(self._choose_baseline))
-        self._delta.on_update(if_user(lambda: self.session.show(None, delta=_STATISTICS[self._delta.value])))
-        self._name.on_update(if_user(lambda: self._edit(name=self._name.value)))
-        self._note.on_update(if_user(lambda: self._edit(note=self._note.value)))
-        self._color.on_update(if_user(lambda: self._edit(color=self._color.value)))
-        self._shown.on_update(if_user(lambda: self._edit(shown=self._shown.value)))
+        show = self.frame.show
+        self._baseline.on_update(if_user(lambda: show(baseline=self._options.get(self._baseline.value))))
+        self._delta.on_update(if_user(lambda: show(delta=_STATISTICS[self._delta.value])))
+        fields = {"name": self._name, "note": self._note, "color": self._color, "shown": self._shown}
+        for field, box in fields.items():
+            box.on_update(if_user(lambda field=field, box=box: self._edit(**{field: box.value})))
         self._edited: int | None = None
         self._show()
 
@@ -107,8 +112,8 @@ class CompareView(PictureView[str]):
         window = window_of(found.run, found.display)
         lines = lines_of(window, found.selected, pins, found.display.requirements)
         baseline = session.pins.baseline(found.display.baseline)
-        told = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
-        return told + pins_html(lines, found.display.pins_by, None if baseline is None else baseline.id)
+        note = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
+        return note + pins_html(lines, found.display.pins_by, None if baseline is None else baseline.id)
 
     def show(self, picture: str) -> None:
         """Show the table, and the pins' present names in the choosers."""
@@ -121,14 +126,53 @@ class CompareView(PictureView[str]):
             self.frame.show(pins_by=f"-{column}" if self.session.display.pins_by == column else column)
 
     def draw(self, found: Shown) -> None:
-        """Mark whether a pin is drawn in place of the run."""
-        self._comparing.mark(found.flipped)
+        """Frame all plots, and say at the window's top which pin they show; nothing for the present run."""
+        content = ""
+        if found.flipped is not None:
+            text = f"Showing the pin \u201c{found.flipped.name}\u201d, not the present run. Key B flips back."
+            role = f'<div id="sb-flip" role="status" hidden>{escape(text)}</div>'
+            content = f"{role}<style>{_frame(text, found.flipped.hex)}</style>"
+        if self._mark.content != content:
+            self._mark.content = content
+
+    def _pin_run(self) -> None:
+        """Pin the present run; one that is still under way as soon as it is there."""
+        self.session.after_run(self._pin_ready)
+
+    def _pin_ready(self) -> None:
+        session, client = self.session, self.frame.client
+        with session.lock:
+            run, origin, place = session.run, session.origin, session.selected
+        if run is None:
+            notices.tell(client, "Nothing to pin", ["there is no run yet"], "warning")
+            return
+        try:
+            edited = run.methods[min(place, len(run.methods) - 1)].method.name
+            session.pins.add(run, origin, method=edited)
+        except InputError:
+            lines = [f"There are {MOST_PINS} pins, which is the most. Remove one in the tab Compare."]
+            notices.tell(client, "Not pinned", lines, "warning")
+
+    def _flip(self) -> None:
+        """Show the baseline in the place of the present run, or the present run again."""
+        session = self.session
+        if not session.display.flipped and session.pins.baseline(session.display.baseline) is None:
+            notices.tell(self.frame.client, "Nothing to flip to", ["Pin a run first (key P)."], "warning")
+            return
+        session.show(None, flipped=not session.display.flipped)
+
+    def _go_back(self, pin: Pin) -> None:
+        """Make the pinned scenario the present one."""
+        session = self.session
+        if session.display.flipped:
+            session.show(None, flipped=False)
+        session.change(pin.scenario, None, origin=pin.origin, selected=first_editable(pin.scenario))
 
     def _show(self) -> None:
         session = self.session
         display = session.display
         pins = titled(session.pins.all, session.scenario if session.run is None else session.run.scenario)
-        options = {_title(pin): pin.id for pin in pins}
+        options = {f"{pin.id}: {pin.name}": pin.id for pin in pins}
         names = tuple(options) or ("",)
         chosen = next(
             (t for t, id in options.items() if id == self._options.get(self._chosen.value)), names[-1]
@@ -159,11 +203,7 @@ class CompareView(PictureView[str]):
             act(pin)
 
     def _edit(self, **changes: Any) -> None:
-        if (pin := self._pin) is not None:
-            self.session.pins.change(pin.id, **changes)
-
-    def _choose_baseline(self) -> None:
-        self.session.show(None, baseline=self._options.get(self._baseline.value))
+        self._with_chosen(lambda pin: self.session.pins.change(pin.id, **changes))
 
 
 def _offer(handle: Any, options: tuple[str, ...], value: str) -> None:
@@ -172,8 +212,15 @@ def _offer(handle: Any, options: tuple[str, ...], value: str) -> None:
     handle.value = value
 
 
-def _title(pin: Pin) -> str:
-    return f"{pin.id}: {pin.name}"
+def _frame(text: str, color: str) -> str:
+    """Style that shows a text over the page; everything but plain letters is escaped, for it is a user's."""
+    safe = re.sub(r"[^A-Za-z0-9 .,]", lambda match: f"\\{ord(match[0]):06x}", text)
+    return (
+        f'body::after{{content:"{safe}";position:fixed;z-index:9999;top:0;left:50%;transform:translateX(-50%);'
+        f"padding:7px 18px;border-radius:0 0 6px 6px;background:{color};color:#fff;font:600 15px "
+        f"{style.FONT_FAMILY};pointer-events:none}}"
+        f".js-plotly-plot,.uplot,.sb-table{{outline:3px solid {color};outline-offset:-3px}}"
+    )
 
 
 VIEW = CompareView

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
+
 from app.session.shown import Shown
 from app.shell.view import Frame, Tab, View, if_user
-from app.views.scene.bar import PlaybackPanel
+from app.views.scene.bar import bar_html
 from app.views.scene.cameras import CAMERAS, Cameras, Window
 from app.views.scene.drawer import SceneDrawer
 from app.views.scene.playback import Playback, PlayState
@@ -37,7 +40,7 @@ class SceneView(View):
         self._scene = SceneDrawer(frame.client.scene)
         self._cameras = Cameras(frame.client.camera)
         self._run: Run | None = None
-        self._closed = False
+        self._count, self._closed = 0, False
         self.playback = Playback(self._show)
 
     def build(self, tab: Tab) -> None:
@@ -49,8 +52,17 @@ class SceneView(View):
                 hint="Factor by which the 3D view enlarges the position errors; as needed: chosen so "
                 "that they show.",
             )  # fmt: skip
-            self._panel = PlaybackPanel(gui, self.frame.commands, self.playback, self._look)
+            self._bar = gui.add_html("", order=3)
         self._factor.on_update(if_user(self._enlarge))
+        add, playback = self.frame.commands.register, self.playback
+        add("shown", _number(lambda count: playback.heard(self._count - int(count))), watcher=True)
+        add("play", lambda _: playback.toggle(), "Play or pause", "Space", watcher=True)
+        add("seek", _number(playback.seek), watcher=True)
+        add("speed", _number(playback.set_speed), watcher=True)
+        add("loop", lambda text: playback.set_loop(text == "on"), watcher=True)
+        for camera in CAMERAS:
+            title = f"3D view: {camera}"
+            add(f"camera-{camera}", lambda _, camera=camera: self._look(camera), title, watcher=True)
 
     def _enlarge(self) -> None:
         factor = self._factor.value
@@ -101,19 +113,19 @@ class SceneView(View):
         return Window(width, height, above, below)
 
     def _show(self, state: PlayState) -> None:
-        with self.session.lock, self.frame.client.atomic():
-            if self._closed or self._run is None:
-                return
-            self._scene.move_ship(state.time_s)
-            self._tell(state)
-        self.frame.client.flush()
+        self._change(lambda: self._scene.move_ship(state.time_s), state)
 
     def _look(self, camera: str) -> None:
+        place = self._scene.place
+        self._change(lambda: self._cameras.choose(camera, self._window, place), self.playback.state)
+
+    def _change(self, act: Callable[[], None], state: PlayState) -> None:
+        """Change the 3D view at once, and the bar with it."""
         with self.session.lock, self.frame.client.atomic():
             if self._closed:
                 return
-            self._cameras.choose(camera, self._window, self._scene.place)
-            self._tell(self.playback.state)
+            act()
+            self._tell(state)
         self.frame.client.flush()
 
     def _tell(self, state: PlayState) -> None:
@@ -121,7 +133,21 @@ class SceneView(View):
             self._cameras.follow(self._scene.place)
         if self._run is not None:
             display, selected = self.session.display, self.session.selected
-            self._panel.show(state, self._run, selected, self._cameras.chosen, display, self._scene)
+            self._count += 1
+            camera = self._cameras.chosen
+            self._bar.content = bar_html(
+                self._count, state, camera, self._run, selected, display, self._scene
+            )
+
+
+def _number(use: Callable[[float], None]) -> Callable[[str], None]:
+    """Command that takes a number; hostile or torn arguments ask for nothing."""
+
+    def take(text: str) -> None:
+        with suppress(ValueError, OverflowError):
+            use(float(text))
+
+    return take
 
 
 VIEW = SceneView
