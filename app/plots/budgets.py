@@ -22,8 +22,8 @@ def steady_budget(scenario: Scenario) -> Budget:
     """
     # frozen, and so hashable, which its type does not say
     keys: list[Any] = [scenario.model_copy(update={"method": (method,)}) for method in scenario.method]
-    alone = [_kept(key) for key in keys]
-    return replace(alone[0], methods=tuple(found.methods[0] for found in alone))
+    budgets = [_kept(key) for key in keys]
+    return replace(budgets[0], methods=tuple(each.methods[0] for each in budgets))
 
 
 @lru_cache(maxsize=64)
@@ -41,16 +41,14 @@ def times_the_floor(scenario: Scenario) -> list[str]:
     '1.68, 9.26'
     """
     try:
-        found = steady_budget(scenario)
+        steady = steady_budget(scenario)
     except InputError:
         return ["none"] * len(scenario.method)
-    if found.floor_reason:
+    if steady.floor_reason:
         return ["no floor"] * len(scenario.method)
     texts = []
-    for method, given in zip(found.methods, scenario.method, strict=True):
-        if given.damping == "kalman":
-            texts.append("the floor itself")
-            continue
-        times = [value for value in found.times_floor(method).values() if value is not None]
-        texts.append(", ".join(number(value, 3) for value in times) or "no steady state")
+    for method, given in zip(steady.methods, scenario.method, strict=True):
+        times = [number(value, 3) for value in steady.times_floor(method).values() if value is not None]
+        told = "the floor itself" if given.damping == "kalman" else ", ".join(times)
+        texts.append(told or "no steady state")
     return texts

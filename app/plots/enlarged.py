@@ -9,24 +9,9 @@ from typing import Any
 from app.plots.plotly_data import PlotlyFigure
 
 _PLOTLY_PX = frozenset(
-    {
-        "size",
-        "standoff",
-        "ticklen",
-        "tickwidth",
-        "linewidth",
-        "gridwidth",
-        "zerolinewidth",
-        "xshift",
-        "yshift",
-        "itemwidth",
-        "tracegroupgap",
-        "borderpad",
-        "borderwidth",
-        "ax",
-        "ay",
-    }
-)
+    {"size", "standoff", "ticklen", "tickwidth", "linewidth", "gridwidth", "zerolinewidth", "xshift",
+     "yshift", "itemwidth", "tracegroupgap", "borderpad", "borderwidth", "ax", "ay"}
+)  # fmt: skip
 _PLOTLY_INSIDE = {"margin": frozenset("lrtb"), "line": frozenset({"width"})}
 """Names that count pixels only within these."""
 _KEPT = frozenset({"x", "y", "text", "customdata", "meta"})
@@ -48,18 +33,17 @@ def enlarged(figure: PlotlyFigure, scale: float) -> PlotlyFigure:
     """
     if scale == 1.0:
         return figure
-    made = {part: _larger(figure[part], scale, "") for part in ("data", "layout")}
-    return PlotlyFigure(figure | made)
+    return PlotlyFigure(figure | {part: _larger(figure[part], scale, "") for part in ("data", "layout")})
 
 
 def enlarged_time_plot(arguments: dict[str, Any], scale: float) -> dict[str, Any]:
     """Return the same of what `app.plots.uplot.UplotFigure.kwargs` gives."""
     if scale == 1.0:
         return arguments
-    made = {
+    larger = {
         key: value if key == "data" else _larger_time(value, scale, key) for key, value in arguments.items()
     }
-    return made | {"height": round(made["height"])} if made.get("height") else made
+    return larger | {"height": round(larger["height"])} if larger.get("height") else larger
 
 
 def _larger(value: Any, scale: float, inside: str) -> Any:
@@ -82,7 +66,7 @@ def _larger_time(value: Any, scale: float, key: str) -> Any:
     if key in _UPLOT_PX:
         return _times(value, scale)
     if isinstance(value, str) and key in ("font", "labelFont"):
-        return _FONT_PX.sub(lambda found: f"{float(found[1]) * scale:g}px", value)
+        return _FONT_PX.sub(lambda match: f"{float(match[1]) * scale:g}px", value)
     if isinstance(value, Mapping):
         return {name: _larger_time(each, scale, name) for name, each in value.items()}
     if isinstance(value, tuple) and key in ("series", "axes"):

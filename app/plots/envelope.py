@@ -66,19 +66,20 @@ def envelope(runs: Sequence[Run]) -> Envelope:
         At least one; they are cut to the shortest.
     """
     low, high, times = [], [], []
-    for index in range(len(runs[0].methods)):
-        series = [run.methods[index].plot for run in runs]
+    for methods in zip(*(run.methods for run in runs), strict=True):
+        series = [method.plot for method in methods]
         pairs = 2 if len(series[0].t_s) > 2 and series[0].t_s[0] > 0.0 else 1
         bins = min(len(each.t_s) for each in series) // pairs
         stacked = np.stack([each.values[: bins * pairs].reshape(bins, pairs, -1) for each in series])
         low.append(np.percentile(stacked.min(axis=2), LOWEST, axis=0))
         high.append(np.percentile(stacked.max(axis=2), HIGHEST, axis=0))
         times.append(series[0].t_s[: bins * pairs].reshape(bins, pairs).mean(axis=1))
-    count = min((len(each) for each in times), default=0)
-    shortest = times[0][:count] if times else np.empty(0)
+    count = min(map(len, times))
     words = f"{LOWEST:g} to {HIGHEST:g} % of {len(runs)} seeds"
     lower, upper = (tuple(each[:count] for each in edges) for edges in (low, high))
-    return Envelope(shortest, lower, upper, words, ("Each seed is another draw of all random errors.",))
+    return Envelope(
+        times[0][:count], lower, upper, words, ("Each seed is another draw of all random errors.",)
+    )
 
 
 _COVERS = (
@@ -88,20 +89,20 @@ _COVERS = (
 _MOST_NAMED = 2
 
 
-def covariance_envelope(scenario: Scenario, found: Bands) -> Envelope:
+def covariance_envelope(scenario: Scenario, bands: Bands) -> Envelope:
     """Bands of one standard deviation on both sides of zero; of the position from zero up.
 
     Parameters
     ----------
     scenario : Scenario
         What the bands are of.
-    found : Bands
+    bands : Bands
         Of `navcore.design.bands.covariance_bands`.
     """
     low: list[np.ndarray | None] = []
     high: list[np.ndarray | None] = []
     missing, details = [], [_COVERS]
-    for method, band in zip(scenario.method, found.methods, strict=True):
+    for method, band in zip(scenario.method, bands.methods, strict=True):
         if band.sigma is None:
             missing.append(method.name)
             details.append(f"{method.name}: no band, {band.reason}.")
@@ -115,4 +116,4 @@ def covariance_envelope(scenario: Scenario, found: Bands) -> Envelope:
         low.append(np.column_stack([-band.sigma, np.zeros_like(distance)]))
     names = ", ".join(missing) if len(missing) <= _MOST_NAMED else f"{len(missing)} methods"
     words = "±1σ by covariance" + (f"; no covariance: {names}" if missing else "")
-    return Envelope(found.t_s, tuple(low), tuple(high), words, tuple(details))
+    return Envelope(bands.t_s, tuple(low), tuple(high), words, tuple(details))

@@ -50,12 +50,10 @@ class Packed(dict[str, str]):
 def packed(values: np.ndarray) -> Packed:
     """Array as plotly.js takes it in binary: float32, base64. Infinite values become gaps."""
     single = np.asarray(values, dtype="<f4")
-    finite = np.isfinite(single)
-    if not finite.all():
-        single = np.where(finite, single, np.float32("nan"))
-    made = Packed(dtype="f4", bdata=base64.b64encode(single.tobytes()).decode("ascii"))
-    made.full = np.asarray(values)
-    return made
+    finite = np.where(np.isfinite(single), single, np.float32("nan"))
+    array = Packed(dtype="f4", bdata=base64.b64encode(finite.tobytes()).decode("ascii"))
+    array.full = np.asarray(values)
+    return array
 
 
 def values_of(value: Any) -> list[float | None]:

@@ -1,1 +1,1 @@
-"""The panel that explains the control in hand."""
+"""The panel that explains the selected control."""

@@ -111,13 +111,13 @@ def explain_html(spec: FieldSpec, scenario: Scenario) -> str:
     return told_html(spec.label, spec.hint, explanation(key_of(spec.path, scenario)))
 
 
-def told_html(label: str, hint: str, told: Explanation | None = None) -> str:
+def told_html(label: str, hint: str, more: Explanation | None = None) -> str:
     """HTML of an explanation: heading, words, equation, source."""
     parts = [f"<h2>{escape(label)}</h2>", f"<p>{escape(hint)}</p>" if hint else ""]
-    if told is not None:
+    if more is not None:
         parts += [
-            f"<p>{escape(told.says)}</p>" if told.says else "",
-            *(formula_html(part, block=True) for part in told.latex.split(r"\qquad") if part.strip()),
-            f'<p class="sb-source">Source: {escape(told.source)}</p>' if told.source else "",
+            f"<p>{escape(more.says)}</p>" if more.says else "",
+            *(formula_html(part, block=True) for part in more.latex.split(r"\qquad") if part.strip()),
+            f'<p class="sb-source">Source: {escape(more.source)}</p>' if more.source else "",
         ]
     return "".join(parts)

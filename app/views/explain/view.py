@@ -1,4 +1,4 @@
-"""The panel that explains the control in hand; app/views/learn/learn.js asks for it."""
+"""The panel that explains the selected control; app/views/learn/learn.js asks for it."""
 
 from __future__ import annotations
 
@@ -31,8 +31,9 @@ class ExplainView(View):
             content = self._content(id.strip())
             self._count += 1
             # No div: what a hidden div holds is for scripts, and stays English (app.languages.markup).
-            told = f'<section id="sb-explained" hidden data-count="{self._count}">{content}</section>'
-            self._html.content = told
+            self._html.content = (
+                f'<section id="sb-explained" hidden data-count="{self._count}">{content}</section>'
+            )
 
     def _content(self, id: str) -> str:
         control = next((c for c in self.frame.controls() if id in c.ids), None)

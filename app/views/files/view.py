@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from html import escape
-from typing import TYPE_CHECKING, Any
 
 from app.plots import style
 from app.session.uploads import LARGEST_FILE, MIB, Upload
 from app.shell import notices
 from app.shell.opening import METRICS, SCENARIO
 from app.shell.view import Frame, Tab, View
-
-if TYPE_CHECKING:
-    import viser
 
 
 class FilesView(View):
@@ -35,13 +30,13 @@ class FilesView(View):
         gui, opening = self.frame.gui, self.frame.opening
         with tab:
             gui.add_html(notices.heading("Run on recordings"), order=0)
-            told = (
+            kinds = (
                 f"Speed log, track and heading: NMEA 0183, CSV, Parquet or MAT, one file after the other, "
                 f"at most {LARGEST_FILE / MIB:.0f} MiB each. A recorded IMU (PSINS or CSV) runs as full "
                 "strapdown. A scenario (.toml) is opened."
             )
-            gui.add_html(notices.small(told), order=1)
-            upload = gui.add_upload_button("Upload a file", hint=told, order=2)
+            gui.add_html(notices.small(kinds), order=1)
+            upload = gui.add_upload_button("Upload a file", hint=kinds, order=2)
             self._list = gui.add_html("", order=3)
             self._use = gui.add_button("Run on these files", order=4, visible=False)
             self._forget = gui.add_button("Remove the files", color="gray", order=5, visible=False)
@@ -49,7 +44,7 @@ class FilesView(View):
             save = [
                 gui.add_button(f"Download {name}", color="gray", order=11) for name in (SCENARIO, METRICS)
             ]
-        upload.on_upload(lambda event: _pass_on(event, opening.take_file))
+        upload.on_upload(lambda event: opening.take_file(event.target.value.name, event.target.value.content))
         self._use.on_click(lambda _: opening.use_files())
         self._forget.on_click(lambda _: opening.forget_files())
         for button, name in zip(save, (SCENARIO, METRICS), strict=True):
@@ -60,11 +55,6 @@ class FilesView(View):
         uploads = self.session.uploads
         self._list.content = "".join(_entry(name, upload) for name, upload in uploads.files.items())
         self._use.visible = self._forget.visible = bool(uploads.files)
-
-
-def _pass_on(event: viser.GuiEvent[Any], take: Callable[[str, bytes], None]) -> None:
-    file = event.target.value
-    take(file.name, file.content)
 
 
 def _entry(name: str, upload: Upload) -> str:

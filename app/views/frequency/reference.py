@@ -37,17 +37,14 @@ def optimal_reference(scenario: Scenario) -> Reference:
 def _reference(figures: SensorFigures, log: str, omega_s: float) -> Reference:
     if log == "none":
         return Reference("no optimal H: the scenario has no log")
-    missing = [
-        what
-        for what, there in (("gyros and accelerometers", figures.inertial), ("log", figures.log))
-        if not there
-    ]
+    known = {"gyros and accelerometers": figures.inertial, "log": figures.log}
+    missing = [sensors for sensors, there in known.items() if not there]
     if missing:
         return Reference(f"no optimal H: no random error of {' and '.join(missing)}")
     try:
-        found = OptimalNetwork().with_sensors(figures)
-        network = found.transfer(omega_s)
+        optimal = OptimalNetwork().with_sensors(figures)
+        network = optimal.transfer(omega_s)
     except InputError as error:
         return Reference(f"no optimal H: {error.faults[0].allowed}")
     fragile = ", fragile" if network.warnings else ""
-    return Reference(f"optimal for these sensors (ρ = {found.rho:g}{fragile})", network)
+    return Reference(f"optimal for these sensors (ρ = {optimal.rho:g}{fragile})", network)

@@ -24,7 +24,7 @@ COPY_TEXT, PASTE_TEXT = "copy as TOML", "paste TOML"
 FIT, USE_FIT = "Fit this log's error", "Simulate a log with this error"
 _FIT_TOLD = "Compares the recorded log with the recorded track: delay, bias, noise and drift of its error."
 _USE_TOLD = (
-    "The recorded log gives way to a simulated one with the fitted error, of any length. Undo brings it back."
+    "Replaces the recorded log by a simulated one with the fitted error, of any length. Undo brings it back."
 )
 _FIRST = 7
 """Fields of the log's model, in its order, that are shown without asking."""

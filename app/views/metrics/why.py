@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from navcore.design.dominance import Cause, Why
     from navcore.engine.run import Run
 
-_WAITS = "What dominates this result is looked for as soon as it stands still."
+_WAITS = "What dominates this result is computed once the controls rest."
 
 
 def why_html(explainer: Explainer, run: Run, selected: int = 0, *, folded: bool = False) -> str:
@@ -35,52 +35,42 @@ def why_html(explainer: Explainer, run: Run, selected: int = 0, *, folded: bool 
     result, fits = explainer.result, explainer.asked is run
     if fits and result is not None:
         name, causes = result.methods[min(selected, len(result.methods) - 1)]
-        return _box(_lines(result, run), "", f"{name}: {_words(causes, result)}", folded=folded)
+        return _box(_lines(result), "", f"{name}: {_told(causes, result)}", folded=folded)
     if explainer.words:
         return _box("", "What dominates this result could not be found.", "", folded=folded)
+    state = _WAITS
     if explainer.fraction is not None:
-        told = f"Running the error sources apart: {100.0 * explainer.fraction:.0f} %."
-    else:
-        told = _WAITS
+        state = f"Running the error sources apart: {100.0 * explainer.fraction:.0f} %."
     if result is None or len(result.methods) != len(run.methods):
-        return _box("", told, "", folded=folded)
-    old = f'<div class="sb-old">{_lines(result, run)}</div>'
-    return _box(old, f"{told} Below: of an earlier run.", "", folded=folded)
+        return _box("", state, "", folded=folded)
+    old = f'<div class="sb-old">{_lines(result)}</div>'
+    return _box(old, f"{state} Below: of an earlier run.", "", folded=folded)
 
 
 def _box(lines: str, state: str, short: str, *, folded: bool) -> str:
-    look = f"margin:2px 10px 8px;font-size:12.5px;line-height:1.4;color:{style.INK}"
-    told = f'<span role="status" style="color:{style.MUTED}">{escape(state)}</span>' if state else ""
-    which = f'id="sb-why" data-fits="{int(not state)}" style="{look}"'
+    status = f'<span role="status" class="sb-muted">{escape(state)}</span>' if state else ""
+    which = f'id="sb-why" data-fits="{int(not state)}"'
     if not folded:
-        return f"<div {which}><b>Why</b> {told}{lines}</div>"
-    row = "white-space:nowrap;overflow:hidden;text-overflow:ellipsis;cursor:pointer"
-    return (
-        f'<details {which}><summary style="{row}"><b>Why</b> {told}{escape(short)}</summary>{lines}</details>'
-    )
+        return f"<div {which}><b>Why</b> {status}{lines}</div>"
+    return f"<details {which}><summary><b>Why</b> {status}{escape(short)}</summary>{lines}</details>"
 
 
-def _words(causes: tuple[Cause, ...], result: Why) -> str:
+def _words(causes: tuple[Cause, ...], result: Why, *quantities: str) -> str:
+    return "; ".join(cause_text(cause, result) for cause in causes if cause.quantity in quantities)
+
+
+def _told(causes: tuple[Cause, ...], result: Why) -> str:
     """Position and tilt in words; the heading stands in the tooltip."""
-    told = [cause_text(cause, result) for cause in causes if cause.quantity in (POSITION, TILT)]
-    return "; ".join(told) or "neither position error nor tilt"
+    return _words(causes, result, POSITION, TILT) or "neither position error nor tilt"
 
 
-def _heading(causes: tuple[Cause, ...], result: Why) -> str:
-    return "; ".join(cause_text(cause, result) for cause in causes if cause.quantity == HEADING)
-
-
-def _lines(result: Why, run: Run) -> str:
-    rows = []
-    for index, (name, causes) in enumerate(result.methods):
-        words = _words(causes, result)
-        rows.append(
-            f'<div title="{escape(_heading(causes, result))}"><span style="display:inline-block;width:14px;'
-            f"height:4px;border-radius:2px;margin-right:6px;vertical-align:middle;"
-            f'background:{style.method_color(index)}"></span><b>{escape(name)}</b>: {escape(words)}.</div>'
-        )
-    remarks = "".join(f'<div style="color:{style.MUTED}">{escape(text)}</div>' for text in result.remarks)
-    return "".join(rows) + remarks
+def _lines(result: Why) -> str:
+    rows = "".join(
+        f'<div title="{escape(_words(causes, result, HEADING))}"><span class="sb-mark" style="background:'
+        f'{style.method_color(index)}"></span><b>{escape(name)}</b>: {escape(_told(causes, result))}.</div>'
+        for index, (name, causes) in enumerate(result.methods)
+    )
+    return rows + "".join(f'<div class="sb-muted">{escape(text)}</div>' for text in result.remarks)
 
 
 def cause_text(cause: Cause, result: Why) -> str:

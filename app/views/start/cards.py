@@ -53,10 +53,10 @@ def card_svg(run: Run, of: str) -> str:
         for i, m in enumerate(run.methods)
     )
     count = len(run.methods)
-    told = f"Velocity error {symbol} of {count} methods, up to {rounded(peak)} m/s in {duration(span)}"
+    words = f"Velocity error {symbol} of {count} methods, up to {rounded(peak)} m/s in {duration(span)}"
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" data-of="{of}">'
-        f'<title>{escape(told)}</title><path d="M0 {HEIGHT / 2:g}H{WIDTH}" stroke="{style.GRID}"/>'
+        f'<title>{escape(words)}</title><path d="M0 {HEIGHT / 2:g}H{WIDTH}" stroke="{style.GRID}"/>'
         f'<g fill="none" stroke-width="1.4" stroke-linejoin="round">{lines}</g></svg>\n'
     )
 
@@ -64,16 +64,13 @@ def card_svg(run: Run, of: str) -> str:
 def _points(at: np.ndarray, values: np.ndarray) -> str:
     """Both extremes of each bin, so that noise keeps its width."""
     points: list[str] = []
+    heights = HEIGHT / 2 - values * (HEIGHT / 2 - _EDGE)
     for part in np.array_split(np.arange(len(at)), min(_BINS, max(len(at) // 2, 1))):
-        found = part[np.isfinite(values[part]) & (np.abs(values[part]) <= 1.001)]
-        if len(found):
-            ends = sorted({int(found[np.argmin(values[found])]), int(found[np.argmax(values[found])])})
-            points += [f"{WIDTH * at[k]:.0f},{_height(float(values[k])):.1f}" for k in ends]
+        drawn = part[np.isfinite(values[part]) & (np.abs(values[part]) <= 1.001)]
+        if len(drawn):
+            ends = sorted({int(drawn[np.argmin(values[drawn])]), int(drawn[np.argmax(values[drawn])])})
+            points += [f"{WIDTH * at[k]:.0f},{heights[k]:.1f}" for k in ends]
     return " ".join(points)
-
-
-def _height(value: float) -> float:
-    return HEIGHT / 2 - value * (HEIGHT / 2 - _EDGE)
 
 
 def main() -> None:

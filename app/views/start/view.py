@@ -107,8 +107,19 @@ class StartView(View):
         fresh = not session.restored and session.run is None
         with tab:
             gui.add_html(_LINKS, order=_ORDER)
-            content = _doors_html() + _steps_html()
-            gui.add_html(f'<div id="sb-start" hidden data-fresh="{int(fresh)}">{content}</div>', order=3)
+            doors = "".join(
+                f'<button class="sb-door" type="button" data-command="{command}"><b>{escape(title)}</b>'
+                f"<span>{escape(text)}</span></button>"
+                for command, title, text in _DOORS
+            )
+            steps = "".join(
+                f'<div data-step="{number}" data-tab="{escape(step.get("tab", ""))}" '
+                f'title="{escape(step.get("label", ""))}" data-find="{escape(step.get("find", ""))}">'
+                f"<h2>{escape(step['title'])}</h2><p>{escape(step['text'])}</p></div>"
+                for number, step in enumerate(_STEPS)
+            )
+            start = f'<div id="sb-start" hidden data-fresh="{int(fresh)}">{doors}{steps}</div>'
+            gui.add_html(start, order=3)
             self._gallery = gui.add_html("", order=3)
 
     def _show(self, title: str, cards: str) -> None:
@@ -127,8 +138,8 @@ class StartView(View):
             f"{card.svg}<b>{escape(card.title)}</b><span>{escape(card.trade)}</span></button>"
             for card in network_cards(scenario.omega_s)
         )
-        told = "Each with its default parameters. A click gives it to the method that is edited."
-        return f"<p>{told}</p><div class='sb-cards'>{cards}</div>"
+        about = "Each with its default parameters. A click gives it to the method that is edited."
+        return f"<p>{about}</p><div class='sb-cards'>{cards}</div>"
 
     def _choose_network(self, id: str) -> None:
         if id not in NETWORKS:
@@ -136,7 +147,7 @@ class StartView(View):
         session = self.session
         with (
             session.lock,
-            notices.told(self.frame.client, "The network was not taken over", self.frame.refresh),
+            notices.told(self.frame.client, "The network was refused", self.frame.refresh),
         ):
             path = ("method", session.selected, "network", "id")
             session.change(edits.with_choice(session.scenario, path, id), None)
@@ -155,23 +166,6 @@ class StartView(View):
         self.frame.commands.ask_page("tour", "1")
 
 
-def _doors_html() -> str:
-    return "".join(
-        f'<button class="sb-door" type="button" data-command="{command}"><b>{escape(title)}</b>'
-        f"<span>{escape(text)}</span></button>"
-        for command, title, text in _DOORS
-    )
-
-
-def _steps_html() -> str:
-    return "".join(
-        f'<div data-step="{number}" data-tab="{escape(step.get("tab", ""))}" '
-        f'title="{escape(step.get("label", ""))}" data-find="{escape(step.get("find", ""))}">'
-        f"<h2>{escape(step['title'])}</h2><p>{escape(step['text'])}</p></div>"
-        for number, step in enumerate(_STEPS)
-    )
-
-
 @lru_cache(maxsize=1)
 def _scenarios_html() -> str:
     cards = ""
@@ -182,8 +176,8 @@ def _scenarios_html() -> str:
             f'<button class="sb-card" data-command="preset-{name}">{picture}<b>{escape(name)}</b>'
             f"<span>{escape(scenario.title)}.</span></button>"
         )
-    told = "The curves are the velocity error of each method in the scenario's own run."
-    return f"<p>{told}</p><div class='sb-cards'>{cards}</div>"
+    about = "The curves are the velocity error of each method in the scenario's own run."
+    return f"<p>{about}</p><div class='sb-cards'>{cards}</div>"
 
 
 _LINKS = (

@@ -65,8 +65,8 @@ class VerificationView(View):
 
 def _html(verifier: Verifier, scenario: Scenario) -> str:
     if verifier.fraction is not None:
-        told = notices.note(["Verifying: the full strapdown and the linear model on its noise."], "info")
-        return told + notices.note(verifier.words, "warning")
+        progress = notices.note(["Verifying: the full strapdown and the linear model on its noise."], "info")
+        return progress + notices.note(verifier.words, "warning")
     if verifier.words:
         return notices.note(verifier.words, "warning")
     result = verifier.result
