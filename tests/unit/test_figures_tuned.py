@@ -15,7 +15,7 @@ def test_every_row_is_a_dot_in_the_frame_and_stands_beside_suns() -> None:
     assert len(dots) == 3
     assert all(0 < float(x) < WIDTH and 0 < float(y) < HEIGHT for x, y in dots)
     assert float(dots[0][0]) < float(dots[1][0]) < float(dots[2][0])
-    assert html.count("<tr><td>") == 3
+    assert html.count('<tr><td class="sb-n">') == 3
     for kn, xi, his in found.beside_sun():
-        assert f"<td>{kn:g}</td><td>{xi:.3g}</td><td>{his:.2g}</td>" in html
+        assert f'>{kn:g}</td><td class="sb-n">{xi:.3g}</td><td class="sb-n">{his:.2g}</td>' in html
     assert "velocity difference (kn)" in html

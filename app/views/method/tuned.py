@@ -6,6 +6,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from app.plots import style
+from app.plots.table import cell, row, table
 from app.plots.units import number, round_up
 from navcore.law.policy.adaptive import SUN_TABLE
 
@@ -72,18 +73,14 @@ def _axes(across: float, high: float, at) -> str:
 
 def table_html(tuning: Tuning, color: str) -> str:
     """The plot, the rows, and what the user should know about them."""
-    cells = "".join(
-        f"<tr><td>{number(kn, 3)}</td><td>{number(xi, 3)}</td><td>{number(his, 2)}</td></tr>"
+    head = row(cell(title, "sb-n", tag="th") for title in ("difference (kn)", "ζ found", "Sun"))
+    body = [
+        row(cell(text, "sb-n") for text in (number(kn, 3), number(xi, 3), number(his, 2)))
         for kn, xi, his in tuning.beside_sun()
-    )
+    ]
     warnings = "".join(f"<li>{escape(text)}</li>" for text in tuning.warnings)
     return (
-        f'<div class="sb-tuned" style="margin:4px 10px 8px;font-size:12.5px;color:{style.INK}">'
-        f"{table_svg(tuning, color)}<details><summary>table</summary>"
-        '<table style="border-collapse:collapse;text-align:right;font-variant-numeric:tabular-nums">'
-        '<thead><tr><th style="padding:1px 10px 1px 0">difference (kn)</th>'
-        '<th style="padding:1px 10px">ζ found</th><th style="padding:1px 0 1px 10px">Sun</th></tr></thead>'
-        f"<tbody>{cells}</tbody></table></details>"
-        + (f'<ul style="margin:4px 0 0;padding-left:18px">{warnings}</ul>' if warnings else "")
-        + "</div>"
+        f'<div class="sb-tuned">{table_svg(tuning, color)}'
+        f"<details><summary>table</summary>{table([head], body)}</details>"
+        f"{f'<ul>{warnings}</ul>' if warnings else ''}</div>"
     )

@@ -13,6 +13,7 @@ from app.jobs.designer import TableTask
 from app.plots import style
 from app.shell import notices
 from app.shell.control import Control
+from app.shell.searching import SearchControls, reveal, show_html
 from app.shell.section import Section
 from app.shell.view import Frame, Tab
 from app.views.method.tuned import table_html
@@ -55,13 +56,9 @@ class TuningPanel:
         self._section = Section(gui, self._folder, self._edit, 0.0)
         with self._folder:
             gui.add_html(notices.small(_TOLD), order=-1.0)
-            self._start = gui.add_button(FIND, order=20.0, hint=_TOLD)
-            self._progress = gui.add_progress_bar(0.0, visible=False, order=21.0)
-            self._stop = gui.add_button(STOP, color="orange", visible=False, order=22.0)
+            self._controls = SearchControls(gui, self._tuner, self._find, (FIND, STOP), _TOLD, order=20.0)
             self._found = gui.add_html("", visible=False, order=23.0)
             self._use = gui.add_button(USE, visible=False, order=24.0, hint="One step of undo takes it back.")
-        self._start.on_click(lambda _: self._find())
-        self._stop.on_click(lambda _: self._tuner.cancel())
         self._use.on_click(lambda _: self._take())
 
     def show(self) -> None:
@@ -69,29 +66,21 @@ class TuningPanel:
         tuner, scenario, index = self._tuner, self._session.scenario, self._session.selected
         method = scenario.method[index]
         wanted = tunable(method)
-        if self._folder.visible != wanted:
-            self._folder.visible = wanted
+        reveal((self._folder, wanted))
         if not wanted:
             return
         self._network = method.network
         settings = self._settings()
         values: dict[form.Path, Any] = {("tuning", name): getattr(settings, name) for name in _SHOWN}
         self._section.show(_specs(settings), values, None)
-        fraction, result = tuner.fraction, tuner.result
-        if fraction is not None:
-            self._progress.value = round(100.0 * fraction, 1)
-        running = fraction is not None
-        visible = ((self._start, not running), (self._progress, running), (self._stop, running))
-        for handle, shown in (*visible, (self._use, not running and result is not None)):
-            if handle.visible != shown:
-                handle.visible = shown
+        running, result = self._controls.follow(), tuner.result
+        reveal((self._use, not running and result is not None))
         html = notices.note(tuner.words, "warning")
         if result is not None and tuner.asked is not None:
             if tuner.asked.scenario != scenario:
                 html += notices.note(["Found for the scenario as it was before: find it anew."], "warning")
             html += table_html(result, style.method_color(index))
-        if self._found.content != html:
-            self._found.content, self._found.visible = html, bool(html)
+        show_html(self._found, html)
 
     def _settings(self) -> TuningSettings:
         """Settings as entered, for the network at hand."""

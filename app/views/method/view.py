@@ -16,6 +16,7 @@ from app.session.shown import Shown
 from app.shell import notices
 from app.shell.control import Control
 from app.shell.pasting import COPY_METHOD, PASTE
+from app.shell.searching import show_html
 from app.shell.section import Section, controls_of
 from app.shell.view import Frame, Tab, View, if_user
 from app.views.method.tuning import TuningPanel
@@ -26,7 +27,7 @@ from navcore.networks import NETWORKS
 from navcore.scenario.model import Method, Scenario
 
 if TYPE_CHECKING:
-    import viser
+    pass
 
 ADD, COPY, REMOVE = "add", "copy", "remove"
 COPY_TEXT, PASTE_TEXT = "copy as TOML", "paste TOML"
@@ -184,9 +185,9 @@ class MethodView(View):
             others = [text for text in texts if text not in about_damping]
             network = notices.note(others, severity(run, index) or "warning")
             unused = notices.note(about_damping, "warning")
-        _say(self._warnings, network)
-        _say(self._loop, loop)
-        _say(self._unused, unused)
+        show_html(self._warnings, network)
+        show_html(self._loop, loop)
+        show_html(self._unused, unused)
 
 
 def _catalogue(part: str, path: Path) -> FieldSpec:
@@ -236,12 +237,6 @@ def _chip(index: int) -> str:
         f'<div style="height:4px;margin:-4px 10px 8px calc(8.4rem + 10px);border-radius:2px;'
         f'background:{escape(style.method_color(index))}"></div>'
     )
-
-
-def _say(handle: viser.GuiHtmlHandle, html: str) -> None:
-    if handle.content != html:
-        handle.content = html
-    handle.visible = bool(html)
 
 
 VIEW = MethodView

@@ -7,6 +7,7 @@ from typing import Any
 
 from app.jobs.designer import FrontsTask
 from app.shell import notices
+from app.shell.searching import SearchControls, reveal, show_html
 from app.shell.view import Frame, if_user
 from app.views.tune.change import change_network
 from app.views.tune.fronts import AXES, COMMAND, nearest, setting_text
@@ -44,14 +45,9 @@ class FrontsPanel:
             box.on_update(
                 if_user(lambda field=field, box=box: self.frame.show(**{field: words[str(box.value)]}))
             )
-        self._start = gui.add_button(
-            FIND, hint="Searches all networks in place of that of the method in hand, in the steady state."
-        )
-        self._stop = gui.add_button(STOP, color="orange", visible=False)
-        self._progress = gui.add_progress_bar(0.0, visible=False)
+        hint = "Searches all networks in place of that of the method in hand, in the steady state."
+        self._controls = SearchControls(gui, self._fronts, self.begin, (FIND, STOP), hint)
         self._words = gui.add_html("", visible=False)
-        self._start.on_click(if_user(self.begin))
-        self._stop.on_click(if_user(self._fronts.cancel))
 
     @property
     def objectives(self) -> tuple[str, str]:
@@ -81,28 +77,16 @@ class FrontsPanel:
 
     def show(self, *, chosen: bool) -> None:
         """Show how far the search is; nothing while something else is chosen."""
-        fraction = self._fronts.fraction
+        self._controls.follow(chosen)
         for field, box in self._axes.items():
             label = AXES[getattr(self.session.display, field)][0]
             if box.value != label:
                 box.value = label
-        if fraction is not None:
-            self._progress.value = round(100.0 * fraction, 1)
         html = notices.note(self._fronts.words, "warning")
         if not html and self.found is not None:
             html = notices.small(_CLICK)
-        html = f'<div class="sb-wide">{html}</div>' if html else ""
-        if self._words.content != html:
-            self._words.content = html
-        for handle, wanted in (
-            *((box, True) for box in self._axes.values()),
-            (self._start, fraction is None),
-            (self._stop, fraction is not None),
-            (self._progress, fraction is not None),
-            (self._words, bool(html)),
-        ):
-            if handle.visible != (chosen and wanted):
-                handle.visible = chosen and wanted
+        show_html(self._words, f'<div class="sb-wide">{html}</div>' if chosen and html else "")
+        reveal(*((box, chosen) for box in self._axes.values()))
 
     def begin(self) -> None:
         """Find the fronts of the method in hand."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
-from app.plots import style
+from app.plots.table import cell, row, table
 from app.plots.units import number
 from navcore.design.measures import read_requirement
 from navcore.foundation.notation import symbol
@@ -32,12 +33,6 @@ _REQUIREMENTS = {
     "log_tilt": ("tilt after log step", "arcsec", ARCSEC),
     "position_rms": ("position RMS", "m", 1.0),
 }
-_TABLE = (
-    f"border-collapse:collapse;font-size:{style.FONT_SIZE}px;color:{style.INK};line-height:1.3;"
-    "font-variant-numeric:tabular-nums;max-width:46rem;width:100%"
-)
-_CELL = "padding:3px 8px 3px 2px"
-_LIST = f"margin:6px 0 0;padding-left:18px;font-size:{style.FONT_SIZE}px;line-height:1.4;color:{style.INK}"
 
 
 def proposal_html(task: TuningTask, found: Tuned) -> str:
@@ -64,11 +59,10 @@ def proposal_html(task: TuningTask, found: Tuned) -> str:
     ]
     method = task.scenario.method[int(task.vary[0].split(".")[1])].name
     head = (f"Proposal for {method}", "now", "proposed", "range within 5 % of the best")
-    cells = "".join(_row(row) for row in (*rows, objective))
-    table = f"<table style='{_TABLE}'><thead>{_row(head, 'th')}</thead><tbody>{cells}</tbody></table>"
+    shown = table([_row(head, "th")], [_row(cells) for cells in (*rows, objective)])
     sentences = "".join(f"<li>{escape(text)}</li>" for text in sentences_about(task, found))
-    listed = f'<ul style="{_LIST}">{sentences}</ul>' if sentences else ""
-    return f'<div class="sb-table sb-proposal" style="padding:4px 10px">{table}{listed}</div>'
+    listed = f"<ul>{sentences}</ul>" if sentences else ""
+    return f'<div class="sb-table sb-proposal">{shown}{listed}</div>'
 
 
 def sentences_about(task: TuningTask, found: Tuned) -> list[str]:
@@ -112,11 +106,5 @@ def _value(data: object, field: str) -> float | None:
     return float(data) if isinstance(data, int | float) else None
 
 
-def _row(cells: tuple[str, ...] | list[str], tag: str = "td") -> str:
-    weight = 600 if tag == "th" else 400
-    row = "".join(
-        f'<{tag} style="{_CELL};font-weight:{weight};text-align:{"right" if k else "left"}">'
-        f"{escape(cell)}</{tag}>"
-        for k, cell in enumerate(cells)
-    )
-    return f'<tr style="border-bottom:1px solid {style.GRID}">{row}</tr>'
+def _row(cells: Sequence[str], tag: str = "td") -> str:
+    return row(cell(escape(text), "sb-n" if k else "", tag=tag) for k, text in enumerate(cells))

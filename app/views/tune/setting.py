@@ -7,6 +7,7 @@ from typing import Any
 from app.jobs.designer import TuningTask
 from app.session.requirements import Requirements, label_of
 from app.shell import notices
+from app.shell.searching import SearchControls, reveal, show_html
 from app.shell.view import Frame, if_user
 from app.views.tune.change import change_network
 from app.views.tune.proposal import OBJECTIVES, proposal_html
@@ -52,19 +53,14 @@ class SettingPanel:
         self._vary: Any = gui.add_dropdown(
             VARY, (ALL,), hint="Fields of the method in hand that the search may move."
         )
-        self._start = gui.add_button(
-            TUNE, hint="Searches for the setting that makes the objective least and keeps the requirements."
-        )
-        self._stop = gui.add_button(STOP, color="orange", visible=False)
-        self._progress = gui.add_progress_bar(0.0, visible=False)
+        hint = "Searches for the setting that makes the objective least and keeps the requirements."
+        self._controls = SearchControls(gui, self._designer, self.begin, (TUNE, STOP), hint)
         self._told = gui.add_html("", visible=False)
         self._found = gui.add_html("", visible=False)
         self._accept = gui.add_button(ACCEPT, visible=False, hint="One step of undo takes it back.")
         self._discard = gui.add_button(DISCARD, color="gray", visible=False)
         words = {label: name for name, (label, _, _) in OBJECTIVES.items()}
         self._objective.on_update(if_user(lambda: self.frame.show(objective=words[self._objective.value])))
-        self._start.on_click(if_user(self.begin))
-        self._stop.on_click(if_user(self._designer.cancel))
         self._accept.on_click(if_user(self._take))
         self._discard.on_click(if_user(self._designer.discard))
 
@@ -75,9 +71,7 @@ class SettingPanel:
         label = OBJECTIVES[self.session.display.objective][0]
         if self._objective.value != label:
             self._objective.value = label
-        running, result, task = designer.fraction is not None, designer.result, designer.asked
-        if designer.fraction is not None:
-            self._progress.value = round(100.0 * designer.fraction, 1)
+        running, result, task = self._controls.follow(chosen), designer.result, designer.asked
         proposed = not running and result is not None and task is not None
         html = notices.note(designer.words, "warning")
         if proposed and result is not None and task is not None:
@@ -85,21 +79,14 @@ class SettingPanel:
                 html += notices.note(["The scenario has changed since this proposal was made."], "warning")
             html += proposal_html(task, result)
         told = notices.small(requirements_told(self.session.display.requirements))
-        _say(self._told, f'<div class="sb-wide">{told}</div>')
-        _say(self._found, f'<div class="sb-wide">{html}</div>' if html else "")
-        for handle, wanted in (
-            (self._objective, True),
-            (self._vary, True),
-            (self._told, True),
-            (self._start, not running),
-            (self._progress, running),
-            (self._stop, running),
-            (self._found, bool(html)),
-            (self._accept, proposed),
-            (self._discard, proposed),
-        ):
-            if handle.visible != (chosen and wanted):
-                handle.visible = chosen and wanted
+        show_html(self._told, f'<div class="sb-wide">{told}</div>' if chosen else "")
+        show_html(self._found, f'<div class="sb-wide">{html}</div>' if chosen and html else "")
+        reveal(
+            (self._objective, chosen),
+            (self._vary, chosen),
+            (self._accept, chosen and proposed),
+            (self._discard, chosen and proposed),
+        )
 
     def _offer(self, scenario: Scenario) -> None:
         """Offer the numeric fields of the network in hand."""
@@ -133,11 +120,6 @@ class SettingPanel:
         network = result.scenario.method[index].network.model_dump(mode="json", exclude_none=True)
         if change_network(self.frame, index, network, "proposal of Tune"):
             self._designer.discard()
-
-
-def _say(handle: Any, html: str) -> None:
-    if handle.content != html:
-        handle.content = html
 
 
 def requirements_as_text(requirements: Requirements) -> tuple[str, ...]:

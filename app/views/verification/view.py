@@ -6,6 +6,7 @@ from html import escape
 
 from app.jobs.verifier import Verifier
 from app.shell import notices
+from app.shell.searching import reveal, show_html
 from app.shell.view import Frame, Tab, View
 from app.views.metrics.table import verdict
 from navcore.scenario.model import Scenario
@@ -55,12 +56,8 @@ class VerificationView(View):
         running = fraction is not None
         if fraction is not None:
             self._progress.value = round(100.0 * fraction, 1)
-        for handle, wanted in ((self._start, not running), (self._progress, running), (self._stop, running)):
-            if handle.visible != wanted:
-                handle.visible = wanted
-        html = _html(verifier, self.session.scenario)
-        if self._verdict.content != html:
-            self._verdict.content, self._verdict.visible = html, bool(html)
+        reveal((self._start, not running), (self._progress, running), (self._stop, running))
+        show_html(self._verdict, _html(verifier, self.session.scenario))
 
 
 def _html(verifier: Verifier, scenario: Scenario) -> str:
