@@ -49,6 +49,6 @@ def times_the_floor(scenario: Scenario) -> list[str]:
     texts = []
     for method, given in zip(steady.methods, scenario.method, strict=True):
         times = [number(value, 3) for value in steady.times_floor(method).values() if value is not None]
-        told = "the floor itself" if given.damping == "kalman" else ", ".join(times)
-        texts.append(told or "no steady state")
+        ratios = "the floor itself" if given.damping == "kalman" else ", ".join(times)
+        texts.append(ratios or "no steady state")
     return texts

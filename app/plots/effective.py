@@ -39,7 +39,7 @@ class Loop:
 
 
 def loop_of(method: MethodRun) -> Loop:
-    """What acts in a method, as the key of a cache."""
+    """Network that acts in a method, as the key of a cache."""
     network = effective_network(method)
     feedback = b"" if network.feedback_p is None else network.feedback_p.tobytes()
     coefficients = network.num_p.tobytes(), network.den_p.tobytes(), feedback

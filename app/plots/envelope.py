@@ -50,7 +50,7 @@ class Envelope:
 
     @property
     def label(self) -> str:
-        """What the band is, in words, and whether it is older than the curves."""
+        """Name of the band, and whether it is older than the curves."""
         return f"band: {self.words}{OLD if self.old else ''}"
 
 

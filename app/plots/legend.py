@@ -37,12 +37,12 @@ def counts(state: State) -> bool:
 
 
 def word(state: State) -> str:
-    """What the legend says of a state; empty for "shown"."""
+    """Word of the legend for a state; empty for "shown"."""
     return _WORDS[state]
 
 
 def hint(state: State) -> str:
-    """What a click does."""
+    """Say what a click does."""
     return f"Click: {_NEXT_WORDS[after(state)]}"
 
 
@@ -60,9 +60,9 @@ def entry(key: str, name: str, bar: str, state: State) -> str:
     state : State
         Of the curve.
     """
-    told = f'<small class="sb-said">{_WORDS[state]}</small>' if state != "shown" else ""
+    said = f'<small class="sb-said">{_WORDS[state]}</small>' if state != "shown" else ""
     return (
         f'<button class="sb-entry" data-command="{COMMAND} {escape(key)}" data-state="{state}" '
         f'title="{hint(state)}"><span class="sb-line" style="{bar}"></span>'
-        f"<span>{escape(name)}</span>{told}</button>"
+        f"<span>{escape(name)}</span>{said}</button>"
     )

@@ -18,7 +18,7 @@ _PLOTLY_DASHES = ("dash", "dot", "dashdot", "longdash", "2px,6px", "longdashdot"
 
 
 class Pinned(Protocol):
-    """What a figure needs of a pin; `app.session.pins.Pin` is one."""
+    """Pin as figures need it; `app.session.pins.Pin` is one."""
 
     @property
     def name(self) -> str:

@@ -116,7 +116,7 @@ def legend(**more: Any) -> dict[str, Any]:
 
 
 def layout(**more: Any) -> dict[str, Any]:
-    """What all plotly layouts share; ``more`` overrides."""
+    """Layout in the house style; ``more`` overrides."""
     return {
         "font": {"family": FONT_FAMILY, "size": FONT_SIZE, "color": INK},
         "paper_bgcolor": "white",
@@ -157,7 +157,7 @@ def framed(
 
 
 def lines(method: str, index: int, width: float = LINE_WIDTH) -> dict[str, Any]:
-    """What the curves of a method have in common, in all plotly figures."""
+    """Make the common part of a method's curves, in all plotly figures."""
     return {
         "type": "scatter",
         "mode": "lines",
@@ -168,7 +168,7 @@ def lines(method: str, index: int, width: float = LINE_WIDTH) -> dict[str, Any]:
 
 
 def marks(method: str, index: int, symbol: str, size: float, line: dict[str, Any]) -> dict[str, Any]:
-    """What the marks of a method have in common; they have no entry in the legend."""
+    """Make the common part of a method's marks; they have no entry in the legend."""
     return {
         "type": "scatter",
         "mode": "markers",

@@ -1,4 +1,4 @@
-"""What the user should know about each method and about the run, in plain words."""
+"""Warnings about each method of a run, in plain words."""
 
 from __future__ import annotations
 

@@ -69,7 +69,7 @@ def scripts(names: Sequence[str] = VIEWS) -> list[Path]:
 
 
 def _folder(name: str) -> Path:
-    found = find_spec(name)
-    if found is None or found.origin is None:
+    spec = find_spec(name)
+    if spec is None or spec.origin is None:
         raise ModuleNotFoundError(f"{name} is no package")
-    return Path(found.origin).parent
+    return Path(spec.origin).parent

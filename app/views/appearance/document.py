@@ -33,29 +33,29 @@ _CSS = table.CSS + (_STATIC / "document.css").read_text(encoding="utf-8")
 
 @dataclass(frozen=True)
 class Session:
-    """What a document tells.
+    """Session that a document describes.
 
     Attributes
     ----------
-    shown : Shown
+    now : Shown
         The run, and how it is shown.
     pins : sequence of Pin
         All of the session.
     origin : str
         Where the scenario comes from.
-    made : datetime
+    date : datetime
         When, with its time zone.
     """
 
-    shown: Shown
+    now: Shown
     pins: Sequence[Pin]
     origin: str
-    made: datetime
+    date: datetime
 
     @property
     def title(self) -> str:
         """Name of the scenario."""
-        return self.shown.run.scenario.title or self.origin
+        return self.now.run.scenario.title or self.origin
 
 
 def document(
@@ -90,21 +90,21 @@ def document(
 
 def command(session: Session) -> str:
     """Command that runs the scenario again: by its name while it is a preset, else from the file."""
-    scenario = session.shown.run.scenario
+    scenario = session.now.run.scenario
     if session.origin in presets() and load(session.origin) == scenario:
         return f"schuler run {session.origin}"
     return "schuler run scenario.toml"
 
 
 def _about(session: Session) -> str:
-    scenario = session.shown.run.scenario
+    scenario = session.now.run.scenario
     source = f"<p>{escape(scenario.source)}</p>" if scenario.source else ""
     lines = {
         "Scenario": escape(session.origin),
         "Duration": f"{scenario.run.duration_h:g} h",
-        "Date": f"{session.made:%Y-%m-%d %H:%M %Z}",
+        "Date": f"{session.date:%Y-%m-%d %H:%M %Z}",
         "Program": f"Schuler Bench {__version__}",
-        "SHA-256": f"<code>{session.shown.run.scenario_sha256}</code>",
+        "SHA-256": f"<code>{session.now.run.scenario_sha256}</code>",
         "Run it again": f'<code translate="no">{escape(command(session))}</code>',
     }
     rows = "".join(f"<dt>{name}</dt><dd>{value}</dd>" for name, value in lines.items())
@@ -121,12 +121,12 @@ def _tables(count: int, make: Callable[[range], str]) -> str:
 
 
 def _warnings(session: Session) -> str:
-    warnings = warnings_html(session.shown.run, session.shown.verified)
+    warnings = warnings_html(session.now.run, session.now.verified)
     return _section("Warnings about the run", warnings) if "sb-note" in warnings else ""
 
 
 def _metrics(session: Session) -> str:
-    run, display = session.shown.run, session.shown.display
+    run, display = session.now.run, session.now.display
     window = window_of(run, display)
     note = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
     tables = _tables(len(run.methods), lambda part: metrics_html(window.run, part, display=display))
@@ -135,10 +135,10 @@ def _metrics(session: Session) -> str:
 
 
 def _requirements(session: Session) -> str:
-    display = session.shown.display
+    display = session.now.display
     if not display.requirements.any:
         return _section("Requirements", "<p>No requirement is set.</p>")
-    run = window_of(session.shown.run, display).run
+    run = window_of(session.now.run, display).run
     tables = _tables(
         len(run.methods), lambda part: requirements_html(run, display.requirements, methods=part)
     )
@@ -146,11 +146,11 @@ def _requirements(session: Session) -> str:
 
 
 def _pins(session: Session) -> str:
-    run, display, baseline = session.shown.run, session.shown.display, session.shown.baseline
+    run, display, baseline = session.now.run, session.now.display, session.now.baseline
     pins = titled(session.pins, run.scenario)
     if not pins:
         return _section("Pins", "<p>No run is pinned.</p>")
-    lines = lines_of(window_of(run, display), session.shown.selected, pins, display.requirements)
+    lines = lines_of(window_of(run, display), session.now.selected, pins, display.requirements)
     by = None if baseline is None else baseline.id
     return _section(
         "Pins", f'<div class="table">{pins_html(lines, display.pins_by, by, buttons=False)}</div>'
@@ -158,7 +158,7 @@ def _pins(session: Session) -> str:
 
 
 def _scenario(session: Session) -> str:
-    scenario = with_plain_names(session.shown.run.scenario)
+    scenario = with_plain_names(session.now.run.scenario)
     files = ", ".join(sorted(files_of(scenario)))
     beside = f"<p>It needs these recordings beside it: {escape(files)}.</p>" if files else ""
     how = "<p>To compute the run again, save this text as scenario.toml and give the command above.</p>"

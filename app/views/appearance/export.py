@@ -37,7 +37,7 @@ class Picture:
     width_px: float
 
     def job(self, client: Any) -> dict[str, Any]:
-        """What the script needs of it, in the page's language."""
+        """Make the script's task, in the page's language."""
         import orjson
 
         title = text_said(client, self.title)

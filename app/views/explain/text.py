@@ -1,4 +1,4 @@
-"""What a control does, in words, as an equation and with its source: one explanation a field.
+"""Explain a control in words, with its equation and its source: one explanation a field.
 
 The words, unit and range are the field's own (`navcore.foundation.parameters.quantity`); the equation and its
 source come from ``assets/explain.toml``, by the field's place in the scenario, or from the registry entry
@@ -34,7 +34,7 @@ _REGISTRIES: Mapping[str, Mapping[str, type[Parameters]]] = {
 
 @dataclass(frozen=True)
 class Explanation:
-    """What is said about a field beside its help.
+    """Explanation of a field, beside its help.
 
     Attributes
     ----------

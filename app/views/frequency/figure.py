@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -76,7 +76,7 @@ def frequency_view(
     discrete: bool = False,
     reference: Reference | None = None,
 ) -> PlotlyFigure:
-    """What the chooser of the frequency side asks for: `bode` with a transfer, or `nyquist`.
+    """Draw `bode` with a transfer, or `nyquist`, as the chooser of the frequency side asks.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def bode(
     view = VIEWS[transfer_id]
     omega_s = run.scenario.omega_s
     omega, x = omega_grid(omega_s), _packed_grid(omega_s)
-    hover = "%{y:.2f} dB" if _in_decibel(view) else "%{y:.4g} " + view.unit
+    transfer_hover = "%{y:.2f} dB" if _in_decibel(view) else "%{y:.4g} " + view.unit
     data: list[dict[str, Any]] = []
     drawn: dict[str, list[np.ndarray]] = {"y": [], "y2": [], "y3": [], "y4": []}
     lines = [(style.lines(m.method.name, i), *_responses(m, view, omega)) for i, m in enumerate(run.methods)]
@@ -132,11 +132,12 @@ def bode(
         names.append(reference.label)
     for line, h, value in lines:
         columns = (
-            ("x", ("y", "y2"), "%{y:.2f} dB", None if h is None else (decibel(h), phase(h))),
-            ("x2", ("y3", "y4"), hover, None if value is None else (_magnitude(value, view), phase(value))),
+            ("x", ("y", "y2"), "%{y:.2f} dB", h, decibel),
+            ("x2", ("y3", "y4"), transfer_hover, value, partial(_magnitude, view=view)),
         )
-        for xaxis, yaxes, told, curves in columns:
-            data += pair(line, x, curves, xaxis, yaxes, told)
+        for xaxis, yaxes, hover, response, size in columns:
+            curves = None if response is None else (size(response), phase(response))
+            data += pair(line, x, curves, xaxis, yaxes, hover)
             if curves is not None:  # a resonance may leave its axis
                 drawn[yaxes[0]].append(curves[0][np.abs(omega / omega_s - 1.0) > _NEAR])
                 drawn[yaxes[1]].append(curves[1])

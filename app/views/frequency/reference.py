@@ -14,7 +14,7 @@ from navcore.scenario.model import Scenario
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """What is drawn, or why there is nothing.
+    """Optimal network that is drawn, or why there is none.
 
     Attributes
     ----------

@@ -69,7 +69,7 @@ class FrequencyView(PlotlyView):
     def figure(self, both: Run, found: Shown) -> PlotlyFigure:
         """Bode plots, or Nyquist plot."""
         display = found.display
-        made = frequency_view(
+        plot = frequency_view(
             both,
             display.transfer,
             self.aspect,
@@ -78,8 +78,8 @@ class FrequencyView(PlotlyView):
             reference=optimal_reference(found.run.scenario) if display.optimal else None,
         )
         if display.transfer != OPEN_LOOP:
-            made["layout"]["meta"] |= self._handle.meta(found)
-        return made
+            plot["layout"]["meta"] |= self._handle.meta(found)
+        return plot
 
 
 VIEW = FrequencyView

@@ -64,7 +64,7 @@ class _Part(BaseModel):
 
 
 class Action(_Part):
-    """What "Show me" does; see the module's text."""
+    """Action of the button "Show me"; see the module's text."""
 
     set: tuple[str, ...] = ()
     tabs: tuple[str, ...] = ()

@@ -8,10 +8,9 @@ from app.editing import edits, form
 from app.editing.form import FieldSpec
 from app.session.log_fit import can_fit, fit_of, told, with_fitted_log
 from app.shell import notices
-from app.shell.control import Control
+from app.shell.fields_view import FieldsView
 from app.shell.pasting import COPY_LOG, PASTE
-from app.shell.section import Section, controls_of
-from app.shell.view import Tab, View, if_user
+from app.shell.view import Tab, if_user
 from navcore.scenario.model import Scenario
 from navcore.sensors.reference import LogEvent, Outage, Reference
 
@@ -31,15 +30,17 @@ _FIRST = 7
 _KINDS = {"event": LogEvent, "outage": Outage}
 
 
-class LogView(View):
+class LogView(FieldsView):
     """The reference velocity, its errors, events and outages."""
 
     title = "Log"
     place = "edit"
+    places = {"kind": 0.0, "first": 1.0, "more": 30.0, "event": 61.0, "outage": 201.0}
 
     def build(self, tab: Tab) -> None:
         """Make the widgets."""
-        gui, edit = self.frame.gui, self.frame.editor.edit
+        super().build(tab)
+        gui = self.frame.gui
         self._specs = form.fields(Reference, ("reference",))
         with tab:
             self._all = gui.add_checkbox(
@@ -67,7 +68,7 @@ class LogView(View):
             self._fit = gui.add_button(FIT, hint=_FIT_TOLD, order=20, visible=False)
             self._fitted = gui.add_html("", order=21)
             self._use = gui.add_button(USE_FIT, color="gray", hint=_USE_TOLD, order=22, visible=False)
-        self._found: tuple[Scenario, LogErrorFit] | None = None
+        self._last_fit: tuple[Scenario, LogErrorFit] | None = None
         self._fit.on_click(lambda _: self._fit_error())
         self._use.on_click(lambda _: self._use_fit())
         self._all.on_update(if_user(self.frame.refresh))
@@ -79,13 +80,6 @@ class LogView(View):
         self._clipboard.on_click(
             if_user(lambda: ask(COPY_LOG if self._clipboard.value == COPY_TEXT else PASTE))
         )
-        places = {"kind": 0.0, "first": 1.0, "more": 30.0, "event": 61.0, "outage": 201.0}
-        self.sections = {name: Section(gui, tab, edit, order) for name, order in places.items()}
-
-    @property
-    def controls(self) -> list[Control]:
-        """Controls of the log's fields."""
-        return controls_of(self.sections)
 
     def _arrange(self, what: str) -> None:
         """Add or remove an event or outage of the log."""
@@ -100,47 +94,47 @@ class LogView(View):
         with self.session.lock:
             scenario = self.session.scenario
         with notices.told(self.frame.client, "The log's error cannot be fitted", self.frame.refresh):
-            self._found = scenario, fit_of(scenario)
+            self._last_fit = scenario, fit_of(scenario)
             self.frame.refresh()
 
     def _use_fit(self) -> None:
         """Run on a simulated log with the fitted error in the place of the recorded one."""
         session = self.session
         with session.lock, notices.told(self.frame.client, "Not possible", self.frame.refresh):
-            if self._found is not None:
-                session.change(with_fitted_log(session.scenario, self._found[1]), None)
+            if self._last_fit is not None:
+                session.change(with_fitted_log(session.scenario, self._last_fit[1]), None)
 
     def _show_fit(self, scenario: Scenario) -> None:
         """Show the fit as long as it is of the scenario's own recordings."""
         self._fit.visible = can_fit(scenario)
-        if self._found is not None:
-            of = self._found[0]
+        if self._last_fit is not None:
+            of = self._last_fit[0]
             if (of.reference, of.motion) != (scenario.reference, scenario.motion):
-                self._found = None
-        self._fitted.content = "" if self._found is None else notices.note(told(self._found[1]), "info")
-        self._use.visible = self._found is not None
+                self._last_fit = None
+        self._fitted.content = "" if self._last_fit is None else notices.note(told(self._last_fit[1]), "info")
+        self._use.visible = self._last_fit is not None
 
     def follow_scenario(self) -> None:
         """Show the scenario's values; errors that it sets are always shown."""
-        scenario, moved = self.session.scenario, self.frame.editor.moved
+        scenario = self.session.scenario
         self._show_fit(scenario)
         kind = scenario.reference.kind
-        shown = {"none": [], "file": [spec for spec in self._specs if spec.kind == "choice"]}
-        specs = shown.get(kind, self._specs)
+        choices = [spec for spec in self._specs if spec.kind == "choice"]
+        specs = {"none": [], "file": choices}.get(kind, self._specs)
         first, more = specs[:_FIRST], specs[_FIRST:]
         self._all.visible = bool(more)
         if not self._all.value:
             more = [spec for spec in more if edits.value_at(scenario, spec.path) != spec.default]
         self._buttons.visible = self._outages.visible = self._clipboard.visible = kind != "none"
-        listed = {
-            "kind": [form.choice(Reference, "kind", ("reference",))],
-            "first": first,
-            "more": more,
-            "event": _blocks(scenario, "event"),
-            "outage": _blocks(scenario, "outage"),
-        }
-        for name, found in listed.items():
-            self.sections[name].show(found, edits.values_at(scenario, [spec.path for spec in found]), moved)
+        self.show_fields(
+            {
+                "kind": [form.choice(Reference, "kind", ("reference",))],
+                "first": first,
+                "more": more,
+                "event": _blocks(scenario, "event"),
+                "outage": _blocks(scenario, "outage"),
+            }
+        )
 
 
 def _blocks(scenario: Scenario, name: str) -> list[FieldSpec]:

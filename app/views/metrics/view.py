@@ -102,13 +102,13 @@ class MetricsView(PictureView[tuple[str, str]]):
         if self.session.run is not None:
             self.session.searches.explain(self.session.run)
 
-    def _table_html(self, shown: Shown) -> str:
+    def _table_html(self, now: Shown) -> str:
         """Metrics of all methods, in as many tables below each other as the width asks for."""
-        window = window_of(shown.run, shown.display)
-        layout, run, verified, baseline = self.frame.layout(), window.run, shown.verified, shown.baseline
+        window = window_of(now.run, now.display)
+        layout, run, verified, baseline = self.frame.layout(), window.run, now.verified, now.baseline
         if baseline is not None and baseline.run is not None:
             baseline = replace(baseline, run=window.of(baseline.run))
-        rows = metrics_rows(run, shown.display)
+        rows = metrics_rows(run, now.display)
         each_px = method_px(rows, _LETTER_PX[layout.wide], _PADDING_PX[layout.wide])
         each_px += 0 if baseline is None else _DELTA_PX[layout.wide]
         most = max(int((layout.plot_px - _ROW_NAME_PX - _MARGINS_PX) / each_px), 1)
@@ -117,11 +117,11 @@ class MetricsView(PictureView[tuple[str, str]]):
         note = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
         tables = "".join(
             '<div style="margin-bottom:2px">'
-            + metrics_html(run, part, beside, old=old, display=shown.display, baseline=baseline)
+            + metrics_html(run, part, beside, old=old, display=now.display, baseline=baseline)
             + "</div>"
             for part in parts(len(run.methods), most)
         )
-        return note + tables + system_html(shown.run)
+        return note + tables + system_html(now.run)
 
 
 def warnings_html(run: Run, verified: Verified | None = None) -> str:

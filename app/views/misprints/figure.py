@@ -144,7 +144,7 @@ def _unit(axis: Axis | Number, peak: float) -> Unit:
 
 
 def words_html(misprint: Misprint, comparison: Comparison) -> str:
-    """What is printed, what is right, what follows, and the numbers of both forms side by side."""
+    """Write what is printed, what is right, what follows, and the numbers of both forms side by side."""
     printed, corrected = _COLORS["printed"], _COLORS["corrected"]
     sentences = (
         ("printed", misprint.printed, printed),

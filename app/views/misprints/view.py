@@ -4,27 +4,24 @@ from __future__ import annotations
 
 import threading
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any
 
+from app.misprints import MISPRINTS, Comparison
 from app.plots.enlarged import enlarged
 from app.shell.layout import CHOOSER_PX
 from app.shell.view import Frame, Tab, View, if_user
-
-if TYPE_CHECKING:
-    from app.misprints import Comparison
-    from app.views.misprints.figure import Shown
+from app.views.misprints.figure import SHOWN, Shown, comparison_plot, words_html
 
 _WORDS_PX = {True: 96, False: 186}
 """Room for the words and numbers above the plot, in a wide window and in a narrow one."""
 _BETWEEN_PX = 8
 _MISPRINT, _SWITCH = "misprint", "form shown"
+_TITLES = {f"{m.paper}, {m.where}: {m.consequence}": id for id, m in MISPRINTS.items()}
 
 
 @lru_cache(maxsize=32)
 def _computed(id: str) -> Comparison:
     """Both forms of a misprint: they depend on nothing else, so they are computed once."""
-    from app.misprints import MISPRINTS
-
     return MISPRINTS[id].compute()
 
 
@@ -38,64 +35,46 @@ class MisprintsView(View):
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
         self._lock = threading.Lock()
-        self._chooser: Any
-        self._switch: Any
-        self._words: Any
 
     def build(self, tab: Tab) -> None:
-        """Remember the tab: nothing is made or computed before it is in front."""
-        with self._lock:
-            self._tab = tab
-            self._drawn: tuple[str, str] | None = None
-            self._plot: Any = None
-            self._titles: dict[str, str] = {}
+        """Make the choosers; nothing is computed before the tab is in front."""
+        gui = self.frame.gui
+        with self._lock, tab:
+            self._tab, self._plot, self._drawn = tab, None, None
+            self._chooser: Any = gui.add_dropdown(
+                _MISPRINT, tuple(_TITLES), order=0,
+                hint="Errors in the papers that change a result; both forms are computed by the same code.",
+            )  # fmt: skip
+            self._switch: Any = gui.add_dropdown(
+                _SWITCH, SHOWN, order=1, hint="Draw the form as printed, the corrected one, or both."
+            )
+            self._words = gui.add_html("", order=2)
+        for handle in (self._chooser, self._switch):
+            handle.on_update(if_user(self.to_front))
 
     def to_front(self) -> None:
         """Draw what is chosen."""
         with self._lock:
-            if not self._titles:
-                self._make()
-            id, shown = self._titles[self._chooser.value], self._switch.value
-            if (id, shown) == self._drawn:
-                return
-            self._drawn = id, shown
-            self._draw(id, shown)
+            chosen = _TITLES[self._chooser.value], self._switch.value
+            if chosen != self._drawn:
+                self._drawn: tuple[str, Shown] | None = chosen
+                self._draw(*chosen)
 
-    def _make(self) -> None:
-        from app.misprints import MISPRINTS
-        from app.views.misprints.figure import SHOWN
-
-        self._titles = {f"{m.paper}, {m.where}: {m.consequence}": id for id, m in MISPRINTS.items()}
-        with self._tab:
-            self._chooser = self.frame.gui.add_dropdown(
-                _MISPRINT, tuple(self._titles), order=0,
-                hint="Errors in the papers that change a result; both forms are computed by the same code.",
-            )  # fmt: skip
-            self._switch = self.frame.gui.add_dropdown(
-                _SWITCH, SHOWN, order=1, hint="Draw the form as printed, the corrected one, or both."
-            )
-            self._words = self.frame.gui.add_html("", order=2)
-        for handle in (self._chooser, self._switch):
-            handle.on_update(if_user(self.to_front))
-
-    def _draw(self, id: str, shown: Shown) -> None:
-        from app.misprints import MISPRINTS
-        from app.views.misprints.figure import comparison_plot, words_html
-
-        layout = self.frame.layout()
-        comparison, words = _computed(id), _WORDS_PX[layout.wide]
+    def _draw(self, id: str, form: Shown) -> None:
+        layout, comparison = self.frame.layout(), _computed(id)
+        words = _WORDS_PX[layout.wide]
         self._words.content = (
             f'<div style="height:{words}px;overflow-y:auto">{words_html(MISPRINTS[id], comparison)}</div>'
         )
         aspect = layout.aspect(2 * CHOOSER_PX + words + _BETWEEN_PX)
-        made = comparison_plot(comparison, shown, aspect, width_px=float(layout.plot_px))
-        made["layout"]["meta"] |= {"misprint": id, "shown": shown}
-        made = enlarged(made, layout.scale)
+        figure = comparison_plot(comparison, form, aspect, width_px=float(layout.plot_px))
+        figure["layout"]["meta"] |= {"misprint": id, "shown": form}
+        plot: Any = enlarged(figure, layout.scale)
         if self._plot is not None:
-            self._plot.figure = cast(Any, made)
+            self._plot.figure = plot
             return
         with self._tab:
-            self._plot = self.frame.gui.add_plotly(cast(Any, made), aspect=aspect, order=3)
+            self._plot: Any = self.frame.gui.add_plotly(plot, aspect=aspect, order=3)
 
 
 VIEW = MisprintsView

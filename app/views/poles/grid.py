@@ -1,4 +1,4 @@
-"""What lies behind the poles: rays, arcs and settling lines, and where the requirements let no pole lie."""
+"""Background of the pole map: rays, arcs and settling lines, and where the requirements let no pole lie."""
 
 from __future__ import annotations
 

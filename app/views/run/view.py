@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from app.editing import edits, form
+from app.editing import form
 from app.editing.form import FieldSpec, Path
 from app.shell import notices
-from app.shell.control import Control
-from app.shell.section import Section, controls_of
-from app.shell.view import Tab, View
+from app.shell.fields_view import FieldsView
+from app.shell.view import Tab
 from navcore.foundation.registry import blocks_of
 from navcore.motion import MOTIONS
 from navcore.scenario.model import Alignment, InitialError, RunSettings, Scenario, SiteSettings
@@ -19,15 +18,17 @@ _STRAPDOWN_TOLD = (
 )
 
 
-class RunView(View):
+class RunView(FieldsView):
     """Duration, site, motion, initial errors, seed."""
 
     title = "Run"
     place = "edit"
+    places = {"run": 1.0, "site": 20.0, "motion": 31.0, "initial": 71.0, "strapdown": 92.0}
 
     def build(self, tab: Tab) -> None:
         """Make the widgets."""
-        gui, edit = self.frame.gui, self.frame.editor.edit
+        super().build(tab)
+        gui = self.frame.gui
         with tab:
             gui.add_html(notices.heading("Run and site"), order=0)
             gui.add_html(notices.heading("Motion"), order=30)
@@ -35,35 +36,32 @@ class RunView(View):
             gui.add_html(notices.heading("Errors at the start"), order=70)
             gui.add_html(notices.heading("Full strapdown"), order=90)
             gui.add_html(notices.small(_STRAPDOWN_TOLD), order=91)
-        places = {"run": 1.0, "site": 20.0, "motion": 31.0, "initial": 71.0, "strapdown": 92.0}
-        self.sections = {name: Section(gui, tab, edit, order) for name, order in places.items()}
-
-    @property
-    def controls(self) -> list[Control]:
-        """Controls of the run's fields."""
-        return controls_of(self.sections)
 
     def follow_scenario(self) -> None:
         """Show the scenario's values."""
-        scenario, moved = self.session.scenario, self.frame.editor.moved
-        motion, settings = scenario.motion, form.fields(RunSettings, ("run",))
-        kind = FieldSpec(("motion", "kind"), "motion", _told(MOTIONS), "choice", "static", tuple(MOTIONS))
-        listed = {
-            "run": [spec for spec in settings if spec.path[-1] not in (_RATE, *_STRAPDOWN_ONLY)],
-            "site": form.fields(SiteSettings, ("site",)),
-            "motion": [kind, *form.fields(type(motion), ("motion",)), *_inner_blocks(scenario)],
-            "initial": form.fields(InitialError, ("initial_error",)),
-            "strapdown": [*(spec for spec in settings if spec.path[-1] == _RATE), *_strapdown_only(scenario)],
-        }
-        for name, specs in listed.items():
-            self.sections[name].show(specs, edits.values_at(scenario, [spec.path for spec in specs]), moved)
+        scenario, settings = self.session.scenario, form.fields(RunSettings, ("run",))
+        motion = scenario.motion
+        about = "; ".join(f"{key}: {(m.__doc__ or '').strip().splitlines()[0]}" for key, m in MOTIONS.items())
+        kind = FieldSpec(("motion", "kind"), "motion", about, "choice", "static", tuple(MOTIONS))
+        self.show_fields(
+            {
+                "run": [spec for spec in settings if spec.path[-1] not in (_RATE, *_STRAPDOWN_ONLY)],
+                "site": form.fields(SiteSettings, ("site",)),
+                "motion": [kind, *form.fields(type(motion), ("motion",)), *_inner_blocks(scenario)],
+                "initial": form.fields(InitialError, ("initial_error",)),
+                "strapdown": [
+                    *(spec for spec in settings if spec.path[-1] == _RATE),
+                    *_strapdown_only(scenario),
+                ],
+            }
+        )
         legs = len(getattr(motion, "leg", ()))
         text = f"{legs} legs, as the scenario file gives them." if legs else ""
         self._about.content, self._about.visible = notices.small(text), bool(text)
 
 
 def _strapdown_only(scenario: Scenario) -> list[FieldSpec]:
-    """What other fidelities refuse, and the alignment record that averaging forecasts from in all of them."""
+    """Fields that other fidelities refuse, and the alignment record from which averaging forecasts."""
     path: Path = ("alignment",)
     more = form.fields(Alignment, path, "alignment")
     record = [spec for spec in more if spec.path[-1] == "duration_s"]
@@ -71,8 +69,8 @@ def _strapdown_only(scenario: Scenario) -> list[FieldSpec]:
     if not scenario.strapdown:
         return record if averaged else []
     settings = [spec for spec in form.fields(RunSettings, ("run",)) if spec.path[-1] in _STRAPDOWN_ONLY]
-    shown = more if scenario.alignment.kind != "none" else record if averaged else []
-    return [*settings, form.choice(Alignment, "kind", path, label="alignment"), *shown]
+    fields = more if scenario.alignment.kind != "none" else record if averaged else []
+    return [*settings, form.choice(Alignment, "kind", path, label="alignment"), *fields]
 
 
 def _inner_blocks(scenario: Scenario) -> list[FieldSpec]:
@@ -84,10 +82,6 @@ def _inner_blocks(scenario: Scenario) -> list[FieldSpec]:
         if not many
         for spec in form.fields(block, ("motion", name), prefix=f"{name} {scenario.motion.kind}")
     ]
-
-
-def _told(members: dict[str, type]) -> str:
-    return "; ".join(f"{key}: {(m.__doc__ or '').strip().splitlines()[0]}" for key, m in members.items())
 
 
 VIEW = RunView

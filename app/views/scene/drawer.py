@@ -101,7 +101,7 @@ class SceneDrawer:
         under_way = time_s < track.t_s[-1]
         for number, (vector, method) in enumerate(zip(place.error_vectors(), track.methods, strict=True)):
             self._whole(number, method, faint=under_way)
-            self._trail(number, method, place, shown=under_way)
+            self._trail(number, method, place, under_way=under_way)
             seen = method.visible(vector[None])
             self._lines(f"/error/method{number}", seen, _color(method), 0.6 * LINE_WIDTH)
         for name in ("/error/method", "/trail/past", "/trail/tip"):
@@ -123,10 +123,10 @@ class SceneDrawer:
             self._lines(name, method.drawn(), color, (_FAINT if faint else 1.0) * LINE_WIDTH)
             self._past[name] = color, id(self.drawn)
 
-    def _trail(self, number: int, method: MethodTrack, place: Place, *, shown: bool) -> None:
+    def _trail(self, number: int, method: MethodTrack, place: Place, *, under_way: bool) -> None:
         """The part of a track that is past: only its last few points are sent anew at each moment."""
         past, tip = f"/trail/past{number}", f"/trail/tip{number}"
-        if not shown:
+        if not under_way:
             for name in (past, tip):
                 self._lines(name, np.empty((0, 2, 3), dtype=np.float32), _color(method), LINE_WIDTH)
             self._past.pop(past, None)

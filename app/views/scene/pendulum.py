@@ -119,7 +119,7 @@ def pendulum_svg(now: Pendulum) -> str:
 
 
 def caption_of(now: Pendulum) -> str:
-    """What is drawn, in words."""
+    """Describe the picture in words."""
     larger = "to scale" if now.factor == 1.0 else f"x {number(now.factor)}"
     return f"tilt {larger}; length R, period {duration(now.period_s)}"
 
@@ -158,8 +158,8 @@ def _swing(bob: Bob, factor: float, plane: tuple[float, float]) -> str:
     """Rod and bob in the plane of the side view; how far it swung in the last period as an arc."""
     x, y = _PIVOT
     angles = np.clip(factor * (bob.trail @ np.array(plane)), -1.2, 1.2)
-    shown = np.array([angles.min(), angles.max(), angles[-1]])
-    (x0, x1, tip_x), (y0, y1, tip_y) = x + _ROD * np.sin(shown), y + _ROD * np.cos(shown)
+    ends = np.array([angles.min(), angles.max(), angles[-1]])
+    (x0, x1, tip_x), (y0, y1, tip_y) = x + _ROD * np.sin(ends), y + _ROD * np.cos(ends)
     return (
         f'<path d="M{x0:.1f} {y0:.1f} A{_ROD} {_ROD} 0 0 0 {x1:.1f} {y1:.1f}" '
         f'fill="none" stroke="{bob.color}" stroke-opacity=".35" stroke-width="5"/>'

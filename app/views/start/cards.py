@@ -25,7 +25,7 @@ def card_path(name: str) -> Path:
 
 
 def mark(name: str) -> str:
-    """What a picture is of: the beginning of the preset's hash."""
+    """Mark of a picture's preset: the beginning of its hash."""
     return scenario_hash(load(name))[:16]
 
 

@@ -31,7 +31,7 @@ Curves = list[np.ndarray | None]
 
 
 class _Disturbance(NamedTuple):
-    """What the lower panels respond to: source, its size (SI), in words, and their short titles."""
+    """Disturbance of the lower panels: source, its size (SI), in words, and their short titles."""
 
     source: Source
     size: float
@@ -61,7 +61,7 @@ class _Panel(NamedTuple):
 
 @dataclass(frozen=True)
 class StepLimits:
-    """What the requirements ask of the responses; drawn by shading the rest.
+    """Limits that the requirements set to the responses; drawn by shading the rest.
 
     Attributes
     ----------
@@ -270,7 +270,7 @@ def _forbidden(limits: StepLimits, span_s: float, unit: Unit, cause: _Disturbanc
 
 
 def step_limits(requirements: Requirements) -> StepLimits:
-    """What the requirements ask of the responses in the tab "Step", SI."""
+    """Limits that the requirements set to the responses in the tab "Step", SI."""
     settling, overshoot = requirements.settling_min, requirements.overshoot_percent
     tilt = requirements.log_tilt_arcsec
     return StepLimits(
