@@ -103,7 +103,7 @@ tuning: setup $(STAMPS)/test
 	@$(BIN)/python -m tests.acceptance.tuning
 
 design: setup
-	@$(BIN)/python -m app.design_table
+	@$(BIN)/python -m tests.design_table
 
 consistency: setup
 	@$(BIN)/python -m tests.filter_consistency --seeds $(or $(SEEDS),500)

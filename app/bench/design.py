@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import statistics
-import time
-from collections.abc import Callable
 from typing import Any
 
 from app.bench.error_model import day
-from navcore.design.along import along
-from navcore.design.budget import steady_budget
-from navcore.design.constants import shared_columns
-from navcore.design.course import course
+from app.bench.rounds import median_ms
+from navcore.design.ship import Ship
+from navcore.design.steady import steady_budget
 from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import stochastic_model
 
@@ -46,19 +42,11 @@ def measure_design() -> dict[str, float]:
         steady_budget(seven, stochastic_model(seven))
 
     def transient() -> None:
-        model, way = stochastic_model(three), course(three)
-        columns = shared_columns(three, way, model)
+        ship = Ship(three)
         for method in three.method:
-            along(three, method, way, model, columns)
+            ship.along(method)
 
-    return {"budget_steady_7_ms": _median(steady), "budget_24h_3_methods_ms": _median(transient)}
-
-
-def _median(work: Callable[[], None]) -> float:
-    work()
-    times = []
-    for _ in range(REPEATS):
-        began = time.perf_counter()
-        work()
-        times.append(1e3 * (time.perf_counter() - began))
-    return statistics.median(times)
+    return {
+        "budget_steady_7_ms": median_ms(steady, REPEATS),
+        "budget_24h_3_methods_ms": median_ms(transient, REPEATS),
+    }

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import statistics
-import time
 from typing import Any
 
+from app.bench.rounds import seconds_of
 from navcore.engine.simulation import simulate
 from navcore.scenario.model import Scenario
 
@@ -41,15 +41,13 @@ def day(seed: int, lat_deg: float = 32.0, methods: int = 3, duration_h: float = 
 def measure_error_model() -> dict[str, float]:
     """Wall times: a method's share of a run of three with fresh noise; one method with nothing kept."""
     simulate(day(seed=1))
-    noisy = [_milliseconds(day(seed=2 + k)) / 3.0 for k in range(REPEATS)]
-    cold = [_milliseconds(day(seed=20 + k, lat_deg=33.0 + k, methods=1)) for k in range(REPEATS)]
+    noisy = [_seconds(day(seed=2 + k)) / 3.0 for k in range(REPEATS)]
+    cold = [_seconds(day(seed=20 + k, lat_deg=33.0 + k, methods=1)) for k in range(REPEATS)]
     return {
-        "error_model_24h_ms_per_method": statistics.median(noisy),
-        "error_model_24h_cold_ms": statistics.median(cold),
+        "error_model_24h_ms_per_method": 1e3 * statistics.median(noisy),
+        "error_model_24h_cold_ms": 1e3 * statistics.median(cold),
     }
 
 
-def _milliseconds(scenario: Scenario) -> float:
-    began = time.perf_counter()
-    simulate(scenario)
-    return 1e3 * (time.perf_counter() - began)
+def _seconds(scenario: Scenario) -> float:
+    return seconds_of(lambda: simulate(scenario))

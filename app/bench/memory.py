@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import statistics
-import subprocess
 import sys
 from pathlib import Path
+
+from app.bench.rounds import in_own_process
 
 REPEATS = 5
 
 
 def measure_memory() -> dict[str, float]:
     """Highest memory after a 24 h run of three methods, above that after a short run of the same, MiB."""
-    from app.bench.process import environment
-
-    words = [sys.executable, "-m", "app.bench.memory"]
-    found = [
-        float(subprocess.run(words, env=environment(), capture_output=True, text=True, check=True).stdout)
-        for _ in range(REPEATS)
-    ]
-    return {"run_24h_memory_mb": statistics.median(found)}
+    return {
+        "run_24h_memory_mb": statistics.median(in_own_process("app.bench.memory") for _ in range(REPEATS))
+    }
 
 
 def peak_mb() -> float:

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import statistics
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Mapping
 from typing import Any
+
+from app.bench.process import environment
 
 Timed = Callable[[], float]
 """Makes ready, does the work and returns the seconds of the work alone."""
@@ -16,6 +21,18 @@ def seconds_of(work: Callable[[], Any]) -> float:
     began = time.perf_counter()
     work()
     return time.perf_counter() - began
+
+
+def median_ms(work: Callable[[], Any], repeats: int) -> float:
+    """Median wall time of a call, ms; one before warms up."""
+    return 1e3 * statistics.median(timed_rounds({"": lambda: seconds_of(work)}, repeats)[""])
+
+
+def in_own_process(module: str) -> Any:
+    """What ``python -m module`` prints, one JSON document: nothing else is in that process's memory."""
+    words = [sys.executable, "-m", module]
+    ended = subprocess.run(words, env=environment(), capture_output=True, text=True, check=True)
+    return json.loads(ended.stdout)
 
 
 def timed_rounds(works: Mapping[str, Timed], rounds: int) -> dict[str, list[float]]:

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import json
 import statistics
-import subprocess
-import sys
 from typing import Any
 
 from app.bench.memory import peak_mb
-from app.bench.rounds import seconds_of
+from app.bench.rounds import in_own_process, seconds_of
 from navcore.engine.simulation import simulate
 from navcore.scenario.model import Scenario
 
@@ -51,20 +49,17 @@ def measure_strapdown_day() -> dict[str, float]:
 
     With two networks, and with the Kalman filter as the only method.
     """
-    from app.bench.process import environment
-
-    words = [sys.executable, "-m", "app.bench.strapdown_day"]
-    done = subprocess.run(words, env=environment(), capture_output=True, text=True, check=True)
-    return json.loads(done.stdout)
+    return in_own_process("app.bench.strapdown_day")
 
 
 def _measured() -> dict[str, float]:
-    simulate(strapdown_day(seed=1, duration_h=0.1))
-    seconds = [seconds_of(lambda k=k: simulate(strapdown_day(seed=2 + k))) for k in range(REPEATS)]
-    found = {"strapdown_24h_100hz_s": statistics.median(seconds), "strapdown_24h_100hz_mb": peak_mb()}
-    simulate(strapdown_day(1, 0.1, KALMAN))
-    seconds = [seconds_of(lambda k=k: simulate(strapdown_day(2 + k, 24.0, KALMAN))) for k in range(REPEATS)]
-    return found | {"strapdown_24h_100hz_kalman_s": statistics.median(seconds)}
+    found = {}
+    for name, methods in (("strapdown_24h_100hz", _NETWORKS), ("strapdown_24h_100hz_kalman", KALMAN)):
+        simulate(strapdown_day(1, 0.1, methods))
+        days = [strapdown_day(2 + k, 24.0, methods) for k in range(REPEATS)]
+        found[f"{name}_s"] = statistics.median(seconds_of(lambda day=day: simulate(day)) for day in days)
+        found.setdefault("strapdown_24h_100hz_mb", peak_mb())
+    return found
 
 
 if __name__ == "__main__":

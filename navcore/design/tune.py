@@ -242,13 +242,14 @@ def _unseen(setting: Setting) -> tuple[str, ...]:
     return (*setting.whole.warnings, *recorded_warnings(setting.ship.scenario))
 
 
-def _without(search: Search, rest: Sequence[Requirement], effort: Effort, start: np.ndarray) -> float:
+def _without(search: Search, rest: Sequence[Requirement], effort: Effort, start: np.ndarray | None) -> float:
     """Objective that could be reached with fewer requirements."""
     other = Search(search.ships, search.varied, search.objective, rest, None, search.cancelled)
     other.reference, other.scale = search.reference, search.scale
     other.run(effort, start)
-    assert other.best is not None
-    return other.best[0] * other.scale if other.best[0] < MISSED else math.inf
+    if other.best is None or other.best[0] >= MISSED:  # stopped at once, or nothing meets the rest
+        return math.inf
+    return other.best[0] * other.scale
 
 
 def _flat(search: Search, places: np.ndarray, objective: float) -> dict[str, tuple[float, float]]:
@@ -280,21 +281,11 @@ def _flat(search: Search, places: np.ndarray, objective: float) -> dict[str, tup
 def _nothing_meets(search: Search, effort: Effort, start: np.ndarray | None) -> Iterator[Fault]:
     """Yield a fault for each requirement: what is the best of it alone, and what it costs."""
     for one in search.requirements:
-        sense = 1.0 if one.sense == "<=" else -1.0
-        alone = Search(search.ships, search.varied, Objective(one.name, ((one.name, 1.0),)), ())
-        if sense > 0.0:
-            alone.run(effort, start)
-            assert alone.best is not None
-            reach = alone.best[0] if alone.best[0] < BOUNDLESS else math.inf
-        else:
-            reach = _largest(alone, effort, start)
+        reach = _reach(search, one, effort, start)
         rest = [other for other in search.requirements if other is not one]
-        without = Search(search.ships, search.varied, search.objective, rest)
-        without.reference, without.scale = search.reference, search.scale
-        without.run(effort, start)
-        assert without.best is not None
-        if without.best[0] < MISSED:
-            least = in_words(search.objective.text, without.best[0] * without.scale)
+        without = _without(search, rest, effort, start)
+        if math.isfinite(without):
+            least = in_words(search.objective.text, without)
             left = f"without it {search.objective.text} comes to {least}"
         else:
             left = "without it the others are not met either"
@@ -302,16 +293,16 @@ def _nothing_meets(search: Search, effort: Effort, start: np.ndarray | None) -> 
         yield Fault("", "--require", one.text, f"{told} {in_words(one.name, reach)}; {left}")
 
 
-def _largest(search: Search, effort: Effort, start: np.ndarray | None) -> float:
-    """Largest value of a measure, where a requirement asks for at least something."""
-    name = search.objective.names[0]
-    measure = MEASURES[name][0]
+def _reach(search: Search, one: Requirement, effort: Effort, start: np.ndarray | None) -> float:
+    """Least value of a measure alone, or the largest where a requirement asks for at least something."""
+    sign = 1.0 if one.sense == "<=" else -1.0
+    measure = MEASURES[one.name][0]
 
-    class _Upwards(Search):
+    class _Alone(Search):
         def value(self, settings: Sequence[Setting]) -> float:
-            return -min(measure(setting) for setting in settings)
+            return max(sign * measure(setting) for setting in settings)
 
-    other = _Upwards(search.ships, search.varied, search.objective, ())
-    other.run(effort, start)
-    assert other.best is not None
-    return -other.best[0]
+    alone = _Alone(search.ships, search.varied, search.objective, ())
+    alone.run(effort, start)
+    assert alone.best is not None
+    return sign * alone.best[0] if alone.best[0] < BOUNDLESS else math.inf

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args, get_origin
@@ -13,7 +14,7 @@ from pydantic.fields import FieldInfo
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
-from navcore.foundation.parameters import extra_of
+from navcore.foundation.parameters import bounds_of, extra_of
 from navcore.scenario.model import Method, Scenario
 
 _WIDEST = 1e6
@@ -175,16 +176,8 @@ def _is_number(info: FieldInfo) -> bool:
 
 
 def _allowed(info: FieldInfo) -> tuple[float, float]:
-    low, high = -math.inf, math.inf
-    for rule in info.metadata:
-        for name in ("ge", "gt"):
-            if getattr(rule, name, None) is not None:
-                low = float(getattr(rule, name))
-                low = math.nextafter(low, math.inf) if name == "gt" and low != 0.0 else low
-        for name in ("le", "lt"):
-            if getattr(rule, name, None) is not None:
-                high = float(getattr(rule, name))
-    return low, high
+    low, high = bounds_of(info)
+    return (0.0 if 0.0 < low < sys.float_info.min else low), high
 
 
 def _read_ends(text: str, ends: str, allowed: tuple[float, float]) -> tuple[float, float]:

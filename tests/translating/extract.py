@@ -16,7 +16,7 @@ from tests.translating.python import Text, is_prose, numbered
 ROOT = Path(__file__).parents[2]
 _NOT_ON_THE_PAGE = tuple(
     """
-    app/cli app/bench app/languages app/bridge app/design_table.py app/jobs/cluster.py
+    app/cli app/bench app/languages app/bridge app/jobs/cluster.py
     app/workers.py app/logs.py app/serve.py app/memory.py app/__main__.py app/http/access.py
     app/http/address.py app/http/site.py app/http/front.py app/http/headers.py app/http/metrics.py
     app/http/page.py app/http/ids.py app/http/places.py app/http/server.py app/session/database.py

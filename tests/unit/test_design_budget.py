@@ -118,7 +118,7 @@ def test_the_run_settles_at_the_steady_state() -> None:
             )
 
 
-@pytest.mark.parametrize("outage", [False, True])
+@pytest.mark.parametrize("outage", [pytest.param(False, marks=pytest.mark.nightly), True])
 def test_covariance_is_that_of_many_seeds(outage: bool) -> None:
     """Tilt, heading, velocity and position of 150 seeds along legs with a turn, all sources on."""
     rng = np.random.default_rng(7)

@@ -23,10 +23,14 @@ from tests.acceptance.test_design_values import SET_A, set_a
 from tests.acceptance.tuning import CASES, Case, best_of_grid
 
 SIGMA, XI = "method.0.network.sigma", "method.0.network.xi"
+NIGHTLY = pytest.mark.nightly
 COMPASS = [f"{SIGMA}=1e-4:0.1", f"{XI}=0.1:5"]
 
 
-@pytest.mark.parametrize("start", [(0.0088, 0.7), (0.09, 4.9), (2e-4, 0.15)])
+@pytest.mark.parametrize(
+    "start",
+    [(0.0088, 0.7), pytest.param((0.09, 4.9), marks=NIGHTLY), pytest.param((2e-4, 0.15), marks=NIGHTLY)],
+)
 def test_the_known_optimum_of_compass_from_any_start(start: tuple[float, float]) -> None:
     """theory.md 20: 4.850 arcsec at 0.002945, 2.790; the range of 5 % holds its value at both ends."""
     scenario = set_a({"id": "compass", "sigma": start[0], "xi": start[1]})
@@ -65,7 +69,9 @@ def test_it_is_the_best_of_a_fine_grid() -> None:
     ("network", "vary", "arcsec", "at_end"),
     [
         ({"id": "complementary"}, ("zeta=0.05:2", "eta=0.05:2"), 6.016, ("zeta", "eta")),
-        ({"id": "unity2"}, ("zeta=0.05:2", "r=1.02:3", "zeta2=0.3:2"), 4.882, ("zeta2",)),
+        pytest.param(
+            {"id": "unity2"}, ("zeta=0.05:2", "r=1.02:3", "zeta2=0.3:2"), 4.882, ("zeta2",), marks=NIGHTLY
+        ),
     ],
 )
 def test_an_optimum_at_the_end_of_a_range_is_told(
@@ -253,7 +259,10 @@ def test_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "as it is" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("case", CASES, ids=[case.name for case in CASES])
+@pytest.mark.parametrize(
+    "case",
+    [pytest.param(case, id=case.name, marks=NIGHTLY if k else ()) for k, case in enumerate(CASES)],
+)
 def test_any_start_comes_to_the_best_of_a_grid(case: Case) -> None:
     """Corners of the ranges; `make tuning` takes more starts and a finer grid."""
     least = best_of_grid(case, points=12)

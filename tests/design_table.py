@@ -1,4 +1,4 @@
-"""``python -m app.design_table``: docs/design.md, what the budget covers and a table over the presets.
+"""``python -m tests.design_table``: docs/design.md, what the budget covers and a table over the presets.
 
 For each preset: the source that contributes most to the tilt along its run, how many times the floor the tilt
 of its first damped method is in the steady state, before and after tuning, and which network comes nearest.
