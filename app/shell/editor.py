@@ -11,7 +11,7 @@ from app.editing.form import Path
 from app.session.session import Session
 from app.shell import notices
 from app.shell.control import Control
-from app.shell.timer import timer
+from app.shell.pace import timer
 from navcore.foundation.errors import InputError
 from navcore.scenario.model import Scenario
 

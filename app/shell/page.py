@@ -22,7 +22,6 @@ from app.shell import notices
 from app.shell.column import Column
 from app.shell.commands import Commands
 from app.shell.editor import Editor
-from app.shell.following import Following
 from app.shell.header import HeaderPanel
 from app.shell.layout import Layout, Window, layout_for
 from app.shell.opening import Opening
@@ -65,8 +64,7 @@ class Page:
         self._selected = session.selected
         self._front: frozenset[str] = frozenset()
         self._views: list[View] = []
-        self._pace = Pace(self._draw)
-        self._follow = Following(self._refresh_late)
+        self._pace = Pace(self._draw, self._refresh_late)
         self._build(kinds)
 
     # ------------------------------------------------------------ building
@@ -143,7 +141,6 @@ class Page:
             self._closed = True
         self.editor.close()
         self._pace.close()
-        self._follow.close()
         self.commands.close()
         for view in self._views:
             view.close()
@@ -163,7 +160,7 @@ class Page:
             self.editor.moved = None
         elif self.editor.by_slider:
             # The other controls follow with the picture: a slider gives twenty values in a second.
-            self._follow.ask()
+            self._pace.follow_later()
             return
         with self.client.atomic():
             self.refresh()
@@ -174,7 +171,7 @@ class Page:
 
     def refresh(self) -> None:
         """Let every view show the session's scenario; the control in hand stays as it is."""
-        self._follow.done()
+        self._pace.controls_wait = False
         self.editor.catch_up()
         self.header.show_scenario()
         for view in self._views:
@@ -298,7 +295,7 @@ class Page:
             self.column.show(found, pictures, wanted)
             self.editor.catch_up()
             if whole:
-                if self._follow.due:
+                if self._pace.controls_wait:
                     self.refresh()
                 else:
                     self.palette.show()
@@ -323,9 +320,9 @@ class Page:
     def _refresh_late(self) -> None:
         """Let the controls follow a slider whose picture takes its time; while it moves they wait for it."""
         if moving := self._pace.moving:
-            self._follow.ask()
+            self._pace.follow_later()
         with self.session.lock, self.client.atomic():
-            if self._closed or not self._follow.due:
+            if self._closed or not self._pace.controls_wait:
                 return
             self.editor.catch_up() if moving else self.refresh()
         self.client.flush()
