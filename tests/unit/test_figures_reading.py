@@ -1,10 +1,9 @@
-"""Units, logarithmic axes, envelopes, spectra and files of the plots."""
+"""Envelopes, spectra and files of the plots."""
 
 from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -21,99 +20,86 @@ from app.views.frequency.figure import bode
 from app.views.spectrum.figure import amplitude_spectrum, spectrum
 from app.views.switching.figure import switching_plots
 from navcore.engine.run import Run
+from navcore.engine.simulation import simulate
 from navcore.mechanization.recorder import DV_E
 from navcore.scenario.model import Scenario
-from tests.unit.figures_runs import THREE, diverging, run_of, scenario, static_run
+from tests.unit.figures_runs import THREE, diverging, run_of, scenario, static_run, texts_of
 from tests.unit.test_figures_switching import switching_run
 
 # ---------------------------------------------------------------- envelope
 
 
-def seeds(count: int) -> list[Run]:
-    from navcore.engine.simulation import simulate
-
-    one = scenario(run={"duration_h": 1.0}, method=[THREE[1]])
-    return [simulate(with_seed(one, seed)) for seed in range(1, count + 1)]
-
-
 @pytest.fixture(scope="module")
 def runs() -> list[Run]:
-    return seeds(SEEDS)
+    one = scenario(run={"duration_h": 1.0}, method=[THREE[1]])
+    return [simulate(with_seed(one, seed)) for seed in range(1, SEEDS + 1)]
 
 
 def test_envelope_holds_most_of_the_runs(runs: list[Run]) -> None:
-    found = envelope(runs)
-    assert "5 to 95 %" in found.label and "20 seeds" in found.label
-    low, high = found.low[0][:, DV_E], found.high[0][:, DV_E]
-    inside = []
-    for run in runs:
-        pairs = run.methods[0].plot.values[: 2 * len(low), DV_E].reshape(-1, 2)
-        inside.append(np.mean((pairs.min(axis=1) >= low) & (pairs.max(axis=1) <= high)))
+    band = envelope(runs)
+    assert "5 to 95 %" in band.label and "20 seeds" in band.label
+    low, high = band.low[0][:, DV_E], band.high[0][:, DV_E]
+    own = np.array([run.methods[0].plot.values[: 2 * len(low), DV_E].reshape(-1, 2) for run in runs])
     # one of twenty below each edge
-    assert 0.85 <= np.mean(inside) <= 0.95
+    assert 0.85 <= np.mean((own.min(axis=2) >= low) & (own.max(axis=2) <= high)) <= 0.95
 
 
 def test_envelope_is_a_band_behind_its_own_curve(runs: list[Run]) -> None:
-    found = envelope(runs[:5])
-    plot = error_plots(runs[0], envelope=found)["dve"]
-    assert plot.names[0] == "classic2" and len(plot.bands) == 1
-    upper, lower, color = plot.bands[0]
+    plots = {scale: Display(scale=scale) for scale in ("linear", "log")}
+    plots = {k: error_plots(runs[0], envelope=envelope(runs[:5]), display=d)["dve"] for k, d in plots.items()}
+    plot = plots["linear"]
+    ((upper, lower, color),) = plot.bands
     assert plot.edges == {upper, lower} and color.startswith(plot.curves[0].color)
-    assert np.all(plot.data[1 + upper] >= plot.data[1 + lower])
-    assert plot.series[1 + upper]["width"] == 0.0
+    assert (plot.names[0], plot.series[1 + upper]["width"]) == ("classic2", 0.0)
     assert plot.kwargs()["bands"] == ({"series": (upper + 1, lower + 1), "fill": color},)
-    log = error_plots(runs[0], envelope=found, display=Display(scale="log"))["dve"]
-    assert np.all(log.data[1 + upper] >= log.data[1 + lower])
+    for each in plots.values():
+        assert np.all(each.curves[upper].values >= each.curves[lower].values)
 
 
 def test_bins_of_two_points_keep_their_extremes() -> None:
     run = run_of(run={"duration_h": 3.0}, method=[{"name": "free"}])
     plot = run.methods[0].plot
     assert plot.t_s[0] > 0.0
-    found = envelope([run])
-    pairs = plot.values[: 2 * len(found.t_s), DV_E].reshape(-1, 2)
-    np.testing.assert_array_equal(found.low[0][:, DV_E], pairs.min(axis=1))
-    np.testing.assert_array_equal(found.high[0][:, DV_E], pairs.max(axis=1))
+    band = envelope([run])
+    pairs = plot.values[: 2 * len(band.t_s), DV_E].reshape(-1, 2)
+    np.testing.assert_array_equal(band.low[0][:, DV_E], pairs.min(axis=1))
+    np.testing.assert_array_equal(band.high[0][:, DV_E], pairs.max(axis=1))
 
 
-class Watched:
-    """Envelopes over a quick stand-in for the simulation."""
+@pytest.fixture
+def asked(runs: list[Run]) -> tuple[Envelopes, list[int], list[str]]:
+    """Envelopes over a quick stand-in for the simulation, the seeds it was asked for, and what it told."""
+    seeds: list[int] = []
+    events: list[str] = []
 
-    def __init__(self, run: Run) -> None:
-        self.seeds: list[int] = []
-        self.told: list[str] = []
-        self.run = run
-        self.all = Envelopes(
-            self.simulate, lambda: self.told.append("further"), lambda: self.told.append("ended"), still_s=0.0
-        )
+    def stand_in(of: Scenario, *_: object) -> Run:
+        seeds.append(of.run.seed)
+        return runs[0]
 
-    def simulate(self, of: Scenario, _: Callable[[float], None], cancelled: Callable[[], bool]) -> Run:
-        self.seeds.append(of.run.seed)
-        return self.run
+    further, ended = (lambda word=word: events.append(word) for word in ("further", "ended"))
+    return Envelopes(stand_in, further, ended, still_s=0.0), seeds, events
 
 
-def test_envelope_is_made_over_other_seeds_and_belongs_to_one_scenario(runs: list[Run]) -> None:
-    watched = Watched(runs[0])
-    one = runs[0].scenario
-    watched.all.follow(one, "seeds")
-    assert watched.all.wait_idle(20.0)
-    assert watched.seeds == [one.run.seed + number for number in range(1, SEEDS + 1)]
-    assert isinstance(watched.all.beside(one, "seeds"), Envelope) and watched.told[-1] == "ended"
-    found, earlier = watched.all.beside(one, "seeds"), watched.all.beside(with_seed(one, 99), "seeds")
-    assert found is not None and not found.old and "earlier" not in found.label
+def test_envelope_is_made_over_other_seeds_and_belongs_to_one_scenario(asked, runs: list[Run]) -> None:
+    (envelopes, seeds, events), one = asked, runs[0].scenario
+    envelopes.follow(one, "seeds")
+    assert envelopes.wait_idle(20.0) and events[-1] == "ended"
+    assert seeds == [one.run.seed + number for number in range(1, SEEDS + 1)]
+    now, earlier = envelopes.beside(one, "seeds"), envelopes.beside(with_seed(one, 99), "seeds")
+    assert isinstance(now, Envelope) and not now.old and "earlier" not in now.label
     assert earlier is not None and earlier.old and "of an earlier setting" in earlier.label
     longer = one.model_copy(update={"run": one.run.model_copy(update={"duration_h": 2.0})})
-    assert watched.all.beside(longer, "seeds") is None and watched.all.beside(one, "covariance") is None
-    watched.all.follow(one, "seeds")
-    assert len(watched.seeds) == SEEDS, "made twice"
-    watched.all.follow(one, "none")
-    assert watched.all.beside(one, "seeds") is None and watched.all.fraction is None
+    assert envelopes.beside(longer, "seeds") is None and envelopes.beside(one, "covariance") is None
+    envelopes.follow(one, "seeds")
+    assert len(seeds) == SEEDS, "made twice"
+    envelopes.follow(one, "none")
+    assert envelopes.beside(one, "seeds") is None and envelopes.fraction is None
 
 
-def test_strapdown_scenarios_are_told_that_they_have_none(runs: list[Run]) -> None:
-    watched = Watched(runs[0])
-    watched.all.follow(scenario(run={"duration_h": 1.0, "fidelity": "strapdown"}), "seeds")
-    assert "strapdown" in watched.all.words[0] and watched.seeds == []
+def test_strapdown_scenarios_are_told_that_they_have_none(asked) -> None:
+    envelopes, seeds, _ = asked
+    envelopes.follow(scenario(run={"duration_h": 1.0, "fidelity": "strapdown"}), "seeds")
+    assert "strapdown" in envelopes.words[0] and seeds == []
 
 
 # ---------------------------------------------------------------- spectrum
@@ -141,19 +127,16 @@ def test_undamped_error_peaks_at_the_schuler_period() -> None:
     )
     periods, amplitude = amplitude_spectrum(run.methods[0], DV_E)
     near = (periods > 3600.0) & (periods < 7200.0)
-    assert periods[near][np.argmax(amplitude[near])] == pytest.approx(
-        2.0 * np.pi / run.scenario.omega_s, rel=0.03
-    )
-    figure = spectrum(run, "dve")
-    notes = " ".join(note["text"] for note in figure["layout"]["annotations"])
-    assert "Schuler" in notes and "24 h" in notes
-    assert figure["layout"]["xaxis"]["title"]["text"] == "period (h)"
-    minutes = spectrum(run, "dve", display=Display(time="min"))["layout"]["xaxis"]["title"]["text"]
-    assert minutes == "period (min)"
-    assert "m/s" in figure["layout"]["yaxis"]["title"]["text"]
+    schuler = 2.0 * np.pi / run.scenario.omega_s
+    assert periods[near][np.argmax(amplitude[near])] == pytest.approx(schuler, rel=0.03)
+    hours, minutes = (spectrum(run, "dve", display=Display(time=unit)) for unit in ("auto", "min"))
+    assert {"Schuler", "24"} <= set(" ".join(texts_of(hours)).split())
+    titles = [figure["layout"]["xaxis"]["title"]["text"] for figure in (hours, minutes)]
+    assert titles == ["period (h)", "period (min)"]
+    assert "m/s" in hours["layout"]["yaxis"]["title"]["text"]
 
 
-def test_spectrum_of_a_run_too_short_or_diverged_is_still_drawn() -> None:
+def test_spectrum_of_a_method_that_ended_at_once_is_left_out() -> None:
     assert spectrum(diverging(static_run(), 0, rows=10))["data"][0]["name"] == "classic2"
     assert amplitude_spectrum(diverging(static_run(), 0, rows=4).methods[0], DV_E)[0].size == 0
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 
 import pytest
 
@@ -11,12 +12,11 @@ from app.views.scene.playback import MOST_AHEAD, SLOW_S, SPEEDS, TICK_S, Playbac
 
 def test_the_time_runs_with_its_speed_and_stops_at_the_end() -> None:
     state = PlayState(time_s=100.0, span_s=1000.0, playing=True, speed=300)
+    ended, again = state.later(10.0), replace(state, loop=True).later(4.0)
     assert state.later(1.0).time_s == 400.0
-    ended = state.later(10.0)
     assert (ended.time_s, ended.playing, ended.at_end) == (1000.0, False, True)
-    again = PlayState(time_s=100.0, span_s=1000.0, playing=True, speed=300, loop=True).later(4.0)
     assert (again.time_s, again.playing) == (300.0, True)
-    still = PlayState(time_s=100.0, span_s=1000.0)
+    still = replace(state, playing=False)
     assert still.later(5.0) is still
 
 
@@ -40,15 +40,16 @@ def test_what_is_asked_for_is_held_within_the_run() -> None:
 
 def test_a_run_of_another_length_keeps_the_place() -> None:
     playback = Playback(lambda state: None)
-    playback.follow(3600.0)
-    playback.follow(7200.0)
-    assert playback.state.time_s == 7200.0  # at the end it stays at the end
-    playback.seek(5000.0)
-    playback.follow(3600.0)
-    assert playback.state.time_s == 3600.0
-    playback.seek(1000.0)
-    playback.follow(7200.0)
-    assert playback.state.time_s == 1000.0
+    for seek, span, place in (
+        (None, 3600.0, 3600.0),
+        (None, 7200.0, 7200.0),  # at the end it stays at the end
+        (5000.0, 3600.0, 3600.0),
+        (1000.0, 7200.0, 1000.0),
+    ):
+        if seek is not None:
+            playback.seek(seek)
+        playback.follow(span)
+        assert playback.state.time_s == place
 
 
 def test_it_plays_pauses_and_ends_with_its_page() -> None:

@@ -40,7 +40,9 @@ class MisprintsView(View):
         """Make the choosers; nothing is computed before the tab is in front."""
         gui = self.frame.gui
         with self._lock, tab:
-            self._tab, self._plot, self._drawn = tab, None, None
+            self._tab = tab
+            self._plot: Any = None
+            self._drawn: tuple[str, Shown] | None = None
             self._chooser: Any = gui.add_dropdown(
                 _MISPRINT, tuple(_TITLES), order=0,
                 hint="Errors in the papers that change a result; both forms are computed by the same code.",
@@ -57,7 +59,7 @@ class MisprintsView(View):
         with self._lock:
             chosen = _TITLES[self._chooser.value], self._switch.value
             if chosen != self._drawn:
-                self._drawn: tuple[str, Shown] | None = chosen
+                self._drawn = chosen
                 self._draw(*chosen)
 
     def _draw(self, id: str, form: Shown) -> None:
@@ -74,7 +76,7 @@ class MisprintsView(View):
             self._plot.figure = plot
             return
         with self._tab:
-            self._plot: Any = self.frame.gui.add_plotly(plot, aspect=aspect, order=3)
+            self._plot = self.frame.gui.add_plotly(plot, aspect=aspect, order=3)
 
 
 VIEW = MisprintsView
