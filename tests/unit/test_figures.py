@@ -162,7 +162,7 @@ def test_figures_load_neither_viser_nor_plotly_nor_scipy() -> None:
     code = (
         "import sys; import app.views.frequency.figure, app.views.poles.figure, app.views.step.figure;"
         "import app.views.errors.figure;"
-        "import app.views.scene.track, app.views.metrics.table, app.views.scene.ship, app.plots.warnings;"
+        "import app.views.scene.track, app.views.metrics.table, app.plots.warnings;"
         # numba itself loads the bare scipy package
         "slow = {'viser', 'plotly', 'control', 'matplotlib', 'scipy.linalg', 'scipy.signal'};"
         "bad = slow & set(sys.modules);"

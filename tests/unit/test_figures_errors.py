@@ -15,10 +15,8 @@ from app.plots.legend import STATES, after
 from app.plots.uplot import stack_heights
 from app.session.display import Display
 from app.session.shown import Shown
-from app.views.errors.figure import GROUPS, Overlay, error_plots
+from app.views.errors.figure import GROUPS, VERIFIED, Overlay, error_plots, verification_plots
 from app.views.errors.legend import legend_html
-from app.views.errors.verified import KEYS as VERIFIED
-from app.views.errors.verified import verification_plots
 from app.views.errors.view import error_curves
 from navcore.engine.simulation import simulate
 from navcore.engine.verification import Verification, verify

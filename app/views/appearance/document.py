@@ -1,22 +1,29 @@
-"""A session as one HTML page to keep, send and print: numbers, pictures, scenario; it loads nothing."""
+"""A session in one file: an HTML page to keep, send and print, or one picture of all plots."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from datetime import datetime
+from copy import copy
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from functools import partial
 from html import escape
 from pathlib import Path
 from string import Template
 
+from app.bridge.texts import language_of, text_said
 from app.editing.edits import files_of
 from app.plots import table
 from app.session.laid import titled
 from app.session.pins import Pin
-from app.session.shown import Shown
+from app.session.shown import Shown, shown
 from app.session.uploads import with_plain_names
 from app.session.window import window_of
 from app.shell import notices
+from app.shell.layout import layout_for
+from app.shell.plotly_view import PlotlyView
+from app.shell.view import Frame, PictureView
+from app.views.appearance.export import Export, Picture, picture_of
 from app.views.compare.table import lines_of, pins_html
 from app.views.metrics.table import metrics_html, system_html
 from app.views.metrics.view import warnings_html
@@ -24,6 +31,9 @@ from app.views.requirements.table import requirements_html
 from navcore.foundation.version import __version__
 from navcore.scenario.file import load, presets, to_toml
 
+PAGE, OVERVIEW = "session.html", "overview.png"
+_WINDOW = (1600, 940)
+"""Window for which plots are laid out: on A4 their type is legible, and three stand on a page."""
 _ABREAST = 3
 """Methods beside each other in a table, so that it fits on paper."""
 _STATIC = Path(__file__).parent / "static"
@@ -163,3 +173,51 @@ def _scenario(session: Session) -> str:
     beside = f"<p>It needs these recordings beside it: {escape(files)}.</p>" if files else ""
     how = "<p>To compute the run again, save this text as scenario.toml and give the command above.</p>"
     return _section("Scenario", how, beside, f"<pre>{escape(to_toml(scenario))}</pre>")
+
+
+class Sheet:
+    """Gathers what the session shows, and lets the page draw and save it.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of the page.
+    export : Export
+        Draws the plots.
+    """
+
+    def __init__(self, frame: Frame, export: Export) -> None:
+        self._frame, self._export = frame, export
+        add = frame.commands.register
+        add("save-page", lambda _: self.save(PAGE), "Save the session as one page (HTML)", watcher=True)
+        overview = "Save all plots in one picture (PNG)"
+        add("save-overview", lambda _: self.save(OVERVIEW), overview, watcher=True)
+
+    def save(self, name: str) -> None:
+        """Save `PAGE` or `OVERVIEW`."""
+        frame, client = self._frame, self._frame.client
+        now = shown(frame.session)
+        if now is None:
+            self._export.tell_no_run()
+            return
+        session = Session(now, frame.session.pins.all, frame.session.origin, datetime.now(UTC))
+        pictures, say = pictures_of(frame, now), partial(text_said, client)
+        if name == OVERVIEW:
+            self._export.draw("overview", name, pictures, title=say(f"Schuler Bench: {session.title}"))
+            return
+        page = document(session, [picture.title for picture in pictures], language_of(client), say)
+        self._export.draw("html", name, pictures, page=page)
+
+
+def pictures_of(frame: Frame, now: Shown) -> list[Picture]:
+    """3D view and plots of all views, in the order of their tabs, laid out alike whatever the window is."""
+    layout = layout_for(*_WINDOW)
+    pictures = [Picture("Trajectory in 3D", None, 0.0)]
+    for view in frame.views():
+        if isinstance(view, PictureView) and not view.stands(now.run):
+            continue
+        if isinstance(view, PlotlyView):  # the same one, its plot for another place
+            view = copy(view)
+            view.frame = replace(frame, layout=lambda: layout)
+        pictures += [picture_of(title, figures, layout.plot_px) for title, figures in view.sheet(now)]
+    return pictures

@@ -8,9 +8,9 @@ from app.jobs.envelopes import SEEDS
 from app.session.display import Display
 from app.shell import notices
 from app.shell.view import Frame, Tab, View, if_user
+from app.views.appearance.document import Sheet
 from app.views.appearance.export import FORMATS, Export
 from app.views.appearance.look import Looks, PageLanguage
-from app.views.appearance.sheet import Sheet
 from navcore.foundation.notation import unit_sign
 
 _CHOICES = {

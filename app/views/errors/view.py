@@ -14,10 +14,8 @@ from app.session.shown import Shown
 from app.shell import notices
 from app.shell.stack import Stack, room_px
 from app.shell.view import Figures, Frame, PictureView, Tab, if_user
-from app.views.errors.figure import GROUPS, QUANTITIES, Overlay, error_plots
+from app.views.errors.figure import GROUPS, QUANTITIES, VERIFIED, Overlay, error_plots, verification_plots
 from app.views.errors.legend import legend_html, legend_names
-from app.views.errors.verified import KEYS as VERIFIED
-from app.views.errors.verified import verification_plots
 
 OVERVIEW = "Overview"
 VERIFICATION = "Verification"
