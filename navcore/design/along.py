@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from navcore.design.constants import Column, own_columns, shared_columns
-from navcore.design.course import Course
+from navcore.design.course import Course, log_axes
 from navcore.design.form import LawForm
 from navcore.design.maps import (
     ACCEL,
@@ -203,7 +203,9 @@ def _joint(
     Q = tables.Q[kind].copy()
     A[:, :, :n, :n] = tables.Phi[kind][:, None]
     own = slice(n, n + AXES)
-    axes = {GYRO.start: turn, ACCEL.start: turn[:, :2], LAW.start: _log_turn(loop, turn)}
+    log = np.zeros((len(turn), 2, AXES))  # nothing hangs on the third axis
+    log[:, :, :2] = log_axes(loop.body_frame, turn)
+    axes = {GYRO.start: turn, ACCEL.start: turn[:, :2], LAW.start: log}
     for s in (1, 3, 5):
         inputs = INPUTS_OF[s]
         to_navigation, width = axes[inputs.start], inputs.stop - inputs.start
@@ -216,18 +218,6 @@ def _joint(
         Q[:, s, :n, own], Q[:, s, own, :n] = cross, cross.mT
         Q[:, s, own, own] = variance[:, None, None] * np.eye(AXES)
     return A, Q, places.reshape(-1)
-
-
-def _log_turn(loop: LoopModel, turn: np.ndarray) -> np.ndarray:
-    """Columns of the log's axes in E, N and a third that nothing hangs on; shape (g, 2, 3)."""
-    out = np.zeros((len(turn), 2, AXES))
-    if not loop.body_frame:
-        out[:, 0, 0] = out[:, 1, 1] = 1.0
-        return out
-    heading = np.arctan2(turn[:, 0, 1], turn[:, 1, 1])
-    sine, cosine = np.sin(heading), np.cos(heading)
-    out[:, 0, 0], out[:, 1, 0], out[:, 0, 1], out[:, 1, 1] = cosine, -sine, sine, cosine
-    return out
 
 
 def _known(

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from navcore.design.course import Course
+from navcore.design.course import Course, log_axes
 from navcore.design.maps import ACCEL, ERRORS, GYRO, INPUTS, LAW, RATE, LoopModel
 from navcore.scenario.model import Method, Scenario
 from navcore.scenario.start import aligned_errors, independent_errors
@@ -21,7 +21,6 @@ from navcore.scenario.stochastic import StochasticModel
 from navcore.sensors.imu import Imu, imu_errors
 from navcore.sensors.reference import Reference, event_velocity
 from navcore.sensors.simulated_log import simulated_errors
-from navcore.sensors.true_state import to_navigation
 
 _COUPLINGS = {
     "gyro_scale": ("gyro_scale_ppm", GYRO),
@@ -130,19 +129,8 @@ def _couplings(scenario: Scenario, course: Course) -> Iterator[Column]:
             yield _column(source, inputs, course.means(np.arange(len(series)) * step_s, series))
 
 
-def _log_axes(scenario: Scenario, course: Course) -> np.ndarray:
-    """Columns of the log's two axes in E, N; shape (k, 2, 2)."""
-    if scenario.reference.frame == "enu":
-        return np.broadcast_to(np.eye(2), (len(course.turn), 2, 2))
-    # the ship's forward axis over the ground is the second column of C_b^n
-    heading = np.arctan2(course.turn[:, 1], course.turn[:, 4])
-    return np.stack(
-        [to_navigation(np.broadcast_to(axis, (len(heading), 2)), heading) for axis in np.eye(2)], axis=2
-    )
-
-
 def _log_bias(scenario: Scenario, course: Course, model: StochasticModel) -> Iterator[Column]:
-    axes = _log_axes(scenario, course)
+    axes = log_axes(scenario.reference.frame == "body", course.turn.reshape(-1, 3, 3))
     for axis in range(2):
         yield _column("log_bias", LAW, axes[:, :, axis] * model.log_bias[axis])
 

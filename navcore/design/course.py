@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from navcore.engine.environment import coefficients_of, truth_of
-from navcore.foundation.units import HOUR
 from navcore.mechanization.trajectory import COLUMNS, named, table_of
 from navcore.motion.base import HEADING, PITCH, ROLL, VE, VN, Truth
 from navcore.scenario.model import Scenario
@@ -195,6 +194,16 @@ def _attitudes(values: np.ndarray) -> np.ndarray:
     )
 
 
+def log_axes(body: bool, turn: np.ndarray) -> np.ndarray:
+    """Columns of the log's two axes in E, N, for attitudes C_b^n of shape (g, 3, 3); shape (g, 2, 2)."""
+    if not body:
+        return np.broadcast_to(np.eye(2), (len(turn), 2, 2))
+    # the ship's forward axis over the ground is the second column of C_b^n
+    heading = np.arctan2(turn[:, 0, 1], turn[:, 1, 1])
+    sine, cosine = np.sin(heading), np.cos(heading)
+    return np.stack([cosine, sine, -sine, cosine], axis=1).reshape(-1, 2, 2)
+
+
 def _means(rows: np.ndarray, places: np.ndarray) -> np.ndarray:
     """Mean of the rows from each place to the next, both ends included by half; one row stands for all."""
     count = len(places) - 1
@@ -221,9 +230,3 @@ def _mean_of_kinds(rows: np.ndarray, kind: np.ndarray, count: int) -> np.ndarray
     sums = np.zeros((count, rows.shape[1]))
     np.add.at(sums, kind, rows)
     return sums / np.bincount(kind, minlength=count)[:, None]
-
-
-def hours(scenario: Scenario) -> float:
-    """Length of the run in hours."""
-    step_s, steps = law_steps(scenario)
-    return step_s * steps / HOUR

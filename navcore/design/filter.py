@@ -17,8 +17,8 @@ import numpy as np
 
 from navcore.analysis.transfers import RADIUS
 from navcore.design.along import QUANTITIES
-from navcore.design.course import Course
-from navcore.design.maps import ERRORS, error_step, repeated
+from navcore.design.course import Course, log_axes
+from navcore.design.maps import ERRORS, calls_joined, error_step
 from navcore.mechanization.trajectory import named
 from navcore.scenario.model import Scenario
 from navcore.scenario.start import aligned_errors, independent_errors
@@ -149,18 +149,7 @@ class _Sensors:
 
 def _interval(sensors: _Sensors, half: np.ndarray, turns: np.ndarray, calls: int, works: bool) -> RiccatiMap:
     fresh = _one_call(sensors, half, turns, works)
-    hold = sensors.course.hold
-    if hold == 1:
-        return repeated(fresh, calls, RiccatiMap.then)
-    held = _one_call(sensors, half, turns, False)
-    pieces = []
-    samples, rest = divmod(calls, hold)
-    if samples:
-        sample = fresh.then(repeated(held, hold - 1, RiccatiMap.then))
-        pieces.append(repeated(sample, samples, RiccatiMap.then))
-    if rest:
-        pieces.append(fresh if rest == 1 else fresh.then(repeated(held, rest - 1, RiccatiMap.then)))
-    return pieces[0] if len(pieces) == 1 else pieces[0].then(pieces[1])
+    return calls_joined(fresh, lambda: _one_call(sensors, half, turns, False), calls, sensors.course.hold)
 
 
 def _one_call(sensors: _Sensors, half: np.ndarray, turns: np.ndarray, works: bool) -> RiccatiMap:
@@ -173,12 +162,10 @@ def _one_call(sensors: _Sensors, half: np.ndarray, turns: np.ndarray, works: boo
         into["gyro"][:, :, 2] = 0.0
     seen = np.zeros((g, 2, n))
     seen[:, 0, 0] = seen[:, 1, 1] = 1.0
-    axes = np.broadcast_to(np.eye(2), (g, 2, 2))
-    if scenario.reference.frame == "body":
+    body = scenario.reference.frame == "body"
+    axes = log_axes(body, turns)
+    if body:
         seen[:, 0, 6], seen[:, 1, 6] = -named(half)["v_n"], named(half)["v_e"]
-        heading = np.arctan2(turns[:, 0, 1], turns[:, 1, 1])
-        sine, cosine = np.sin(heading), np.cos(heading)
-        axes = np.stack([np.stack([cosine, sine], -1), np.stack([-sine, cosine], -1)], axis=1)
     A, Q = np.zeros((2, g, n, n))
     A[:, :ERRORS, :ERRORS] = transition
     A[:, range(ERRORS, n), range(ERRORS, n)] = 1.0

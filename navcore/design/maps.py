@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Protocol, Self, TypeVar
 
 import numpy as np
 
@@ -21,7 +21,12 @@ from navcore.design.course import Course
 from navcore.design.form import LawForm
 from navcore.mechanization.trajectory import named, table_of
 
-_T = TypeVar("_T")
+
+class _Piece(Protocol):
+    def then(self, later: Self) -> Self: ...
+
+
+Joined = TypeVar("Joined", bound=_Piece)
 
 GYRO, ACCEL, LAW, RATE = slice(0, 3), slice(3, 5), slice(5, 7), slice(7, 9)
 """Columns of the inputs: eps E, N, U; nabla E, N; error of the log E, N; velocity added to the transport
@@ -57,22 +62,32 @@ class Map:
         )
 
 
-def powered(one: Map, count: int) -> Map:
-    """Compose a map ``count`` times with itself."""
-    return repeated(one, count, Map.then)
-
-
-def repeated(one: _T, count: int, then: Callable[[_T, _T], _T]) -> _T:
+def repeated(one: Joined, count: int) -> Joined:
     """Join ``count`` equal pieces by doubling."""
-    result: _T | None = None
+    result: Joined | None = None
     while True:
         if count & 1:
-            result = one if result is None else then(result, one)
+            result = one if result is None else result.then(one)
         count >>= 1
         if count == 0:
             assert result is not None
             return result
-        one = then(one, one)
+        one = one.then(one)
+
+
+def calls_joined(fresh: Joined, held: Callable[[], Joined], calls: int, hold: int) -> Joined:
+    """Join ``calls`` calls of the law: the first of every ``hold`` is fresh, the others hold its sample."""
+    if hold == 1:
+        return repeated(fresh, calls)
+    later = held()
+    samples, rest = divmod(calls, hold)
+    lengths = {hold: samples, rest: 1} if rest else {hold: samples}
+    pieces = [
+        repeated(fresh if length == 1 else fresh.then(repeated(later, length - 1)), count)
+        for length, count in lengths.items()
+        if count
+    ]
+    return pieces[0] if len(pieces) == 1 else pieces[0].then(pieces[1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,17 +192,7 @@ class LoopModel:
 def interval_map(loop: LoopModel, half: np.ndarray, calls: int, damped: bool) -> Map:
     """Map of an interval of ``calls`` calls for each row of coefficients."""
     fresh = call_map(loop, half, damped, fresh=True)
-    if loop.hold == 1:
-        return powered(fresh, calls)
-    held = call_map(loop, half, damped, fresh=False)
-    samples, rest = divmod(calls, loop.hold)
-    sample = fresh.then(powered(held, loop.hold - 1))
-    if not samples:
-        return fresh if rest == 1 else fresh.then(powered(held, rest - 1))
-    whole = powered(sample, samples)
-    if not rest:
-        return whole
-    return whole.then(fresh if rest == 1 else fresh.then(powered(held, rest - 1)))
+    return calls_joined(fresh, lambda: call_map(loop, half, damped, fresh=False), calls, loop.hold)
 
 
 def call_map(loop: LoopModel, half: np.ndarray, damped: bool, fresh: bool) -> Map:

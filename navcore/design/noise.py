@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from navcore.design.maps import ACCEL, GYRO, LAW, LoopModel, Map, call_map, repeated
+from navcore.design.maps import ACCEL, GYRO, LAW, LoopModel, Map, call_map, calls_joined
 from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
 
 AXES = 3
@@ -56,17 +56,11 @@ def interval_noise(
         Whether the law acts.
     """
     fresh = _one_call(loop, model, call_map(loop, half, damped, fresh=True), fresh=True)
-    if loop.hold == 1:
-        return repeated(fresh, calls, Injection.then)
-    held = _one_call(loop, model, call_map(loop, half, damped, fresh=False), fresh=False)
-    samples, rest = divmod(calls, loop.hold)
-    pieces = []
-    if samples:
-        sample = fresh.then(repeated(held, loop.hold - 1, Injection.then))
-        pieces.append(repeated(sample, samples, Injection.then))
-    if rest:
-        pieces.append(fresh if rest == 1 else fresh.then(repeated(held, rest - 1, Injection.then)))
-    return pieces[0] if len(pieces) == 1 else pieces[0].then(pieces[1])
+
+    def held() -> Injection:
+        return _one_call(loop, model, call_map(loop, half, damped, fresh=False), fresh=False)
+
+    return calls_joined(fresh, held, calls, loop.hold)
 
 
 def _one_call(loop: LoopModel, model: StochasticModel, one: Map, fresh: bool) -> Injection:

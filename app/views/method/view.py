@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from app.editing import edits, form
 from app.editing.form import FieldSpec, Path
@@ -25,9 +25,6 @@ from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
 from navcore.networks import NETWORKS
 from navcore.scenario.model import Method, Scenario
-
-if TYPE_CHECKING:
-    pass
 
 ADD, COPY, REMOVE = "add", "copy", "remove"
 COPY_TEXT, PASTE_TEXT = "copy as TOML", "paste TOML"
