@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from app.views.learn.lessons import MISSING, Lesson, lessons, names_in
+from app.views.learn.lessons import MISSING, Lesson, lessons
 from app.views.learn.names import named
-from app.views.learn.view import right_answer, spec_at
+from app.views.learn.view import spec_at
 from navcore.engine.simulation import simulate
+from tests.answers import names_in, right_answer
 from tests.browser.driver import Bench
 from tests.browser.test_page_layout import SIZES, resize
 

@@ -16,17 +16,17 @@ from app.views.learn.lessons import (
     holds,
     is_right,
     lessons,
-    names_in,
     read_lesson,
     right_choice,
     to_html,
 )
 from app.views.learn.names import Named, named
-from app.views.learn.view import right_answer, spec_at
+from app.views.learn.view import spec_at
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.scenario.model import Scenario
+from tests.answers import names_in, right_answer
 
 LESSONS = lessons()
 STEPS = [(lesson, i) for lesson in LESSONS for i in range(len(lesson.steps))]

@@ -245,11 +245,6 @@ def formula_html(latex: str, *, block: bool = False) -> str:
     return f'<span class="sb-formula">{convert(latex.strip(), display="block")}</span>'
 
 
-def names_in(text: str) -> tuple[str, ...]:
-    """Names that a text speaks of."""
-    return tuple(_NAME.findall(text))
-
-
 def _number_html(name: str, run: Run | None) -> str:
     number = MISSING
     if run is not None:

@@ -17,8 +17,7 @@ from app.session.shown import Shown
 from app.shell.control import Control
 from app.shell.section import Section
 from app.shell.view import Frame, Tab, View
-from app.views.learn.lessons import Action, Lesson, Question, is_right, lessons, right_choice, to_html
-from app.views.learn.names import named
+from app.views.learn.lessons import Action, Lesson, Question, is_right, lessons, to_html
 from navcore.engine.run import Run
 from navcore.scenario.model import Scenario
 
@@ -269,13 +268,6 @@ def spec_at(scenario: Scenario, dotted: str) -> list[FieldSpec]:
         except (AttributeError, IndexError, TypeError):
             break
     return []
-
-
-def right_answer(question: Question, run: Run) -> str:
-    """An answer that counts as right, as it would be given."""
-    if question.choices:
-        return str(right_choice(question, run))
-    return f"{named(question.answer, run).value:.4g}"
 
 
 def _list_html() -> str:

@@ -95,18 +95,13 @@ class Playback:
         else:
             self._set(playing=state.span_s > 0.0, time_s=0.0 if state.at_end else state.time_s)
 
-    def pause(self) -> None:
-        """Stay at the present time."""
-        if self.state.playing:
-            self._set(playing=False)
-
     def seek(self, time_s: float) -> None:
         """Show another time of the run; a running playback goes on from there."""
         if math.isfinite(time_s):
             self._set(time_s=min(max(time_s, 0.0), self.state.span_s))
 
     def set_speed(self, speed: float) -> None:
-        """Choose one of `SPEEDS`; another one is not taken over."""
+        """Choose one of `SPEEDS`; another one is ignored."""
         if speed in SPEEDS:
             self._set(speed=int(speed))
 

@@ -10,8 +10,8 @@ import pytest
 from app.editing import edits
 from app.session.requirements import Requirements
 from app.views.learn.lessons import lessons
-from app.views.learn.view import right_answer
 from navcore.engine.simulation import simulate
+from tests.answers import right_answer
 from tests.browser import test_page_lessons as learning
 from tests.browser import test_page_playback as playing
 from tests.browser.driver import Bench

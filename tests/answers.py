@@ -1,0 +1,21 @@
+"""Right answers to the questions of lessons, and the numbers of which their texts speak."""
+
+from __future__ import annotations
+
+import re
+
+from app.views.learn.lessons import Question, right_choice
+from app.views.learn.names import named
+from navcore.engine.run import Run
+
+
+def names_in(text: str) -> list[str]:
+    """Names of the numbers in a text."""
+    return re.findall(r"\{\{([a-z0-9_.]+)\}\}", text)
+
+
+def right_answer(question: Question, run: Run) -> str:
+    """An answer that counts as right, as it would be given."""
+    if question.choices:
+        return str(right_choice(question, run))
+    return f"{named(question.answer, run).value:.4g}"
