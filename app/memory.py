@@ -20,10 +20,10 @@ _THRESHOLDS = 5_000, 10, 10
 
 def _glibc() -> ctypes.CDLL | None:
     try:
-        found = ctypes.CDLL(None)
+        libc = ctypes.CDLL(None)
     except (OSError, TypeError):  # not on this platform
         return None
-    return found if hasattr(found, "malloc_trim") and hasattr(found, "mallopt") else None
+    return libc if hasattr(libc, "malloc_trim") and hasattr(libc, "mallopt") else None
 
 
 def bound_arenas() -> None:

@@ -91,14 +91,14 @@ class Dashboard:
 
     @cached_property
     def metrics(self) -> Metrics:
-        """What the server is doing, for ``/metrics``."""
+        """Figures of the server, for ``/metrics``."""
         from app.http.metrics import Metrics
         from app.jobs.elsewhere import cluster_figures
         from app.jobs.scheduler import scheduler
 
-        made = Metrics()
-        made.sources += [lambda: scheduler().figures(), cluster_figures, self._figures]
-        return made
+        metrics = Metrics()
+        metrics.sources += [lambda: scheduler().figures(), cluster_figures, self._figures]
+        return metrics
 
     def _figures(self) -> dict[str, float]:
         with self._lock:

@@ -44,7 +44,7 @@ _log = logging.getLogger("schuler.workers")
 
 @dataclass(frozen=True)
 class Settings:
-    """What a worker is told on its standard input.
+    """Settings that a worker reads from its standard input.
 
     Attributes
     ----------
@@ -188,11 +188,11 @@ def serve_with_workers(
         origin_lists = sorted(origins), sorted(framers)
         crew = Crew(count, Settings(host, bound, loopback, -1, token, *origin_lists, count, cluster))
         held.callback(crew.stop)
-        shown = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
-        url = f"http://{authority(shown, bound)}/"
+        name = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
+        url = f"http://{authority(name, bound)}/"
         link = link_with(url, token) if show_token else url
-        told = f"Schuler Bench: {link}  ({count} workers; Ctrl+C ends it)"
-        asyncio.run(_serve(Front(crew.ports, Limits()), listener, told))
+        greeting = f"Schuler Bench: {link}  ({count} workers; Ctrl+C ends it)"
+        asyncio.run(_serve(Front(crew.ports, Limits()), listener, greeting))
 
 
 async def _serve(front: Front, listener: socket.socket, told: str) -> None:
@@ -216,11 +216,11 @@ def _claimed_folder(count: int) -> Iterator[None]:
 
 
 def _inner_socket() -> socket.socket:
-    made = socket.socket()
-    made.bind(("127.0.0.1", 0))
-    made.listen(100)
-    made.setblocking(False)
-    return made
+    inner = socket.socket()
+    inner.bind(("127.0.0.1", 0))
+    inner.listen(100)
+    inner.setblocking(False)
+    return inner
 
 
 def work() -> None:

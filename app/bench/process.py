@@ -83,7 +83,7 @@ class Server:
         """Memory that the server holds now, the door and all workers together, MiB."""
         pages = [_statistic(pid, "statm").split() for pid in self._pids()]
         if any(pages):
-            return sum(int(found[1]) for found in pages if found) * os.sysconf("SC_PAGE_SIZE") / _MIB
+            return sum(int(fields[1]) for fields in pages if fields) * os.sysconf("SC_PAGE_SIZE") / _MIB
         listed = subprocess.run(
             ["ps", "-o", "rss=", "-p", str(self._process.pid)], capture_output=True, text=True, check=True
         )
@@ -91,8 +91,8 @@ class Server:
 
     def cpu_s(self) -> float:
         """Processor time that the server has used, s; 0 where the system does not tell."""
-        found = [_after_name(pid) for pid in self._pids()]
-        ticks = sum(int(fields[11]) + int(fields[12]) for fields in found if fields)
+        statistics = [_after_name(pid) for pid in self._pids()]
+        ticks = sum(int(fields[11]) + int(fields[12]) for fields in statistics if fields)
         return ticks / os.sysconf("SC_CLK_TCK")
 
     def threads(self) -> int:

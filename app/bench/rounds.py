@@ -29,7 +29,7 @@ def median_ms(work: Callable[[], Any], repeats: int) -> float:
 
 
 def in_own_process(module: str) -> Any:
-    """What ``python -m module`` prints, one JSON document: nothing else is in that process's memory."""
+    """Run ``python -m module`` and read the JSON document it prints; its memory is its own."""
     words = [sys.executable, "-m", module]
     ended = subprocess.run(words, env=environment(), capture_output=True, text=True, check=True)
     return json.loads(ended.stdout)

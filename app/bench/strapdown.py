@@ -153,10 +153,10 @@ def measure_strapdown(rounds: int = ROUNDS, seconds: int = SECONDS) -> dict[str,
     if yardstick is not None:
         works["yardstick"] = yardstick
     times = timed_rounds(works, rounds)
-    found = {name: 1e9 * statistics.median(times[name]) / count for name, (_, count) in pieces.items()}
+    numbers = {name: 1e9 * statistics.median(times[name]) / count for name, (_, count) in pieces.items()}
     if yardstick is not None:
-        found["yardstick_ns_per_sample"] = 1e9 * statistics.median(times["yardstick"]) / samples
+        numbers["yardstick_ns_per_sample"] = 1e9 * statistics.median(times["yardstick"]) / samples
         for name, (_, count) in pieces.items():
             ratio = median_ratio(times[name], times["yardstick"]) * samples / count
-            found[f"{name.split('_ns_')[0]}_to_yardstick"] = ratio
-    return found
+            numbers[f"{name.split('_ns_')[0]}_to_yardstick"] = ratio
+    return numbers

@@ -53,13 +53,13 @@ def measure_strapdown_day() -> dict[str, float]:
 
 
 def _measured() -> dict[str, float]:
-    found = {}
+    numbers = {}
     for name, methods in (("strapdown_24h_100hz", _NETWORKS), ("strapdown_24h_100hz_kalman", KALMAN)):
         simulate(strapdown_day(1, 0.1, methods))
         days = [strapdown_day(2 + k, 24.0, methods) for k in range(REPEATS)]
-        found[f"{name}_s"] = statistics.median(seconds_of(lambda day=day: simulate(day)) for day in days)
-        found.setdefault("strapdown_24h_100hz_mb", peak_mb())
-    return found
+        numbers[f"{name}_s"] = statistics.median(seconds_of(lambda day=day: simulate(day)) for day in days)
+        numbers.setdefault("strapdown_24h_100hz_mb", peak_mb())
+    return numbers
 
 
 if __name__ == "__main__":

@@ -165,11 +165,11 @@ class Visitor:
                 self.notices.append((str(props.get("title")), str(props.get("body"))))
             if "[[method]]" in (content := str(props.get("content", ""))):
                 self.text = content
-            found = _RUN.search(content[:200])
-            if found is not None and int(found[1]) > self.run_number:
-                self.run_number, self.arrived_s, self._told = int(found[1]), came, content
-            elif "sb-picture" in content[:40] and (found := _PICTURE.search(content)) is not None:
-                self.picture_number = int(found[1])
+            number = _RUN.search(content[:200])
+            if number is not None and int(number[1]) > self.run_number:
+                self.run_number, self.arrived_s, self._told = int(number[1]), came, content
+            elif "sb-picture" in content[:40] and (number := _PICTURE.search(content)) is not None:
+                self.picture_number = int(number[1])
 
 
 def _decoded(raw: bytes) -> list[dict[str, Any]]:

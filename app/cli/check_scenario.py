@@ -31,12 +31,12 @@ def check_scenario(source: str | Path) -> FileReport:
     """
     scenario = load(str(source))
     try:
-        made = _environment(scenario)
+        inputs = _environment(scenario)
     except InputError as error:
         raise error.located(str(source)) from None
-    warnings = list(made.warnings)
+    warnings = list(inputs.warnings)
     for method in scenario.method:
-        warnings += [f"{method.name}: {text}" for text in _warnings(scenario, method, made.reference)]
+        warnings += [f"{method.name}: {text}" for text in _warnings(scenario, method, inputs.reference)]
     return FileReport(
         str(source),
         f"scenario, schema {scenario.schema_version}",

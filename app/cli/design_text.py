@@ -76,35 +76,38 @@ def _over(angle: float | None, unit: float) -> str:
     return number(None if angle is None else angle / unit)
 
 
-def tune_text(objective: str, found: Tuned) -> list[str]:
+def tune_text(objective: str, tuned: Tuned) -> list[str]:
     """Lines: the best values and how flat the optimum is, the objective before and after, what holds it."""
     rows = [["parameter", "best", "within 5 %", ""]]
-    for field, value in found.best.items():
-        low, high = found.flat.get(field, (value, value))
-        end = "at the end of its range" if field in found.at_end_of_range else ""
+    for field, value in tuned.best.items():
+        low, high = tuned.flat.get(field, (value, value))
+        end = "at the end of its range" if field in tuned.at_end_of_range else ""
         rows.append([field, number(value, 5), f"{number(low, 3)} to {number(high, 3)}", end])
     lines = [*columns(rows), ""]
     lines += columns(
         [
             [objective, "", ""],
-            ["  before", *_in_unit(objective, found.before)],
-            ["  after", *_in_unit(objective, found.objective)],
-            ["  floor", *_in_unit(objective, found.floor)],
-            ["  times the floor", number(found.objective / found.floor, 4) if found.floor else "-", ""],
+            ["  before", *_in_unit(objective, tuned.before)],
+            ["  after", *_in_unit(objective, tuned.objective)],
+            ["  floor", *_in_unit(objective, tuned.floor)],
+            ["  times the floor", number(tuned.objective / tuned.floor, 4) if tuned.floor else "-", ""],
         ]
     )
-    for text in found.active:
-        cost = found.cost.get(text)
+    for text in tuned.active:
+        cost = tuned.cost.get(text)
         without = " ".join(_in_unit(objective, cost)).rstrip()
         lines.append(f"active: {text}" + ("" if cost is None else f"; without it {without}"))
-    return [*lines, *(f"warning: {text}" for text in found.warnings)]
+    return [*lines, *(f"warning: {text}" for text in tuned.warnings)]
 
 
-def pareto_text(found: Pareto) -> list[str]:
+def pareto_text(fronts: Pareto) -> list[str]:
     """Lines: for each network the ends of its front and the settings there, the present design, the floor."""
-    first, second = found.objectives
-    rows = [["", first, second, ""], ["", *(in_display_unit(name, None)[1] for name in found.objectives), ""]]
-    for name, points in found.fronts.items():
+    first, second = fronts.objectives
+    rows = [
+        ["", first, second, ""],
+        ["", *(in_display_unit(name, None)[1] for name in fronts.objectives), ""],
+    ]
+    for name, points in fronts.fronts.items():
         chosen = [points[0], points[len(points) // 2], points[-1]] if len(points) > 2 else list(points)
         for k, point in enumerate(chosen):
             setting = ", ".join(
@@ -112,19 +115,19 @@ def pareto_text(found: Pareto) -> list[str]:
             )
             if point.earth_growth > 0.0:
                 setting = f"{setting or 'no parameter'}; its 24 h mode grows"
-            rows.append([name if k == 0 else "", *_values(found, point.values), setting])
-    if found.present is not None:
-        rows.append(["as it is", *_values(found, found.present), ""])
-    rows.append(["floor", *_values(found, found.floor), ""])
+            rows.append([name if k == 0 else "", *_values(fronts, point.values), setting])
+    if fronts.present is not None:
+        rows.append(["as it is", *_values(fronts, fronts.present), ""])
+    rows.append(["floor", *_values(fronts, fronts.floor), ""])
     lines = columns([row[:3] for row in rows])
     return [f"{line}  {row[3]}".rstrip() for line, row in zip(lines, rows, strict=True)]
 
 
-def _values(found: Pareto, values: tuple[float | None, float | None]) -> list[str]:
-    return [_in_unit(name, value)[0] for name, value in zip(found.objectives, values, strict=True)]
+def _values(fronts: Pareto, values: tuple[float | None, float | None]) -> list[str]:
+    return [_in_unit(name, value)[0] for name, value in zip(fronts.objectives, values, strict=True)]
 
 
 def _in_unit(name: str, value: float | None) -> list[str]:
     """A value of a measure and its unit."""
-    shown, unit = in_display_unit(name, value)
-    return [number(shown), unit]
+    in_unit, unit = in_display_unit(name, value)
+    return [number(in_unit), unit]

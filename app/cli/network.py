@@ -88,9 +88,9 @@ def _whole_system(report: dict[str, Any]) -> list[str]:
 
     growth = report["earth_mode_growth_per_s"]
     if growth == 0.0:
-        told = "neither grows nor decays"
+        mode = "neither grows nor decays"
     else:
-        told = f"{'GROWS' if growth > 0.0 else 'decays'}, e-folding time {duration(1.0 / growth)}"
+        mode = f"{'GROWS' if growth > 0.0 else 'decays'}, e-folding time {duration(1.0 / growth)}"
     slope = report["h_slope_s"]
     return [
         f"whole system at latitude {report['lat_deg']:g}° (--lat sets it)",
@@ -98,14 +98,14 @@ def _whole_system(report: dict[str, Any]) -> list[str]:
             [
                 ["H'(0)", number(slope), "" if slope is None else "s"],
                 ["stable", "yes" if report["whole_system_stable"] else "NO", ""],
-                ["24 h mode", told, ""],
+                ["24 h mode", mode, ""],
             ]
         ),
     ]
 
 
 def _margins(margins: dict[str, float | None] | None) -> list[str]:
-    """What may change of the open loop before the loop gets unstable."""
+    """List how far the open loop may change before the loop becomes unstable."""
     title = "margins of the open loop ωₛ² H/s²"
     if margins is None:
         return [title, "none: the loop is undamped or unstable"]

@@ -116,15 +116,15 @@ class Cluster:
                 report = (self._topic, name, number)
                 key = f"schuler-{name}-{number}"
                 futures.append(client.submit(carry_out, __version__, report, function, item, key=key))
-            told = 0.0
+            reported = 0.0
             while not all(future.done() for future in futures):
                 if cancelled():
                     return None
                 if self._client is not client:
                     raise ElsewhereLost
                 parts = [1.0 if f.done() else part for f, part in zip(futures, fractions, strict=True)]
-                if (now := sum(parts) / len(parts)) > told:
-                    told = now
+                if (now := sum(parts) / len(parts)) > reported:
+                    reported = now
                     progress(now)
                 time.sleep(_POLL_S)
             outcomes: list[Outcome] = [future.result(_ANSWER_S) for future in futures]
@@ -218,8 +218,8 @@ class Cluster:
 
     def _tell(self, why: str) -> None:
         """Write a change into the log, each once."""
-        told, self._told = self._told, why or "answers"
-        if self._told == told or self._closed.is_set():
+        before, self._told = self._told, why or "answers"
+        if self._told == before or self._closed.is_set():
             return
         if why:
             _log.warning("the Dask cluster %s %s: heavy jobs are done here", self.address, why)
@@ -252,8 +252,8 @@ def check_address(address: str | None) -> None:
 
 def _threads(client: Client) -> int:
     ask: Any = client.scheduler  # None while it is not connected
-    found: Any = client.sync(ask.ncores, callback_timeout=_ANSWER_S)
-    return sum(found.values())
+    cores: Any = client.sync(ask.ncores, callback_timeout=_ANSWER_S)
+    return sum(cores.values())
 
 
 def _let_go(client: Client, futures: Sequence[Any]) -> None:

@@ -21,7 +21,7 @@ Cancelled = Callable[[], bool]
 
 @dataclass(frozen=True)
 class TuningTask:
-    """What to tune.
+    """A search for the best setting.
 
     Attributes
     ----------

@@ -23,8 +23,8 @@ def use_cluster(address: str | None) -> None:
     InputError
         As `Cluster`.
     """
-    made = [Cluster(address)] if address else []
-    before, _one[:] = list(_one), made
+    clusters = [Cluster(address)] if address else []
+    before, _one[:] = list(_one), clusters
     for one in before:
         one.close()
 
@@ -54,8 +54,8 @@ def carried_out(
     ElsewhereLost
         The cluster has not done it.
     """
-    found = carried_out_all(function, [asked], progress, watch)
-    return None if found is None else found[0]
+    results = carried_out_all(function, [asked], progress, watch)
+    return None if results is None else results[0]
 
 
 def carried_out_all(
@@ -67,13 +67,13 @@ def carried_out_all(
         if there is None:
             raise ElsewhereLost
         return there.compute(function, items, progress, watch.unwanted)
-    found = []
+    results = []
     for number, item in enumerate(items):
 
         def partly(fraction: float, number: int = number) -> None:
             progress((number + fraction) / len(items))
 
-        found.append(function(item, partly, watch.unwanted))
+        results.append(function(item, partly, watch.unwanted))
         if watch.unwanted() and len(items) > 1:
             return None
-    return found
+    return results

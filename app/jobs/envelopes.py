@@ -74,12 +74,12 @@ class Envelopes(Search[_Asked, Envelope]):
     def beside(self, scenario: Scenario, kind: BandKind) -> Envelope | None:
         """The bands of this scenario, or those of an earlier one with the same methods, marked as old."""
         with self._lock:
-            found, asked = self.result, self.asked
-        if found is None or asked is None or asked.kind != kind:
+            bands, asked = self.result, self.asked
+        if bands is None or asked is None or asked.kind != kind:
             return None
         if asked.scenario == scenario:
-            return found
-        return replace(found, old=True) if _alike(asked.scenario, scenario) else None
+            return bands
+        return replace(bands, old=True) if _alike(asked.scenario, scenario) else None
 
     def _ended(self) -> None:
         self._told_ended()
@@ -99,9 +99,9 @@ class Envelopes(Search[_Asked, Envelope]):
     def _of_a_seed(
         self, scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]
     ) -> Run:
-        found = few_rows(self._simulate(scenario, lambda _: None, cancelled), 2)
+        run = few_rows(self._simulate(scenario, lambda _: None, cancelled), 2)
         progress(1.0)
-        return found
+        return run
 
 
 def _covariance(
@@ -109,12 +109,12 @@ def _covariance(
 ) -> Envelope | None:
     from navcore.design.bands import covariance_bands
 
-    found = covariance_bands(asked.scenario, progress, cancelled)
-    return None if found is None else covariance_envelope(asked.scenario, found)
+    bands = covariance_bands(asked.scenario, progress, cancelled)
+    return None if bands is None else covariance_envelope(asked.scenario, bands)
 
 
 def _of_a_seed(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Run:
-    """What a run with another seed needs for the bands; found by its name on a cluster."""
+    """Run another seed for the bands; found by its name on a cluster."""
     from navcore.engine.simulation import simulate
 
     return few_rows(simulate(scenario, progress, cancelled), 2)

@@ -1,4 +1,4 @@
-"""What a worker of a Dask cluster does: one job, its progress told, called back when nobody waits for it."""
+"""Carry out one job on a worker of a Dask cluster: report its progress, end it when nobody waits for it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Compute = Callable[[Any, Callable[[float], None], Callable[[], bool]], Any]
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a job.
+    """Result of a job, or its error.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ def carry_out(version: str, report: tuple[str, str, int], function: Compute, ite
             worker.log_event(topic, (name, number, float(fraction)))
 
     def cancelled() -> bool:
-        """Whether the server has called the job back, or is gone: then nobody waits for this task."""
+        """Whether the server has cancelled the job, or is gone: then nobody waits for this task."""
         task = worker.state.tasks.get(key)
         return task is None or task.state == "cancelled"
 

@@ -38,7 +38,7 @@ _ABOUT_S, _LONGEST_PAUSE_S = 3.0, 0.3
 
 
 class Lane(Enum):
-    """What kind of work a job is."""
+    """Kind of work of a job."""
 
     ANSWER = "answer"
     LONG = "long"
@@ -48,7 +48,7 @@ class Lane(Enum):
 
 @dataclass(frozen=True)
 class Load:
-    """What a job is estimated to take.
+    """Estimated needs of a job.
 
     Attributes
     ----------
@@ -166,7 +166,7 @@ class Scheduler:
             ticket._since_s = time.monotonic()
 
     def figures(self) -> dict[str, float]:
-        """What waits and runs now, for ``/metrics``: jobs of each lane, estimated bytes under way."""
+        """Count what waits and runs now, for ``/metrics``: jobs of each lane, estimated bytes under way."""
         with self._changed:
             counts = {
                 f"{state}_{lane.value}": float(sum(t.load.lane is lane for t in tickets))
@@ -258,18 +258,18 @@ def _here(tickets: list[Ticket]) -> list[Ticket]:
 
 def memory_of_machine() -> float:
     """Bytes this process may hold: of the container it runs in, else of the machine; 4 GiB if unknown."""
-    found = []
+    limits = []
     for name in ("memory.max", "memory/memory.limit_in_bytes"):
         try:
             text = Path("/sys/fs/cgroup", name).read_text().strip()
         except OSError:
             continue
-        found += [float(text)] if text.isdigit() else []
+        limits += [float(text)] if text.isdigit() else []
     try:
-        found.append(float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")))
+        limits.append(float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")))
     except (OSError, ValueError, AttributeError):
-        found.append(4.0 * GIB)
-    return min(found)
+        limits.append(4.0 * GIB)
+    return min(limits)
 
 
 def cores_of_machine() -> int:

@@ -134,9 +134,9 @@ class Search(Generic[Asked, Found]):
                 self.fraction = fraction
                 self._tell()
 
-        found, words = None, ()
+        result, words = None, ()
         try:
-            found = self._carry_out(asked, progress, watch)
+            result = self._carry_out(asked, progress, watch)
         except ElsewhereLost:
             if self.under_way is asked:
                 self._set(0.0, (LOST,), asked)
@@ -147,14 +147,14 @@ class Search(Generic[Asked, Found]):
         except Exception as error:
             _log.exception("%s failed", self._name)
             words = (f"Something went wrong: {type(error).__name__}: {error}",)
-        complete = found is not None and self._complete(found)
+        complete = result is not None and self._complete(result)
         with self._lock:
             if self.under_way is not asked:  # stopped, or another one waits
                 return
             self.fraction = self.under_way = None
-            self.words = words if complete or found is None else self._because()
+            self.words = words if complete or result is None else self._because()
             if complete:
-                self.result, self.asked = found, asked
+                self.result, self.asked = result, asked
         self._ended() if complete else self._tell()
 
 

@@ -59,7 +59,7 @@ class Verifier(Search[Scenario, "Verification"]):
             self.cancel(CHANGED)
 
     def beside(self, scenario: Scenario) -> Verified | None:
-        """What can be shown beside a run of this scenario: a result with the same methods by name."""
+        """Give the result for a run of this scenario, if its methods have the same names."""
         with self._lock:
             result, of = self.result, self.asked
         if result is None or of is None or [m.name for m in of.method] != [m.name for m in scenario.method]:

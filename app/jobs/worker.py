@@ -25,7 +25,7 @@ class ElsewhereLost(Exception):
 
 
 class Watch:
-    """What a running job asks: whether to stop, and how long it has run.
+    """Tell a running job whether to stop, and how long it has run.
 
     Parameters
     ----------

@@ -100,14 +100,14 @@ def _with_stages(course: Course, stage: np.ndarray) -> tuple[Course, np.ndarray]
         return course, np.zeros(len(course.length), dtype=np.int64)
     pairs, kind = np.unique(np.column_stack([course.kind, stage]), axis=0, return_inverse=True)
     old = pairs[:, 0]
-    found = replace(
+    apart = replace(
         course,
         kind=kind.reshape(-1),
         length=course.length[old],
         served=course.served[old],
         half=course.half[old],
     )
-    return found, pairs[:, 1]
+    return apart, pairs[:, 1]
 
 
 def loop_of(scenario: Scenario, form: LawForm, course: Course, model: StochasticModel) -> LoopModel:
@@ -158,8 +158,8 @@ def _tables(loops: list[LoopModel], stage: np.ndarray, model: StochasticModel, c
     for calls, damped, of_law in np.unique(alike, axis=0).tolist():
         of = np.flatnonzero((alike == (calls, damped, of_law)).all(axis=1))
         loop = loops[of_law]
-        found = interval_map(loop, course.half[of], calls, bool(damped))
-        Phi[of], B[of], G[of], decay[of] = found.Phi, found.B, found.G, found.decay
+        interval = interval_map(loop, course.half[of], calls, bool(damped))
+        Phi[of], B[of], G[of], decay[of] = interval.Phi, interval.B, interval.G, interval.decay
         Q[of] = interval_noise(loop, model, mean, calls, bool(damped)).Q
     works = served[course.kind]
     engaged = works & ~np.concatenate([works[:1], works[:-1]])
@@ -242,10 +242,10 @@ def _known(
             X[loop.networks] = 0.0
         X = tables.Phi[kind] @ X + drive[i]
         out[i + 1] = X[_STATES]
-    found: dict[str, np.ndarray] = {}
+    squares: dict[str, np.ndarray] = {}
     for j, column in enumerate(columns):
-        found[column.source] = found.get(column.source, 0.0) + out[:, :, j] ** 2
-    return found
+        squares[column.source] = squares.get(column.source, 0.0) + out[:, :, j] ** 2
+    return squares
 
 
 def _rest(loop: LoopModel, X: np.ndarray, first: np.ndarray) -> None:

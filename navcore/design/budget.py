@@ -98,12 +98,12 @@ def budget(
 
 
 def _warnings(scenario: Scenario) -> tuple[str, ...]:
-    found = [*recorded_warnings(scenario)]
+    warnings = [*recorded_warnings(scenario)]
     if any((*scenario.imu.gyro_lsb, *scenario.imu.accel_lsb)):
-        found.append("imu.gyro_lsb, imu.accel_lsb: quantisation is not in the budget")
+        warnings.append("imu.gyro_lsb, imu.accel_lsb: quantisation is not in the budget")
     if scenario.alignment.kind == "compass":
-        found.append("alignment: what biases leave after it is in the budget, its own noise is not")
-    return tuple(found)
+        warnings.append("alignment: what biases leave after it is in the budget, its own noise is not")
+    return tuple(warnings)
 
 
 def _from_seeds(
@@ -118,8 +118,8 @@ def _from_seeds(
         t_s, variance = seed_variance(scenario, method, seeds, report, cancelled)
     except InputError as error:  # it diverges
         return _diverged(method, "seeds", tuple(f"{fault.field}: {fault.allowed}" for fault in error.faults))
-    told = f"{reason}: there is no covariance; shown is the mean square of {seeds} seeds, not split by source"
-    return _of_series(method, "seeds", Series(t_s, {}, variance), (told,))
+    note = f"{reason}: there is no covariance; shown is the mean square of {seeds} seeds, not split by source"
+    return _of_series(method, "seeds", Series(t_s, {}, variance), (note,))
 
 
 def _of_series(method: Method, shown: Shown, series: Series, warnings: tuple[str, ...]) -> MethodBudget:
@@ -132,5 +132,5 @@ def _of_series(method: Method, shown: Shown, series: Series, warnings: tuple[str
 
 def _diverged(method: Method, shown: Shown, warnings: tuple[str, ...]) -> MethodBudget:
     empty = Entry(Figures(), Figures())
-    told = (*warnings, "diverged: there is no budget along this run")
-    return MethodBudget(method.name, shown, empty, {}, warnings=told, diverged=True)
+    all_warnings = (*warnings, "diverged: there is no budget along this run")
+    return MethodBudget(method.name, shown, empty, {}, warnings=all_warnings, diverged=True)

@@ -44,7 +44,7 @@ _RCOND = 1e-6
 
 @dataclass(frozen=True)
 class Swing:
-    """What curves are made of.
+    """Parts of a curve.
 
     Attributes
     ----------
@@ -219,13 +219,13 @@ def swing(run: Run, method: MethodRun, names: tuple[str, ...]) -> Swing | None:
     columns = _columns(run, method.t_s[chosen], chosen)
     design = np.column_stack([column for columns_of in columns.values() for column in columns_of])
     # By the normal equations: a few columns, and a thousand times less work than the long matrix itself.
-    found, *_ = np.linalg.lstsq(design.T @ design, design.T @ curves, rcond=_RCOND**2)
+    fitted, *_ = np.linalg.lstsq(design.T @ design, design.T @ curves, rcond=_RCOND**2)
     shares, at, lines = {}, 0, []
     for part, columns_of in columns.items():
-        coefficients = found[at : at + len(columns_of)]
+        coefficients = fitted[at : at + len(columns_of)]
         at += len(columns_of)
-        made = np.column_stack(columns_of) @ coefficients
-        shares[part] = float(np.mean(np.sum(made * curves, axis=1)) / total)
+        part_of_fit = np.column_stack(columns_of) @ coefficients
+        shares[part] = float(np.mean(np.sum(part_of_fit * curves, axis=1)) / total)
         if part == SCHULER:
             lines = [float(np.sum(coefficients[k : k + 2] ** 2)) for k in range(0, len(columns_of), 2)]
     shares[OTHER] = 1.0 - sum(shares.values())
@@ -234,7 +234,7 @@ def swing(run: Run, method: MethodRun, names: tuple[str, ...]) -> Swing | None:
 
 
 def _columns(run: Run, time_s: np.ndarray, chosen: np.ndarray) -> dict[str, list[np.ndarray]]:
-    """What is fitted, by part: only lines that the record can tell from each other."""
+    """Make the columns of the fit, by part: only lines that the record can tell from each other."""
     scenario = run.scenario
     ramp = (time_s - time_s[0]) / max(float(time_s[-1] - time_s[0]), 1e-9)
     columns = {CONSTANT: [np.ones(len(time_s))], DRIFT: [ramp - 0.5]}

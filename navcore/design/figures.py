@@ -29,10 +29,10 @@ class Figures:
 
     def as_dict(self, along_run: bool) -> dict[str, float | None]:
         """Return the figures that this kind of budget has."""
-        found = {"tilt_rad": self.tilt_rad, "velocity_mps": self.velocity_mps}
+        document = {"tilt_rad": self.tilt_rad, "velocity_mps": self.velocity_mps}
         if along_run:
-            found |= {"heading_rad": self.heading_rad, "position_m": self.position_m}
-        return {name: _finite(value) for name, value in found.items()}
+            document |= {"heading_rad": self.heading_rad, "position_m": self.position_m}
+        return {name: _finite(value) for name, value in document.items()}
 
 
 @dataclass(frozen=True)

@@ -85,8 +85,8 @@ def filter_variance(scenario: Scenario, course: Course, model: StochasticModel) 
     whole = RiccatiMap(*np.zeros((3, len(pairs), n, n)))
     for calls, works in {(int(m), bool(d)) for m, d in zip(length, served, strict=True)}:
         of = np.flatnonzero((length == calls) & (served == works))
-        found = _interval(sensors, half[of], turns[of], calls, works)
-        whole.A[of], whole.C[of], whole.J[of] = found.A, found.C, found.J
+        interval = _interval(sensors, half[of], turns[of], calls, works)
+        whole.A[of], whole.C[of], whole.J[of] = interval.A, interval.C, interval.J
     P = sensors.start
     out = np.empty((len(course.edges), len(QUANTITIES)))
     unit = sensors.units[_STATES]

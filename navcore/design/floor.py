@@ -65,11 +65,11 @@ def steady_floor(model: StochasticModel, omega_s: float) -> Floor:
     whole = plant(model.figures, omega_s)
     system = whole.excited()
     try:
-        found = _steady_filter(system, white=model.figures.log_noise > 0.0)
-        sources = _sources(system, whole.kept, found, omega_s)
+        error = _steady_filter(system, white=model.figures.log_noise > 0.0)
+        sources = _sources(system, whole.kept, error, omega_s)
     except np.linalg.LinAlgError:
         return Floor(None, None, "the Kalman filter of these sensors comes to no steady state")
-    return Floor(_tilt(found.P, omega_s), math.sqrt(max(found.P[DV, DV], 0.0)), sources=sources)
+    return Floor(_tilt(error.P, omega_s), math.sqrt(max(error.P[DV, DV], 0.0)), sources=sources)
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,23 +145,23 @@ def _tilt(P: np.ndarray, omega_s: float) -> float:
 
 
 def _sources(
-    system: Plant, kept: list[int], found: _Filter, omega_s: float
+    system: Plant, kept: list[int], error: _Filter, omega_s: float
 ) -> dict[str, tuple[float, float]]:
     """Split the covariance of the filter's error: each noise by itself."""
     from scipy.linalg import solve_continuous_lyapunov
 
-    if len(found.closed) and np.max(np.real(np.linalg.eigvals(found.closed))) > -_ROUNDING:
+    if len(error.closed) and np.max(np.real(np.linalg.eigvals(error.closed))) > -_ROUNDING:
         raise np.linalg.LinAlgError("the filter goes on learning for ever")
-    noises = {"log_white": system.V * found.noise @ found.noise.T}
+    noises = {"log_white": system.V * error.noise @ error.noise.T}
     for name, state in _ENTRIES.items():
         if state in kept:
-            column = found.enter[:, [kept.index(state)]]
+            column = error.enter[:, [kept.index(state)]]
             noises[name] = system.W[kept.index(state), kept.index(state)] * column @ column.T
     parts = {}
     for name, noise in noises.items():
         share = noise
         if len(noise) and noise.any():
-            share = solve_continuous_lyapunov(found.closed, -noise)
-        P = found.back @ share @ found.back.T
+            share = solve_continuous_lyapunov(error.closed, -noise)
+        P = error.back @ share @ error.back.T
         parts[name] = (_tilt(P, omega_s), math.sqrt(max(P[DV, DV], 0.0)))
     return parts

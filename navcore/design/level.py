@@ -25,7 +25,7 @@ _UNSEEN = 1e-12
 
 @dataclass(frozen=True)
 class Part:
-    """What one source does to a channel.
+    """Deviation that one source leaves in a channel.
 
     Attributes
     ----------
@@ -172,7 +172,7 @@ def _growing(channel: Level, column: np.ndarray) -> Part:
         shares = np.linalg.solve(right, column.astype(complex))
     except np.linalg.LinAlgError:
         return Part(None, None)
-    found: list[float | None] = []
+    deviations: list[float | None] = []
     for output in (PHI, DV):
         residues = right[output] * shares
         size = float(np.max(np.abs(residues), initial=0.0))
@@ -180,13 +180,13 @@ def _growing(channel: Level, column: np.ndarray) -> Part:
         marginal = seen & (np.real(values) >= -_MARGINAL)
         unit = channel.tilt_unit if output == PHI else 1.0
         if not np.any(marginal):
-            found += [unit * _decaying(values[seen], residues[seen]), None]
+            deviations += [unit * _decaying(values[seen], residues[seen]), None]
         elif np.any(np.real(values[seen]) > _MARGINAL):
-            found += [None, None]
+            deviations += [None, None]
         else:  # white noise into a mode without decay: variance |residue|^2 a unit of tau
             rate = float(np.sum(np.abs(residues[marginal]) ** 2))
-            found += [None, unit * math.sqrt(rate * channel.omega_s * HOUR)]
-    return Part(found[0], found[2], found[1], found[3])
+            deviations += [None, unit * math.sqrt(rate * channel.omega_s * HOUR)]
+    return Part(deviations[0], deviations[2], deviations[1], deviations[3])
 
 
 def _decaying(values: np.ndarray, residues: np.ndarray) -> float:
@@ -219,7 +219,7 @@ def line_part(channel: Level, amplitude: float, omega: float) -> Part:
 
 
 def constant_part(channel: Level, source: str, size: float) -> Part:
-    """What a constant error leaves in the steady state of a stable loop.
+    """Compute what a constant error leaves in the steady state of a stable loop.
 
     Parameters
     ----------

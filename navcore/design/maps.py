@@ -148,7 +148,7 @@ def error_step(half: np.ndarray, step_s: float) -> tuple[np.ndarray, np.ndarray]
 
 @dataclass(frozen=True, eq=False)
 class LoopModel:
-    """What is the same in all intervals of a method.
+    """Parts of a method that all intervals share.
 
     Attributes
     ----------

@@ -95,9 +95,9 @@ class Setting:
             except InputError:
                 return Figures(math.inf, math.inf, math.inf, math.inf)
             return mean_figures(t_s, variance)
-        found = ship.along(self.method)
-        total = np.where(np.isfinite(found.total), found.total, np.inf)
-        return mean_figures(found.t_s, total)
+        variances = ship.along(self.method)
+        total = np.where(np.isfinite(variances.total), variances.total, np.inf)
+        return mean_figures(variances.t_s, total)
 
     @cached_property
     def log_step(self) -> tuple[float, float]:
@@ -236,7 +236,7 @@ class Requirement:
 
     @property
     def _scale(self) -> float:
-        """What a miss is counted against: the limit; where that may be 0, at least a typical value."""
+        """Size that a miss is divided by: the limit; where that may be 0, at least a typical value."""
         return max(abs(self.limit), _TYPICAL.get(self.name, 1e-12))
 
 
@@ -252,8 +252,8 @@ def in_words(name: str, value: float) -> str:
     """Value of a measure with its unit."""
     if not math.isfinite(value):
         return "no finite value"
-    shown, unit = in_display_unit(name, value)
-    return f"{shown:.4g} {unit}".rstrip()
+    in_unit, unit = in_display_unit(name, value)
+    return f"{in_unit:.4g} {unit}".rstrip()
 
 
 def read_objective(text: str) -> Objective:
@@ -266,20 +266,20 @@ def read_objective(text: str) -> Objective:
     """
     terms = []
     for part in text.split("+"):
-        found = _TERM.match(part.strip())
-        if found is None or found["name"] not in MEASURES:
+        match = _TERM.match(part.strip())
+        if match is None or match["name"] not in MEASURES:
             allowed = f"must be one of {', '.join(OBJECTIVES)}, or a sum such as tilt_rms + 0.5*velocity_rms"
             raise InputError(Fault("", "--objective", text, allowed))
-        if found["name"] in NO_OBJECTIVES:
-            allowed = f"is better when larger: ask for it as a requirement, {found['name']}>=0.5"
+        if match["name"] in NO_OBJECTIVES:
+            allowed = f"is better when larger: ask for it as a requirement, {match['name']}>=0.5"
             raise InputError(Fault("", "--objective", text, allowed))
         try:
-            weight = float(found["weight"] or 1.0)
+            weight = float(match["weight"] or 1.0)
         except ValueError:
             weight = 0.0
         if not 0.0 < weight < math.inf:
             raise InputError(Fault("", "--objective", text, "weights must be numbers > 0"))
-        terms.append((found["name"], weight))
+        terms.append((match["name"], weight))
     return Objective(text, tuple(terms))
 
 
@@ -291,19 +291,19 @@ def read_requirement(text: str) -> Requirement:
     InputError
         Not of this form, or a name or unit is not known.
     """
-    found = _REQUIREMENT.match(text)
-    if found is None or found["name"] not in MEASURES:
+    match = _REQUIREMENT.match(text)
+    if match is None or match["name"] not in MEASURES:
         allowed = f"must have the form NAME<=VALUE or NAME>=VALUE with NAME one of {', '.join(MEASURES)}"
         raise InputError(Fault("", "--require", text, allowed))
-    unit = found["unit"]
-    own = MEASURES[found["name"]][1]
+    unit = match["unit"]
+    own = MEASURES[match["name"]][1]
     same = {"rad": ("rad", "deg", "arcmin", "arcsec"), "s": ("s", "min", "h"), "m": ("m", "km")}.get(
         own, (own,)
     )
     if unit and unit not in same:
         raise InputError(Fault("", "--require", text, f"unit must be one of {', '.join(same) or 'none'}"))
     try:
-        limit = float(found["value"]) * (UNITS[unit] if unit else 1.0)
+        limit = float(match["value"]) * (UNITS[unit] if unit else 1.0)
     except ValueError:
         raise InputError(Fault("", "--require", text, "the limit must be a number")) from None
-    return Requirement(text.strip(), found["name"], found["sense"], limit)
+    return Requirement(text.strip(), match["name"], match["sense"], limit)

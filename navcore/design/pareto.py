@@ -151,13 +151,13 @@ def pareto(
     if not 0 <= method < len(scenario.method):
         raise InputError(Fault("", "method", method, f"must be 0 to {len(scenario.method) - 1}"))
     if scenario.method[method].undamped:
-        told = f'damping = "{scenario.method[method].damping}" uses no network'
-        raise InputError(Fault("", f"method.{method}.damping", None, told))
+        reason = f'damping = "{scenario.method[method].damping}" uses no network'
+        raise InputError(Fault("", f"method.{method}.damping", None, reason))
     along = along or any(name in ALONG_ONLY for name in objectives)
     ship = Ship(scenario, along, TUNING_INTERVALS)
     if ship.model.silent and not along:
-        told = "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
-        raise InputError(Fault("", "objectives", objectives[0], told))
+        reason = "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
+        raise InputError(Fault("", "objectives", objectives[0], reason))
     fronts: dict[str, tuple[Point, ...]] = {}
     stopped = False
     for k, name in enumerate(ids):

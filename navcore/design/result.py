@@ -1,4 +1,4 @@
-"""What an error budget holds: every method by source, and the floor."""
+"""Error budgets: every method by source, and the floor."""
 
 from __future__ import annotations
 
@@ -111,8 +111,8 @@ class Budget:
     def times_floor(self, method: MethodBudget) -> dict[str, float | None]:
         """Each figure of a method over that of the floor; None where one of them is missing or zero."""
         names = ("tilt_rad", "velocity_mps") + (() if self.steady else ("heading_rad", "position_m"))
-        found = {}
+        ratios = {}
         for name in names:
             own, least = getattr(method.total.rms, name), getattr(self.floor.rms, name)
-            found[name.rsplit("_", 1)[0]] = own / least if own is not None and least else None
-        return found
+            ratios[name.rsplit("_", 1)[0]] = own / least if own is not None and least else None
+        return ratios

@@ -113,18 +113,18 @@ class Search:
             settings = self.settings(places)
             missed = self.excess(settings) if self.requirements else 0.0
             if missed > 0.0:
-                found = MISSED * (1.0 + min(missed, 1e5))
+                cost = MISSED * (1.0 + min(missed, 1e5))
             else:
-                found = min(self.value(settings) / self.scale, BOUNDLESS)
+                cost = min(self.value(settings) / self.scale, BOUNDLESS)
         except InputError as error:
-            self.refused, found = error, REFUSED
+            self.refused, cost = error, REFUSED
         except np.linalg.LinAlgError:
-            found = REFUSED
-        if not math.isfinite(found):
-            found = BOUNDLESS
-        if self.best is None or found < self.best[0]:
-            self.best = (found, places.copy())
-        return found
+            cost = REFUSED
+        if not math.isfinite(cost):
+            cost = BOUNDLESS
+        if self.best is None or cost < self.best[0]:
+            self.best = (cost, places.copy())
+        return cost
 
     def run(self, effort: Effort, start: np.ndarray | None) -> bool:
         """Search; the best is then in `best`. Return whether the search was stopped."""

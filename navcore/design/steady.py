@@ -22,13 +22,13 @@ _MARGINAL = 1e-9
 
 def steady_budget(scenario: Scenario, model: StochasticModel) -> Budget:
     """Steady state of one level channel at rest; ``model`` may differ from that of the scenario."""
-    found = steady_floor(model, scenario.omega_s)
+    least = steady_floor(model, scenario.omega_s)
     return Budget(
         steady=True,
-        floor=Entry(Figures(found.tilt_rad, found.velocity_mps)),
-        floor_reason=found.reason,
+        floor=Entry(Figures(least.tilt_rad, least.velocity_mps)),
+        floor_reason=least.reason,
         floor_series=None,
-        methods=tuple(_steady_method(scenario, method, model, found) for method in scenario.method),
+        methods=tuple(_steady_method(scenario, method, model, least) for method in scenario.method),
     )
 
 

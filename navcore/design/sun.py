@@ -36,7 +36,7 @@ from navcore.sensors.reference import Reference
 
 @dataclass(frozen=True, eq=False)
 class Tuning:
-    """What the double loop found.
+    """Result of the double loop.
 
     Attributes
     ----------

@@ -35,7 +35,7 @@ _GAIN = 1e-4
 
 @dataclass(frozen=True)
 class Tuned:
-    """What a search found.
+    """Result of a search.
 
     Attributes
     ----------
@@ -142,8 +142,8 @@ def tune(
     search = Search(ships, varied, wanted, limits, progress, cancelled)
     start, before = _begin(search)
     if before == 0.0 and set(wanted.names) <= set(FLOORED):
-        told = "is 0 as it is: the scenario has no error that a setting could make smaller"
-        raise InputError(Fault("", "--objective", wanted.text, told))
+        reason = "is 0 as it is: the scenario has no error that a setting could make smaller"
+        raise InputError(Fault("", "--objective", wanted.text, reason))
     effort = ALONG if along else STEADY
     stopped = search.run(effort, start)
     best = search.best
@@ -163,12 +163,12 @@ def _check(ships: Sequence[Ship], varied: Sequence[Varied], objective: Objective
             try:
                 read_varied(ship.scenario, [f"{one.field}={one.low!r}:{one.high!r}"])
             except InputError as error:
-                told = "; ".join(f"{fault.value} {fault.allowed}" for fault in error.faults)
-                raise InputError(Fault("", "--worst-of", f"scenario {number}", told)) from None
+                reason = "; ".join(f"{fault.value} {fault.allowed}" for fault in error.faults)
+                raise InputError(Fault("", "--worst-of", f"scenario {number}", reason)) from None
     names = set(objective.names) & set(FLOORED)
     if names and not ships[0].along_run and ships[0].model.silent:
-        told = "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
-        raise InputError(Fault("", "--objective", objective.text, told))
+        reason = "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
+        raise InputError(Fault("", "--objective", objective.text, reason))
 
 
 def _no_method(search: Search, vary: str) -> Iterator[Fault]:
@@ -215,8 +215,8 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
     name = search.objective.names[0]
     floor = None
     if len(search.objective.terms) == 1 and name in FLOORED:
-        found = [getattr(ship.floor(), FLOORED[name]) for ship in search.ships]
-        floor = max((value for value in found if value is not None), default=None)
+        floors = [getattr(ship.floor(), FLOORED[name]) for ship in search.ships]
+        floor = max((value for value in floors if value is not None), default=None)
     scenario = search.ships[0].scenario
     index = search.varied[0].method
     methods = tuple(settings[0].method if i == index else method for i, method in enumerate(scenario.method))
@@ -257,7 +257,7 @@ def _flat(search: Search, places: np.ndarray, objective: float) -> dict[str, tup
     quiet = Search(search.ships, search.varied, search.objective, search.requirements)
     quiet.reference, quiet.scale = search.reference, search.scale
     limit = _FLAT * objective / search.scale
-    found = {}
+    ranges = {}
     for i, one in enumerate(search.varied):
         ends = []
         for end in (0.0, 1.0):
@@ -274,8 +274,8 @@ def _flat(search: Search, places: np.ndarray, objective: float) -> dict[str, tup
                 else:
                     outside = float(trial[i])
             ends.append(one.value(inside))
-        found[one.field] = (ends[0], ends[1])
-    return found
+        ranges[one.field] = (ends[0], ends[1])
+    return ranges
 
 
 def _nothing_meets(search: Search, effort: Effort, start: np.ndarray | None) -> Iterator[Fault]:
@@ -289,8 +289,8 @@ def _nothing_meets(search: Search, effort: Effort, start: np.ndarray | None) -> 
             left = f"without it {search.objective.text} comes to {least}"
         else:
             left = "without it the others are not met either"
-        told = f"nothing within these ranges meets all requirements: alone {one.name} comes to"
-        yield Fault("", "--require", one.text, f"{told} {in_words(one.name, reach)}; {left}")
+        reason = f"nothing within these ranges meets all requirements: alone {one.name} comes to"
+        yield Fault("", "--require", one.text, f"{reason} {in_words(one.name, reach)}; {left}")
 
 
 def _reach(search: Search, one: Requirement, effort: Effort, start: np.ndarray | None) -> float:

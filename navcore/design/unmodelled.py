@@ -13,9 +13,9 @@ def recorded_warnings(scenario: Scenario) -> tuple[str, ...]:
     scenario : Scenario
         Complete and checked.
     """
-    found = []
+    warnings = []
     if scenario.reference.kind == "file":
-        found.append("reference.file: a recorded log has no stochastic model and counts as free of error")
+        warnings.append("reference.file: a recorded log has no stochastic model and counts as free of error")
     if scenario.imu.file is not None:
-        found.append("imu.file: a recorded IMU has no stochastic model and counts as free of error")
-    return tuple(found)
+        warnings.append("imu.file: a recorded IMU has no stochastic model and counts as free of error")
+    return tuple(warnings)

@@ -124,7 +124,7 @@ def tunable_fields(scenario: Scenario, index: int) -> tuple[str, ...]:
     if method.undamped:
         return ()
     given = method.network.model_fields_set
-    found = []
+    fields = []
     for name, info in type(method.network).model_fields.items():
         field = f"method.{index}.network.{name}"
         # A field without a default of its own is an alternative to others: it varies only where it is given.
@@ -134,8 +134,8 @@ def tunable_fields(scenario: Scenario, index: int) -> tuple[str, ...]:
             _read_one(scenario, field)
         except InputError:
             continue
-        found.append(field)
-    return tuple(found)
+        fields.append(field)
+    return tuple(fields)
 
 
 def _read_one(scenario: Scenario, text: str) -> Varied:
@@ -187,8 +187,8 @@ def _read_ends(text: str, ends: str, allowed: tuple[float, float]) -> tuple[floa
     except ValueError:
         raise InputError(Fault("", "--vary", text, "must end in LOW:HIGH, two numbers")) from None
     if not (math.isfinite(low) and math.isfinite(high)) or low < allowed[0] or high > allowed[1]:
-        told = f"its range must lie within {allowed[0]:g} and {allowed[1]:g}"
-        raise InputError(Fault("", "--vary", text, told))
+        reason = f"its range must lie within {allowed[0]:g} and {allowed[1]:g}"
+        raise InputError(Fault("", "--vary", text, reason))
     return low, high
 
 
@@ -221,21 +221,21 @@ def changed(scenario: Scenario, varied: Sequence[Varied], values: Sequence[float
             place = place.setdefault(name, {})
         place[one.path[-1]] = float(value)
     try:
-        found = Method.model_validate(data)
+        method_changed = Method.model_validate(data)
     except ValidationError as error:
         at = f"method.{varied[0].method}"
         faults = faults_from(error, Method, data, "")
         raise InputError([replace(fault, field=f"{at}.{fault.field}") for fault in faults]) from None
-    network = found.network.with_sensors(scenario.figures())
-    return found.model_copy(update={"network": network})
+    network = method_changed.network.with_sensors(scenario.figures())
+    return method_changed.model_copy(update={"network": network})
 
 
 def present(scenario: Scenario, varied: Sequence[Varied]) -> np.ndarray:
     """Values of the parameters as the scenario has them; NaN where one is not given."""
-    found = []
+    values = []
     for one in varied:
         value: Any = scenario.method[one.method]
         for name in one.path:
             value = getattr(value, name, None)
-        found.append(float("nan") if value is None else float(value))
-    return np.array(found)
+        values.append(float("nan") if value is None else float(value))
+    return np.array(values)

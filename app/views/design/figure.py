@@ -137,22 +137,22 @@ def _grid(budget: Budget, panels: int, names: Sequence[str], aspect: float, widt
 
 
 def _without_bars(budget: Budget, aspect: float) -> PlotlyFigure:
-    """What there is to say where no source makes an error, in place of empty frames."""
-    told = style.text(0.5, 0.5, NOTHING[budget.steady], xref="paper", yref="paper")
+    """Say that no source makes an error, in place of empty frames."""
+    text = style.text(0.5, 0.5, NOTHING[budget.steady], xref="paper", yref="paper")
     hidden = {"visible": False}
-    made = style.layout(meta={"aspect": aspect}, annotations=[told], shapes=[], xaxis=hidden, yaxis=hidden)
-    return figure([], made)
+    layout = style.layout(meta={"aspect": aspect}, annotations=[text], shapes=[], xaxis=hidden, yaxis=hidden)
+    return figure([], layout)
 
 
 def _names(budget: Budget, keys: Sequence[str]) -> list[str]:
     """Sources that make a visible part of some bar, in the order of `SOURCES`."""
-    found = set()
+    names = set()
     for method in budget.methods:
         for key in keys:
             heights = parts(method, key)
             whole = sum(heights.values())
-            found |= {name for name, height in heights.items() if height >= _LEAST_SHARE * whole > 0.0}
-    return sorted(found, key=_rank)
+            names |= {name for name, height in heights.items() if height >= _LEAST_SHARE * whole > 0.0}
+    return sorted(names, key=_rank)
 
 
 def _rank(name: str) -> tuple[int, str]:
@@ -201,7 +201,7 @@ def _bars(
 
 def _ends(budget: Budget, key: str, unit: float, suffix: str, grid: _Grid) -> list[dict[str, Any]]:
     """Text at the end of each bar: its length and how many times the floor that is."""
-    found = []
+    texts = []
     for i, method in enumerate(budget.methods):
         total = getattr(method.total.rms, key)
         times = budget.times_floor(method).get(key.rsplit("_", 1)[0])
@@ -212,7 +212,7 @@ def _ends(budget: Budget, key: str, unit: float, suffix: str, grid: _Grid) -> li
         else:
             value, over = _short(total / unit), _short(times)
             text = f"{value} = {over} × floor" if grid.long else f"{value}, {over}×"
-        found.append(
+        texts.append(
             style.text(
                 (total or 0.0) / unit,
                 i,
@@ -226,7 +226,7 @@ def _ends(budget: Budget, key: str, unit: float, suffix: str, grid: _Grid) -> li
                 font={"size": style.FONT_SIZE - 1, "color": style.INK},
             )
         )
-    return found
+    return texts
 
 
 def _short(value: float) -> str:
@@ -267,7 +267,7 @@ def _layout(
             what = f"{what}, × how many times it"
             if _NOTE_LETTER_PX * len(what) > width_px - _RIGHT_PX:
                 what = "the dashed line is the floor, × how many times it"
-    made = style.layout(
+    layout = style.layout(
         meta={"aspect": aspect},
         barmode="stack",
         bargap=0.3,
@@ -287,14 +287,14 @@ def _layout(
         values = [getattr(method.total.rms, key) for method in budget.methods]
         values.append(getattr(budget.floor.rms, key))
         peak = max((v / unit for v in values if v is not None and math.isfinite(v)), default=0.0)
-        made[f"xaxis{suffix}"] = style.axis(
+        layout[f"xaxis{suffix}"] = style.axis(
             unit_name,
             domain=[left, left + grid.wide / inner_w],
             anchor=f"y{suffix}",
             range=[0.0, grid.headroom * peak if peak > 0.0 else 1.0],
             nticks=max(3, int(grid.wide / 60)),
         )
-        made[f"yaxis{suffix}"] = style.axis(
+        layout[f"yaxis{suffix}"] = style.axis(
             domain=[max(top - grid.high / inner_h, 0.0), top],
             anchor=f"x{suffix}",
             tickvals=list(range(len(methods))),
@@ -304,8 +304,8 @@ def _layout(
             range=[len(methods) - 0.4, -0.6],
             showgrid=False,
         )
-        made["annotations"].append(style.panel_title(title, suffix))
-    made["annotations"].append(
+        layout["annotations"].append(style.panel_title(title, suffix))
+    layout["annotations"].append(
         style.text(
             1.0,
             1.0,
@@ -318,7 +318,7 @@ def _layout(
             font={"size": style.FONT_SIZE - 1, "color": style.MUTED},
         )
     )
-    return made
+    return layout
 
 
 def _cut(name: str) -> str:

@@ -70,14 +70,14 @@ class DesignView(PlotlyView):
         """Stacked bars."""
         del both
         scenario, note = found.run.scenario, ""
-        shown = self._budgeter.beside(scenario) if found.display.budget == "run" else None
-        if shown is None:
-            shown = steady_budget(scenario)
+        budget = self._budgeter.beside(scenario) if found.display.budget == "run" else None
+        if budget is None:
+            budget = steady_budget(scenario)
             if found.display.budget == "run":
                 note = self._budgeter.words[0] if self._budgeter.words else "that of the run is under way"
-        if shown.floor_reason:
-            note = f"{note}; " * bool(note) + f"no floor: {shown.floor_reason}"
-        return budget_figure(shown, self.aspect, width_px=self.width_px, note=note)
+        if budget.floor_reason:
+            note = f"{note}; " * bool(note) + f"no floor: {budget.floor_reason}"
+        return budget_figure(budget, self.aspect, width_px=self.width_px, note=note)
 
     def _ask(self, scenario: Scenario) -> None:
         if self.session.display.budget != "run" or self._budgeter.beside(scenario) is not None:

@@ -107,10 +107,10 @@ class TuningPanel:
                 notices.tell(self._client, "The table cannot be used", notices.fault_lines(error))
 
     def _edit(self, control: Control, by_slider: bool) -> None:
-        name, shown = str(control.spec.path[-1]), control.take(by_slider)
-        if isinstance(shown, float) and name == "realisations":
-            shown = int(shown)
-        data = self._fields | {name: shown, "network": self._network}
+        name, value = str(control.spec.path[-1]), control.take(by_slider)
+        if isinstance(value, float) and name == "realisations":
+            value = int(value)
+        data = self._fields | {name: value, "network": self._network}
         try:
             TuningSettings.model_validate(data)
         except (ValidationError, InputError) as error:
@@ -121,7 +121,7 @@ class TuningPanel:
             )
             control.refuse([notices.refusal(fault, f"{self._fields.get(name, '')}") for fault in faults])
             return
-        self._fields[name] = shown
+        self._fields[name] = value
         control.say("")
 
 

@@ -176,8 +176,9 @@ class MethodView(View):
                 if not scenario.method[index].undamped
                 else ""
             )
-            told = {NO_DESIGN, *run.methods[index].whole.warnings}  # the line below the network says these
-            texts = [text for text in warnings_for(run).get(index, ()) if text not in told]
+            # The line below the network says these.
+            elsewhere = {NO_DESIGN, *run.methods[index].whole.warnings}
+            texts = [text for text in warnings_for(run).get(index, ()) if text not in elsewhere]
             about_damping = [text for text in texts if "damping" in text.split(":")[0].split(" ")[:2]]
             others = [text for text in texts if text not in about_damping]
             network = notices.note(others, severity(run, index) or "warning")
@@ -189,9 +190,9 @@ class MethodView(View):
 
 def _catalogue(part: str, path: Path) -> FieldSpec:
     members, label = _CATALOGUES[part]
-    told = (f"{key}: {getattr(m, 'title', '') or first_line(m)}" for key, m in members.items())
+    titles = (f"{key}: {getattr(m, 'title', '') or first_line(m)}" for key, m in members.items())
     return FieldSpec(
-        (*path, part, "id"), label, "; ".join(told), "choice", next(iter(members)), tuple(members)
+        (*path, part, "id"), label, "; ".join(titles), "choice", next(iter(members)), tuple(members)
     )
 
 
@@ -215,9 +216,9 @@ def first_line(kind: type) -> str:
 
 def _values(scenario: Scenario, index: int) -> dict[Path, Any]:
     method, path = scenario.method[index], ("method", index)
-    found: dict[Path, Any] = {(*path, "name"): method.name, (*path, "damping"): method.damping}
+    values: dict[Path, Any] = {(*path, "name"): method.name, (*path, "damping"): method.damping}
     network = edits.network_values(scenario, index) | {"id": method.network.id}
-    return found | {(*path, "network", name): _shown(value) for name, value in network.items()}
+    return values | {(*path, "network", name): _shown(value) for name, value in network.items()}
 
 
 def _values_at(scenario: Scenario, specs: list[FieldSpec]) -> dict[Path, Any]:

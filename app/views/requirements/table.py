@@ -38,7 +38,7 @@ def requirements_html(
     """
     judged = together(run, pins)
     shown = range(len(judged.methods)) if methods is None else methods
-    found = verdicts(judged, requirements)
+    judged_all = verdicts(judged, requirements)
     lines = [f"solid {style.method_color(i)}" for i in range(len(run.methods))]
     lines += [f"dashed {pinned.color}" for pinned in pinned_methods(pins)]
     heads = (
@@ -46,11 +46,11 @@ def requirements_html(
         for i in shown
     )
     head = row([cell("requirement", tag="th"), cell("limit", "sb-n", tag="th"), *heads])
-    asked = any(verdict.limit is not None for verdict in found)
+    asked = any(verdict.limit is not None for verdict in judged_all)
     foot = row(
-        [cell("all together", "sb-all"), cell(), *(cell(_overall(found, i), "sb-n") for i in shown)],
+        [cell("all together", "sb-all"), cell(), *(cell(_overall(judged_all, i), "sb-n") for i in shown)],
     )
-    return table([head], [*(_row(verdict, shown, asked=asked) for verdict in found), foot])
+    return table([head], [*(_row(verdict, shown, asked=asked) for verdict in judged_all), foot])
 
 
 def _row(verdict: Verdict, shown: Sequence[int], *, asked: bool) -> str:
@@ -93,8 +93,8 @@ def _mark(verdict: Verdict, passed: bool) -> str:
     return cell(word, "sb-word", tag="span")
 
 
-def _overall(found: tuple[Verdict, ...], index: int) -> str:
-    asked = [verdict for verdict in found if verdict.limit is not None]
+def _overall(judged: tuple[Verdict, ...], index: int) -> str:
+    asked = [verdict for verdict in judged if verdict.limit is not None]
     if not asked:
         return cell("nothing asked", "sb-muted", tag="span")
     missed = sum(not verdict.passed[index] for verdict in asked)

@@ -56,9 +56,9 @@ class RequirementsView(PictureView[str]):
     def picture(self, found: Shown) -> str:
         """Make the table of verdicts, HTML."""
         window = window_of(found.run, found.display)
-        told = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
+        note = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
         pins = [replace(pin, run=window.of(pin.run)) for pin in found.pins if pin.run is not None]
-        return told + requirements_html(window.run, found.display.requirements, pins)
+        return note + requirements_html(window.run, found.display.requirements, pins)
 
     def show(self, picture: str) -> None:
         """Show the verdicts."""

@@ -1,1 +1,1 @@
-"""Tab "Tune": the best setting of the method in hand, or the Pareto fronts of all networks."""
+"""Tab "Tune": the best setting of the selected method, or the Pareto fronts of all networks."""

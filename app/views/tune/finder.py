@@ -45,13 +45,13 @@ class FrontsPanel:
             box.on_update(
                 if_user(lambda field=field, box=box: self.frame.show(**{field: words[str(box.value)]}))
             )
-        hint = "Searches all networks in place of that of the method in hand, in the steady state."
+        hint = "Searches all networks in place of that of the selected method, in the steady state."
         self._controls = SearchControls(gui, self._fronts, self.begin, (FIND, STOP), hint)
         self._words = gui.add_html("", visible=False)
 
     @property
     def objectives(self) -> tuple[str, str]:
-        """What the display asks for on the axes."""
+        """Objectives on the axes."""
         return self.session.display.front_x, self.session.display.front_y
 
     @property
@@ -62,7 +62,7 @@ class FrontsPanel:
 
     @property
     def note(self) -> str:
-        """What is to be heeded about the fronts that are shown."""
+        """Note that the fronts are of an earlier scenario; empty while they fit."""
         task = self._fronts.asked
         old = self.found is not None and task is not None and not task.fits(self.session.scenario)
         return _OLD if old else ""
@@ -89,11 +89,11 @@ class FrontsPanel:
         reveal(*((box, chosen) for box in self._axes.values()))
 
     def begin(self) -> None:
-        """Find the fronts of the method in hand."""
+        """Find the fronts of the selected method."""
         session = self.session
         if self.objectives[0] == self.objectives[1]:
-            told = [f"{AXES[self.objectives[0]][0]} is on both axes: choose two objectives."]
-            notices.tell(self.frame.client, "Nothing to weigh", told)
+            lines = [f"{AXES[self.objectives[0]][0]} is on both axes: choose two objectives."]
+            notices.tell(self.frame.client, "Nothing to weigh", lines)
             return
         with session.lock:
             task = FrontsTask(session.scenario, session.selected, self.objectives)
@@ -101,13 +101,13 @@ class FrontsPanel:
 
     def _pick(self, text: str) -> None:
         """Put the point that was clicked into the method."""
-        found, task = self.found, self._fronts.asked
-        if found is None or task is None:
+        fronts, task = self.found, self._fronts.asked
+        if fronts is None or task is None:
             return
-        name, point = nearest(found, *read_place(text))
-        told = f"{name} from the Pareto fronts"
-        if change_network(self.frame, task.method, point.network, told):
-            notices.tell(self.frame.client, told, [setting_text(point.network)], "info")
+        name, point = nearest(fronts, *read_place(text))
+        step = f"{name} from the Pareto fronts"
+        if change_network(self.frame, task.method, point.network, step):
+            notices.tell(self.frame.client, step, [setting_text(point.network)], "info")
 
 
 def read_place(text: str) -> tuple[float, float]:

@@ -198,12 +198,12 @@ def _ranges(found: Pareto | None, present: Pair | None, sizes: Pair) -> tuple[Pa
 def _axis(title: str, ends: Pair) -> dict[str, Any]:
     """Logarithmic axis; its ticks are written in full, where plotly leaves out the power of ten."""
     low, high = (math.log10(end) for end in ends)
-    made = style.axis(title, type="log", range=[low, high])
+    axis = style.axis(title, type="log", range=[low, high])
     steps = _FEW_TICKS if high - low > 1.0 else _MANY_TICKS
     ticks = [step * 10.0**k for k in range(math.floor(low), math.ceil(high) + 1) for step in steps]
     if high - low > _FINEST_DECADES:
-        made |= {"tickvals": ticks, "ticktext": [f"{tick:.6g}" for tick in ticks]}
-    return made
+        axis |= {"tickvals": ticks, "ticktext": [f"{tick:.6g}" for tick in ticks]}
+    return axis
 
 
 def _add_floor(layout: dict[str, Any], found: Pareto, ranges: tuple[Pair, Pair], sizes: Pair) -> None:

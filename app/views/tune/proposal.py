@@ -35,13 +35,13 @@ _REQUIREMENTS = {
 }
 
 
-def proposal_html(task: TuningTask, found: Tuned) -> str:
+def proposal_html(task: TuningTask, tuned: Tuned) -> str:
     """Table of the present and the proposed setting, the objective, and sentences about the optimum."""
     label, unit, size = OBJECTIVES[task.objective]
     rows = []
     data = task.scenario.canonical()
-    for field, value in found.best.items():
-        low, high = found.flat.get(field, (value, value))
+    for field, value in tuned.best.items():
+        low, high = tuned.flat.get(field, (value, value))
         now = _value(data, field)
         rows.append(
             (
@@ -53,34 +53,35 @@ def proposal_html(task: TuningTask, found: Tuned) -> str:
         )
     objective = [
         f"{label} ({unit})",
-        "none" if found.before is None else number(found.before / size, 4),
-        number(found.objective / size, 4),
-        "" if found.floor is None else f"floor {number(found.floor / size, 4)}",
+        "none" if tuned.before is None else number(tuned.before / size, 4),
+        number(tuned.objective / size, 4),
+        "" if tuned.floor is None else f"floor {number(tuned.floor / size, 4)}",
     ]
     method = task.scenario.method[int(task.vary[0].split(".")[1])].name
     head = (f"Proposal for {method}", "now", "proposed", "range within 5 % of the best")
-    shown = table([_row(head, "th")], [_row(cells) for cells in (*rows, objective)])
-    sentences = "".join(f"<li>{escape(text)}</li>" for text in sentences_about(task, found))
+    settings = table([_row(head, "th")], [_row(cells) for cells in (*rows, objective)])
+    sentences = "".join(f"<li>{escape(text)}</li>" for text in sentences_about(task, tuned))
     listed = f"<ul>{sentences}</ul>" if sentences else ""
-    return f'<div class="sb-table sb-proposal">{shown}{listed}</div>'
+    return f'<div class="sb-table sb-proposal">{settings}{listed}</div>'
 
 
-def sentences_about(task: TuningTask, found: Tuned) -> list[str]:
-    """What the user should know about the optimum, one sentence each."""
+def sentences_about(task: TuningTask, tuned: Tuned) -> list[str]:
+    """Write sentences about the optimum."""
     _, unit, size = OBJECTIVES[task.objective]
-    told = []
-    if found.stopped:
-        told.append("The search was stopped: this is the best setting it had seen.")
-    if found.floor:
-        told.append(f"The proposed setting is {number(found.objective / found.floor, 3)} times the floor.")
-    for field in found.at_end_of_range:
+    sentences = []
+    if tuned.stopped:
+        sentences.append("The search was stopped: this is the best setting it had seen.")
+    if tuned.floor:
+        times = number(tuned.objective / tuned.floor, 3)
+        sentences.append(f"The proposed setting is {times} times the floor.")
+    for field in tuned.at_end_of_range:
         name = symbol(field.rsplit(".", 1)[-1])
-        told.append(f"{name} stands at the end of its range: the true optimum may lie outside.")
-    for text in found.active:
-        without = found.cost.get(text)
+        sentences.append(f"{name} stands at the end of its range: the true optimum may lie outside.")
+    for text in tuned.active:
+        without = tuned.cost.get(text)
         more = "" if without is None else f" Without it the objective is {number(without / size, 4)} {unit}."
-        told.append(f"The requirement {requirement_words(text)} holds the optimum back.{more}")
-    return [*told, *found.warnings]
+        sentences.append(f"The requirement {requirement_words(text)} holds the optimum back.{more}")
+    return [*sentences, *tuned.warnings]
 
 
 def requirement_words(text: str) -> str:

@@ -1,4 +1,4 @@
-"""Search for the best setting of the method in hand, and accept or discard what comes out."""
+"""Search for the best setting of the selected method, and accept or discard what comes out."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class SettingPanel:
             OBJECTIVE, tuple(label for label, _, _ in OBJECTIVES.values()), hint="What is to be least."
         )
         self._vary: Any = gui.add_dropdown(
-            VARY, (ALL,), hint="Fields of the method in hand that the search may move."
+            VARY, (ALL,), hint="Fields of the selected method that the search may move."
         )
         hint = "Searches for the setting that makes the objective least and keeps the requirements."
         self._controls = SearchControls(gui, self._designer, self.begin, (TUNE, STOP), hint)
@@ -78,8 +78,8 @@ class SettingPanel:
             if task.scenario != scenario:
                 html += notices.note(["The scenario has changed since this proposal was made."], "warning")
             html += proposal_html(task, result)
-        told = notices.small(requirements_told(self.session.display.requirements))
-        show_html(self._told, f'<div class="sb-wide">{told}</div>' if chosen else "")
+        limits = notices.small(requirements_told(self.session.display.requirements))
+        show_html(self._told, f'<div class="sb-wide">{limits}</div>' if chosen else "")
         show_html(self._found, f'<div class="sb-wide">{html}</div>' if chosen and html else "")
         reveal(
             (self._objective, chosen),
@@ -89,7 +89,7 @@ class SettingPanel:
         )
 
     def _offer(self, scenario: Scenario) -> None:
-        """Offer the numeric fields of the network in hand."""
+        """Offer the numeric fields of the selected network."""
         fields = tunable_fields(scenario, self.session.selected)
         choices = {ALL: fields} | {field.rsplit(".", 1)[-1]: (field,) for field in fields}
         if choices != self._fields:
@@ -98,14 +98,14 @@ class SettingPanel:
             self._vary.value = ALL
 
     def begin(self) -> None:
-        """Search for the best setting of the method in hand."""
+        """Search for the best setting of the selected method."""
         session = self.session
         with session.lock:
             scenario, display = session.scenario, session.display
             fields = self._fields.get(self._vary.value, ())
         if not fields:
-            told = ["The network of this method has no parameter to vary."]
-            notices.tell(self.frame.client, "Nothing to tune", told)
+            lines = ["The network of this method has no parameter to vary."]
+            notices.tell(self.frame.client, "Nothing to tune", lines)
             return
         self._designer.begin(
             TuningTask(scenario, display.objective, fields, requirements_as_text(display.requirements))
@@ -136,8 +136,8 @@ def requirements_told(requirements: Requirements) -> str:
     given = [name for name in type(requirements).model_fields if getattr(requirements, name) is not None]
     kept = [_limit(requirements, name) for name in given if name in _MEASURED]
     other = [_limit(requirements, name) for name in given if name not in _MEASURED]
-    told = f"Requirements that are kept: {', '.join(kept)}." if kept else "No requirement is to be kept."
-    return f"{told} Not measured by a search: {', '.join(other)}." if other else told
+    text = f"Requirements that are kept: {', '.join(kept)}." if kept else "No requirement is to be kept."
+    return f"{text} Not measured by a search: {', '.join(other)}." if other else text
 
 
 def _limit(requirements: Requirements, name: str) -> str:

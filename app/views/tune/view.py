@@ -1,4 +1,4 @@
-"""Tab "Tune": the best setting of the method in hand, or the Pareto fronts of all networks in its place."""
+"""Tab "Tune": the best setting of the selected method, or the Pareto fronts of all networks in its place."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class TuneView(PlotlyView):
         super().__init__(frame)
         self._setting, self._finder = SettingPanel(frame), FrontsPanel(frame)
         self._drawn: Pareto | None = None
-        frame.commands.register("tune", lambda _: self._setting.begin(), "Tune the method in hand")
+        frame.commands.register("tune", lambda _: self._setting.begin(), "Tune the selected method")
 
     def build_tools(self) -> None:
         """Make the controls of both searches."""
@@ -41,7 +41,7 @@ class TuneView(PlotlyView):
         gui.add_html(TOOLS)
         self._search: Any = gui.add_dropdown(
             SEARCH_FOR, tuple(SEARCHES),
-            hint="The best setting: of the method in hand, for one objective. Pareto fronts: what two "
+            hint="The best setting: of the selected method, for one objective. Pareto fronts: what two "
             "objectives cost each other, with every network in place of that method's own.",
         )  # fmt: skip
         self._search.on_update(if_user(lambda: self.frame.show(search=SEARCHES[self._search.value])))
@@ -55,11 +55,11 @@ class TuneView(PlotlyView):
 
     @property
     def of_selected(self) -> bool:
-        """The star is the method in hand."""
+        """The star is the selected method."""
         return self._of_fronts
 
     def follow_scenario(self) -> None:
-        """Offer the fields of the method in hand."""
+        """Offer the fields of the selected method."""
         self._show()
 
     def follow_display(self) -> None:
@@ -72,10 +72,10 @@ class TuneView(PlotlyView):
 
     def take_new(self) -> bool:
         """Whether fronts have just been found."""
-        found = self._finder.found
-        if found is self._drawn or not self._of_fronts:
+        fronts = self._finder.found
+        if fronts is self._drawn or not self._of_fronts:
             return False
-        self._drawn = found
+        self._drawn = fronts
         return True
 
     def _show(self) -> None:
