@@ -18,38 +18,38 @@ SCALE = 1.5
 def test_type_lines_and_margins_grow_and_the_numbers_stay():
     x = packed(np.arange(3.0))
     line = {"type": "scatter", "x": x, "y": [1, 2, 3], "line": {"width": 2.0, "dash": "dot"}}
-    line["marker"] = {"size": [4, 6], "line": {"width": 1}}
-    axis = style.axis("time", range=[0, 4])
-    layout = style.layout(margin={"l": 60, "t": 30}, meta={"aspect": 0.5}, xaxis=axis)
-    layout["annotations"] = [style.panel_title("Tilt")]
-    layout["shapes"] = [{"type": "line", "x0": 1, "x1": 1, "line": {"width": 1.2}}]
-    made = enlarged(figure([line], layout), SCALE)
-    drawn, laid = made["data"][0], made["layout"]
-    assert drawn["x"] is x
-    assert drawn["y"] == [1, 2, 3]
-    assert drawn["line"] == {"width": 3.0, "dash": "dot"}
-    assert drawn["marker"] == {"size": [6.0, 9.0], "line": {"width": 1.5}}
-    assert laid["margin"] == {"l": 90.0, "t": 45.0}
-    assert laid["font"]["size"] == SCALE * style.FONT_SIZE
-    assert laid["xaxis"]["tickfont"]["size"] == SCALE * style.FONT_SIZE
-    assert laid["xaxis"]["range"] == [0, 4]
-    note = laid["annotations"][0]
+    marker = {"marker": {"size": [4, 6], "line": {"width": 1}}}
+    layout = style.layout(
+        margin={"l": 60, "t": 30},
+        meta={"aspect": 0.5},
+        xaxis=style.axis("time", range=[0, 4]),
+        annotations=[style.panel_title("Tilt")],
+        shapes=[{"type": "line", "x0": 1, "x1": 1, "line": {"width": 1.2}}],
+    )
+    larger = enlarged(figure([line | marker], layout), SCALE)
+    drawn, laid = larger["data"][0], larger["layout"]
+    assert drawn == line | {
+        "line": {"width": 3.0, "dash": "dot"},
+        "marker": {"size": [6.0, 9.0], "line": {"width": 1.5}},
+    }
+    assert (drawn["x"] is x, larger.aspect, laid["margin"]) == (True, 0.5, {"l": 90.0, "t": 45.0})
+    sizes = laid["font"]["size"], laid["xaxis"]["tickfont"]["size"]
+    assert sizes == (SCALE * style.FONT_SIZE,) * 2 and laid["xaxis"]["range"] == [0, 4]
+    (note,), (shape,) = laid["annotations"], laid["shapes"]
     assert (note["y"], note["yshift"], note["font"]["size"]) == (1.0, 19.5, SCALE * style.TITLE_SIZE)
-    assert (laid["shapes"][0]["x0"], laid["shapes"][0]["line"]["width"]) == (1, 1.8)
-    assert made.aspect == 0.5
+    assert (shape["x0"], shape["line"]["width"]) == (1, 1.8)
 
 
 def test_a_time_plot_grows_likewise():
     plot = next(iter(error_plots(static_run()).values()))
     plain = plot.kwargs(height=100)
-    made = enlarged_time_plot(plain, SCALE)
-    assert made["height"] == 150
-    assert made["data"] is plain["data"]
-    assert made["scales"] == plain["scales"]
-    for before, after in zip(plain["axes"], made["axes"], strict=True):
+    larger = enlarged_time_plot(plain, SCALE)
+    assert larger["height"] == 150 and larger["data"] is plain["data"]
+    assert larger["scales"] == plain["scales"]
+    for before, after in zip(plain["axes"], larger["axes"], strict=True):
         assert after["size"] == SCALE * before["size"]
         assert after["font"].startswith(f"{SCALE * style.FONT_SIZE:g}px ")
-    assert [s["width"] for s in made["series"][1:]] == [SCALE * s["width"] for s in plain["series"][1:]]
+    assert [s["width"] for s in larger["series"][1:]] == [SCALE * s["width"] for s in plain["series"][1:]]
 
 
 def test_the_normal_size_changes_nothing():
@@ -70,6 +70,4 @@ def test_the_columns_of_an_enlarged_page_fill_the_window(size: tuple[int, int]):
 
 def test_a_title_is_as_long_as_its_panel_allows():
     titles = ("Velocity error after a log step of 1 m/s", "Velocity error, log step")
-    assert style.fitting(titles, 500.0) == titles[0]
-    assert style.fitting(titles, 200.0) == titles[1]
-    assert style.fitting(titles, 20.0) == titles[1]
+    assert [titles.index(style.fitting(titles, room_px)) for room_px in (500.0, 200.0, 20.0)] == [0, 1, 1]

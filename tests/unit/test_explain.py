@@ -61,10 +61,8 @@ FIELDS = list(all_fields())
 
 @pytest.mark.parametrize(("key", "spec"), FIELDS, ids=[f"{key}-{spec.label}" for key, spec in FIELDS])
 def test_every_control_is_explained_and_every_slider_with_unit_and_range(key: str, spec: FieldSpec) -> None:
-    told = explanation(key)
-    assert told is not None, key
-    assert told.source
-    assert spec.hint
+    words = explanation(key)
+    assert words is not None and words.source and spec.hint, key
     if spec.slider is not None:
         assert re.search(r"Must be (>|<)", spec.hint), spec.hint
         unit = re.search(r"\(([^()]+(\([^()]*\))?[^()]*)\)$", spec.label)
@@ -79,46 +77,40 @@ def test_no_explanation_is_left_over() -> None:
         "motion.kind",
         "reference.kind",
     ]
-    used = set()
-    for key in keys:
-        fits = (pattern for pattern in explanations() if explanation(key) is explanations()[pattern])
-        used.add(next(fits, None))
-    assert set(explanations()) - used == set()
+    used = {id(explanation(key)) for key in keys}
+    assert [pattern for pattern, entry in explanations().items() if id(entry) not in used] == []
 
 
 def test_equations_are_mathml() -> None:
-    for pattern, told in explanations().items():
-        html = formula_html(told.latex) if told.latex else "<math"
-        assert html.startswith("<math"), pattern
-        assert "\\" not in html, pattern
+    for pattern, entry in explanations().items():
+        html = formula_html(entry.latex) if entry.latex else "<math"
+        assert html.startswith("<math") and "\\" not in html, pattern
 
 
-def test_a_field_is_named_by_the_kind_of_its_block() -> None:
-    scenario = Scenario.parse(
-        {
-            "method": [{"damping": "external", "network": {"id": "compass"}, "policy": {"id": "variation"}}],
-            "reference": {"kind": "log"},
-            "motion": {"kind": "swing"},
-        }
-    )
-    assert key_of(("method", 0, "network", "xi"), scenario) == "network.compass.xi"
-    assert key_of(("method", 0, "network", "id"), scenario) == "network.id"
-    assert key_of(("method", 0, "policy", "a"), scenario) == "policy.variation.a"
-    assert key_of(("method", 0, "averaging", "variant"), scenario) == "averaging.variant"
-    assert key_of(("motion", "kind"), scenario) == "motion.kind"
-    assert key_of(("motion", "pitch", "amplitude_deg"), scenario) == "motion.swing.pitch.amplitude_deg"
-    assert key_of(("reference", "event", 0, "t_h"), scenario) == "reference.event.t_h"
+COMPASS = {"damping": "external", "network": {"id": "compass"}, "policy": {"id": "variation"}}
+SCENARIO = Scenario.parse({"method": [COMPASS], "reference": {"kind": "log"}, "motion": {"kind": "swing"}})
+
+
+@pytest.mark.parametrize(
+    ("path", "key"),
+    [
+        (("method", 0, "network", "xi"), "network.compass.xi"),
+        (("method", 0, "network", "id"), "network.id"),
+        (("method", 0, "policy", "a"), "policy.variation.a"),
+        (("method", 0, "averaging", "variant"), "averaging.variant"),
+        (("motion", "kind"), "motion.kind"),
+        (("motion", "pitch", "amplitude_deg"), "motion.swing.pitch.amplitude_deg"),
+        (("reference", "event", 0, "t_h"), "reference.event.t_h"),
+    ],
+)
+def test_a_field_is_named_by_the_kind_of_its_block(path: form.Path, key: str) -> None:
+    assert key_of(path, SCENARIO) == key
 
 
 def test_an_explanation_holds_words_equation_and_source() -> None:
-    scenario = Scenario.parse(
-        {"method": [{"damping": "external", "network": {"id": "compass"}}], "reference": {"kind": "log"}}
-    )
     specs = {spec.path[-1]: spec for spec in form.fields(NETWORKS["compass"], ("method", 0, "network"))}
-    html = explain_html(specs["sigma"], scenario)
-    assert "Must be &gt;= 1e-05 and &lt;= 1 (1/s)" in html
-    assert html.count("<math") == 1
+    html = explain_html(specs["sigma"], SCENARIO)
+    assert "Must be &gt;= 1e-05 and &lt;= 1 (1/s)" in html and html.count("<math") == 1
     assert "Deng 2019, eq. 2; Zha 2019, eq. 12" in html
-    assert told_html("<b>", "<i>", Explanation(says="<u>")).count("<") == told_html(
-        "b", "i", Explanation(says="u")
-    ).count("<")
+    hostile, plain = (told_html(a, b, Explanation(says=c)) for a, b, c in (("<b>", "<i>", "<u>"), "biu"))
+    assert hostile.count("<") == plain.count("<")

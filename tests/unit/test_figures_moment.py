@@ -32,18 +32,17 @@ def with_errors(phi: tuple[float, float, float], heading_deg: float = 90.0):
 
 def test_rows_are_interpolated_and_held_at_the_ends() -> None:
     t, rows = np.array([0.0, 10.0, 20.0]), np.array([[0.0], [1.0], [5.0]])
-    found = [row_at(t, rows, at)[0] for at in (-1.0, 0.0, 5.0, 15.0, 20.0, 99.0)]
-    assert found == pytest.approx([0.0, 0.0, 0.5, 3.0, 5.0, 5.0])
-    assert row_at(t[:1], rows[:1], 3.0)[0] == 0.0
-    assert row_at(t[:0], rows[:0], 3.0)[0] == 0.0
+    values = [row_at(t, rows, at)[0] for at in (-1.0, 0.0, 5.0, 15.0, 20.0, 99.0)]
+    assert values == pytest.approx([0.0, 0.0, 0.5, 3.0, 5.0, 5.0])
+    assert [row_at(t[:count], rows[:count], 3.0)[0] for count in (0, 1)] == [0.0, 0.0]
 
 
 def test_a_turn_about_the_vertical_is_a_heading_error() -> None:
-    shown = moment(with_errors((0.0, 0.0, 30.0 * ARCMIN)), 1000.0)
-    made = shown.methods[0].pose
+    now = moment(with_errors((0.0, 0.0, 30.0 * ARCMIN)), 1000.0)
+    computed = now.methods[0].pose
     # C~ = (I - [phi x]) C turns the computed axes by -phi: clockwise for a positive phi_U
-    assert math.remainder(made.heading - shown.truth.heading, math.tau) == pytest.approx(0.5 * DEG, rel=1e-4)
-    assert made.pitch == pytest.approx(0.0, abs=1e-9)
+    turned = math.remainder(computed.heading - now.truth.heading, math.tau)
+    assert turned == pytest.approx(0.5 * DEG, rel=1e-4) and computed.pitch == pytest.approx(0.0, abs=1e-9)
 
 
 def test_tilts_are_pitch_and_roll_as_the_ship_heads() -> None:
@@ -51,10 +50,9 @@ def test_tilts_are_pitch_and_roll_as_the_ship_heads() -> None:
     north, east = (
         moment(with_errors((phi_e, 0.0, 0.0), heading), 0.0).methods[0].pose for heading in (0, 90)
     )
-    assert north.pitch == pytest.approx(-phi_e, rel=1e-4)  # about east by -phi_E: the bow goes down
-    assert north.roll == pytest.approx(0.0, abs=1e-9)
-    assert abs(east.roll) == pytest.approx(phi_e, rel=1e-4)
-    assert east.pitch == pytest.approx(0.0, abs=1e-9)
+    # about east by -phi_E: the bow goes down
+    assert (north.pitch, abs(east.roll)) == pytest.approx((-phi_e, phi_e), rel=1e-4)
+    assert (north.roll, east.pitch) == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
 def test_truth_is_that_of_the_run() -> None:
@@ -73,9 +71,8 @@ def test_a_strapdown_run_shows_what_it_computes() -> None:
     )
     method = run.methods[0]
     assert method.navigation is not None
-    shown = moment(run, float(run.t_s[-1]))
-    assert shown.methods[0].pose.pitch == method.navigation[-1, 6]
-    assert shown.methods[0].pose.heading == method.navigation[-1, 8] % math.tau
+    pose = moment(run, float(run.t_s[-1])).methods[0].pose
+    assert (pose.pitch, pose.heading) == (method.navigation[-1, 6], method.navigation[-1, 8] % math.tau)
 
 
 def test_the_readout_has_units_and_names_the_method() -> None:
