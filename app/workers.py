@@ -145,8 +145,8 @@ class Crew:
 def serve_with_workers(
     host: str,
     port: int,
-    count: int,
     *,
+    count: int,
     token: str | None = None,
     show_token: bool = False,
     allow_origins: Iterable[str] = (),

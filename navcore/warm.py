@@ -8,15 +8,29 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from navcore.alignment.fine import coarse_alignment
+from navcore.engine.environment import environment
 from navcore.engine.simulation import simulate
+from navcore.foundation.earth import WGS84
 from navcore.foundation.kernel_cache import cache_folder, compiling, complete
+from navcore.law.law import prepare_law
+from navcore.law.policy.constant import Constant
+from navcore.law.switching.hard import Hard
+from navcore.mechanization.strapdown import Settings, start_from
+from navcore.mechanization.strapdown.batch import BatchRun
+from navcore.motion.base import Site
+from navcore.motion.static import StaticMotion
+from navcore.networks.undamped import UndampedNetwork
 from navcore.scenario.model import Scenario
+from navcore.sensors.imu import Imu
+from navcore.sensors.imu_simulation import ImuSimulation
 
 _IMU: dict[str, Any] = {
     "gyro_bias_dph": [0.01, 0.01, 0.01],
@@ -90,11 +104,6 @@ def warm(progress: Callable[[str], None] = lambda what: None) -> None:
 
 def warm_sensors() -> None:
     """Compile what needs no law: the simulated IMU, then motions, sensors and log of the error model."""
-    from navcore.engine.environment import environment
-    from navcore.foundation.earth import WGS84
-    from navcore.motion.base import Site
-    from navcore.sensors.imu_simulation import ImuSimulation
-
     samples = int(60.0 * _RATE_HZ)
     scenarios = [_scenario({"duration_h": 0.02}, motion, 1.0, [_NETWORK]) for motion in _MOTIONS]
     for given in scenarios[:3]:
@@ -127,8 +136,6 @@ def _scenario(
 
 
 def _warm_track() -> None:
-    import tempfile
-
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "track.csv"
         rows = (f"{k},{0.5 + 1e-5 * k},{1e-5 * k},45.0\n" for k in range(120))
@@ -138,12 +145,6 @@ def _warm_track() -> None:
 
 
 def _warm_coarse_alignment() -> None:
-    from navcore.alignment.fine import coarse_alignment
-    from navcore.foundation.earth import WGS84
-    from navcore.motion.base import Site
-    from navcore.motion.static import StaticMotion
-    from navcore.sensors.imu import Imu
-    from navcore.sensors.imu_simulation import ImuSimulation
 
     samples = int(60.0 * _RATE_HZ)
     simulation = ImuSimulation(StaticMotion(), Site(0.5, 0.0, 0.0), WGS84, Imu(), _RATE_HZ, samples, 0)
@@ -151,15 +152,6 @@ def _warm_coarse_alignment() -> None:
 
 
 def _warm_batch() -> None:
-    from navcore.foundation.earth import WGS84
-    from navcore.law.law import prepare_law
-    from navcore.law.policy.constant import Constant
-    from navcore.law.switching.hard import Hard
-    from navcore.mechanization.strapdown import Settings, start_from
-    from navcore.mechanization.strapdown.batch import BatchRun
-    from navcore.motion.base import Site
-    from navcore.motion.static import StaticMotion
-    from navcore.networks.undamped import UndampedNetwork
 
     truth = StaticMotion().rows(1, 1.0, Site(0.5, 0.0, 0.0), WGS84)
     network = UndampedNetwork()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -63,19 +64,12 @@ class ServeCommand:
         token = find_token(self.token, self.token_file, self.generate_token, os.environ)
         named = os.environ.get("SCHULER_ALLOW_ORIGIN", "").replace(",", " ").split()
         cluster = self.cluster or os.environ.get(CLUSTER) or None
-        if self.workers != 1:
-            serve_with_workers(
-                self.host,
-                self.port,
-                self.workers,
-                token=token.value,
-                show_token=token.generated,
-                allow_origins=(*self.allow_origin, *named),
-                frame_origins=self.frame_origin,
-                cluster=cluster,
-            )
-            return 0
-        serve(
+        begin = (
+            partial(serve, open_browser=self.open)
+            if self.workers == 1
+            else partial(serve_with_workers, count=self.workers)
+        )
+        begin(
             self.host,
             self.port,
             token=token.value,
@@ -83,6 +77,5 @@ class ServeCommand:
             allow_origins=(*self.allow_origin, *named),
             frame_origins=self.frame_origin,
             cluster=cluster,
-            open_browser=self.open,
         )
         return 0
