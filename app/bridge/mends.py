@@ -1,12 +1,18 @@
-"""What viser is mended in: a page's queue, its language and curves; the callbacks' threads; types."""
+"""Mends of viser's server: a page's queue, its language and curves; the callbacks' threads; types.
+
+A mend whose place is missing in the installed viser is left out and logged once: the page works without it,
+more slowly, and without the queue in English. ``SCHULER_PLAIN_VISER=1`` leaves out all mends.
+"""
 
 from __future__ import annotations
 
 import asyncio
+import logging
+import os
 from collections.abc import AsyncGenerator, Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any, get_type_hints
+from functools import cache, lru_cache
+from typing import Any, ClassVar, get_type_hints
 
 import viser
 from viser._assignable_props_api import AssignablePropsBase
@@ -22,6 +28,28 @@ _CAST = "_schuler_cast"
 """Where viser's own method is kept."""
 _AT_ONCE = 2048
 """Messages that go to a page in one piece: all that it is made of at its opening."""
+_log = logging.getLogger("schuler.bridge")
+
+
+def plain_viser() -> bool:
+    """Whether viser is to be left as it is."""
+    return os.environ.get("SCHULER_PLAIN_VISER") == "1"
+
+
+@cache
+def left_out(mend: str) -> None:
+    """Log, once, that a mend does not fit the installed viser."""
+    _log.warning("viser %s is used without a mend: %s", viser.__version__, mend)
+
+
+def _fits(mend: str, owner: object, *names: str) -> bool:
+    """Whether all that a mend exchanges is there."""
+    if plain_viser():
+        return False
+    fits = all(hasattr(owner, name) for name in names)
+    if not fits:
+        left_out(mend)
+    return fits
 
 
 class _LoopEvent(asyncio.Event):
@@ -59,6 +87,8 @@ class MendedBuffer(AsyncMessageBuffer):
 
     max_window_size: int = _AT_ONCE
 
+    shortens: ClassVar[bool] = True
+    """Whether the page's script puts in the curves that are left out."""
     translator: Translator | None = None
     """Translates what the page is sent; None: it reads English."""
 
@@ -76,12 +106,14 @@ class MendedBuffer(AsyncMessageBuffer):
         """Take out what is to be sent; of the curves that the page has, nothing (`app.bridge.curves`)."""
         windows = super().window_generator(client_id, backlog_done_message)
         # What is queued for all pages is kept for those to come: it stays as it is.
-        return windows if self.persistent_messages else shortened(windows)
+        return windows if self.persistent_messages or not self.shortens else shortened(windows)
 
 
 def mend_queues() -> None:
     """Let every page that connects from now on have a mended queue."""
-    setattr(_infra, AsyncMessageBuffer.__name__, MendedBuffer)
+    queue = AsyncMessageBuffer.__name__
+    if _fits("no message is lost in a page's queue", _infra, queue):
+        setattr(_infra, queue, MendedBuffer)
 
 
 _hints_of = lru_cache(maxsize=None)(get_type_hints)
@@ -94,6 +126,9 @@ def share_hints() -> None:
     is a tenth of a second and a megabyte.
     """
     changed: Any = AssignablePropsBase
+    names = "_prop_hints", "_cast_value_recursive"
+    if not _fits("handles of a kind share the types of their properties", changed, *names):
+        return
     changed._prop_hints = property(lambda handle: _hints_of(type(handle._impl.props)))
     if not hasattr(AssignablePropsBase, _CAST):
         setattr(changed, _CAST, changed._cast_value_recursive)
@@ -107,15 +142,22 @@ def _cast(handle: Any, hint: Any, value: Any, name: str) -> Any:
 
 def share_threads_fairly(server: viser.ViserServer) -> None:
     """Exchange viser's pool, where one visitor's callbacks can fill all threads and the queue before them."""
+    if not _fits("visitors share the callbacks' threads fairly", server, "_thread_executor"):
+        return
     pool: Any = FairPool(_CALLBACK_THREADS, _visitor_of, _read_again)
     server._thread_executor.shutdown(wait=False)
     server._thread_executor = server.gui._thread_executor = server.scene._thread_executor = pool
 
 
+def pool_of(server: viser.ViserServer) -> object:
+    """Threads that carry out the visitors' callbacks: a `FairPool`, if viser is mended."""
+    return getattr(server, "_thread_executor", None)
+
+
 def forget_callbacks(server: viser.ViserServer, client_id: int) -> None:
     """Drop the callbacks of a visitor who has gone that have not begun."""
-    pool: Any = server._thread_executor
-    pool.forget(client_id)
+    if isinstance(pool := pool_of(server), FairPool):
+        pool.forget(client_id)
 
 
 def _visitor_of(arguments: tuple[Any, ...]) -> object:

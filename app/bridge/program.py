@@ -1,5 +1,7 @@
 """viser's page, unpacked into files of its own, and mended in what makes it draw late or too often.
 
+A mend that does not fit the installed viser is left out and logged once; the page works without any of them.
+
 viser serves one page with its program packed into an attribute: every visit decodes and decompresses it
 before anything can run, 2.5 MB, and the browser can keep neither the file nor what it has compiled. Here the
 server unpacks it once, so that the browser loads it beside our scripts and keeps it.
@@ -11,68 +13,85 @@ import gzip
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import viser
 import zstandard
 
+from app.bridge.mends import MendedBuffer, left_out, plain_viser
 from navcore.foundation.errors import Fault, InputError
 
 _DIGITS = "".join(chr(code) for code in range(0x21, 0x7F) if chr(code) not in "\"&<>'`")
 _LARGEST = 1 << 25
+_WORKER = (b"type:`set_server`", b"type:`send`", b"{type:`message_batch`,messages:", b"{type:`connected`}")
+"""What page and worker say to each other, which curves.js and socket.js hear."""
 
 SOCKET_SCRIPT = Path(__file__).parent / "socket.js"
 """Script for the page, to run before viser's program, which sends through it: ``schuler.send(message)``."""
 FILL_SCRIPT = Path(__file__).parent / "fill.js"
 """Script for the page, by which viser's program changes HTML: ``schuler.fill(element, html)``."""
 
+
+class Mend(NamedTuple):
+    """A replacement in viser's program; without it the page works, and is slower."""
+
+    name: str
+    before: str
+    after: str
+
+
 MENDS = (
-    # After each change the 3D view is drawn for 250 ms, whether or not anything moves any more: some 15
-    # frames, and each costs 40 ms without a graphics card. What is made late asks for its own frame.
-    ("Bfe=250,", "Bfe=0,"),
-    # It is drawn once a second too, whether or not anything has changed.
-    ("Vfe=1e3;", "Vfe=1e4;"),
-    # Messages wait for the next frame of the 3D view, which is drawn as it was before them.
-    (
+    # Each is explained to viser's authors in docs/architecture.md.
+    Mend("the 3D view rests when nothing moves", "Bfe=250,", "Bfe=0,"),
+    Mend("the 3D view is not drawn every second", "Vfe=1e3;", "Vfe=1e4;"),
+    Mend(
+        "messages do not wait for a frame of the 3D view",
         "i&&document.hidden?(r(),e.requestRender()):a?r():e.requestRender()",
         "i?(r(),a||e.requestRender()):e.requestRender()",
     ),
-    # Messages that follow each other within 100 ms are held back, so that they are shown as evenly as they
-    # were sent. Our server sends a picture when the page has painted the one before: waiting delays it.
-    ("void 0||p>100||d-l.jsTimeMinusPythonTime", "void 0||p>=0||d-l.jsTimeMinusPythonTime"),
-    # One value in 50 ms, whichever control it comes from; what comes between is dropped. See socket.js.
-    (
+    Mend(
+        "messages are not held back to be shown evenly",
+        "void 0||p>100||d-l.jsTimeMinusPythonTime",
+        "void 0||p>=0||d-l.jsTimeMinusPythonTime",
+    ),
+    Mend(
+        "no control's newest value is dropped",
         "n=LL(50).send,r=b.useMemo(()=>({folderDepth:0",
         "n=window.schuler.send,r=b.useMemo(()=>({folderDepth:0",
     ),
-    # A plot's large window, which a button opens, is made anew with each of its pictures while it is closed.
-    (
+    Mend(
+        "a plot over time is not made twice",
         "onExpand:n}),(0,Y.jsx)(pA,{opened:t,onClose:r,size:`xl`,children:(0,Y.jsx)(I0,{...e})})]})",
         "onExpand:n}),b.useMemo(()=>(0,Y.jsx)(pA,{opened:t,onClose:r,size:`xl`,children:(0,Y.jsx)(I0,{...e})}),"
         "[t,t&&e])]})",
     ),
-    (
+    Mend(
+        "a plotly figure is not made twice",
         "onExpand:r}),(0,Y.jsx)(pA,{opened:n,onClose:i,size:`xl`,children:(0,Y.jsx)(SX,{jsonStr:e,aspectRatio:t})})",
         "onExpand:r}),b.useMemo(()=>(0,Y.jsx)(pA,{opened:n,onClose:i,size:`xl`,children:(0,Y.jsx)(SX,{jsonStr:e,"
         "aspectRatio:t})}),[n,n&&e,t])",
     ),
-    # A plotly figure is drawn before its width is known, or behind another tab without one, and anew then.
-    # Its frame has a name of its own, as that of a uPlot, by which marks.js finds it before it is drawn.
-    (
+    Mend(
+        "a plotly figure is drawn once its width is known",
         "Plotly.react(s.current,c.data,{...c.layout,width:o,height:o*t},c.config)},[c,o,t])",
         "o>9&&Plotly.react(s.current,c.data,{...c.layout,width:o,height:o*t},c.config)},[c,o,t])",
     ),
-    (
+    Mend(
+        "a plotly figure's frame has a name",
         "t.purge(e)}},[]),(0,Y.jsxs)($C,{ref:a,className:yX,",
         "t.purge(e)}},[]),(0,Y.jsxs)($C,{ref:a,className:yX+` plotly-container`,",
     ),
-    # HTML that changes is made anew whole. See fill.js.
-    (
+    Mend(
+        "of a block of HTML only what differs is made anew",
         "e.innerHTML=n}}break;case`multiple`:e.multiple=r&&",
         "window.schuler.fill(e,n)}}break;case`multiple`:e.multiple=r&&",
     ),
-    # A command's new title ("Undo ...") counts as a change of the 3D view.
-    ("new Set([`GuiUpdateMessage`,", "new Set([`CommandUpdateMessage`,`GuiUpdateMessage`,"),
+    Mend(
+        "a command's title does not draw the 3D view",
+        "new Set([`GuiUpdateMessage`,",
+        "new Set([`CommandUpdateMessage`,`GuiUpdateMessage`,",
+    ),
 )
 """Text of viser's program and what stands in its place."""
 
@@ -106,7 +125,7 @@ def viser_program() -> Program:
     Raises
     ------
     InputError
-        The page is not as it was when this was written.
+        The page holds no packed program.
     """
     page = (Path(viser.__file__).parent / "client" / "build" / "index.html").read_text(encoding="utf-8")
     before, _, rest = page.partition("<script ")
@@ -115,29 +134,30 @@ def viser_program() -> Program:
     wasm = re.search(r'gzWasm="([^"]*)"', loader)
     packed = dict(re.findall(r'data-(\w+)="([^"]*)"', attributes))
     if not wasm or not {"p", "ss", "cs"} <= packed.keys():
-        raise _changed("the packed program")
+        wanted = "holds no packed program, as that of viser 1.1.1 does: make setup"
+        raise InputError(Fault("installation", "viser's page", viser.__version__, wanted))
     whole = zstandard.ZstdDecompressor().decompress(unpack(packed["p"]), max_output_size=_LARGEST)
     style, program = int(packed["ss"]), int(packed["cs"])
+    code = whole[style : style + program]
+    if not all(sign in code for sign in _WORKER):
+        left_out("curves that a page has are not sent again")
+        MendedBuffer.shortens = False
     return Program(
         html=before + after,
-        program=mended(whole[style : style + program]),
+        program=code if plain_viser() else mended(code),
         style=whole[:style],
         zstd=gzip.decompress(unpack(wasm[1].replace("\\\\", "\\"))),
     )
 
 
 def mended(program: bytes) -> bytes:
-    """Put `MENDS` into viser's program.
-
-    Raises
-    ------
-    InputError
-        A text is not there exactly once.
-    """
-    for before, after in MENDS:
-        if program.count(before.encode()) != 1:
-            raise _changed(before)
-        program = program.replace(before.encode(), after.encode())
+    """Put `MENDS` into viser's program; one whose text is not there exactly once is left out, and logged."""
+    for mend in MENDS:
+        before = mend.before.encode()
+        if program.count(before) == 1:
+            program = program.replace(before, mend.after.encode())
+        else:
+            left_out(mend.name)
     return program
 
 
@@ -153,7 +173,3 @@ def unpack(text: str) -> bytes:
     for digit in digits[whole:]:
         rest = 88 * rest + int(digit)
     return content + rest.to_bytes(max(len(digits) - whole - 1, 0), "big")
-
-
-def _changed(what: str) -> InputError:
-    return InputError([Fault("installation", "viser's page", what, "not as in viser 1.1.1: make setup")])

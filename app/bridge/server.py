@@ -1,4 +1,4 @@
-"""The viser server and its connections: every use of what viser keeps to itself, for exactly one version.
+"""The viser server and its connections: every use of what viser keeps to itself.
 
 Each entry says why the public interface does not do; `tests/attack/test_viser_insides.py` fails when an
 inside changes. Controls are in `app.bridge.controls`.
@@ -6,6 +6,7 @@ inside changes. Controls are in `app.bridge.controls`.
 
 from __future__ import annotations
 
+import re
 import threading
 import types
 from collections.abc import Awaitable, Callable, Iterator
@@ -22,7 +23,8 @@ from viser.infra import _infra
 from app.bridge.mends import mend_queues, share_hints, share_threads_fairly
 from navcore.foundation.errors import Fault, InputError
 
-VISER_VERSION = "1.1.1"
+KNOWN = "1.1.1"
+"""The version whose insides were read."""
 
 FRAME_TYPES: dict[str, type] = {
     # What a browser may send: every message viser has a handler for, except the share tunnel (opens a public
@@ -52,17 +54,18 @@ IGNORED_FRAMES = frozenset(
 _one_start_at_a_time = threading.Lock()
 
 
-def require_pinned_version() -> None:
-    """Refuse another viser than the one the insides were read from.
+def require_known_version() -> None:
+    """Refuse a viser older than the one whose insides were read, or of the next major version.
 
     Raises
     ------
     InputError
         Another version is installed.
     """
-    if viser.__version__ != VISER_VERSION:
-        wanted = f"must be {VISER_VERSION}: make setup"
-        raise InputError([Fault("installation", "viser", viser.__version__, wanted)])
+    known, installed = (tuple(map(int, re.findall(r"\d+", v)[:3])) for v in (KNOWN, viser.__version__))
+    if not known <= installed < (known[0] + 1,):
+        wanted = f"must be >= {KNOWN} and < {known[0] + 1}: make setup"
+        raise InputError(Fault("installation", "viser", viser.__version__, wanted))
 
 
 def make_server(serve: Callable[..., Any], label: str) -> viser.ViserServer:
@@ -129,11 +132,6 @@ def on_socket(
 
     inner.on_client_connect(connected)
     inner.on_client_disconnect(disconnected)
-
-
-def pool_of(server: viser.ViserServer) -> Any:
-    """Threads that carry out the visitors' callbacks (`app.bridge.pool.FairPool`)."""
-    return server._thread_executor
 
 
 def plotly_is_on_the_page(owner: viser.ViserServer | viser.ClientHandle) -> None:

@@ -178,6 +178,7 @@ def start(
         access = replace(access, framed_by=framed_by)
         # Only now: what is refused above is refused without the half second that importing viser takes.
         from app.bridge import server as bridge
+        from app.bridge.mends import pool_of
         from app.http.ids import SessionIds
         from app.http.page import FIRST_SCRIPTS, PLOTLY, build_page
         from app.http.places import Door, Places
@@ -185,7 +186,7 @@ def start(
         from app.http.throttle import Throttle
         from navcore.foundation.version import __version__
 
-        bridge.require_pinned_version()
+        bridge.require_known_version()
         limits = limits or Limits()
         places = Places(limits)
         site = Site(
@@ -204,7 +205,7 @@ def start(
         listener.close()
         raise
     if metrics is not None:
-        throttle, pool = site.throttle, bridge.pool_of(server)
+        throttle, pool = site.throttle, pool_of(server)
         site.metrics = _metrics_of(metrics, lambda: _figures(places, door, throttle, pool))
     callbacks = ThreadPoolExecutor(max_workers=8, thread_name_prefix="session")
     _follow_visits(server, limits, callbacks, on_connect, on_disconnect)
@@ -278,7 +279,7 @@ def _figures(places: Places, door: Door, throttle: Throttle, pool: Any) -> dict[
         "places_given_up_total": float(places.given_up),
         "connections_turned_away_total": float(door.turned_away),
         "wrong_tokens_total": float(throttle.guesses),
-        "callbacks_dropped_total": float(pool.dropped),
+        "callbacks_dropped_total": float(getattr(pool, "dropped", 0)),
     }
 
 

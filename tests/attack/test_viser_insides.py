@@ -11,6 +11,7 @@ import threading
 import types
 from collections import deque
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 from typing import get_type_hints
 
@@ -34,11 +35,20 @@ from tests.attack.wire import visit
 pytestmark = pytest.mark.attack
 
 
-def test_pinned_version(monkeypatch: pytest.MonkeyPatch) -> None:
-    server.require_pinned_version()
-    monkeypatch.setattr(viser, "__version__", "1.1.2")
-    with pytest.raises(InputError, match="must be 1.1.1"):
-        server.require_pinned_version()
+@pytest.mark.parametrize(
+    ("version", "known"),
+    [
+        ("1.1.1", True),
+        ("1.1.2", True),
+        ("1.12.0rc1", True),
+        ("1.1.0", False),
+        ("2.0.0", False),
+    ],
+)
+def test_versions_of_viser(monkeypatch: pytest.MonkeyPatch, version: str, known: bool) -> None:
+    monkeypatch.setattr(viser, "__version__", version)
+    with nullcontext() if known else pytest.raises(InputError, match="must be >= 1.1.1 and < 2"):
+        server.require_known_version()
 
 
 def test_page_is_unpacked_as_its_own_loader_does_it() -> None:
@@ -48,7 +58,7 @@ def test_page_is_unpacked_as_its_own_loader_does_it() -> None:
     last = data["p"][len(data["p"]) // 5 * 5 - 4000 :]
     assert program.unpack(last) == unpacked_slowly(last)
     found = program.viser_program()
-    longer = sum(len(after) - len(before) for before, after in program.MENDS)
+    longer = sum(len(mend.after) - len(mend.before) for mend in program.MENDS)
     assert (len(found.style), len(found.program)) == (int(data["ss"]), int(data["cs"]) + longer)
     assert found.style.decode() and found.program.decode()
     assert found.zstd[:4] == b"\0asm" and b"ZSTD_decompress" in found.zstd
@@ -72,13 +82,38 @@ def unpacked_slowly(text: str) -> bytes:
     return bytes(out)
 
 
-def test_a_page_that_cannot_be_mended_is_refused() -> None:
-    before, after = zip(*program.MENDS, strict=True)
-    assert program.mended("|".join(before).encode()) == "|".join(after).encode()
-    with pytest.raises(InputError, match="Bfe=250"):
-        program.mended("|".join(before[1:]).encode())
-    with pytest.raises(InputError, match="Bfe=250"):
-        program.mended("|".join([*before, before[0]]).encode())
+def test_a_mend_that_does_not_fit_is_left_out_and_logged_once(caplog: pytest.LogCaptureFixture) -> None:
+    before, after = ([mend[place] for mend in program.MENDS] for place in (1, 2))
+    assert program.mended("\n".join(before).encode()) == "\n".join(after).encode()
+    assert not caplog.messages
+    mends.left_out.cache_clear()
+    for other in ([*before[1:]], [*before, before[0]]):
+        kept = [text for text in other if text == before[0]]
+        for _ in range(2):
+            mended = program.mended("\n".join(other).encode()).decode().split("\n")
+            assert sorted(mended) == sorted([*after[1:], *kept])
+    assert [program.MENDS[0].name in message for message in caplog.messages] == [True]
+
+
+@pytest.mark.parametrize(
+    ("act", "owner", "name"),
+    [
+        (mends.mend_queues, _infra, "AsyncMessageBuffer"),
+        (mends.share_hints, AssignablePropsBase, "_prop_hints"),
+        (mends.share_hints, AssignablePropsBase, "_cast_value_recursive"),
+    ],
+)
+def test_a_mend_whose_place_is_missing_is_left_out(
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+    act: Callable[[], None],
+    owner: object,
+    name: str,
+) -> None:
+    mends.left_out.cache_clear()
+    monkeypatch.delattr(owner, name)
+    act()
+    assert not hasattr(owner, name) and len(caplog.messages) == 1
 
 
 def test_numbers_of_a_plot_are_sent_once_and_in_single_precision(bench: Bench) -> None:

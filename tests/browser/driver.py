@@ -12,7 +12,7 @@ from weakref import WeakKeyDictionary
 from playwright.sync_api import Error as PlaywrightError
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
-from app.bridge.server import pool_of
+from app.bridge.mends import pool_of
 from app.languages.wording import wording
 from app.session.display import Display
 from app.session.names import GivenNames
