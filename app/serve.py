@@ -202,7 +202,7 @@ def open_dashboard(
     """
     from app.http.ids import SessionIds
     from app.http.server import start
-    from app.session.keys import session_key
+    from app.session.store import session_key
 
     guarded.start(_READERS)
     dashboard = Dashboard(state, views)

@@ -26,8 +26,7 @@ from app.jobs.elsewhere import leave_cluster, use_cluster
 from app.jobs.scheduler import WORKERS
 from app.logs import begin_logging
 from app.memory import bound_arenas
-from app.session.keys import session_key
-from app.session.store import CLAIMED, claim, default_folder, share_claim
+from app.session.store import CLAIMED, claim, default_folder, session_key, share_claim
 from navcore.foundation.errors import Fault, InputError
 
 if TYPE_CHECKING:

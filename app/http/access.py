@@ -1,10 +1,13 @@
-"""Who may come in: Host, Origin and token of a request."""
+"""Who may come in: Host, Origin and token of a request, throttled guesses; and what our page may do."""
 
 from __future__ import annotations
 
 import hashlib
 import hmac
-from dataclasses import dataclass
+import time
+from collections import OrderedDict
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, field
 from http import HTTPStatus
 from typing import Protocol
 
@@ -12,7 +15,7 @@ from app.http.address import LOOPBACK_NAMES, authority
 from navcore.foundation.errors import Fault, InputError
 
 SHORTEST_TOKEN = 8
-"""Characters of a token beyond this machine: guesses are throttled, see `app.http.throttle`."""
+"""Characters of a token beyond this machine: guesses are throttled, see `app.http.access`."""
 
 
 class RequestHeaders(Protocol):
@@ -189,3 +192,86 @@ def _same(offered: str, right: str) -> bool:
     return hmac.compare_digest(
         offered.encode("utf-8", "surrogateescape"), right.encode("utf-8", "surrogateescape")
     )
+
+
+def security_headers(host: str, framed_by: Collection[str] = ()) -> dict[str, str]:
+    """Return the headers of every answer.
+
+    Scripts run only from this server's own files: no inline script, no inline handler and no ``eval``, so
+    that text which reaches the page as HTML by mistake stays harmless. viser needs: WebAssembly (zstd),
+    workers made from blobs, inline styles, pictures and fonts from blobs and data addresses.
+
+    Parameters
+    ----------
+    host : str
+        The Host header, already checked; the websocket goes there. Some browsers do not count it as 'self'.
+    framed_by : collection of str
+        Origins whose pages may show the answer in a frame; none by default.
+    """
+    socket = f"ws://{host} wss://{host}" if host else ""
+    policy = {
+        "default-src": "'none'",
+        "script-src": "'self' 'wasm-unsafe-eval'",
+        "worker-src": "blob:",
+        "style-src": "'self' 'unsafe-inline'",
+        "img-src": "'self' data: blob:",
+        "font-src": "'self' data:",
+        "connect-src": f"'self' {socket} data: blob:",
+        "base-uri": "'none'",
+        "form-action": "'none'",
+        "frame-ancestors": " ".join(sorted(framed_by)) or "'none'",
+    }
+    return {
+        "Content-Security-Policy": "; ".join(f"{key} {value}".strip() for key, value in policy.items()),
+        "X-Content-Type-Options": "nosniff",
+        # For old browsers: those that know frame-ancestors ignore it.
+        "X-Frame-Options": "DENY",
+        # The path of a page is a capability: whoever knows it sees the visitor's work.
+        "Referrer-Policy": "no-referrer",
+        "Cross-Origin-Opener-Policy": "same-origin",
+        "Cross-Origin-Resource-Policy": "same-origin",
+        "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
+    }
+
+
+_MOST_ADDRESSES = 4096
+
+
+@dataclass
+class Throttle:
+    """A bucket of guesses for each address; an empty one is refilled slowly.
+
+    Attributes
+    ----------
+    burst : int
+        Wrong guesses that are judged at once.
+    refill_s : float
+        So long it takes until one more is.
+    clock : callable
+        Seconds, monotonic.
+    guesses : int
+        Wrong ones so far.
+    """
+
+    burst: int = 10
+    refill_s: float = 2.0
+    clock: Callable[[], float] = time.monotonic
+    guesses: int = 0
+    _spent: OrderedDict[str, tuple[float, float]] = field(default_factory=OrderedDict)
+
+    def wait_s(self, address: str) -> float:
+        """Seconds until a guess of this address is judged again; 0: now."""
+        return max(0.0, (self._level(address) - self.burst + 1.0) * self.refill_s)
+
+    def failed(self, address: str) -> None:
+        """Note a wrong guess."""
+        self.guesses += 1
+        level = self._level(address) + 1.0
+        self._spent.pop(address, None)
+        self._spent[address] = (level, self.clock())
+        while len(self._spent) > _MOST_ADDRESSES:
+            self._spent.popitem(last=False)
+
+    def _level(self, address: str) -> float:
+        level, at_s = self._spent.get(address, (0.0, 0.0))
+        return max(0.0, level - (self.clock() - at_s) / self.refill_s)

@@ -16,8 +16,8 @@ import time
 import zlib
 from collections.abc import Callable, Sequence
 
+from app.http.access import security_headers
 from app.http.address import FORWARDED
-from app.http.headers import security_headers
 from app.http.limits import Limits
 from app.http.places import Door
 from navcore.foundation.version import __version__

@@ -22,12 +22,12 @@ from app.http.limits import Limits
 if TYPE_CHECKING:
     import viser
 
+    from app.http.access import Throttle
     from app.http.connection import Connection
     from app.http.ids import SessionIds
     from app.http.metrics import Metrics
     from app.http.places import Door, Places
     from app.http.site import Site
-    from app.http.throttle import Throttle
 
 SessionCallback = Callable[["viser.ClientHandle", str], None]
 
@@ -179,11 +179,11 @@ def start(
         # Only now: what is refused above is refused without the half second that importing viser takes.
         from app.bridge import server as bridge
         from app.bridge.mends import pool_of
+        from app.http.access import Throttle
         from app.http.ids import SessionIds
         from app.http.page import FIRST_SCRIPTS, PLOTLY, build_page
         from app.http.places import Door, Places
         from app.http.site import Site
-        from app.http.throttle import Throttle
         from navcore.foundation.version import __version__
 
         bridge.require_known_version()

@@ -17,14 +17,20 @@ from urllib.parse import parse_qsl, urlencode
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
-from app.http.access import Access, Refusal, offers_token, refuse_address, refuse_unknown
+from app.http.access import (
+    Access,
+    Refusal,
+    Throttle,
+    offers_token,
+    refuse_address,
+    refuse_unknown,
+    security_headers,
+)
 from app.http.address import FORWARDED
 from app.http.connection import Connection
-from app.http.headers import security_headers
 from app.http.ids import SessionIds, is_shared
 from app.http.page import File, Page
 from app.http.places import Places
-from app.http.throttle import Throttle
 
 _SESSION_PATH = re.compile(r"/s/([A-Za-z0-9_-]{8,64})(/?)")
 _PLACE_PATH = re.compile(r"/s/([A-Za-z0-9_-]{8,64})/place")

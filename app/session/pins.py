@@ -70,7 +70,7 @@ class Pin:
 
     @property
     def unnamed(self) -> bool:
-        """Whether the user has given it no name: it is called by what differs (`app.session.laid`)."""
+        """Whether the user has given it no name: it is called by what differs (`app.session.shown`)."""
         return self.name == _made_name(self.id)
 
     @property

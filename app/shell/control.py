@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
 from app.bridge.controls import id_of, set_slider_range
-from app.editing import form, texts
-from app.editing.form import FieldSpec, Slider
+from app.editing import form, typed
+from app.editing.form import FieldSpec, Path, Slider
 from app.shell import notices
-from app.shell.widget import Widget
 
 if TYPE_CHECKING:
     import viser
 
 DECIMALS = 12
 """Decimals that a number box takes and shows."""
-_READ = {"roots": texts.read_roots, "numbers": texts.read_numbers, "pairs": texts.read_pairs}
-_WRITE = {"roots": texts.write_roots, "numbers": texts.write_numbers, "pairs": texts.write_pairs}
+_READ = {"roots": typed.read_roots, "numbers": typed.read_numbers, "pairs": typed.read_pairs}
+_WRITE = {"roots": typed.write_roots, "numbers": typed.write_numbers, "pairs": typed.write_pairs}
 _AS_THEY_ARE = ("integer", "choice", "flag")
 EXACT = ", exact"
 """Ends the label of a number box that stands beside a slider."""
@@ -227,3 +227,88 @@ def _marks(slider: Slider) -> tuple[tuple[float, str], tuple[float, str]]:
     """Numbers below a slider's ends."""
     low, high = slider.ends
     return (low, f"{slider.low:g}"), (high, f"{slider.high:g}")
+
+
+class Widget:
+    """A viser widget, and the value in it that has been dealt with.
+
+    viser stores what a browser sends before it calls back, and calls back concurrently: a value other than
+    the known one belongs to an event that is still to come, and must not be overwritten by an older one.
+    """
+
+    def __init__(self, handle: Any) -> None:
+        self.handle = handle
+        self.known = handle.value
+
+    def take(self) -> Any:
+        """Value the user has given; it counts as dealt with."""
+        self.known = self.handle.value
+        return self.known
+
+    @property
+    def awaited(self) -> bool:
+        """Whether the user has given another value that is still to be dealt with."""
+        return self.handle.value != self.known
+
+    def show(self, value: Any) -> None:
+        """Show a value, unless the user has just given another one."""
+        if not self.awaited:
+            self.handle.value = value
+            self.known = self.handle.value
+
+
+class Section:
+    """Controls in one container.
+
+    Parameters
+    ----------
+    gui : viser.GuiApi
+        Of the client.
+    container : context manager
+        A folder or tab that holds the controls.
+    edit : callable
+        As for `Control`.
+    order : float
+        Place of the first control in the container.
+    """
+
+    def __init__(
+        self, gui: viser.GuiApi, container: AbstractContextManager[Any], edit: Edit, order: float
+    ) -> None:
+        self._gui, self._container, self._edit, self._order = gui, container, edit, order
+        self.controls: dict[Path, Control] = {}
+
+    def show(self, specs: list[FieldSpec], values: Mapping[Path, Any], moved: Control | None) -> None:
+        """Show these fields with these values; widgets are made anew only when the fields are others.
+
+        Parameters
+        ----------
+        specs : list of FieldSpec
+            What to show, in order.
+        values : mapping
+            Path -> value; a missing one leaves what is shown.
+        moved : Control or None
+            The control that the user is moving.
+        """
+        if [control.spec for control in self.controls.values()] != specs:
+            self._rebuild(specs, values)
+            return
+        for path, control in self.controls.items():
+            if control is not moved:
+                control.show(values.get(path))
+
+    def _rebuild(self, specs: list[FieldSpec], values: Mapping[Path, Any]) -> None:
+        for control in self.controls.values():
+            control.remove()
+        with self._container:
+            self.controls = {
+                spec.path: Control(
+                    self._gui, spec, self._edit, self._order + index, values.get(spec.path, spec.default)
+                )
+                for index, spec in enumerate(specs)
+            }
+
+
+def controls_of(sections: Mapping[str, Section]) -> list[Control]:
+    """All controls of some sections, in order."""
+    return [control for section in sections.values() for control in section.controls.values()]

@@ -7,8 +7,7 @@ from typing import ClassVar
 
 from app.editing import edits
 from app.editing.form import FieldSpec
-from app.shell.control import Control
-from app.shell.section import Section, controls_of
+from app.shell.control import Control, Section, controls_of
 from app.shell.view import Tab, View
 
 

@@ -28,11 +28,9 @@ from app.shell.opening import Opening
 from app.shell.pace import Pace
 from app.shell.palette import Palette
 from app.shell.presenter import PresenterLock
-from app.shell.reports import Reports
-from app.shell.run_element import run_element
+from app.shell.reports import Reports, run_element, views_element
 from app.shell.styles import page_styles
 from app.shell.view import Frame, View
-from app.shell.views_alone import views_element
 from navcore.foundation.errors import InputError
 
 if TYPE_CHECKING:

@@ -12,11 +12,11 @@ from app.shell import notices
 from app.shell.opening import Opening
 from app.shell.pasting import Pasting
 from app.shell.presenter import PresenterLock
+from app.shell.reports import view_names
 from app.shell.reset import Resets
 from app.shell.toolbar import PRESENT, REDO, RESET_ALL, SHARE, UNDO, Toolbar
 from app.shell.typing import Typing
 from app.shell.view import Frame
-from app.shell.views_alone import view_names
 from navcore.scenario.file import load, presets
 
 _LONGEST_UNDO = 48

@@ -1,14 +1,21 @@
-"""What a page reports of itself: its window, the tabs in front, the picture it has painted."""
+"""Hidden elements and controls by which page and server tell each other what they show."""
 
 from __future__ import annotations
 
+import hashlib
+import json
 import re
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from html import escape
 from typing import TYPE_CHECKING
 
 from app.bridge.controls import id_of
 from app.shell.layout import Window, read_state
+from app.shell.opening import as_json
+from app.shell.view import View
+from navcore.engine.measures import metrics
+from navcore.engine.run import Run
 
 if TYPE_CHECKING:
     import viser
@@ -71,3 +78,29 @@ class Reports:
         told = re.fullmatch(r"([0-9]{1,9}) ([01])", self._painted.value)
         if told is not None:
             self._on_painted(int(told[1]), moving=told[2] == "1")
+
+
+def run_element(run: Run, number: int) -> str:
+    """Return HTML with the run's number, its status, a digest of its methods and its metrics as JSON."""
+    digest = hashlib.blake2b(digest_size=16)
+    for method in run.methods:
+        digest.update(method.fingerprint)
+    return (
+        f'<div id="sb-run" hidden data-run="{number}" data-status="{run.status}" '
+        f'data-digest="{digest.hexdigest()}">{escape(as_json(metrics(run)).decode())}</div>'
+    )
+
+
+def view_names(kinds: Sequence[type[View]]) -> dict[str, str]:
+    """Names for ``?view=`` -> titles of the tabs of results; "" for what stands beside the tabs.
+
+    A scenario's block ``view`` uses the same names for the tabs.
+    """
+    results = [kind for kind in kinds if kind.place in ("upper", "lower")]
+    beside = [name for kind in kinds for name in kind.alone]
+    return {kind.focus or kind.title.lower(): kind.title for kind in results} | dict.fromkeys(beside, "")
+
+
+def views_element(kinds: Sequence[type[View]]) -> str:
+    """HTML that tells the page's script these names."""
+    return f'<div id="sb-views" hidden data-names="{escape(json.dumps(view_names(kinds)))}"></div>'

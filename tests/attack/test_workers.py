@@ -19,8 +19,7 @@ from app.bench.process import environment
 from app.bench.visitor import PAGE_STATE, Visitor
 from app.http.front import Front, _told
 from app.http.limits import Limits
-from app.session.keys import session_key
-from app.session.store import open_store
+from app.session.store import open_store, session_key
 from tests.attack.wire import ask, shake_hands
 from tests.browser.fields import label_of
 

@@ -228,7 +228,7 @@ def test_two_hundred_slider_steps_in_twenty_seconds_end_in_agreement(pinned: Ben
     assert float(pinned.slider("network.zeta").get_attribute("aria-valuenow") or "nan") == pytest.approx(
         zeta, abs=0.006
     )
-    from app.shell.run_element import run_element
+    from app.shell.reports import run_element
 
     assert f'data-digest="{pinned.digest}"' in run_element(session.run, session.run_number)
     assert pinned.metrics["methods"][2]["errors"] == _metrics(session.run)

@@ -10,8 +10,8 @@ import pytest
 from app.editing import edits
 from app.plots.pinned import pinned_methods, restyled, together
 from app.session.display import Display
-from app.session.laid import laid, titled
 from app.session.pins import Pins
+from app.session.shown import laid, titled
 from app.views.frequency.figure import bode
 from app.views.metrics.table import metrics_html, metrics_rows
 from tests.unit.figures_runs import Pinned, of_trace, run_of, static_run

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
-from app.editing import form, texts
+from app.editing import form, typed
 from app.editing.form import FieldSpec, Slider
 from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
@@ -82,9 +82,9 @@ def test_whole_numbers_flags_and_tables_have_controls_of_their_own() -> None:
     assert isinstance(count.slider.value(20.4), int)
     assert spec(RunSettings, "coning and sculling compensation").kind == "flag"
     table = next(field for field in form.fields(POLICIES["adaptive"], ("x",)) if field.kind == "pairs")
-    assert texts.read_pairs(texts.write_pairs(table.default)) == [list(row) for row in table.default]
+    assert typed.read_pairs(typed.write_pairs(table.default)) == [list(row) for row in table.default]
     with pytest.raises(ValueError):
-        texts.read_pairs("0: 1: 2")
+        typed.read_pairs("0: 1: 2")
 
 
 def test_no_control_takes_the_name_of_a_file() -> None:
@@ -164,8 +164,8 @@ def test_significant_keeps_the_digits_asked_for(value: float, digits: int) -> No
 
 @given(st.lists(st.complex_numbers(max_magnitude=1e3, allow_nan=False), max_size=4))
 def test_roots_survive_the_way_through_text(roots: list[complex]) -> None:
-    text = texts.write_roots(roots)
-    back = [complex(*r) if isinstance(r, list) else complex(r) for r in texts.read_roots(text)]
+    text = typed.write_roots(roots)
+    back = [complex(*r) if isinstance(r, list) else complex(r) for r in typed.read_roots(text)]
     assert len(back) == len(roots)
     for given_root, read_root in zip(roots, back, strict=True):
         assert abs(given_root - read_root) <= 1e-8 * abs(given_root) + 1e-300
@@ -174,7 +174,7 @@ def test_roots_survive_the_way_through_text(roots: list[complex]) -> None:
 def test_text_that_is_no_number_is_refused() -> None:
     for text in ("abc", "[1, 2", "1+", "[1,2,3]"):
         with pytest.raises(ValueError):
-            texts.read_roots(text)
+            typed.read_roots(text)
     with pytest.raises(ValueError):
-        texts.read_numbers("1, two")
-    assert texts.read_numbers("1, 0.018 8e-5") == [1.0, 0.018, 8e-5]
+        typed.read_numbers("1, two")
+    assert typed.read_numbers("1, 0.018 8e-5") == [1.0, 0.018, 8e-5]

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from app.bridge.controls import Control
-from app.http.values import shown, why_not
+from app.http.frames import shown, why_not
 
 
 def control(held: object, **changes: object) -> Control:

@@ -14,8 +14,7 @@ import pytest
 
 from app.session import content as content_module
 from app.session import store as store_module
-from app.session.keys import session_key
-from app.session.store import Store, default_folder, open_store
+from app.session.store import Store, default_folder, open_store, session_key
 
 ID = "a" * 24
 

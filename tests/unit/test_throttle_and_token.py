@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.http.access import access_rules
-from app.http.throttle import Throttle
+from app.http.access import Throttle, access_rules
 from app.http.token import find_token
 from navcore.foundation.errors import InputError
 

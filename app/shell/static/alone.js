@@ -1,5 +1,5 @@
 // "?view=bode" in the address: this view fills the window, without controls and keys, for a frame in another page. The
-// names come from #sb-views (app/shell/views_alone.py); page.css hides the rest of the page, which stays where it is.
+// names come from #sb-views (app/shell/reports.py); page.css hides the rest of the page, which stays where it is.
 (() => {
   const asked = new URLSearchParams(location.search).get("view")?.trim().toLowerCase() ?? null;
   window.schuler.alone = asked !== null;

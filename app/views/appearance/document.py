@@ -14,9 +14,8 @@ from string import Template
 from app.bridge.texts import language_of, text_said
 from app.editing.edits import files_of
 from app.plots import table
-from app.session.laid import titled
 from app.session.pins import Pin
-from app.session.shown import Shown, shown
+from app.session.shown import Shown, shown, titled
 from app.session.uploads import with_plain_names
 from app.session.window import window_of
 from app.shell import notices

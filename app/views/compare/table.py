@@ -10,9 +10,9 @@ from html import escape
 from app.plots import style
 from app.plots.table import cell, row, table
 from app.plots.units import rounded, settling
-from app.session.laid import edited
 from app.session.pins import Pin
 from app.session.requirements import MEASURES, Requirements, verdicts
+from app.session.shown import edited
 from app.session.window import Window
 from navcore.engine.run import Run
 from navcore.foundation.units import MINUTE

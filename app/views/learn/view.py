@@ -14,8 +14,7 @@ from pydantic import BaseModel
 from app.editing import edits, form
 from app.editing.form import FieldSpec, Path
 from app.session.shown import Shown
-from app.shell.control import Control
-from app.shell.section import Section
+from app.shell.control import Control, Section
 from app.shell.view import Frame, Tab, View
 from app.views.learn.lessons import Action, Lesson, Question, is_right, lessons, to_html
 from navcore.engine.run import Run

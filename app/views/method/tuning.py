@@ -12,9 +12,8 @@ from app.editing.form import FieldSpec
 from app.jobs.designer import TableTask
 from app.plots import style
 from app.shell import notices
-from app.shell.control import Control
+from app.shell.control import Control, Section
 from app.shell.searching import SearchControls, reveal, show_html
-from app.shell.section import Section
 from app.shell.view import Frame, Tab
 from app.views.method.tuned import table_html
 from navcore.design.sun_settings import TuningSettings

@@ -12,8 +12,8 @@ from app.plots.warnings import severity, warnings_for
 from app.session.shown import Shown
 from app.session.window import window_of
 from app.shell import notices
+from app.shell.control import Widget
 from app.shell.view import PictureView, Tab, if_user
-from app.shell.widget import Widget
 from app.views.metrics.table import method_px, metrics_html, metrics_rows, system_html, verdict
 from app.views.metrics.why import why_html
 from navcore.engine.run import Run

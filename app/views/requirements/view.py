@@ -9,8 +9,8 @@ from app.session.requirements import Requirements, label_of, read_limit
 from app.session.shown import Shown
 from app.session.window import window_of
 from app.shell import notices
+from app.shell.control import Widget
 from app.shell.view import Frame, PictureView, Tab, if_user
-from app.shell.widget import Widget
 from app.views.requirements.table import requirements_html
 from navcore.foundation.errors import InputError
 from navcore.foundation.parameters import allowed_range
