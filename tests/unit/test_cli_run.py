@@ -215,7 +215,11 @@ def test_a_fault_names_the_file_and_the_field_as_the_file_spells_it(text, told, 
     assert capsys.readouterr().err.startswith(f"{file}: {told}")
 
 
-def test_ctrl_c_keeps_what_was_computed_and_marks_it(tmp_path, capsys, monkeypatch):
+@pytest.mark.parametrize(
+    ("fidelity", "told"),
+    [("error_model", "stopped by the user at"), ("strapdown", "stopped by the user at 60 s")],
+)
+def test_ctrl_c_keeps_what_was_computed_and_marks_it(fidelity, told, tmp_path, capsys, monkeypatch):
     asked = []
 
     def interrupt_once(bar: Bar, fraction: float) -> None:
@@ -224,13 +228,14 @@ def test_ctrl_c_keeps_what_was_computed_and_marks_it(tmp_path, capsys, monkeypat
             signal.raise_signal(signal.SIGINT)
 
     monkeypatch.setattr(Bar, "advance", interrupt_once)
-    (tmp_path / "long.toml").write_text('schema = 1\n[run]\nduration_h = 100.0\n[[method]]\nname = "free"\n')
+    text = f'schema = 1\n[run]\nfidelity = "{fidelity}"\nduration_h = 100.0\n[[method]]\nname = "free"\n'
+    (tmp_path / "long.toml").write_text(text)
     previous = signal.getsignal(signal.SIGINT)
     code, document = run_json([str(tmp_path / "long.toml"), "--out", str(tmp_path / "out")], capsys)
     assert code == 3
     (method,) = document["methods"]
     assert method["status"] == "stopped"
-    assert any("stopped by the user at" in warning for warning in method["warnings"])
+    assert any(told in warning for warning in method["warnings"])
     assert json.loads((tmp_path / "out" / "metrics.json").read_text("utf-8")) == document
     times = pyarrow.parquet.read_table(tmp_path / "out" / "timeseries.parquet")["t_s"].to_pylist()
     assert 0.0 < times[-1] < 360000.0

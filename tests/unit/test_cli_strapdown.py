@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import csv
 import json
-import signal
 
 import pytest
 
 from app.cli import main
-from app.cli.progress import Bar
 from navcore.mechanization.strapdown.records import NAVIGATION
 
 STRAPDOWN = ["--set", "run.fidelity=strapdown", "--set", "run.duration_h=0.05"]
@@ -50,22 +48,6 @@ def test_a_fault_is_one_line_and_exit_2(changes, line, capsys):
     assert main(["run", "zha-fast", *STRAPDOWN, *words]) == 2
     err = capsys.readouterr().err
     assert err.startswith(line) and err.count("\n") == 1
-
-
-def test_ctrl_c_keeps_what_was_computed(tmp_path, capsys, monkeypatch):
-    asked = []
-
-    def interrupt_once(bar: Bar, fraction: float) -> None:
-        if not asked:
-            asked.append(fraction)
-            signal.raise_signal(signal.SIGINT)
-
-    monkeypatch.setattr(Bar, "advance", interrupt_once)
-    long = ["--set", "run.fidelity=strapdown", "--set", "run.duration_h=100"]
-    code = main(["run", "zha-fast", *long, "--json", "--out", str(tmp_path / "o")])
-    document = json.loads(capsys.readouterr().out)
-    assert code == 3 and {m["status"] for m in document["methods"]} == {"stopped"}
-    assert any("stopped by the user at 60 s" in text for text in document["methods"][0]["warnings"])
 
 
 def test_check_tells_the_samples_of_a_strapdown_scenario(tmp_path, capsys):

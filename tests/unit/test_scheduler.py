@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
 
 import pytest
 
@@ -15,13 +14,7 @@ from app.jobs.worker import Watch, Worker
 from navcore.foundation.errors import InputError
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
-
-
-def until(true: Callable[[], bool], seconds: float = 5.0) -> None:
-    end = time.monotonic() + seconds
-    while not true():
-        assert time.monotonic() < end, "did not happen"
-        time.sleep(0.002)
+from tests.waiting import until
 
 
 class Line:

@@ -15,6 +15,7 @@ from app.jobs.searches import Searches
 from app.jobs.why import Explainer
 from navcore.design.sun_settings import TuningSettings
 from navcore.foundation.errors import Fault, InputError
+from tests.waiting import until
 
 
 class Finder:
@@ -81,8 +82,7 @@ def test_a_change_ends_the_search_at_once_and_the_old_result_stays(finder: Finde
     finder.begun.clear()
     explainer.follow(second)
     assert finder.begun.wait(5.0)
-    while (0.5, old) not in told:
-        threading.Event().wait(0.002)
+    until(lambda: (0.5, old) in told)
     explainer.cancel()
     assert finder.ended.wait(5.0) and explainer.wait_idle(5.0)
     assert explainer.result is old and explainer.fraction is None
@@ -171,8 +171,7 @@ def test_a_table_is_found_stopped_refused_and_kept() -> None:
     assert kept is not None and tuner.asked is not None and tuner.asked.scenario == "one"
     assert told == [0.0, None]
     begin("endless")
-    while 0.5 not in told:
-        threading.Event().wait(0.002)
+    until(lambda: 0.5 in told)
     tuner.cancel()
     assert tuner.wait_idle(0.3)  # answered at once
     assert tuner.words == ("Stopped: no table was found.",) and tuner.result is kept

@@ -13,6 +13,7 @@ from app.editing import edits
 from app.jobs.verifier import CHANGED, STOPPED, Verifier
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.model import Scenario
+from tests.waiting import until
 
 DURATION = ("run", "duration_h")
 
@@ -47,8 +48,7 @@ def made() -> Iterator[tuple[Verifier, list[float | None]]]:
 
 def under_way(verifier: Verifier, told: list[float | None]) -> None:
     verifier.begin(hours(5.0))
-    while 0.5 not in told:
-        threading.Event().wait(0.002)
+    until(lambda: 0.5 in told)
 
 
 def test_a_result_is_of_its_scenario_until_that_changes(made: tuple[Verifier, list]) -> None:

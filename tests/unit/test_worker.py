@@ -3,20 +3,12 @@
 from __future__ import annotations
 
 import threading
-import time
-from collections.abc import Callable
 
 import pytest
 
 from app.jobs import worker
 from app.jobs.worker import Watch, Worker
-
-
-def until(true: Callable[[], bool], seconds: float = 5.0) -> None:
-    end = time.monotonic() + seconds
-    while not true():
-        assert time.monotonic() < end, "did not happen"
-        time.sleep(0.005)
+from tests.waiting import until
 
 
 def test_a_flood_becomes_a_few_runs_and_the_last_one_wins() -> None:
