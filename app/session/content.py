@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import os
+import re
 import shutil
+import stat
 import time
 from pathlib import Path
 
 _UNLINKED_S = 3600.0
+_CONTENT = re.compile(r"[0-9a-f]{64}")
 
 
 class Contents:
@@ -52,14 +54,25 @@ class Contents:
             return 0
 
     def remove_unused(self) -> None:
-        """Remove the contents that no session links to any more."""
-        if not self.folder.is_dir():
+        """Remove the contents that no session links to any more; nothing of another name, or elsewhere.
+
+        Raises
+        ------
+        OSError
+            The folder is a link, or cannot be read.
+        """
+        try:
+            folder = os.open(self.folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+        except FileNotFoundError:
             return
-        for path in self.folder.iterdir():
-            with contextlib.suppress(OSError):
-                state = path.stat()
-                if state.st_nlink == 1 and time.time() - state.st_ctime > _UNLINKED_S:
-                    path.unlink()
+        try:
+            for name in filter(_CONTENT.fullmatch, os.listdir(folder)):
+                state = os.stat(name, dir_fd=folder, follow_symlinks=False)
+                unused = stat.S_ISREG(state.st_mode) and state.st_nlink == 1
+                if unused and time.time() - state.st_ctime > _UNLINKED_S:
+                    os.unlink(name, dir_fd=folder)
+        finally:
+            os.close(folder)
 
 
 def link_files(source: Path, target: Path) -> None:

@@ -10,12 +10,10 @@ import sqlite3
 import stat
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
-
-from app.http.ids import is_shared
 
 NAME = "sessions.sqlite"
 _SCHEMA = 1
@@ -91,11 +89,6 @@ class Database:
                 (id, shared_by, time.time(), content),
             )
 
-    def take_over(self, found: list[tuple[str, str | None, float, bytes]]) -> None:
-        """Put in documents from elsewhere, all or none; those that are there already stay."""
-        with self._changing() as connection:
-            connection.executemany("INSERT OR IGNORE INTO document VALUES (?, ?, ?, ?)", found)
-
     def shared_by(self, id: str) -> int:
         """How many states were shared from a session."""
         with self._changing() as connection:
@@ -153,35 +146,6 @@ def _as_os_error() -> Iterator[None]:
         yield
     except (sqlite3.OperationalError, sqlite3.ProgrammingError) as error:  # the latter: it is closed
         raise OSError(None, str(error)) from error
-
-
-def old_documents(
-    folder: Path, largest: int, judge: Callable[[str, bytes], Any]
-) -> list[tuple[str, str | None, float, bytes]]:
-    """Documents that an earlier version kept as a file each, for `Database.take_over`.
-
-    Parameters
-    ----------
-    folder : Path
-        Holds ``<id>.json``.
-    largest : int
-        Bytes; larger files are left alone.
-    judge : callable
-        ``judge(id, content)`` raises ValueError when it is no document.
-    """
-    found = []
-    for path in folder.glob("*.json"):
-        try:
-            state = path.lstat()
-            if not stat.S_ISREG(state.st_mode) or state.st_size > largest:
-                continue
-            content = path.read_bytes()
-            judge(path.stem, content)
-        except (OSError, ValueError, RecursionError):
-            continue
-        shared_by = "" if is_shared(path.stem) else None
-        found.append((path.stem, shared_by, state.st_mtime, content))
-    return found
 
 
 def parsed(id: str, content: bytes) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from typing import IO, Any
 
 from app.http.ids import log_name
 from app.session.content import Contents, link_files
-from app.session.database import Database, old_documents, parsed
+from app.session.database import Database, parsed
 
 WRITE_AFTER_S = 0.5
 """Between a change and the file: changes that follow each other are written once."""
@@ -124,7 +124,6 @@ class Store:
         self.contents = Contents(folder / "content")
         try:
             self.database = Database(folder)
-            self._take_over_old()
         except BaseException:
             claim.close()
             raise
@@ -274,19 +273,6 @@ class Store:
             failed("an error of this program")
 
     # ------------------------------------------------------------ upkeep
-
-    def _take_over_old(self) -> None:
-        """Move the files of an earlier version into the database."""
-        found = old_documents(self.folder, LARGEST_DOCUMENT, parsed)
-        if found:
-            self.database.take_over(found)
-            for id, *_ in found:
-                (self.folder / f"{id}.json").unlink(missing_ok=True)
-            for files in self.folder.glob("*.files"):
-                for path in files.iterdir() if files.is_dir() else ():
-                    if path.is_file() and not path.is_symlink():
-                        self.contents.keep_once(path)
-            _log.warning("%d sessions were taken over from the files of an earlier version", len(found))
 
     def remove_old(self) -> None:
         """Remove what is too old, then the oldest of too many sessions, and what nobody uses any more."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import logging
 import os
 import threading
@@ -197,6 +196,28 @@ def test_shared_files_take_room_once(store: Store, monkeypatch: pytest.MonkeyPat
     assert store.has_room(400_000) and not store.has_room(600_000)
 
 
+def test_only_unused_contents_of_ours_are_removed_and_no_linked_folder_is_entered(
+    store: Store, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(content_module, "_UNLINKED_S", -1.0)
+    put(store, "used", 0.0)
+    own = store.contents.folder
+    (used,) = own.iterdir()
+    (own / ("0" * 64)).write_text("unused")
+    (own / "notes.txt").write_text("not ours")
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    (elsewhere / ("1" * 64)).write_text("somebody's")
+    (own / ("2" * 64)).symlink_to(elsewhere / ("1" * 64))
+    store.contents.remove_unused()
+    assert {path.name for path in own.iterdir()} == {used.name, "notes.txt", "2" * 64}
+    own.rename(tmp_path / "moved")
+    own.symlink_to(elsewhere)
+    with pytest.raises(OSError):
+        store.contents.remove_unused()
+    assert [path.name for path in elsewhere.iterdir()] == ["1" * 64]
+
+
 def test_one_session_makes_a_bounded_number_of_links(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(store_module, "MOST_LINKS", 3)
     for number in range(3):
@@ -219,27 +240,7 @@ def test_two_servers_on_one_folder_the_second_is_told_in_one_line(
     second.close()
 
 
-def test_files_of_an_earlier_version_are_taken_over(tmp_path: Path) -> None:
-    folder = tmp_path / "sessions"
-    folder.mkdir()
-    shared = "share-" + "x" * 24
-    for id in (ID, shared):
-        (folder / f"{id}.json").write_text(json.dumps(document(id, text="kept")))
-        (folder / f"{id}.files").mkdir()
-        (folder / f"{id}.files" / "log.csv").write_bytes(b"x" * 1000)
-    (folder / "broken.json").write_text("{")
-    made = open_store(folder)
-    assert made is not None
-    assert made.read(ID) == document(text="kept") and made.read(shared) == document(shared, text="kept")
-    assert sorted(path.name for path in folder.glob("*.json")) == ["broken.json"]
-    assert made.contents.bytes() == 1000
-    made.close()
-    again = open_store(folder)
-    assert again is not None and again.read(ID) == document(text="kept")
-    again.close()
-
-
-@pytest.mark.parametrize("name", ["sessions.sqlite", "lock", "session.key", f"{ID}.json"])
+@pytest.mark.parametrize("name", ["sessions.sqlite", "lock", "session.key"])
 def test_a_fifo_in_the_folder_hangs_nothing(tmp_path: Path, name: str) -> None:
     folder = tmp_path / "sessions"
     folder.mkdir()
