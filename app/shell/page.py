@@ -27,7 +27,6 @@ from app.shell.layout import Layout, Window, layout_for
 from app.shell.opening import Opening
 from app.shell.pace import Pace
 from app.shell.palette import Palette
-from app.shell.presenter import PresenterLock
 from app.shell.reports import Reports, run_element, views_element
 from app.shell.styles import page_styles
 from app.shell.view import Frame, View
@@ -130,8 +129,7 @@ class Page:
         self.column = Column(gui, [view for view in self._views if view.place in ("upper", "lower")])
         self.column.build(self._layout)
         free = frozenset({self._reports.window_id, self._reports.painted_id, self.commands.box_id})
-        lock = PresenterLock(client, session, self, self.commands, free)
-        self.palette = Palette(frame, lock)
+        self.palette = Palette(frame, self, free)
 
     def close(self) -> None:
         """The browser has gone."""

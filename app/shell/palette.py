@@ -7,18 +7,23 @@ from collections.abc import Iterable
 from functools import lru_cache
 from typing import Any
 
+from app.bridge.controls import lock_controls
+from app.editing.excerpt import disturbances_toml, method_toml, paste
+from app.editing.typed import read_typed, unit_of
 from app.session.history import changed_fields
+from app.session.view import View
 from app.shell import notices
+from app.shell.commands import LONGEST_TEXT
+from app.shell.control import Control
 from app.shell.opening import Opening
-from app.shell.pasting import Pasting
-from app.shell.presenter import PresenterLock
 from app.shell.reports import view_names
 from app.shell.reset import Resets
 from app.shell.toolbar import PRESENT, REDO, RESET_ALL, SHARE, UNDO, Toolbar
-from app.shell.typing import Typing
 from app.shell.view import Frame
+from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.file import load, presets
 
+COPY_METHOD, COPY_LOG, PASTE = "copy-method-text", "copy-log-text", "paste-text"
 _LONGEST_UNDO = 48
 
 
@@ -29,26 +34,21 @@ class Palette:
     ----------
     frame : Frame
         Of the page.
-    lock : PresenterLock
-        Of the page.
+    page : View
+        The page, as its session knows it.
+    free : frozenset of str
+        Ids of the controls that a watcher may use: those through which the page reports.
     """
 
-    def __init__(self, frame: Frame, lock: PresenterLock) -> None:
+    def __init__(self, frame: Frame, page: View, free: frozenset[str]) -> None:
         self._client, self._session, self._commands = frame.client, frame.session, frame.commands
-        self._frame, self._lock = frame, lock
+        self._frame, self._page, self._free = frame, page, free
         self._toolbar = Toolbar(frame.gui, order=5)
         self._register(frame.opening)
         self._offer_tabs(kind.title for kind in frame.kinds if kind.title and kind.always)
         self._shown: tuple[object, ...] = ()
         self._values: list[Any] = []
         self._resets = Resets(self._commands, frame.editor.put)
-        Pasting(self._client, self._commands, self._session)
-        self._typing = Typing(
-            self._commands,
-            frame.controls,
-            lambda control, value: frame.editor.put(control, value, ""),
-            self._resets.take_back,
-        )
 
     def _register(self, opening: Opening) -> None:
         add, session, ask = self._commands.register, self._session, self._commands.ask_page
@@ -64,6 +64,22 @@ class Palette:
         add("stop", lambda _: session.cancel_run(), "Stop the run")
         add("keys", lambda _: ask("keys", ""), "Keys: what they do", "?", watcher=True)
         add("tab", lambda name: ask("tab", name), watcher=True)
+        add("typed", self._typed)
+        add("reset-named", self._reset_named)
+        add(
+            COPY_METHOD,
+            lambda _: ask("copy", method_toml(session.scenario, session.selected)),
+            "Copy the method as TOML",
+            watcher=True,
+        )
+        add(
+            COPY_LOG,
+            lambda _: ask("copy", disturbances_toml(session.scenario)),
+            "Copy the log's events and outages as TOML",
+            watcher=True,
+        )
+        paste_title = "Paste a method, or the log's events and outages (TOML)"
+        add(PASTE, self._paste, paste_title, longest=LONGEST_TEXT)
         for name, title in _preset_titles():
             add(f"preset-{name}", lambda _, name=name: opening.choose_scenario(name), f"Open {name}: {title}")
 
@@ -82,13 +98,13 @@ class Palette:
 
     def show(self) -> None:
         """Show what can be undone and reset now."""
-        self._lock.apply()
+        self._lock()
         session, history = self._session, self._session.history
         controls = list(self._frame.controls())
         values = [control.value for control in controls]
         state = (
             session.opened, session.scenario, session.origin, history.undo_name, history.redo_name,
-            self._frame.editor.moved, self._lock.drives, self._lock.watches, *controls,
+            self._frame.editor.moved, self._drives, self._watches, *controls,
         )  # fmt: skip
         same = len(state) == len(self._shown) and all(map(operator.is_, state, self._shown))
         if same and values == self._values:
@@ -96,8 +112,8 @@ class Palette:
         self._shown, self._values = state, values
         self._resets.show(session.opened, session.scenario, controls)
         changed = len(changed_fields(session.opened, session.scenario))
-        self._toolbar.show(history, session.origin, changed, self._lock.drives, self._lock.watches)
-        control = None if self._lock.watches else self._frame.editor.moved
+        self._toolbar.show(history, session.origin, changed, self._drives, self._watches)
+        control = None if self._watches else self._frame.editor.moved
         last = self._resets.of(control)
         found = None if control is None or last is None else (last[0], control.spec.label, last[1])
         self._toolbar.show_changed(session.origin, changed, found)
@@ -107,11 +123,77 @@ class Palette:
 
     def show_presenter(self) -> None:
         """Show who presents."""
-        self._lock.apply()
-        self._toolbar.show_banner(self._lock.banner, self._lock.drives)
+        self._lock()
+        self._toolbar.show_banner(self._banner, self._drives)
         self.show()
 
+    # ------------------------------------------------------------ presenting
+
+    @property
+    def _drives(self) -> bool:
+        return self._session.presenter is self._page
+
+    @property
+    def _watches(self) -> bool:
+        return self._session.presenter not in (None, self._page)
+
+    def _lock(self) -> None:
+        """Lock or free the controls as the session says now; those that were made meanwhile too."""
+        watches, watched = self._watches, self._commands.watching
+        self._commands.watching = watches
+        if watches or watched:
+            lock_controls(self._client, self._free if watches else None)
+
+    @property
+    def _banner(self) -> str:
+        """Who presents; empty while nobody does."""
+        if self._watches:
+            return "Another page presents: you watch"
+        if not self._drives:
+            return ""
+        watching = self._session.open_pages - 1
+        pages = "no other page is open" if watching == 0 else f"{watching} watch{'es' * (watching == 1)}"
+        return f"You present: {pages}"
+
+    # ------------------------------------------------------------ one control, by its id (static/boxes.js)
+
+    def _control(self, id: str) -> Control | None:
+        return next((control for control in self._frame.controls() if id.strip() in control.ids), None)
+
+    def _typed(self, argument: str) -> None:
+        """Take over a number typed with a unit: ``ID TAB TEXT``."""
+        id, _, text = argument.partition("\t")
+        control = self._control(id)
+        if control is None or control.spec.kind not in ("number", "integer"):
+            return
+        name = control.spec.label
+        try:
+            value = read_typed(text.strip(), unit_of(name))
+        except ValueError as error:
+            raise InputError(Fault("", name, text.strip()[:40], str(error))) from None
+        if control.spec.kind == "integer":
+            if value != int(value):
+                raise InputError(Fault("", name, text.strip()[:40], "must be a whole number"))
+            value = int(value)
+        self._frame.editor.put(control, value, "")
+
+    def _reset_named(self, id: str) -> None:
+        control = self._control(id)
+        if control is not None:
+            self._resets.take_back(control)
+
     # ------------------------------------------------------------ doing
+
+    def _paste(self, text: str) -> None:
+        """Take over a part of a scenario as TOML, one step of undo; ask the page where there is none."""
+        if not text.strip():
+            self._commands.ask_page("paste", "")
+            return
+        session = self._session
+        with session.lock:
+            pasted = paste(session.scenario, session.selected, text)
+            session.change(pasted.scenario, None, selected=pasted.selected, name=f"paste {pasted.words}")
+        notices.tell(self._client, "Pasted", [pasted.words], "info")
 
     def _if(self, done: bool, otherwise: str) -> None:
         if not done:
@@ -153,7 +235,7 @@ class Palette:
         notices.tell(self._client, "No such view", lines, "warning")
 
     def _present(self) -> None:
-        if not self._lock.toggle():
+        if not self._session.present(None if self._drives else self._page):
             notices.tell(self._client, "Another page presents", ["It must end first."], "warning")
 
 

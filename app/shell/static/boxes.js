@@ -1,6 +1,6 @@
 // Number boxes by wheel, double click and unit. The arrow keys step a box by themselves; the wheel does the same over the
 // box that has the focus. A double click on a control's name takes the field back to how the scenario was opened. A letter
-// or a space behind typed digits opens a line for the unit: "30 min" (app/shell/typing.py reads it).
+// or a space behind typed digits opens a line for the unit: "30 min" (app/shell/palette.py reads it).
 (() => {
   const BOX = ".mantine-NumberInput-input";
   const UNIT = /^[smhdknarguµ° ]$/i;

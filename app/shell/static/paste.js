@@ -1,4 +1,4 @@
-// Parts of the scenario by the clipboard, as TOML: a method, the log's events (app/shell/pasting.py). What is copied stands
+// Parts of the scenario by the clipboard, as TOML: a method, the log's events (app/shell/palette.py). What is copied stands
 // in a dialog, from which it can be copied again: a page that came over http may not write to the clipboard by itself.
 // Ctrl+V takes such a text anywhere but in a text box.
 (() => {

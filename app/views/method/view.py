@@ -15,7 +15,7 @@ from app.plots.warnings import severity, warnings_for
 from app.session.shown import Shown
 from app.shell import notices
 from app.shell.control import Control, Section, controls_of
-from app.shell.pasting import COPY_METHOD, PASTE
+from app.shell.palette import COPY_METHOD, PASTE
 from app.shell.searching import show_html
 from app.shell.view import Frame, Tab, View, if_user
 from app.views.method.tuning import TuningPanel
