@@ -129,17 +129,22 @@ class Search(Generic[Asked, Found]):
 
         def progress(fraction: float) -> None:
             nonlocal last_s
-            if watch.elapsed_s - last_s >= self.report_every_s and self.under_way is asked:
-                last_s = watch.elapsed_s
+            if watch.elapsed_s - last_s < self.report_every_s:
+                return
+            last_s = watch.elapsed_s
+            with self._lock:
+                if self.under_way is not asked:
+                    return
                 self.fraction = fraction
-                self._tell()
+            self._tell()
 
         result, words = None, ()
         try:
             result = self._carry_out(asked, progress, watch)
         except ElsewhereLost:
-            if self.under_way is asked:
-                self._set(0.0, (LOST,), asked)
+            with self._lock:
+                if self.under_way is asked:
+                    self.fraction, self.words = 0.0, (LOST,)
             self._tell()
             raise
         except InputError as error:
