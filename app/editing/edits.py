@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, get_args
 
 from app.editing.form import Path
@@ -20,7 +20,7 @@ _STRAPDOWN_ONLY: dict[str, tuple[str, ...]] = {
 
 
 def with_value(
-    scenario: Scenario, path: Path, value: Any, shown: Mapping[str, Any] | None = None
+    scenario: Scenario, path: Path, value: Any, shown: Callable[[], Mapping[str, Any]] = dict
 ) -> Scenario:
     """Set one field.
 
@@ -32,9 +32,9 @@ def with_value(
         Where the value lies in the canonical scenario.
     value : object
         Not yet checked.
-    shown : mapping, optional
-        What the page shows for the network's other parameters, used where the scenario gives no value: after
-        gains that no (sigma, xi) gives, a new xi goes with the sigma on the screen.
+    shown : callable, optional
+        Gives what the page shows for the network's other parameters, used where the scenario gives no
+        value: after gains that no (sigma, xi) gives, a new xi goes with the sigma on the screen.
 
     Raises
     ------
@@ -43,7 +43,7 @@ def with_value(
     """
     data = scenario.canonical()
     if len(path) == 4 and path[2] == "network":
-        _choose_alternative(scenario, data, path, shown or {})
+        _choose_alternative(scenario, data, path, shown)
     _place(data, path, value)
     if path == ("run", "fidelity") and value != "strapdown":
         _leave_strapdown(data)
@@ -162,14 +162,16 @@ def network_values(scenario: Scenario, index: int) -> dict[str, Any]:
     return scenario.method[index].network.values(scenario.omega_s)
 
 
-def _choose_alternative(scenario: Scenario, data: Any, path: Path, shown: Mapping[str, Any]) -> None:
+def _choose_alternative(
+    scenario: Scenario, data: Any, path: Path, shown: Callable[[], Mapping[str, Any]]
+) -> None:
     """Make the group of parameters that holds the field the one that is given."""
     index, name = int(path[1]), path[3]
     block, groups = data["method"][index]["network"], scenario.method[index].network.alternatives
     mine = next((group for group in groups if name in group), None)
     if mine is None:
         return
-    values = dict(shown) | network_values(scenario, index)
+    values = dict(shown()) | network_values(scenario, index)
     for field in (field for group in groups for field in group):
         block.pop(field, None)
         if field in mine and values.get(field) is not None:

@@ -34,27 +34,21 @@ class Visitor(Protocol):
 
     def control(self, uuid: str) -> Control | None:
         """Return the control with that id, if the visitor has it."""
-        ...
 
     def meant(self, uuid: str, value: object) -> object:
         """Return an option that was chosen in the page's language as the server offers it."""
-        ...
 
     def restore(self, uuid: str) -> None:
         """Show the server's value of a control again."""
-        ...
 
     def end_upload(self, component: str, transfer: str, size: int) -> None:
         """Let the page's progress bar end."""
-        ...
 
     def forget_upload(self, transfer: str) -> None:
         """Drop what has come of an upload."""
-        ...
 
     def tell(self, text: str) -> None:
         """Show a short notice."""
-        ...
 
 
 @dataclass

@@ -27,15 +27,12 @@ class Connected(Protocol):
     @property
     def asked(self) -> bool:
         """Whether a request has arrived."""
-        ...
 
     def turn_away(self) -> None:
         """Close a connection that is still at the door."""
-        ...
 
     def give_up_place(self) -> None:
         """Close a page that has long been idle."""
-        ...
 
 
 @dataclass

@@ -12,6 +12,7 @@ from app.jobs.load import spare_load
 from app.jobs.rows import few_rows
 from app.jobs.scheduler import Lane, Load
 from app.jobs.worker import Watch, Worker
+from app.session.simulating import Simulate
 from navcore.engine.run import Run
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.model import Scenario
@@ -30,8 +31,6 @@ COLORS: dict[str, str] = {
 }
 """Colours of pins, in the order in which they are given out: none is one of the first methods'."""
 _log = logging.getLogger("schuler.pins")
-
-Simulate = Callable[[Scenario, Callable[[float], None], Callable[[], bool]], Run]
 
 
 @dataclass(frozen=True)

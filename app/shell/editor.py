@@ -118,7 +118,7 @@ class Editor:
         scenario, path = self._session.scenario, control.spec.path
         if path[-1] == "id" or path == ("motion", "kind"):
             return edits.with_choice(scenario, path, value, self._earlier(scenario, path, value))
-        return edits.with_value(scenario, path, value, self._beside(path))
+        return edits.with_value(scenario, path, value, lambda: self._beside(path))
 
     def _beside(self, path: Path) -> dict[str, Any]:
         """What the controls hold for the other numbers of the same model: name -> value."""

@@ -101,7 +101,7 @@ class Resets:
         networks: dict[int, Mapping[str, Any]] = {}
         for control in controls:
             value = opened_value(opened, scenario, control.spec, networks)
-            if value is not None and differs(_given(control), value):
+            if value is not None and differs(control.value, value):
                 now[name_of(control.spec.path)] = (control, value)
         self._changed = now
         for name in before.keys() - now.keys():
@@ -136,10 +136,6 @@ def told(control: Control, value: Any) -> str:
     """A value of a control's field in a few characters."""
     text = f"{value:.6g}" if isinstance(value, float) else control.as_text(value)
     return text if len(text) <= 30 else f"{text[:29]}…"
-
-
-def _given(control: Control) -> Any:
-    return control.value
 
 
 def _slug(name: str) -> str:

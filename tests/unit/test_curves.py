@@ -73,16 +73,6 @@ def test_only_the_curve_that_has_changed_is_sent(queue: Queue) -> None:
     assert all(values is not None for values in message.updates["data"]), "viser's handles hold this message"
 
 
-def test_numbers_that_were_replaced_before_they_were_sent_count_as_not_sent(queue: Queue) -> None:
-    queue.buffer.push(plot((curve(0.0), curve(1.0), curve(2.0))))
-    queue.sent()
-    queue.buffer.push(numbers((curve(0.0), curve(1.5), curve(2.0))))
-    queue.buffer.push(numbers((curve(0.0), curve(1.5), curve(2.5))))
-    (update,) = queue.sent()
-    time, one, two = update.updates["data"]
-    assert time is None and one[0] == 1.5 and two[0] == 2.5
-
-
 def test_what_is_noted_of_a_new_plot_is_what_is_sent(queue: Queue) -> None:
     message = plot((curve(0.0), curve(1.0)))
     queue.buffer.push(message)
@@ -92,18 +82,6 @@ def test_what_is_noted_of_a_new_plot_is_what_is_sent(queue: Queue) -> None:
     queue.buffer.push(numbers(message.props.data))
     (update,) = queue.sent()
     assert update.updates["data"][1][0] == 3.0
-
-
-def test_another_count_of_curves_and_a_plot_made_anew_are_sent_whole(queue: Queue) -> None:
-    queue.buffer.push(plot((curve(0.0), curve(1.0))))
-    queue.sent()
-    more = curve(0.0), curve(1.0), curve(2.0)
-    queue.buffer.push(numbers(more))
-    (update,) = queue.sent()
-    assert update.updates["data"] == more
-    queue.buffer.push(messages.GuiRemoveMessage("plot"))
-    queue.buffer.push(plot(more))
-    assert queue.sent()[-1].props.data == more
 
 
 def test_a_connection_is_told_nothing_of_what_another_one_has(queue: Queue) -> None:

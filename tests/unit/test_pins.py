@@ -3,23 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 
 import numpy as np
 import pytest
 
 from app.jobs.rows import MOST_ROWS, few_rows
 from app.session.pins import COLORS, LONGEST_NAME, MOST_PINS, Pins
-from navcore.engine.run import Run
+from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
-from navcore.scenario.model import Scenario
 from tests.unit.figures_runs import run_of, static_run
-
-
-def simulated(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Run:
-    from navcore.engine.simulation import simulate
-
-    return simulate(scenario, progress, cancelled)
 
 
 @pytest.fixture
@@ -29,7 +21,7 @@ def told() -> list[str]:
 
 @pytest.fixture
 def pins(told: list[str]) -> Pins:
-    return Pins(lambda: told.append("changed"), simulated)
+    return Pins(lambda: told.append("changed"), simulate)
 
 
 def test_pins_get_names_and_colours_of_their_own(pins: Pins, told: list[str]) -> None:
@@ -87,7 +79,7 @@ def test_pins_come_back_from_a_file_and_are_computed_again(pins: Pins, told: lis
     pins.add(run, "preset", "old")
     pins.change(1, note="why", shown=False)
     kept = json.loads(json.dumps(pins.to_json()))
-    again = Pins(lambda: told.append("again"), simulated)
+    again = Pins(lambda: told.append("again"), simulate)
     again.from_json(kept)
     assert again.wait_idle(20.0)
     pin = again.all[0]

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator, Set
+from collections.abc import Iterator
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
@@ -15,76 +13,11 @@ from app.session import sessions
 from app.session.session import Session, first_editable, runs_on_demand
 from app.session.sessions import Sessions, first_scenario
 from navcore.engine import simulation
-from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from tests.watchers import Watcher, answer, simulate
 
 DURATION = ("run", "duration_h")
-
-
-class Watcher:
-    """A page that only notes what it is told."""
-
-    def __init__(self) -> None:
-        self.told: list[tuple[str, Any]] = []
-
-    def names(self) -> list[str]:
-        return [name for name, _ in self.told]
-
-    def scenario_changed(self, by: object) -> None:
-        self.told.append(("changed", by))
-
-    def run_progressed(self, fraction: float, elapsed_s: float) -> None:
-        self.told.append(("progress", fraction))
-
-    def run_ended(self) -> None:
-        self.told.append(("ended", None))
-
-    def run_stopped(self) -> None:
-        self.told.append(("stopped", None))
-
-    def run_refused(self, error: InputError) -> None:
-        self.told.append(("refused", error))
-
-    def run_failed(self, error: Exception) -> None:
-        self.told.append(("failed", error))
-
-    def display_changed(self, by: object) -> None:
-        self.told.append(("display", by))
-
-    def not_kept(self, why: str) -> None:
-        self.told.append(("not kept", why))
-
-    def run_waits(self) -> None:
-        self.told.append(("waits", None))
-
-    def presenter_changed(self) -> None:
-        self.told.append(("presenter", None))
-
-    def front_changed(self, front: Set[str]) -> None:
-        self.told.append(("front", front))
-
-    def verification_changed(self) -> None:
-        self.told.append(("verification", None))
-
-
-def answer(scenario: Scenario, status: str = "ok") -> Any:
-    return SimpleNamespace(scenario=scenario, status=status)
-
-
-def simulate(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Any:
-    """Stand-in: 3 h cannot run, 4 h is a fault of ours, 5 h lasts until it is stopped."""
-    hours = scenario.run.duration_h
-    if hours == 3.0:
-        raise InputError(Fault("", "motion.file", None, "is gone"))
-    if hours == 4.0:
-        raise ZeroDivisionError("ours")
-    if hours == 5.0:
-        progress(0.5)
-        while not cancelled():
-            threading.Event().wait(0.002)
-        return answer(scenario, "stopped")
-    return answer(scenario)
 
 
 @pytest.fixture
@@ -103,7 +36,7 @@ def work(scenario: Scenario, tmp_path: Path) -> Iterator[tuple[Session, Watcher]
 
 def test_a_page_gets_its_first_run(work: tuple[Session, Watcher], scenario: Scenario) -> None:
     made, page = work
-    assert page.names() == ["ended"]
+    assert page.names() == ["run_ended"]
     assert made.run.scenario == scenario
     assert (made.run_number, made.outdated) == (1, False)
 
@@ -113,7 +46,7 @@ def test_a_change_is_run_and_told_with_who_made_it(work: tuple[Session, Watcher]
     changed = edits.with_value(made.scenario, DURATION, 2.0)
     assert made.change(changed, page)
     assert made.wait_idle(5.0)
-    assert page.told[1:] == [("changed", page), ("ended", None)]
+    assert page.told[1:] == [("scenario_changed", page), ("run_ended", None)]
     assert made.run.scenario == changed
     assert not made.change(changed, page)
     assert made.run_number == 2
@@ -122,9 +55,9 @@ def test_a_change_is_run_and_told_with_who_made_it(work: tuple[Session, Watcher]
 def test_a_scenario_that_cannot_run_gives_way_to_the_last_good_one(work: tuple[Session, Watcher]) -> None:
     made, page = work
     good = made.scenario
-    made.change(edits.with_value(good, DURATION, 3.0), page)
+    made.change(edits.with_value(good, DURATION, 13.0), page)
     assert made.wait_idle(5.0)
-    assert page.names() == ["ended", "changed", "changed", "refused"]
+    assert page.names() == ["run_ended", "scenario_changed", "scenario_changed", "run_refused"]
     assert "is gone" in str(page.told[-1][1])
     assert made.scenario == good
     assert made.run.scenario == good
@@ -133,9 +66,9 @@ def test_a_scenario_that_cannot_run_gives_way_to_the_last_good_one(work: tuple[S
 
 def test_a_fault_of_ours_is_told_and_the_last_good_run_stays(work: tuple[Session, Watcher]) -> None:
     made, page = work
-    made.change(edits.with_value(made.scenario, DURATION, 4.0), page)
+    made.change(edits.with_value(made.scenario, DURATION, 14.0), page)
     assert made.wait_idle(5.0)
-    assert page.names()[-1] == "failed"
+    assert page.names()[-1] == "run_failed"
     assert isinstance(page.told[-1][1], ZeroDivisionError)
     assert made.run.scenario.run.duration_h == 1.0
     assert made.outdated
@@ -143,12 +76,12 @@ def test_a_fault_of_ours_is_told_and_the_last_good_run_stays(work: tuple[Session
 
 def test_a_long_run_is_stopped_by_the_user(work: tuple[Session, Watcher]) -> None:
     made, page = work
-    made.change(edits.with_value(made.scenario, DURATION, 5.0), page)
-    while "progress" not in page.names() and made._worker._watch is None:
+    made.change(edits.with_value(made.scenario, DURATION, 15.0), page)
+    while "run_progressed" not in page.names() and made._worker._watch is None:
         threading.Event().wait(0.002)
     made.cancel_run()
     assert made.wait_idle(5.0)
-    assert page.names()[-1] in ("stopped", "changed")  # not even begun: nothing to tell
+    assert page.names()[-1] in ("run_stopped", "scenario_changed")  # not even begun: nothing to tell
     assert made.run.scenario.run.duration_h == 1.0
     assert made.outdated
 
@@ -158,11 +91,11 @@ def test_a_long_run_gives_way_to_a_new_change(
 ) -> None:
     monkeypatch.setattr("app.jobs.worker.SUPERSEDE_AFTER_S", 0.0)
     made, page = work
-    made.change(edits.with_value(made.scenario, DURATION, 5.0), page)
+    made.change(edits.with_value(made.scenario, DURATION, 15.0), page)
     made.change(edits.with_value(made.scenario, DURATION, 2.0), page)
     assert made.wait_idle(5.0)
-    assert page.names()[-1] == "ended"
-    assert "stopped" not in page.names()
+    assert page.names()[-1] == "run_ended"
+    assert "run_stopped" not in page.names()
     assert made.run.scenario.run.duration_h == 2.0
 
 
@@ -177,8 +110,8 @@ def test_a_page_whose_drawing_fails_does_not_hold_up_the_other(work: tuple[Sessi
     made._views.insert(0, other)
     made.change(edits.with_value(made.scenario, DURATION, 2.0), page)
     assert made.wait_idle(5.0)
-    assert other.names() == ["changed", "failed"]
-    assert page.names()[-1] == "ended"
+    assert other.names() == ["scenario_changed", "run_failed"]
+    assert page.names()[-1] == "run_ended"
 
 
 def test_two_pages_of_one_visitor_show_the_same(work: tuple[Session, Watcher]) -> None:
@@ -187,7 +120,7 @@ def test_two_pages_of_one_visitor_show_the_same(work: tuple[Session, Watcher]) -
     made.attach(other)
     made.change(edits.with_value(made.scenario, DURATION, 2.0), page)
     assert made.wait_idle(5.0)
-    assert other.told == [("changed", page), ("ended", None)]
+    assert other.told == [("scenario_changed", page), ("run_ended", None)]
     made.detach(page)
     assert made.open_pages == 1
 
@@ -215,10 +148,10 @@ def test_only_a_long_strapdown_run_waits_for_the_user(work: tuple[Session, Watch
     assert runs_on_demand(edits.with_method(strapdown(2.0), 0)[0])
     made.change(strapdown(6.0), page, origin="opened")  # opened: run at once
     assert made.wait_idle(5.0)
-    assert (made.run.scenario, page.names()[-1]) == (strapdown(6.0), "ended")
+    assert (made.run.scenario, page.names()[-1]) == (strapdown(6.0), "run_ended")
     made.change(strapdown(7.0), page)
     assert made.wait_idle(5.0)
-    assert (made.run.scenario, page.names()[-1]) == (strapdown(6.0), "waits")
+    assert (made.run.scenario, page.names()[-1]) == (strapdown(6.0), "run_waits")
     assert made.outdated and made.waits
     made.redo_run()
     assert made.wait_idle(5.0)
@@ -312,7 +245,7 @@ def test_a_change_of_the_display_is_told_once_and_runs_nothing(work: tuple[Sessi
     number = session.run_number
     session.show(page, scale="log")
     session.show(page, scale="log")
-    assert page.names().count("display") == 1
+    assert page.names().count("display_changed") == 1
     assert session.display.scale == "log"
     session.wait_idle(5.0)
     assert session.run_number == number

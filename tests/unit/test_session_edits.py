@@ -59,7 +59,7 @@ def test_other_gains_have_no_sigma_and_xi_and_the_screen_helps_out(scenario: Sce
     values = edits.network_values(changed, 1)
     assert "sigma" not in values
     assert values["k1"] == pytest.approx(0.0264)
-    back = edits.with_value(changed, (*NETWORK, "xi"), 0.6, {"sigma": 0.01, "xi": 0.7})
+    back = edits.with_value(changed, (*NETWORK, "xi"), 0.6, lambda: {"sigma": 0.01, "xi": 0.7})
     assert (network(back).sigma, network(back).xi) == (0.01, 0.6)
 
 

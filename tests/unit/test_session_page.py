@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable
 from datetime import UTC, datetime
 from html import unescape
 from html.parser import HTMLParser
@@ -58,10 +57,6 @@ class Reader(HTMLParser):
             self.sections[self._heading] += f"{data} "
 
 
-def simulated(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Run:
-    return simulate(scenario, progress, cancelled)
-
-
 def session_of(run: Run, pins: Pins | None = None, origin: str = "mine.toml", **choices: object) -> Session:
     kept = () if pins is None else pins.all
     return Session(Shown(run, 1, Display.model_validate(choices)), kept, origin, MADE)
@@ -72,7 +67,7 @@ def read(session: Session, pictures: tuple[str, ...] = ("Poles", "Errors: Attitu
 
 
 def test_the_page_holds_numbers_verdicts_pins_warnings_plots_and_scenario() -> None:
-    pins = Pins(lambda: None, simulated)
+    pins = Pins(lambda: None, simulate)
     pins.add(static_run(), "preset", "before the change")
     run = run_of(method=[*THREE, UNSTABLE])
     limits = Requirements(settling_min=200.0, tilt_max_arcsec=1e4)
@@ -122,7 +117,7 @@ def test_the_command_runs_it_again(origin: str, changes: list[str], expected: st
 
 
 def test_markup_in_names_is_text() -> None:
-    pins = Pins(lambda: None, simulated)
+    pins = Pins(lambda: None, simulate)
     pins.add(static_run(), "preset", HOSTILE)
     run = run_of(title=HOSTILE, source=HOSTILE, method=[{"name": HOSTILE[:40]}, *THREE[1:]])
     html = document(session_of(run, pins, HOSTILE), [HOSTILE])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -13,36 +12,19 @@ from app.editing import edits, form
 from app.editing.form import FieldSpec
 from app.session.session import Session
 from app.shell.reset import opened_value
-from navcore.foundation.errors import Fault, InputError
 from navcore.networks import NETWORKS
 from navcore.scenario.file import load
 from navcore.scenario.model import Method, Scenario
+from tests.watchers import Watcher, simulate
 
 HOURS = ("run", "duration_h")
 SEED = ("run", "seed")
 
 
-class Silent:
-    """A page that shows nothing, and notes what it is told."""
-
-    def __init__(self) -> None:
-        self.told: list[str] = []
-
-    def __getattr__(self, name: str) -> Callable[..., None]:
-        return lambda *_: self.told.append(name)
-
-
-def simulate(scenario: Scenario, *_: Any) -> Any:
-    """Stand-in: a run of 13 h is refused."""
-    if scenario.run.duration_h == 13.0:
-        raise InputError([Fault("motion", "file", None, "is gone")])
-    return SimpleNamespace(scenario=scenario, status="ok", methods=(), t_s=(), warnings=())
-
-
 @pytest.fixture
 def made(tmp_path: Path) -> Iterator[Session]:
     session = Session("a" * 24, load("zha-fast"), "zha-fast", tmp_path / "up", simulate)
-    session.attach(Silent())
+    session.attach(Watcher())
     assert session.wait_idle(5.0)
     yield session
     session.close()
@@ -148,35 +130,35 @@ def test_where_nothing_like_it_was_opened_a_field_goes_back_to_its_default() -> 
 
 
 def test_one_page_presents_at_a_time_and_its_leaving_frees_the_others(made: Session) -> None:
-    one, two = Silent(), Silent()
+    one, two = Watcher(), Watcher()
     for page in (one, two):
         made.attach(page)
     assert made.present(one)
     assert not made.present(two)
     assert made.presenter is one
-    assert "presenter_changed" in two.told
+    assert "presenter_changed" in two.names()
     assert made.present(None) and made.presenter is None
     assert made.present(two)
     one.told.clear()
     made.detach(two)
     assert made.presenter is None
-    assert one.told == ["presenter_changed"]
-    late = Silent()
+    assert one.names() == ["presenter_changed"]
+    late = Watcher()
     made.present(one)
     made.attach(late)
-    assert late.told == ["presenter_changed"]
+    assert late.names() == ["presenter_changed"]
 
 
 def test_watchers_are_told_the_tabs_of_the_page_that_presents(made: Session) -> None:
-    one, two = Silent(), Silent()
+    one, two = Watcher(), Watcher()
     for page in (one, two):
         made.attach(page)
     made.tell_front(one, {"Poles"})
-    assert "front_changed" not in two.told  # nobody presents: each looks where it likes
+    assert "front_changed" not in two.names()  # nobody presents: each looks where it likes
     made.present(one)
     made.tell_front(two, {"Step"})
     made.tell_front(one, {"Poles"})
-    assert (one.told.count("front_changed"), two.told.count("front_changed")) == (0, 1)
+    assert (one.names().count("front_changed"), two.names().count("front_changed")) == (0, 1)
 
 
 def test_opening_the_same_preset_again_is_a_step_of_its_own(made: Session) -> None:
