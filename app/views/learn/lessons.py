@@ -42,7 +42,7 @@ _FRONT = re.compile(r"\A\+\+\+\n(.*?)\n\+\+\+\n(.*)\Z", re.DOTALL)
 _FENCE = re.compile(r"^```toml (action|question)\n(.*?)^```$\n?", re.DOTALL | re.MULTILINE)
 _MATH = re.compile(r"\$\$(.+?)\$\$|\$(.+?)\$", re.DOTALL)
 _NAME = re.compile(r"\{\{([a-z0-9_.]+)\}\}")
-_COMPARISON = re.compile(r"\s*([^<>]*?)\s*(<=|>=|<|>)\s*(.*?)\s*")
+_COMPARISON = re.compile(r"([^<>]*)(<=|>=|<|>)(.*)")
 _TERM = re.compile(r"(?:([0-9.eE+-]+)\s*\*\s*)?([a-z][a-z0-9_.]*)")
 _MARK = "\ue000{}\ue001"
 """Stands for a formula while the Markdown around it is read."""
@@ -268,7 +268,7 @@ def holds(comparison: str, run: Run) -> bool:
     if match is None:
         raise KeyError(comparison)
     left, sign, right = match.groups()
-    return _SIGNS[sign](_term(left, run), _term(right, run))
+    return _SIGNS[sign](_term(left.strip(), run), _term(right.strip(), run))
 
 
 def _term(text: str, run: Run) -> float:
