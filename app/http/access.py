@@ -23,6 +23,7 @@ class RequestHeaders(Protocol):
 
     def get_all(self, key: str) -> list[str]:
         """Return every value of a header, in order."""
+        ...
 
 
 @dataclass(frozen=True)

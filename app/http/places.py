@@ -27,6 +27,7 @@ class Connected(Protocol):
     @property
     def asked(self) -> bool:
         """Whether a request has arrived."""
+        ...
 
     def turn_away(self) -> None:
         """Close a connection that is still at the door."""
