@@ -18,9 +18,9 @@ _NOT_ON_THE_PAGE = tuple(
     """
     app/cli app/bench app/languages app/bridge app/jobs/cluster.py
     app/workers.py app/logs.py app/serve.py app/memory.py app/__main__.py app/http/access.py
-    app/http/address.py app/http/site.py app/http/front.py app/http/access.py app/http/metrics.py
+    app/http/address.py app/http/site.py app/http/front.py app/http/metrics.py
     app/http/page.py app/http/ids.py app/http/places.py app/http/server.py app/session/database.py
-    app/session/store.py app/jobs/scheduler.py navcore/__init__.py navcore/warm.py navcore/design/form.py
+    app/jobs/scheduler.py navcore/__init__.py navcore/warm.py navcore/design/form.py
     navcore/scenario/guide.py navcore/scenario/schema_file.py navcore/foundation/guarded.py
     navcore/foundation/kernel_cache.py navcore/foundation/kernel_digest.py
     navcore/foundation/registry.py navcore/design/sun.py navcore/design/sun_settings.py
