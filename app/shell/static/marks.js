@@ -31,6 +31,9 @@
       const container = plot.parentElement.parentElement;
       if (container.querySelector(":scope > div .sb-two")) hold(container, "two");
     }
+    // viser as it is gives a figure's frame no name (app/bridge/program.py).
+    for (const plot of document.querySelectorAll(".mantine-Paper-root:not(.plotly-container) > .js-plotly-plot, .mantine-Paper-root:not(.plotly-container) > div > .js-plotly-plot"))
+      plot.closest(".mantine-Paper-root").classList.add("plotly-container");
     for (const name of CONTAINERS) {
       for (const mark of document.getElementsByClassName(`sb-${name}`)) {
         const container = mark.parentElement?.parentElement;
