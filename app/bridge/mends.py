@@ -11,9 +11,11 @@ import logging
 import os
 from collections.abc import AsyncGenerator, Callable, Sequence
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
+from types import SimpleNamespace
 from typing import Any, ClassVar, get_type_hints
 
+import msgspec
 import viser
 from viser._assignable_props_api import AssignablePropsBase
 from viser.infra import _infra
@@ -110,10 +112,20 @@ class MendedBuffer(AsyncMessageBuffer):
 
 
 def mend_queues() -> None:
-    """Let every page that connects from now on have a mended queue."""
+    """Let every page that connects from now on have a mended queue, through which a `Text` can pass."""
+    changed: Any = _infra
+    encode = partial(msgspec.msgpack.encode, enc_hook=_as_plain)
+    changed.msgspec = SimpleNamespace(msgpack=SimpleNamespace(encode=encode))
     queue = AsyncMessageBuffer.__name__
     if _fits("no message is lost in a page's queue", _infra, queue):
         setattr(_infra, queue, MendedBuffer)
+
+
+def _as_plain(value: object) -> str:
+    """Return the plain string of a `Text`, which msgspec does not take."""
+    if isinstance(value, str):
+        return str(value)
+    raise TypeError(f"{type(value).__name__} cannot be sent to a page")
 
 
 _hints_of = lru_cache(maxsize=None)(get_type_hints)

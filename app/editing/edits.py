@@ -8,6 +8,7 @@ from typing import Any, get_args
 
 from app.editing.form import Path
 from navcore.averaging.parameters import Variant
+from navcore.foundation.text import Text
 from navcore.motion import MOTIONS
 from navcore.motion.static import AttitudeMotion
 from navcore.scenario.model import MAX_METHODS, Scenario
@@ -204,11 +205,14 @@ def _forget_made_name(scenario: Scenario, data: Any, index: int) -> None:
     method = scenario.method[index]
     others = [m["name"] for i, m in enumerate(data["method"]) if i != index]
     made = {method.model_copy(update={"name": ""}).label(), method.network.id, "free", "kalman"}
-    made |= {f"averaging ({variant})" for variant in get_args(Variant)}
+    made |= {Text("averaging ({variant})", variant=variant) for variant in get_args(Variant)}
     if _unnumbered(method.name) not in made:
         return
     block = data["method"][index]
-    names: dict[str, str] = {"free": "free", "averaging": f"averaging ({block['averaging']['variant']})"}
+    names: dict[str, str] = {
+        "free": "free",
+        "averaging": Text("averaging ({variant})", variant=block["averaging"]["variant"]),
+    }
     names["kalman"] = "kalman"
     block["name"] = free_name(names.get(block["damping"], str(block["network"]["id"])), others)
 

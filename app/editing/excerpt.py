@@ -7,6 +7,7 @@ from typing import Any
 
 from app.editing.edits import free_name
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.scenario.file import blocks_to_toml, parse_toml
 from navcore.scenario.model import MAX_METHODS, Scenario
 
@@ -79,7 +80,11 @@ def paste(scenario: Scenario, selected: int, text: str) -> Pasted:
     data = scenario.canonical()
     most = MAX_METHODS - len(data["method"])
     if len(methods) > most:
-        allowed = f"must be at most {most} blocks [[method]]: a scenario has at most {MAX_METHODS} methods"
+        allowed = Text(
+            "must be at most {most} blocks [[method]]: a scenario has at most {max_methods} methods",
+            most=most,
+            max_methods=MAX_METHODS,
+        )
         raise InputError(Fault(WHERE, "method", len(methods), allowed))
     known = [method["name"] for method in data["method"]]
     added = [_named(method, known) for method in methods]
@@ -87,11 +92,11 @@ def paste(scenario: Scenario, selected: int, text: str) -> Pasted:
     data["reference"].update(reference)
     made = Scenario.parse(data, WHERE)
     at = selected + len(added)
-    said = [f"method {method.name}" for method in made.method[selected + 1 : at + 1]]
+    said = [Text("method {name}", name=method.name) for method in made.method[selected + 1 : at + 1]]
     if "event" in reference:
-        said.append(f"log events: {len(made.reference.event)}")
+        said.append(Text("log events: {event}", event=len(made.reference.event)))
     if "outage" in reference:
-        said.append(f"log outages: {len(made.reference.outage)}")
+        said.append(Text("log outages: {outage}", outage=len(made.reference.outage)))
     return Pasted(made, at, ", ".join(said))
 
 

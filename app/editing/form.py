@@ -16,6 +16,7 @@ from pydantic.fields import FieldInfo
 
 from navcore.foundation.notation import unit_sign
 from navcore.foundation.parameters import allowed_range, bounds_of, element_of, extra_of
+from navcore.foundation.text import Text
 
 Path = tuple[str | int, ...]
 Kind = Literal["number", "integer", "flag", "choice", "text", "roots", "numbers", "pairs"]
@@ -257,7 +258,15 @@ def _sequence(
         return [FieldSpec(path, label, _hint(info, ""), "roots", info.default)]
     if endless and _is_row(_bare(arguments[0])):
         columns = ": ".join(_bare(arguments[0])._fields)
-        return [FieldSpec(path, label, f"{_hint(info, '')} Written as {columns}, ...", "pairs", info.default)]
+        return [
+            FieldSpec(
+                path,
+                label,
+                Text("{hint} Written as {columns}, ...", hint=_hint(info, ""), columns=columns),
+                "pairs",
+                info.default,
+            )
+        ]
     if endless and _bare(arguments[0]) is float:
         return [FieldSpec(path, label, _hint(info, ""), "numbers", info.default)]
     if endless or any(_bare(argument) is not float for argument in arguments):
@@ -306,7 +315,7 @@ def _hint(info: FieldInfo, allowed: str) -> str:
     bounds = f"{allowed[0].upper()}{allowed[1:]}." if allowed else ""
     # The elements of a vector may have units of their own, in their names.
     if bounds and not extra_of(info).get("elements") and extra_of(info).get("unit") in (None, "", "1"):
-        bounds = f"{bounds.removesuffix('.')} (no unit)."
+        bounds = Text("{bounds} (no unit).", bounds=bounds.removesuffix("."))
     return " ".join(part for part in (text, bounds) if part)
 
 

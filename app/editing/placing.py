@@ -11,6 +11,7 @@ from app.plots.units import number
 from navcore.analysis import analyse
 from navcore.analysis.placement import LEAST_DAMPING, place, placeable
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.networks.base import NetworkParameters
 from navcore.networks.pair import MainPair
 from navcore.scenario.model import Method, Scenario
@@ -53,7 +54,14 @@ def read_point(text: str) -> complex:
     except ValueError:
         raise InputError(Fault("", "point", text[:60], "must be two numbers: Re and Im of s/ωₛ")) from None
     if not (abs(real) <= _FARTHEST and abs(imag) <= _FARTHEST) or real == imag == 0.0:
-        raise InputError(Fault("", "point", text[:60], f"must lie within {_FARTHEST:g} ωₛ, and not at 0"))
+        raise InputError(
+            Fault(
+                "",
+                "point",
+                text[:60],
+                Text("must lie within {farthest:g} ωₛ, and not at 0", farthest=_FARTHEST),
+            )
+        )
     return complex(real, imag)
 
 
@@ -69,9 +77,12 @@ def pair_at(point: complex) -> tuple[float, float]:
     ratio = -point.real / size
     if ratio < LEAST_DAMPING:
         side = "grows without bound" if ratio < 0.0 else "is hardly damped"
-        allowed = (
-            f"must be >= {LEAST_DAMPING:g}: a pair there {side}; the nearest possible one at ω = "
-            f"{number(size, 3)} ωₛ has ζ = {LEAST_DAMPING:g}"
+        allowed = Text(
+            "must be >= {least_damping:g}: a pair there {side}; the nearest possible one "
+            "at ω = {size} ωₛ has ζ = {least_damping:g}",
+            least_damping=LEAST_DAMPING,
+            side=side,
+            size=number(size, 3),
         )
         raise InputError(Fault("", "damping ratio ζ", round(ratio, 4), allowed))
     return ratio, size
@@ -100,7 +111,10 @@ def with_pair(
     """
     method = scenario.method[index]
     if method.undamped:
-        allowed = f'{method.name} runs without its network: set its damping to "internal" or "external" first'
+        allowed = Text(
+            '{name} runs without its network: set its damping to "internal" or "external" first',
+            name=method.name,
+        )
         raise InputError(Fault("", f"method.{index}.damping", method.damping, allowed))
     omega_s = scenario.omega_s
     wanted = f"ζ = {number(damping_ratio, 3)}, ω = {number(ratio, 3)} ωₛ"
@@ -112,7 +126,7 @@ def with_pair(
         raise _why_not(method, wanted, omega_s, error) from None
     changed = _with_network(scenario, index, placed.parameters)
     words = f"ζ = {number(placed.damping_ratio, 3)}, ω = {number(placed.frequency / omega_s, 3)} ωₛ"
-    return Placed(changed, f"{method.name}: pair at {words}", placed.note)
+    return Placed(changed, Text("{name}: pair at {words}", name=method.name, words=words), placed.note)
 
 
 @dataclass(frozen=True)
@@ -184,7 +198,9 @@ def with_nearest_pair(
     met = math.isclose(damping, damping_ratio, rel_tol=_SAME)
     if met and math.isclose(frequency, ratio * omega_s, rel_tol=_SAME):
         return placed
-    return Placed(placed.scenario, placed.words, f"the parameters allow {pair.allowed(omega_s)}")
+    return Placed(
+        placed.scenario, placed.words, Text("the parameters allow {allowed}", allowed=pair.allowed(omega_s))
+    )
 
 
 def main_pair(scenario: Scenario, index: int) -> MainPair | None:
@@ -203,7 +219,7 @@ def handle_of(scenario: Scenario, index: int) -> dict[str, Any]:
     method, pair, omega_s = scenario.method[index], main_pair(scenario, index), scenario.omega_s
     if pair is None:
         reason = "it runs without its network" if method.undamped else method.network.no_handle
-        return {"told": f"No handle for {method.name}: {reason}."}
+        return {"told": Text("No handle for {name}: {reason}.", name=method.name, reason=reason)}
     return {
         "method": index,
         "name": method.name,
@@ -223,16 +239,27 @@ def _with_network(scenario: Scenario, index: int, parameters: NetworkParameters)
 def _why_not(method: Method, wanted: str, omega_s: float, error: InputError) -> InputError:
     """Say why the network cannot, what it does now, and what can."""
     loop = analyse(method.network.transfer(omega_s))
-    now = (
-        f"its least damped pair stays at ζ = {number(loop.damping_ratio, 3)}, "
-        f"ω = {number(loop.natural_frequency / omega_s, 3)} ωₛ"
+    now = Text(
+        "its least damped pair stays at ζ = {damping_ratio}, ω = {natural_frequency} ωₛ",
+        damping_ratio=number(loop.damping_ratio, 3),
+        natural_frequency=number(loop.natural_frequency / omega_s, 3),
     )
     fault = error.faults[0]
     if fault.field == "network":
-        reason = f"this network has no parameter that puts a pair at {wanted}; {now}; use {placeable()}"
+        reason = Text(
+            "this network has no parameter that puts a pair at {wanted}; {now}; use {placeable}",
+            wanted=wanted,
+            now=now,
+            placeable=placeable(),
+        )
         return InputError(Fault("", f"{method.name}, network", method.network.id, reason))
     return InputError(
-        Fault("", f"{method.name}, {fault.field}", fault.value, f"{fault.allowed}, for {wanted}; {now}")
+        Fault(
+            "",
+            f"{method.name}, {fault.field}",
+            fault.value,
+            Text("{allowed}, for {wanted}; {now}", allowed=fault.allowed, wanted=wanted, now=now),
+        )
     )
 
 
@@ -245,8 +272,12 @@ def typed_pair(damping_ratio: float, ratio: float) -> tuple[float, float]:
         Not a number, or not a pair.
     """
     if not (math.isfinite(damping_ratio) and LEAST_DAMPING <= damping_ratio <= 1.0):
-        allowed = f"must be >= {LEAST_DAMPING:g} and <= 1 (above 1 there is no pair)"
+        allowed = Text(
+            "must be >= {least_damping:g} and <= 1 (above 1 there is no pair)", least_damping=LEAST_DAMPING
+        )
         raise InputError(Fault("", "pair ζ", damping_ratio, allowed))
     if not (math.isfinite(ratio) and 0.0 < ratio <= _FARTHEST):
-        raise InputError(Fault("", "pair ω/ωₛ", ratio, f"must be > 0 and <= {_FARTHEST:g}"))
+        raise InputError(
+            Fault("", "pair ω/ωₛ", ratio, Text("must be > 0 and <= {farthest:g}", farthest=_FARTHEST))
+        )
     return damping_ratio, ratio

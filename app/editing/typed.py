@@ -7,6 +7,7 @@ import re
 from typing import Any
 
 from navcore.foundation.notation import unit_sign
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG, HOUR, KNOT, MINUTE, NAUTICAL_MILE
 
 _G = 9.80665
@@ -73,7 +74,7 @@ def read_typed(text: str, unit: str) -> float:
     if given not in family:
         allowed = "takes a number without a unit"
         if family:
-            allowed = f"must be in one of {', '.join(map(unit_sign, family))}"
+            allowed = Text("must be in one of {family}", family=", ".join(map(unit_sign, family)))
         raise ValueError(f"{allowed}, not in {given!r}")
     # Rounded to what a double holds safely: 30 min are 0.5 h, not 0.49999999999999994 h.
     return float(f"{value * family[given] / family[mine]:.14g}")

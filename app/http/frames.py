@@ -21,6 +21,7 @@ import msgspec
 from app.bridge.controls import Control
 from app.bridge.server import FRAME_TYPES, IGNORED_FRAMES
 from app.http.limits import MIB, Limits
+from navcore.foundation.text import Text
 
 _LONGEST_FILE_NAME = 120
 
@@ -180,7 +181,14 @@ class Gate:
             return frame
         self.visitor.restore(fields["uuid"])
         name = control.label or "The control"
-        self.visitor.tell(f"{name} must {reason}; {shown(updates['value'])} was not taken over.")
+        self.visitor.tell(
+            Text(
+                "{name} must {reason}; {value} was not taken over.",
+                name=name,
+                reason=reason,
+                value=shown(updates["value"]),
+            )
+        )
         return None
 
     def _judge_hold(self, frame: bytes, fields: dict[str, Any]) -> bytes | None:
@@ -209,7 +217,11 @@ class Gate:
     def _why_not_upload(self, size: int) -> str | None:
         largest = self.limits.upload_bytes
         if size > largest:
-            return f"has {size / MIB:.1f} MiB; at most {largest / MIB:.0f} MiB are accepted"
+            return Text(
+                "has {size:.1f} MiB; at most {largest:.0f} MiB are accepted",
+                size=size / MIB,
+                largest=largest / MIB,
+            )
         if len(self._uploads) >= self.limits.uploads_at_once or self.uploading_bytes + size > largest:
             return "must wait until the other uploads have ended"
         if self.others is not None and not self.others.has_room(size):
@@ -317,7 +329,7 @@ def shown(value: object) -> str:
 
 def _why_not_tuple(control: Control, held: Sequence[object], value: object, longest_text: int) -> str | None:
     if not isinstance(value, (list, tuple)) or len(value) != len(held):
-        return f"have {len(held)} values"
+        return Text("have {held} values", held=len(held))
     reasons = (_why_not_scalar(control, old, new, longest_text) for old, new in zip(held, value, strict=True))
     return next((reason for reason in reasons if reason is not None), None)
 
@@ -337,7 +349,11 @@ def _why_not_text(control: Control, value: object, longest_text: int) -> str | N
         return "be text"
     if control.options is not None and value not in control.options:
         return "be one of the choices offered"
-    return None if len(value) <= longest_text else f"have at most {longest_text} characters"
+    return (
+        None
+        if len(value) <= longest_text
+        else Text("have at most {longest_text} characters", longest_text=longest_text)
+    )
 
 
 def _why_not_number(control: Control, whole: bool, value: object) -> str | None:
@@ -350,5 +366,5 @@ def _why_not_number(control: Control, whole: bool, value: object) -> str | None:
         # Browsers compute min + k * step in binary: the last step may lie a rounding error beyond the end.
         slack = 1e-9 * (abs(low) + abs(high))
         if not low - slack <= value <= high + slack:
-            return f"be from {low:g} to {high:g}"
+            return Text("be from {low:g} to {high:g}", low=low, high=high)
     return None

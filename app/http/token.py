@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 
 _LONGEST = 4096
 
@@ -73,7 +74,7 @@ def _first_line(file: Path) -> str:
     except UnicodeDecodeError:
         raise _fault(file, "must hold text") from None
     except OSError as error:
-        raise _fault(file, f"cannot be read: {error.strerror or error}") from None
+        raise _fault(file, Text("cannot be read: {strerror}", strerror=error.strerror or error)) from None
     if not line:
         raise _fault(file, "must hold the token in its first line")
     return line
@@ -84,7 +85,7 @@ def _write(file: Path, token: str) -> None:
         with os.fdopen(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as opened:
             opened.write(token + "\n")
     except OSError as error:
-        raise _fault(file, f"cannot be written: {error.strerror or error}") from None
+        raise _fault(file, Text("cannot be written: {strerror}", strerror=error.strerror or error)) from None
 
 
 def _fault(file: Path, allowed: str) -> InputError:

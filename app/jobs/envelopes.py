@@ -12,6 +12,7 @@ from app.jobs.search import Search
 from app.jobs.worker import Watch
 from app.plots.envelope import BandKind, Envelope, covariance_envelope, envelope
 from navcore.engine.run import Run
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
 SEEDS = 20
@@ -66,7 +67,7 @@ class Envelopes(Search[_Asked, Envelope]):
             self.words = ()
         elif kind == "seeds" and scenario.strapdown:
             self.cancel()
-            self.words = (f"Not for strapdown runs: it would take {SEEDS} of them.",)
+            self.words = (Text("Not for strapdown runs: it would take {seeds} of them.", seeds=SEEDS),)
             self._tell()
         else:
             self._submit(asked, 0.0)

@@ -6,6 +6,7 @@ from app.jobs.elsewhere import cluster
 from app.jobs.scheduler import GIB, Lane, Load, largest_run_bytes
 from navcore.engine.load import estimated_bytes, estimated_seconds
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.scenario.file import names_files
 from navcore.scenario.model import Scenario
@@ -49,9 +50,12 @@ def refuse_too_large(scenario: Scenario) -> None:
     """
     needed, most = estimated_bytes(scenario), largest_run_bytes()
     if needed > most:
-        allowed = (
-            f"this run would take about {needed / GIB:.1f} GB of memory and this server gives a run at most "
-            f"{most / GIB:.1f} GB: shorten it, lengthen step_s and output_step_s, or remove methods"
+        allowed = Text(
+            "this run would take about {needed:.1f} GB of memory and this server gives a "
+            "run at most {most:.1f} GB: shorten it, lengthen step_s and output_step_s, "
+            "or remove methods",
+            needed=needed / GIB,
+            most=most / GIB,
         )
         raise InputError([Fault("", "run.duration_h", scenario.run.duration_h, allowed)])
 

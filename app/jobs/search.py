@@ -13,6 +13,7 @@ from app.jobs.scheduler import Load
 from app.jobs.words import for_a_page
 from app.jobs.worker import ElsewhereLost, Watch, Worker
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 
 Asked = TypeVar("Asked")
 Found = TypeVar("Found")
@@ -151,7 +152,7 @@ class Search(Generic[Asked, Found]):
             words = tuple(str(fault) for fault in for_a_page(error).faults)
         except Exception as error:
             _log.exception("%s failed", self._name)
-            words = (f"Something went wrong: {type(error).__name__}: {error}",)
+            words = (Text("Something went wrong: {name}: {error}", name=type(error).__name__, error=error),)
         complete = result is not None and self._complete(result)
         with self._lock:
             if self.under_way is not asked:  # stopped, or another one waits

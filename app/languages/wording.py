@@ -17,6 +17,7 @@ from pathlib import Path
 
 from app.languages import markup
 from app.languages.names import NAME, NONE, Names
+from navcore.foundation.text import Text, origin_of
 
 FOLDER = Path(__file__).parent
 DOMAIN = "schuler"
@@ -128,6 +129,7 @@ class Wording:
     ) -> None:
         self.name = name
         self._exact = {key: said for key, said in texts.items() if _VALUE.search(key) is None}
+        self._templates = texts
         self._missed = missed
         self._by_word: dict[str, list[_Pattern]] = {}
         patterns = {key: said for key, said in texts.items() if key not in self._exact}
@@ -164,6 +166,8 @@ class Wording:
         """
         if len(text) < 2 or _LETTERS.search(text) is None:
             return text
+        if (origin := origin_of(text)) is not None and (said := self._rendered(origin, names)) is not None:
+            return said
         if not names.within(text):
             if not markup.has_markup(text):
                 return self.say(text)
@@ -171,6 +175,17 @@ class Wording:
         if not markup.has_markup(names.hidden(text)[0]) and not text.lstrip().startswith("<"):
             return self._around_names(text, names)
         return markup.translate(text, lambda piece: self._around_names(piece, names))
+
+    def _rendered(self, text: Text, names: Names) -> str | None:
+        """Fill the values, each in this language, into the translation; None where there is none."""
+        said = self._templates.get(text.forms[0])
+        if said is None:
+            return None
+        values = {
+            name: self.text(str(value), names) if isinstance(value, str) else value
+            for name, value in text.values.items()
+        }
+        return said.format(**values)
 
     def _around_names(self, text: str, names: Names) -> str:
         """Translate a text without markup in which there may be names.
@@ -181,6 +196,8 @@ class Wording:
         """
         if names.are(text):
             return text
+        if (origin := origin_of(text)) is not None and (said := self._rendered(origin, names)) is not None:
+            return said
         around, found = names.hidden(text)
         if not found or " ".join(text.split()) in self._exact:  # the page's own text, all of it
             return self.say(text)
@@ -213,6 +230,8 @@ class Wording:
 
     def _whole(self, key: str, depth: int) -> str | None:
         """Return the translation of one text of the catalogue, with or without values."""
+        if (origin := origin_of(key)) is not None and (said := self._rendered(origin, NONE)) is not None:
+            return said
         for text, end in ((key, ""), (key[:-1], _ENDS.get(key[-1:], ""))):
             if text is not key and not end:
                 break
@@ -378,7 +397,7 @@ def read_texts(language: str) -> dict[str, str]:
     """
     found = gettext.translation(DOMAIN, FOLDER, [language.replace("-", "_")])
     texts: dict[str, str] = getattr(found, "_catalog")  # noqa: B009 - the standard library lists them nowhere else
-    return {key: said for key, said in texts.items() if key and said}
+    return {key[0] if isinstance(key, tuple) else key: said for key, said in texts.items() if key and said}
 
 
 @lru_cache(maxsize=8)

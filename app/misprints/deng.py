@@ -20,6 +20,7 @@ from app.misprints.base import (
 from app.misprints.two_loops import TwoLoops
 from app.plots.units import number
 from navcore.foundation.earth import EARTH_RATE, SEMI_MAJOR_AXIS
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG, DEG_PER_HOUR, HOUR, MICRO_G, MINUTE
 from navcore.mechanization.recorder import PHI_N, PHI_U
 from navcore.networks.compass import CompassNetwork, gains_from_sigma_xi
@@ -47,10 +48,18 @@ def _periods() -> Comparison:
             Number("Earth period", "s", printed_day, day),
             Number("Foucault period at 32.06°", "s", day * here, day / here),
         ),
-        words=f"As printed the Schuler period would be {printed_schuler:.4f} s instead of "
-        f"{schuler / MINUTE:.1f} min, the Earth's {printed_day / MINUTE:.1f} min instead of {day / HOUR:.1f} "
-        f"h, and Foucault's would fall towards the equator ({day * here / HOUR:.1f} h at 32°) instead of "
-        f"rising ({day / here / HOUR:.1f} h).",
+        words=Text(
+            "As printed the Schuler period would be {printed_schuler:.4f} s instead of "
+            "{schuler:.1f} min, the Earth's {printed_day:.1f} min instead of {day:.1f} "
+            "h, and Foucault's would fall towards the equator ({day_2:.1f} h at 32°) "
+            "instead of rising ({day_3:.1f} h).",
+            printed_schuler=printed_schuler,
+            schuler=schuler / MINUTE,
+            printed_day=printed_day / MINUTE,
+            day=day / HOUR,
+            day_2=day * here / HOUR,
+            day_3=day / here / HOUR,
+        ),
     )
 
 
@@ -63,8 +72,12 @@ def _extra_s() -> Comparison:
         np.arange(0.0, 901.0, 2.0),
         ("with the extra s", "((1+K₂)s+K₃)/(s+K₁)"),
         (loops.growth, loops.settling),
-        f"Taken as the network, the printed H makes the loop unstable: e-fold in {loops.growth_s:.0f} s. "
-        f"Without the extra s it settles in {loops.corrected.settling_s / MINUTE:.1f} min.",
+        Text(
+            "Taken as the network, the printed H makes the loop unstable: e-fold in "
+            "{growth_s:.0f} s. Without the extra s it settles in {settling_s:.1f} min.",
+            growth_s=loops.growth_s,
+            settling_s=loops.corrected.settling_s / MINUTE,
+        ),
     )
 
 
@@ -76,8 +89,12 @@ def _radius() -> Comparison:
         np.arange(0.0, 10.01, 0.05),
         ("dp = K₃ dv/s", "dp = K₃ dv/(R s)"),
         (loops.growth,),
-        f"A velocity added to an angular rate: the integral gain is {number(SEMI_MAJOR_AXIS, 2)} times too "
-        f"large and the loop grows e-fold every {loops.growth_s:.2f} s.",
+        Text(
+            "A velocity added to an angular rate: the integral gain is {semi_major_axis} "
+            "times too large and the loop grows e-fold every {growth_s:.2f} s.",
+            semi_major_axis=number(SEMI_MAJOR_AXIS, 2),
+            growth_s=loops.growth_s,
+        ),
     )
 
 
@@ -116,9 +133,13 @@ def _transport_rate() -> Comparison:
             Curve("with the reference's transport rate", "corrected", corrected),
         ),
         numbers=(Number("largest tilt", "rad", peaks[0], peaks[1]),),
-        words=f"Perfect sensors and log, 0 to 10 m/s and back: as printed every change of speed tilts the "
-        f"platform by up to {peaks[0] / ARCSEC:.0f} arcsec; with Vᵣ/R the tilt stays "
-        f"below {max(peaks[1] / ARCSEC, 1e-3):.2g} arcsec.",
+        words=Text(
+            "Perfect sensors and log, 0 to 10 m/s and back: as printed every change of "
+            "speed tilts the platform by up to {peaks:.0f} arcsec; with Vᵣ/R the tilt "
+            "stays below {peaks_2:.2g} arcsec.",
+            peaks=peaks[0] / ARCSEC,
+            peaks_2=max(peaks[1] / ARCSEC, 1e-3),
+        ),
     )
 
 
@@ -160,9 +181,14 @@ def _coriolis() -> Comparison:
             Number("heading error after 2 h", "rad", ends[0], ends[1]),
             Number("Coriolis term left out", "m/s²", coriolis_north, 0.0),
         ),
-        words="Due east at 10 m/s in 32° north the terms left out act like "
-        f"{coriolis_north / MICRO_G:.0f} µg and {transport_up / DEG_PER_HOUR:.2f} °/h: "
-        f"after 2 h the heading is off by {abs(ends[0]) / DEG:.2f}°.",
+        words=Text(
+            "Due east at 10 m/s in 32° north the terms left out act like "
+            "{coriolis_north:.0f} µg and {transport_up:.2f} °/h: after 2 h the heading "
+            "is off by {ends:.2f}°.",
+            coriolis_north=coriolis_north / MICRO_G,
+            transport_up=transport_up / DEG_PER_HOUR,
+            ends=abs(ends[0]) / DEG,
+        ),
     )
 
 

@@ -19,6 +19,7 @@ from app.misprints.direct_form import direct_form_error, direct_form_growth, sta
 from app.misprints.two_loops import TwoLoops
 from app.plots.units import number
 from navcore.analysis import RADIUS, frequency_response
+from navcore.foundation.text import Text
 from navcore.foundation.units import MINUTE
 from navcore.mechanization.recorder import DV_E
 from navcore.networks.complementary import ComplementaryNetwork
@@ -37,9 +38,12 @@ def _power() -> Comparison:
         np.arange(0.0, 6 * 3600.0 + 1.0, 30.0),
         ("ωₛ³ s³ (printed)", "ωₛ s³"),
         (loops.damping, loops.growth),
-        f"With the printed power the s³ terms vanish and the loop grows e-fold in "
-        f"{loops.growth_s / MINUTE:.0f} min; mended its least damping ratio is "
-        f"{loops.corrected.damping_ratio:.2f}.",
+        Text(
+            "With the printed power the s³ terms vanish and the loop grows e-fold in "
+            "{growth_s:.0f} min; mended its least damping ratio is {damping_ratio:.2f}.",
+            growth_s=loops.growth_s / MINUTE,
+            damping_ratio=loops.corrected.damping_ratio,
+        ),
     )
 
 
@@ -62,8 +66,12 @@ def _transfer_powers() -> Comparison:
             Curve("powers mended", "corrected", corrected),
         ),
         numbers=(Number("gain at the Schuler frequency", "s", gains[0], gains[1]),),
-        words="At the Schuler frequency the printed transfer has the gain "
-        f"{number(gains[0], 2)} s instead of {gains[1]:.0f} s: fig. 3 cannot have been drawn with it.",
+        words=Text(
+            "At the Schuler frequency the printed transfer has the gain {gains} s "
+            "instead of {gains_2:.0f} s: fig. 3 cannot have been drawn with it.",
+            gains=number(gains[0], 2),
+            gains_2=gains[1],
+        ),
     )
 
 
@@ -101,8 +109,12 @@ def _terms() -> Comparison:
             Curve("n terms over n", "corrected", corrected),
         ),
         numbers=(Number("largest s for a change of 0.43 m/s", "m/s", peaks[0], peaks[1]),),
-        words=f"A change of {change:g} m/s counts as {peaks[0]:.4g} m/s, beyond c = 0.45: the loop is "
-        "undamped where it should stay as it is.",
+        words=Text(
+            "A change of {change:g} m/s counts as {peaks:.4g} m/s, beyond c = 0.45: the "
+            "loop is undamped where it should stay as it is.",
+            change=change,
+            peaks=peaks[0],
+        ),
     )
 
 
@@ -114,7 +126,11 @@ def _direct_form() -> Comparison:
     right = np.array([state_space_error(network, float(step)) for step in steps])
     at_tenth = direct_form_error(network, 0.1, np.float64), state_space_error(network, 0.1)
     growth = direct_form_growth(0.5, 0.01, np.float64)
-    unstable = "" if growth is None else f", and at 0.01 s it is unstable (e-fold in {growth:.0f} s)"
+    unstable = (
+        ""
+        if growth is None
+        else Text(", and at 0.01 s it is unstable (e-fold in {growth:.0f} s)", growth=growth)
+    )
     return Comparison(
         x_axis=Axis("step T", "s", log=True),
         y_axis=Axis("largest relative error of H", "", log=True),
@@ -128,8 +144,12 @@ def _direct_form() -> Comparison:
             Number("error of H at T = 0.1 s", "", at_tenth[0], at_tenth[1]),
             Number("e-folding time at T = 0.01 s", "s", growth, None),
         ),
-        words=f"The coefficients are right, but they do not fit into a double: at 0.1 s H is wrong by "
-        f"{100.0 * at_tenth[0]:.0f} %{unstable}.",
+        words=Text(
+            "The coefficients are right, but they do not fit into a double: at 0.1 s H "
+            "is wrong by {at_tenth:.0f} %{unstable}.",
+            at_tenth=100.0 * at_tenth[0],
+            unstable=unstable,
+        ),
     )
 
 
@@ -178,9 +198,14 @@ def _figure_7() -> Comparison:
             Number("overshoot after the switch", "m/s", peaks[0], peaks[2]),
             Number("the same without clearing the network", "m/s", None, peaks[3]),
         ),
-        words=f"Clearing the network with 0.5 m/s of log error present acts like a step of 0.5 m/s: the "
-        f"overshoot is {peaks[2]:.3f} m/s ({peaks[1]:.3f} for the step), not the {peaks[0]:.3f} of 0.25 m/s. "
-        "Without clearing there is none.",
+        words=Text(
+            "Clearing the network with 0.5 m/s of log error present acts like a step of "
+            "0.5 m/s: the overshoot is {peaks:.3f} m/s ({peaks_2:.3f} for the step), not "
+            "the {peaks_3:.3f} of 0.25 m/s. Without clearing there is none.",
+            peaks=peaks[2],
+            peaks_2=peaks[1],
+            peaks_3=peaks[0],
+        ),
     )
 
 

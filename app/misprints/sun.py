@@ -16,6 +16,7 @@ from app.misprints.base import (
 from app.misprints.two_loops import TwoLoops
 from app.plots.units import number
 from navcore.analysis import RADIUS, analyse, frequency_response
+from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR, KNOT, MINUTE
 from navcore.law.policy.adaptive import HIGHEST, LOWEST, QUADRATIC, SUN_TABLE
 from navcore.networks.base import LinearNetwork
@@ -49,8 +50,13 @@ def _radius() -> Comparison:
             Curve("(1-H)/(R (s² + ωₛ² H))", "corrected", corrected),
         ),
         numbers=(Number("gain at the Schuler frequency", "rad/(m/s²)", gains[0], gains[1]),),
-        words=f"Without 1/R the tilt comes out {number(RADIUS, 2)} times too large: "
-        f"{number(gains[0], 2)} rad for 1 m/s² at the Schuler frequency instead of {gains[1]:.2f} rad.",
+        words=Text(
+            "Without 1/R the tilt comes out {radius} times too large: {gains} rad for 1 "
+            "m/s² at the Schuler frequency instead of {gains_2:.2f} rad.",
+            radius=number(RADIUS, 2),
+            gains=number(gains[0], 2),
+            gains_2=gains[1],
+        ),
     )
 
 
@@ -68,8 +74,13 @@ def _sign() -> Comparison:
             Curve("Sun's Table 1, PCHIP", "corrected", table),
         ),
         numbers=(Number("ζ at 3 kn", "", float(printed[-1]), float(table[-1])),),
-        words=f"As printed ζ rises with the difference, to {printed[-1]:.1f} at 3 kn where Sun's own table "
-        f"has {table[-1]:.2f}: the worse the log, the harder it is believed.",
+        words=Text(
+            "As printed ζ rises with the difference, to {printed:.1f} at 3 kn where "
+            "Sun's own table has {table:.2f}: the worse the log, the harder it is "
+            "believed.",
+            printed=printed[-1],
+            table=table[-1],
+        ),
     )
 
 
@@ -94,15 +105,23 @@ def _negative() -> Comparison:
     low, high = negative_range()
     return loops.compare(
         np.arange(0.0, 1801.0, 5.0),
-        (f"quadratic at 1.8 kn: ζ = {asked:.3f}", f"table at 1.8 kn: ζ = {table:.2f}"),
+        (
+            Text("quadratic at 1.8 kn: ζ = {asked:.3f}", asked=asked),
+            Text("table at 1.8 kn: ζ = {table:.2f}", table=table),
+        ),
         (
             Number("ζ at 1.8 kn", "", asked, table),
             loops.growth,
             Number("negative from", "m/s", low, None),
             Number("negative to", "m/s", high, None),
         ),
-        f"Even with its sign mended the quadratic is negative between {low / KNOT:.2f} and {high / KNOT:.2f} "
-        f"kn: negative damping, e-fold in {loops.growth_s / MINUTE:.1f} min at 1.8 kn.",
+        Text(
+            "Even with its sign mended the quadratic is negative between {low:.2f} and "
+            "{high:.2f} kn: negative damping, e-fold in {growth_s:.1f} min at 1.8 kn.",
+            low=low / KNOT,
+            high=high / KNOT,
+            growth_s=loops.growth_s / MINUTE,
+        ),
     )
 
 
@@ -113,8 +132,11 @@ def _sigma() -> Comparison:
         np.arange(0.0, 901.0, 2.0),
         ("σ = + ζ ωₙ (printed)", "σ = - ζ ωₙ"),
         (loops.damping, loops.growth),
-        f"With the positive σ of Sun 16 all four poles of Sun 14 and 15 lie on the right: e-fold "
-        f"in {loops.growth_s:.0f} s.",
+        Text(
+            "With the positive σ of Sun 16 all four poles of Sun 14 and 15 lie on the "
+            "right: e-fold in {growth_s:.0f} s.",
+            growth_s=loops.growth_s,
+        ),
     )
 
 
@@ -149,8 +171,12 @@ def _residue() -> Comparison:
             Number("damping ratio when 0.5 is asked", "", printed, exact),
             Number("unstable for ζ up to", "", limit, None),
         ),
-        words=f"Forcing H(0) = 1 moves the pair: {printed:.2f} when 0.5 is asked, and no stability at all up "
-        f"to ζ = {limit:.3f}.",
+        words=Text(
+            "Forcing H(0) = 1 moves the pair: {printed:.2f} when 0.5 is asked, and no "
+            "stability at all up to ζ = {limit:.3f}.",
+            printed=printed,
+            limit=limit,
+        ),
     )
 
 
@@ -164,9 +190,15 @@ def _small_xi() -> Comparison:
         np.arange(0.0, 86401.0, 120.0),
         ("ζ = 0.08 as printed", "ζ = 0.08 exact"),
         (loops.damping, loops.growth),
-        f"At ζ = 0.08, an entry of Sun's own table, the loop as printed grows e-fold in "
-        f"{loops.growth_s / HOUR:.0f} h (damping {loops.printed.damping_ratio:.3f}); so it does for "
-        f"{entries} of the {len(SUN_TABLE)} entries.",
+        Text(
+            "At ζ = 0.08, an entry of Sun's own table, the loop as printed grows e-fold "
+            "in {growth_s:.0f} h (damping {damping_ratio:.3f}); so it does for {entries} "
+            "of the {sun_table} entries.",
+            growth_s=loops.growth_s / HOUR,
+            damping_ratio=loops.printed.damping_ratio,
+            entries=entries,
+            sun_table=len(SUN_TABLE),
+        ),
     )
 
 

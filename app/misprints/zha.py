@@ -8,6 +8,7 @@ import numpy as np
 
 from app.misprints.base import OMEGA_S, TILT, TIME, Comparison, Curve, Misprint, Number
 from navcore.analysis import analyse, initial_tilt_response
+from navcore.foundation.text import Text
 from navcore.foundation.units import MINUTE
 from navcore.networks.compass import CompassNetwork, gains_from_sigma_xi
 
@@ -49,10 +50,17 @@ def _gain() -> Comparison:
             Number("last above 0.5 % of the initial tilt", "s", settled["printed"], settled["corrected"]),
             Number("last above 2 %", "s", loop["printed"].settling_s, loop["corrected"].settling_s),
         ),
-        words=f"With the printed K₂ the damping is {loop['printed'].damping_ratio:.2f} instead of "
-        f"{loop['corrected'].damping_ratio:.2f}, and the 10 min of the design (σ t = 5.25) become "
-        f"{slowest['printed'] / MINUTE:.0f}; 0.5 % of the tilt is last exceeded after "
-        f"{settled['printed'] / MINUTE:.0f} min instead of {settled['corrected'] / MINUTE:.0f}.",
+        words=Text(
+            "With the printed K₂ the damping is {damping_ratio:.2f} instead of "
+            "{damping_ratio_2:.2f}, and the 10 min of the design (σ t = 5.25) become "
+            "{printed:.0f}; 0.5 % of the tilt is last exceeded after {printed_2:.0f} min "
+            "instead of {corrected:.0f}.",
+            damping_ratio=loop["printed"].damping_ratio,
+            damping_ratio_2=loop["corrected"].damping_ratio,
+            printed=slowest["printed"] / MINUTE,
+            printed_2=settled["printed"] / MINUTE,
+            corrected=settled["corrected"] / MINUTE,
+        ),
     )
 
 
@@ -77,9 +85,12 @@ def _design() -> Comparison:
             Number("σ for t = 600 s", "1/s", sigmas["printed"], sigmas["corrected"]),
             Number("exp(-σ t) at 600 s", "", left["printed"], left["corrected"]),
         ),
-        words="The σ = 0.0088 that Zha uses belongs to σ t = 5.25: "
-        f"{100.0 * left['corrected']:.1f} % is left after 10 min. "
-        f"The printed 525 would ask for σ = {sigmas['printed']:.3f}.",
+        words=Text(
+            "The σ = 0.0088 that Zha uses belongs to σ t = 5.25: {corrected:.1f} % is "
+            "left after 10 min. The printed 525 would ask for σ = {printed:.3f}.",
+            corrected=100.0 * left["corrected"],
+            printed=sigmas["printed"],
+        ),
     )
 
 
@@ -97,7 +108,7 @@ ZHA = (
         id="zha-4.1",
         paper="Zha 2019",
         where="section 4.1",
-        printed=f"K₂ = {PRINTED_K2:g} for σ = 0.0088, ζ = 0.7",
+        printed=Text("K₂ = {printed_k2:g} for σ = 0.0088, ζ = 0.7", printed_k2=PRINTED_K2),
         right="K₂ = 202.52 (K₁ = 0.0264, K₃ = 0.9045 agree)",
         consequence="less damped and twice as slow as designed",
         compute=_gain,

@@ -19,6 +19,7 @@ from app.misprints.base import (
 )
 from navcore.analysis.response import free_states, matrix_exponential
 from navcore.foundation.earth import EARTH_RATE, SEMI_MAJOR_AXIS, SPHERE_GRAVITY
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG, DEG_PER_HOUR, MINUTE
 from navcore.mechanization.error_model import system_matrix
 from navcore.mechanization.recorder import DV_E
@@ -73,8 +74,12 @@ def _signs() -> Comparison:
                 float(np.max(np.abs(corrected))),
             ),
         ),
-        words=f"As printed one channel grows e-fold every {growth / MINUTE:.1f} min; with the signs mended "
-        "every eigenvalue lies on the imaginary axis: the errors only oscillate.",
+        words=Text(
+            "As printed one channel grows e-fold every {growth:.1f} min; with the signs "
+            "mended every eigenvalue lies on the imaginary axis: the errors only "
+            "oscillate.",
+            growth=growth / MINUTE,
+        ),
     )
 
 
@@ -107,9 +112,14 @@ def _tilt_coefficient() -> Comparison:
             Number("tilt at t = 0", "rad", float(printed[0]), float(corrected[0])),
             Number("amplitude of the 24 h line", "rad", tilt, (EARTH_RATE / OMEGA_S) ** 2 * tilt),
         ),
-        words=f"As printed the solution starts at {printed[0] / ARCSEC:.0f} arcsec although the initial tilt "
-        f"is {corrected[0] / ARCSEC:.0f}, and carries a 24 h line of {tilt / ARCSEC:.0f} arcsec that "
-        "is not there.",
+        words=Text(
+            "As printed the solution starts at {printed:.0f} arcsec although the initial "
+            "tilt is {corrected:.0f}, and carries a 24 h line of {tilt:.0f} arcsec that "
+            "is not there.",
+            printed=printed[0] / ARCSEC,
+            corrected=corrected[0] / ARCSEC,
+            tilt=tilt / ARCSEC,
+        ),
     )
 
 
@@ -150,8 +160,12 @@ def _latitude_coefficients() -> Comparison:
                 float(np.max(np.abs(corrected - model))),
             ),
         ),
-        words=f"As printed the latitude is wrong by {printed[0] * metres / 1e3:.1f} km before anything has "
-        f"happened (t = 0); mended it starts {abs(corrected[0]) * metres:.1f} m from zero.",
+        words=Text(
+            "As printed the latitude is wrong by {printed:.1f} km before anything has "
+            "happened (t = 0); mended it starts {corrected:.1f} m from zero.",
+            printed=printed[0] * metres / 1e3,
+            corrected=abs(corrected[0]) * metres,
+        ),
     )
 
 
@@ -180,8 +194,12 @@ def _unit() -> Comparison:
             Curve("5×10⁻⁴ g per 100 Hz sample: 50 µg/√Hz", "corrected", corrected),
         ),
         numbers=(Number("RMS of the east velocity error", "m/s", rms[0], rms[1]),),
-        words=f"Read per √Hz the random walk alone gives {rms[0]:.2f} m/s RMS in 24 h; read per sample "
-        f"of 100 Hz it gives {rms[1]:.3f} m/s.",
+        words=Text(
+            "Read per √Hz the random walk alone gives {rms:.2f} m/s RMS in 24 h; read "
+            "per sample of 100 Hz it gives {rms_2:.3f} m/s.",
+            rms=rms[0],
+            rms_2=rms[1],
+        ),
     )
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from navcore.engine.run import Run
+from navcore.foundation.text import Text
 
 if TYPE_CHECKING:
     from navcore.design.bands import Bands
@@ -51,7 +52,7 @@ class Envelope:
     @property
     def label(self) -> str:
         """Name of the band, and whether it is older than the curves."""
-        return f"band: {self.words}{OLD if self.old else ''}"
+        return Text("band: {words}{old}", words=self.words, old=OLD if self.old else "")
 
 
 def envelope(runs: Sequence[Run]) -> Envelope:
@@ -75,7 +76,9 @@ def envelope(runs: Sequence[Run]) -> Envelope:
         high.append(np.percentile(stacked.max(axis=2), HIGHEST, axis=0))
         times.append(series[0].t_s[: bins * pairs].reshape(bins, pairs).mean(axis=1))
     count = min(map(len, times))
-    words = f"{LOWEST:g} to {HIGHEST:g} % of {len(runs)} seeds"
+    words = Text(
+        "{lowest:g} to {highest:g} % of {runs} seeds", lowest=LOWEST, highest=HIGHEST, runs=len(runs)
+    )
     lower, upper = (tuple(each[:count] for each in edges) for edges in (low, high))
     return Envelope(
         times[0][:count], lower, upper, words, ("Each seed is another draw of all random errors.",)
@@ -105,15 +108,21 @@ def covariance_envelope(scenario: Scenario, bands: Bands) -> Envelope:
     for method, band in zip(scenario.method, bands.methods, strict=True):
         if band.sigma is None:
             missing.append(method.name)
-            details.append(f"{method.name}: no band, {band.reason}.")
+            details.append(Text("{name}: no band, {reason}.", name=method.name, reason=band.reason))
             low.append(None)
             high.append(None)
             continue
         if band.kind == "filter":
-            details.append(f"{method.name}: the covariance that the Kalman filter computes for itself.")
+            details.append(
+                Text("{name}: the covariance that the Kalman filter computes for itself.", name=method.name)
+            )
         distance = np.hypot(band.sigma[:, 5], band.sigma[:, 6])
         high.append(np.column_stack([band.sigma, distance]))
         low.append(np.column_stack([-band.sigma, np.zeros_like(distance)]))
-    names = ", ".join(missing) if len(missing) <= _MOST_NAMED else f"{len(missing)} methods"
-    words = "±1σ by covariance" + (f"; no covariance: {names}" if missing else "")
+    names = (
+        ", ".join(missing) if len(missing) <= _MOST_NAMED else Text("{missing} methods", missing=len(missing))
+    )
+    words = Text(
+        "±1σ by covariance{names}", names=Text("; no covariance: {names}", names=names) if missing else ""
+    )
     return Envelope(bands.t_s, tuple(low), tuple(high), words, tuple(details))

@@ -5,6 +5,8 @@ from __future__ import annotations
 from html import escape
 from typing import Literal
 
+from navcore.foundation.text import Text
+
 State = Literal["shown", "unscaled", "dimmed", "hidden"]
 STATES: tuple[State, ...] = ("shown", "unscaled", "dimmed", "hidden")
 """In the order in which clicks go through them."""
@@ -43,7 +45,7 @@ def word(state: State) -> str:
 
 def hint(state: State) -> str:
     """Say what a click does."""
-    return f"Click: {_NEXT_WORDS[after(state)]}"
+    return Text("Click: {next_words}", next_words=_NEXT_WORDS[after(state)])
 
 
 def entry(key: str, name: str, bar: str, state: State) -> str:

@@ -10,6 +10,7 @@ from typing import Any
 
 from app.plots.plotly_data import PlotlyFigure, values_of
 from app.plots.uplot import UplotFigure
+from navcore.foundation.text import Text
 
 
 def time_csv(figures: Sequence[UplotFigure], about: Iterable[str]) -> bytes:
@@ -23,7 +24,7 @@ def time_csv(figures: Sequence[UplotFigure], about: Iterable[str]) -> bytes:
         Lines of comment above the header.
     """
     first = figures[0]
-    columns, heads = [first.time], [f"time ({first.time_unit.name})"]
+    columns, heads = [first.time], [Text("time ({name})", name=first.time_unit.name)]
     for figure in figures:
         unit = f" ({figure.unit.name})" if figure.unit.name else ""
         which = f"{figure.symbol}: " if len(figures) > 1 else ""

@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from html import escape
 from typing import Any
 
+from navcore.foundation.text import Text
+
 METHOD_COLORS = (
     "#0072B2",  # blue
     "#D55E00",  # vermilion
@@ -254,4 +256,6 @@ def fitting(titles: Sequence[str], room_px: float) -> str:
 
 def panel_title(content: str, suffix: str = "", shift_px: float = 13.0) -> dict[str, Any]:
     """Bold title above the subplot with axes ``x<suffix>``, ``y<suffix>``, flush left."""
-    return heading(f"<b>{content}</b>", shift_px, f"x{suffix} domain") | {"yref": f"y{suffix} domain"}
+    return heading(f"<b>{content}</b>", shift_px, Text("x{suffix} domain", suffix=suffix)) | {
+        "yref": Text("y{suffix} domain", suffix=suffix)
+    }

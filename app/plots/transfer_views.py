@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from navcore.analysis.transfers import RADIUS, Output, Source
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG_PER_HOUR, MICRO_G
 
 
@@ -45,31 +46,40 @@ _ACCELERATION = 0.01
 
 VIEWS: dict[str, TransferView] = {
     "phi/dv_r": TransferView(
-        "dv_r", "phi", f"{_TILT} from log error", f"φ/{_LOG}", "arcsec per m/s", 1.0 / ARCSEC
+        "dv_r", "phi", Text("{tilt} from log error", tilt=_TILT), f"φ/{_LOG}", "arcsec per m/s", 1.0 / ARCSEC
     ),
-    "dv/dv_r": TransferView("dv_r", "dv", f"{_SPEED} from log error", f"δV/{_LOG}", "dB", 1.0),
+    "dv/dv_r": TransferView(
+        "dv_r", "dv", Text("{speed} from log error", speed=_SPEED), f"δV/{_LOG}", "dB", 1.0
+    ),
     "R phi/dv_r": TransferView(
         "dv_r", "phi", "R × tilt from log error", f"R φ/{_LOG}", "dB re 1 s", RADIUS, "(Liu fig. 3, 5)"
     ),
     "phi/eps": TransferView(
-        "eps", "phi", f"{_TILT} from gyro error", "φ/ε", "arcsec per 0.01 °/h", _GYRO / ARCSEC
+        "eps", "phi", Text("{tilt} from gyro error", tilt=_TILT), "φ/ε", "arcsec per 0.01 °/h", _GYRO / ARCSEC
     ),
-    "dv/eps": TransferView("eps", "dv", f"{_SPEED} from gyro error", "δV/ε", "m/s per 0.01 °/h", _GYRO),
+    "dv/eps": TransferView(
+        "eps", "dv", Text("{speed} from gyro error", speed=_SPEED), "δV/ε", "m/s per 0.01 °/h", _GYRO
+    ),
     "phi/nabla": TransferView(
         "nabla",
         "phi",
-        f"{_TILT} from accelerometer error",
+        Text("{tilt} from accelerometer error", tilt=_TILT),
         "φ/∇",
         "arcsec per 10 µg",
         _PER_10_UG / ARCSEC,
     ),
     "dv/nabla": TransferView(
-        "nabla", "dv", f"{_SPEED} from accelerometer error", "δV/∇", "m/s per 10 µg", _PER_10_UG
+        "nabla",
+        "dv",
+        Text("{speed} from accelerometer error", speed=_SPEED),
+        "δV/∇",
+        "m/s per 10 µg",
+        _PER_10_UG,
     ),
     "phi/acceleration": TransferView(
         "acceleration",
         "phi",
-        f"{_TILT} from own acceleration",
+        Text("{tilt} from own acceleration", tilt=_TILT),
         "φ/A",
         "arcsec per 0.01 m/s²",
         _ACCELERATION / ARCSEC,
@@ -78,7 +88,7 @@ VIEWS: dict[str, TransferView] = {
     "dv/acceleration": TransferView(
         "acceleration",
         "dv",
-        f"{_SPEED} from own acceleration",
+        Text("{speed} from own acceleration", speed=_SPEED),
         "δV/A",
         "m/s per 0.01 m/s²",
         _ACCELERATION,

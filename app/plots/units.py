@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG, HOUR, KNOT, MINUTE, NAUTICAL_MILE
 
 
@@ -181,7 +182,11 @@ def settling(seconds: float | None) -> str:
     >>> settling(11982.0), settling(None)
     ('200 min', 'never')
     """
-    return "never" if seconds is None or math.isinf(seconds) else f"{rounded(seconds / MINUTE)} min"
+    return (
+        "never"
+        if seconds is None or math.isinf(seconds)
+        else Text("{seconds} min", seconds=rounded(seconds / MINUTE))
+    )
 
 
 def duration(seconds: float, digits: int = 3) -> str:

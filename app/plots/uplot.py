@@ -10,6 +10,7 @@ import numpy as np
 from app.plots import style
 from app.plots.legend import FAINT, State
 from app.plots.units import Unit
+from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 
 SYNC_KEY = "schuler-time"
@@ -137,7 +138,10 @@ class UplotFigure:
     @property
     def series(self) -> tuple[dict[str, Any], ...]:
         """Series for uPlot: the time, then the curves."""
-        return ({"label": f"time ({self.time_unit.name})"}, *(curve.series for curve in self.curves))
+        return (
+            {"label": Text("time ({name})", name=self.time_unit.name)},
+            *(curve.series for curve in self.curves),
+        )
 
     def axes(self, *, time_axis: bool = True, low: bool = False) -> tuple[dict[str, Any], ...]:
         """Axes for uPlot.
@@ -168,7 +172,11 @@ class UplotFigure:
             "size": _X_SIZE if time_axis else 8,
         }
         if time_axis:
-            x |= {"label": f"time ({self.time_unit.name})", "labelSize": LABEL_SIZE, "labelGap": 0}
+            x |= {
+                "label": Text("time ({name})", name=self.time_unit.name),
+                "labelSize": LABEL_SIZE,
+                "labelGap": 0,
+            }
         else:
             x |= {"ticks": {"show": False}, "font": f"1px {style.FONT_FAMILY}", "stroke": "rgba(0,0,0,0)"}
         unit = f"({self.unit.name})" if self.unit.name else ""

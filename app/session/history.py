@@ -10,6 +10,7 @@ from typing import Any
 
 from navcore.foundation.notation import symbol
 from navcore.foundation.parameters import sharing
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
 MOST_STEPS = 200
@@ -191,14 +192,18 @@ def change_name(before: State, after: State) -> str:
         On both sides of the change.
     """
     if after.origin != before.origin:
-        return f"open {after.origin}"
+        return Text("open {origin}", origin=after.origin)
     count = len(after.scenario.method) - len(before.scenario.method)
     if count:
         return "add a method" if count > 0 else "remove a method"
     fields = changed_fields(before.scenario, after.scenario)
     if len(fields) != 1:
         blocks = {field.rsplit(".", 1)[0] for field in fields}
-        return f"change of {blocks.pop()}" if len(blocks) == 1 else f"change of {len(fields)} fields"
+        return (
+            Text("change of {pop}", pop=blocks.pop())
+            if len(blocks) == 1
+            else Text("change of {fields} fields", fields=len(fields))
+        )
     (field,) = fields
     old, new = fields_of(before.scenario).get(field), fields_of(after.scenario).get(field)
     return f"{_named(field, after.scenario)}: {_short(old)} → {_short(new)}"
@@ -211,7 +216,7 @@ def _named(field: str, scenario: Scenario) -> str:
     if block != "method" or not inner:
         return field
     inner = symbol(inner.removeprefix("network.")) if inner.startswith("network.") else inner
-    return f"{inner} of {_short(scenario.method[int(index)].name)}"
+    return Text("{inner} of {short}", inner=inner, short=_short(scenario.method[int(index)].name))
 
 
 def fields_of(scenario: Scenario) -> Mapping[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.motion.track import TrackMotion
 from navcore.scenario.model import Scenario
 
@@ -47,10 +48,22 @@ def told(fit: LogErrorFit) -> list[str]:
     """Say what the fit found, a line each."""
     (starboard, forward), (of_starboard, of_forward) = fit.bias, fit.bias_std
     return [
-        f"Error of the log along the ship's axes, over {fit.span_s:.0f} s at {fit.rate_hz:.3g} Hz:",
-        f"Delay {fit.delay_s:.1f} s.",
-        f"Bias to starboard {starboard:.3f} ± {of_starboard:.3f} m/s.",
-        f"Bias forward {forward:.3f} ± {of_forward:.3f} m/s.",
-        f"White noise {fit.noise:.3f} m/s a sample.",
-        f"Drift {fit.drift:.3f} m/s with a correlation time of {fit.drift_tau_s:.1f} s.",
+        Text(
+            "Error of the log along the ship's axes, over {span_s:.0f} s at {rate_hz:.3g} Hz:",
+            span_s=fit.span_s,
+            rate_hz=fit.rate_hz,
+        ),
+        Text("Delay {delay_s:.1f} s.", delay_s=fit.delay_s),
+        Text(
+            "Bias to starboard {starboard:.3f} ± {of_starboard:.3f} m/s.",
+            starboard=starboard,
+            of_starboard=of_starboard,
+        ),
+        Text("Bias forward {forward:.3f} ± {of_forward:.3f} m/s.", forward=forward, of_forward=of_forward),
+        Text("White noise {noise:.3f} m/s a sample.", noise=fit.noise),
+        Text(
+            "Drift {drift:.3f} m/s with a correlation time of {drift_tau_s:.1f} s.",
+            drift=fit.drift,
+            drift_tau_s=fit.drift_tau_s,
+        ),
     ]

@@ -15,6 +15,7 @@ from app.jobs.worker import Watch, Worker
 from app.session.simulating import Simulate
 from navcore.engine.run import Run
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
 MOST_PINS = 8
@@ -145,7 +146,7 @@ class Pins:
         """
         with self._lock:
             if len(self._pins) >= MOST_PINS:
-                allowed = f"at most {MOST_PINS}: remove one first"
+                allowed = Text("at most {most_pins}: remove one first", most_pins=MOST_PINS)
                 raise InputError([Fault("pins", "", len(self._pins), allowed)])
             id, self._next = self._next, self._next + 1
             taken = {pin.color for pin in self._pins}
@@ -170,7 +171,14 @@ class Pins:
             changes["note"] = str(changes["note"]).strip()[:LONGEST_NOTE]
         if changes.get("color", next(iter(COLORS))) not in COLORS:
             raise InputError(
-                [Fault("pins", "color", changes["color"], f"must be one of {', '.join(COLORS)}")]
+                [
+                    Fault(
+                        "pins",
+                        "color",
+                        changes["color"],
+                        Text("must be one of {colors}", colors=", ".join(COLORS)),
+                    )
+                ]
             )
         with self._lock:
             before = self._pins
@@ -267,7 +275,7 @@ def _read(id: int, entry: Any) -> Pin:
 
 
 def _made_name(id: int) -> str:
-    return f"pin {id}"
+    return Text("pin {id}", id=id)
 
 
 def _short(name: object) -> str:

@@ -16,6 +16,7 @@ from navcore.analysis import Loop, analyse
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import allowed_range, extra_of, quantity
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, MINUTE
 from navcore.networks.base import LinearNetwork
 
@@ -142,11 +143,16 @@ def read_limit(name: str, text: str) -> float | None:
     typed = text.strip().replace(",", ".")
     if not typed:
         return None
-    allowed = allowed_range(Requirements.model_fields[name]) + "; leave it empty for no requirement"
+    allowed = Text(
+        "{allowed_range}; leave it empty for no requirement",
+        allowed_range=allowed_range(Requirements.model_fields[name]),
+    )
     try:
         value = float(typed)
     except ValueError:
-        raise InputError(Fault("", label_of(name), text, f"must be a number: {allowed}")) from None
+        raise InputError(
+            Fault("", label_of(name), text, Text("must be a number: {allowed}", allowed=allowed))
+        ) from None
     try:
         Requirements.model_validate({name: value})
     except ValueError:

@@ -23,6 +23,7 @@ from app.session.uploads import Uploads
 from app.session.view import View
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
 _REPORT_EVERY_S = 0.1
@@ -207,7 +208,9 @@ class Session:
                 return False
             opened = self.opened if origin is None else scenario
             state = State(scenario, origin or self.origin, self.selected, opened)
-            self.history.push(state, name or ("" if origin is None else f"open {origin}"), gesture)
+            self.history.push(
+                state, name or ("" if origin is None else Text("open {origin}", origin=origin)), gesture
+            )
             self._go_to(state, by, opens=origin is not None)
             return True
 
@@ -231,7 +234,7 @@ class Session:
     def reset(self, by: object) -> bool:
         """Go back to the scenario as it was opened; False when it is that already."""
         with self.lock:
-            return self.change(self.opened, by, name=f"reset to {self.origin}")
+            return self.change(self.opened, by, name=Text("reset to {origin}", origin=self.origin))
 
     def select(self, index: int, by: object) -> None:
         """Choose the method that the controls edit."""

@@ -13,6 +13,7 @@ from app.session.history import fields_of
 from app.session.pins import LONGEST_NAME, Pin
 from navcore.engine.run import Run
 from navcore.foundation.notation import symbol
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
 if TYPE_CHECKING:
@@ -122,7 +123,7 @@ def difference(pin: Pin, scenario: Scenario) -> str:
     if not parts:
         return pin.name
     more = len(parts) - _MOST_PARTS
-    words = ", ".join(parts[:_MOST_PARTS]) + (f" + {more} more" if more > 0 else "")
+    words = ", ".join(parts[:_MOST_PARTS]) + (Text(" + {more} more", more=more) if more > 0 else "")
     return words if len(words) <= LONGEST_NAME else f"{words[: LONGEST_NAME - 1]}…"
 
 
@@ -189,5 +190,5 @@ def _words(path: str, value: Any) -> str:
         return str(value)
     name = symbol(name)
     if value is None:
-        return f"no {name}"
+        return Text("no {name}", name=name)
     return f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}"

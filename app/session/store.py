@@ -21,6 +21,7 @@ from typing import IO, Any
 from app.http.ids import log_name
 from app.session.content import Contents, link_files
 from app.session.database import Database, parsed
+from navcore.foundation.text import Text
 
 WRITE_AFTER_S = 0.5
 """Between a change and the file: changes that follow each other are written once."""
@@ -198,7 +199,13 @@ class Store:
 
         content = orjson.dumps(document, option=orjson.OPT_NON_STR_KEYS)
         if len(content) > LARGEST_DOCUMENT:
-            raise OSError(None, f"the session takes more than {LARGEST_DOCUMENT >> 20} MiB")
+            raise OSError(
+                None,
+                Text(
+                    "the session takes more than {largest_document} MiB",
+                    largest_document=LARGEST_DOCUMENT >> 20,
+                ),
+            )
         self.database.write(_checked(id), content, shared_by)
 
     def share(self, id: str, shared: str, document: dict[str, Any]) -> None:
@@ -210,7 +217,9 @@ class Store:
             There is no room, or the session has shared too many already.
         """
         if self.database.shared_by(id) >= MOST_LINKS:
-            raise OSError(None, f"at most {MOST_LINKS} links are made from one session")
+            raise OSError(
+                None, Text("at most {most_links} links are made from one session", most_links=MOST_LINKS)
+            )
         link_files(self.files_folder(id), self.files_folder(shared))
         self.write(shared, document, shared_by=id)
 

@@ -13,6 +13,7 @@ from app.http.limits import MIB, Limits
 from navcore.foundation import guarded
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.motion.base import LAT, LON
 from navcore.scenario.model import Scenario
@@ -121,19 +122,38 @@ class Uploads:
 
     def _refuse_excess(self, name: str, size: int) -> None:
         if size > LARGEST_FILE:
-            allowed = f"has {size / MIB:.1f} MiB; at most {LARGEST_FILE / MIB:.0f} MiB are accepted"
+            allowed = Text(
+                "has {size:.1f} MiB; at most {largest_file:.0f} MiB are accepted",
+                size=size / MIB,
+                largest_file=LARGEST_FILE / MIB,
+            )
             raise InputError(Fault(name, "", None, allowed))
         if not self.has_room(size):
             allowed = "cannot be kept: the room of this server for uploaded files is used up"
             raise InputError(Fault(name, "", None, allowed))
         if name not in self.files and len(self.files) >= MOST_FILES:
             raise InputError(
-                Fault(name, "", None, f"at most {MOST_FILES} files are kept; remove the others first")
+                Fault(
+                    name,
+                    "",
+                    None,
+                    Text(
+                        "at most {most_files} files are kept; remove the others first", most_files=MOST_FILES
+                    ),
+                )
             )
         kept = sum(upload.path.stat().st_size for other, upload in self.files.items() if other != name)
         if kept + size > LARGEST_FOLDER:
             raise InputError(
-                Fault(name, "", None, f"all files together have more than {LARGEST_FOLDER / MIB:.0f} MiB")
+                Fault(
+                    name,
+                    "",
+                    None,
+                    Text(
+                        "all files together have more than {largest_folder:.0f} MiB",
+                        largest_folder=LARGEST_FOLDER / MIB,
+                    ),
+                )
             )
 
     def reopen(self) -> None:
@@ -207,12 +227,18 @@ def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, l
         notes.append("The ship follows the uploaded track and heading.")
     elif uploads.holding("position", "heading"):
         missing = "heading" if uploads.holding("position") else "track (positions)"
-        notes.append(f"The track is not used yet: a {missing} is missing. Upload it too.")
+        notes.append(
+            Text("The track is not used yet: a {missing} is missing. Upload it too.", missing=missing)
+        )
     logs = [path for path in speeds if _is_log(uploads, path)] or speeds
     if logs:
         kept = {k: v for k, v in data["reference"].items() if k in ("event", "outage")}
         data["reference"] = {"kind": "file", "file": logs, **kept, "frame": "body"}
-        notes.append(f"The reference is the uploaded log {', '.join(Path(path).name for path in logs)}.")
+        notes.append(
+            Text(
+                "The reference is the uploaded log {name}.", name=", ".join(Path(path).name for path in logs)
+            )
+        )
     made = Scenario.parse(data)
     window = recorded_window(made.motion, made.reference)
     if window is None:
@@ -225,12 +251,18 @@ def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, l
         "duration_h": span_s / HOUR,
         "output_step_s": min(made.run.output_step_s, max(step_s, 1.0)),
     }
-    notes.append(f"The duration is the {span_s:g} s that all uploaded streams share.")
+    notes.append(Text("The duration is the {span_s:g} s that all uploaded streams share.", span_s=span_s))
     if made.motion.recorded:
         start = made.motion.truth(1, 1.0, made.site.site(), made.earth, window.start_s).values[0]
         lat_deg, lon_deg = float(start[LAT]) / DEG, float(start[LON]) / DEG
         data["site"] |= {"lat_deg": round(lat_deg, 6), "lon_deg": round(lon_deg, 6)}
-        notes.append(f"The site is the track's start, {lat_deg:.4f}°, {lon_deg:.4f}°.")
+        notes.append(
+            Text(
+                "The site is the track's start, {lat_deg:.4f}°, {lon_deg:.4f}°.",
+                lat_deg=lat_deg,
+                lon_deg=lon_deg,
+            )
+        )
     data["title"], data["source"] = "Uploaded recording", ", ".join(uploads.files)[:300]
     return Scenario.parse(data), notes
 
@@ -251,12 +283,22 @@ def _on_recorded_imu(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, li
         "output_step_s": min(scenario.run.output_step_s, 1.0),
     }
     notes = [
-        f"Full strapdown on {name}: {aligned_s} s of alignment, then navigation, with a log that reads zero: "
-        "the vehicle is taken to stand."
+        Text(
+            "Full strapdown on {name}: {aligned_s} s of alignment, then navigation, with "
+            "a log that reads zero: the vehicle is taken to stand.",
+            name=name,
+            aligned_s=aligned_s,
+        )
     ]
     if place is not None:
         data["site"] = place
-        notes.append(f"The site is that of the file, {place['lat_deg']:.4f}°, {place['lon_deg']:.4f}°.")
+        notes.append(
+            Text(
+                "The site is that of the file, {lat_deg:.4f}°, {lon_deg:.4f}°.",
+                lat_deg=place["lat_deg"],
+                lon_deg=place["lon_deg"],
+            )
+        )
     data["title"], data["source"] = "Recorded IMU", name[:300]
     return Scenario.parse(data), notes
 

@@ -9,6 +9,7 @@ import numpy as np
 from app.session.display import Display
 from app.session.requirements import loop_of
 from navcore.engine.run import MethodRun, Run
+from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.mechanization.recorder import NAMES
 
@@ -64,12 +65,22 @@ def window_of(run: Run, display: Display) -> Window:
         end = end if display.window_to_h is None else min(end, display.window_to_h * HOUR)
     rows = int(np.count_nonzero((run.t_s >= begins) & (run.t_s <= end)))
     if rows < _FEWEST_ROWS:
-        told = (
-            f"The run of {run.t_s[-1] / HOUR:.3g} h has nothing between {begins / HOUR:.3g} h{why} and "
-            f"{end / HOUR:.3g} h: the errors are of the whole run."
+        told = Text(
+            "The run of {t_s:.3g} h has nothing between {begins:.3g} h{why} and "
+            "{end:.3g} h: the errors are of the whole run.",
+            t_s=run.t_s[-1] / HOUR,
+            begins=begins / HOUR,
+            why=why,
+            end=end / HOUR,
         )
         return Window(run, told=told, possible=False)
-    told = f"Errors from {begins / HOUR:.3g} h{why} to {end / HOUR:.3g} h, on {rows} output rows."
+    told = Text(
+        "Errors from {begins:.3g} h{why} to {end:.3g} h, on {rows} output rows.",
+        begins=begins / HOUR,
+        why=why,
+        end=end / HOUR,
+        rows=rows,
+    )
     return Window(_measured(run, begins, end), begins, end, told)
 
 

@@ -13,6 +13,7 @@ from app.shell import notices
 from app.shell.control import Control
 from app.shell.pace import timer
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
 if TYPE_CHECKING:
@@ -82,7 +83,7 @@ class Editor:
             if not self._closed and not control.removed:
                 self._trust(control)
                 changed = self._changed(control, value)
-                said = f"reset {control.spec.label}" if name is None else name
+                said = Text("reset {label}", label=control.spec.label) if name is None else name
                 self._session.change(changed, None, name=said)
 
     def drag(self, changed: Scenario, name: str, gesture: str) -> None:
@@ -161,7 +162,13 @@ class Editor:
                 field = ".".join(map(str, control.spec.path))
                 lines = [notices.refusal(fault, kept, field, shown) for fault in error.faults]
             else:
-                lines = [f"{shown!r} was not taken over: cannot be read ({kept} is kept)"]
+                lines = [
+                    Text(
+                        "{shown!r} was not taken over: cannot be read ({kept} is kept)",
+                        shown=shown,
+                        kept=kept,
+                    )
+                ]
             control.refuse(lines)
-        notices.tell(self._client, f"{control.spec.label}: not taken over", lines)
+        notices.tell(self._client, Text("{label}: not taken over", label=control.spec.label), lines)
         self._client.flush()

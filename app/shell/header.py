@@ -13,6 +13,7 @@ from app.shell import notices
 from app.shell.opening import Opening
 from app.shell.view import if_user
 from navcore.engine.run import Run
+from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.scenario.model import Scenario
 
@@ -87,7 +88,7 @@ class HeaderPanel:
         text = f"Run {number}: {span}, {count} method{'s' * (count != 1)}, {frame_ms:.0f} ms{ended}"
         self._show_state(text, "#2E7D32" if run.status == "ok" else style.DANGER)
         if outdated:
-            self._show_state(f"{text}; a new run follows", "#B26A00")
+            self._show_state(Text("{text}; a new run follows", text=text), "#B26A00")
         self._hide_progress(again=False)
         self._say(notices.note(run.warnings, "info"))
 
@@ -99,25 +100,35 @@ class HeaderPanel:
         """Say that the pictures are old and a run is under way."""
         self._progress.value = round(100.0 * fraction, 1)
         if not self._progress.visible:
-            self._show_state(f"Computing; the pictures still show run {number}", "#B26A00", old=True)
+            self._show_state(
+                Text("Computing; the pictures still show run {number}", number=number), "#B26A00", old=True
+            )
             self._progress.visible = self._stop.visible = True
             self._again.visible = False
 
     def show_stopped(self, number: int) -> None:
         """Say that the pictures are old because the run was stopped."""
-        self._show_state(f"Stopped; the pictures still show run {number}", "#B26A00", old=True)
+        self._show_state(
+            Text("Stopped; the pictures still show run {number}", number=number), "#B26A00", old=True
+        )
         self._hide_progress(again=True)
 
     def show_waiting(self, scenario: Scenario, number: int) -> None:
         """Say that the pictures are old until the user starts a run that would take long."""
         samples = scenario.run.duration_h * HOUR * scenario.run.rate_hz / 1e6
-        text = f"{samples:.3g} million samples a method: run it when you are ready"
-        self._show_state(f"Strapdown, {text}; the pictures still show run {number}", "#B26A00", old=True)
+        text = Text("{samples:.3g} million samples a method: run it when you are ready", samples=samples)
+        self._show_state(
+            Text("Strapdown, {text}; the pictures still show run {number}", text=text, number=number),
+            "#B26A00",
+            old=True,
+        )
         self._hide_progress(again=True, label=RUN_STRAPDOWN)
 
     def show_failed(self, number: int) -> None:
         """Say that the pictures are the last good ones."""
-        self._show_state(f"The run failed; the pictures show run {number}", style.DANGER, old=True)
+        self._show_state(
+            Text("The run failed; the pictures show run {number}", number=number), style.DANGER, old=True
+        )
         self._hide_progress(again=True)
 
     def _hide_progress(self, *, again: bool, label: str = RUN_AGAIN) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from app.plots import style
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 
 if TYPE_CHECKING:
     import viser
@@ -98,11 +99,15 @@ def refusal(fault: Fault, kept: str = "", field: str = "", entered: object = Non
     str
         The value, what it must be, what is kept.
     """
-    told = f"{fault.allowed} ({kept} is kept)" if kept else fault.allowed
+    told = Text("{allowed} ({kept} is kept)", allowed=fault.allowed, kept=kept) if kept else fault.allowed
     if field and fault.field and not f"{field}.".startswith(f"{fault.field}."):
         other = fault.field if fault.value is None else f"{fault.field} = {_shown(fault.value)}"
-        return f"{_shown(entered)} does not go with {other}: {told}"
-    return told if fault.value is None else f"{_shown(fault.value)} was not taken over: {told}"
+        return Text("{shown} does not go with {other}: {told}", shown=_shown(entered), other=other, told=told)
+    return (
+        told
+        if fault.value is None
+        else Text("{shown} was not taken over: {told}", shown=_shown(fault.value), told=told)
+    )
 
 
 def fault_lines(error: InputError) -> list[str]:

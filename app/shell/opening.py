@@ -11,6 +11,7 @@ from app.session.uploads import opened_scenario, recorded_scenario, with_plain_n
 from app.shell import notices
 from navcore.engine.measures import metrics
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 from navcore.scenario.file import load, presets, to_toml
 
 if TYPE_CHECKING:
@@ -45,7 +46,10 @@ class Opening:
 
     def choose_scenario(self, name: str) -> None:
         """Open a preset, or run on the uploaded recordings."""
-        with self._session.lock, notices.told(self._client, f"{name} cannot be opened", self._refresh):
+        with (
+            self._session.lock,
+            notices.told(self._client, Text("{name} cannot be opened", name=name), self._refresh),
+        ):
             if name == self._session.origin:
                 return
             if name not in self._presets:
@@ -67,7 +71,7 @@ class Opening:
                 return
             upload = session.uploads.add(name, content)
             session.on_change()
-            held = f"It holds: {', '.join(sorted(upload.quantities))}."
+            held = Text("It holds: {quantities}.", quantities=", ".join(sorted(upload.quantities)))
             self._run_on_files(f"{upload.path.name}: {upload.kind}", [held, *upload.warnings])
 
     def use_files(self) -> None:

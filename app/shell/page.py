@@ -31,6 +31,7 @@ from app.shell.reports import Reports, run_element, views_element
 from app.shell.styles import page_styles
 from app.shell.view import Frame, View
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 
 if TYPE_CHECKING:
     import viser
@@ -209,7 +210,10 @@ class Page:
         """The work is not kept over a restart at present; said once in a while."""
         if time.monotonic() >= self._say_again_s:
             self._say_again_s = time.monotonic() + _SAY_AGAIN_S
-            words = [f"The server could not write it down: {why}.", "A download keeps the scenario."]
+            words = [
+                Text("The server could not write it down: {why}.", why=why),
+                "A download keeps the scenario.",
+            ]
             notices.tell(self.client, "Your work is not saved at present", words, "warning")
 
     def run_waits(self) -> None:

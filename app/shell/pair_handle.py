@@ -12,6 +12,7 @@ from app.session.shown import Shown
 from app.shell import notices
 from app.shell.view import Frame
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 
 PAIR_HANDLE = "pair handle"
 """Label of the hidden control that is told where the handle is (static/handle.js)."""
@@ -75,7 +76,9 @@ class PairHandle:
                 words, lines = "The pair was not placed", notices.fault_lines(error)
             else:
                 name = session.scenario.method[drag.method].name
-                self._frame.editor.drag(placed.scenario, f"placing the pair of {name}", gesture)
+                self._frame.editor.drag(
+                    placed.scenario, Text("placing the pair of {name}", name=name), gesture
+                )
                 if placed.note:
                     words, lines = "Placed in part", [placed.words, placed.note]
         if drag.ends and words and lines and self._told != gesture:

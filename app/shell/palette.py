@@ -21,6 +21,7 @@ from app.shell.reset import Resets
 from app.shell.toolbar import PRESENT, REDO, RESET_ALL, SHARE, UNDO, Toolbar
 from app.shell.view import Frame
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.scenario.file import load, presets
 
 COPY_METHOD, COPY_LOG, PASTE = "copy-method-text", "copy-log-text", "paste-text"
@@ -81,7 +82,11 @@ class Palette:
         paste_title = "Paste a method, or the log's events and outages (TOML)"
         add(PASTE, self._paste, paste_title, longest=LONGEST_TEXT)
         for name, title in _preset_titles():
-            add(f"preset-{name}", lambda _, name=name: opening.choose_scenario(name), f"Open {name}: {title}")
+            add(
+                f"preset-{name}",
+                lambda _, name=name: opening.choose_scenario(name),
+                Text("Open {name}: {title}", name=name, title=title),
+            )
 
     def _offer_tabs(self, names: Iterable[str]) -> None:
         """Let each of these tabs be brought to the front by a command."""
@@ -90,7 +95,7 @@ class Palette:
             self._commands.register(
                 f"tab-{slug}",
                 lambda _, name=name: self._commands.ask_page("tab", name),
-                f"Show {name}",
+                Text("Show {name}", name=name),
                 watcher=True,
             )
 
@@ -119,7 +124,7 @@ class Palette:
         self._toolbar.show_changed(session.origin, changed, found)
         self._commands.rename(UNDO, _titled("Undo", history.undo_name))
         self._commands.rename(REDO, _titled("Redo", history.redo_name))
-        self._commands.rename(RESET_ALL, f"Reset all: back to {session.origin} as opened")
+        self._commands.rename(RESET_ALL, Text("Reset all: back to {origin} as opened", origin=session.origin))
 
     def show_presenter(self) -> None:
         """Show who presents."""
@@ -152,8 +157,12 @@ class Palette:
         if not self._drives:
             return ""
         watching = self._session.open_pages - 1
-        pages = "no other page is open" if watching == 0 else f"{watching} watch{'es' * (watching == 1)}"
-        return f"You present: {pages}"
+        pages = (
+            "no other page is open"
+            if watching == 0
+            else Text.plural("{watching} watch", "{watching} watches", count=not watching, watching=watching)
+        )
+        return Text("You present: {pages}", pages=pages)
 
     # ------------------------------------------------------------ one control, by its id (static/boxes.js)
 
@@ -192,7 +201,12 @@ class Palette:
         session = self._session
         with session.lock:
             pasted = paste(session.scenario, session.selected, text)
-            session.change(pasted.scenario, None, selected=pasted.selected, name=f"paste {pasted.words}")
+            session.change(
+                pasted.scenario,
+                None,
+                selected=pasted.selected,
+                name=Text("paste {words}", words=pasted.words),
+            )
         notices.tell(self._client, "Pasted", [pasted.words], "info")
 
     def _if(self, done: bool, otherwise: str) -> None:
@@ -213,24 +227,26 @@ class Palette:
         titles = [kind.title for kind in self._frame.kinds if kind.title]
         empty = {kind.title.lower(): kind.title for kind in self._frame.kinds if not kind.always}
         lines = [
-            f"The tab {empty[name.lower()]} has nothing to show for this scenario."
+            Text("The tab {empty} has nothing to show for this scenario.", empty=empty[name.lower()])
             if name.lower() in empty
-            else f"The address names the tab {name[:40]!r}, which this page does not have."
+            else Text("The address names the tab {name!r}, which this page does not have.", name=name[:40])
             for name in names.split("|")[:5]
         ]
-        lines.append(f"The tabs are: {', '.join(titles)}.")
+        lines.append(Text("The tabs are: {titles}.", titles=", ".join(titles)))
         notices.tell(self._client, "Not all tabs of the address are here", lines, "warning")
 
     def _tell_no_view(self, name: str) -> None:
         """Tell that the address names a view that the page does not have, or not now (static/alone.js)."""
         views = view_names(self._frame.kinds)
         if name in views:
-            lines = [f"The view {views[name] or name} has nothing to show for this scenario."]
+            lines = [
+                Text("The view {views} has nothing to show for this scenario.", views=views[name] or name)
+            ]
             notices.tell(self._client, "Nothing to show", lines, "warning")
             return
         lines = [
-            f"The address names the view {name[:40]!r}, which this page does not have.",
-            f"The views are: {', '.join(views)}.",
+            Text("The address names the view {name!r}, which this page does not have.", name=name[:40]),
+            Text("The views are: {views}.", views=", ".join(views)),
         ]
         notices.tell(self._client, "No such view", lines, "warning")
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from app.editing import edits
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
 if TYPE_CHECKING:
@@ -108,7 +109,7 @@ class Resets:
             self._commands.remove(f"reset-{_slug(name)}")
         for name, (control, value) in now.items():
             if before.get(name, (None, None))[1] != value:
-                title = f"Reset {control.spec.label} to {told(control, value)}"
+                title = Text("Reset {label} to {told}", label=control.spec.label, told=told(control, value))
                 self._commands.register(f"reset-{_slug(name)}", lambda _, name=name: self._reset(name), title)
 
     def of(self, control: Control | None) -> tuple[str, str] | None:

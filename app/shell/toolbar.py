@@ -6,6 +6,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from app.shell.reset import RESET_FIELD
+from navcore.foundation.text import Text
 
 if TYPE_CHECKING:
     import viser
@@ -57,7 +58,13 @@ class Toolbar:
         buttons = [
             _icon(UNDO, "Undo", undo or "nothing to undo", "Ctrl+Z", undoes),
             _icon(REDO, "Redo", redo or "nothing to redo", "Ctrl+Shift+Z", redoes),
-            _icon(RESET_ALL, "Reset all", f"back to {origin} as opened", "", changed > 0 and free),
+            _icon(
+                RESET_ALL,
+                "Reset all",
+                Text("back to {origin} as opened", origin=origin),
+                "",
+                changed > 0 and free,
+            ),
             _button(SHARE, "Share", "A link that opens this state", free),
             _button(PRESENT, "Present", _PRESENTING if presents else _PRESENT, free, presents),
             _COMMANDS,
@@ -78,13 +85,19 @@ class Toolbar:
         last : tuple of str or None
             Dotted path and label of the field in hand, and the value to which it goes back.
         """
-        text, button = f"Unchanged since {origin} was opened", ""
+        text, button = Text("Unchanged since {origin} was opened", origin=origin), ""
         if changed:
-            text = f"{changed} field{'s' * (changed != 1)} changed from {origin}"
+            text = Text.plural(
+                "{changed} field changed from {origin}",
+                "{changed} fields changed from {origin}",
+                count=not changed,
+                changed=changed,
+                origin=origin,
+            )
         if last is not None:
             name, label, value = last
-            text = f"{label} was {value}"
-            hint = f"Reset {label} to {value}"
+            text = Text("{label} was {value}", label=label, value=value)
+            hint = Text("Reset {label} to {value}", label=label, value=value)
             button = _button(f"{RESET_FIELD} {name}", "Reset", hint, True)
         content = f'<div class="sb-changed"><span title="{escape(text)}">{escape(text)}</span>{button}</div>'
         if self._changed.content != content:

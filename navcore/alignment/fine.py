@@ -17,6 +17,7 @@ from navcore.alignment.kernel import coarse_kernel, fine_kernel
 from navcore.alignment.loop import CompassLoop, azimuth_gains, check_latitude
 from navcore.foundation.earth import EARTH_RATE, Earth
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.mechanization.strapdown.run import turned_by
 from navcore.networks.compass import gains_from_sigma_xi
 
@@ -137,7 +138,9 @@ def fine_alignment(
     loop = CompassLoop() if loop is None else loop
     fastest = max(loop.sigma, loop.level_sigma) * max(1.0, 1.0 / loop.xi)
     if fastest > 0.1 * rate_hz:
-        allowed = f"must be <= {0.1 * rate_hz:g} (1/s) at {rate_hz:g} Hz"
+        allowed = Text(
+            "must be <= {rate_hz:g} (1/s) at {rate_hz_2:g} Hz", rate_hz=0.1 * rate_hz, rate_hz_2=rate_hz
+        )
         raise InputError(Fault("", "alignment.sigma", fastest, allowed))
     gravity, (m, n) = earth.gravity(lat, height), earth.radii(lat)
     radii = m + height, n + height

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 
 LARGEST_LATITUDE_DEG = 85.0
@@ -45,8 +46,11 @@ def check_latitude(lat: float) -> None:
                 "",
                 "site.lat_deg",
                 round(lat / DEG, 6),
-                f"compass alignment needs |latitude| <= {LARGEST_LATITUDE_DEG:g}°: the horizontal "
-                "Earth rate, by which it finds north, is too small beyond",
+                Text(
+                    "compass alignment needs |latitude| <= {largest_latitude_deg:g}°: the "
+                    "horizontal Earth rate, by which it finds north, is too small beyond",
+                    largest_latitude_deg=LARGEST_LATITUDE_DEG,
+                ),
             )
         )
 

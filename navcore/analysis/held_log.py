@@ -26,6 +26,7 @@ from navcore.analysis.whole_system import (
 )
 from navcore.foundation.earth import SPHERE, Earth
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 from navcore.networks.base import LinearNetwork
 from navcore.networks.discrete import discretise
 
@@ -193,12 +194,16 @@ def _stable_up_to(
 def _warning(growth: float, period_s: float, step_s: float, calls: int, up_to: float) -> str:
     slower_log = calls > 1 and up_to >= step_s
     what = (
-        f"the log's difference is held for {period_s:g} s"
+        Text("the log's difference is held for {period_s:g} s", period_s=period_s)
         if slower_log
-        else f"the law runs every {step_s:g} s and holds its correction"
+        else Text("the law runs every {step_s:g} s and holds its correction", step_s=step_s)
     )
     every = duration(1.0 / growth)
-    text = f"unstable as sampled: {what}, too long for this loop; the errors grow by e every {every}"
+    text = Text(
+        "unstable as sampled: {what}, too long for this loop; the errors grow by e every {every}",
+        what=what,
+        every=every,
+    )
     if up_to > 0.0:
-        return "; ".join((text, f"stable up to about {up_to:.3g} s"))
+        return "; ".join((text, Text("stable up to about {up_to:.3g} s", up_to=up_to)))
     return text

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from navcore.analysis.settling import last_exceedance
+from navcore.foundation.text import Text
 from navcore.networks.base import ComplexArray, LinearNetwork
 from navcore.networks.roots import sorted_roots
 from navcore.networks.state_space import state_space
@@ -144,6 +145,9 @@ def _warnings(network: LinearNetwork, unstable: bool, undamped: bool, zero: bool
         warnings.append("H(0) = 0: a closed-loop pole at zero, what constant errors do is never worked off")
     elif abs(network.h0 - 1.0) > H0_TOLERANCE:
         warnings.append(
-            f"H(0) = {network.h0:.4g} differs from 1: the loop is not Schuler-tuned, it needs the reference"
+            Text(
+                "H(0) = {h0:.4g} differs from 1: the loop is not Schuler-tuned, it needs the reference",
+                h0=network.h0,
+            )
         )
     return tuple(warnings)

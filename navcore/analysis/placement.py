@@ -6,6 +6,7 @@ import math
 
 from navcore.analysis.loop import H0_TOLERANCE
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.networks.base import NetworkParameters
 from navcore.networks.catalogue import NETWORKS
 from navcore.networks.pair import LARGEST_DAMPING, LEAST_DAMPING, Placement
@@ -44,13 +45,17 @@ def place(
         or H'(0) of the network with that pair is not what is asked for.
     """
     if not LEAST_DAMPING <= damping_ratio <= LARGEST_DAMPING:
-        allowed = f"must be >= {LEAST_DAMPING} and <= {LARGEST_DAMPING:g}"
+        allowed = Text(
+            "must be >= {least_damping} and <= {largest_damping:g}",
+            least_damping=LEAST_DAMPING,
+            largest_damping=LARGEST_DAMPING,
+        )
         raise InputError(Fault("", "damping ratio", damping_ratio, allowed))
     if not (math.isfinite(frequency) and frequency > 0.0):
         raise InputError(Fault("", "frequency", frequency, "must be > 0 (rad/s)"))
     placed = parameters.with_pair(damping_ratio, frequency, omega_s)
     if placed is None:
-        allowed = f"cannot be placed by a pole: use {placeable()}"
+        allowed = Text("cannot be placed by a pole: use {placeable}", placeable=placeable())
         raise InputError(Fault("", "network", parameters.id, allowed))
     if h_slope_limit_s is not None:
         _require_slope(placed, h_slope_limit_s, omega_s)
@@ -62,10 +67,12 @@ def _require_slope(placed: Placement, limit_s: float, omega_s: float) -> None:
     network = placed.parameters.transfer(omega_s)
     instead = "use complementary, or unity2 with a pair below ωₛ"
     if not abs(network.h0 - 1.0) <= H0_TOLERANCE:
-        allowed = f"must be 1 when H'(0) is limited, and is not with this pair: {instead}"
+        allowed = Text(
+            "must be 1 when H'(0) is limited, and is not with this pair: {instead}", instead=instead
+        )
         raise InputError(Fault("", "H(0)", float(f"{network.h0:.4g}"), allowed))
     if not network.h_slope <= limit_s:
-        allowed = f"must be <= {limit_s:.4g} (s)"
+        allowed = Text("must be <= {limit_s:.4g} (s)", limit_s=limit_s)
         if limit_s <= 0.0 < network.h_slope:
             allowed += ": with this pair the 24 h mode grows"
         raise InputError(Fault("", "H'(0)", float(f"{network.h_slope:.4g}"), f"{allowed}; {instead}"))
@@ -74,4 +81,4 @@ def _require_slope(placed: Placement, limit_s: float, omega_s: float) -> None:
 def placeable() -> str:
     """Names of the networks that a pole pair can place, ``"compass, ... or unity2"``."""
     *names, last = (model.placeable for model in NETWORKS.values() if model.placeable)
-    return f"{', '.join(names)} or {last}"
+    return Text("{names} or {last}", names=", ".join(names), last=last)

@@ -15,6 +15,7 @@ import numpy as np
 from navcore.analysis.loop import closed_loop_poles
 from navcore.analysis.response import impulse_response, step_response
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.networks.base import LinearNetwork
 from navcore.networks.state_space import state_space
 
@@ -78,9 +79,13 @@ def normalised_transfer(
 ) -> Transfer:
     """Return a transfer in normalised frequency; parameters as for `transfer`."""
     if source not in SOURCES:
-        raise InputError(Fault("", "source", source, f"must be one of {', '.join(SOURCES)}"))
+        raise InputError(
+            Fault("", "source", source, Text("must be one of {sources}", sources=", ".join(SOURCES)))
+        )
     if output not in OUTPUTS:
-        raise InputError(Fault("", "output", output, f"must be one of {', '.join(OUTPUTS)}"))
+        raise InputError(
+            Fault("", "output", output, Text("must be one of {outputs}", outputs=", ".join(OUTPUTS)))
+        )
     form = network.realisation if realisation is None else realisation
     scale, num, integrators = _formula(network, source, output, form, radius)
     num, poles = _cancel_at_zero(num, closed_loop_poles(network), integrators)

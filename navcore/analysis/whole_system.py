@@ -16,6 +16,7 @@ import numpy as np
 
 from navcore.analysis.loop import closed_loop_poles
 from navcore.foundation.earth import EARTH_RATE, SPHERE, Earth
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.networks.base import ComplexArray, LinearNetwork, linear_network
 from navcore.networks.roots import sorted_roots
@@ -273,10 +274,10 @@ def duration(seconds: float) -> str:
     seconds = abs(seconds)
     if seconds >= 0.95 * _DAY:
         days = seconds / _DAY
-        return f"{days:.2g} days" if days < 9.95 else f"{days:.0f} days"
+        return Text("{days:.2g} days", days=days) if days < 9.95 else Text("{days:.0f} days", days=days)
     if seconds >= 5400.0:
         return f"{seconds / 3600.0:.2g} h"
-    return f"{seconds / 60.0:.2g} min" if seconds >= 90.0 else f"{seconds:.2g} s"
+    return Text("{seconds:.2g} min", seconds=seconds / 60.0) if seconds >= 90.0 else f"{seconds:.2g} s"
 
 
 def _named(values: ComplexArray, network: LinearNetwork, lat: float) -> list[Mode]:
@@ -331,7 +332,12 @@ def _warnings(growing: list[Mode], network: LinearNetwork, lat: float) -> list[s
             slope = float(f"{network.h_slope:.4g}")
             reason = f" (H(0) = {network.h0:.3g}, H'(0) = {slope:+g} s)"
         texts.append(
-            f"whole system at latitude {lat / DEG:.4g}°: the {mode.name} mode grows, e-folding time "
-            f"{duration(1.0 / mode.growth)}{reason}"
+            Text(
+                "whole system at latitude {lat:.4g}°: the {name} mode grows, e-folding time {growth}{reason}",
+                lat=lat / DEG,
+                name=mode.name,
+                growth=duration(1.0 / mode.growth),
+                reason=reason,
+            )
         )
     return texts

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 
 THRESHOLD_SIGMA = 5.0
 """An increment further than this off the median belongs to a motion (theory.md section 5)."""
@@ -99,8 +100,12 @@ def forecast_from(increments: np.ndarray, step_s: float = 1.0) -> Forecast:
                 "",
                 "alignment.duration_s",
                 None,
-                f"the base stands still for {still * step_s:g} s of the alignment record: half-period "
-                f"averaging needs {FEWEST_STILL * step_s:g} s or more to forecast from",
+                Text(
+                    "the base stands still for {still:g} s of the alignment record: half-period "
+                    "averaging needs {fewest_still:g} s or more to forecast from",
+                    still=still * step_s,
+                    fewest_still=FEWEST_STILL * step_s,
+                ),
             )
         )
     means = [increments[first:last].mean(axis=0) for first, last in segments]

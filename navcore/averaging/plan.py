@@ -12,6 +12,7 @@ from navcore.averaging.forecast import Forecast, forecast_from
 from navcore.averaging.parameters import AlignmentMotion, Averaging
 from navcore.averaging.record import RECORD_STEP_S, alignment_record, standing_row
 from navcore.foundation.earth import Earth
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG_PER_HOUR, HOUR
 from navcore.motion.base import HEIGHT, LAT
 from navcore.sensors.imu import Imu
@@ -92,13 +93,22 @@ def _notices(chosen: Copies, forecast: Forecast, imu: Imu, seconds: int) -> tupl
     found = []
     if still < seconds * RECORD_STEP_S:
         found.append(
-            f"the base moved during the alignment: {seconds * RECORD_STEP_S - still:g} s of "
-            f"{seconds * RECORD_STEP_S:g} s were left out of the forecast"
+            Text(
+                "the base moved during the alignment: {seconds:g} s of {seconds_2:g} s were "
+                "left out of the forecast",
+                seconds=seconds * RECORD_STEP_S - still,
+                seconds_2=seconds * RECORD_STEP_S,
+            )
         )
     noise = imu.gyro().white / np.sqrt(still)
     if noise > 0.0:
         found.append(
-            f"the forecast of {max(chosen.ahead_s) / HOUR:.1f} h rests on {still:g} s of alignment: the "
-            f"gyros' random walk leaves {noise / DEG_PER_HOUR:.2g} °/h (1 σ) in it"
+            Text(
+                "the forecast of {ahead_s:.1f} h rests on {still:g} s of alignment: the "
+                "gyros' random walk leaves {noise:.2g} °/h (1 σ) in it",
+                ahead_s=max(chosen.ahead_s) / HOUR,
+                still=still,
+                noise=noise / DEG_PER_HOUR,
+            )
         )
     return tuple(found)

@@ -10,6 +10,7 @@ import numpy as np
 from navcore.averaging.parameters import AlignmentMotion
 from navcore.foundation.earth import Earth, attitude_matrix
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.motion.base import AE, AU, COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL, VE, VU, Truth
 from navcore.motion.inertial import inertial_signals
@@ -36,7 +37,7 @@ def standing_row(true_row: np.ndarray) -> np.ndarray:
             Fault(
                 "",
                 "motion",
-                f"{speed:.3g} m/s at t = 0",
+                Text("{speed:.3g} m/s at t = 0", speed=speed),
                 "half-period averaging forecasts from an alignment at rest: the motion must start from rest",
             )
         )

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, KNOT
 from navcore.io.plausible import speed_warnings
 from navcore.io.recording import read_recording
@@ -64,7 +65,7 @@ class FileReport:
     def lines(self) -> list[str]:
         """Text for a terminal: what it holds, then warnings and faults."""
         head = [f"{self.file}: {self.kind}"] if self.kind else []
-        words = [f"warning: {warning}" for warning in self.warnings]
+        words = [Text("warning: {warning}", warning=warning) for warning in self.warnings]
         return [*head, *self.text, *words, *(str(fault) for fault in self.faults)]
 
     def as_dict(self) -> dict[str, Any]:
@@ -208,20 +209,51 @@ def _range(name: str, values: np.ndarray) -> dict[str, list[float]]:
 
 def _text(source: SourceReport, recording: Recording, quantities: dict[str, Any]) -> list[str]:
     words = [
-        f"  {source.lines} lines, {source.checksum_faults} checksum faults, {source.unparsable} unparsable, "
-        f"{source.invalid} flagged invalid"
+        Text(
+            "  {lines} lines, {checksum_faults} checksum faults, {unparsable} "
+            "unparsable, {invalid} flagged invalid",
+            lines=source.lines,
+            checksum_faults=source.checksum_faults,
+            unparsable=source.unparsable,
+            invalid=source.invalid,
+        )
     ]
     for stream in source.streams:
         rate = f", {stream.rate_hz:.3g} Hz" if math.isfinite(stream.rate_hz) else ""
-        words.append(f"  {stream.count:>7} {stream.name}{rate}{'' if stream.used else ' (not used)'}")
+        words.append(
+            Text(
+                "  {count:>7} {name}{rate}{value}",
+                count=stream.count,
+                name=stream.name,
+                rate=rate,
+                value="" if stream.used else " (not used)",
+            )
+        )
     series = recording.quantities()
     for name, entry in quantities.items():
         when = f"{entry['start_utc']} to {entry['end_utc']}, " if entry["dated"] else ""
         gaps = (
-            f"{entry['gaps']} gaps (longest {entry['longest_gap_s']:.1f} s)" if entry["gaps"] else "no gaps"
+            Text(
+                "{gaps} gaps (longest {longest_gap_s:.1f} s)",
+                gaps=entry["gaps"],
+                longest_gap_s=entry["longest_gap_s"],
+            )
+            if entry["gaps"]
+            else "no gaps"
         )
-        every = f", each {entry['interval_s']:.3g} s" if series[name].time_s.size > 1 else ""
-        samples = f"{entry['count']} samples{every}, {when}{entry['span_s']:.1f} s, {gaps}"
+        every = (
+            Text(", each {interval_s:.3g} s", interval_s=entry["interval_s"])
+            if series[name].time_s.size > 1
+            else ""
+        )
+        samples = Text(
+            "{count} samples{every}, {when}{span_s:.1f} s, {gaps}",
+            count=entry["count"],
+            every=every,
+            when=when,
+            span_s=entry["span_s"],
+            gaps=gaps,
+        )
         words.append(f"  {_NAMES[name]} ({entry['source']}): {samples}")
         words += [f"    {_extent(key, entry[key])}" for key in entry if key.endswith(("_deg", "_kn", "_mps"))]
     return words
@@ -237,7 +269,14 @@ def _warnings(source: SourceReport, recording: Recording) -> tuple[str, ...]:
     for name, series in recording.quantities().items():
         gaps, longest = series.gaps()
         if gaps:
-            found.append(f"{_NAMES[name]}: {gaps} gaps, the longest {longest:.1f} s")
+            found.append(
+                Text(
+                    "{names}: {gaps} gaps, the longest {longest:.1f} s",
+                    names=_NAMES[name],
+                    gaps=gaps,
+                    longest=longest,
+                )
+            )
         if series.time_s.size < 2:
-            found.append(f"{_NAMES[name]}: a single sample")
+            found.append(Text("{names}: a single sample", names=_NAMES[name]))
     return tuple(found)

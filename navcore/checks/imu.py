@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from navcore.checks.file import Checker, FileReport
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, DEG_PER_HOUR
 from navcore.sensors.recorded_imu import ImuRecord, is_imu_header, is_psins, read_imu, upward_axis
 
@@ -61,16 +62,40 @@ def _details(record: ImuRecord) -> dict[str, Any]:
 def _text(details: dict[str, Any]) -> list[str]:
     force, turn = details["mean_force_mps2"], details["mean_turn_dph"]
     lines = [
-        f"  {details['samples']} samples at {details['rate_hz']:g} Hz, {details['span_s']:.1f} s, "
-        "no gaps, no NaN",
-        f"  mean specific force {force[0]:g}, {force[1]:g}, {force[2]:g} m/s², "
-        f"size {details['mean_force_size_mps2']:g}; the {details['up_axis']} axis looks like up",
-        f"  mean turn {turn[0]:g}, {turn[1]:g}, {turn[2]:g} °/h, size {details['mean_turn_size_dph']:g} "
-        "(the Earth: 15.041)",
+        Text(
+            "  {samples} samples at {rate_hz:g} Hz, {span_s:.1f} s, no gaps, no NaN",
+            samples=details["samples"],
+            rate_hz=details["rate_hz"],
+            span_s=details["span_s"],
+        ),
+        Text(
+            "  mean specific force {force:g}, {force_2:g}, {force_3:g} m/s², size "
+            "{mean_force_size_mps2:g}; the {up_axis} axis looks like up",
+            force=force[0],
+            force_2=force[1],
+            force_3=force[2],
+            mean_force_size_mps2=details["mean_force_size_mps2"],
+            up_axis=details["up_axis"],
+        ),
+        Text(
+            "  mean turn {turn:g}, {turn_2:g}, {turn_3:g} °/h, size "
+            "{mean_turn_size_dph:g} (the Earth: 15.041)",
+            turn=turn[0],
+            turn_2=turn[1],
+            turn_3=turn[2],
+            mean_turn_size_dph=details["mean_turn_size_dph"],
+        ),
     ]
     if details["place"]:
         place = details["place"]
-        lines.append(f"  place {place['lat_deg']:.7g}, {place['lon_deg']:.7g}°, {place['height_m']:g} m")
+        lines.append(
+            Text(
+                "  place {lat_deg:.7g}, {lon_deg:.7g}°, {height_m:g} m",
+                lat_deg=place["lat_deg"],
+                lon_deg=place["lon_deg"],
+                height_m=place["height_m"],
+            )
+        )
     return lines
 
 
@@ -80,16 +105,27 @@ def _warnings(details: dict[str, Any]) -> list[str]:
     low, high = _GRAVITY
     if not low * (1.0 - _FORCE_ERROR) < size < high * (1.0 + _FORCE_ERROR):
         found.append(
-            f"the mean specific force is {size:g} m/s², far from gravity: wrong units, scale, or not at rest"
+            Text(
+                "the mean specific force is {size:g} m/s², far from gravity: wrong units, "
+                "scale, or not at rest",
+                size=size,
+            )
         )
     if up == "-z":
         found.append('the -z axis looks like up: forward, right, down? Then give imu.axes = "frd"')
     elif up != "+z":
         found.append(
-            f"the {up} axis looks like up: a run needs x right, y forward, z up (or frd), turn the columns"
+            Text(
+                "the {up} axis looks like up: a run needs x right, y forward, z up (or frd), "
+                "turn the columns",
+                up=up,
+            )
         )
     if details["rate_hz"] < _SLOWEST_HZ:
         found.append(
-            f"{details['rate_hz']:g} Hz is slow for a strapdown run: only a vehicle at rest can be navigated"
+            Text(
+                "{rate_hz:g} Hz is slow for a strapdown run: only a vehicle at rest can be navigated",
+                rate_hz=details["rate_hz"],
+            )
         )
     return found

@@ -18,6 +18,7 @@ from navcore.design.ship import Ship
 from navcore.design.steady import instability, steady_budget
 from navcore.design.unmodelled import recorded_warnings
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 from navcore.scenario.model import Method, Scenario
 
 
@@ -81,7 +82,7 @@ def budget(
             variances = ship.along(method)
             series = Series(variances.t_s, variances.variance, variances.total)
             growth = instability(level(law_form(method, scenario.omega_s), ship.model, scenario.omega_s))
-            warnings = (f"{growth}: the errors grow without bound",) if growth else ()
+            warnings = (Text("{growth}: the errors grow without bound", growth=growth),) if growth else ()
             result = _of_series(method, "covariance", series, (*warnings, *_warnings(scenario)))
         report(index, 1.0)
         return result
@@ -118,7 +119,11 @@ def _from_seeds(
         t_s, variance = seed_variance(scenario, method, seeds, report, cancelled)
     except InputError as error:  # it diverges
         return _diverged(method, "seeds", tuple(f"{fault.field}: {fault.allowed}" for fault in error.faults))
-    note = f"{reason}: there is no covariance; shown is the mean square of {seeds} seeds, not split by source"
+    note = Text(
+        "{reason}: there is no covariance; shown is the mean square of {seeds} seeds, not split by source",
+        reason=reason,
+        seeds=seeds,
+    )
     return _of_series(method, "seeds", Series(t_s, {}, variance), (note,))
 
 

@@ -18,6 +18,7 @@ from navcore.design.level import level, steady_parts
 from navcore.design.seeds import no_covariance, seed_variance
 from navcore.design.ship import Ship
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG, HOUR, MINUTE
 from navcore.law.combination import network_in_force, realisation_of
 from navcore.networks.base import LinearNetwork
@@ -268,10 +269,15 @@ def read_objective(text: str) -> Objective:
     for part in text.split("+"):
         match = _TERM.match(part.strip())
         if match is None or match["name"] not in MEASURES:
-            allowed = f"must be one of {', '.join(OBJECTIVES)}, or a sum such as tilt_rms + 0.5*velocity_rms"
+            allowed = Text(
+                "must be one of {objectives}, or a sum such as tilt_rms + 0.5*velocity_rms",
+                objectives=", ".join(OBJECTIVES),
+            )
             raise InputError(Fault("", "--objective", text, allowed))
         if match["name"] in NO_OBJECTIVES:
-            allowed = f"is better when larger: ask for it as a requirement, {match['name']}>=0.5"
+            allowed = Text(
+                "is better when larger: ask for it as a requirement, {name}>=0.5", name=match["name"]
+            )
             raise InputError(Fault("", "--objective", text, allowed))
         try:
             weight = float(match["weight"] or 1.0)
@@ -293,7 +299,10 @@ def read_requirement(text: str) -> Requirement:
     """
     match = _REQUIREMENT.match(text)
     if match is None or match["name"] not in MEASURES:
-        allowed = f"must have the form NAME<=VALUE or NAME>=VALUE with NAME one of {', '.join(MEASURES)}"
+        allowed = Text(
+            "must have the form NAME<=VALUE or NAME>=VALUE with NAME one of {measures}",
+            measures=", ".join(MEASURES),
+        )
         raise InputError(Fault("", "--require", text, allowed))
     unit = match["unit"]
     own = MEASURES[match["name"]][1]
@@ -301,7 +310,9 @@ def read_requirement(text: str) -> Requirement:
         own, (own,)
     )
     if unit and unit not in same:
-        raise InputError(Fault("", "--require", text, f"unit must be one of {', '.join(same) or 'none'}"))
+        raise InputError(
+            Fault("", "--require", text, Text("unit must be one of {same}", same=", ".join(same) or "none"))
+        )
     try:
         limit = float(match["value"]) * (UNITS[unit] if unit else 1.0)
     except ValueError:

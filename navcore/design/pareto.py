@@ -22,6 +22,7 @@ from navcore.design.measures import (
 from navcore.design.search import MISSED, Effort, Search
 from navcore.design.vary import read_varied
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.networks import NETWORKS
 from navcore.scenario.model import Method, Scenario
 
@@ -149,9 +150,11 @@ def pareto(
     """
     ids = _checked(objectives, networks)
     if not 0 <= method < len(scenario.method):
-        raise InputError(Fault("", "method", method, f"must be 0 to {len(scenario.method) - 1}"))
+        raise InputError(
+            Fault("", "method", method, Text("must be 0 to {method}", method=len(scenario.method) - 1))
+        )
     if scenario.method[method].undamped:
-        reason = f'damping = "{scenario.method[method].damping}" uses no network'
+        reason = Text('damping = "{damping}" uses no network', damping=scenario.method[method].damping)
         raise InputError(Fault("", f"method.{method}.damping", None, reason))
     along = along or any(name in ALONG_ONLY for name in objectives)
     ship = Ship(scenario, along, TUNING_INTERVALS)
@@ -204,13 +207,15 @@ def _checked(objectives: tuple[str, str], networks: Sequence[str] | None) -> lis
     known = [name for name in OBJECTIVES if name not in _SIGNED]
     for name in objectives:
         if name not in known:
-            raise InputError(Fault("", "objectives", name, f"must be one of {', '.join(known)}"))
+            raise InputError(
+                Fault("", "objectives", name, Text("must be one of {known}", known=", ".join(known)))
+            )
     if objectives[0] == objectives[1]:
         raise InputError(Fault("", "objectives", objectives[1], "must be two different ones"))
     ids = [name for name in NETWORKS if name not in LEFT_OUT]
     for name in networks or ():
         if name not in ids:
-            raise InputError(Fault("", "networks", name, f"must be one of {', '.join(ids)}"))
+            raise InputError(Fault("", "networks", name, Text("must be one of {ids}", ids=", ".join(ids))))
     return ids if networks is None else list(dict.fromkeys(networks))
 
 

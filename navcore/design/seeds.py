@@ -9,6 +9,7 @@ import numpy as np
 from navcore.design.along import QUANTITIES
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.scenario.model import Method, Scenario
 
 SEEDS = 24
@@ -31,7 +32,7 @@ def no_covariance(scenario: Scenario, method: Method) -> str:
     if method.damping == "free":
         return ""
     if method.policy.id not in ("constant", "schedule"):
-        return f'policy "{method.policy.id}" looks at the data'
+        return Text('policy "{id}" looks at the data', id=method.policy.id)
     if method.policy.id == "schedule" and method.network.model_dump().get("realisation") != "feedback":
         return 'policy "schedule" is followed in advance only with network.realisation = "feedback"'
     if method.policy.id == "schedule" and scenario.reference.outage:
@@ -39,7 +40,7 @@ def no_covariance(scenario: Scenario, method: Method) -> str:
     outages = bool(scenario.reference.outage) and method.damping == "external"
     if method.switching.id == "hard" or (method.switching.id == "keep" and not outages):
         return ""
-    return f'switching "{method.switching.id}" acts on what was measured before'
+    return Text('switching "{id}" acts on what was measured before', id=method.switching.id)
 
 
 def seed_variance(
@@ -98,7 +99,12 @@ def seed_variance(
         result = simulate(alone).methods[0]
         if result.status == "diverged":
             raise InputError(
-                Fault("", "method", method.name, f"has no budget: it diverges ({result.reason})")
+                Fault(
+                    "",
+                    "method",
+                    method.name,
+                    Text("has no budget: it diverges ({reason})", reason=result.reason),
+                )
             )
         squares = result.rows[:, : len(QUANTITIES)] ** 2
         total, t_s, count = squares if total is None else total + squares, result.t_s, count + 1

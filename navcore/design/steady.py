@@ -12,6 +12,7 @@ from navcore.design.form import law_form
 from navcore.design.level import Level, constant_part, level, line_part, steady_parts
 from navcore.design.result import Budget, MethodBudget
 from navcore.design.unmodelled import recorded_warnings
+from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.scenario.model import Method, Scenario
 from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
@@ -46,14 +47,16 @@ def _steady_method(scenario: Scenario, method: Method, model: StochasticModel, f
     warnings = [*recorded_warnings(scenario)]
     if method.damping != "free" and method.policy.id not in ("constant", "schedule"):
         warnings.append(
-            f'policy "{method.policy.id}" looks at the data: shown is the loop while it is damped'
+            Text('policy "{id}" looks at the data: shown is the loop while it is damped', id=method.policy.id)
         )
     missing = [name for name, part in parts.items() if part.tilt_rad is None or part.velocity_mps is None]
     unstable = instability(channel)
     if missing and unstable:
-        warnings.append(f"{unstable}: no source has a steady state")
+        warnings.append(Text("{unstable}: no source has a steady state", unstable=unstable))
     elif missing:
-        warnings.append(f"no steady state: {', '.join(missing)} drive a mode without decay")
+        warnings.append(
+            Text("no steady state: {missing} drive a mode without decay", missing=", ".join(missing))
+        )
     sources = {
         name: Entry(
             Figures(part.tilt_rad, part.velocity_mps),
@@ -92,7 +95,7 @@ def instability(channel: Level) -> str:
     growth = channel.growth_per_s()
     if growth <= _MARGINAL * channel.omega_s:
         return ""
-    return f"the loop is unstable (e-folding {1.0 / growth / (24.0 * HOUR):.3g} days)"
+    return Text("the loop is unstable (e-folding {growth:.3g} days)", growth=1.0 / growth / (24.0 * HOUR))
 
 
 def _root_sum(values: list[float | None]) -> float | None:

@@ -26,6 +26,7 @@ from navcore.design.search import ALONG, BOUNDLESS, EXPLAIN, MISSED, REFUSED, ST
 from navcore.design.unmodelled import recorded_warnings
 from navcore.design.vary import Varied, present, read_varied
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
 _FLAT = 1.05
@@ -164,7 +165,9 @@ def _check(ships: Sequence[Ship], varied: Sequence[Varied], objective: Objective
                 read_varied(ship.scenario, [f"{one.field}={one.low!r}:{one.high!r}"])
             except InputError as error:
                 reason = "; ".join(f"{fault.value} {fault.allowed}" for fault in error.faults)
-                raise InputError(Fault("", "--worst-of", f"scenario {number}", reason)) from None
+                raise InputError(
+                    Fault("", "--worst-of", Text("scenario {number}", number=number), reason)
+                ) from None
     names = set(objective.names) & set(FLOORED)
     if names and not ships[0].along_run and ships[0].model.silent:
         reason = "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
@@ -286,10 +289,12 @@ def _nothing_meets(search: Search, effort: Effort, start: np.ndarray | None) -> 
         without = _without(search, rest, effort, start)
         if math.isfinite(without):
             least = in_words(search.objective.text, without)
-            left = f"without it {search.objective.text} comes to {least}"
+            left = Text("without it {text} comes to {least}", text=search.objective.text, least=least)
         else:
             left = "without it the others are not met either"
-        reason = f"nothing within these ranges meets all requirements: alone {one.name} comes to"
+        reason = Text(
+            "nothing within these ranges meets all requirements: alone {name} comes to", name=one.name
+        )
         yield Fault("", "--require", one.text, f"{reason} {in_words(one.name, reach)}; {left}")
 
 

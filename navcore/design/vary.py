@@ -15,6 +15,7 @@ from pydantic.fields import FieldInfo
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.parameters import bounds_of, extra_of
+from navcore.foundation.text import Text
 from navcore.scenario.model import Method, Scenario
 
 _WIDEST = 1e6
@@ -149,17 +150,23 @@ def _read_one(scenario: Scenario, text: str) -> Varied:
         raise refuse("must not vary: must be a number of a method, such as method.0.network.xi")
     index = int(names[1])
     if index >= len(scenario.method):
-        raise refuse(f"there is no method.{index}: must be 0 to {len(scenario.method) - 1}")
+        raise refuse(
+            Text(
+                "there is no method.{index}: must be 0 to {method}",
+                index=index,
+                method=len(scenario.method) - 1,
+            )
+        )
     model: Any = scenario.method[index]
     if model.undamped:
-        raise refuse(f'must not vary: damping = "{model.damping}" uses no network')
+        raise refuse(Text('must not vary: damping = "{damping}" uses no network', damping=model.damping))
     for name in names[2:-1]:
         model = getattr(model, name, None) if isinstance(model, BaseModel) else None
     fields = type(model).model_fields if isinstance(model, BaseModel) else {}
     info = fields.get(names[-1])
     if info is None:
         numbers = ", ".join(name for name, one in fields.items() if _is_number(one))
-        raise refuse(f"is no field of this method; numbers there: {numbers or 'none'}")
+        raise refuse(Text("is no field of this method; numbers there: {numbers}", numbers=numbers or "none"))
     if not _is_number(info):
         raise refuse("must not vary: it is not a number")
     allowed = _allowed(info)
@@ -187,7 +194,11 @@ def _read_ends(text: str, ends: str, allowed: tuple[float, float]) -> tuple[floa
     except ValueError:
         raise InputError(Fault("", "--vary", text, "must end in LOW:HIGH, two numbers")) from None
     if not (math.isfinite(low) and math.isfinite(high)) or low < allowed[0] or high > allowed[1]:
-        reason = f"its range must lie within {allowed[0]:g} and {allowed[1]:g}"
+        reason = Text(
+            "its range must lie within {allowed:g} and {allowed_2:g}",
+            allowed=allowed[0],
+            allowed_2=allowed[1],
+        )
         raise InputError(Fault("", "--vary", text, reason))
     return low, high
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from navcore.foundation.errors import InputError
 from navcore.foundation.stage_cache import file_state, kept
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.mechanization.trajectory import Coefficients, coefficients
 from navcore.motion.base import LAT, Truth
@@ -65,8 +66,12 @@ def site_notices(scenario: Scenario, truth: Truth) -> list[str]:
     if abs(start - scenario.site.lat_deg) < FAR_FROM_SITE_DEG:
         return []
     return [
-        f"the track starts at latitude {start:.2f}°, the site is at {scenario.site.lat_deg:g}°: "
-        "ωₛ, and with it every network, is that of the site"
+        Text(
+            "the track starts at latitude {start:.2f}°, the site is at {lat_deg:g}°: ωₛ, "
+            "and with it every network, is that of the site",
+            start=start,
+            lat_deg=scenario.site.lat_deg,
+        )
     ]
 
 

@@ -16,6 +16,7 @@ from navcore.foundation import guarded
 from navcore.foundation.compiled import plain
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.stage_cache import file_state, kept
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.mechanization.strapdown import Start, start_from
 from navcore.mechanization.strapdown.attitude import angles_of
@@ -125,7 +126,7 @@ def _require_cover(scenario: Scenario, record: ImuRecord, rates: Sampling, first
                 "",
                 "run.duration_h",
                 scenario.run.duration_h,
-                f"must hold at least one step of {rates.record_step_s:g} s",
+                Text("must hold at least one step of {record_step_s:g} s", record_step_s=rates.record_step_s),
             )
         )
     if rates.duration_s <= left_s + 1e-9:
@@ -136,8 +137,13 @@ def _require_cover(scenario: Scenario, record: ImuRecord, rates: Sampling, first
             "",
             "run.duration_h",
             scenario.run.duration_h,
-            f"is longer than the recorded IMU: of its {record.duration_s:.6g} s, {spent:.6g} s are left out "
-            f"or used for the alignment, so that {max(left_s, 0.0) / HOUR:.4g} h remain",
+            Text(
+                "is longer than the recorded IMU: of its {duration_s:.6g} s, {spent:.6g} s "
+                "are left out or used for the alignment, so that {left_s:.4g} h remain",
+                duration_s=record.duration_s,
+                spent=spent,
+                left_s=max(left_s, 0.0) / HOUR,
+            ),
         )
     )
 
@@ -182,15 +188,20 @@ def _notices(scenario: Scenario, record: ImuRecord, site: Site) -> Iterator[str]
         if name not in _NO_ERRORS and getattr(scenario.imu, name) != info.default
     ]
     if unused:
-        yield f"{', '.join(unused)} not used: the recorded IMU brings its own errors"
+        yield Text("{unused} not used: the recorded IMU brings its own errors", unused=", ".join(unused))
 
 
 def _parked_notices(scenario: Scenario, record: ImuRecord, site: Site) -> Iterator[str]:
     given = scenario.site
     if max(abs(site.lat / DEG - given.lat_deg), abs(site.lon / DEG - given.lon_deg)) > _SAME_PLACE_DEG:
         yield (
-            f"{record.source} gives its place, {site.lat / DEG:.4f}, {site.lon / DEG:.4f}°: used for the "
-            "site's in all but ωₛ, and with it the networks"
+            Text(
+                "{source} gives its place, {lat:.4f}, {lon:.4f}°: used for the site's in all "
+                "but ωₛ, and with it the networks",
+                source=record.source,
+                lat=site.lat / DEG,
+                lon=site.lon / DEG,
+            )
         )
     if scenario.alignment.kind == "compass":
         yield (

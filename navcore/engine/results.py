@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 from navcore.engine.measures import metrics
 from navcore.engine.run import Run
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.scenario.file import to_toml
 
 if TYPE_CHECKING:
@@ -47,8 +48,12 @@ def require_replaceable(folder: str | os.PathLike[str]) -> None:
     except OSError as error:
         raise _cannot(folder, error) from None
     if foreign:
-        named = ", ".join(foreign[:3]) + (f" and {len(foreign) - 3} more" if len(foreign) > 3 else "")
-        raise _refused(folder, f"would be replaced as a whole, but holds what no run wrote: {named}")
+        named = ", ".join(foreign[:3]) + (
+            Text(" and {foreign} more", foreign=len(foreign) - 3) if len(foreign) > 3 else ""
+        )
+        raise _refused(
+            folder, Text("would be replaced as a whole, but holds what no run wrote: {named}", named=named)
+        )
 
 
 def write_results(run: Run, folder: str | os.PathLike[str], format: Format = "parquet") -> None:
@@ -197,4 +202,4 @@ def _refused(folder: Path, reason: str) -> InputError:
 
 
 def _cannot(folder: Path, error: OSError) -> InputError:
-    return _refused(folder, f"cannot be written: {error.strerror or error}")
+    return _refused(folder, Text("cannot be written: {strerror}", strerror=error.strerror or error))

@@ -11,6 +11,7 @@ import numpy as np
 
 from navcore.analysis import Loop
 from navcore.analysis.whole_system import WholeSystem
+from navcore.foundation.text import Text
 from navcore.mechanization.recorder import Recorder
 from navcore.networks.base import LinearNetwork
 from navcore.scenario.model import Method, Scenario
@@ -162,11 +163,14 @@ class Run:
     def computed_on(self) -> str:
         """Which states metrics and plots cover, in words."""
         if self.sampling is None:
-            return f"every step of the mechanization, {self.scenario.run.step_s:g} s"
+            return Text("every step of the mechanization, {step_s:g} s", step_s=self.scenario.run.step_s)
         rates = self.sampling
-        return (
-            f"states every {rates.record_step_s:g} s (every {rates.record_every} steps of the mechanization "
-            f"at {rates.rate_hz:g} Hz)"
+        return Text(
+            "states every {record_step_s:g} s (every {record_every} steps of the "
+            "mechanization at {rate_hz:g} Hz)",
+            record_step_s=rates.record_step_s,
+            record_every=rates.record_every,
+            rate_hz=rates.rate_hz,
         )
 
     @property

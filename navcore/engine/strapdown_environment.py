@@ -13,6 +13,7 @@ from navcore.engine.environment import recorded_notices, site_notices
 from navcore.engine.recorded_start import RecordedImu, recorded_imu
 from navcore.foundation.errors import InputError
 from navcore.foundation.stage_cache import file_state, kept
+from navcore.foundation.text import Text
 from navcore.mechanization.strapdown import Start, start_from
 from navcore.motion.base import VE, VN, Truth
 from navcore.scenario.model import Scenario
@@ -111,8 +112,11 @@ def strapdown_environment(scenario: Scenario) -> StrapdownEnvironment:
         speed = float(np.hypot(truth.values[0, VE], truth.values[0, VN]))
         if speed > _AT_REST_MPS:
             warnings.append(
-                f"the alignment is made at rest, though the motion begins at {speed:.3g} m/s: navigation "
-                "starts at once with that speed"
+                Text(
+                    "the alignment is made at rest, though the motion begins at {speed:.3g} m/s: "
+                    "navigation starts at once with that speed",
+                    speed=speed,
+                )
             )
     return StrapdownEnvironment(
         sampling=rates,

@@ -19,6 +19,7 @@ from navcore.engine.drivers.common import STOPPED, Cancelled, Progress
 from navcore.engine.environment import Environment, environment
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG, HOUR
 from navcore.mechanization.recorder import DAMPED_COLUMN, NAMES, PHI_E, PHI_N, PHI_U
 from navcore.motion.base import LAT
@@ -230,18 +231,30 @@ def _statements(
     latitude = float(np.abs(full.truth[:, LAT]).max()) / DEG
     if latitude > LATITUDE_DEG:
         yield (
-            f"The latitude reaches {latitude:.1f}°: beyond {LATITUDE_DEG:g}° a small error of position "
-            "turns north too far for a linear model."
+            Text(
+                "The latitude reaches {latitude:.1f}°: beyond {latitude_deg:g}° a small "
+                "error of position turns north too far for a linear model.",
+                latitude=latitude,
+                latitude_deg=LATITUDE_DEG,
+            )
         )
     if scenario.run.duration_h > LONG_H:
         yield (
-            f"The run is {scenario.run.duration_h:g} h long: beyond {LONG_H:g} h small differences of the "
-            "periods put the curves of an undamped method out of phase."
+            Text(
+                "The run is {duration_h:g} h long: beyond {long_h:g} h small differences of "
+                "the periods put the curves of an undamped method out of phase.",
+                duration_h=scenario.run.duration_h,
+                long_h=LONG_H,
+            )
         )
     if scenario.run.step_s < 0.999 * full.scenario.run.step_s:
         yield (
-            f"Both runs were made with steps of {full.scenario.run.step_s:g} s in place of "
-            f"{scenario.run.step_s:g} s: so finely are the errors of the IMU summed up."
+            Text(
+                "Both runs were made with steps of {step_s:g} s in place of {step_s_2:g} s: "
+                "so finely are the errors of the IMU summed up.",
+                step_s=full.scenario.run.step_s,
+                step_s_2=scenario.run.step_s,
+            )
         )
     for (strapdown, linear_run), difference in zip(pairs, differences, strict=True):
         for text in _about_method(strapdown, linear_run, difference):
@@ -251,32 +264,56 @@ def _statements(
 def _about_method(full: MethodRun, simple: MethodRun, differences: dict[str, Difference]) -> Iterator[str]:
     for run, which in ((full, "the strapdown run"), (simple, "the linear model")):
         if run.status == "diverged":
-            yield f"{which} diverged: {run.reason}."
+            yield Text("{which} diverged: {reason}.", which=which, reason=run.reason)
     tilt = max(full.errors[NAMES[i]]["max_abs"] for i in (PHI_E, PHI_N)) / DEG
     if tilt > TILT_DEG:
         yield (
-            f"the tilt reaches {tilt:.2g}°: beyond about {TILT_DEG:g}° products of errors count, which "
-            "the linear model leaves out."
+            Text(
+                "the tilt reaches {tilt:.2g}°: beyond about {tilt_deg:g}° products of errors "
+                "count, which the linear model leaves out.",
+                tilt=tilt,
+                tilt_deg=TILT_DEG,
+            )
         )
     heading = full.errors[NAMES[PHI_U]]["max_abs"] / DEG
     if heading > HEADING_DEG:
         yield (
-            f"the heading errs by up to {heading:.2g}°: beyond about {HEADING_DEG:g}° sine and angle "
-            "differ, and the platform's rates couple in ways the linear model leaves out."
+            Text(
+                "the heading errs by up to {heading:.2g}°: beyond about {heading_deg:g}° "
+                "sine and angle differ, and the platform's rates couple in ways the linear "
+                "model leaves out.",
+                heading=heading,
+                heading_deg=HEADING_DEG,
+            )
         )
     rows = min(len(full.t_s), len(simple.t_s))
     apart = np.flatnonzero(full.rows[:rows, DAMPED_COLUMN] != simple.rows[:rows, DAMPED_COLUMN])
     if apart.size:
         yield (
-            f"damped and undamped at different times ({apart.size} of {rows} output rows, first at "
-            f"{full.t_s[apart[0]] / HOUR:.3g} h): from there on the runs are not of the same thing."
+            Text(
+                "damped and undamped at different times ({size} of {rows} output rows, first "
+                "at {t_s:.3g} h): from there on the runs are not of the same thing.",
+                size=apart.size,
+                rows=rows,
+                t_s=full.t_s[apart[0]] / HOUR,
+            )
         )
     worst = _worst(differences)
     if worst is not None:
         name, difference = worst
         label, unit, size = _SHOWN[name]
-        share = "" if difference.of_peak is None else f", {100.0 * difference.of_peak:.2g} % of the peak"
-        yield f"{label} differs by up to {difference.peak / size:.3g} {unit}{share}."
+        share = (
+            ""
+            if difference.of_peak is None
+            else Text(", {of_peak:.2g} % of the peak", of_peak=100.0 * difference.of_peak)
+        )
+        yield Text(
+            "{label} differs by up to {peak:.3g} {unit}{share}.",
+            label=label,
+            peak=difference.peak / size,
+            unit=unit,
+            share=share,
+        )
 
 
 def _worst(differences: dict[str, Difference]) -> tuple[str, Difference] | None:

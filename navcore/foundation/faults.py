@@ -13,6 +13,7 @@ from pydantic.fields import FieldInfo
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import allowed_range
+from navcore.foundation.text import Text
 
 _ABSENT = object()
 _MOST_ERRORS = 100
@@ -57,7 +58,7 @@ def faults_from(error: ValidationError, model: Any, data: Any, where: str) -> li
     for item in items[:_MOST_ERRORS]:
         faults += _unfold(item, model, data, where)
     more = len(items) - _MOST_ERRORS
-    told = [Fault(where, "", None, f"and {more} more faults")] if more > 0 else []
+    told = [Fault(where, "", None, Text("and {more} more faults", more=more))] if more > 0 else []
     return [*_merged(faults), *told]
 
 
@@ -70,7 +71,10 @@ def _merged(faults: list[Fault]) -> list[Fault]:
         if first is None:
             together[key] = fault
         elif fault.allowed not in first.allowed:
-            together[key] = replace(first, allowed=f"{first.allowed}, or {fault.allowed}")
+            together[key] = replace(
+                first,
+                allowed=Text("{allowed}, or {allowed_2}", allowed=first.allowed, allowed_2=fault.allowed),
+            )
     return list(together.values())
 
 
@@ -116,12 +120,22 @@ def _allowed(item: Any, path: list[str], place: Any, info: FieldInfo | None) -> 
     if kind == "extra_forbidden":
         return _unknown_field(path[-1], place)
     if kind == "literal_error":
-        return f"must be {'one of ' if ' or ' in context['expected'] else ''}{context['expected']}"
+        return (
+            Text("must be one of {expected}", expected=context["expected"])
+            if " or " in context["expected"]
+            else Text("must be {expected}", expected=context["expected"])
+        )
     if kind in _BOUNDS:
-        return _range(info) or f"must be {_BOUNDS[kind]} {next(iter(context.values())):g}"
+        return _range(info) or Text(
+            "must be {bounds} {next:g}", bounds=_BOUNDS[kind], next=next(iter(context.values()))
+        )
     if kind in ("too_short", "too_long"):
         limit = context.get("min_length", context.get("max_length"))
-        return f"must have {'at least' if kind == 'too_short' else 'at most'} {limit} values"
+        return (
+            Text("must have at least {limit} values", limit=limit)
+            if kind == "too_short"
+            else Text("must have at most {limit} values", limit=limit)
+        )
     wanted = _WANTED.get(kind.split("_")[0])
     if wanted is not None:
         return _join(wanted, _range(info))
@@ -133,15 +147,19 @@ def _unknown_field(name: str, place: Any) -> str:
     fields = place.model_fields if _is_model(place) else {}
     known = [info.alias or own for own, info in fields.items()]
     close = difflib.get_close_matches(name[:_LONGEST_NAME], known, n=1)
-    hint = f"did you mean {close[0]}? " if close else ""
-    return f"is not a field here; {hint}known: {', '.join(known) or 'none'}"
+    hint = Text("did you mean {close}? ", close=close[0]) if close else ""
+    return Text("is not a field here; {hint}known: {known}", hint=hint, known=", ".join(known) or "none")
 
 
 def _tags(place: Any, name: str, value: Any) -> str:
     known = [tag for member in _members(place) for tag in _tags_of(member, name)]
     close = difflib.get_close_matches(_tag_text(value), known, n=1)
-    hint = f" (did you mean {close[0]}?)" if close and value is not _ABSENT else ""
-    return f"{'is required: ' if value is _ABSENT else 'must be '}one of {', '.join(known)}{hint}"
+    hint = Text(" (did you mean {close}?)", close=close[0]) if close and value is not _ABSENT else ""
+    return (
+        Text("is required: one of {known}{hint}", known=", ".join(known), hint=hint)
+        if value is _ABSENT
+        else Text("must be one of {known}{hint}", known=", ".join(known), hint=hint)
+    )
 
 
 def _tag_text(value: Any) -> str:

@@ -15,6 +15,7 @@ from pydantic.fields import FieldInfo
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.notation import unit_sign
+from navcore.foundation.text import Text
 
 
 class Parameters(BaseModel):
@@ -199,7 +200,11 @@ def allowed_range(info: FieldInfo) -> str:
         if getattr(rule, name, None) is not None
     ]
     unit = unit_sign(extra_of(info).get("unit", ""))
-    return ("must be " + " and ".join(parts) + (f" ({unit})" if unit else "")) if parts else ""
+    return (
+        (Text("must be {parts}{unit}", parts=" and ".join(parts), unit=f" ({unit})" if unit else ""))
+        if parts
+        else ""
+    )
 
 
 def bounds_of(info: FieldInfo) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from datetime import UTC, datetime
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.io.columns import limited
 from navcore.io.stamps import StampReader, day_comes_first
 
@@ -52,8 +53,10 @@ def numbers(
                 values[index] = degrees
             else:
                 hint = " (decimal comma?)" if "," in cell else ""
-                allowed = f"is not a number{hint}"
-                faults.append(Fault(f"{where}, row {rows[index]}", name, cell, allowed))
+                allowed = Text("is not a number{hint}", hint=hint)
+                faults.append(
+                    Fault(Text("{where}, row {rows}", where=where, rows=rows[index]), name, cell, allowed)
+                )
     if faults:
         raise InputError(limited(where, faults))
     return values, empty
@@ -111,7 +114,14 @@ def _written_times(
     for index, cell in enumerate(cells):
         moment = _moment(cell.strip(), reader)
         if moment is None:
-            faults.append(Fault(f"{where}, row {rows[index]}", name, cell, "is not an ISO 8601 time"))
+            faults.append(
+                Fault(
+                    Text("{where}, row {rows}", where=where, rows=rows[index]),
+                    name,
+                    cell,
+                    "is not an ISO 8601 time",
+                )
+            )
         else:
             seconds[index], dated[index] = moment
     if faults:
@@ -120,7 +130,14 @@ def _written_times(
         return seconds, True
     if dated.any():
         allowed = "some rows have a date and some have none"
-        raise InputError(Fault(f"{where}, row {rows[int(np.argmin(dated))]}", name, None, allowed))
+        raise InputError(
+            Fault(
+                Text("{where}, row {rows}", where=where, rows=rows[int(np.argmin(dated))]),
+                name,
+                None,
+                allowed,
+            )
+        )
     nights = np.cumsum(np.diff(seconds, prepend=seconds[0]) < -0.5 * _DAY)
     return seconds + _DAY * nights, False
 

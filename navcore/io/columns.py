@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns
 from navcore.io.series import Recording, Series, SourceReport, stream_report, tidy
 
@@ -32,32 +33,56 @@ def require_columns(where: str, names: Sequence[str]) -> dict[str, Column]:
         and what is needed.
     """
     if len(names) > MOST_COLUMNS:
-        raise InputError(Fault(where, "", None, f"has more than {MOST_COLUMNS} columns: no log"))
+        raise InputError(
+            Fault(
+                where,
+                "",
+                None,
+                Text("has more than {most_columns} columns: no log", most_columns=MOST_COLUMNS),
+            )
+        )
     found = known_columns(names)
     held = listed(names)
     faults: list[Fault] = []
     if not {UTC, UNIX, SECONDS} & found.keys() and not {DATE, CLOCK} <= found.keys():
-        missing = f"missing column: utc (ISO 8601) or t_s (seconds); columns found: {held}"
+        missing = Text("missing column: utc (ISO 8601) or t_s (seconds); columns found: {held}", held=held)
         faults.append(Fault(where, "", None, missing))
     if not QUANTITIES.keys() & found.keys():
-        missing = (
-            f"no column of a quantity; columns found: {held}; known: lat_deg, lon_deg, height_m, "
-            "heading_deg, pitch_deg, roll_deg, ve_mps, vn_mps, sog_kn with cog_deg, speed_kn or speed_mps "
-            "(through the water), speed_starboard_kn, ground_kn, ground_starboard_kn"
+        missing = Text(
+            "no column of a quantity; columns found: {held}; known: lat_deg, lon_deg, "
+            "height_m, heading_deg, pitch_deg, roll_deg, ve_mps, vn_mps, sog_kn with "
+            "cog_deg, speed_kn or speed_mps (through the water), speed_starboard_kn, "
+            "ground_kn, ground_starboard_kn",
+            held=held,
         )
         faults.append(Fault(where, "", None, missing))
     for first, second, unit in _TOGETHER:
         faults += [
             Fault(
-                where, "", None, f"missing column: {name}_{unit} (its partner {found[other].name} is there)"
+                where,
+                "",
+                None,
+                Text(
+                    "missing column: {name}_{unit} (its partner {name_2} is there)",
+                    name=name,
+                    unit=unit,
+                    name_2=found[other].name,
+                ),
             )
             for name, other in ((first, second), (second, first))
             if other in found and name not in found
         ]
     for across, along in _ACROSS:
         if across in found and along not in found:
-            needed = f"{along}_mps or {along}_kn"
-            faults.append(Fault(where, "", None, f"missing column: {needed} (starboard speed is there)"))
+            needed = Text("{along}_mps or {along}_kn", along=along)
+            faults.append(
+                Fault(
+                    where,
+                    "",
+                    None,
+                    Text("missing column: {needed} (starboard speed is there)", needed=needed),
+                )
+            )
     lowered = [name.strip().lower() for name in names]
     faults += [
         Fault(where, "", column.name.lower(), "column given twice")
@@ -72,7 +97,9 @@ def require_columns(where: str, names: Sequence[str]) -> dict[str, Column]:
 def listed(names: Sequence[str]) -> str:
     """Names for a message, the first of many."""
     shown = ", ".join(name.strip()[:40] for name in names[:_MOST_NAMED])
-    return shown + (f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else "")
+    return shown + (
+        Text(" and {names} more", names=len(names) - _MOST_NAMED) if len(names) > _MOST_NAMED else ""
+    )
 
 
 def limited(where: str, faults: list[Fault]) -> list[Fault]:
@@ -80,19 +107,27 @@ def limited(where: str, faults: list[Fault]) -> list[Fault]:
     more = len(faults) - _MOST_FAULTS
     if more <= 0:
         return faults
-    return [*faults[:_MOST_FAULTS], Fault(where, "", None, f"and {more} more faults of this kind")]
+    return [
+        *faults[:_MOST_FAULTS],
+        Fault(where, "", None, Text("and {more} more faults of this kind", more=more)),
+    ]
 
 
 def column_warnings(names: Sequence[str], found: Mapping[str, Column]) -> list[str]:
     """Warn of columns that are not used, in case one is misspelt, and of units that were guessed."""
     used = {column.index for column in found.values()}
     unused = [name for index, name in enumerate(names) if index not in used and name.strip()]
-    words = [f"columns not used: {listed(unused)}"] if unused else []
+    words = [Text("columns not used: {listed}", listed=listed(unused))] if unused else []
     guessed = [column for column in found.values() if not column.told]
-    words += [f"column {column.name} names no unit: taken as {column.unit}" for column in guessed]
+    words += [
+        Text("column {name} names no unit: taken as {unit}", name=column.name, unit=column.unit)
+        for column in guessed
+    ]
     if ("sog" in found) != ("cog" in found):
         there = found.get("sog") or found["cog"]
-        words.append(f"column {there.name} not used: speed and course over ground serve only together")
+        words.append(
+            Text("column {name} not used: speed and course over ground serve only together", name=there.name)
+        )
     return words
 
 
@@ -179,12 +214,15 @@ def _account(table: Table) -> SourceReport:
     used = [table.columns[stem].name.lower() for stem in table.values]
     empty = {table.columns[s].name: int(np.count_nonzero(gone)) for s, gone in table.missing.items()}
     told = [f"{name} {count}" for name, count in empty.items() if count]
-    warnings = [f"empty cells, missing samples: {', '.join(told)}"] if told else []
+    warnings = [Text("empty cells, missing samples: {told}", told=", ".join(told))] if told else []
     report = stream_report("rows", table.time_s.size, True, table.time_s)
     return SourceReport(
-        table.where, f"{table.kind} with {', '.join(used)}", table.time_s.size, (report,),
+        table.where,
+        Text("{kind} with {used}", kind=table.kind, used=", ".join(used)),
+        table.time_s.size,
+        (report,),
         warnings=(*table.warnings, *warnings),
-    )  # fmt: skip
+    )
 
 
 def _with_height(position: Series | None, table: Table) -> Series | None:
@@ -240,13 +278,13 @@ def _range_faults(table: Table) -> list[Fault]:
         outside = np.flatnonzero(~((values >= low) & (values <= high)) & ~np.asarray(missing))
         column = [
             Fault(
-                f"{table.where}, row {table.rows[i]}", name, float(values[i]),
-                f"must be a number from {low:g} to {high:g}",
+                Text("{where}, row {rows}", where=table.where, rows=table.rows[i]), name, float(values[i]),
+                Text("must be a number from {low:g} to {high:g}", low=low, high=high),
             )
             for i in outside[:_MOST_FAULTS]
         ]  # fmt: skip
         if outside.size > _MOST_FAULTS:
-            more = f"and {outside.size - _MOST_FAULTS} more faults of this kind"
+            more = Text("and {size} more faults of this kind", size=outside.size - _MOST_FAULTS)
             column.append(Fault(table.where, "", None, more))
         faults += column
     return faults
@@ -261,8 +299,12 @@ def _order_faults(table: Table) -> list[Fault]:
     what = (
         "is the same time as the row before"
         if steps[index] == 0.0
-        else f"runs backwards by {-steps[index]:g} s"
+        else Text("runs backwards by {steps:g} s", steps=-steps[index])
     )
-    more = f" ({wrong.size} such rows)" if wrong.size > 1 else ""
-    where = f"{table.where}, row {table.rows[index + 1]}"
-    return [Fault(where, table.clock, None, f"time {what}{more}; put the rows in order")]
+    more = Text(" ({size} such rows)", size=wrong.size) if wrong.size > 1 else ""
+    where = Text("{where}, row {rows}", where=table.where, rows=table.rows[index + 1])
+    return [
+        Fault(
+            where, table.clock, None, Text("time {what}{more}; put the rows in order", what=what, more=more)
+        )
+    ]

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.io.cells import is_empty, numbers, times, unix_or_elapsed
 from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns
 from navcore.io.columns import (
@@ -126,8 +127,8 @@ def _rows(where: str, text: str) -> _Rows:
     for number, row in _after_header(where, text, separator, header_line):
         row = _fitted(row, width, separator, rows.columns)
         if len(row) != width:
-            allowed = f"has {len(row)} cells, the header {width}"
-            faults.append(Fault(f"{where}, row {number}", "", None, allowed))
+            allowed = Text("has {row} cells, the header {width}", row=len(row), width=width)
+            faults.append(Fault(Text("{where}, row {number}", where=where, number=number), "", None, allowed))
             continue
         if not rows.numbers and _is_units(row):
             rows.columns = require_columns(where, [f"{n} ({u})" for n, u in zip(header, row, strict=True)])
@@ -147,7 +148,12 @@ def _rows(where: str, text: str) -> _Rows:
 def _refuse_size(where: str, text: str, columns: int) -> None:
     lines = text.count("\n") + 1
     if lines * columns > MOST_CELLS:
-        allowed = f"has {lines} rows of {columns} columns that are used; at most {MOST_CELLS} cells are read"
+        allowed = Text(
+            "has {lines} rows of {columns} columns that are used; at most {most_cells} cells are read",
+            lines=lines,
+            columns=columns,
+            most_cells=MOST_CELLS,
+        )
         raise InputError(Fault(where, "", None, allowed))
 
 
@@ -172,8 +178,8 @@ def _after_header(where: str, text: str, separator: str, header: str) -> Iterato
             if any(cell.strip() for cell in row) and not row[0].startswith(_COMMENTS):
                 yield skipped + reader.line_num, row
     except csv.Error as problem:
-        where = f"{where}, row {skipped + reader.line_num}"
-        raise InputError(Fault(where, "", None, f"not a CSV row ({problem})")) from None
+        where = Text("{where}, row {skipped}", where=where, skipped=skipped + reader.line_num)
+        raise InputError(Fault(where, "", None, Text("not a CSV row ({problem})", problem=problem))) from None
 
 
 def _fitted(row: list[str], width: int, separator: str, columns: dict[str, Column]) -> list[str]:
@@ -191,7 +197,12 @@ def _is_units(row: list[str]) -> bool:
     return (
         any(cell.strip() for cell in row)
         and not any(cell.strip()[:1] in "+-.0123456789" or is_empty(cell) or _is_number(cell) for cell in row)
-        and any(known_columns([f"lat ({cell})", f"sog ({cell})"]).get("sog", _NONE).told for cell in row)
+        and any(
+            known_columns([Text("lat ({cell})", cell=cell), Text("sog ({cell})", cell=cell)])
+            .get("sog", _NONE)
+            .told
+            for cell in row
+        )
     )
 
 
@@ -225,7 +236,7 @@ def _table(where: str, rows: _Rows, warnings: tuple[str, ...]) -> Table:
     if faults or timing is None:
         raise InputError(faults)
     time_s, dated, clock = timing
-    told = [f"{counted(untimed, 'row')} without a time left out"] if untimed else []
+    told = [Text("{counted} without a time left out", counted=counted(untimed, "row"))] if untimed else []
     return Table(
         where, "CSV table", rows.columns, time_s, dated, clock, values, missing, numbered, (*warnings, *told)
     )

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.io.nmea_clock import Clock
 from navcore.io.nmea_lines import OTHER_KINDS, Tally, intact_lines
@@ -122,14 +123,14 @@ def _of_instruments(
 
 def _refuse_unusable(path: Path, tally: Tally, readings: dict[Channel, list[tuple[float, Reading]]]) -> None:
     def refuse(allowed: str, line: int = 0) -> InputError:
-        where = f"{path.name}, line {line}" if line else path.name
+        where = Text("{name}, line {line}", name=path.name, line=line) if line else path.name
         return InputError(Fault(where, "", None, allowed))
 
     used = sum(len(rows) for rows in readings.values())
     if tally.first_late is not None and tally.late > MOST_LATE * (used + tally.late):
         line, seconds, address = tally.first_late
-        back = f"time runs backwards by {seconds:.1f} s ({address})"
-        raise refuse(f"{back}: put the lines in order or split the file", line)
+        back = Text("time runs backwards by {seconds:.1f} s ({address})", seconds=seconds, address=address)
+        raise refuse(Text("{back}: put the lines in order or split the file", back=back), line)
     total, bad = tally.intact.total() + tally.bad.total(), tally.bad.total()
     worst = [
         f"{address} {count}/{count + tally.intact[address]}"
@@ -139,21 +140,40 @@ def _refuse_unusable(path: Path, tally: Tally, readings: dict[Channel, list[tupl
     if bad > MOST_BAD_CHECKSUMS * total or worst:
         detail = f" ({', '.join(worst)})" if worst else ""
         raise refuse(
-            f"{bad} of {total} sentences have a wrong checksum{detail}, the first in line "
-            f"{tally.first_bad_line}; at most {MOST_BAD_CHECKSUMS:.0%} are tolerated"
+            Text(
+                "{bad} of {total} sentences have a wrong checksum{detail}, the first in line "
+                "{first_bad_line}; at most {most_bad_checksums:.0%} are tolerated",
+                bad=bad,
+                total=total,
+                detail=detail,
+                first_bad_line=tally.first_bad_line,
+                most_bad_checksums=MOST_BAD_CHECKSUMS,
+            )
         )
     if used:
         return
     if tally.untimed:
         raise refuse("no time: neither a time beside the sentences nor one with its own (RMC, GGA, ZDA)")
     if not total:
-        raise refuse(f"not a log this reader knows: expected NMEA 0183 sentences ({KINDS}) or a CSV table")
+        raise refuse(
+            Text(
+                "not a log this reader knows: expected NMEA 0183 sentences ({kinds}) or a CSV table",
+                kinds=KINDS,
+            )
+        )
     found = _named(sorted(tally.intact)) or "none intact"
-    raise refuse(f"no usable sentence among {total} (found: {found}); expected {KINDS}")
+    raise refuse(
+        Text(
+            "no usable sentence among {total} (found: {found}); expected {kinds}",
+            total=total,
+            found=found,
+            kinds=KINDS,
+        )
+    )
 
 
 def _named(names: list[str]) -> str:
-    more = f" and {len(names) - _MOST_NAMED} more kinds" if len(names) > _MOST_NAMED else ""
+    more = Text(" and {names} more kinds", names=len(names) - _MOST_NAMED) if len(names) > _MOST_NAMED else ""
     return ", ".join(names[:_MOST_NAMED]) + more
 
 
@@ -162,34 +182,69 @@ def _warnings(tally: Tally) -> list[str]:
     words: list[str] = []
     if tally.bad:
         left_out = counted(tally.bad.total(), "sentence")
-        words.append(f"{left_out} with a wrong checksum left out (first: line {tally.first_bad_line})")
+        words.append(
+            Text(
+                "{left_out} with a wrong checksum left out (first: line {first_bad_line})",
+                left_out=left_out,
+                first_bad_line=tally.first_bad_line,
+            )
+        )
     if tally.unparsable:
-        words.append(f"{tally.unparsable} lines that are no sentence or make no sense left out")
+        words.append(
+            Text(
+                "{unparsable} lines that are no sentence or make no sense left out",
+                unparsable=tally.unparsable,
+            )
+        )
     if tally.without_checksum:
-        words.append(f"{tally.without_checksum} sentences without a checksum used unchecked")
+        words.append(
+            Text(
+                "{without_checksum} sentences without a checksum used unchecked",
+                without_checksum=tally.without_checksum,
+            )
+        )
     if tally.untimed:
-        words.append(f"{tally.untimed} sentences before the first known time left out")
+        words.append(Text("{untimed} sentences before the first known time left out", untimed=tally.untimed))
     if tally.jitter:
-        words.append(f"{tally.jitter} sentences up to {JITTER_S} s out of order, sorted")
+        words.append(
+            Text(
+                "{jitter} sentences up to {jitter_s} s out of order, sorted",
+                jitter=tally.jitter,
+                jitter_s=JITTER_S,
+            )
+        )
     if tally.first_late is not None:
         words.append(
-            f"{counted(tally.late, 'sentence')} whose time runs backwards left out "
-            f"(first: line {tally.first_late[0]})"
+            Text(
+                "{counted} whose time runs backwards left out (first: line {first_late})",
+                counted=counted(tally.late, "sentence"),
+                first_late=tally.first_late[0],
+            )
         )
     if OTHER_KINDS in tally.intact:
-        words.append(f"{tally.intact[OTHER_KINDS]} sentences of many further kinds counted together")
+        words.append(
+            Text(
+                "{intact} sentences of many further kinds counted together", intact=tally.intact[OTHER_KINDS]
+            )
+        )
     if not tally.dated:
         words.append("times of day without a date: it cannot be joined with a dated file")
     if tally.local_time_s:
         ahead = tally.local_time_s / HOUR
         words.append(
-            f"the times beside the sentences are local time, {ahead:+g} h from UTC: corrected by the "
-            "sentences' own UTC"
+            Text(
+                "the times beside the sentences are local time, {ahead:+g} h from UTC: "
+                "corrected by the sentences' own UTC",
+                ahead=ahead,
+            )
         )
     if tally.clock_offsets:
         offset = sorted(tally.clock_offsets)[len(tally.clock_offsets) // 2]
         if abs(offset) > _CLOCK_WARNING_S:
             words.append(
-                f"the stamps before the lines differ from the sentences' UTC by {offset:.0f} s (median)"
+                Text(
+                    "the stamps before the lines differ from the sentences' UTC by {offset:.0f} s (median)",
+                    offset=offset,
+                )
             )
     return words

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from navcore.foundation.earth import WGS84
+from navcore.foundation.text import Text
 from navcore.foundation.units import KNOT
 from navcore.io.series import Recording
 
@@ -41,11 +42,21 @@ def speed_warnings(recording: Recording) -> list[str]:
     slips = {KNOT: "m/s taken for knots", 1.0 / KNOT: "knots taken for m/s"}
     slip = next((words for size, words in slips.items() if abs(ratio / size - 1.0) < _KNOT_SLIP), "")
     reason = (
-        f"the ratio {ratio:.2f} suggests {slip}" if slip else "a wrong unit or scale, or a log that fails"
+        Text("the ratio {ratio:.2f} suggests {slip}", ratio=ratio, slip=slip)
+        if slip
+        else "a wrong unit or scale, or a log that fails"
     )
     return [
-        f"the speed through the water (median {through / KNOT:.1f} kn, {water.source}) is far from the speed "
-        f"over ground ({ground / KNOT:.1f} kn): a stream of {difference / KNOT:.1f} kn, or {reason}"
+        Text(
+            "the speed through the water (median {through:.1f} kn, {source}) is far from "
+            "the speed over ground ({ground:.1f} kn): a stream of {difference:.1f} kn, "
+            "or {reason}",
+            through=through / KNOT,
+            source=water.source,
+            ground=ground / KNOT,
+            difference=difference / KNOT,
+            reason=reason,
+        )
     ]
 
 

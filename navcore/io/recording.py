@@ -13,6 +13,7 @@ import numpy as np
 from navcore.foundation import guarded
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.stage_cache import kept
+from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.io.nmea import Channel, NmeaLog, read_nmea
 from navcore.io.nmea_lines import looks_like_nmea
@@ -142,7 +143,9 @@ def nmea_recording(path: Path) -> Recording:
         for address, count in tally.intact.most_common()
     )
     invalid = sum(not _all_valid(reading) for rows in log.readings.values() for _, reading in rows)
-    flagged = [f"{invalid} readings flagged invalid by the instrument"] if invalid else []
+    flagged = (
+        [Text("{invalid} readings flagged invalid by the instrument", invalid=invalid)] if invalid else []
+    )
     found = {
         "position": _positions(path, log),
         "velocity": _series(path, log, *_pick(log, ("RMC", "VTG"), "velocity")),
@@ -251,7 +254,7 @@ def shared_window(series: Iterable[Series], field: str = "file") -> Window:
     start = min(epochs, default=math.inf)
     if not start < end:
         spans = "; ".join(f"{s.source} {utc_text(s.time_s[0])} to {utc_text(s.time_s[-1])}" for s in streams)
-        raise InputError(Fault("", field, None, f"the streams share no time: {spans}"))
+        raise InputError(Fault("", field, None, Text("the streams share no time: {spans}", spans=spans)))
     return Window(float(start), float(end), float(begin))
 
 
@@ -261,8 +264,13 @@ def require_cover(window: Window, start_s: float, duration_s: float, what: str, 
         return
     span = max(window.end_s - start_s, 0.0)
     hours = math.floor(span / HOUR * 1e4) / 1e4
-    allowed = (
-        f"{what} lasts {span:.1f} s = {hours:.4f} h from {utc_text(start_s)}, the run {duration_s:.1f} s: "
-        f"run.duration_h must be <= {hours:.4f}"
+    allowed = Text(
+        "{what} lasts {span:.1f} s = {hours:.4f} h from {utc_text}, the run "
+        "{duration_s:.1f} s: run.duration_h must be <= {hours:.4f}",
+        what=what,
+        span=span,
+        hours=hours,
+        utc_text=utc_text(start_s),
+        duration_s=duration_s,
     )
     raise InputError(Fault("", "file", file, allowed))

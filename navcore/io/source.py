@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 
 LARGEST_FILE_BYTES = 64 * 1024 * 1024
 """Larger files are refused before they are read."""
@@ -36,7 +37,7 @@ def require_file(path: str | os.PathLike[str], where: str = "", field: str = "")
     try:
         present, regular = found.exists(), found.is_file()
     except (OSError, ValueError) as problem:
-        raise refuse(f"cannot be opened ({problem.__class__.__name__})") from problem
+        raise refuse(Text("cannot be opened ({name})", name=problem.__class__.__name__)) from problem
     if not present:
         raise refuse("no such file")
     if not regular:
@@ -47,7 +48,13 @@ def require_file(path: str | os.PathLike[str], where: str = "", field: str = "")
     if size == 0:
         raise refuse("the file is empty")
     if size > LARGEST_FILE_BYTES:
-        raise refuse(f"{size / 2**20:.0f} MiB; at most {LARGEST_FILE_BYTES // 2**20} MiB are read")
+        raise refuse(
+            Text(
+                "{size:.0f} MiB; at most {largest_file_bytes} MiB are read",
+                size=size / 2**20,
+                largest_file_bytes=LARGEST_FILE_BYTES // 2**20,
+            )
+        )
     return found
 
 
@@ -69,7 +76,7 @@ class FileText(NamedTuple):
         """Say that lines were left out."""
         if not self.damaged_lines:
             return []
-        return [f"{counted(self.damaged_lines, 'line')} with NUL bytes left out"]
+        return [Text("{counted} with NUL bytes left out", counted=counted(self.damaged_lines, "line"))]
 
 
 def counted(count: int, noun: str) -> str:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.io.cells import times, unix_or_elapsed
 from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column
 from navcore.io.columns import (
@@ -52,11 +53,18 @@ def read_table(path: Path) -> Recording:
         raise
     except MemoryError:
         raise InputError(
-            Fault(path.name, "", None, f"unpacks to more memory than a {kind} may take")
+            Fault(path.name, "", None, Text("unpacks to more memory than a {kind} may take", kind=kind))
         ) from None
     except Exception as problem:  # the libraries raise many kinds for a damaged file
         message = (str(problem).splitlines() or [type(problem).__name__])[0][:200]
-        raise InputError(Fault(path.name, "", None, f"cannot be read as a {kind} ({message})")) from problem
+        raise InputError(
+            Fault(
+                path.name,
+                "",
+                None,
+                Text("cannot be read as a {kind} ({message})", kind=kind, message=message),
+            )
+        ) from problem
     sizes = {values.size for values, _ in raw.values()}
     if sizes == {0} or len(sizes) != 1:
         allowed = "has no rows" if sizes == {0} else "the columns differ in length"
@@ -96,7 +104,14 @@ def _timing(where: str, clock: Column, found: np.ndarray, rows: np.ndarray) -> t
         return (numbers, False) if clock.stem == SECONDS else unix_or_elapsed(numbers)
     distinct, places = np.unique(found.astype(str), return_inverse=True)
     if distinct.size and distinct.dtype.itemsize > 4 * _LONGEST_TIME:
-        raise InputError(Fault(where, clock.name, None, f"holds texts of more than {_LONGEST_TIME} letters"))
+        raise InputError(
+            Fault(
+                where,
+                clock.name,
+                None,
+                Text("holds texts of more than {longest_time} letters", longest_time=_LONGEST_TIME),
+            )
+        )
     if distinct.size == found.size:
         return times(where, clock.name.lower(), [str(cell) for cell in found], rows.tolist())
     seconds, dated = times(where, clock.name.lower(), distinct.tolist(), rows[: distinct.size].tolist())
@@ -112,10 +127,19 @@ def _numeric(where: str, column: Column, values: np.ndarray) -> np.ndarray:
 
 def _refuse_size(where: str, rows: int, columns: int, size: int = 0) -> None:
     if columns and rows > MOST_CELLS // columns:
-        allowed = f"has {rows} rows of {columns} columns that are used; at most {MOST_CELLS} cells are read"
+        allowed = Text(
+            "has {rows} rows of {columns} columns that are used; at most {most_cells} cells are read",
+            rows=rows,
+            columns=columns,
+            most_cells=MOST_CELLS,
+        )
         raise InputError(Fault(where, "", None, allowed))
     if size > MOST_UNPACKED_BYTES:
-        allowed = f"unpacks to {size / 2**20:.0f} MiB; at most {MOST_UNPACKED_BYTES // 2**20} MiB are read"
+        allowed = Text(
+            "unpacks to {size:.0f} MiB; at most {most_unpacked_bytes} MiB are read",
+            size=size / 2**20,
+            most_unpacked_bytes=MOST_UNPACKED_BYTES // 2**20,
+        )
         raise InputError(Fault(where, "", None, allowed))
 
 
@@ -139,7 +163,16 @@ def _read_parquet(path: Path) -> tuple[list[str], dict[str, Column], dict[str, R
 def _require_few(where: str, columns: int) -> None:
     if columns > MOST_COLUMNS:
         raise InputError(
-            Fault(where, "", None, f"has {columns} columns; at most {MOST_COLUMNS} are read: no log")
+            Fault(
+                where,
+                "",
+                None,
+                Text(
+                    "has {columns} columns; at most {most_columns} are read: no log",
+                    columns=columns,
+                    most_columns=MOST_COLUMNS,
+                ),
+            )
         )
 
 
@@ -195,7 +228,7 @@ def _read_mat(path: Path) -> tuple[list[str], dict[str, Column], dict[str, Raw]]
     for column in columns.values():
         shape, kind = held[names[column.index]]
         if kind not in _MAT_NUMBERS:
-            allowed = f"must be a column of numbers, is of class {kind}"
+            allowed = Text("must be a column of numbers, is of class {kind}", kind=kind)
             raise InputError(Fault(path.name, column.name.lower(), None, allowed))
         _refuse_size(path.name, int(np.prod(shape, dtype=object)), len(columns))
     content = loadmat(str(path), variable_names=[names[column.index] for column in columns.values()])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from navcore.foundation.errors import Fault
+from navcore.foundation.text import Text
 from navcore.law.policy.base import PolicyParameters
 from navcore.law.switching.base import SwitchingParameters
 from navcore.networks.base import NetworkParameters
@@ -51,7 +52,12 @@ def combination_faults(
     for name, part in (("policy", policy), ("switching", switching)):
         rows = part.ring_rows(law_step_s)
         if rows > LONGEST_HISTORY:
-            reason = f"would look back {rows} steps of {law_step_s:g} s: at most {LONGEST_HISTORY}"
+            reason = Text(
+                "would look back {rows} steps of {law_step_s:g} s: at most {longest_history}",
+                rows=rows,
+                law_step_s=law_step_s,
+                longest_history=LONGEST_HISTORY,
+            )
             found.append(Fault("", f"{name}.id", part.id, reason))
     if not found:
         found += policy.stability_faults(network)

@@ -16,6 +16,7 @@ import numpy as np
 
 from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.earth import SEMI_MAJOR_AXIS, Earth, meridian_radius, prime_vertical_radius
+from navcore.foundation.text import Text
 from navcore.foundation.trigonometry import sincos, sincos_cycles
 from navcore.foundation.units import DEG
 from navcore.motion.base import (
@@ -71,7 +72,7 @@ class PoleReached(ValueError):
     """
 
     def __init__(self, time_s: float, leg: int) -> None:
-        super().__init__(f"leg {leg} passes +-89.5° of latitude at {time_s:g} s")
+        super().__init__(Text("leg {leg} passes +-89.5° of latitude at {time_s:g} s", leg=leg, time_s=time_s))
         self.time_s, self.leg = time_s, leg
 
 

@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 from navcore.foundation.earth import Earth
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import Parameters, quantity
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, KNOT
 from navcore.motion.base import Site, Truth
 from navcore.motion.course import (
@@ -177,7 +178,12 @@ class LegsMotion(AttitudeMotion):
                     "",
                     f"leg.{number}.{field}",
                     getattr(leg, field),
-                    f"leads to {speed:g} m/s: speeds must be >= {SLOWEST:g} and <= {FASTEST:g} (m/s)",
+                    Text(
+                        "leads to {speed:g} m/s: speeds must be >= {slowest:g} and <= {fastest:g} (m/s)",
+                        speed=speed,
+                        slowest=SLOWEST,
+                        fastest=FASTEST,
+                    ),
                 )
                 return
 
@@ -220,7 +226,10 @@ class LegsMotion(AttitudeMotion):
                     "",
                     f"leg.{reached.leg}",
                     None,
-                    f"passes 89.5° of latitude after {reached.time_s:.0f} s: must stay within +-89.5°",
+                    Text(
+                        "passes 89.5° of latitude after {time_s:.0f} s: must stay within +-89.5°",
+                        time_s=reached.time_s,
+                    ),
                 )
             ) from None
 
@@ -282,7 +291,12 @@ def _change_of_speed(leg: Leg, speed: float) -> _Change:
     if amount == 0.0:
         return _Change(0.0, 0.0)
     rate = DEFAULT_ACCELERATION if leg.accel_mps2 is None else abs(leg.accel_mps2)
-    what = f"the change from {speed:g} to {leg.speed:g} m/s at a mean of {rate:g} m/s²"
+    what = Text(
+        "the change from {speed:g} to {speed_2:g} m/s at a mean of {rate:g} m/s²",
+        speed=speed,
+        speed_2=leg.speed,
+        rate=rate,
+    )
     return _fitted(leg, amount, rate, what, leg.speed_field)
 
 
@@ -295,7 +309,7 @@ def _change_of_heading(leg: Leg, heading_deg: float) -> _Change:
     if amount == 0.0:
         return _Change(0.0, 0.0)
     rate = DEFAULT_TURN_RATE_DPS if turn is None else abs(turn)
-    what = f"the turn by {amount:g}° at a mean of {rate:g} °/s"
+    what = Text("the turn by {amount:g}° at a mean of {rate:g} °/s", amount=amount, rate=rate)
     change = _fitted(leg, amount, rate, what, "heading_deg")
     return change._replace(amount=amount * DEG)
 
@@ -316,6 +330,11 @@ def _fitted(leg: Leg, amount: float, rate: float, what: str, field: str) -> _Cha
     """Change at a mean rate, with a fault when it does not end within the leg."""
     if rate * leg.duration_s >= abs(amount) * (1.0 - 1e-9):
         return _Change(amount, min(abs(amount) / rate, leg.duration_s))
-    takes = f"takes {abs(amount) / rate:.6g} s" if rate else "never ends"
-    text = f"{what} {takes}, but the leg ends after {leg.duration_s:g} s"
+    takes = Text("takes {amount:.6g} s", amount=abs(amount) / rate) if rate else "never ends"
+    text = Text(
+        "{what} {takes}, but the leg ends after {duration_s:g} s",
+        what=what,
+        takes=takes,
+        duration_s=leg.duration_s,
+    )
     return _Change(amount, leg.duration_s, (field, getattr(leg, field), text))

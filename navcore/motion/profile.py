@@ -13,6 +13,7 @@ from navcore.foundation.compiled import kernel
 from navcore.foundation.earth import Earth
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import Parameters, bounded, choice, quantity
+from navcore.foundation.text import Text
 from navcore.foundation.trigonometry import sincos
 from navcore.foundation.units import DEG, KNOT
 from navcore.motion.base import (
@@ -136,7 +137,11 @@ class Point(Parameters):
             if self.velocity_mps is not None and value is not None:
                 yield name, value, "give velocity_mps, or speed and course, not both"
         if self.velocity_mps is not None and math.hypot(*self.velocity_mps) > FASTEST:
-            yield "velocity_mps", list(self.velocity_mps), f"the speed must be <= {FASTEST:g} (m/s)"
+            yield (
+                "velocity_mps",
+                list(self.velocity_mps),
+                Text("the speed must be <= {fastest:g} (m/s)", fastest=FASTEST),
+            )
 
     @property
     def speed(self) -> float | None:
@@ -211,7 +216,9 @@ class ProfileMotion(AttitudeMotion):
             yield Fault("", "point.0.t_s", self.point[0].t_s, "must be 0: the first point is the start")
         for number, point in enumerate(self.point):
             if number and point.t_s <= self.point[number - 1].t_s:
-                text = f"must be > {self.point[number - 1].t_s:g} (s), the time of the point before"
+                text = Text(
+                    "must be > {t_s:g} (s), the time of the point before", t_s=self.point[number - 1].t_s
+                )
                 yield Fault("", f"point.{number}.t_s", point.t_s, text)
             for name, value, text in point.contradictions():
                 yield Fault("", f"point.{number}.{name}", value, text)
@@ -266,8 +273,11 @@ class ProfileMotion(AttitudeMotion):
                     "",
                     f"point.{reached.leg}",
                     None,
-                    f"the course from here passes 89.5° of latitude after {reached.time_s:.0f} s: "
-                    "must stay within +-89.5°",
+                    Text(
+                        "the course from here passes 89.5° of latitude after {time_s:.0f} s: must "
+                        "stay within +-89.5°",
+                        time_s=reached.time_s,
+                    ),
                 )
             ) from None
         return Kinematics(

@@ -18,6 +18,7 @@ import numpy as np
 
 from navcore.foundation.earth import Earth
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.motion.base import COLUMNS, MotionParameters, Site, Truth
 from navcore.motion.kinematics import PIECES, Kinematics
@@ -102,7 +103,12 @@ class SampledMotion(MotionParameters):
         step = min(LONGEST_SAMPLE_S, self.shortest_period_s() / SAMPLES_A_PERIOD)
         last = math.ceil(end_s / step)
         if last > MAX_SAMPLES:
-            allowed = f"takes {last:.3g} samples in {end_s:g} s: at most {MAX_SAMPLES}; make the run shorter"
+            allowed = Text(
+                "takes {last:.3g} samples in {end_s:g} s: at most {max_samples}; make the run shorter",
+                last=last,
+                end_s=end_s,
+                max_samples=MAX_SAMPLES,
+            )
             raise InputError(Fault("", "kind", self.kind, allowed))
         t = np.arange(-_BEYOND, last + _BEYOND + 1) * step
         values = self.path(t, site, earth)

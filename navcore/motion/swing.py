@@ -13,6 +13,7 @@ from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.earth import Earth
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import Parameters, quantity
+from navcore.foundation.text import Text
 from navcore.foundation.trigonometry import sincos_cycles
 from navcore.foundation.units import DEG
 from navcore.motion.base import COLUMNS, HEADING, PITCH, PITCH_RATE, ROLL, MotionParameters, Site, Truth
@@ -80,8 +81,13 @@ class SwingMotion(AttitudeMotion):
                     "",
                     "pitch.amplitude_deg",
                     self.pitch.amplitude_deg,
-                    f"must be <= {room:g} (°) about a mean pitch of {self.pitch_deg:g}°: "
-                    f"pitch stays within +-{STEEPEST_PITCH_DEG:g}°",
+                    Text(
+                        "must be <= {room:g} (°) about a mean pitch of {pitch_deg:g}°: pitch stays "
+                        "within +-{steepest_pitch_deg:g}°",
+                        room=room,
+                        pitch_deg=self.pitch_deg,
+                        steepest_pitch_deg=STEEPEST_PITCH_DEG,
+                    ),
                 )
             )
         return self
@@ -154,8 +160,14 @@ class SwingMotion(AttitudeMotion):
                 "",
                 f"{name}.frequency_hz",
                 axis.frequency_hz,
-                f"must be <= {fastest:g} (Hz) with true states every {step_s:g} s (half a step of the run): "
-                f"{SAMPLES_A_PERIOD:g} a period are needed; or make run.step_s smaller",
+                Text(
+                    "must be <= {fastest:g} (Hz) with true states every {step_s:g} s (half a "
+                    "step of the run): {samples_a_period:g} a period are needed; or make "
+                    "run.step_s smaller",
+                    fastest=fastest,
+                    step_s=step_s,
+                    samples_a_period=SAMPLES_A_PERIOD,
+                ),
             )
             for name, axis in (("pitch", self.pitch), ("roll", self.roll), ("heading", self.heading))
             if axis.moving and axis.frequency_hz > fastest * (1.0 + 1e-9)

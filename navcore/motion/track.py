@@ -13,6 +13,7 @@ from navcore.foundation.earth import WGS84, Earth
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import FileName, quantity
 from navcore.foundation.stage_cache import kept
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.io.recording import Window, file_keys, load, require_cover, shared_window
 from navcore.io.series import LONGEST_REACH_S, Recording, Series, utc_text
@@ -110,7 +111,12 @@ class TrackMotion(MotionParameters):
         for series in streams.series():
             count, longest = series.gaps()
             if count:
-                yield f"{series.source}: {count} gaps (longest {longest:.1f} s) bridged by the smoothing"
+                yield Text(
+                    "{source}: {count} gaps (longest {longest:.1f} s) bridged by the smoothing",
+                    source=series.source,
+                    count=count,
+                    longest=longest,
+                )
         if streams.attitude is not None and (self.pitch_deg or self.roll_deg):
             yield "motion.pitch_deg and roll_deg are not used: the recording holds pitch and roll"
 
@@ -189,7 +195,9 @@ class _Smoothed:
 def _streams(recording: Recording, file: object) -> Streams:
     if recording.position is None or recording.heading is None:
         raise InputError(
-            Fault("", "file", file, f"holds no {what}: add a file with {remedy}")
+            Fault(
+                "", "file", file, Text("holds no {what}: add a file with {remedy}", what=what, remedy=remedy)
+            )
             for what, remedy, series in (
                 ("position", "RMC or GGA sentences or lat_deg and lon_deg", recording.position),
                 ("heading", "HDT or VHW sentences or heading_deg", recording.heading),
@@ -219,8 +227,19 @@ class _Path:
 
     def __init__(self, position: Series, smoothing_s: float, velocity: Series | None = None) -> None:
         if position.time_s.size < FEWEST_FIXES:
-            found = f"only {position.time_s.size} positions ({position.source})"
-            raise InputError(Fault("", "file", None, f"{found}; at least {FEWEST_FIXES} are needed"))
+            found = Text(
+                "only {size} positions ({source})", size=position.time_s.size, source=position.source
+            )
+            raise InputError(
+                Fault(
+                    "",
+                    "file",
+                    None,
+                    Text(
+                        "{found}; at least {fewest_fixes} are needed", found=found, fewest_fixes=FEWEST_FIXES
+                    ),
+                )
+            )
         lat, lon = position.values[:, 0], np.unwrap(position.values[:, 1])
         self._origin = np.array([lat[0], lon[0]])
         meridian, prime_vertical = WGS84.radii(lat[0])
@@ -353,13 +372,21 @@ def _refuse_outliers(position: Series, metres: np.ndarray) -> None:
             "",
             "file",
             position.source,
-            f"the position at {utc_text(float(position.time_s[i + 1]))} lies {distance[i]:.0f} m "
-            "off its neighbours: leave it out",
+            Text(
+                "the position at {utc_text} lies {distance:.0f} m off its neighbours: leave it out",
+                utc_text=utc_text(float(position.time_s[i + 1])),
+                distance=distance[i],
+            ),
         )
         for i in worst[:_MOST_FAULTS]
     ]
     if worst.size > _MOST_FAULTS:
         faults.append(
-            Fault("", "file", position.source, f"and {worst.size - _MOST_FAULTS} more such positions")
+            Fault(
+                "",
+                "file",
+                position.source,
+                Text("and {size} more such positions", size=worst.size - _MOST_FAULTS),
+            )
         )
     raise InputError(faults)

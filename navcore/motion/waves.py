@@ -13,6 +13,7 @@ from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.earth import Earth
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import choice, quantity
+from navcore.foundation.text import Text
 from navcore.foundation.trigonometry import sincos_cycles
 from navcore.foundation.units import DEG
 from navcore.motion.base import (
@@ -56,8 +57,8 @@ def _gain(default: float, what: str, unit: str = "deg/deg") -> float:
         ge=0.0,
         le=5.0,
         slider=(0.0, 2.0),
-        label=f"{what} gain",
-        help=f"{what} in long waves as a part of what excites it; 0 for none.",
+        label=Text("{what} gain", what=what),
+        help=Text("{what} in long waves as a part of what excites it; 0 for none.", what=what),
     )
 
 
@@ -68,8 +69,8 @@ def _period(default: float, what: str) -> float:
         ge=0.5,
         le=60.0,
         slider=(3.0, 30.0),
-        label=f"{what} period",
-        help=f"Natural period of the ship's {what}.",
+        label=Text("{what} period", what=what),
+        help=Text("Natural period of the ship's {what}.", what=what),
     )
 
 
@@ -80,8 +81,8 @@ def _damping(default: float, what: str) -> float:
         ge=0.02,
         le=2.0,
         slider=(0.02, 1.0),
-        label=f"{what} damping",
-        help=f"Damping ratio of the ship's {what}.",
+        label=Text("{what} damping", what=what),
+        help=Text("Damping ratio of the ship's {what}.", what=what),
     )
 
 
@@ -190,8 +191,13 @@ class WavesMotion(AttitudeMotion):
                     "",
                     "height_m",
                     self.height_m,
-                    f"pitch could reach {swing:.0f}° about a mean of {self.pitch_deg:g}°: must stay "
-                    f"within +-{STEEPEST_PITCH_DEG:g}°; make height_m or pitch_gain smaller",
+                    Text(
+                        "pitch could reach {swing:.0f}° about a mean of {pitch_deg:g}°: must stay "
+                        "within +-{steepest_pitch_deg:g}°; make height_m or pitch_gain smaller",
+                        swing=swing,
+                        pitch_deg=self.pitch_deg,
+                        steepest_pitch_deg=STEEPEST_PITCH_DEG,
+                    ),
                 )
             )
         return self
@@ -269,8 +275,10 @@ class WavesMotion(AttitudeMotion):
                     "",
                     "speed_mps",
                     self.speed_mps,
-                    f"the course passes 89.5° of latitude after {reached.time_s:.0f} s: "
-                    "must stay within +-89.5°",
+                    Text(
+                        "the course passes 89.5° of latitude after {time_s:.0f} s: must stay within +-89.5°",
+                        time_s=reached.time_s,
+                    ),
                 )
             ) from None
         return Kinematics(WAVES, rest, oscillations=self.packed(), nodes=nodes)
@@ -304,9 +312,15 @@ class WavesMotion(AttitudeMotion):
                     "",
                     "peak_period_s",
                     self.modal_period_s,
-                    f"the mean period of {name} at this course and speed is {periods[shortest]:.1f} s: must "
-                    f"be >= {SAMPLES_A_PERIOD * step_s:g} s with true states every {step_s:g} s (half a step "
-                    "of the run); or make run.step_s smaller",
+                    Text(
+                        "the mean period of {name} at this course and speed is {periods:.1f} s: must "
+                        "be >= {samples_a_period:g} s with true states every {step_s:g} s (half a "
+                        "step of the run); or make run.step_s smaller",
+                        name=name,
+                        periods=periods[shortest],
+                        samples_a_period=SAMPLES_A_PERIOD * step_s,
+                        step_s=step_s,
+                    ),
                 )
             )
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.registry import Entry
+from navcore.foundation.text import Text
 from navcore.networks.roots import sorted_roots
 from navcore.networks.transfer_function import transfer_function
 
@@ -362,7 +363,11 @@ def linear_network(
     if len(num) > len(den):
         raise refuse("", None, "H(s) must be proper: no more zeros than poles, or H(infinity) is not finite")
     if len(den) - 1 > MAX_ORDER:
-        raise refuse("", None, f"H(s) has {len(den) - 1} poles: at most {MAX_ORDER} can run")
+        raise refuse(
+            "",
+            None,
+            Text("H(s) has {den} poles: at most {max_order} can run", den=len(den) - 1, max_order=MAX_ORDER),
+        )
     feedback = None if feedback_p is None else np.asarray(feedback_p, dtype=float) / den[0]
     num, den = num / den[0], den / den[0]
     while num[-1] == 0.0 and den[-1] == 0.0:  # a common root at s = 0 would make H(0) = 0/0

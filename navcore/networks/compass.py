@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import model_validator
 
 from navcore.foundation.parameters import bounds_of, choice, given, quantity
+from navcore.foundation.text import Text
 from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network, refuse
 from navcore.networks.pair import MainPair, Placement, dampings, placement
 from navcore.networks.roots import pair
@@ -95,13 +96,16 @@ class CompassNetwork(NetworkParameters):
     def _one_way_only(cls, data: Any) -> Any:
         gains, design = given(data, _GAINS), given(data, _DESIGN)
         if gains and design:
-            allowed = (
-                f"must not be given together with {', '.join(design)}: the gains follow from sigma and xi"
+            allowed = Text(
+                "must not be given together with {design}: the gains follow from sigma and xi",
+                design=", ".join(design),
             )
             raise refuse(gains[0], data[gains[0]], allowed)
         if gains and len(gains) < 3:
             missing = ", ".join(name for name in _GAINS if name not in gains)
-            raise refuse(gains[0], data[gains[0]], f"needs {missing} too: give all of k1, k2, k3")
+            raise refuse(
+                gains[0], data[gains[0]], Text("needs {missing} too: give all of k1, k2, k3", missing=missing)
+            )
         if gains:
             return {**data, "sigma": None, "xi": None}
         if isinstance(data, dict):

@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, model_validator
 
 from navcore.foundation.errors import InputError
 from navcore.foundation.parameters import bounded, given, quantity
+from navcore.foundation.text import Text
 from navcore.networks.base import (
     MAX_ORDER,
     LinearNetwork,
@@ -77,11 +78,13 @@ class CustomNetwork(NetworkParameters):
     def _one_way_only(cls, data: Any) -> Any:
         roots, polynomials = given(data, _ROOTS), given(data, _POLYNOMIALS)
         if roots and polynomials:
-            allowed = f"must not be given together with {', '.join(roots)}"
+            allowed = Text("must not be given together with {roots}", roots=", ".join(roots))
             raise refuse(polynomials[0], data[polynomials[0]], allowed)
         if len(polynomials) == 1:
             other = "den" if polynomials[0] == "num" else "num"
-            raise refuse(polynomials[0], data[polynomials[0]], f"needs {other} too: give both")
+            raise refuse(
+                polynomials[0], data[polynomials[0]], Text("needs {other} too: give both", other=other)
+            )
         if not isinstance(data, dict) or polynomials:
             return data
         if roots:
@@ -151,7 +154,11 @@ class CustomNetwork(NetworkParameters):
             raise refuse("den", list(den), "H(s) overflows: coefficients too far apart")
         network = linear_network("custom", omega_s, num_p, den_p)
         if len(network.poles) and np.max(np.abs(network.poles)) > _LARGEST_RATE:
-            raise refuse("den", list(den), f"must have poles of at most {_LARGEST_RATE:g} rad/s")
+            raise refuse(
+                "den",
+                list(den),
+                Text("must have poles of at most {largest_rate:g} rad/s", largest_rate=_LARGEST_RATE),
+            )
         return linear_network(
             "custom", omega_s, num_p, den_p, warnings=_own_stability(network.poles / omega_s)
         )
@@ -161,9 +168,17 @@ def _check_degrees(
     upper: str, upper_value: object, zeros: int, lower: str, lower_value: object, poles: int
 ) -> None:
     if poles > MAX_ORDER:
-        raise refuse(lower, lower_value, f"must make at most {MAX_ORDER} poles, here {poles}")
+        raise refuse(
+            lower,
+            lower_value,
+            Text("must make at most {max_order} poles, here {poles}", max_order=MAX_ORDER, poles=poles),
+        )
     if zeros > poles:
-        allowed = f"must not make more zeros ({zeros}) than poles ({poles}): H(infinity) would be infinite"
+        allowed = Text(
+            "must not make more zeros ({zeros}) than poles ({poles}): H(infinity) would be infinite",
+            zeros=zeros,
+            poles=poles,
+        )
         raise refuse(upper, upper_value, allowed)
 
 
@@ -186,7 +201,11 @@ def _conjugate(name: str, roots: tuple[tuple[float, float], ...]) -> list[tuple[
 
 
 def _lonely(name: str, re: float, im: float) -> InputError:
-    return refuse(name, [[re, im]], f"[{re:g}, {im:g}] must come with its conjugate [{re:g}, {-im:g}]")
+    return refuse(
+        name,
+        [[re, im]],
+        Text("[{re:g}, {im:g}] must come with its conjugate [{re:g}, {im_2:g}]", re=re, im=im, im_2=-im),
+    )
 
 
 def _own_stability(poles_p: np.ndarray) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.networks.base import LinearNetwork
 from navcore.networks.state_space import state_spaces
 
@@ -99,13 +100,15 @@ def discretise(network: LinearNetwork, step_s: float) -> DiscreteNetwork:
     half_angle = 0.5 * network.omega_s * step_s
     if not 0.0 < half_angle < 0.5 * math.pi:
         limit = math.pi / network.omega_s
-        raise InputError(Fault("", "step_s", step_s, f"must be > 0 and < {limit:g} (s)"))
+        raise InputError(Fault("", "step_s", step_s, Text("must be > 0 and < {limit:g} (s)", limit=limit)))
     poles = network.poles / network.omega_s
     feedback = network.feedback_p
     continuous, *others = state_spaces([p for p in (network.num_p, feedback) if p is not None], poles)
     a = math.tan(half_angle)
     if np.any(np.abs(1.0 - a * poles) < _SINGULAR):
-        reason = f"an unstable pole at {network.omega_s / a:g} rad/s cannot run at this step"
+        reason = Text(
+            "an unstable pole at {omega_s:g} rad/s cannot run at this step", omega_s=network.omega_s / a
+        )
         raise InputError(Fault("", "poles", None, reason))
     inverse = np.linalg.inv(np.eye(network.order) - a * continuous.A)
     found = DiscreteNetwork(

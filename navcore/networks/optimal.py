@@ -12,6 +12,7 @@ from pydantic import PrivateAttr
 
 from navcore.foundation.errors import Fault
 from navcore.foundation.parameters import choice, quantity
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
 from navcore.networks.base import MAX_ORDER, LinearNetwork, NetworkParameters, linear_network, refuse
 from navcore.networks.lqg import Compensator, SensorFigures, compensator, plant
@@ -53,8 +54,9 @@ _FIELDS = {
 def _figure(
     unit: str, label: str, slider: tuple[float, float], *, ge: float = 0.0, le: float, log: bool = False
 ) -> Any:
-    help = (
-        f"The {label} that the network is designed for; that of the scenario when not given (theory.md 17)."
+    help = Text(
+        "The {label} that the network is designed for; that of the scenario when not given (theory.md 17).",
+        label=label,
     )
     return quantity(None, unit=unit, ge=ge, le=le, slider=slider, log=log, label=label, help=help)
 
@@ -140,7 +142,11 @@ class OptimalNetwork(NetworkParameters):
                 example = {k: v for k, v in vars(EXAMPLE_SHIP).items() if k.startswith(prefixes)}
                 found = SensorFigures(**{**vars(found), **example, **({} if missing else given)})
                 warnings.append(
-                    f"optimal: no random error of the {what} is given; designed for those of the example ship"
+                    Text(
+                        "optimal: no random error of the {what} is given; designed for those of the "
+                        "example ship",
+                        what=what,
+                    )
                 )
         return found, tuple(warnings)
 
@@ -172,7 +178,11 @@ class OptimalNetwork(NetworkParameters):
         self._check(found, law)
         margin = modulus_margin(found)
         if margin < FRAGILE:
-            fragile = f"fragile: modulus margin {margin:.2g}, below {FRAGILE:g}; change ρ or q"
+            fragile = Text(
+                "fragile: modulus margin {margin:.2g}, below {fragile:g}; change ρ or q",
+                margin=margin,
+                fragile=FRAGILE,
+            )
             warnings = (*warnings, fragile)
         return replace(found, warnings=warnings)
 
@@ -184,7 +194,10 @@ class OptimalNetwork(NetworkParameters):
     def damping_faults(self, damping: str) -> Iterator[Fault]:
         """Velocity feedback needs the reference: without it there is nothing to pull the velocity onto."""
         if self.realisation == "feedback" and damping != "external":
-            allowed = f'must be "network" with damping = "{damping}": velocity feedback needs a reference'
+            allowed = Text(
+                'must be "network" with damping = "{damping}": velocity feedback needs a reference',
+                damping=damping,
+            )
             yield Fault("", "network.realisation", self.realisation, allowed)
 
     def _check(self, network: LinearNetwork, law: Compensator) -> None:

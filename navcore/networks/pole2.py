@@ -8,6 +8,7 @@ from typing import ClassVar, Literal
 from pydantic import model_validator
 
 from navcore.foundation.parameters import choice, quantity
+from navcore.foundation.text import Text
 from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network, refuse
 from navcore.networks.pair import MainPair, Placement, dampings, placement_at_omega_s
 from navcore.networks.roots import pair
@@ -61,13 +62,17 @@ class Pole2Network(NetworkParameters):
     def _real_poles(self) -> Pole2Network:
         discriminant = (self.n1 - self.n2) ** 2 + 4.0 - 4.0 * (self.n1 + self.n2)
         if discriminant < 0.0:
-            allowed = (
-                f"with n₂ = {self.n2:g} the network's poles w₁, w₂ are complex: must satisfy "
-                f"(n₁-n₂)² + 4 - 4(n₁+n₂) >= 0, here {discriminant:g}"
+            allowed = Text(
+                "with n₂ = {n2:g} the network's poles w₁, w₂ are complex: must satisfy "
+                "(n₁-n₂)² + 4 - 4(n₁+n₂) >= 0, here {discriminant:g}",
+                n2=self.n2,
+                discriminant=discriminant,
             )
             raise refuse("n1", self.n1, allowed)
         if discriminant == 0.0 and self.variant == "as_printed":
-            allowed = f"with n₂ = {self.n2:g} gives w₁ = w₂: A, B of the printed form do not exist"
+            allowed = Text(
+                "with n₂ = {n2:g} gives w₁ = w₂: A, B of the printed form do not exist", n2=self.n2
+            )
             raise refuse("n1", self.n1, allowed)
         return self
 

@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Literal
 from pydantic import model_validator
 
 from navcore.foundation.parameters import bounds_of, given, quantity
+from navcore.foundation.text import Text
 from navcore.networks.base import (
     LinearNetwork,
     NetworkParameters,
@@ -83,7 +84,13 @@ class Unity2Network(NetworkParameters):
         low, high = FORBIDDEN
         if low < self.r < high:
             raise refuse(
-                "r", self.r, f"must be <= {low:g} or >= {high:g}: at 1 no second pair gives H(0) = 1"
+                "r",
+                self.r,
+                Text(
+                    "must be <= {low:g} or >= {high:g}: at 1 no second pair gives H(0) = 1",
+                    low=low,
+                    high=high,
+                ),
             )
         return self
 
@@ -102,7 +109,11 @@ class Unity2Network(NetworkParameters):
             beta = (2.0 * zeta * r * alpha + excess) / excess
             if beta <= 0.0:
                 limit = -excess / (2.0 * zeta * r) * omega_s
-                raise refuse("alpha", self.alpha, f"must be < {limit:.4g} (rad/s) with this ζ and r < 1")
+                raise refuse(
+                    "alpha",
+                    self.alpha,
+                    Text("must be < {limit:.4g} (rad/s) with this ζ and r < 1", limit=limit),
+                )
             zeta2 = alpha / (2.0 * math.sqrt(beta))
             second = quadratic_roots(alpha, beta)
         c3 = 2.0 * zeta * r + alpha
@@ -111,7 +122,13 @@ class Unity2Network(NetworkParameters):
         # D(0) = c2 - 1 equals c0 by the choice of beta; written so, N(0) = D(0) holds exactly
         warnings = ()
         if zeta2 < zeta * (1.0 - 1e-12):
-            warnings = (f"the second pair is worse damped ({zeta2:.3g}) than the {zeta:g} asked",)
+            warnings = (
+                Text(
+                    "the second pair is worse damped ({zeta2:.3g}) than the {zeta:g} asked",
+                    zeta2=zeta2,
+                    zeta=zeta,
+                ),
+            )
         return linear_network(
             "unity2",
             omega_s,
@@ -139,8 +156,14 @@ class Unity2Network(NetworkParameters):
             r = low if r < 1.0 else high
         note = ""
         if not same_frequency(r * omega_s, frequency):
-            allowed = f"{least:g} to {low:g} or {high:g} to {largest:g} ωₛ"
-            note = f"the pair can only lie at {allowed}: {r:g} ωₛ is taken"
+            allowed = Text(
+                "{least:g} to {low:g} or {high:g} to {largest:g} ωₛ",
+                least=least,
+                low=low,
+                high=high,
+                largest=largest,
+            )
+            note = Text("the pair can only lie at {allowed}: {r:g} ωₛ is taken", allowed=allowed, r=r)
         data = self.model_dump(exclude_none=True) | {"zeta": damping_ratio, "r": r}
         return placement(type(self), data, damping_ratio, r * omega_s, note)
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from navcore.averaging.record import standing_row
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 
 if TYPE_CHECKING:
     from navcore.scenario.model import Scenario
@@ -21,14 +22,17 @@ def averaging_faults(scenario: Scenario) -> Iterator[Fault]:
                 "",
                 f"alignment.motion.{i}.t_s",
                 motion.t_s,
-                f"must be >= {-alignment.duration_s:g} (s): the alignment begins there",
+                Text(
+                    "must be >= {duration_s:g} (s): the alignment begins there",
+                    duration_s=-alignment.duration_s,
+                ),
             )
         elif motion.t_s + motion.duration_s > 0.0:
             yield Fault(
                 "",
                 f"alignment.motion.{i}.duration_s",
                 motion.duration_s,
-                f"must be <= {-motion.t_s:g} (s): navigation starts at 0",
+                Text("must be <= {t_s:g} (s): navigation starts at 0", t_s=-motion.t_s),
             )
     averaging = [i for i, method in enumerate(scenario.method) if method.damping == "averaging"]
     if averaging and not scenario.motion.recorded:

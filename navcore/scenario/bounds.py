@@ -12,6 +12,7 @@ import re
 from typing import Any
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 
 LARGEST_BYTES = 1 << 20
 MOST_VALUES = 100_000
@@ -43,24 +44,53 @@ def require_readable(text: str, where: str) -> None:
         Too long, a number of too many digits, or a key of too many parts (names the line).
     """
     if len(text) > LARGEST_BYTES:
-        raise InputError(Fault(where, "", None, f"is larger than {LARGEST_BYTES} bytes: no scenario"))
+        raise InputError(
+            Fault(
+                where,
+                "",
+                None,
+                Text("is larger than {largest_bytes} bytes: no scenario", largest_bytes=LARGEST_BYTES),
+            )
+        )
     blocks = text.count("\n[")
     if blocks > MOST_BLOCKS:
-        raise InputError(Fault(where, "", None, f"has {blocks} blocks; at most {MOST_BLOCKS} are read"))
+        raise InputError(
+            Fault(
+                where,
+                "",
+                None,
+                Text(
+                    "has {blocks} blocks; at most {most_blocks} are read",
+                    blocks=blocks,
+                    most_blocks=MOST_BLOCKS,
+                ),
+            )
+        )
     methods = text.count("[[method]]")
     if methods > MOST_METHODS:
-        raise InputError(Fault(where, "method", methods, f"must be 1 to {MAX_METHODS} blocks [[method]]"))
+        raise InputError(
+            Fault(
+                where,
+                "method",
+                methods,
+                Text("must be 1 to {max_methods} blocks [[method]]", max_methods=MAX_METHODS),
+            )
+        )
     digits = _DIGITS.search(text)
     if digits is not None:
         line = text.count("\n", 0, digits.start()) + 1
-        allowed = f"line {line} has a number of more than {MOST_DIGITS} digits"
+        allowed = Text(
+            "line {line} has a number of more than {most_digits} digits", line=line, most_digits=MOST_DIGITS
+        )
         raise InputError(Fault(where, "", None, allowed))
     position = 0
     for part in _ENDS_A_KEY.split(text):
         prose = '"' in part or "'" in part or "#" in part
         if part.count(".") > (MOST_DOTS_OF_PROSE if prose else MOST_PARTS):
             line = text.count("\n", 0, position) + 1
-            allowed = f"line {line} has a key of more than {MOST_PARTS} parts"
+            allowed = Text(
+                "line {line} has a key of more than {most_parts} parts", line=line, most_parts=MOST_PARTS
+            )
             raise InputError(Fault(where, "", None, allowed))
         position += len(part) + 1
 
@@ -79,15 +109,30 @@ def require_bounded(data: dict[str, Any], where: str) -> None:
         name, value, depth = waiting.pop()
         count += 1
         if count > MOST_VALUES:
-            raise InputError(Fault(where, "", None, f"holds more than {MOST_VALUES} values: no scenario"))
+            raise InputError(
+                Fault(
+                    where,
+                    "",
+                    None,
+                    Text("holds more than {most_values} values: no scenario", most_values=MOST_VALUES),
+                )
+            )
         if depth > DEEPEST:
-            raise InputError(Fault(where, name, None, f"is nested more than {DEEPEST} deep"))
+            raise InputError(
+                Fault(where, name, None, Text("is nested more than {deepest} deep", deepest=DEEPEST))
+            )
         if isinstance(value, dict):
             if len(value) > MOST_FIELDS:
-                raise InputError(Fault(where, name, None, f"has {len(value)} fields: no block has so many"))
+                raise InputError(
+                    Fault(
+                        where, name, None, Text("has {value} fields: no block has so many", value=len(value))
+                    )
+                )
             for key, item in value.items():
                 if len(key) > LONGEST_KEY:
-                    allowed = f"is no field: names have at most {LONGEST_KEY} characters"
+                    allowed = Text(
+                        "is no field: names have at most {longest_key} characters", longest_key=LONGEST_KEY
+                    )
                     raise InputError(Fault(where, key, None, allowed))
                 waiting.append((f"{name}.{key}" if name else key, item, depth + 1))
         elif isinstance(value, list):

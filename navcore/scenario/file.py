@@ -13,6 +13,7 @@ from typing import Any
 
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.scenario.bounds import LARGEST_BYTES, require_bounded, require_readable
 from navcore.scenario.model import SCHEMA, Scenario
 
@@ -78,7 +79,14 @@ def read_toml(path: Path, where: str) -> dict[str, Any]:
     """
     try:
         if path.stat().st_size > LARGEST_BYTES:
-            raise InputError(Fault(where, "", None, f"is larger than {LARGEST_BYTES} bytes: no scenario"))
+            raise InputError(
+                Fault(
+                    where,
+                    "",
+                    None,
+                    Text("is larger than {largest_bytes} bytes: no scenario", largest_bytes=LARGEST_BYTES),
+                )
+            )
         text = path.read_bytes().decode("utf-8")
     except OSError as error:
         raise InputError(Fault(where, "", None, _not_there(where, error))) from None
@@ -102,19 +110,25 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
     except RecursionError:
         raise InputError(Fault(where, "", None, "is nested too deep: no scenario")) from None
     except ValueError as error:  # also what the reader does not call its own
-        raise InputError(Fault(where, "", None, f"is not valid TOML: {str(error)[:200]}")) from None
+        raise InputError(
+            Fault(where, "", None, Text("is not valid TOML: {error}", error=str(error)[:200]))
+        ) from None
     require_bounded(data, where)
     if data.get("schema", SCHEMA) != SCHEMA:
-        raise InputError(Fault(where, "schema", data["schema"], f"must be {SCHEMA}"))
+        raise InputError(Fault(where, "schema", data["schema"], Text("must be {schema}", schema=SCHEMA)))
     return data
 
 
 def _not_there(where: str, error: OSError) -> str:
     if isinstance(error, FileNotFoundError):
         near = difflib.get_close_matches(where, presets(), 1)
-        hint = f' (did you mean "{near[0]}"?)' if near else ""
-        return f"is neither a preset nor a file{hint}; presets: {', '.join(presets())}"
-    return f"cannot be read: {error.strerror}"
+        hint = Text(' (did you mean "{near}"?)', near=near[0]) if near else ""
+        return Text(
+            "is neither a preset nor a file{hint}; presets: {presets}",
+            hint=hint,
+            presets=", ".join(presets()),
+        )
+    return Text("cannot be read: {strerror}", strerror=error.strerror)
 
 
 def _resolved(value: Any, folder: Path) -> Any:
@@ -159,25 +173,25 @@ def _set(data: Any, path: list[str], value: Any) -> str:
     for depth, part in enumerate(path[:-1]):
         if isinstance(data, list):
             if not part.isdigit() or int(part) >= len(data):
-                return f'"{part}" must be a number from 0 to {len(data) - 1}'
+                return Text('"{part}" must be a number from 0 to {data}', part=part, data=len(data) - 1)
             data = data[int(part)]
         elif isinstance(data, dict):
             if part not in data and depth == 0 and part == "method":
                 data[part] = [{}]
             data = data.setdefault(part, {})
         else:
-            return f'"{".".join(path[:depth])}" is a single value, not a block'
+            return Text('"{path}" is a single value, not a block', path=".".join(path[:depth]))
     last = path[-1]
     if isinstance(data, list):
         if not last.isdigit() or int(last) >= len(data):
-            return f'"{last}" must be a number from 0 to {len(data) - 1}'
+            return Text('"{last}" must be a number from 0 to {data}', last=last, data=len(data) - 1)
         data[int(last)] = value
     elif isinstance(data, dict):
         if last in ("id", "kind") and path[0] in ("motion", "method") and data.get(last) != value:
             data.clear()
         data[last] = value
     else:
-        return f'"{".".join(path[:-1])}" is a single value, not a block'
+        return Text('"{path}" is a single value, not a block', path=".".join(path[:-1]))
     return ""
 
 

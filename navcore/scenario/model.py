@@ -14,6 +14,7 @@ from navcore.foundation.earth import EARTHS, Earth
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.parameters import Parameters, choice, quantity
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.law.combination import combination_faults
 from navcore.law.policy import Policy
@@ -37,7 +38,7 @@ from navcore.sensors.reference import LogEvent, Reference
 SCHEMA = 1
 MAX_STEPS = 3_000_000
 """About 35 days at 1 s: bounds a run to seconds, and its memory to 0.3 GB (1.6 GB along a moving truth)."""
-_METHODS_ALLOWED = f"must be 1 to {MAX_METHODS} blocks [[method]]"
+_METHODS_ALLOWED = Text("must be 1 to {max_methods} blocks [[method]]", max_methods=MAX_METHODS)
 
 
 class RunSettings(Parameters):
@@ -205,7 +206,7 @@ class Method(Parameters):
         if self.name:
             return self.name
         if self.damping == "averaging":
-            return f"averaging ({self.averaging.variant})"
+            return Text("averaging ({variant})", variant=self.averaging.variant)
         if self.damping == "kalman":
             return "kalman"
         return "free" if self.undamped else f"{self.network.id} ({self.damping})"
@@ -315,13 +316,23 @@ class Scenario(Parameters):
         run = self.run
         if self.steps < 1:
             yield Fault(
-                "", "run.duration_h", run.duration_h, f"must hold at least one step of {run.step_s:g} s"
+                "",
+                "run.duration_h",
+                run.duration_h,
+                Text("must hold at least one step of {step_s:g} s", step_s=run.step_s),
             )
         if self.steps > MAX_STEPS:
             yield Fault(
-                "", "run.duration_h", run.duration_h,
-                f"is {run.duration_h * HOUR / run.step_s:.3g} steps of {run.step_s:g} s; at most {MAX_STEPS}",
-            )  # fmt: skip
+                "",
+                "run.duration_h",
+                run.duration_h,
+                Text(
+                    "is {duration_h:.3g} steps of {step_s:g} s; at most {max_steps}",
+                    duration_h=run.duration_h * HOUR / run.step_s,
+                    step_s=run.step_s,
+                    max_steps=MAX_STEPS,
+                ),
+            )
         if not 1 <= len(self.method) <= MAX_METHODS:
             yield Fault("", "method", len(self.method), _METHODS_ALLOWED)
         yield from _method_faults(self)
@@ -340,7 +351,12 @@ def _method_faults(scenario: Scenario) -> Iterator[Fault]:
         at = f"method.{i}"
         other = seen.setdefault(method.label(), i)
         if other != i:
-            yield Fault("", f"{at}.name", method.label(), f"must differ from the name of method.{other}")
+            yield Fault(
+                "",
+                f"{at}.name",
+                method.label(),
+                Text("must differ from the name of method.{other}", other=other),
+            )
         if method.damping == "external" and scenario.reference.kind == "none":
             yield Fault(
                 "",

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from navcore.foundation.errors import Fault
+from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.motion.base import MotionParameters
 
@@ -88,8 +89,12 @@ def rate_faults(motion: MotionParameters, rate_hz: float) -> Iterator[Fault]:
     for field, frequency in motion.frequencies():
         needed = SAMPLES_A_PERIOD * frequency
         if rate_hz < needed * (1.0 - 1e-9):
-            allowed = (
-                f"is too low for the motion: must be >= {needed:g} (Hz), {SAMPLES_A_PERIOD:g} samples a "
-                f"period of motion.{field}, which is {frequency:g} Hz"
+            allowed = Text(
+                "is too low for the motion: must be >= {needed:g} (Hz), {samples_a_period:g} "
+                "samples a period of motion.{field}, which is {frequency:g} Hz",
+                needed=needed,
+                samples_a_period=SAMPLES_A_PERIOD,
+                field=field,
+                frequency=frequency,
             )
             yield Fault("", "run.rate_hz", rate_hz, allowed)

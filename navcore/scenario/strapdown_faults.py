@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from navcore.alignment.loop import check_latitude
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.motion import MOTIONS
 from navcore.scenario.sampling import rate_faults
@@ -42,7 +43,7 @@ def strapdown_faults(scenario: Scenario) -> Iterator[Fault]:
 
 def _out_of_place(scenario: Scenario) -> Iterator[Fault]:
     run, fidelity = scenario.run, scenario.run.fidelity
-    needs = f'needs run.fidelity = "strapdown", which is "{fidelity}"'
+    needs = Text('needs run.fidelity = "strapdown", which is "{fidelity}"', fidelity=fidelity)
     if scenario.alignment.kind != "none":
         yield Fault("", "alignment.kind", scenario.alignment.kind, needs)
     if scenario.imu.file is not None:
@@ -57,7 +58,9 @@ def _recorded_faults(scenario: Scenario) -> Iterator[Fault]:
     imu, motion = scenario.imu, scenario.motion
     if imu.file is not None and not motion.carries_recorded_imu:
         able = " or ".join(f'"{kind}"' for kind, model in MOTIONS.items() if model.carries_recorded_imu)
-        yield Fault("", "motion.kind", motion.kind, f"must be {able} with a recorded IMU (imu.file)")
+        yield Fault(
+            "", "motion.kind", motion.kind, Text("must be {able} with a recorded IMU (imu.file)", able=able)
+        )
     if imu.file is None and imu.begin_s > 0.0:
         yield Fault("", "imu.begin_s", imu.begin_s, "needs a recorded IMU: imu.file")
 
@@ -71,15 +74,24 @@ def _length_faults(scenario: Scenario) -> Iterator[Fault]:
             "",
             "run.duration_h",
             run.duration_h,
-            f"is {rates.samples:.3g} samples at {run.rate_hz:g} Hz; at most {MAX_SAMPLES}",
+            Text(
+                "is {samples:.3g} samples at {rate_hz:g} Hz; at most {max_samples}",
+                samples=rates.samples,
+                rate_hz=run.rate_hz,
+                max_samples=MAX_SAMPLES,
+            ),
         )
     if log.kind == "log" and rates.duration_s * log.rate_hz > MAX_LOG_SAMPLES:
         yield Fault(
             "",
             "reference.rate_hz",
             log.rate_hz,
-            f"gives {rates.duration_s * log.rate_hz:.3g} log samples in {run.duration_h:g} h; at most "
-            f"{MAX_LOG_SAMPLES}",
+            Text(
+                "gives {duration_s:.3g} log samples in {duration_h:g} h; at most {max_log_samples}",
+                duration_s=rates.duration_s * log.rate_hz,
+                duration_h=run.duration_h,
+                max_log_samples=MAX_LOG_SAMPLES,
+            ),
         )
 
 
@@ -92,7 +104,10 @@ def _alignment_faults(scenario: Scenario) -> Iterator[Fault]:
     if alignment.duration_s * rate > MAX_ALIGNMENT_SAMPLES:
         longest = MAX_ALIGNMENT_SAMPLES / rate
         yield Fault(
-            "", "alignment.duration_s", alignment.duration_s, f"must be <= {longest:g} (s) at {rate:g} Hz"
+            "",
+            "alignment.duration_s",
+            alignment.duration_s,
+            Text("must be <= {longest:g} (s) at {rate:g} Hz", longest=longest, rate=rate),
         )
     quickest = _FASTEST_LOOP * rate * min(1.0, alignment.xi)
     for name in ("level_sigma", "sigma"):
@@ -102,5 +117,9 @@ def _alignment_faults(scenario: Scenario) -> Iterator[Fault]:
                 "",
                 f"alignment.{name}",
                 value,
-                f"must be <= {quickest:g} (1/s) at {rate:g} Hz: the loop is too fast",
+                Text(
+                    "must be <= {quickest:g} (1/s) at {rate:g} Hz: the loop is too fast",
+                    quickest=quickest,
+                    rate=rate,
+                ),
             )

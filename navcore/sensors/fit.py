@@ -14,6 +14,7 @@ import numpy as np
 
 from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.motion.base import Site, Truth
 from navcore.motion.track import TrackMotion
 from navcore.sensors.recorded import log_recording, log_series, recorded_window
@@ -180,7 +181,16 @@ def fit_log_error(time_s: np.ndarray, error: np.ndarray, delay_s: float = 0.0) -
 
 def _too_short(samples: int) -> InputError:
     return InputError(
-        Fault("", "reference.file", None, f"{samples} samples of the log; a fit needs {FEWEST_SAMPLES}")
+        Fault(
+            "",
+            "reference.file",
+            None,
+            Text(
+                "{samples} samples of the log; a fit needs {fewest_samples}",
+                samples=samples,
+                fewest_samples=FEWEST_SAMPLES,
+            ),
+        )
     )
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.io.plausible import speed_warnings
 from navcore.io.recording import Window, load, require_cover, shared_window
 from navcore.io.series import Recording, Series
@@ -48,7 +49,7 @@ def log_series(reference: Reference, recording: Recording) -> tuple[Series, bool
     if recording.velocity is not None:
         return recording.velocity, False
     expected = "VBW, VHW, VTG or RMC sentences, or columns speed_mps, speed_kn or ve_mps and vn_mps"
-    allowed = f"holds no speed: expected {expected}"
+    allowed = Text("holds no speed: expected {expected}", expected=expected)
     raise InputError(Fault("", "file", reference.file, allowed))
 
 
@@ -174,22 +175,37 @@ def _log_notices(moving: MotionParameters, reference: Reference) -> Iterator[str
     series, along_axes = log_series(reference, recording)
     yield from recording.warnings
     if along_axes and series is not getattr(recording, reference.speed):
-        yield f"{series.file} holds no {reference.speed} speed: its other speed is used"
+        yield Text(
+            "{file} holds no {speed} speed: its other speed is used", file=series.file, speed=reference.speed
+        )
     if not along_axes and reference.frame == "body":
-        yield f'{series.source} gives east and north: reference.frame = "body" has no effect'
+        yield Text(
+            '{source} gives east and north: reference.frame = "body" has no effect', source=series.source
+        )
     if track is None:
         yield (
-            "a recorded log without a recorded track: the ship follows the simulated motion "
-            f"({moving.kind}), and the log errs by all its difference from it"
+            Text(
+                "a recorded log without a recorded track: the ship follows the simulated "
+                "motion ({kind}), and the log errs by all its difference from it",
+                kind=moving.kind,
+            )
         )
     else:
         yield from speed_warnings(Recording(track.position, track.recording.velocity, recording.water))
     if track is not None and not along_axes and series.file == track.position.file:
-        yield f"{series.source}: the log comes from the same receiver as the track, its errors cancel in part"
+        yield Text(
+            "{source}: the log comes from the same receiver as the track, its errors cancel in part",
+            source=series.source,
+        )
     count, longest = series.gaps()
     if count:
-        gaps = f"{count} gaps (longest {longest:.1f} s)"
-        yield f"{series.source}: {gaps}, undamped after {hold_time(series.interval_s):.1f} s"
+        gaps = Text("{count} gaps (longest {longest:.1f} s)", count=count, longest=longest)
+        yield Text(
+            "{source}: {gaps}, undamped after {hold_time:.1f} s",
+            source=series.source,
+            gaps=gaps,
+            hold_time=hold_time(series.interval_s),
+        )
     defaults = {
         name: field.default for name, field in Reference.model_fields.items() if name not in _RECORDED_FIELDS
     }
@@ -211,13 +227,29 @@ def short_run_notices(motion: MotionParameters, recorded: bool, duration_s: floa
     if duration_s >= SCHULER_PERIOD_S or not (recorded or motion.streams() is not None):
         return []
     return [
-        f"the run of {duration_s / 60.0:.1f} min is {duration_s / SCHULER_PERIOD_S:.2g} of a Schuler period "
-        f"({SCHULER_PERIOD_S / 60.0:.1f} min): it shows little more than the initial errors, and conclusions "
-        "about damping need a longer recording"
+        Text(
+            "the run of {duration_s:.1f} min is {duration_s_2:.2g} of a Schuler period "
+            "({schuler_period_s:.1f} min): it shows little more than the initial errors, "
+            "and conclusions about damping need a longer recording",
+            duration_s=duration_s / 60.0,
+            duration_s_2=duration_s / SCHULER_PERIOD_S,
+            schuler_period_s=SCHULER_PERIOD_S / 60.0,
+        )
     ]
 
 
 def _unused(reference: Reference, defaults: dict[str, Any]) -> list[str]:
     names = [f"reference.{name}" for name, default in defaults.items() if getattr(reference, name) != default]
     verb = "is" if len(names) == 1 else "are"
-    return [f'{", ".join(names)} {verb} not used with reference.kind = "{reference.kind}"'] if names else []
+    return (
+        [
+            Text(
+                '{names} {verb} not used with reference.kind = "{kind}"',
+                names=", ".join(names),
+                verb=verb,
+                kind=reference.kind,
+            )
+        ]
+        if names
+        else []
+    )

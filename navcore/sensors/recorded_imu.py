@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG
 
 Axes = Literal["rfu", "frd"]
@@ -81,7 +82,10 @@ def read_imu(path: str | os.PathLike[str], axes: Axes = "rfu") -> ImuRecord:
     file = Path(path)
     try:
         if file.stat().st_size > _LARGEST_FILE:
-            allowed = f"is larger than {_LARGEST_FILE >> 20} MB: cut it, a day at 100 Hz is enough"
+            allowed = Text(
+                "is larger than {largest_file} MB: cut it, a day at 100 Hz is enough",
+                largest_file=_LARGEST_FILE >> 20,
+            )
             raise InputError(Fault(str(path), "imu.file", None, allowed))
         text = file.read_text("utf-8")
     except (OSError, UnicodeDecodeError) as error:
@@ -134,8 +138,12 @@ def check_rest(record: ImuRecord, gravity: float, first_s: float = 0.0, last_s: 
                 record.source,
                 "imu.file",
                 None,
-                f"the mean specific force is {size:.4g} m/s², gravity here is {gravity:.5g}: wrong units "
-                "or scale, or not at rest",
+                Text(
+                    "the mean specific force is {size:.4g} m/s², gravity here is {gravity:.5g}: "
+                    "wrong units or scale, or not at rest",
+                    size=size,
+                    gravity=gravity,
+                ),
             )
         )
     if math.acos(min(1.0, max(-1.0, force[2] / size))) > _LARGEST_TILT:
@@ -144,8 +152,14 @@ def check_rest(record: ImuRecord, gravity: float, first_s: float = 0.0, last_s: 
                 record.source,
                 "imu.file",
                 None,
-                f"the {upward_axis(force)} axis looks like up, but z must point up (x right, y forward): "
-                f"mean specific force {force[0]:.3f}, {force[1]:.3f}, {force[2]:.3f} m/s²",
+                Text(
+                    "the {upward_axis} axis looks like up, but z must point up (x right, y "
+                    "forward): mean specific force {force:.3f}, {force_2:.3f}, {force_3:.3f} m/s²",
+                    upward_axis=upward_axis(force),
+                    force=force[0],
+                    force_2=force[1],
+                    force_3=force[2],
+                ),
             )
         )
 
@@ -175,7 +189,11 @@ def _csv(text: str, source: str, axes: Axes) -> ImuRecord:
     header = [name.strip() for name in lines[0].split(",")] if lines else []
     kind = next((names for names in (_RATES, _INCREMENTS) if set(names) <= set(header)), None)
     if kind is None or "t_s" not in header:
-        allowed = f"needs a header with t_s and {', '.join(_RATES)} (or {', '.join(_INCREMENTS)})"
+        allowed = Text(
+            "needs a header with t_s and {rates} (or {increments})",
+            rates=", ".join(_RATES),
+            increments=", ".join(_INCREMENTS),
+        )
         raise InputError(Fault(source, "imu.file", ",".join(header), allowed))
     table = _numbers(lines[1:], len(header), source, first_line=2, separator=",")
     columns = {name: table[:, i] for i, name in enumerate(header)}
@@ -198,11 +216,18 @@ def _numbers(
             raise ValueError
     except ValueError:
         bad = next(i for i, line in enumerate(lines) if not _is_row(line, columns, separator))
-        what = f"data line {bad + first_line} is no row of {columns} numbers: {lines[bad][:60]}"
+        what = Text(
+            "data line {bad} is no row of {columns} numbers: {lines}",
+            bad=bad + first_line,
+            columns=columns,
+            lines=lines[bad][:60],
+        )
         raise InputError(Fault(source, "imu.file", None, what)) from None
     lost = np.flatnonzero(~np.isfinite(table).all(axis=1))
     if lost.size:
-        what = f"{lost.size} samples are NaN or infinite, the first at sample {lost[0] + 1}"
+        what = Text(
+            "{size} samples are NaN or infinite, the first at sample {lost}", size=lost.size, lost=lost[0] + 1
+        )
         raise InputError(Fault(source, "imu.file", None, what))
     return table
 
@@ -220,12 +245,19 @@ def _regular(time_s: np.ndarray, source: str) -> float:
     steps = np.diff(time_s)
     back = np.flatnonzero(steps <= 0.0)
     if back.size:
-        what = f"time stands still or runs backwards at t = {time_s[back[0] + 1]:g} s"
+        what = Text("time stands still or runs backwards at t = {time_s:g} s", time_s=time_s[back[0] + 1])
         raise InputError(Fault(source, "imu.file", None, what))
     interval = float(np.median(steps))
     gaps = np.flatnonzero(steps > _GAP * interval)
     if gaps.size:
         longest = float(steps[gaps].max())
-        what = f"{gaps.size} gaps, the first at t = {time_s[gaps[0]]:g} s, the longest {longest:g} s"
-        raise InputError(Fault(source, "imu.file", None, f"{what}: a strapdown run needs every sample"))
+        what = Text(
+            "{size} gaps, the first at t = {time_s:g} s, the longest {longest:g} s",
+            size=gaps.size,
+            time_s=time_s[gaps[0]],
+            longest=longest,
+        )
+        raise InputError(
+            Fault(source, "imu.file", None, Text("{what}: a strapdown run needs every sample", what=what))
+        )
     return float((time_s[-1] - time_s[0]) / (len(time_s) - 1))

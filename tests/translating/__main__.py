@@ -58,7 +58,7 @@ def updated(old: Catalog, found: list[Text], language: str) -> Catalog:
         if text.prose or said:
             file, _, _ = text.where.partition(":")
             new.add(
-                text.key, said, locations=[(file, None)], flags=["python-brace-format"] * ("{0}" in text.key)
+                text.key, said, locations=[(file, None)], flags=["python-brace-format"] * ("{" in text.key)
             )
     return new
 

@@ -91,6 +91,12 @@ def texts_in(path: Path, name: str) -> Iterator[Text]:
     """
     tree = ast.parse(path.read_text(encoding="utf-8"))
     quiet = _quiet(tree)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in ("Text", "Text.plural"):
+            forms = [str(part.value) for part in node.args if isinstance(part, ast.Constant)]
+            quiet |= {id(part) for part in node.args}
+            for form in forms:
+                yield Text(" ".join(form.split()), f"{name}:{node.lineno}", True)
     told = _told(tree)
     for node in _walk(tree, quiet):
         for form in _forms(node):

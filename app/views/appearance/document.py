@@ -27,6 +27,7 @@ from app.views.compare.table import lines_of, pins_html
 from app.views.metrics.table import metrics_html, system_html
 from app.views.metrics.view import warnings_html
 from app.views.requirements.table import requirements_html
+from navcore.foundation.text import Text
 from navcore.foundation.version import __version__
 from navcore.scenario.file import load, presets, to_toml
 
@@ -101,7 +102,7 @@ def command(session: Session) -> str:
     """Command that runs the scenario again: by its name while it is a preset, else from the file."""
     scenario = session.now.run.scenario
     if session.origin in presets() and load(session.origin) == scenario:
-        return f"schuler run {session.origin}"
+        return Text("schuler run {origin}", origin=session.origin)
     return "schuler run scenario.toml"
 
 
@@ -112,7 +113,7 @@ def _about(session: Session) -> str:
         "Scenario": escape(session.origin),
         "Duration": f"{scenario.run.duration_h:g} h",
         "Date": f"{session.date:%Y-%m-%d %H:%M %Z}",
-        "Program": f"Schuler Bench {__version__}",
+        "Program": Text("Schuler Bench {version}", version=__version__),
         "SHA-256": f"<code>{session.now.run.scenario_sha256}</code>",
         "Run it again": f'<code translate="no">{escape(command(session))}</code>',
     }
@@ -202,7 +203,9 @@ class Sheet:
         session = Session(now, frame.session.pins.all, frame.session.origin, datetime.now(UTC))
         pictures, say = pictures_of(frame, now), partial(text_said, client)
         if name == OVERVIEW:
-            self._export.draw("overview", name, pictures, title=say(f"Schuler Bench: {session.title}"))
+            self._export.draw(
+                "overview", name, pictures, title=say(Text("Schuler Bench: {title}", title=session.title))
+            )
             return
         page = document(session, [picture.title for picture in pictures], language_of(client), say)
         self._export.draw("html", name, pictures, page=page)

@@ -14,6 +14,7 @@ from app.plots.time_figure import WIDTH_PX, time_figure
 from app.session.shown import Shown, shown
 from app.shell import notices
 from app.shell.view import Figures, Frame
+from navcore.foundation.text import Text
 
 FORMATS = ("CSV", "SVG", "PNG")
 
@@ -145,6 +146,6 @@ class Export:
 
 
 def _numbers(figures: Figures, now: Shown, title: str) -> bytes:
-    about = (f"Schuler Bench: {title}", f"scenario_sha256 {now.run.scenario_sha256}")
+    about = (Text("Schuler Bench: {title}", title=title), f"scenario_sha256 {now.run.scenario_sha256}")
     plotly, plots = figures
     return time_csv(plots, about) if plotly is None else plotly_csv(plotly, about)

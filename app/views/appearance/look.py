@@ -17,6 +17,7 @@ from app.languages.wording import NAMES
 from app.session.display import Display
 from app.shell import notices
 from app.shell.view import Frame, if_user
+from navcore.foundation.text import Text
 
 DARK, PRESENTATION, LANGUAGE = "dark page", "presentation size", "language"
 """Labels; ``language`` is also the name of the command, its argument a language such as "zh-CN"."""
@@ -159,7 +160,7 @@ class PageLanguage:
                 frame.commands.register(
                     f"{LANGUAGE}-{language.lower()}",
                     lambda _, language=language: self._ask(language),
-                    f"Language: {name}",
+                    Text("Language: {name}", name=name),
                     watcher=True,
                 )
 

@@ -12,6 +12,7 @@ from app.views.appearance.document import Sheet
 from app.views.appearance.export import FORMATS, Export
 from app.views.appearance.look import Looks, PageLanguage
 from navcore.foundation.notation import unit_sign
+from navcore.foundation.text import Text
 
 _CHOICES = {
     "angles in": ("angle", "Unit of tilts and headings in the plots over time, the spectrum and the table."),
@@ -24,7 +25,11 @@ _CHOICES = {
     ),
 }
 BANDS = "bands"
-_BANDS = {"off": "none", "±1σ by covariance": "covariance", f"{SEEDS} seeds, 5 to 95 %": "seeds"}
+_BANDS = {
+    "off": "none",
+    "±1σ by covariance": "covariance",
+    Text("{seeds} seeds, 5 to 95 %", seeds=SEEDS): "seeds",
+}
 EXPORT, FORMAT = "export plot", "export as"
 _PAGE_HINT = (
     "Numbers, verdicts, pins, warnings, all plots and the scenario on one page: it needs no server, and "
@@ -63,9 +68,9 @@ class AppearanceView(View):
             gui.add_html(notices.heading("Bands behind the error curves"), order=10)
             self._bands: Any = gui.add_dropdown(
                 BANDS, tuple(_BANDS), order=11,
-                hint="Covariance: one standard deviation of all modelled errors together, for laws that do "
-                f"not look at the data. Seeds: runs the scenario with {SEEDS} other seeds, and fills where "
-                "90 % of them lie.",
+                hint=Text("Covariance: one standard deviation of all modelled errors together, for "
+"laws that do not look at the data. Seeds: runs the scenario with {seeds} "
+"other seeds, and fills where 90 % of them lie.", seeds=SEEDS),
             )  # fmt: skip
             self._progress = gui.add_progress_bar(0.0, visible=False, order=12)
             self._words = gui.add_html("", visible=False, order=13)

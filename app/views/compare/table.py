@@ -15,6 +15,7 @@ from app.session.requirements import MEASURES, Requirements, verdicts
 from app.session.shown import edited
 from app.session.window import Window
 from navcore.engine.run import Run
+from navcore.foundation.text import Text
 from navcore.foundation.units import MINUTE
 
 COLUMNS: dict[str, str] = {
@@ -174,5 +175,5 @@ def _verdict(line: Line) -> str:
     if not line.asked:
         return cell("nothing asked", "sb-muted", tag="span")
     missed = round(line.numbers["verdict"])
-    text = f"✗ misses {missed} of {line.asked}" if missed else "✓ meets all"
+    text = Text("✗ misses {missed} of {asked}", missed=missed, asked=line.asked) if missed else "✓ meets all"
     return cell(text, "sb-missed" if missed else "sb-met", tag="span")

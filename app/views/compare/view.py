@@ -16,6 +16,7 @@ from app.shell import notices
 from app.shell.view import Frame, PictureView, Tab, if_user
 from app.views.compare.table import COLUMNS, lines_of, pins_html
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 
 PIN, FLIP = "Pin this run", "Flip to the baseline"
 CHOSEN, NAME, NOTE, COLOR, SHOWN = "pin", "pin name", "pin note", "pin colour", "pin shown"
@@ -128,7 +129,9 @@ class CompareView(PictureView[str]):
         """Frame all plots, and say at the window's top which pin they show; nothing for the present run."""
         content = ""
         if found.flipped is not None:
-            text = f"Showing the pin \u201c{found.flipped.name}\u201d, not the present run. Key B flips back."
+            text = Text(
+                "Showing the pin “{name}”, not the present run. Key B flips back.", name=found.flipped.name
+            )
             role = f'<div id="sb-flip" role="status" hidden>{escape(text)}</div>'
             content = f"{role}<style>{_frame(text, found.flipped.hex)}</style>"
         if self._mark.content != content:
@@ -149,7 +152,12 @@ class CompareView(PictureView[str]):
             edited = run.methods[min(place, len(run.methods) - 1)].method.name
             session.pins.add(run, origin, method=edited)
         except InputError:
-            lines = [f"There are {MOST_PINS} pins, which is the most. Remove one in the tab Compare."]
+            lines = [
+                Text(
+                    "There are {most_pins} pins, which is the most. Remove one in the tab Compare.",
+                    most_pins=MOST_PINS,
+                )
+            ]
             notices.tell(client, "Not pinned", lines, "warning")
 
     def _flip(self) -> None:

@@ -11,6 +11,7 @@ from app.plots import style
 from app.plots.plotly_data import PlotlyFigure, figure
 from app.plots.units import number
 from navcore.design.budget import Budget, MethodBudget
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCMIN, ARCSEC
 
 SOURCES = {
@@ -211,7 +212,9 @@ def _ends(budget: Budget, key: str, unit: float, suffix: str, grid: _Grid) -> li
             text = _short(total / unit)
         else:
             value, over = _short(total / unit), _short(times)
-            text = f"{value} = {over} × floor" if grid.long else f"{value}, {over}×"
+            text = (
+                Text("{value} = {over} × floor", value=value, over=over) if grid.long else f"{value}, {over}×"
+            )
         texts.append(
             style.text(
                 (total or 0.0) / unit,
@@ -238,7 +241,7 @@ def _floor_line(value: float, suffix: str) -> dict[str, Any]:
     return {
         "type": "line",
         "xref": f"x{suffix}",
-        "yref": f"y{suffix} domain",
+        "yref": Text("y{suffix} domain", suffix=suffix),
         "x0": value,
         "x1": value,
         "y0": 0.0,
@@ -262,9 +265,9 @@ def _layout(
         else "standard deviation, RMS over the run"
     )
     if budget.floor.rms.tilt_rad is not None:
-        what = f"{what}; the dashed line is the floor"
+        what = Text("{what}; the dashed line is the floor", what=what)
         if not grid.long:
-            what = f"{what}, × how many times it"
+            what = Text("{what}, × how many times it", what=what)
             if _NOTE_LETTER_PX * len(what) > width_px - _RIGHT_PX:
                 what = "the dashed line is the floor, × how many times it"
     layout = style.layout(

@@ -12,6 +12,7 @@ from app.shell.view import Frame, if_user
 from app.views.design.figure import budget_figure
 from navcore.design.budget import Budget
 from navcore.engine.run import Run
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
 BUDGET_OF = "budget of"
@@ -76,7 +77,11 @@ class DesignView(PlotlyView):
             if found.display.budget == "run":
                 note = self._budgeter.words[0] if self._budgeter.words else "that of the run is under way"
         if budget.floor_reason:
-            note = f"{note}; " * bool(note) + f"no floor: {budget.floor_reason}"
+            note = Text(
+                "{note}no floor: {floor_reason}",
+                note=f"{note}; " * bool(note),
+                floor_reason=budget.floor_reason,
+            )
         return budget_figure(budget, self.aspect, width_px=self.width_px, note=note)
 
     def _ask(self, scenario: Scenario) -> None:

@@ -26,6 +26,7 @@ from app.plots.uplot import Curve, Dash, UplotFigure
 from app.session.display import Display
 from navcore.engine.run import MethodRun, PlotSeries, Run
 from navcore.engine.verification import Verification
+from navcore.foundation.text import Text
 from navcore.mechanization.recorder import (
     D_LAT,
     D_LON,
@@ -222,7 +223,11 @@ def _with_band(
         bands.append((len(curves), len(curves) + 1, style.method_color(index) + _BAND))
         for word, values in (("upper", high), ("lower", low)):
             edge = np.interp(time_s, envelope.t_s, values[:, column]) / plot.unit.si
-            curves.append(Curve(f"band, {word}: {curves[index].name}", _UNSEEN, edge, width=0.0))
+            curves.append(
+                Curve(
+                    Text("band, {word}: {name}", word=word, name=curves[index].name), _UNSEEN, edge, width=0.0
+                )
+            )
     return replace(plot, curves=tuple(curves), bands=tuple(bands))
 
 
@@ -367,8 +372,8 @@ def _difference(verification: Verification, key: str, beside: UplotFigure, displ
     names = [method.method.name for method in verification.strapdown.methods]
     return UplotFigure(
         key=f"difference_{key}",
-        quantity=f"{beside.quantity} difference",
-        title=f"{beside.title}: strapdown minus linear model",
+        quantity=Text("{quantity} difference", quantity=beside.quantity),
+        title=Text("{title}: strapdown minus linear model", title=beside.title),
         symbol=f"Δ {beside.symbol.strip('|')}",
         unit=unit,
         time_unit=beside.time_unit,

@@ -16,6 +16,7 @@ from app.shell.stack import Stack, room_px
 from app.shell.view import Figures, Frame, PictureView, Tab, if_user
 from app.views.errors.figure import GROUPS, QUANTITIES, VERIFIED, Overlay, error_plots, verification_plots
 from app.views.errors.legend import legend_html, legend_names
+from navcore.foundation.text import Text
 
 OVERVIEW = "Overview"
 VERIFICATION = "Verification"
@@ -27,7 +28,7 @@ OWN_NOISE = (
 _OVERVIEW_KEYS = ("phi_e", "dve", "phi_n", "dvn", "phi_u", "position")
 """Two abreast: attitude left, velocity and position right."""
 _TWO = '<div class="sb-two"></div>'
-_KEYS = {f"Errors: {title}": key for key, title in QUANTITIES.items()}
+_KEYS = {Text("Errors: {title}", title=title): key for key, title in QUANTITIES.items()}
 _VERIFIED_KEYS = {
     f"{VERIFICATION}: {QUANTITIES[key]}{part}": f"{which}_{key}"
     for key in VERIFIED
@@ -119,7 +120,8 @@ class ErrorsView(PictureView[ErrorCurves]):
         plots = error_curves(found).plots
         groups = {name: keys for name, keys in GROUPS.items() if name != OVERVIEW}
         pictures: list[tuple[str, Figures]] = [
-            (f"Errors: {name}", (None, [plots[key] for key in keys])) for name, keys in groups.items()
+            (Text("Errors: {name}", name=name), (None, [plots[key] for key in keys]))
+            for name, keys in groups.items()
         ]
         if found.verified is not None:
             both = _verified_curves(found.verified, found.display).plots

@@ -9,6 +9,7 @@ from app.session.uploads import LARGEST_FILE, MIB, Upload
 from app.shell import notices
 from app.shell.opening import METRICS, SCENARIO
 from app.shell.view import Frame, Tab, View
+from navcore.foundation.text import Text
 
 
 class FilesView(View):
@@ -30,10 +31,11 @@ class FilesView(View):
         gui, opening = self.frame.gui, self.frame.opening
         with tab:
             gui.add_html(notices.heading("Run on recordings"), order=0)
-            kinds = (
-                f"Speed log, track and heading: NMEA 0183, CSV, Parquet or MAT, one file after the other, "
-                f"at most {LARGEST_FILE / MIB:.0f} MiB each. A recorded IMU (PSINS or CSV) runs as full "
-                "strapdown. A scenario (.toml) is opened."
+            kinds = Text(
+                "Speed log, track and heading: NMEA 0183, CSV, Parquet or MAT, one file "
+                "after the other, at most {largest_file:.0f} MiB each. A recorded IMU (PSINS "
+                "or CSV) runs as full strapdown. A scenario (.toml) is opened.",
+                largest_file=LARGEST_FILE / MIB,
             )
             gui.add_html(notices.small(kinds), order=1)
             upload = gui.add_upload_button("Upload a file", hint=kinds, order=2)
@@ -42,7 +44,8 @@ class FilesView(View):
             self._forget = gui.add_button("Remove the files", color="gray", order=5, visible=False)
             gui.add_html(notices.heading("Save"), order=10)
             save = [
-                gui.add_button(f"Download {name}", color="gray", order=11) for name in (SCENARIO, METRICS)
+                gui.add_button(Text("Download {name}", name=name), color="gray", order=11)
+                for name in (SCENARIO, METRICS)
             ]
         upload.on_upload(lambda event: opening.take_file(event.target.value.name, event.target.value.content))
         self._use.on_click(lambda _: opening.use_files())

@@ -23,6 +23,7 @@ from app.views.frequency.reference import Reference
 from navcore.analysis import frequency_response
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.earth import EARTH_RATE
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 
 OMEGA_MIN, OMEGA_MAX = 5e-6, 0.2
@@ -178,7 +179,7 @@ def _discrete_dots(run: Run, method: MethodRun, index: int) -> list[dict[str, An
     beside = np.interp(np.log(omega), np.log(grid), phase(effective_network(method).response(grid)))
     angle = beside + np.rad2deg(np.angle(gain * np.exp(-1j * np.deg2rad(beside))))
     ring = {"color": style.method_color(index), "width": 2}
-    dots = style.marks(f"{method.method.name} measured", index, "circle", 8, ring)
+    dots = style.marks(Text("{name} measured", name=method.method.name), index, "circle", 8, ring)
     dots |= {"x": packed(omega), "xaxis": "x", "marker": dots["marker"] | {"color": "white"}}
     return [
         dots | {"y": packed(decibel(gain)), "yaxis": "y", "hovertemplate": "%{y:.3f} dB measured"},
@@ -281,7 +282,11 @@ def _transfer_title(view: TransferView, silent: list[str], column_px: float) -> 
     if not silent:
         return title
     who = ", ".join(silent)
-    who = style.plain(who) if len(who) <= _LONGEST_SILENCE else f"{len(silent)} methods"
-    note = f"(no {'log' if view.source == 'dv_r' else 'own acceleration'} in: {who})"
+    who = style.plain(who) if len(who) <= _LONGEST_SILENCE else Text("{silent} methods", silent=len(silent))
+    note = (
+        Text("(no log in: {who})", who=who)
+        if view.source == "dv_r"
+        else Text("(no own acceleration in: {who})", who=who)
+    )
     fits = letters + len(note) <= room
     return f'{title} <span style="color:{style.MUTED}">{note}</span>' if fits else title

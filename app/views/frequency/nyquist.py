@@ -14,6 +14,7 @@ from app.plots.plotly_data import PlotlyFigure, figure, packed
 from app.plots.units import duration, number
 from navcore.analysis.margins import Margins, margins
 from navcore.engine.run import MethodRun, Run
+from navcore.foundation.text import Text
 
 LOW, HIGH = 0.02, 500.0
 """Range of the frequency axis, units of omega_s."""
@@ -85,15 +86,19 @@ def margin_words(method: MethodRun, margin: Margins | None) -> str:
         return "unstable" if not method.loop.stable and not method.method.undamped else "no margin: undamped"
     parts = []
     if margin.phase_rad is not None:
-        parts.append(f"phase {number(math.degrees(margin.phase_rad), 3)}°")
+        parts.append(Text("phase {phase_rad}°", phase_rad=number(math.degrees(margin.phase_rad), 3)))
     low = "" if margin.gain_down is None else f"×{number(margin.gain_down, 3)}"
     high = "" if margin.gain_up is None else f"×{number(margin.gain_up, 3)}"
     if low or high:
         parts.append(
-            f"gain {low} to {high}" if low and high else f"gain to {high}" if high else f"gain from {low}"
+            Text("gain {low} to {high}", low=low, high=high)
+            if low and high
+            else Text("gain to {high}", high=high)
+            if high
+            else Text("gain from {low}", low=low)
         )
     if margin.delay_s is not None:
-        parts.append(f"delay {duration(margin.delay_s)}")
+        parts.append(Text("delay {delay_s}", delay_s=duration(margin.delay_s)))
     return ", ".join(parts)
 
 
@@ -133,8 +138,8 @@ def _marks(method: MethodRun, index: int, margin: Margins | None, words: str) ->
             unit = [-math.cos(margin.phase_rad)], [-math.sin(margin.phase_rad)]
             dots = [([ratio], [0.0]), ([ratio], [degrees]), unit]
     hover = {"hovertemplate": f"<b>{style.plain(name)}</b><br>{words}<extra></extra>"}
-    dot = style.marks(f"{name} margin", index, "circle", 9, ring) | hover
-    diamond = style.marks(f"{name} gain margin", index, "diamond", 10, ring) | hover
+    dot = style.marks(Text("{name} margin", name=name), index, "circle", 9, ring) | hover
+    diamond = style.marks(Text("{name} gain margin", name=name), index, "diamond", 10, ring) | hover
     axes = ("x", "y"), ("x", "y2"), ("x2", "y3")
     return [
         *(

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 from navcore.networks.base import LinearNetwork
 from navcore.networks.lqg import SensorFigures
 from navcore.networks.optimal import OptimalNetwork
@@ -40,11 +41,13 @@ def _reference(figures: SensorFigures, log: str, omega_s: float) -> Reference:
     known = {"gyros and accelerometers": figures.inertial, "log": figures.log}
     missing = [sensors for sensors, there in known.items() if not there]
     if missing:
-        return Reference(f"no optimal H: no random error of {' and '.join(missing)}")
+        return Reference(Text("no optimal H: no random error of {missing}", missing=" and ".join(missing)))
     try:
         optimal = OptimalNetwork().with_sensors(figures)
         network = optimal.transfer(omega_s)
     except InputError as error:
-        return Reference(f"no optimal H: {error.faults[0].allowed}")
+        return Reference(Text("no optimal H: {allowed}", allowed=error.faults[0].allowed))
     fragile = ", fragile" if network.warnings else ""
-    return Reference(f"optimal for these sensors (ρ = {optimal.rho:g}{fragile})", network)
+    return Reference(
+        Text("optimal for these sensors (ρ = {rho:g}{fragile})", rho=optimal.rho, fragile=fragile), network
+    )

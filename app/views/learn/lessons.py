@@ -35,6 +35,7 @@ from app.views.learn.names import named
 from navcore.engine.run import Run
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.scenario.file import apply_overrides, load
 from navcore.scenario.model import Scenario
 
@@ -193,7 +194,7 @@ def _toml(id: str, where: str, text: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(Fault(id, where, None, f"is not valid TOML: {error}")) from None
+        raise InputError(Fault(id, where, None, Text("is not valid TOML: {error}", error=error))) from None
 
 
 def _checked(id: str, where: str, make: Callable[[], _T]) -> _T:

@@ -18,6 +18,7 @@ from app.shell.control import Control, Section
 from app.shell.view import Frame, Tab, View
 from app.views.learn.lessons import Action, Lesson, Question, is_right, lessons, to_html
 from navcore.engine.run import Run
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
 COMMAND = "lesson"
@@ -144,7 +145,7 @@ class LearnView(View):
         """Where a session's scenario comes from that the present step has set."""
         action = self._action()
         plain = bool(lesson.preset) and (action is None or not action.set)
-        return lesson.preset if plain else f"lesson: {lesson.title}"
+        return lesson.preset if plain else Text("lesson: {title}", title=lesson.title)
 
     def _spoken_of(self, lesson: Lesson, run: Run | None) -> Run | None:
         """Run whose numbers the step may tell: of its own scenario, or of that as its sliders changed it."""
@@ -214,7 +215,7 @@ class LearnView(View):
             return f'<p class="sb-right"><b>&#10003; Right.</b><br>{why}', True
         advice = "Look again: press Show me if the pictures are of something else."
         if not question.choices:
-            advice += f" Within {100.0 * question.tolerance:g} % counts as right."
+            advice += Text(" Within {tolerance:g} % counts as right.", tolerance=100.0 * question.tolerance)
         return f'<p class="sb-wrong"><b>&#10007; Not so.</b> {advice}</p>', False
 
     def _run_of(self, scenario: Scenario) -> Run:
@@ -259,7 +260,11 @@ def spec_at(scenario: Scenario, dotted: str) -> list[FieldSpec]:
         if isinstance(place, BaseModel):
             fields = form.fields(type(place), path[:depth])
             # labels are unique on the page
-            chosen = [replace(spec, label=f"try: {spec.label}") for spec in fields if spec.path == path]
+            chosen = [
+                replace(spec, label=Text("try: {label}", label=spec.label))
+                for spec in fields
+                if spec.path == path
+            ]
             if chosen:
                 return chosen
         try:

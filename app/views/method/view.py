@@ -20,6 +20,7 @@ from app.shell.searching import show_html
 from app.shell.view import Frame, Tab, View, if_user
 from app.views.method.tuning import TuningPanel
 from navcore.engine.run import MethodRun, Run
+from navcore.foundation.text import Text
 from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
 from navcore.networks import NETWORKS
@@ -200,11 +201,19 @@ def loop_text(method: MethodRun, lat_deg: float) -> str:
     loop = method.loop
     if not loop.stable:
         return ""
-    settles = "never settles" if loop.settling_s is None else f"settles to 2 % in {settling(loop.settling_s)}"
+    settles = (
+        "never settles"
+        if loop.settling_s is None
+        else Text("settles to 2 % in {settling}", settling=settling(loop.settling_s))
+    )
     earth_mode = earth_mode_text(method.whole.earth_growth)
-    return (
-        f"One channel: least damping ratio {number(loop.damping_ratio, 3)}, {settles}. "
-        f"Whole system: 24 h mode {earth_mode} at {abs(lat_deg):.3g}°."
+    return Text(
+        "One channel: least damping ratio {damping_ratio}, {settles}. Whole system: "
+        "24 h mode {earth_mode} at {lat_deg:.3g}°.",
+        damping_ratio=number(loop.damping_ratio, 3),
+        settles=settles,
+        earth_mode=earth_mode,
+        lat_deg=abs(lat_deg),
     )
 
 

@@ -28,6 +28,7 @@ from app.plots.units import (
 )
 from app.session.display import Display
 from navcore.engine.run import LawInForce, Run
+from navcore.foundation.text import Text
 
 if TYPE_CHECKING:
     from navcore.engine.verification import Difference, Verification
@@ -142,7 +143,12 @@ def verdict(verification: Verification) -> str:
     if not worst:
         return "The two models could not be compared."
     part, label, name = max(worst)
-    return f"Largest difference: {number(100.0 * part, 2)} % of the peak ({label}, {name})."
+    return Text(
+        "Largest difference: {part} % of the peak ({label}, {name}).",
+        part=number(100.0 * part, 2),
+        label=label,
+        name=name,
+    )
 
 
 def _loop_rows(run: Run) -> list[Row]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from app.plots import style
 from app.plots.units import duration
 from navcore.design.dominance import HEADING, POSITION, TILT
+from navcore.foundation.text import Text
 
 if TYPE_CHECKING:
     from app.jobs.why import Explainer
@@ -40,11 +41,13 @@ def why_html(explainer: Explainer, run: Run, selected: int = 0, *, folded: bool 
         return _box("", "What dominates this result could not be found.", "", folded=folded)
     state = _WAITS
     if explainer.fraction is not None:
-        state = f"Running the error sources apart: {100.0 * explainer.fraction:.0f} %."
+        state = Text(
+            "Running the error sources apart: {fraction:.0f} %.", fraction=100.0 * explainer.fraction
+        )
     if result is None or len(result.methods) != len(run.methods):
         return _box("", state, "", folded=folded)
     old = f'<div class="sb-old">{_lines(result)}</div>'
-    return _box(old, f"{state} Below: of an earlier run.", "", folded=folded)
+    return _box(old, Text("{state} Below: of an earlier run.", state=state), "", folded=folded)
 
 
 def _box(lines: str, state: str, short: str, *, folded: bool) -> str:
@@ -82,11 +85,28 @@ def cause_text(cause: Cause, result: Why) -> str:
     if not cause.source:
         return f"{cause.quantity} {period}"
     if cause.share > 0.995:
-        return f"{cause.quantity} all from {cause.source}, {period}"
+        return Text(
+            "{quantity} all from {source}, {period}",
+            quantity=cause.quantity,
+            source=cause.source,
+            period=period,
+        )
     percent = f"{100.0 * cause.share:.0f}"
     if cause.share >= 0.5:
-        return f"{cause.quantity} mostly ({percent} %) from {cause.source}, {period}"
-    return f"{cause.quantity} most of all ({percent} %) from {cause.source}, {period}"
+        return Text(
+            "{quantity} mostly ({percent} %) from {source}, {period}",
+            quantity=cause.quantity,
+            percent=percent,
+            source=cause.source,
+            period=period,
+        )
+    return Text(
+        "{quantity} most of all ({percent} %) from {source}, {period}",
+        quantity=cause.quantity,
+        percent=percent,
+        source=cause.source,
+        period=period,
+    )
 
 
 def _period(cause: Cause, result: Why) -> str:
@@ -94,8 +114,10 @@ def _period(cause: Cause, result: Why) -> str:
     if largest == "schuler":
         beat = ""
         if cause.swing.beats and math.isfinite(result.foucault_s):
-            beat = f", beating (Foucault {duration(result.foucault_s)})"
-        return f"at the Schuler period ({duration(result.schuler_s)}){beat}"
+            beat = Text(", beating (Foucault {foucault_s})", foucault_s=duration(result.foucault_s))
+        return Text(
+            "at the Schuler period ({schuler_s}){beat}", schuler_s=duration(result.schuler_s), beat=beat
+        )
     return {
         "constant": "as a constant",
         "drift": "as a slow drift",

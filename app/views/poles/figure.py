@@ -26,6 +26,7 @@ from app.views.poles.grid import (
 )
 from app.views.poles.locus import NO_LOCUS, locus_note, locus_traces
 from navcore.engine.run import MethodRun, Run
+from navcore.foundation.text import Text
 
 ZOOM = 1.7
 """Half height of the right panel, units of omega_s."""
@@ -104,7 +105,10 @@ def poles(
         title = f"<b>{style.fitting(_TITLES[suffix], panel_px)}</b>"
         if suffix and note:  # in plain letters: those of a parameter's ends take more room
             title = f'<b><span style="font-weight:400">{note}</span></b>'
-        notes.append(style.heading(title, 13.0, f"x{suffix} domain") | {"yref": f"y{suffix} domain"})
+        notes.append(
+            style.heading(title, 13.0, Text("x{suffix} domain", suffix=suffix))
+            | {"yref": Text("y{suffix} domain", suffix=suffix)}
+        )
         notes += _panel_labels(suffix, re, im, panel_px)
         notes += settling_labels(suffix, re, omega_s, panel_px)
         shapes += _boundary(suffix)
@@ -156,7 +160,10 @@ def _method_marks(
     }
     if not len(zeros):
         return [cross]
-    ring = style.marks(f"{name} zeros", index, "circle-open", 10, {"color": color, "width": 2}) | axes
+    ring = (
+        style.marks(Text("{name} zeros", name=name), index, "circle-open", 10, {"color": color, "width": 2})
+        | axes
+    )
     ring |= {
         "x": packed(np.real(zeros)),
         "y": packed(np.imag(zeros)),
@@ -167,13 +174,19 @@ def _method_marks(
 
 def _about_pole(root: complex, omega_s: float) -> str:
     size = abs(root)
-    lines = [f"pole: {root.real:.4g} {root.imag:+.4g}j ω<sub>s</sub>"]
+    lines = [Text("pole: {real:.4g} {imag:+.4g}j ω<sub>s</sub>", real=root.real, imag=root.imag)]
     if size > 0.0:
         period = duration(2.0 * math.pi / (size * omega_s))
-        lines.append(f"damping ratio {-root.real / size:.3f}, natural period {period}")
+        lines.append(
+            Text("damping ratio {real:.3f}, natural period {period}", real=-root.real / size, period=period)
+        )
     if root.real != 0.0:
         folding = duration(1.0 / abs(root.real * omega_s))
-        lines.append(f"decays to 1/e in {folding}" if root.real < 0.0 else f"grows e-fold in {folding}")
+        lines.append(
+            Text("decays to 1/e in {folding}", folding=folding)
+            if root.real < 0.0
+            else Text("grows e-fold in {folding}", folding=folding)
+        )
     return "<br>".join(lines)
 
 
@@ -190,12 +203,12 @@ def _axes(suffix: str, re: Interval, im: Interval, domain: list[float]) -> dict[
 
 def _boundary(suffix: str) -> list[dict[str, Any]]:
     """Imaginary axis, real axis and the shaded right half plane."""
-    axes = f"x{suffix}", f"y{suffix} domain"
+    axes = f"x{suffix}", Text("y{suffix} domain", suffix=suffix)
     unstable = {"type": "rect", "x1": 1e6, "line": {"width": 0}, "fillcolor": "rgba(180,35,24,0.07)"}
     return [
         style.upright(0.0, *axes) | unstable,
         style.upright(0.0, *axes, color=style.DANGER, width=1.4, dash="solid"),
-        style.across(0.0, f"y{suffix}", f"x{suffix} domain", width=1, dash="solid"),
+        style.across(0.0, f"y{suffix}", Text("x{suffix} domain", suffix=suffix), width=1, dash="solid"),
     ]
 
 
@@ -208,8 +221,8 @@ def _panel_labels(suffix: str, re: Interval, im: Interval, width_px: float) -> l
             1.0,
             0.0,
             "unstable",
-            xref=f"x{suffix} domain",
-            yref=f"y{suffix} domain",
+            xref=Text("x{suffix} domain", suffix=suffix),
+            yref=Text("y{suffix} domain", suffix=suffix),
             xanchor="right",
             yanchor="bottom",
             xshift=-3,
@@ -255,7 +268,7 @@ def _far_zeros(zeros: list[np.ndarray], left: float) -> list[dict[str, Any]]:
         style.text(
             0.0,
             0.0,
-            f"◂ zero at {value:.4g}",
+            Text("◂ zero at {value:.4g}", value=value),
             xref="x domain",
             yref="y",
             xanchor="left",

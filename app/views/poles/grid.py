@@ -11,6 +11,7 @@ import numpy as np
 
 from app.plots import style
 from app.plots.plotly_data import packed
+from navcore.foundation.text import Text
 from navcore.foundation.units import MINUTE
 
 DAMPING = tuple(k / 10.0 for k in range(1, 10))
@@ -117,7 +118,9 @@ def settling_lines(left: float, omega_s: float, width_px: float, span: float) ->
 def settling_shapes(suffix: str, re: Interval, omega_s: float, width_px: float) -> list[dict[str, Any]]:
     """Draw the lines of `settling_lines` upright through one panel."""
     return [
-        style.upright(at, f"x{suffix}", f"y{suffix} domain", color="#CBD5E0", width=1, dash="dash")
+        style.upright(
+            at, f"x{suffix}", Text("y{suffix} domain", suffix=suffix), color="#CBD5E0", width=1, dash="dash"
+        )
         for at in settling_lines(re[0], omega_s, width_px, re[1] - re[0]).values()
     ]
 
@@ -129,9 +132,9 @@ def settling_labels(suffix: str, re: Interval, omega_s: float, width_px: float) 
         style.text(
             at,
             0.0,
-            f"{minutes:g} min" if minutes < 120.0 else f"{minutes / 60.0:g} h",
+            Text("{minutes:g} min", minutes=minutes) if minutes < 120.0 else f"{minutes / 60.0:g} h",
             xref=f"x{suffix}",
-            yref=f"y{suffix} domain",
+            yref=Text("y{suffix} domain", suffix=suffix),
             xanchor="right",
             yanchor="bottom",
             xshift=-1,

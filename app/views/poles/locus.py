@@ -16,6 +16,7 @@ from navcore.analysis.locus import Locus, root_locus
 from navcore.engine.run import Run
 from navcore.foundation.notation import symbol, unit_sign
 from navcore.foundation.parameters import extra_of
+from navcore.foundation.text import Text
 from navcore.networks.base import NetworkParameters
 
 NO_LOCUS = ""
@@ -84,14 +85,17 @@ def locus_traces(run: Run, index: int, field: str, suffix: str) -> list[dict[str
         "showlegend": False,
         "hovertemplate": f"<b>{style.plain(name)}</b><br>{label} = %{{customdata:.4g}}<extra></extra>",
     }
-    branches = style.lines(f"{name} locus", index) | common
+    branches = style.lines(Text("{name} locus", name=name), index) | common
     branches |= {
         "x": packed(np.real(line)),
         "y": packed(np.imag(line)),
         "customdata": packed(np.tile(np.append(locus.values, math.nan), count)),
         "line": {"color": color, "width": 1.6, "dash": "dot"},
     }
-    marks = style.marks(f"{name} locus ends", index, "", 7, {"width": 1.5, "color": color}) | common
+    marks = (
+        style.marks(Text("{name} locus ends", name=name), index, "", 7, {"width": 1.5, "color": color})
+        | common
+    )
     marks |= {
         "x": packed(np.real(ends)),
         "y": packed(np.imag(ends)),
@@ -113,4 +117,11 @@ def locus_note(run: Run, index: int, field: str) -> str:
     now = network_values(run.scenario, index).get(field)
     present = "" if now is None else f", ✕ {number(float(now), 3)}"
     unit = f" {unit_sign(extra['unit'])}" if extra.get("unit") else ""
-    return f"over {symbol(field)}: ○ {first} … □ {last}{present}{unit}"
+    return Text(
+        "over {symbol}: ○ {first} … □ {last}{present}{unit}",
+        symbol=symbol(field),
+        first=first,
+        last=last,
+        present=present,
+        unit=unit,
+    )

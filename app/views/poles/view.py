@@ -19,6 +19,7 @@ from app.views.poles.locus import NO_LOCUS, locus_fields
 from app.views.poles.whole import whole_system_figure
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 from navcore.scenario.model import Method
 
 LOCUS = "locus"
@@ -97,7 +98,7 @@ class PolesView(PlotlyView):
                 notices.tell(client, "The pair was not placed", notices.fault_lines(error), "warning")
                 return
             name = session.scenario.method[session.selected].name
-            session.change(placed.scenario, None, name=f"placing the pair of {name}")
+            session.change(placed.scenario, None, name=Text("placing the pair of {name}", name=name))
         if placed.note:
             notices.tell(client, "Placed in part", [placed.words, placed.note], "warning")
         else:

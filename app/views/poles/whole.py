@@ -18,6 +18,7 @@ from navcore.analysis.whole_system import (
     growth_over_latitude,
 )
 from navcore.engine.run import MethodRun, Run
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 
 LATITUDES = np.linspace(0.0, 85.0, 18)
@@ -39,7 +40,7 @@ def whole_system_figure(run: Run, aspect: float = 0.46, *, width_px: float = 940
     width_px : float
         Expected width on screen.
     """
-    names = [*(m.method.name for m in run.methods), *(f"{kind} mode" for kind in _SYMBOLS)]
+    names = [*(m.method.name for m in run.methods), *(Text("{kind} mode", kind=kind) for kind in _SYMBOLS)]
     data: list[dict[str, Any]] = []
     rates = []
     for index, method in enumerate(run.methods):
@@ -48,7 +49,7 @@ def whole_system_figure(run: Run, aspect: float = 0.46, *, width_px: float = 940
         rates.append(_DAY * growth)
         data += _marks(method, index)
         data += _growth(run, method, index, rates[-1])
-    data += [style.key(f"{kind} mode", symbol, 2) for kind, symbol in _SYMBOLS.items()]
+    data += [style.key(Text("{kind} mode", kind=kind), symbol, 2) for kind, symbol in _SYMBOLS.items()]
     finite = np.concatenate([[0.0], *rates])
     finite = finite[np.isfinite(finite)]
     low, high = float(finite.min()), float(finite.max())
@@ -71,7 +72,14 @@ def whole_system_figure(run: Run, aspect: float = 0.46, *, width_px: float = 940
             style.across(0.0, "y2", "x2 domain", **danger),
         ],
         annotations=[
-            style.panel_title(f"Whole system at {abs(lat):.4g}° {'N' if lat >= 0.0 else 'S'}", ""),
+            style.panel_title(
+                (
+                    Text("Whole system at {lat:.4g}° N", lat=abs(lat))
+                    if lat >= 0.0
+                    else Text("Whole system at {lat:.4g}° S", lat=abs(lat))
+                ),
+                "",
+            ),
             style.panel_title("Growth of the 24 h mode", "2"),
         ],
     )
@@ -101,9 +109,15 @@ def _marks(method: MethodRun, index: int) -> list[dict[str, Any]]:
 
 
 def _about(mode: Mode) -> str:
-    lines = [f"{mode.name} mode"]
+    lines = [Text("{name} mode", name=mode.name)]
     if mode.eigenvalue.imag > 0.0:
-        lines.append(f"period {duration(2.0 * np.pi / mode.eigenvalue.imag)}, ζ {mode.damping_ratio:.3f}")
+        lines.append(
+            Text(
+                "period {pi}, ζ {damping_ratio:.3f}",
+                pi=duration(2.0 * np.pi / mode.eigenvalue.imag),
+                damping_ratio=mode.damping_ratio,
+            )
+        )
     if abs(mode.growth) > 1e-12:
         lines.append(earth_mode_text(mode.growth))
     return "<br>".join(lines)
@@ -114,8 +128,8 @@ def _growth(run: Run, method: MethodRun, index: int, rates: np.ndarray) -> list[
     name, here = method.method.name, method.whole.earth_growth
     plain = style.plain(name)
     common = {"xaxis": "x2", "yaxis": "y2", "showlegend": False}
-    curve = style.lines(f"{name} growth", index) | common
-    site = style.marks(f"{name} at the site", index, "diamond", 11, {}) | common
+    curve = style.lines(Text("{name} growth", name=name), index) | common
+    site = style.marks(Text("{name} at the site", name=name), index, "diamond", 11, {}) | common
     return [
         curve
         | {
@@ -128,7 +142,7 @@ def _growth(run: Run, method: MethodRun, index: int, rates: np.ndarray) -> list[
         | {
             "x": [abs(run.scenario.site.lat_deg)],
             "y": [here * _DAY],
-            "text": [f"24 h mode {earth_mode_text(here)}"],
+            "text": [Text("24 h mode {earth_mode_text}", earth_mode_text=earth_mode_text(here))],
             "hovertemplate": f"<b>{plain}</b> at the site<br>%{{text}}<extra></extra>",
         },
     ]

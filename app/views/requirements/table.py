@@ -13,6 +13,7 @@ from app.plots.units import number, rounded
 from app.session.requirements import Requirements, Verdict, sign_of, verdicts
 from navcore.engine.run import Run
 from navcore.foundation.parameters import extra_of
+from navcore.foundation.text import Text
 
 _DIGITS = 4
 
@@ -39,8 +40,10 @@ def requirements_html(
     judged = together(run, pins)
     shown = range(len(judged.methods)) if methods is None else methods
     judged_all = verdicts(judged, requirements)
-    lines = [f"solid {style.method_color(i)}" for i in range(len(run.methods))]
-    lines += [f"dashed {pinned.color}" for pinned in pinned_methods(pins)]
+    lines = [
+        Text("solid {method_color}", method_color=style.method_color(i)) for i in range(len(run.methods))
+    ]
+    lines += [Text("dashed {color}", color=pinned.color) for pinned in pinned_methods(pins)]
     heads = (
         cell(escape(judged.methods[i].method.name), "sb-h", tag="th", style=f"border-bottom:3px {lines[i]}")
         for i in shown
@@ -99,8 +102,11 @@ def _overall(judged: tuple[Verdict, ...], index: int) -> str:
         return cell("nothing asked", "sb-muted", tag="span")
     missed = sum(not verdict.passed[index] for verdict in asked)
     if missed:
-        return _badge(f"✗ misses {missed} of {len(asked)}", False)
-    return _badge(f"✓ meets {'it' if len(asked) == 1 else f'all {len(asked)}'}", True)
+        return _badge(Text("✗ misses {missed} of {asked}", missed=missed, asked=len(asked)), False)
+    return _badge(
+        Text("✓ meets {asked}", asked="it" if len(asked) == 1 else Text("all {asked}", asked=len(asked))),
+        True,
+    )
 
 
 def _badge(text: str, passed: bool) -> str:

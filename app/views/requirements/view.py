@@ -14,6 +14,7 @@ from app.shell.view import Frame, PictureView, Tab, if_user
 from app.views.requirements.table import requirements_html
 from navcore.foundation.errors import InputError
 from navcore.foundation.parameters import allowed_range
+from navcore.foundation.text import Text
 
 _GRID = '<div class="sb-limits"></div>'
 _UNFINISHED_S = 1.2
@@ -39,7 +40,11 @@ class RequirementsView(PictureView[str]):
         with tab:
             gui.add_html(_GRID)
             for name, info in Requirements.model_fields.items():
-                hint = f"{info.description} A number, {allowed_range(info)}; empty: no requirement."
+                hint = Text(
+                    "{description} A number, {allowed_range}; empty: no requirement.",
+                    description=info.description,
+                    allowed_range=allowed_range(info),
+                )
                 box = gui.add_text(label_of(name), _text(getattr(self._held, name)), hint=hint)
                 box.on_update(if_user(lambda name=name: self._typed(name)))
                 self._boxes[name] = Widget(box)

@@ -8,6 +8,7 @@ from app.shell import notices
 from app.shell.fields_view import FieldsView
 from app.shell.view import Tab
 from navcore.foundation.registry import blocks_of
+from navcore.foundation.text import Text
 from navcore.motion import MOTIONS
 from navcore.scenario.model import Alignment, InitialError, RunSettings, Scenario, SiteSettings
 
@@ -56,7 +57,7 @@ class RunView(FieldsView):
             }
         )
         legs = len(getattr(motion, "leg", ()))
-        text = f"{legs} legs, as the scenario file gives them." if legs else ""
+        text = Text("{legs} legs, as the scenario file gives them.", legs=legs) if legs else ""
         self._about.content, self._about.visible = notices.small(text), bool(text)
 
 

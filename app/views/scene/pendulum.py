@@ -17,6 +17,7 @@ from app.plots import style
 from app.plots.units import duration, number, round_down
 from app.views.scene.moment import row_at
 from navcore.engine.run import MethodRun, Run
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.mechanization.recorder import PHI_E, PHI_N
 
@@ -121,7 +122,7 @@ def pendulum_svg(now: Pendulum) -> str:
 def caption_of(now: Pendulum) -> str:
     """Describe the picture in words."""
     larger = "to scale" if now.factor == 1.0 else f"x {number(now.factor)}"
-    return f"tilt {larger}; length R, period {duration(now.period_s)}"
+    return Text("tilt {larger}; length R, period {period_s}", larger=larger, period_s=duration(now.period_s))
 
 
 _SMALL = f'font-size="12" fill="{style.MUTED}"'

@@ -16,6 +16,7 @@ from app.plots.units import length_unit, number, round_down, round_up, rounded
 from app.views.scene.graticule import MOST_BESIDE, Graticule, LocalMap, SceneLabel, graticule, scale_bar
 from app.views.scene.polyline import dashes, needed, segments
 from navcore.engine.run import MethodRun, Run
+from navcore.foundation.text import Text
 from navcore.mechanization.recorder import D_LAT, D_LON
 from navcore.motion.base import HEADING, HEIGHT, LAT, LON, PITCH, ROLL
 
@@ -339,6 +340,10 @@ def _scene(points_m: np.ndarray, middle: np.ndarray, metres_per_unit: float, lif
 
 def _caption(factor: float, static: bool) -> str:
     if static:
-        return "position errors to scale" if factor == 1.0 else f"position errors x {number(factor)}"
-    how = "to scale" if factor == 1.0 else f"drawn x {number(factor)}"
-    return f"position errors {how}; ship not to scale"
+        return (
+            "position errors to scale"
+            if factor == 1.0
+            else Text("position errors x {factor}", factor=number(factor))
+        )
+    how = "to scale" if factor == 1.0 else Text("drawn x {factor}", factor=number(factor))
+    return Text("position errors {how}; ship not to scale", how=how)

@@ -13,6 +13,7 @@ from app.views.scene.drawer import SceneDrawer
 from app.views.scene.playback import Playback, PlayState
 from app.views.scene.track import track
 from navcore.engine.run import Run
+from navcore.foundation.text import Text
 
 _FIT = "as needed"
 # What stands over the view (playback.css, playback.js), px.
@@ -61,7 +62,7 @@ class SceneView(View):
         add("speed", _number(playback.set_speed), watcher=True)
         add("loop", lambda text: playback.set_loop(text == "on"), watcher=True)
         for camera in CAMERAS:
-            title = f"3D view: {camera}"
+            title = Text("3D view: {camera}", camera=camera)
             add(f"camera-{camera}", lambda _, camera=camera: self._look(camera), title, watcher=True)
 
     def _enlarge(self) -> None:

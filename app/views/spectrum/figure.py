@@ -14,6 +14,7 @@ from app.session.display import Display
 from app.views.errors.figure import error_plots
 from app.views.frequency.figure import natural_frequencies
 from navcore.engine.run import MethodRun, Run
+from navcore.foundation.text import Text
 from navcore.mechanization.recorder import NAMES
 
 _PADDING = 4
@@ -139,7 +140,7 @@ def _period_axis(unit: Unit, shortest_s: float, longest_s: float) -> dict[str, A
     marks = [m * 10.0**k for k in decades for m in (1.0, 2.0, 5.0)]
     marks = [mark for mark in marks if shortest <= math.log10(mark) <= longest]
     return style.axis(
-        f"period ({unit.name})",
+        Text("period ({name})", name=unit.name),
         type="log",
         range=[longest, shortest],  # as in the Bode plots, slow is left
         tickvals=marks,
@@ -153,7 +154,7 @@ def _amplitude_axis(unit: Unit, peaks: list[float]) -> dict[str, Any]:
     low = max(min(powers, default=top) - 4.0, top - _DECADES)
     decades = range(math.ceil(low), math.floor(top) + 1)
     return style.axis(
-        f"amplitude ({unit.name})",
+        Text("amplitude ({name})", name=unit.name),
         type="log",
         range=[low, top],
         tickvals=[10.0**k for k in decades],

@@ -11,6 +11,7 @@ from app.plots import style
 from app.plots.units import duration, rounded
 from navcore.engine.run import Run
 from navcore.foundation.assets import asset_path
+from navcore.foundation.text import Text
 from navcore.mechanization.recorder import DV_E, DV_N
 from navcore.scenario.file import load, presets, scenario_hash
 
@@ -53,7 +54,13 @@ def card_svg(run: Run, of: str) -> str:
         for i, m in enumerate(run.methods)
     )
     count = len(run.methods)
-    words = f"Velocity error {symbol} of {count} methods, up to {rounded(peak)} m/s in {duration(span)}"
+    words = Text(
+        "Velocity error {symbol} of {count} methods, up to {peak} m/s in {span}",
+        symbol=symbol,
+        count=count,
+        peak=rounded(peak),
+        span=duration(span),
+    )
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" data-of="{of}">'
         f'<title>{escape(words)}</title><path d="M0 {HEIGHT / 2:g}H{WIDTH}" stroke="{style.GRID}"/>'

@@ -11,6 +11,7 @@ from app.plots import style
 from app.plots.units import rounded, settling
 from navcore.analysis import analyse, time_response
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC
 from navcore.networks import NETWORKS
 from navcore.networks.base import LinearNetwork
@@ -54,7 +55,7 @@ def _card(id: str, omega_s: float) -> NetworkCard:
     try:
         network = kind.model_validate({"id": id}).transfer(omega_s)
     except (InputError, ValueError, NotImplementedError) as error:
-        return NetworkCard(id, title, "", f"Needs parameters of its own: {error}.")
+        return NetworkCard(id, title, "", Text("Needs parameters of its own: {error}.", error=error))
     power = np.linspace(_FIRST, _LAST, 120)
     gain_db = 20.0 * np.log10(np.abs(network.response(omega_s * 10.0**power)))
     return NetworkCard(id, title, _svg(power, gain_db), _trade(network, gain_db))
@@ -67,11 +68,17 @@ def _trade(network: LinearNetwork, gain_db: np.ndarray) -> str:
     if loop.settling_s is None:
         return "Does not damp: an oscillation goes on for ever. The log has no influence on the tilt."
     peak = float(np.max(gain_db))
-    gain = f"|H| rises to {rounded(peak, 2)} dB" if peak > 0.1 else "|H| stays at or below 0 dB"
+    gain = (
+        Text("|H| rises to {peak} dB", peak=rounded(peak, 2)) if peak > 0.1 else "|H| stays at or below 0 dB"
+    )
     damping = rounded(loop.damping_ratio, 2)
-    return (
-        f"Settles to 2 % in {settling(loop.settling_s)}, least damping ratio {damping}. "
-        f"{gain}; a step of the log's error by 1 m/s tilts it by up to {rounded(tilt, 2)} arcsec."
+    return Text(
+        "Settles to 2 % in {settling}, least damping ratio {damping}. {gain}; a step "
+        "of the log's error by 1 m/s tilts it by up to {tilt} arcsec.",
+        settling=settling(loop.settling_s),
+        damping=damping,
+        gain=gain,
+        tilt=rounded(tilt, 2),
     )
 
 

@@ -18,6 +18,7 @@ from app.session.requirements import Requirements
 from app.views.poles.grid import FORBIDDEN
 from navcore.analysis.transfers import Output, Source
 from navcore.engine.run import MethodRun, Run
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG_PER_HOUR, MINUTE
 
 POINTS = 400
@@ -111,8 +112,8 @@ def step(
     velocity, caused_tilt = (responses(cause.source, output, cause.size) for output in ("dv", "phi"))
     speed, angle = speed_unit(_peak(velocity, stable)), angle_unit(_peak(caused_tilt, stable))
     network: Curves = [network_step(method, network_s, POINTS) for method in run.methods]
-    of_velocity = f"Velocity error after {cause.words}", cause.short[0]
-    of_tilt = f"Tilt after {cause.words}", cause.short[1]
+    of_velocity = Text("Velocity error after {words}", words=cause.words), cause.short[0]
+    of_tilt = Text("Tilt after {words}", words=cause.words), cause.short[1]
     panels = (
         _Panel("", loop_s, tilt, _NO_UNIT, _TILT, "φ/φ<sub>0</sub>"),
         _Panel("2", network_s, network, _NO_UNIT, _NETWORK, "output / step"),
@@ -192,7 +193,7 @@ def _settled_mark(method: MethodRun, index: int, tilt: np.ndarray | None, span_s
     if settles is not None and tilt is not None and settles <= span_s:
         x, y = [settles / MINUTE], [float(np.interp(settles, time_grid(span_s, POINTS), tilt))]
     edge = {"width": 1.5, "color": "white"}
-    mark = style.marks(f"{method.method.name} settled", index, "diamond", 11, edge)
+    mark = style.marks(Text("{name} settled", name=method.method.name), index, "diamond", 11, edge)
     hover = "settled to 2 % at %{x:.4g} min<extra></extra>"
     return mark | {"x": x, "y": y, "xaxis": "x", "yaxis": "y", "hovertemplate": hover}
 

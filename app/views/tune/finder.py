@@ -13,6 +13,7 @@ from app.views.tune.change import change_network
 from app.views.tune.fronts import AXES, COMMAND, nearest, setting_text
 from navcore.design.pareto import Pareto
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 
 ACROSS, UP = "across", "up"
 FIND, STOP = "Find the fronts", "Stop finding"
@@ -92,7 +93,7 @@ class FrontsPanel:
         """Find the fronts of the selected method."""
         session = self.session
         if self.objectives[0] == self.objectives[1]:
-            lines = [f"{AXES[self.objectives[0]][0]} is on both axes: choose two objectives."]
+            lines = [Text("{axes} is on both axes: choose two objectives.", axes=AXES[self.objectives[0]][0])]
             notices.tell(self.frame.client, "Nothing to weigh", lines)
             return
         with session.lock:
@@ -105,7 +106,7 @@ class FrontsPanel:
         if fronts is None or task is None:
             return
         name, point = nearest(fronts, *read_place(text))
-        step = f"{name} from the Pareto fronts"
+        step = Text("{name} from the Pareto fronts", name=name)
         if change_network(self.frame, task.method, point.network, step):
             notices.tell(self.frame.client, step, [setting_text(point.network)], "info")
 

@@ -12,6 +12,7 @@ from app.plots.units import number
 from navcore.design.pareto import Pareto, Point
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.notation import symbol
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, MINUTE
 
 COMMAND = "front-point"
@@ -87,7 +88,7 @@ def fronts_figure(
         _front(name, points, k, (x_size, y_size))
         for k, (name, points) in enumerate(fronts.items(), start=_NETWORK_COLORS)
     ]
-    now = style.plain(f"now: {method}")
+    now = style.plain(Text("now: {method}", method=method))
     if present is not None:
         data.append(_present(now, present, (x_size, y_size)))
     ranges = _ranges(found, present, (x_size, y_size))
@@ -218,7 +219,7 @@ def _add_floor(layout: dict[str, Any], found: Pareto, ranges: tuple[Pair, Pair],
             {
                 "type": "rect",
                 **{f"{name}ref": name, f"{name}0": ranges[axis][0] / 10.0, f"{name}1": level},
-                **{f"{other}ref": f"{other} domain", f"{other}0": 0.0, f"{other}1": 1.0},
+                **{f"{other}ref": Text("{other} domain", other=other), f"{other}0": 0.0, f"{other}1": 1.0},
                 "fillcolor": style.GRID,
                 "line": {"width": 0},
                 "layer": "below",
@@ -226,7 +227,7 @@ def _add_floor(layout: dict[str, Any], found: Pareto, ranges: tuple[Pair, Pair],
             {
                 "type": "line",
                 **{f"{name}ref": name, f"{name}0": level, f"{name}1": level},
-                **{f"{other}ref": f"{other} domain", f"{other}0": 0.0, f"{other}1": 1.0},
+                **{f"{other}ref": Text("{other} domain", other=other), f"{other}0": 0.0, f"{other}1": 1.0},
                 "line": {"color": style.INK, "width": 1.5, "dash": "dash"},
                 "layer": "below",
             },

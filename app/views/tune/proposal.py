@@ -10,6 +10,7 @@ from app.plots.table import cell, row, table
 from app.plots.units import number
 from navcore.design.measures import read_requirement
 from navcore.foundation.notation import symbol
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCMIN, ARCSEC, MINUTE
 
 if TYPE_CHECKING:
@@ -55,10 +56,10 @@ def proposal_html(task: TuningTask, tuned: Tuned) -> str:
         f"{label} ({unit})",
         "none" if tuned.before is None else number(tuned.before / size, 4),
         number(tuned.objective / size, 4),
-        "" if tuned.floor is None else f"floor {number(tuned.floor / size, 4)}",
+        "" if tuned.floor is None else Text("floor {floor}", floor=number(tuned.floor / size, 4)),
     ]
     method = task.scenario.method[int(task.vary[0].split(".")[1])].name
-    head = (f"Proposal for {method}", "now", "proposed", "range within 5 % of the best")
+    head = (Text("Proposal for {method}", method=method), "now", "proposed", "range within 5 % of the best")
     settings = table([_row(head, "th")], [_row(cells) for cells in (*rows, objective)])
     sentences = "".join(f"<li>{escape(text)}</li>" for text in sentences_about(task, tuned))
     listed = f"<ul>{sentences}</ul>" if sentences else ""
@@ -73,14 +74,28 @@ def sentences_about(task: TuningTask, tuned: Tuned) -> list[str]:
         sentences.append("The search was stopped: this is the best setting it had seen.")
     if tuned.floor:
         times = number(tuned.objective / tuned.floor, 3)
-        sentences.append(f"The proposed setting is {times} times the floor.")
+        sentences.append(Text("The proposed setting is {times} times the floor.", times=times))
     for field in tuned.at_end_of_range:
         name = symbol(field.rsplit(".", 1)[-1])
-        sentences.append(f"{name} stands at the end of its range: the true optimum may lie outside.")
+        sentences.append(
+            Text("{name} stands at the end of its range: the true optimum may lie outside.", name=name)
+        )
     for text in tuned.active:
         without = tuned.cost.get(text)
-        more = "" if without is None else f" Without it the objective is {number(without / size, 4)} {unit}."
-        sentences.append(f"The requirement {requirement_words(text)} holds the optimum back.{more}")
+        more = (
+            ""
+            if without is None
+            else Text(
+                " Without it the objective is {without} {unit}.", without=number(without / size, 4), unit=unit
+            )
+        )
+        sentences.append(
+            Text(
+                "The requirement {requirement_words} holds the optimum back.{more}",
+                requirement_words=requirement_words(text),
+                more=more,
+            )
+        )
     return [*sentences, *tuned.warnings]
 
 

@@ -12,6 +12,7 @@ from app.shell.view import Frame, if_user
 from app.views.tune.change import change_network
 from app.views.tune.proposal import OBJECTIVES, proposal_html
 from navcore.design.vary import tunable_fields
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, MINUTE
 from navcore.scenario.model import Scenario
 
@@ -136,8 +137,16 @@ def requirements_told(requirements: Requirements) -> str:
     given = [name for name in type(requirements).model_fields if getattr(requirements, name) is not None]
     kept = [_limit(requirements, name) for name in given if name in _MEASURED]
     other = [_limit(requirements, name) for name in given if name not in _MEASURED]
-    text = f"Requirements that are kept: {', '.join(kept)}." if kept else "No requirement is to be kept."
-    return f"{text} Not measured by a search: {', '.join(other)}." if other else text
+    text = (
+        Text("Requirements that are kept: {kept}.", kept=", ".join(kept))
+        if kept
+        else "No requirement is to be kept."
+    )
+    return (
+        Text("{text} Not measured by a search: {other}.", text=text, other=", ".join(other))
+        if other
+        else text
+    )
 
 
 def _limit(requirements: Requirements, name: str) -> str:

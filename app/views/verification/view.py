@@ -9,6 +9,7 @@ from app.shell import notices
 from app.shell.searching import reveal, show_html
 from app.shell.view import Frame, Tab, View
 from app.views.metrics.table import verdict
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
 VERIFY, STOP = "Verify with full strapdown", "Stop verifying"
@@ -71,7 +72,7 @@ def _html(verifier: Verifier, scenario: Scenario) -> str:
         return ""
     if verifier.asked != scenario:
         return notices.note(["The verification is of an earlier scenario: verify again."], "warning")
-    trusted = notices.note([f"Verified. {verdict(result)}", _WHERE], "info")
+    trusted = notices.note([Text("Verified. {verdict}", verdict=verdict(result)), _WHERE], "info")
     against = ["The linear model is not to be trusted here:", *result.statements] if result.statements else []
     return notices.note(against, "warning") + trusted
 

@@ -11,6 +11,7 @@ from navcore.analysis import Loop, analyse
 from navcore.analysis.held_log import held_log
 from navcore.analysis.whole_system import WholeSystem, whole_system
 from navcore.engine.run import MethodRun, Status, plot_series, statistics
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.law.combination import combination_warnings, network_in_force
 from navcore.law.law import Law, prepare_law, realisation_of
@@ -162,7 +163,16 @@ def method_run(
     written = int(recorder.cursor["row"])
     network = network_on_average(method, network, recorder.rows[:written])
     stability = judge(network)
-    told = f"{reason} at {reached_s:.0f} s = {reached_s / HOUR:.3g} h" if reason else ""
+    told = (
+        Text(
+            "{reason} at {reached_s:.0f} s = {reached_s_2:.3g} h",
+            reason=reason,
+            reached_s=reached_s,
+            reached_s_2=reached_s / HOUR,
+        )
+        if reason
+        else ""
+    )
     return MethodRun(
         method=method,
         network=network,
@@ -186,7 +196,7 @@ def _warnings(
 ) -> tuple[str, ...]:
     found = list(dict.fromkeys((*network.warnings, *further)))
     if method.undamped and method.network.id != "none":
-        found.append(f'damping = "{method.damping}": the network is not used')
+        found.append(Text('damping = "{damping}": the network is not used', damping=method.damping))
     if method.damping == "kalman" and (method.policy.id != "constant" or method.switching.id != "hard"):
         found.append('damping = "kalman": policy and switching are not used')
     if method.damping == "internal" and realisation_of("external", method.network) != "network":

@@ -13,6 +13,7 @@ from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.errors import Fault
 from navcore.foundation.parameters import bounded, choice, quantity
 from navcore.foundation.records import COUNT, FLAG, REAL, record_type
+from navcore.foundation.text import Text
 from navcore.foundation.units import KNOT
 from navcore.law.policy.base import LOW_MARGIN, Measure, PolicyParameters
 from navcore.law.records import E, N
@@ -162,11 +163,22 @@ class Adaptive(PolicyParameters):
     @model_validator(mode="after")
     def _increasing(self) -> Adaptive:
         if not _LEAST_ROWS <= len(self.table) <= _MOST_ROWS:
-            raise refuse("table", len(self.table), f"must have {_LEAST_ROWS} to {_MOST_ROWS} rows")
+            raise refuse(
+                "table",
+                len(self.table),
+                Text(
+                    "must have {least_rows} to {most_rows} rows", least_rows=_LEAST_ROWS, most_rows=_MOST_ROWS
+                ),
+            )
         arguments = sorted(row.difference_kn for row in self.table)
         for first, second in zip(arguments, arguments[1:], strict=False):
             if second - first < _LEAST_SPACING_KN:
-                near = f"must have rows {_LEAST_SPACING_KN:g} kn apart, not {first:g} and {second:g} kn"
+                near = Text(
+                    "must have rows {least_spacing_kn:g} kn apart, not {first:g} and {second:g} kn",
+                    least_spacing_kn=_LEAST_SPACING_KN,
+                    first=first,
+                    second=second,
+                )
                 raise refuse("table", [list(row) for row in self.table], near)
         return self
 
@@ -201,23 +213,35 @@ class Adaptive(PolicyParameters):
             )
         least = self.network_in_force(network).least_coefficient()
         if least > LOWEST:
-            found.append(f"adaptive: below ζ = {least:.3g} the printed form is unstable: held above it")
+            found.append(
+                Text(
+                    "adaptive: below ζ = {least:.3g} the printed form is unstable: held above it", least=least
+                )
+            )
         return tuple(found)
 
     def network_faults(self, network: NetworkParameters) -> Iterator[Fault]:
         """Two networks given, or one that cannot be re-tuned."""
         if self.network is not None:
             if not isinstance(network, UndampedNetwork) and network != self.network:
-                allowed = f'differs from the policy\'s own network "{self.network.id}": give only one of them'
+                allowed = Text(
+                    'differs from the policy\'s own network "{id}": give only one of them', id=self.network.id
+                )
                 yield Fault("", "network.id", network.id, allowed)
         elif network.id not in ("none", "pole2", "unity2"):
-            allowed = f'cannot re-tune network "{network.id}": must be {_ADAPTABLE}'
+            allowed = Text(
+                'cannot re-tune network "{id}": must be {adaptable}', id=network.id, adaptable=_ADAPTABLE
+            )
             yield Fault("", "policy.id", self.id, allowed)
 
     def stability_faults(self, network: NetworkParameters) -> Iterator[Fault]:
         """Refuse a printed form that is unstable wherever the law can go; it is held above that otherwise."""
         low = LOW_MARGIN * self.network_in_force(network).least_coefficient()
         if low > HIGHEST:
-            reason = f"is unstable up to ζ = {low:.3g} with these n₁, n₂: must be stable below {HIGHEST}"
+            reason = Text(
+                "is unstable up to ζ = {low:.3g} with these n₁, n₂: must be stable below {highest}",
+                low=low,
+                highest=HIGHEST,
+            )
             at = "network" if self.network is None else "policy.network"
             yield Fault("", f"{at}.variant", "as_printed", reason)

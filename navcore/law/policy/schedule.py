@@ -12,6 +12,7 @@ from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.errors import Fault
 from navcore.foundation.parameters import bounded, quantity, vector_quantity
 from navcore.foundation.records import REAL, record_type
+from navcore.foundation.text import Text
 from navcore.law.policy.base import PolicyParameters
 from navcore.law.records import NETWORK, E, N
 from navcore.networks.base import NetworkParameters, refuse
@@ -107,7 +108,11 @@ class Schedule(_From):
         for name in ("from", "to"):
             k1, k2, k3 = getattr(self, name)
             if not abs(k1) <= _LARGEST_K1:
-                raise refuse(f"{name}.0", k1, f"K₁ must be >= -{_LARGEST_K1:g} and <= {_LARGEST_K1:g} (1/s)")
+                raise refuse(
+                    f"{name}.0",
+                    k1,
+                    Text("K₁ must be >= -{largest_k1:g} and <= {largest_k1:g} (1/s)", largest_k1=_LARGEST_K1),
+                )
             if 1.0 + k2 == 0.0 and k3 == 0.0:
                 raise refuse(f"{name}.1", k2, "K₂ must not be -1 while K₃ = 0: H would be zero")
         return self
@@ -119,7 +124,9 @@ class Schedule(_From):
     def network_faults(self, network: NetworkParameters) -> Iterator[Fault]:
         """Only `compass` has the gains."""
         if not isinstance(network, CompassNetwork):
-            allowed = f'changes the gains K₁, K₂, K₃: needs network.id = "compass", not "{network.id}"'
+            allowed = Text(
+                'changes the gains K₁, K₂, K₃: needs network.id = "compass", not "{id}"', id=network.id
+            )
             yield Fault("", "policy.id", self.id, allowed)
 
     def network_in_force(self, network: NetworkParameters) -> NetworkParameters:
@@ -135,5 +142,7 @@ class Schedule(_From):
             k1, k2, k3 = (a + share * (b - a) for a, b in zip(getattr(self, "from"), self.to, strict=True))
             if not (k1 > 0.0 and k3 > 0.0 and 1.0 + k2 > 0.0 and k1 * (1.0 + k2) > k3):
                 at = share * self.duration_s
-                return (f"schedule: with the gains at {at:g} s after a start the loop is unstable",)
+                return (
+                    Text("schedule: with the gains at {at:g} s after a start the loop is unstable", at=at),
+                )
         return ()

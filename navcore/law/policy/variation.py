@@ -18,6 +18,7 @@ from pydantic import model_validator
 from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.parameters import quantity
 from navcore.foundation.records import COUNT, REAL, record_type
+from navcore.foundation.text import Text
 from navcore.law.history import difference_e, difference_n, slide
 from navcore.law.policy.base import Limit, Measure, PolicyParameters, calls
 from navcore.law.records import E, N
@@ -123,9 +124,9 @@ class Variation(PolicyParameters):
     @model_validator(mode="after")
     def _ordered(self) -> Variation:
         if not self.a < self.b:
-            raise refuse("b", self.b, f"must be > a = {self.a:g} (m/s)")
+            raise refuse("b", self.b, Text("must be > a = {a:g} (m/s)", a=self.a))
         if not self.b < self.c:
-            raise refuse("c", self.c, f"must be > b = {self.b:g} (m/s)")
+            raise refuse("c", self.c, Text("must be > b = {b:g} (m/s)", b=self.b))
         return self
 
     def packed(self, law_step_s: float) -> dict[str, Any]:

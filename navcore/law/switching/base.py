@@ -10,6 +10,7 @@ import numpy as np
 from navcore.foundation.errors import Fault
 from navcore.foundation.parameters import Parameters
 from navcore.foundation.records import record_type
+from navcore.foundation.text import Text
 from navcore.law.policy.base import PolicyParameters
 from navcore.networks.base import NetworkParameters
 
@@ -86,12 +87,22 @@ class SwitchingParameters(Parameters):
         if self.tunes and policy.follow is not None:
             yield self._begins_anew(policy)
         elif self.tunes and network.tuning(1.0) is None:
-            allowed = f'moves the damping ratio, which network "{network.id}" has not or cannot change'
-            yield self._refused(f"{allowed} while it runs: needs network {_RETUNABLE}")
+            allowed = Text(
+                'moves the damping ratio, which network "{id}" has not or cannot change', id=network.id
+            )
+            yield self._refused(
+                Text(
+                    "{allowed} while it runs: needs network {retunable}",
+                    allowed=allowed,
+                    retunable=_RETUNABLE,
+                )
+            )
 
     def _begins_anew(self, policy: PolicyParameters) -> Fault:
         return self._refused(
-            f'must be hard or keep with policy "{policy.id}", whose gains begin anew at each start'
+            Text(
+                'must be hard or keep with policy "{id}", whose gains begin anew at each start', id=policy.id
+            )
         )
 
     def _refused(self, allowed: str) -> Fault:

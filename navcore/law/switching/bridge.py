@@ -18,6 +18,7 @@ from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.errors import Fault
 from navcore.foundation.parameters import choice, quantity
 from navcore.foundation.records import COUNT, FLAG, REAL, record_type
+from navcore.foundation.text import Text
 from navcore.law.history import row_of_age
 from navcore.law.network_state import advance_network
 from navcore.law.policy.base import PolicyParameters, calls
@@ -317,5 +318,8 @@ class Bridge(SwitchingParameters):
             yield self._begins_anew(policy)
         elif realisation != "network":
             yield self._refused(
-                f'works by the network alone: network.realisation must be "network" with {network.id}'
+                Text(
+                    'works by the network alone: network.realisation must be "network" with {id}',
+                    id=network.id,
+                )
             )

@@ -17,6 +17,7 @@ from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import quantity
 from navcore.foundation.records import COUNT, REAL, record_type
+from navcore.foundation.text import Text
 from navcore.law.history import input_e, input_n, mean_of, row_of_age
 from navcore.law.policy.base import PolicyParameters, calls
 from navcore.law.records import EXTERNAL, MAX_STATES, RESTORE, E, N
@@ -136,6 +137,9 @@ class Bumpless(SwitchingParameters):
             yield self._begins_anew(policy)
         elif realisation != "network":
             yield self._refused(
-                "needs a network that comes to rest with a standing difference: network.realisation must be "
-                f'"network" with {network.id}'
+                Text(
+                    "needs a network that comes to rest with a standing difference: "
+                    'network.realisation must be "network" with {id}',
+                    id=network.id,
+                )
             )

@@ -12,6 +12,7 @@ from navcore.foundation.compiled import inlined
 from navcore.foundation.errors import Fault
 from navcore.foundation.parameters import choice, quantity
 from navcore.foundation.records import FLAG, REAL, record_type
+from navcore.foundation.text import Text
 from navcore.law.policy.base import PolicyParameters
 from navcore.law.records import CLEAR, REST
 from navcore.law.switching.base import SwitchingParameters
@@ -83,6 +84,11 @@ class Ramp(SwitchingParameters):
         """Refuse also a printed form whose loop is unstable at the small coefficients of the ramp."""
         found = list(super().network_faults(damping, network, realisation, policy))
         if not found and network.least_coefficient() > 0.0:
-            allowed = f"passes damping ratios below {network.least_coefficient():.3g}, at which the loop of"
-            found.append(self._refused(f'{allowed} "{network.id}" as printed is unstable'))
+            allowed = Text(
+                "passes damping ratios below {least_coefficient:.3g}, at which the loop of",
+                least_coefficient=network.least_coefficient(),
+            )
+            found.append(
+                self._refused(Text('{allowed} "{id}" as printed is unstable', allowed=allowed, id=network.id))
+            )
         yield from found
