@@ -24,6 +24,7 @@ DOMAIN = "schuler"
 NAMES = {"en": "English", "zh-CN": "中文（简体）"}
 """Languages of the page, each by its own name."""
 _VALUE = re.compile(r"\{[0-9]+\}")
+_NAMED = re.compile(r"%\{\{[^{}]*\}\}|\{[a-z][^{}]*\}")
 _TAGS = re.compile(r"</?([a-z]+)>")
 _WORD = re.compile(r"[^\W\d_]{2,}")
 _LETTERS = re.compile(r"[A-Za-z]{2,}")
@@ -128,8 +129,9 @@ class Wording:
         self, texts: dict[str, str], name: str = "", missed: Callable[[str], None] | None = None
     ) -> None:
         self.name = name
-        self._exact = {key: said for key, said in texts.items() if _VALUE.search(key) is None}
         self._templates = texts
+        texts = dict(positional(key, said) for key, said in texts.items())
+        self._exact = {key: said for key, said in texts.items() if _VALUE.search(key) is None}
         self._missed = missed
         self._by_word: dict[str, list[_Pattern]] = {}
         patterns = {key: said for key, said in texts.items() if key not in self._exact}
@@ -328,6 +330,13 @@ class Wording:
             said += ["".join(parts[place:end]) if found is None else found, *parts[end : end + 1]]
             place = end + 1
         return _joined(said) if known else None
+
+
+def positional(key: str, said: str) -> tuple[str, str]:
+    """Number the values of a template, by which a text that was joined with others is recognised."""
+    for number, mark in enumerate(dict.fromkeys(_NAMED.findall(key))):
+        key, said = key.replace(mark, f"{{{number}}}"), said.replace(mark, f"{{{number}}}")
+    return key, said
 
 
 def _filled(said: str, values: list[str]) -> str:

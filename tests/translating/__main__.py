@@ -14,7 +14,7 @@ from babel.messages.catalog import Catalog
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
 
-from app.languages.wording import DOMAIN, FOLDER
+from app.languages.wording import DOMAIN, FOLDER, positional
 from app.views import load
 from tests.translating.extract import Text, script_texts, texts
 
@@ -70,11 +70,11 @@ def script(catalog: Catalog, language: str) -> str:
     3D view shows.
     """
     wanted = {kind.title for kind in load()} | {text.key for text in script_texts()}
-    said = {
-        str(message.id): str(message.string)
+    said = dict(
+        positional(str(message.id), str(message.string))
         for message in catalog
         if message.id and message.string and message.id != message.string and message.id in wanted
-    }
+    )
     words = json.dumps({language.replace("_", "-"): said}, ensure_ascii=False, indent=1)
     return f"// Written by `make languages` from {DOMAIN}.po.\nwindow.schuler.words = {words};\n"
 

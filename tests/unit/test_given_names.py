@@ -11,10 +11,9 @@ from viser import _messages as messages
 
 from app.bridge.texts import Translator
 from app.languages.names import Names
-from app.languages.wording import wording
+from app.languages.wording import Wording, wording
 from app.session.names import GivenNames
 from app.session.session import Session
-from navcore.foundation.text import Text
 from navcore.scenario.file import load
 
 CHINESE = wording("zh-CN")
@@ -49,12 +48,19 @@ def test_a_name_alone_stays_as_it_is(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", GIVEN)
-def test_the_sentence_around_a_name_is_translated(name: str) -> None:
-    for template, chinese in (
-        ("Showing the pin “{name}”, not the present run. Key B flips back.", "“{name}”，不是本次运行"),
-        ("ζ of {name}: 0.7 → 0.9", "ζ of {name}"),
-    ):
-        assert chinese.format(name=name) in named(Text(template, name=name), name)
+@pytest.mark.parametrize(
+    ("english", "chinese"),
+    [
+        ("ζ of {}: 0.7 → 0.9", "{}的ζ: 0.7 → 0.9"),
+        ("{}, wanted", "{}，期望"),
+        ("{}: no band, the errors are not random.", "{}：无色带"),
+        ("{} (ended)", "{} （已结束）"),
+        ("Showing the pin “{}”, not the present run. Key B flips back.", "“{}”，不是本次运行"),
+        ("tilt of {}", "{}的失准角"),
+    ],
+)
+def test_the_sentence_around_a_name_is_translated(name: str, english: str, chinese: str) -> None:
+    assert chinese.format(name) in named(english.format(name), name)
 
 
 def test_the_program_s_own_sentences_are_translated_beside_names() -> None:
@@ -67,6 +73,7 @@ def test_the_program_s_own_sentences_are_translated_beside_names() -> None:
 
 def test_markup_in_a_name_is_no_markup() -> None:
     assert named("a <b>log</b> c", "a <b>log</b> c") == "a <b>log</b> c"
+    assert named("ζ of a <b>: 0.7 → 0.9", "a <b>") == "a <b>的ζ: 0.7 → 0.9"
     html = "<th>a &lt;b></th><th>largest tilt</th>"
     assert "<th>a &lt;b" in named(html, "a <b>", "th") and "largest" not in named(html, "a <b>", "th")
 
@@ -104,3 +111,9 @@ def test_names_of_a_session_reach_the_page(tmp_path: Path) -> None:
         assert box.updates == {"label": "阻尼"}
     finally:
         session.close()
+
+
+def test_without_names_nothing_changes() -> None:
+    words = Wording({"Tilt": "失准角", "{0} of {1}": "{1}的{0}"})
+    assert words.text("Tilt of log", Names(())) == words.text("Tilt of log") == "log的失准角"
+    assert words.text("drift of log", Names(["drift of log"])) == "drift of log"
