@@ -168,8 +168,8 @@ class Wording:
         """
         if len(text) < 2 or _LETTERS.search(text) is None:
             return text
-        if (origin := origin_of(text)) is not None and (said := self._rendered(origin, names)) is not None:
-            return said
+        if (origin := origin_of(text)) is not None:
+            return self._rendered(origin, names)
         if not names.within(text):
             if not markup.has_markup(text):
                 return self.say(text)
@@ -178,11 +178,11 @@ class Wording:
             return self._around_names(text, names)
         return markup.translate(text, lambda piece: self._around_names(piece, names))
 
-    def _rendered(self, text: Text, names: Names) -> str | None:
-        """Fill the values, each in this language, into the translation; None where there is none."""
+    def _rendered(self, text: Text, names: Names) -> str:
+        """Fill the values, each in this language, into the translation; without one all stays English."""
         said = self._templates.get(text.forms[0])
         if said is None:
-            return None
+            return str(text)
         values = {
             name: self.text(str(value), names) if isinstance(value, str) else value
             for name, value in text.values.items()
@@ -198,8 +198,8 @@ class Wording:
         """
         if names.are(text):
             return text
-        if (origin := origin_of(text)) is not None and (said := self._rendered(origin, names)) is not None:
-            return said
+        if (origin := origin_of(text)) is not None:
+            return self._rendered(origin, names)
         around, found = names.hidden(text)
         if not found or " ".join(text.split()) in self._exact:  # the page's own text, all of it
             return self.say(text)
@@ -232,8 +232,8 @@ class Wording:
 
     def _whole(self, key: str, depth: int) -> str | None:
         """Return the translation of one text of the catalogue, with or without values."""
-        if (origin := origin_of(key)) is not None and (said := self._rendered(origin, NONE)) is not None:
-            return said
+        if (origin := origin_of(key)) is not None:
+            return self._rendered(origin, NONE)
         for text, end in ((key, ""), (key[:-1], _ENDS.get(key[-1:], ""))):
             if text is not key and not end:
                 break
