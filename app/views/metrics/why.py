@@ -69,7 +69,7 @@ def _told(causes: tuple[Cause, ...], result: Why) -> str:
 
 def _lines(result: Why) -> str:
     rows = "".join(
-        f'<div title="{escape(_words(causes, result, HEADING))}"><span class="sb-mark" style="background:'
+        f'<div title="{escape(_words(causes, result, HEADING))}"><span class="sb-swatch" style="background:'
         f'{style.method_color(index)}"></span><b>{escape(name)}</b>: {escape(_told(causes, result))}.</div>'
         for index, (name, causes) in enumerate(result.methods)
     )
