@@ -6,6 +6,7 @@ The guide's own text is taken: the block behind ``<!-- file: PATH -->`` is the f
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -14,18 +15,39 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-RECIPES = (
-    "network",
-    "policy",
-    "switching method",
-    "motion",
-    "sensor error",
-    "tab",
-    "import format",
-)
+RECIPES = ("network", "policy", "switching method", "motion", "tab")
 _BLOCK = re.compile(r"<!-- (file|line): (\S+) -->\n+```\w+\n(.*?)```\n", re.DOTALL)
+RUN = """
+import json
+from navcore import simulate
+from navcore.scenario.model import Scenario
+
+lead = {"damping": "external", "network": {"id": "lead"}}
+wait = {"id": "waiting", "wait_s": 15.0}
+log = {"kind": "log", "rate_hz": 1.0}
+turns = [
+    lead | {"name": "waiting", "policy": {"id": "turns", "turn_s": 60.0}, "switching": wait},
+    lead | {"name": "hard", "policy": {"id": "turns", "turn_s": 90.0}},
+]
+eight = {
+    "motion": {"kind": "eight"},
+    "imu": {"gyro_bias_dph": [0.01, 0.01, 0.01]},
+    "method": [{"name": "free"}, lead | {"name": "damped"}, lead | {"name": "inside", "damping": "internal"}],
+}
+runs = {}
+for fidelity in ("error_model", "strapdown"):
+    run = {"fidelity": fidelity, "duration_h": 0.1, "output_step_s": 1.0, "rate_hz": 10.0}
+    decided = simulate(Scenario.parse({"run": run, "reference": log, "method": turns}))
+    moved = simulate(Scenario.parse({"run": run | {"rate_hz": 100.0}, "reference": log} | eight))
+    runs[fidelity] = {
+        "law": [method.law_series.tolist() for method in decided.methods],
+        "tilt": [[m.errors[name]["rms"] for name in ("phi_e_rad", "phi_n_rad")] for m in moved.methods],
+    }
+print(json.dumps(runs))
+"""
 _LEFT_OUT = shutil.ignore_patterns(".git", ".venv", "__pycache__", "build", ".*_cache")
 pytestmark = pytest.mark.timeout(1500)  # the kernels of the changed program are compiled
 
@@ -89,6 +111,26 @@ def test_the_contract_tests_pass_with_all_examples(program: Path) -> None:
         python(program, "-m", f"navcore.{module}")
     python(program, "-m", "ruff", "check", ".")
     python(program, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", "contract", "tests/unit")
+
+
+def test_the_examples_run_in_both_fidelities(program: Path) -> None:
+    """Policy and switching decide at their seconds; on the new motion both fidelities err alike."""
+    runs = json.loads(python(program, "-c", RUN))
+    for fidelity, run in runs.items():
+        waiting, hard = run["law"]
+        for k, (wanted, damped, _, measure) in enumerate(waiting):
+            turn, second = divmod(k, 60)
+            assert measure == turn and wanted == float(turn % 2 == 0), fidelity
+            assert damped == float(turn % 2 == 0 and second >= 15), fidelity
+        assert [row[1] for row in hard] == [float(k // 90 % 2 == 0) for k in range(len(hard))], fidelity
+    assert np.array(runs["error_model"]["tilt"]).min() > 0.0
+    np.testing.assert_allclose(runs["strapdown"]["tilt"], runs["error_model"]["tilt"], rtol=1e-3)
+
+
+def test_the_command_line_shows_the_network(program: Path) -> None:
+    report = json.loads(python(program, "-m", "app", "network", 'id = "lead", corner = 0.5', "--json"))
+    assert report["id"] == "lead" and report["stable"]
+    assert report["h0"] == pytest.approx(1.0)
 
 
 @pytest.mark.nightly

@@ -1,13 +1,14 @@
 """``make languages``: bring the catalogues up to date with the texts, and compile them.
 
-A new text is added without a translation, one that has gone is dropped. With ``--missing`` nothing is
-written; what has no translation is printed.
+A new text is added without a translation, one that has gone is dropped. What has no translation is printed;
+with ``--missing`` nothing is written.
 """
 
 from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 from babel.messages.catalog import Catalog
@@ -79,14 +80,19 @@ def script(catalog: Catalog, language: str) -> str:
     return f"// Written by `make languages` from {DOMAIN}.po.\nwindow.schuler.words = {words};\n"
 
 
+def missing(found: list[Text], said: Mapping[str, str]) -> list[str]:
+    """List the texts without a translation, each with its place; the page shows them in English."""
+    return [f"{text.where}: {text.key}" for text in found if text.prose and not said.get(text.key)]
+
+
 def main() -> None:
     """Carry out the command."""
     found = texts()
     for language in LANGUAGES:
         catalog = updated(read(language), found, language)
-        missing = [message.id for message in catalog if message.id and not message.string]
+        left = missing(found, {str(message.id): str(message.string) for message in catalog})
+        print("\n".join(left))
         if "--missing" in sys.argv:
-            print("\n".join(map(repr, missing)))
             continue
         path = po_path(language)
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -95,7 +101,7 @@ def main() -> None:
         with path.with_suffix(".mo").open("wb") as file:
             write_mo(file, catalog)
         script_path(language).write_text(script(catalog, language), encoding="utf-8")
-        print(f"{language}: {len(catalog)} texts, {len(missing)} without a translation")
+        print(f"{language}: {len(catalog)} texts, {len(left)} without a translation")
 
 
 if __name__ == "__main__":

@@ -19,6 +19,8 @@ from navcore.networks import NETWORKS, LinearNetwork, NetworkParameters, parse_n
 from navcore.networks.discrete import discretise
 from tests.random_models import raw_blocks
 
+pytestmark = pytest.mark.contract
+
 OMEGA_S = SPHERE.schuler_frequency(0.0)
 any_block = st.one_of(*(raw_blocks(model) for model in NETWORKS.values()))
 

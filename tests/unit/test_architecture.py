@@ -13,6 +13,8 @@ import viser
 import app
 from app.views import VIEWS, load, scripts
 
+pytestmark = pytest.mark.contract
+
 ROOT = Path(app.__file__).parents[1]
 
 

@@ -12,7 +12,7 @@ from babel.messages.mofile import write_mo
 from app.languages import markup
 from app.languages.wording import FOLDER, NAMES, Wording, read_texts, wording, words_of
 from app.views import load
-from tests.translating.__main__ import LANGUAGES, po_path, read, script, script_path
+from tests.translating.__main__ import LANGUAGES, missing, po_path, read, script, script_path
 from tests.translating.extract import texts
 from tests.translating.python import Text, is_prose, texts_in
 
@@ -39,10 +39,11 @@ def test_the_languages_are_those_with_a_catalogue() -> None:
     assert {"en", *(name.replace("_", "-") for name in LANGUAGES)} == NAMES.keys()
 
 
-def test_every_text_has_a_translation(found: list[Text], catalogue: dict[str, str]) -> None:
+def test_a_text_without_a_translation_is_listed(found: list[Text], catalogue: dict[str, str]) -> None:
+    """`make languages` lists it; the page shows it in English. It fails no test."""
     assert sum(text.prose for text in found) > 1500
-    missing = [f"{text.where}: {text.key}" for text in found if text.prose and not catalogue.get(text.key)]
-    assert missing == [], "translate in schuler.po, then `make languages`"
+    added = Text("Largest position error of every method", "app/views/peaks/view.py:1", prose=True)
+    assert missing([added, *found], catalogue)[0] == f"{added.where}: {added.key}"
 
 
 def test_no_translation_is_of_a_text_that_has_gone(found: list[Text], catalogue: dict[str, str]) -> None:

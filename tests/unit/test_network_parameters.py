@@ -15,6 +15,8 @@ from navcore.networks import MAX_ORDER, NETWORKS, Network, parse_network
 from navcore.networks.base import NetworkParameters
 from navcore.networks.compass import CompassNetwork, gains_from_sigma_xi, sigma_xi_from_gains
 
+pytestmark = pytest.mark.contract
+
 OMEGA_S = float(np.sqrt(9.80665 / 6378137.0))
 
 

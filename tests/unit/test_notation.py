@@ -11,6 +11,8 @@ from navcore.foundation.notation import symbol, unit_sign
 from navcore.networks import NETWORKS
 from tests.translating.extract import texts
 
+pytestmark = pytest.mark.contract
+
 SPELLED = re.compile(
     r"(?<![\w.\"'])(sigma|xi|zeta2?|eta|rho|omega_?\w*|phi_\w+|dV_\w+|K[1-3]|deg|deg/\w+|ug|sqrt|\w+\^\d)(?![\w(=])"
 )

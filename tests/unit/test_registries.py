@@ -32,6 +32,8 @@ from navcore.scenario.schema_file import schema_text
 from tests.motions import MANOEUVRES, SEA, circle_track
 from tests.strapdown import DENG_SWING, DRIVE, SITE
 
+pytestmark = pytest.mark.contract
+
 REGISTRIES: dict[str, dict[str, Any]] = {
     "network": NETWORKS,
     "motion": MOTIONS,

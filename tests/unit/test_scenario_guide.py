@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import pytest
+
 from navcore.scenario.guide import guide
+
+pytestmark = pytest.mark.contract
 
 
 def test_the_guide_is_up_to_date(repo_root):

@@ -1,6 +1,6 @@
 """The page in three windows and two languages: all tests run in one of them, then in the next.
 
-`make test` takes each test through one window in one language, in turns, `make windows` through all six.
+`make test` takes each test through one window in one language, `make windows` through all six.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ import os
 from collections.abc import Callable, Iterator
 from itertools import product
 from typing import TYPE_CHECKING, Any
+from zlib import crc32
 
 import pytest
 
@@ -32,15 +33,13 @@ ALL = bool(os.environ.get("SCHULER_NIGHTLY"))
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave one run of each test, the next one for the next test; `make windows` takes the others."""
+    """Leave one run of each test, which its name decides; `make windows` takes the others."""
     if ALL:
         return
-    turns: dict[str, int] = {}
     kept = []
     for item in items:
-        run = run_of(item)
-        turn = turns.setdefault(item.nodeid.partition("[")[0], len(turns)) if run else 0
-        if run in (None, RUNS[turn % len(RUNS)]):
+        turn = crc32(item.nodeid.partition("[")[0].rpartition("::")[2].encode())
+        if run_of(item) in (None, RUNS[turn % len(RUNS)]):
             kept.append(item)
     config.hook.pytest_deselected(items=[item for item in items if item not in kept])
     items[:] = kept
