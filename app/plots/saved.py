@@ -24,7 +24,8 @@ def time_csv(figures: Sequence[UplotFigure], about: Iterable[str]) -> bytes:
         Lines of comment above the header.
     """
     first = figures[0]
-    columns, heads = [first.time], [Text("time ({name})", name=first.time_unit.name)]
+    columns = [first.time]
+    heads: list[str] = [Text("time ({name})", name=first.time_unit.name)]
     for figure in figures:
         unit = f" ({figure.unit.name})" if figure.unit.name else ""
         which = f"{figure.symbol}: " if len(figures) > 1 else ""

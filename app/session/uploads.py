@@ -282,7 +282,7 @@ def _on_recorded_imu(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, li
         "duration_h": math.floor(span_s - aligned_s - 1.0) / HOUR,
         "output_step_s": min(scenario.run.output_step_s, 1.0),
     }
-    notes = [
+    notes: list[str] = [
         Text(
             "Full strapdown on {name}: {aligned_s} s of alignment, then navigation, with "
             "a log that reads zero: the vehicle is taken to stand.",

@@ -160,7 +160,7 @@ class Editor:
             kept = f"{control.value:.9g}" if number else control.as_text(control.value)
             if isinstance(error, InputError):
                 field = ".".join(map(str, control.spec.path))
-                lines = [notices.refusal(fault, kept, field, shown) for fault in error.faults]
+                lines: list[str] = [notices.refusal(fault, kept, field, shown) for fault in error.faults]
             else:
                 lines = [
                     Text(

@@ -208,7 +208,7 @@ def _range(name: str, values: np.ndarray) -> dict[str, list[float]]:
 
 
 def _text(source: SourceReport, recording: Recording, quantities: dict[str, Any]) -> list[str]:
-    words = [
+    words: list[str] = [
         Text(
             "  {lines} lines, {checksum_faults} checksum faults, {unparsable} "
             "unparsable, {invalid} flagged invalid",

@@ -61,7 +61,7 @@ def _details(record: ImuRecord) -> dict[str, Any]:
 
 def _text(details: dict[str, Any]) -> list[str]:
     force, turn = details["mean_force_mps2"], details["mean_turn_dph"]
-    lines = [
+    lines: list[str] = [
         Text(
             "  {samples} samples at {rate_hz:g} Hz, {span_s:.1f} s, no gaps, no NaN",
             samples=details["samples"],

@@ -117,7 +117,7 @@ def column_warnings(names: Sequence[str], found: Mapping[str, Column]) -> list[s
     """Warn of columns that are not used, in case one is misspelt, and of units that were guessed."""
     used = {column.index for column in found.values()}
     unused = [name for index, name in enumerate(names) if index not in used and name.strip()]
-    words = [Text("columns not used: {listed}", listed=listed(unused))] if unused else []
+    words: list[str] = [Text("columns not used: {listed}", listed=listed(unused))] if unused else []
     guessed = [column for column in found.values() if not column.told]
     words += [
         Text("column {name} names no unit: taken as {unit}", name=column.name, unit=column.unit)

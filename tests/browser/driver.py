@@ -36,7 +36,8 @@ T = TypeVar("T")
 
 def _has_callbacks(view: OpenPage) -> bool:
     """Whether something that a page has sent is still to be dealt with."""
-    pool, visitor = pool_of(view.client._viser_server), view.client.client_id
+    pool: Any = pool_of(view.client._viser_server)
+    visitor = view.client.client_id
     return visitor in pool._waiting or visitor in pool._running
 
 

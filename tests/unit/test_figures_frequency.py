@@ -120,6 +120,7 @@ class TestNyquist:
     def test_margins_are_marked_where_they_are(self) -> None:
         run, figure = static_run(), nyquist(static_run())
         margin = margins_of(run.methods[1])
+        assert margin.crossover_rad_s is not None and margin.gain_up is not None
         ratio = margin.crossover_rad_s / run.scenario.omega_s
         value = -run.methods[1].network.response(margin.crossover_rad_s) / ratio**2
         (x,), (y,) = of_trace(figure, "classic2 margin", "y3")
@@ -172,7 +173,9 @@ class TestDots:
         """Bilinear: the dot at omega is H at omega_s tan(omega T/2)/tan(omega_s T/2)."""
         run = run_of(run={"duration_h": 1.0, "step_s": 10.0}, reference=NO_LOG, method=[INTERNAL])
         network, w = run.methods[0].network, run.scenario.omega_s
-        omega, gain = measured_gain(run.methods[0], law_step_s(run))
+        measured = measured_gain(run.methods[0], law_step_s(run))
+        assert measured is not None
+        omega, gain = measured
         warped = w * np.tan(0.5 * omega * 10.0) / math.tan(0.5 * w * 10.0)
         np.testing.assert_allclose(gain, network.response(warped), rtol=1e-4)
         assert np.max(np.abs(gain / network.response(omega) - 1.0)) > 1e-3

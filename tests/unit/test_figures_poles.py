@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -139,7 +140,8 @@ class TestLocus:
     def test_gains_can_be_moved_while_sigma_and_xi_are_given(self) -> None:
         run = static_run()
         locus, w = locus_of(run, 2, "k1"), run.scenario.omega_s
-        _, k2, k3 = run.methods[2].method.network.gains(w)
+        network: Any = run.methods[2].method.network
+        _, k2, k3 = network.gains(w)
         for place in (0, 80, 160):
             roots = np.roots([1.0, locus.values[place], w**2 * (1 + k2), w**2 * k3])
             assert np.sort_complex(locus.poles[place]) == pytest.approx(np.sort_complex(roots), rel=1e-6)

@@ -106,7 +106,7 @@ def test_a_page_whose_drawing_fails_does_not_hold_up_the_other(work: tuple[Sessi
     def broken() -> None:
         raise RuntimeError("no picture")
 
-    other.run_ended = broken
+    other.run_ended = broken  # pyright: ignore[reportAttributeAccessIssue]
     made._views.insert(0, other)
     made.change(edits.with_value(made.scenario, DURATION, 2.0), page)
     assert made.wait_idle(5.0)

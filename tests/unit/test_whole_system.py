@@ -24,6 +24,8 @@ from navcore.mechanization.error_model import system_matrix as error_model_matri
 from navcore.networks import NETWORKS, parse_network
 from navcore.networks.compass import CompassNetwork
 
+pytestmark = pytest.mark.contract
+
 OMEGA_S = SPHERE.schuler_frequency(0.0)
 
 

@@ -28,7 +28,7 @@ OWN_NOISE = (
 _OVERVIEW_KEYS = ("phi_e", "dve", "phi_n", "dvn", "phi_u", "position")
 """Two abreast: attitude left, velocity and position right."""
 _TWO = '<div class="sb-two"></div>'
-_KEYS = {Text("Errors: {title}", title=title): key for key, title in QUANTITIES.items()}
+_KEYS: dict[str, str] = {Text("Errors: {title}", title=title): key for key, title in QUANTITIES.items()}
 _VERIFIED_KEYS = {
     f"{VERIFICATION}: {QUANTITIES[key]}{part}": f"{which}_{key}"
     for key in VERIFIED

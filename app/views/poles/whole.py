@@ -109,7 +109,7 @@ def _marks(method: MethodRun, index: int) -> list[dict[str, Any]]:
 
 
 def _about(mode: Mode) -> str:
-    lines = [Text("{name} mode", name=mode.name)]
+    lines: list[str] = [Text("{name} mode", name=mode.name)]
     if mode.eigenvalue.imag > 0.0:
         lines.append(
             Text(
