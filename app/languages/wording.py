@@ -66,24 +66,12 @@ _LONGEST_KEPT = 50_000
 
 @dataclass(frozen=True)
 class _Pattern:
-    """A text of the catalogue with values in it.
-
-    Attributes
-    ----------
-    pattern : re.Pattern
-        Matches the text with its values, as short as can be.
-    said : str
-        Its translation, with the values as ``{0}``.
-    weight : int
-        Letters of the text itself: of two texts that match, the one that says more is meant.
-    labels : bool
-        A colon stands in the text itself.
-    """
+    """A text of the catalogue with values in it, and its translation with the values as ``{0}``."""
 
     pattern: re.Pattern[str]
     said: str
-    weight: int
-    labels: bool
+    weight: int  # letters of the text itself: of two texts that match, the one that says more is meant
+    labels: bool  # a colon stands in the text itself
 
     @cached_property
     def greedy(self) -> re.Pattern[str]:
@@ -397,13 +385,7 @@ def _pattern(key: str, said: str) -> _Pattern:
 
 
 def read_texts(language: str) -> dict[str, str]:
-    """All texts of a language's catalogue with their translations.
-
-    Raises
-    ------
-    FileNotFoundError
-        There is none.
-    """
+    """All texts of a language's catalogue with their translations; FileNotFoundError where there is none."""
     found = gettext.translation(DOMAIN, FOLDER, [language.replace("-", "_")])
     texts: dict[str, str] = getattr(found, "_catalog")  # noqa: B009 - the standard library lists them nowhere else
     return {key[0] if isinstance(key, tuple) else key: said for key, said in texts.items() if key and said}

@@ -36,7 +36,6 @@ class Session:
     Parameters
     ----------
     id : str
-        As in the page's address.
     scenario : Scenario
         To begin with.
     origin : str
@@ -56,8 +55,6 @@ class Session:
         As it was opened: what reset goes back to.
     selected : int
         Method that the controls edit.
-    history : History
-        Of scenario, origin and selected method.
     on_answer : callable
         ``on_answer(seconds)`` after every run that is shown: since it was asked for.
     on_change : callable

@@ -243,14 +243,9 @@ class NetworkParameters(Entry):
         return None
 
     def main_pair(self, omega_s: float) -> MainPair | None:
-        """Return the closed-loop pair that `with_pair` sets, as it is; None where there is none to be set.
+        """Return the closed-loop pair that `with_pair` sets (``omega_s`` in rad/s); None where there is none.
 
         ``with_pair`` with the damping ratio and frequency of this pair gives the same loop again.
-
-        Parameters
-        ----------
-        omega_s : float
-            Schuler frequency, rad/s.
         """
         return None
 

@@ -206,6 +206,8 @@ class Compensator:
         reach = _root(solve_continuous_lyapunov(self.A, -np.outer(self.B, self.B)))
         watch = _root(solve_continuous_lyapunov(self.A.T, -outputs.T @ outputs))
         left, sizes, right = np.linalg.svd(watch.T @ reach)
+        # A state that nothing reaches or watches has no size but rounding.
+        order = min(order, int(np.count_nonzero(sizes > np.finfo(float).eps * sizes[0])))
         scale = 1.0 / np.sqrt(sizes[:order])
         into, out = reach @ right[:order].T * scale, (left[:, :order] * scale).T @ watch.T
         return Compensator(out @ self.A @ into, out @ self.B, self.C @ into, self.E @ into)

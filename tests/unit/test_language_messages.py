@@ -19,7 +19,7 @@ WORDS = {
     "none": "无",
     "internal": "内",
     "Tilt": "失准角",
-    "time ({0})": "时间 ({0})",
+    "time ({name})": "时间 ({name})",
     "Errors": "误差",
     "Hello": "您好",
 }

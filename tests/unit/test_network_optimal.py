@@ -18,7 +18,7 @@ from navcore.engine.simulation import simulate
 from navcore.foundation.earth import SPHERE
 from navcore.foundation.errors import InputError
 from navcore.networks import MAX_ORDER, parse_network
-from navcore.networks.lqg import compensator, plant
+from navcore.networks.lqg import Compensator, compensator, plant
 from navcore.networks.optimal import EXAMPLE_SHIP, modulus_margin
 from navcore.scenario.file import parse_toml, to_toml
 from navcore.scenario.model import Scenario
@@ -256,3 +256,14 @@ def test_command_shows_the_second_output(capsys: pytest.CaptureFixture[str]) -> 
         assert found == pytest.approx(exact, rel=1e-9)
     assert main(["network", text]) == 0
     assert "velocity feedback" in capsys.readouterr().out
+
+
+def test_states_that_nothing_reaches_are_left_out():
+    decays = -np.arange(1.0, 6.0)
+    reached = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
+    law = Compensator(np.diag(decays), reached, np.ones(5), np.ones(5))
+    small = law.reduced(4)
+    assert len(small.B) == 1
+    for p in (0.1j, 1.0j, 10.0j):
+        gain = small.C @ np.linalg.solve(p * np.eye(1) - small.A, small.B)
+        assert gain == pytest.approx(np.sum(reached / (p - decays)), rel=1e-9)
