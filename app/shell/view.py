@@ -125,7 +125,7 @@ class View:
         self.frame, self.session = frame, frame.session
 
     def build(self, tab: Tab) -> None:
-        """Make the widgets; again when the page is laid out anew and the old ones have gone."""
+        """Make the widgets; again when a new layout has removed them."""
 
     @property
     def leads(self) -> int:

@@ -158,7 +158,7 @@ def _remarks(scenario: Scenario) -> tuple[str, ...]:
         "The recorded log counts as one source: what it errs by is not known part by part.": (
             scenario.imu.file is None and scenario.reference.kind == "file"
         ),
-        "The sources were run apart on the linear error model, not on the strapdown.": (
+        "The shares come from the linear error model, not from the strapdown.": (
             scenario.imu.file is None and scenario.strapdown
         ),
         "Where a policy switches, the sources do not simply add up: shares are approximate.": switches,

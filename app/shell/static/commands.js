@@ -39,7 +39,7 @@
   Object.assign(window.schuler, {
     // Every one of these is carried out, in order.
     command: (name, ...words) => ask(name, words),
-    // Of these, for what changes continuously, one that is not yet sent gives way to the next of its name.
+    // Of these, for what changes continuously, the next of the same name replaces one that is not yet sent.
     stream: (name, ...words) => ask(name, words, { onlyLatest: true }),
     // What the page says by itself: it waits too while the user moves something, whose value it would displace.
     report: (name, ...words) => ask(name, words, { onlyLatest: true, gives: true }),

@@ -42,7 +42,7 @@ def why_html(explainer: Explainer, run: Run, selected: int = 0, *, folded: bool 
     state = _WAITS
     if explainer.fraction is not None:
         state = Text(
-            "Running the error sources apart: {fraction:.0f} %.", fraction=100.0 * explainer.fraction
+            "Computing what dominates this result: {fraction:.0f} %.", fraction=100.0 * explainer.fraction
         )
     if result is None or len(result.methods) != len(run.methods):
         return _box("", state, "", folded=folded)
