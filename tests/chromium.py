@@ -6,7 +6,13 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 NAMES = ("chromium", "chromium-browser", "google-chrome-stable", "google-chrome")
 
@@ -64,6 +70,20 @@ def provide_chromium() -> tuple[Path | None, str]:
     if found:
         return found, f"installed by {how}"
     return None, f"no Chromium, and '{how}' did not bring one: {failed or 'it is not where it is looked for'}"
+
+
+@contextmanager
+def launched() -> Iterator[Browser]:
+    """Give a headless browser to a measurement; exit with the reason where none can be had."""
+    from playwright.sync_api import sync_playwright
+
+    path, how = provide_chromium()
+    if path is None:
+        sys.exit(how)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=path, args=list(FLAGS))
+        yield browser
+        browser.close()
 
 
 def _apt_install() -> str:

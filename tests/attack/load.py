@@ -139,18 +139,16 @@ def person(order: Order, number: int, ready: Callable[[], Any], seen: Seen) -> N
 def browser(order: Order, number: int, ready: Callable[[], Any], seen: Seen) -> None:
     """The same in headless Chromium: the answer is there when the page carries it."""
     from playwright.sync_api import TimeoutError as PlaywrightTimeout
-    from playwright.sync_api import sync_playwright
 
     from navcore.engine.measures import metrics as measured
     from navcore.engine.simulation import simulate
     from navcore.scenario.file import load
     from tests.browser.driver import Bench
-    from tests.chromium import FLAGS, find_chromium
+    from tests.chromium import launched
 
     chance = random.Random(number)
     later = "n => Number(document.querySelector('#sb-run').dataset.run) > n"
-    with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=find_chromium(), args=FLAGS)
+    with launched() as chromium:
         page = chromium.new_page(viewport={"width": 1366, "height": 768})
         page.set_default_timeout(120_000)
         sessions: Any = None
@@ -177,7 +175,6 @@ def browser(order: Order, number: int, ready: Callable[[], Any], seen: Seen) -> 
                 shown = bench.metrics
                 seen.other_numbers += shown["methods"] != own["methods"]
         seen.seconds = time.monotonic() - began
-        chromium.close()
 
 
 def _crowd(

@@ -22,13 +22,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.request import urlopen
 
-from playwright.sync_api import sync_playwright
-
 from app.bench.dashboard import median_and_p95
 from app.bench.process import free_port
 from tests.browser.cpu import browser_cpu_ms
 from tests.browser.fields import slider_labels
-from tests.chromium import FLAGS, find_chromium
+from tests.chromium import launched
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -298,13 +296,11 @@ def main() -> int:
     options = parser.parse_args()
     trees = [HERE] if options.before is None else [options.before, HERE]
     followed = [Followed() for _ in trees]
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
+    with launched() as browser:
         for _ in range(options.rounds):
             for tree, seen in zip(trees, followed, strict=True):
                 with served(tree) as url:
                     measure(browser, url, options, seen)
-        browser.close()
     for name in followed[-1].figures:
         told = [_told(name, seen) for seen in followed if name in seen.figures]
         ratio = ""

@@ -12,8 +12,6 @@ import statistics
 import sys
 from typing import TYPE_CHECKING, Any
 
-from playwright.sync_api import sync_playwright
-
 from app.bench.dashboard import median_and_p95
 from app.bench.process import free_port
 from app.editing import edits
@@ -24,7 +22,7 @@ from tests.browser.fields import label_of
 from tests.browser.patience import THROTTLE_MS
 from tests.browser.plain_page import SLIDER as PLAIN_SLIDER
 from tests.browser.plain_page import PlainPage
-from tests.chromium import FLAGS, find_chromium
+from tests.chromium import launched
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -131,11 +129,9 @@ def _told(taken: list[float]) -> str:
 def main(arguments: list[str]) -> int:
     """Print median and 95th percentile of both pages, and the ratio of the medians."""
     steps = int(arguments[0]) if arguments else 30
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
+    with launched() as browser:
         ours, scenario = times_ms(browser, steps)
         plain = plain_times_ms(browser, scenario, max(steps // 3, 5))
-        browser.close()
     shown = f"{DURATION_H} h, 3 methods, {PINS} pins"
     print(f"slider step to last paint, {steps} steps, {shown}, software rendering:")
     print(_told(ours))

@@ -12,12 +12,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from PIL import Image, ImageDraw, ImageFont
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Page
 
 from app.serve import open_dashboard
 from tests.browser.driver import Bench
 from tests.browser.patience import THROTTLE_MS
-from tests.chromium import FLAGS, find_chromium
+from tests.chromium import launched
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 TOUR, STILL = DOCS / "tour.webp", DOCS / "dashboard.png"
@@ -190,11 +190,9 @@ def on_a_page(size: tuple[int, int], act: Callable[[Bench], None]) -> None:
     """Open the dashboard in a window of this size, do something on it, and close both."""
     server, dashboard = open_dashboard(port=0)
     try:
-        with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
+        with launched() as browser:
             page = browser.new_page(viewport={"width": size[0], "height": size[1]})
             act(Bench(page, server.url, dashboard.sessions).open(query="?start=no"))
-            browser.close()
     finally:
         server.stop()
         dashboard.close()
