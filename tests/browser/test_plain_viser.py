@@ -33,6 +33,8 @@ def test_a_slider_moves_the_picture_without_any_mend(page: Page, monkeypatch: py
         for _ in range(5):
             thumb.press("ArrowRight")
         page.wait_for_function(
-            f"Number(document.querySelector('#sb-run').dataset.run) > {number}", timeout=PATIENCE_MS
+            "number => Number(document.querySelector('#sb-run').dataset.run) > number",
+            arg=number,
+            timeout=PATIENCE_MS,
         )
         assert run.text_content() != before, "other metrics"
