@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import threading
 from typing import Any
 
 _MOST_KEPT = 50_000
 _origins: dict[str, Text] = {}
+_keeping = threading.Lock()
+"""Texts are made in many threads: the oldest cannot be looked for while another one is added."""
 
 
 class Text(str):
@@ -37,10 +40,10 @@ class Text(str):
         one = not many or values["count"] == 1
         text = super().__new__(cls, (template if one else many[0]).format(**values))
         text.forms, text.values = (template, *many), values
-        key = " ".join(text.split())
-        if key not in _origins and len(_origins) >= _MOST_KEPT:
-            _origins.pop(next(iter(_origins)), None)
-        _origins[key] = text
+        with _keeping:
+            _origins[" ".join(text.split())] = text
+            if len(_origins) > _MOST_KEPT:
+                del _origins[next(iter(_origins))]
         return text
 
     @classmethod

@@ -1,8 +1,12 @@
 """A text with named values: English as it stands, translated where its template is."""
 
 import pickle
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
 
 from app.languages.wording import Wording
+from navcore.foundation import text as texts
 from navcore.foundation.text import Text, origin_of
 
 
@@ -18,3 +22,13 @@ def test_a_text_is_translated_by_its_template_or_stays_whole():
 def test_a_pickled_text_is_known_where_it_arrives():
     text = pickle.loads(pickle.dumps(Text("chosen from {names}", names="a, b")))
     assert (origin_of("chosen from  a, b"), text.values) == (text, {"names": "a, b"})
+
+
+def test_texts_made_in_many_threads_are_kept_up_to_a_bound(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(texts, "_origins", {})
+    monkeypatch.setattr(texts, "_MOST_KEPT", 100)
+    with ThreadPoolExecutor(8) as pool:
+        made = list(pool.map(lambda number: Text("text {number}", number=number), range(20_000)))
+    assert len(texts._origins) == 100
+    assert made[-1] == "text 19999"
+    assert all(origin_of(sentence) is kept for sentence, kept in texts._origins.items())
