@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
 from itertools import product
 from typing import TYPE_CHECKING, Any
@@ -29,20 +28,15 @@ Open = Callable[..., Bench]
 
 RUNS = tuple(product(LOCALES, SIZES))
 """Language and window of each run. Most other tests of the page are in English, in the first window."""
-ALL = bool(os.environ.get("SCHULER_NIGHTLY"))
 
 
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave one run of each test, which its name decides; `make windows` takes the others."""
-    if ALL:
-        return
-    kept = []
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Make all runs of a test nightly but one, which its name decides."""
     for item in items:
         turn = crc32(item.nodeid.partition("[")[0].rpartition("::")[2].encode())
-        if run_of(item) in (None, RUNS[turn % len(RUNS)]):
-            kept.append(item)
-    config.hook.pytest_deselected(items=[item for item in items if item not in kept])
-    items[:] = kept
+        if run_of(item) not in (None, RUNS[turn % len(RUNS)]):
+            item.add_marker(pytest.mark.nightly)
 
 
 def run_of(item: pytest.Item) -> Any:
