@@ -68,7 +68,7 @@ def averaged(
 ) -> AveragedErrorModel:
     """Run a method on the error model, 1 s steps, rows each minute."""
     truth = (motion or StaticMotion()).truth(2 * steps + 1, 0.5, SITE, earth)
-    sensors = imu_errors(imu or Imu(), truth, steps, 1.0, earth, 1)
+    sensors = imu_errors((imu or Imu()).all_parts(), truth, steps, 1.0, earth, 1)
     along = coefficients(truth, earth, coupled=True)
     run = start_error_model(plan, initial, earth, 1.0, steps, 60.0, along, sensors, free_law())
     while not run.advance(chunk):

@@ -14,8 +14,9 @@ from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.motion.base import AE, AU, COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL, VE, VU, Truth
 from navcore.motion.inertial import inertial_signals
-from navcore.sensors.imu import Imu, SensorModel
-from navcore.sensors.noise import gauss_markov, unit_noise
+from navcore.sensors.imu import Imu
+from navcore.sensors.imu_errors.base import Clock
+from navcore.sensors.imu_errors.triad import Triad
 
 RECORD_STEP_S = 1.0
 """Interval of the record's increments (theory.md section 5), s."""
@@ -121,23 +122,8 @@ def _share(motion: AlignmentMotion, time_s: np.ndarray) -> np.ndarray:
     return 0.5 - 0.5 * np.cos(math.pi * place)
 
 
-def _errors(model: SensorModel, true: np.ndarray, seed: int) -> np.ndarray:
+def _errors(triad: Triad, true: np.ndarray, seed: int) -> np.ndarray:
     """Errors of the increments of three gyros or accelerometers, shape of ``true``."""
-    seconds = len(true)
-    error = true @ model.coupling.T + model.bias * RECORD_STEP_S
-    if model.white > 0.0:
-        white = unit_noise(seed, f"{model.stream}.alignment.white", seconds, 3)
-        error = error + model.white * math.sqrt(RECORD_STEP_S) * white
-    if model.instability > 0.0:
-        first = unit_noise(seed, f"{model.stream}.instability", 1, 3)
-        before = unit_noise(seed, f"{model.stream}.alignment.instability", seconds, 3)
-        unit = np.concatenate([first, before])
-        unit.flags.writeable = False  # as all drawn numbers: else numba compiles the kernel once more
-        drift = gauss_markov(unit, math.exp(-RECORD_STEP_S / model.tau_s))
-        error = error + model.instability * RECORD_STEP_S * drift[:0:-1]
-    if model.lsb.any():
-        total = np.cumsum(true + error, axis=0)
-        counted = np.where(model.lsb > 0.0, np.rint(total / np.where(model.lsb > 0.0, model.lsb, 1.0)), 0.0)
-        total = np.where(model.lsb > 0.0, counted * model.lsb, total)
-        error = np.diff(total, axis=0, prepend=0.0) - true
-    return error
+    clock = Clock(RECORD_STEP_S, len(true), seed, -RECORD_STEP_S * len(true), record=True)
+    signal = true / RECORD_STEP_S
+    return (triad.body_errors(signal, clock) + signal @ triad.coupling.T) * RECORD_STEP_S

@@ -7,7 +7,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 
 import numpy as np
 
-from navcore.design.constants import UNTOLD
+from navcore.design.constants import TOLD
 from navcore.design.figures import Entry, Figures, Series, entry_of
 from navcore.design.floor import steady_floor
 from navcore.design.form import law_form
@@ -16,7 +16,7 @@ from navcore.design.result import Budget, MethodBudget, Shown
 from navcore.design.seeds import SEEDS, no_covariance, seed_variance
 from navcore.design.ship import Ship
 from navcore.design.steady import instability, steady_budget
-from navcore.design.unmodelled import recorded_warnings
+from navcore.design.unmodelled import unmodelled_warnings
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.model import Method, Scenario
@@ -61,7 +61,7 @@ def budget(
     ship = Ship(scenario)
     if steady:
         return steady_budget(scenario, ship.model)
-    untold = any(column.source in UNTOLD for column in ship.columns)
+    untold = any(column.source not in TOLD for column in ship.columns)
     done = [0.0] * (len(scenario.method) + 1)
 
     def report(index: int, fraction: float) -> None:
@@ -99,9 +99,7 @@ def budget(
 
 
 def _warnings(scenario: Scenario) -> tuple[str, ...]:
-    warnings = [*recorded_warnings(scenario)]
-    if any((*scenario.imu.gyro_lsb, *scenario.imu.accel_lsb)):
-        warnings.append("imu.gyro_lsb, imu.accel_lsb: quantisation is not in the budget")
+    warnings = [*unmodelled_warnings(scenario)]
     if scenario.alignment.kind == "compass":
         warnings.append("alignment: what biases leave after it is in the budget, its own noise is not")
     return tuple(warnings)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -18,16 +17,11 @@ from navcore.design.maps import ACCEL, ERRORS, GYRO, INPUTS, LAW, RATE, LoopMode
 from navcore.scenario.model import Method, Scenario
 from navcore.scenario.start import aligned_errors, independent_errors
 from navcore.scenario.stochastic import StochasticModel
-from navcore.sensors.imu import Imu, imu_errors
-from navcore.sensors.reference import Reference, event_velocity
+from navcore.sensors.imu import imu_errors
+from navcore.sensors.log_errors.events import event_velocity
+from navcore.sensors.reference import Reference
 from navcore.sensors.simulated_log import simulated_errors
 
-_COUPLINGS = {
-    "gyro_scale": ("gyro_scale_ppm", GYRO),
-    "gyro_misalignment": ("gyro_misalignment_arcsec", GYRO),
-    "accel_scale": ("accel_scale_ppm", ACCEL),
-    "accel_misalignment": ("accel_misalignment_arcsec", ACCEL),
-}
 _INITIAL = {
     "initial_tilt": (4, 5),
     "initial_heading": (6,),
@@ -36,8 +30,8 @@ _INITIAL = {
 }
 
 
-UNTOLD = (*_COUPLINGS, "log_scale", "log_current", "log_events", "log_delay", "log_tide")
-"""Sources that the Kalman filter is not told of."""
+TOLD = (*_INITIAL, "gyro_bias", "accel_bias", "log_bias")
+"""Sources with a shape of their own that the Kalman filter is told of."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +60,7 @@ def shared_columns(scenario: Scenario, course: Course, model: StochasticModel) -
         for column in (
             *_initial(scenario, model),
             *_biases(scenario, course, model),
-            *_couplings(scenario, course),
+            *_known_parts(scenario, course),
             *_log_bias(scenario, course, model),
             *_log_shapes(scenario, course),
         )
@@ -112,21 +106,18 @@ def _biases(scenario: Scenario, course: Course, model: StochasticModel) -> Itera
         )
 
 
-def _couplings(scenario: Scenario, course: Course) -> Iterator[Column]:
-    """Scale factors and misalignments, element by element, along the true motion."""
+def _known_parts(scenario: Scenario, course: Course) -> Iterator[Column]:
+    """Responses to the sensors' errors of a known shape, element by element, along the true motion."""
     level = scenario.run.fidelity == "channel"
-    for source, (field, inputs) in _COUPLINGS.items():
-        values = getattr(scenario.imu, field)
-        for i, value in enumerate(values):
-            if value == 0.0:
-                continue
-            single = tuple(value if j == i else 0.0 for j in range(len(values)))
-            imu = Imu.model_validate({field: single})
-            step_s, rows = course.truth_step_s, len(course.truth.values)
-            count = max(1, round(course.t_s[-1] / step_s)) if rows == 1 else (rows - 1) // 2
-            errors = imu_errors(imu, course.truth, count, step_s, scenario.earth, 0, level_body=level)
-            series = errors.gyro if inputs is GYRO else errors.accel[:, :2]
-            yield _column(source, inputs, course.means(np.arange(len(series)) * step_s, series))
+    step_s, rows = course.truth_step_s, len(course.truth.values)
+    count = max(1, round(course.t_s[-1] / step_s)) if rows == 1 else (rows - 1) // 2
+    for part in scenario.imu.all_parts():
+        if not part.has_shape:
+            continue
+        for element in part.elements():
+            errors = imu_errors((element,), course.truth, count, step_s, scenario.earth, 0, level_body=level)
+            inputs, series = (GYRO, errors.gyro) if part.sensor == "gyro" else (ACCEL, errors.accel[:, :2])
+            yield _column(part.source, inputs, course.means(np.arange(len(series)) * step_s, series))
 
 
 def _log_bias(scenario: Scenario, course: Course, model: StochasticModel) -> Iterator[Column]:
@@ -136,33 +127,12 @@ def _log_bias(scenario: Scenario, course: Course, model: StochasticModel) -> Ite
 
 
 def _log_shapes(scenario: Scenario, course: Course) -> Iterator[Column]:
-    log = scenario.reference
-    if log.kind != "log":
-        return
-    shapes: dict[str, list[dict[str, Any]]] = {
-        "log_scale": [{"scale_ppm": log.scale_ppm}],
-        "log_current": [{"current_mps": log.current_mps}],
-        "log_events": [{"event": log.event}],
-        "log_delay": [{"delay_s": log.delay_s}],
-    }
-    phase = {"tide_period_h": log.tide_period_h}
-    # an unknown phase: the mean of the squares of a sine and a cosine
-    tide = [value / np.sqrt(2.0) for value in log.tide_mps]
-    shapes["log_tide"] = [
-        {**phase, "tide_mps": tuple(tide), "tide_phase_deg": degrees} for degrees in (0.0, 90.0)
-    ]
-    for source, settings in shapes.items():
-        for fields in settings:
-            if any(
-                np.any(value)
-                for name, value in fields.items()
-                if name not in ("tide_period_h", "tide_phase_deg")
-            ):
-                yield _column(source, LAW, _log_series(scenario, course, fields))
-
-
-def _log_series(scenario: Scenario, course: Course, fields: dict[str, Any]) -> np.ndarray:
-    log = scenario.reference
-    quiet = Reference(kind="log", frame=log.frame, rate_hz=log.rate_hz).model_copy(update=fields)
-    errors = simulated_errors(quiet, course.truth, float(course.t_s[-1]), 0, course.step_s)
-    return course.means(errors.time_s, errors.error)
+    """Responses to the simulated log's errors of a known shape."""
+    log, end_s = scenario.reference, float(course.t_s[-1])
+    for part in log.all_parts() if log.kind == "log" else ():
+        if not part.has_shape:
+            continue
+        for element in part.elements():
+            quiet = Reference(kind="log", frame=log.frame, rate_hz=log.rate_hz)
+            errors = simulated_errors(quiet, course.truth, end_s, 0, course.step_s, (element,))
+            yield _column(part.source, LAW, course.means(errors.time_s, errors.error))

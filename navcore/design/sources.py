@@ -8,7 +8,8 @@ sensor. Where a policy switches on what it measures, the sources then do not sim
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
+from typing import TypeVar
 
 import numpy as np
 
@@ -20,42 +21,10 @@ from navcore.scenario.model import InitialError, Method, Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import Reference
 
-_IMU_SOURCES = {
-    "gyro bias": ("gyro_bias_dph",),
-    "gyro noise": ("gyro_arw_dpsh", "gyro_instability_dph"),
-    "gyro scale factor and misalignment": ("gyro_scale_ppm", "gyro_misalignment_arcsec"),
-    "accelerometer bias": ("accel_bias_ug",),
-    "accelerometer noise": ("accel_vrw_ugpshz", "accel_instability_ug"),
-    "accelerometer scale factor and misalignment": ("accel_scale_ppm", "accel_misalignment_arcsec"),
-    "IMU quantisation": ("gyro_lsb", "accel_lsb"),
-}
-_LOG_SOURCES = {
-    "log bias": ("bias_mps", "scale_ppm"),
-    "log noise": ("noise_mps",),
-    "log drift": ("drift_mps",),
-    "current and tide": ("current_mps", "tide_mps"),
-    "log events": ("event",),
-    "log delay and resolution": ("delay_s", "lsb_mps"),
-}
+_Block = TypeVar("_Block", Imu, Reference)
 RECORDED_LOG = "recorded log"
 INITIAL = "initial error"
-_WORDS = {
-    "gyro_white": "gyro noise",
-    "gyro_drift": "gyro noise",
-    "gyro_scale": "gyro scale factor and misalignment",
-    "gyro_misalignment": "gyro scale factor and misalignment",
-    "accel_bias": "accelerometer bias",
-    "accel_white": "accelerometer noise",
-    "accel_drift": "accelerometer noise",
-    "accel_scale": "accelerometer scale factor and misalignment",
-    "accel_misalignment": "accelerometer scale factor and misalignment",
-    "log_scale": "log bias",
-    "log_white": "log noise",
-    "log_current": "current and tide",
-    "log_tide": "current and tide",
-    "log_delay": "log delay and resolution",
-}
-"""Sources of the budget as the sources that are run apart are called; others by their own name."""
+_EVENTS = "log events"
 
 
 def contributions(
@@ -77,20 +46,21 @@ def contributions(
     cancelled : callable
         When it says True the sources not yet run are left out.
     """
-    imu, log = ship.scenario.imu, ship.scenario.reference
-    rounded = any((*imu.gyro_lsb, *imu.accel_lsb, log.lsb_mps))
-    if log.kind != "file" and not rounded and not no_covariance(ship.scenario, method):
+    scenario = ship.scenario
+    parts = (*scenario.imu.all_parts(), *scenario.reference.all_parts())
+    rounded = any(np.any(part.lsb) for part in parts)
+    if scenario.reference.kind != "file" and not rounded and not no_covariance(scenario, method):
         by_source = ship.along(method).variance
         if all(np.all(np.isfinite(variance)) for variance in by_source.values()):
-            return _in_words(by_source)
-    return _run_apart(ship.scenario, method, progress, cancelled)
+            return _in_words(by_source, {part.source: part.label for part in parts})
+    return _run_apart(scenario, method, progress, cancelled)
 
 
-def _in_words(by_source: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _in_words(by_source: dict[str, np.ndarray], labels: dict[str, str]) -> dict[str, np.ndarray]:
     squares: dict[str, np.ndarray] = {}
     for source, variance in by_source.items():
         if variance.any():
-            words = INITIAL if source.startswith("initial") else _WORDS.get(source, source.replace("_", " "))
+            words = INITIAL if source.startswith("initial") else labels.get(source, source.replace("_", " "))
             squares[words] = squares.get(words, 0.0) + np.mean(variance, axis=0)
     return squares
 
@@ -111,26 +81,16 @@ def _run_apart(
 
 def active_sources(scenario: Scenario) -> tuple[str, ...]:
     """Names of the error sources that a scenario has switched on, in a fixed order."""
-    return tuple(_active(scenario))
-
-
-def _active(scenario: Scenario) -> Iterator[str]:
-    if any(scenario.initial_error.state()):
-        yield INITIAL
-    for name, fields in _IMU_SOURCES.items():
-        if _differ(scenario.imu, Imu(), fields):
-            yield name
-    if scenario.reference.kind == "file":
-        yield RECORDED_LOG
-    if scenario.reference.kind != "none":
-        for name, fields in _LOG_SOURCES.items():
-            by_method = name == "log events" and any(method.event for method in scenario.method)
-            if by_method or _differ(scenario.reference, Reference(), fields):
-                yield name
-
-
-def _differ(block: Imu | Reference, default: Imu | Reference, fields: tuple[str, ...]) -> bool:
-    return any(getattr(block, field) != getattr(default, field) for field in fields)
+    log = scenario.reference
+    names = [INITIAL] if any(scenario.initial_error.state()) else []
+    names += [part.label for part in scenario.imu.all_parts() if part.active]
+    names += [RECORDED_LOG] if log.kind == "file" else []
+    if log.kind != "none":
+        own_events = any(method.event for method in scenario.method)
+        names += [
+            part.label for part in log.all_parts() if part.active or (own_events and part.label == _EVENTS)
+        ]
+    return tuple(dict.fromkeys(names))
 
 
 def only(scenario: Scenario, source: str) -> Scenario:
@@ -143,29 +103,18 @@ def only(scenario: Scenario, source: str) -> Scenario:
     source : str
         One of `active_sources`.
     """
-    imu, log = Imu(), Reference()
-    keep_imu = _IMU_SOURCES.get(source, ())
-    off = {
-        field: getattr(imu, field)
-        for fields in _IMU_SOURCES.values()
-        for field in fields
-        if field not in keep_imu
-    }
-    keep_log = _LOG_SOURCES.get(source, ())
-    quiet = {
-        field: getattr(log, field)
-        for fields in _LOG_SOURCES.values()
-        for field in fields
-        if field not in keep_log
-    }
+    quiet = _without(scenario.reference, source)
     if scenario.reference.kind == "file" and source != RECORDED_LOG:
-        quiet |= {"kind": "log", "file": None}
-    update = {
-        "imu": scenario.imu.model_copy(update=off),
-        "reference": scenario.reference.model_copy(update=quiet),
-    }
+        quiet = quiet.model_copy(update={"kind": "log", "file": None})
+    update: dict[str, object] = {"imu": _without(scenario.imu, source), "reference": quiet}
     if source != INITIAL:
         update["initial_error"] = InitialError()
-    if source != "log events":
+    if source != _EVENTS:
         update["method"] = tuple(method.model_copy(update={"event": ()}) for method in scenario.method)
     return scenario.model_copy(update=update)
+
+
+def _without(block: _Block, source: str) -> _Block:
+    """Switch off all parts of a block but those of one source."""
+    off = {field for part in block.all_parts() if part.label != source for field in part.fields}
+    return block.model_copy(update={field: type(block).model_fields[field].default for field in off})

@@ -11,7 +11,7 @@ from navcore.design.floor import Floor, steady_floor
 from navcore.design.form import law_form
 from navcore.design.level import Level, constant_part, level, line_part, steady_parts
 from navcore.design.result import Budget, MethodBudget
-from navcore.design.unmodelled import recorded_warnings
+from navcore.design.unmodelled import unmodelled_warnings
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.scenario.model import Method, Scenario
@@ -44,7 +44,7 @@ def _steady_method(scenario: Scenario, method: Method, model: StochasticModel, f
     if model.tide.any():
         amplitude = float(np.sqrt(np.mean(model.tide**2)))
         parts["log_tide"] = line_part(channel, amplitude, 2.0 * math.pi / model.tide_period_s)
-    warnings = [*recorded_warnings(scenario)]
+    warnings = [*unmodelled_warnings(scenario, steady=True)]
     if method.damping != "free" and method.policy.id not in ("constant", "schedule"):
         warnings.append(
             Text('policy "{id}" looks at the data: shown is the loop while it is damped', id=method.policy.id)

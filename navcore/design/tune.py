@@ -23,7 +23,7 @@ from navcore.design.measures import (
     read_requirement,
 )
 from navcore.design.search import ALONG, BOUNDLESS, EXPLAIN, MISSED, REFUSED, STEADY, Effort, Search
-from navcore.design.unmodelled import recorded_warnings
+from navcore.design.unmodelled import unmodelled_warnings
 from navcore.design.vary import Varied, present, read_varied
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
@@ -241,8 +241,8 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
 
 
 def _unseen(setting: Setting) -> tuple[str, ...]:
-    """Whole system and recordings, of which a measure of one channel says nothing."""
-    return (*setting.whole.warnings, *recorded_warnings(setting.ship.scenario))
+    """Whole system and unmodelled errors, of which a measure of one channel says nothing."""
+    return (*setting.whole.warnings, *unmodelled_warnings(setting.ship.scenario, not setting.ship.along_run))
 
 
 def _without(search: Search, rest: Sequence[Requirement], effort: Effort, start: np.ndarray | None) -> float:

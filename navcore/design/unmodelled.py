@@ -1,21 +1,40 @@
-"""What of a scenario the stochastic model does not hold, so that budget and floor do not either."""
+"""What of a scenario the stochastic model does not hold, so that budget, floor and tuning do not either."""
 
 from __future__ import annotations
 
+import numpy as np
+
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from navcore.sensors.base import ErrorPart
 
 
-def recorded_warnings(scenario: Scenario) -> tuple[str, ...]:
-    """Say which recordings count as free of error.
+def unmodelled_warnings(scenario: Scenario, steady: bool = False) -> tuple[str, ...]:
+    """Say which recordings count as free of error, and which errors of the scenario are left out.
 
     Parameters
     ----------
     scenario : Scenario
         Complete and checked.
+    steady : bool
+        True for the steady state of one channel at rest, which knows random processes and constants only.
     """
     warnings = []
-    if scenario.reference.kind == "file":
+    parts: list[tuple[str, ErrorPart]] = []
+    if scenario.reference.kind == "log":
+        parts += [("reference", part) for part in scenario.reference.all_parts()]
+    elif scenario.reference.kind == "file":
         warnings.append("reference.file: a recorded log has no stochastic model and counts as free of error")
-    if scenario.imu.file is not None:
+    if scenario.imu.file is None:
+        parts += [("imu", part) for part in scenario.imu.all_parts()]
+    else:
         warnings.append("imu.file: a recorded IMU has no stochastic model and counts as free of error")
+    drifts: set[str] = set()
+    for block, part in parts:
+        second_drift = part.markov[0] > 0.0 and part.sensor in drifts
+        counts = block == "imu" and np.any(part.lsb)
+        if second_drift or counts or (steady and part.has_shape and part.source != "log_tide"):
+            fields = ", ".join(f"{block}.{field}" for field in part.fields)
+            warnings.append(Text("{fields}: {label} is not in the budget", fields=fields, label=part.label))
+        drifts |= {part.sensor} if part.markov[0] > 0.0 else set()
     return tuple(warnings)

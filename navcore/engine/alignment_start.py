@@ -46,8 +46,9 @@ def aligned_start(scenario: Scenario, true_row: np.ndarray) -> Start:
     samples = max(1, round(alignment.duration_s * rate))
     motion = scenario.motion.before_start(true_row, samples / rate)
     site = Site(*(float(true_row[column]) for column in (LAT, LON, HEIGHT)))
+    seed, begin_s = scenario.run.seed + _OTHER_NOISE, -samples / rate
     simulation = ImuSimulation(
-        motion, site, scenario.earth, scenario.imu, rate, samples, scenario.run.seed + _OTHER_NOISE
+        motion, site, scenario.earth, scenario.imu, rate, samples, seed, begin_s=begin_s
     )
     increments = np.concatenate([chunk.copy() for chunk, _ in simulation.chunks()])
     errors = np.array(scenario.initial_error.state())

@@ -18,8 +18,8 @@ from navcore.motion.base import LAT, Truth
 from navcore.scenario.model import Scenario
 from navcore.sensors.base import ReferenceErrors, SensorErrors
 from navcore.sensors.imu import imu_errors
+from navcore.sensors.log import reference_errors
 from navcore.sensors.recorded import recorded_window, recording_notices, short_run_notices
-from navcore.sensors.reference import reference_errors
 
 FAR_FROM_SITE_DEG = 2.0
 """Latitude by which a track may start off the site before the user is told, deg."""
@@ -133,7 +133,7 @@ def environment(scenario: Scenario) -> Environment:
     start_utc = _start_utc(scenario)
 
     def make_sensors() -> SensorErrors:
-        errors = imu_errors(scenario.imu, truth, steps, h, earth, seed, level_body=channel)
+        errors = imu_errors(scenario.imu.all_parts(), truth, steps, h, earth, seed, level_body=channel)
         # `channel` has no heading: its up gyro drives nothing.
         return SensorErrors(errors.gyro * (1.0, 1.0, 0.0), errors.accel) if channel else errors
 

@@ -97,8 +97,7 @@ def _moving(scenario: Scenario) -> bool:
 
 
 def _noisy(scenario: Scenario) -> bool:
-    models = scenario.imu.gyro(), scenario.imu.accel()
-    return any(model.white > 0.0 or model.instability > 0.0 for model in models)
+    return any(part.white > 0.0 or part.markov[0] > 0.0 for part in scenario.imu.all_parts())
 
 
 def _averaging(scenario: Scenario) -> int:

@@ -20,8 +20,8 @@ from navcore.scenario.model import Scenario
 from navcore.scenario.sampling import Sampling
 from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.imu_simulation import ImuSimulation
+from navcore.sensors.log import reference_errors
 from navcore.sensors.recorded import recorded_window
-from navcore.sensors.reference import reference_errors
 
 _AT_REST_MPS = 0.1
 

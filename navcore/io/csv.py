@@ -26,6 +26,7 @@ from navcore.io.columns import (
     require_columns,
     table_recording,
 )
+from navcore.io.formats import Candidate
 from navcore.io.series import Recording
 from navcore.io.source import counted, read_text
 
@@ -47,9 +48,9 @@ class _Rows:
     warnings: list[str] = field(default_factory=list)
 
 
-def looks_like_csv(text: str) -> bool:
+def recognises(candidate: Candidate) -> bool:
     """Whether a header names a known column, or the lines look like a table of numbers."""
-    head = _head(text)
+    head = _head(candidate.text)
     separator, _, header = _layout(head)
     if known_columns(header[:MOST_COLUMNS]):
         return True
@@ -58,7 +59,7 @@ def looks_like_csv(text: str) -> bool:
     return len(header) > 1 and len(alike) >= max(1, len(following) - 1)
 
 
-def read_csv(path: Path) -> Recording:
+def read(path: Path) -> Recording:
     """Read one table.
 
     Raises

@@ -23,12 +23,12 @@ from navcore.io.columns import (
     require_columns,
     table_recording,
 )
+from navcore.io.formats import Candidate
 from navcore.io.series import Recording
 
 if TYPE_CHECKING:
     import pyarrow
 
-SNIFFED_BYTES = 512
 MOST_UNPACKED_BYTES = 256 * 2**20
 """Of the columns that are used, by a Parquet file's own account."""
 _PARQUET = b"PAR1"
@@ -37,13 +37,13 @@ _MAT_NUMBERS = frozenset("double single int8 uint8 int16 uint16 int32 uint32 int
 _LONGEST_TIME = 64
 
 
-def looks_like_table(head: bytes) -> bool:
-    """Whether a file that begins so is a Parquet or MAT (level 5) file."""
-    return head.startswith((_PARQUET, _MAT))
+def recognises(candidate: Candidate) -> bool:
+    """Whether a file is a Parquet or MAT (level 5) file."""
+    return candidate.head.startswith((_PARQUET, _MAT))
 
 
-def read_table(path: Path) -> Recording:
-    """Read a Parquet or MAT file; raises `InputError` as `navcore.io.csv.read_csv` does."""
+def read(path: Path) -> Recording:
+    """Read a Parquet or MAT file; raises `InputError` as `navcore.io.csv.read` does."""
     with path.open("rb") as stream:
         parquet = stream.read(len(_PARQUET)) == _PARQUET
     kind = "Parquet table" if parquet else "MAT file"

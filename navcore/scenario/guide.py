@@ -22,7 +22,8 @@ from navcore.motion import MOTIONS
 from navcore.networks import NETWORKS
 from navcore.scenario.model import Alignment, InitialError, Method, RunSettings, Scenario, SiteSettings, View
 from navcore.sensors.imu import Imu
-from navcore.sensors.reference import LogEvent, Outage, Reference
+from navcore.sensors.log_errors.events import LogEvent
+from navcore.sensors.reference import Outage, Reference
 
 INTRODUCTION = """# The scenario file
 

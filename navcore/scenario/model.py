@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import Any, Literal
 
@@ -33,7 +32,8 @@ from navcore.scenario.kalman_faults import kalman_faults
 from navcore.scenario.sampling import Sampling, sampling
 from navcore.scenario.strapdown_faults import strapdown_faults
 from navcore.sensors.imu import Imu
-from navcore.sensors.reference import LogEvent, Reference
+from navcore.sensors.log_errors.events import LogEvent
+from navcore.sensors.reference import Reference
 
 SCHEMA = 1
 MAX_STEPS = 3_000_000
@@ -271,17 +271,18 @@ class Scenario(Parameters):
         """Random errors of gyros, accelerometers and log, SI."""
         gyro, accel, log = self.imu.gyro(), self.imu.accel(), self.reference
         known = 1.0 if log.kind == "log" else 0.0
+        (gyro_drift, gyro_tau_s), (accel_drift, accel_tau_s) = gyro.markov, accel.markov
         return SensorFigures(
             gyro_white=gyro.white,
-            gyro_drift=gyro.instability,
-            gyro_tau_s=gyro.tau_s,
+            gyro_drift=gyro_drift,
+            gyro_tau_s=gyro_tau_s,
             accel_white=accel.white,
-            accel_drift=accel.instability,
-            accel_tau_s=accel.tau_s,
-            log_noise=known * math.hypot(log.noise_mps, log.lsb_mps / math.sqrt(12.0)),
+            accel_drift=accel_drift,
+            accel_tau_s=accel_tau_s,
+            log_noise=known * log.white,
             log_rate_hz=log.rate_hz,
-            log_drift=known * log.drift_mps,
-            log_tau_s=log.drift_tau_s,
+            log_drift=known * log.markov[0],
+            log_tau_s=log.markov[1],
         )
 
     @property

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from navcore.foundation.units import DEG_PER_HOUR, HOUR, MICRO_G
+from navcore.foundation.units import HOUR
 from navcore.networks.lqg import SensorFigures
 from navcore.scenario.model import Scenario
 
@@ -100,7 +100,6 @@ def stochastic_model(scenario: Scenario) -> StochasticModel:
         Complete and checked.
     """
     imu, log = scenario.imu, scenario.reference
-    gyro, accel = imu.gyro(), imu.accel()
     simulated = log.kind == "log"
     known = 1.0 if simulated else 0.0
     return StochasticModel(
@@ -108,12 +107,8 @@ def stochastic_model(scenario: Scenario) -> StochasticModel:
         log=log.kind != "none",
         tide=known * np.array(log.tide_mps),
         tide_period_s=log.tide_period_h * HOUR,
-        gyro_bias=_deviations(gyro.bias, imu.gyro_bias_std_dph, DEG_PER_HOUR),
-        accel_bias=_deviations(accel.bias, imu.accel_bias_std_ug, MICRO_G),
-        log_bias=known * _deviations(np.array(log.bias_mps), log.bias_std_mps, 1.0),
+        gyro_bias=imu.gyro().deviation,
+        accel_bias=imu.accel().deviation,
+        log_bias=known * log.deviation,
         initial=np.array(scenario.initial_error.standard_deviations()),
     )
-
-
-def _deviations(value: np.ndarray, given: float | None, unit: float) -> np.ndarray:
-    return np.abs(value) if given is None else np.full(value.shape, given * unit)

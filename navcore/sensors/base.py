@@ -1,10 +1,68 @@
-"""What the sensor models hand to the mechanizations."""
+"""What the terms of a sensor's error have in common, and what the models hand to the mechanizations."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
 
 import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class ErrorPart:
+    """Contribution of one term to the errors of a sensor with n axes; what is not given is not there.
+
+    Attributes
+    ----------
+    fields : tuple of str
+        Fields of the scenario's block that set it.
+    source : str
+        Name in the error budget: ``gyro_...``, ``accel_...`` or ``log_...``.
+    label : str
+        Name for people; parts of one label are one source in "Why".
+    constant : ndarray, shape (n,)
+        Error that does not change, SI.
+    deviation : ndarray, shape (n,)
+        Standard deviation by which the error budget knows the constant.
+    white : float
+        White noise: of an inertial sensor the random walk of its integral, of a log that of a sample.
+    markov : tuple of float
+        Standard deviation and correlation time (s) of a first-order Gauss-Markov process.
+    lsb : ndarray or float
+        Step of the readings; 0 for none.
+    """
+
+    fields: tuple[str, ...]
+    source: str
+    label: str
+    constant: Any = 0.0
+    deviation: Any = 0.0
+    white: float = 0.0
+    markov: tuple[float, float] = (0.0, 3600.0)
+    lsb: Any = 0.0
+
+    @property
+    def sensor(self) -> str:
+        """The sensor: "gyro", "accel" or "log"."""
+        return self.source.partition("_")[0]
+
+    @property
+    def has_shape(self) -> bool:
+        """Whether the error budget knows it by the numbers of the scenario as they stand."""
+        return False
+
+    @property
+    def active(self) -> bool:
+        """Whether it does anything in a run."""
+        own = np.any(self.constant) or np.any(self.lsb)
+        return bool(own) or self.white > 0.0 or self.markov[0] > 0.0 or self.has_shape
+
+
+def load_terms(*places: str) -> tuple[Any, ...]:
+    """Load the classes of terms from ``"package.module:Class"``."""
+    parted = [place.partition(":") for place in places]
+    return tuple(getattr(import_module(module), name) for module, _, name in parted)
 
 
 @dataclass(frozen=True)

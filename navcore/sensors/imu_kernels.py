@@ -95,20 +95,6 @@ def scaled_signals(values, level, e2, g_equator, k, coupling, signal, turned):
 
 
 @kernel
-def body_errors(bias, amplitude, white, instability, drift, out):
-    """Bias, white noise and drift in body axes; a noise array without rows is none."""
-    noisy, drifting = white.shape[0] > 0, drift.shape[0] > 0
-    for i in range(out.shape[0]):
-        for j in range(3):
-            value = bias[j]
-            if noisy:
-                value += amplitude * white[i, j]
-            if drifting:
-                value += instability * drift[i, j]
-            out[i, j] = value
-
-
-@kernel
 def add_quantisation(signal, coupling, lsb, step, error):
     """Add what counting does to the errors: increments in whole counts, the rest goes into the next one."""
     stride = 1 if signal.shape[0] > 1 else 0

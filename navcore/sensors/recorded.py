@@ -14,7 +14,8 @@ from navcore.io.recording import Window, load, require_cover, shared_window
 from navcore.io.series import Recording, Series
 from navcore.motion.base import MotionParameters, Truth
 from navcore.sensors.base import ReferenceErrors
-from navcore.sensors.reference import Reference, event_velocity, in_service
+from navcore.sensors.log_errors.events import event_velocity
+from navcore.sensors.reference import Reference, in_service
 from navcore.sensors.simulated_log import hold_time
 from navcore.sensors.true_state import horizontal_state, to_navigation
 

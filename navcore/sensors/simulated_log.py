@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
 import numpy as np
 
-from navcore.foundation.units import DEG, HOUR, PPM
 from navcore.motion.base import Truth
 from navcore.sensors.base import ReferenceErrors
+from navcore.sensors.log_errors.base import LogPart
 from navcore.sensors.noise import gauss_markov, unit_noise
-from navcore.sensors.reference import Reference, event_velocity, in_service
+from navcore.sensors.reference import Reference, in_service
 from navcore.sensors.true_state import horizontal_state, to_navigation, to_ship
 
 SHORTEST_HOLD_S = 5.0
@@ -22,7 +26,12 @@ def hold_time(interval_s: float) -> float:
 
 
 def simulated_errors(
-    reference: Reference, truth: Truth, duration_s: float, seed: int, step_s: float
+    reference: Reference,
+    truth: Truth,
+    duration_s: float,
+    seed: int,
+    step_s: float,
+    parts: Iterable[LogPart] | None = None,
 ) -> ReferenceErrors:
     """Errors of a simulated log at its epochs 0, 1/rate, ... <= duration.
 
@@ -40,6 +49,8 @@ def simulated_errors(
         Length of the run and step of the mechanization, s.
     seed : int
         Seed of the run; its streams ``log.noise`` and ``log.drift`` are used.
+    parts : iterable of LogPart, optional
+        The errors; those of ``reference`` when left out.
 
     Returns
     -------
@@ -48,71 +59,75 @@ def simulated_errors(
     samples = max(1.0, reference.rate_hz * step_s)
     interval = samples / reference.rate_hz
     time_s = np.arange(int(duration_s / interval + 1e-9) + 1) * interval
-    own, lsb = _own_errors(reference, time_s.size, seed, interval, samples)
-    if reference.delay_s == 0.0 and lsb == 0.0:
-        error = _linear_errors(reference, truth, time_s, own)
+    all_parts = reference.all_parts() if parts is None else parts
+    log = _Log(tuple(part for part in all_parts if part.active), reference.frame == "body")
+    own, lsb = log.own(time_s.size, interval, seed, samples)
+    delay_s = sum(part.delay_s for part in log.parts)
+    if delay_s == 0.0 and lsb == 0.0:
+        error = log.linear_errors(truth, time_s, own)
     else:
-        error = _delayed_rounded_errors(reference, truth, time_s, own, lsb)
-    if reference.event:
-        error = error + event_velocity(reference.event, time_s)
+        error = log.delayed_rounded_errors(truth, time_s, own, delay_s, lsb)
+    error = sum((part.after(time_s) for part in log.parts if part.after), error)
     return ReferenceErrors(
         time_s=time_s,
         # A copy: one that may not be written to would make numba compile the kernels a second time.
         error=np.array(np.broadcast_to(error, (time_s.size, 2)), order="C"),
         valid=in_service(reference.outage, time_s),
-        body_frame=reference.frame == "body",
+        body_frame=log.body_frame,
         hold_s=hold_time(interval),
     )
 
 
-def _linear_errors(reference: Reference, truth: Truth, time_s: np.ndarray, own: np.ndarray) -> np.ndarray:
-    """Errors of a log without delay and rounding: the velocity itself cancels, and is often not needed."""
-    scale = reference.scale_ppm * PPM
-    error = -(1.0 + scale) * _water(reference, time_s)
-    if scale == 0.0 and reference.frame == "enu":
-        return error + own
-    velocity, heading = horizontal_state(truth, time_s)
-    return error + scale * velocity + (to_navigation(own, heading) if reference.frame == "body" else own)
+@dataclass(frozen=True, eq=False)
+class _Log:
+    """The active parts of a log and its axes."""
 
+    parts: tuple[LogPart, ...]
+    body_frame: bool
 
-def _delayed_rounded_errors(
-    reference: Reference, truth: Truth, time_s: np.ndarray, own: np.ndarray, lsb: float
-) -> np.ndarray:
-    """Errors of readings of an earlier velocity, rounded; a body log turns them by the present heading."""
-    measured_at = np.maximum(time_s - reference.delay_s, 0.0)
-    velocity, heading = horizontal_state(truth, time_s)
-    then_velocity, then_heading = horizontal_state(truth, measured_at)
-    seen = (1.0 + reference.scale_ppm * PPM) * (then_velocity - _water(reference, measured_at))
-    if reference.frame == "body":
-        return to_navigation(_rounded(to_ship(seen, then_heading) + own, lsb), heading) - velocity
-    return _rounded(seen + own, lsb) - velocity
+    @property
+    def scale(self) -> float:
+        """Relative error of the measured velocity."""
+        return sum(part.scale for part in self.parts)
 
+    def water(self, time_s: np.ndarray) -> np.ndarray:
+        """Velocity of the water over the ground, E and N, m/s; shape (m, 2) or (1, 2)."""
+        return sum((part.water(time_s) for part in self.parts if part.water), np.zeros((1, 2)))
 
-def _water(reference: Reference, time_s: np.ndarray) -> np.ndarray:
-    """Velocity of the water over the ground, E and N, m/s; shape (m, 2) or (1, 2)."""
-    current = np.array([reference.current_mps])
-    if not any(reference.tide_mps):
-        return current
-    angle = 2.0 * np.pi * time_s / (reference.tide_period_h * HOUR) + reference.tide_phase_deg * DEG
-    return current + np.sin(angle)[:, None] * np.array(reference.tide_mps)
+    def own(self, count: int, interval_s: float, seed: int, samples: float) -> tuple[np.ndarray, float]:
+        """Errors in the log's axes, shape (m, 2) or (1, 2), and the rounding that is left."""
+        noise = math.hypot(*(part.white for part in self.parts))
+        lsb = sum(part.lsb for part in self.parts)
+        if samples > 1.0 and noise >= 0.5 * lsb:
+            noise, lsb = math.hypot(noise, lsb / math.sqrt(12.0)), 0.0
+        own = sum((part.constant for part in self.parts), np.zeros((1, 2)))
+        for sigma, tau_s in (part.markov for part in self.parts if part.markov[0] > 0.0):
+            unit = unit_noise(seed, "log.drift", count, 2)
+            own = own + sigma * gauss_markov(unit, math.exp(-interval_s / tau_s))
+        if noise > 0.0:
+            unit = unit_noise(seed, "log.noise", count, 2)
+            own = own + np.multiply(unit, noise / math.sqrt(samples), dtype=float)
+        return own, lsb
 
+    def linear_errors(self, truth: Truth, time_s: np.ndarray, own: np.ndarray) -> np.ndarray:
+        """Errors without delay and rounding: the velocity itself cancels, and is often not needed."""
+        error = -(1.0 + self.scale) * self.water(time_s)
+        if self.scale == 0.0 and not self.body_frame:
+            return error + own
+        velocity, heading = horizontal_state(truth, time_s)
+        return error + self.scale * velocity + (to_navigation(own, heading) if self.body_frame else own)
 
-def _own_errors(
-    reference: Reference, count: int, seed: int, interval_s: float, samples: float
-) -> tuple[np.ndarray, float]:
-    """Bias, drift and noise in the log's axes, shape (m, 2) or (1, 2), and the rounding that is left."""
-    own = np.array([reference.bias_mps], dtype=float)
-    noise, lsb = reference.noise_mps, reference.lsb_mps
-    if samples > 1.0 and noise >= 0.5 * lsb:
-        noise, lsb = np.hypot(noise, lsb / np.sqrt(12.0)), 0.0
-    if noise > 0.0:
-        own = own + noise / np.sqrt(samples) * unit_noise(seed, "log.noise", count, 2)
-    if reference.drift_mps > 0.0:
-        unit = unit_noise(seed, "log.drift", count, 2)
-        own = own + reference.drift_mps * gauss_markov(
-            unit, float(np.exp(-interval_s / reference.drift_tau_s))
-        )
-    return own, lsb
+    def delayed_rounded_errors(
+        self, truth: Truth, time_s: np.ndarray, own: np.ndarray, delay_s: float, lsb: float
+    ) -> np.ndarray:
+        """Errors of readings of an earlier velocity, rounded; a body log is turned by the present heading."""
+        measured_at = np.maximum(time_s - delay_s, 0.0)
+        velocity, heading = horizontal_state(truth, time_s)
+        then_velocity, then_heading = horizontal_state(truth, measured_at)
+        seen = (1.0 + self.scale) * (then_velocity - self.water(measured_at))
+        if self.body_frame:
+            return to_navigation(_rounded(to_ship(seen, then_heading) + own, lsb), heading) - velocity
+        return _rounded(seen + own, lsb) - velocity
 
 
 def _rounded(reading: np.ndarray, lsb: float) -> np.ndarray:

@@ -18,9 +18,10 @@ from navcore.mechanization.strapdown.attitude import angles_of
 from navcore.motion.base import HEADING, Site
 from navcore.motion.track import TrackMotion
 from navcore.scenario.file import load as load_scenario
+from navcore.sensors.log import reference_errors
 from navcore.sensors.recorded import recorded_window
 from navcore.sensors.recorded_imu import check_rest, read_imu
-from navcore.sensors.reference import Reference, reference_errors
+from navcore.sensors.reference import Reference
 
 SHARED_S = 714.0
 

@@ -18,7 +18,8 @@ from navcore.mechanization.trajectory import coefficients
 from navcore.motion.base import AE, AN, AU, COLUMNS, HEIGHT, LAT, VE, VN, VU, Truth
 from navcore.motion.inertial import inertial_signals
 from navcore.scenario.model import Scenario
-from navcore.sensors.reference import Reference, reference_errors
+from navcore.sensors.log import reference_errors
+from navcore.sensors.reference import Reference
 
 CLASSIC = {"damping": "external", "network": {"id": "classic2"}}
 COMPASS = {"damping": "external", "network": {"id": "compass"}}

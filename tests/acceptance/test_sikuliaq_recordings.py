@@ -10,8 +10,9 @@ from navcore.foundation.units import DEG, HOUR, KNOT
 from navcore.io.recording import load, shared_window
 from navcore.motion.base import HEADING, VE, VN, Site
 from navcore.motion.track import TrackMotion
+from navcore.sensors.log import reference_errors
 from navcore.sensors.recorded import recorded_window, recording_notices
-from navcore.sensors.reference import Reference, reference_errors
+from navcore.sensors.reference import Reference
 from tests.recordings import ship
 
 SHARED_S = 714.0

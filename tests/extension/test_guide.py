@@ -18,11 +18,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-RECIPES = ("network", "policy", "switching method", "motion", "tab")
+RECIPES = ("network", "policy", "switching method", "motion", "sensor error", "tab", "import format")
 _BLOCK = re.compile(r"<!-- (file|line): (\S+) -->\n+```\w+\n(.*?)```\n", re.DOTALL)
 RUN = """
 import json
-from navcore import simulate
+from navcore import budget, simulate
 from navcore.scenario.model import Scenario
 
 lead = {"damping": "external", "network": {"id": "lead"}}
@@ -37,12 +37,18 @@ eight = {
     "imu": {"gyro_bias_dph": [0.01, 0.01, 0.01]},
     "method": [{"name": "free"}, lead | {"name": "damped"}, lead | {"name": "inside", "damping": "internal"}],
 }
+trend = {"imu": {"gyro_trend_dph": 0.24}, "method": [{"name": "free"}]}
 runs = {}
 for fidelity in ("error_model", "strapdown"):
     run = {"fidelity": fidelity, "duration_h": 0.1, "output_step_s": 1.0, "rate_hz": 10.0}
     decided = simulate(Scenario.parse({"run": run, "reference": log, "method": turns}))
     moved = simulate(Scenario.parse({"run": run | {"rate_hz": 100.0}, "reference": log} | eight))
+    hours = run | {"duration_h": 2.0, "output_step_s": 60.0, "step_s": 1.0}
+    grown = Scenario.parse({"run": hours} | trend)
     runs[fidelity] = {
+        "trend": [simulate(grown).methods[0].errors[name]["rms"] for name in ("phi_e_rad", "phi_n_rad")],
+        "source": budget(grown).methods[0].sources["gyro_trend"].rms.tilt_rad,
+        "steady": budget(grown, steady=True).methods[0].warnings,
         "law": [method.law_series.tolist() for method in decided.methods],
         "tilt": [[m.errors[name]["rms"] for name in ("phi_e_rad", "phi_n_rad")] for m in moved.methods],
     }
@@ -124,13 +130,27 @@ def test_the_examples_run_in_both_fidelities(program: Path) -> None:
             assert damped == float(turn % 2 == 0 and second >= 15), fidelity
         assert [row[1] for row in hard] == [float(k // 90 % 2 == 0) for k in range(len(hard))], fidelity
     assert np.array(runs["error_model"]["tilt"]).min() > 0.0
-    np.testing.assert_allclose(runs["strapdown"]["tilt"], runs["error_model"]["tilt"], rtol=1e-3)
+        assert run["source"] == pytest.approx(np.sqrt(np.mean(np.square(run["trend"]))), rel=1e-3), fidelity
+        assert run["steady"] == ["imu.gyro_trend_dph: gyro trend is not in the budget"]
+    for errors in ("tilt", "trend"):
+        np.testing.assert_allclose(runs["strapdown"][errors], runs["error_model"][errors], rtol=1e-3)
 
 
 def test_the_command_line_shows_the_network(program: Path) -> None:
     report = json.loads(python(program, "-m", "app", "network", 'id = "lead", corner = 0.5', "--json"))
     assert report["id"] == "lead" and report["stable"]
     assert report["h0"] == pytest.approx(1.0)
+
+
+def test_the_format_is_read_and_its_faults_name_the_line(program: Path, tmp_path: Path) -> None:
+    lines = [json.dumps({"utc_s": 1.7e9 + i, "speed_mps": 5.0 + i}) for i in range(3)]
+    good, bad = tmp_path / "good.jsonl", tmp_path / "bad.jsonl"
+    good.write_text("\n".join(lines))
+    bad.write_text("\n".join([*lines, '{"utc_s": 2}']))
+    report = json.loads(python(program, "-m", "app", "check", str(good), "--json"))
+    assert report["kind"] == "JSON Lines log" and report["quantities"]["water"]["forward_mps"] == [5.0, 7.0]
+    call = f"from navcore.io.recording import load\ntry: load({str(bad)!r})\nexcept ValueError as e: print(e)"
+    assert 'line 4: expected "utc_s" and "speed_mps"' in python(program, "-c", call)
 
 
 @pytest.mark.nightly

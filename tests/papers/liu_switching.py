@@ -12,7 +12,7 @@ from navcore.engine.simulation import simulate
 from navcore.foundation.units import ARCSEC, HOUR
 from navcore.mechanization.recorder import D_LAT, D_LON, DV_E, DV_N, PHI_E, PHI_N, POSITION
 from navcore.scenario.model import Scenario
-from navcore.sensors.reference import LogEvent
+from navcore.sensors.log_errors.events import LogEvent
 from tests.papers.measure import departure, rms
 from tests.papers.runs import STRAPDOWN_HZ, Runs, method, scenario_of
 

@@ -36,7 +36,7 @@ IMU = Imu(gyro_bias_dph=(0.01, 0.01, 0.01), gyro_arw_dpsh=0.002, accel_bias_ug=(
 def test_it_is_the_mean_of_copies_really_run(averaging):
     plan = made(averaging, UNDER_WAY, WGS84, IMU)
     truth = UNDER_WAY.truth(2 * STEPS + 1, 0.5, SITE, WGS84)
-    sensors = imu_errors(IMU, truth, STEPS, 1.0, WGS84, 1)
+    sensors = imu_errors(IMU.all_parts(), truth, STEPS, 1.0, WGS84, 1)
     wrong = forecast_errors(plan.forecast, plan.standing, WGS84)
     states = states_ahead(INITIAL, plan.copies.ahead_s, wrong, plan.standing, WGS84, free_law())
     rows = []

@@ -18,7 +18,8 @@ from navcore.motion import MOTIONS
 from navcore.networks import NETWORKS
 from navcore.scenario.model import InitialError, RunSettings, SiteSettings
 from navcore.sensors.imu import Imu
-from navcore.sensors.reference import LogEvent, Outage, Reference
+from navcore.sensors.log_errors.events import LogEvent
+from navcore.sensors.reference import Outage, Reference
 
 BLOCKS: list[type[BaseModel]] = [
     Imu,

@@ -37,7 +37,7 @@ def _errors(
     **imu: Any,
 ) -> SensorErrors:
     truth = motion.truth(2 * count + 1, 0.5 * step, SITE, WGS84)
-    return imu_errors(Imu(**imu), truth, count, step, WGS84, seed, level)
+    return imu_errors(Imu(**imu).all_parts(), truth, count, step, WGS84, seed, level)
 
 
 @pytest.mark.parametrize("motion", [LEVEL, SWING])
@@ -196,4 +196,4 @@ def test_the_level_body_ignores_attitude_and_earth_rate() -> None:
 def test_truth_of_another_length_is_refused() -> None:
     truth = SWING.truth(21, 0.5, SITE, WGS84)
     with pytest.raises(ValueError, match="11 steps need 1 or 23 rows of truth at half steps, not 21"):
-        imu_errors(Imu(gyro_arw_dpsh=0.01), truth, 11, 1.0, WGS84, 1)
+        imu_errors(Imu(gyro_arw_dpsh=0.01).all_parts(), truth, 11, 1.0, WGS84, 1)

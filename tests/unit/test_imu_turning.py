@@ -13,6 +13,7 @@ from navcore.motion import LegsMotion, StaticMotion, SwingMotion
 from navcore.motion.base import HEADING, PITCH, ROLL, MotionParameters, Site
 from navcore.motion.inertial import inertial_signals
 from navcore.sensors.imu import Imu, imu_errors
+from navcore.sensors.imu_errors.base import Clock
 
 SITE = Site(45.0 * DEG, 10.0 * DEG, 0.0)
 SWING = SwingMotion(
@@ -43,7 +44,7 @@ def _fine_means(motion: MotionParameters, count: int, step: float) -> tuple[np.n
     values, signals = truth.values[middle], inertial_signals(truth, WGS84)[middle]
     out = []
     for model, felt in ((IMU.gyro(), signals[:, :3]), (IMU.accel(), signals[:, 3:])):
-        body = model.bias + felt @ model.coupling.T
+        body = model.slow(Clock(step, count, 1)) + felt @ model.coupling.T
         turned = [
             attitude_matrix(row[PITCH], row[ROLL], row[HEADING]) @ error
             for row, error in zip(values, body, strict=True)
@@ -59,7 +60,7 @@ def _fine_means(motion: MotionParameters, count: int, step: float) -> tuple[np.n
 def test_simpson_means_against_a_fine_grid(motion: MotionParameters, step: float, part: float) -> None:
     count = 40
     truth = motion.truth(2 * count + 1, 0.5 * step, SITE, WGS84)
-    errors = imu_errors(IMU, truth, count, step, WGS84, seed=1)
+    errors = imu_errors(IMU.all_parts(), truth, count, step, WGS84, seed=1)
     gyro, accel = _fine_means(motion, count, step)
     tolerance = part + 2e-5 / FINE
     assert np.abs(errors.gyro - gyro).max() < tolerance * np.abs(gyro).max()
@@ -69,7 +70,7 @@ def test_simpson_means_against_a_fine_grid(motion: MotionParameters, step: float
 def test_the_mean_over_a_swing_is_kept() -> None:
     # Over whole cycles (400 s) the rectified part of the swing must come out, not only the oscillation.
     truth = SWING.truth(801, 0.5, SITE, WGS84)
-    errors = imu_errors(Imu(gyro_bias_dph=(0.0, 0.0, 1.0)), truth, 400, 1.0, WGS84, seed=1)
+    errors = imu_errors(Imu(gyro_bias_dph=(0.0, 0.0, 1.0)).all_parts(), truth, 400, 1.0, WGS84, seed=1)
     fine = SWING.truth(40_000, 0.01, SITE, WGS84).values
     third = np.array([attitude_matrix(r[PITCH], r[ROLL], r[HEADING])[:, 2] for r in fine[::4]])
     assert errors.gyro.mean(axis=0) == pytest.approx(third.mean(axis=0) * DEG_PER_HOUR, rel=1e-6)
@@ -81,8 +82,8 @@ def _counted(
     """Errors of the gyros' and accelerometers' integrals that counting alone makes, n frame."""
     truth = motion.truth(2 * count + 1, 0.5 * step, SITE, WGS84)
     smooth = {key: value for key, value in fields.items() if not key.endswith("_lsb")}
-    with_counts = imu_errors(Imu(**fields), truth, count, step, WGS84, seed=3)
-    without = imu_errors(Imu(**smooth), truth, count, step, WGS84, seed=3)
+    with_counts = imu_errors(Imu(**fields).all_parts(), truth, count, step, WGS84, seed=3)
+    without = imu_errors(Imu(**smooth).all_parts(), truth, count, step, WGS84, seed=3)
     return step * (with_counts.gyro - without.gyro), step * (with_counts.accel - without.accel)
 
 
@@ -107,7 +108,9 @@ def test_increments_are_whole_counts() -> None:
         gyro_lsb=(lsb,) * 3,
     )
     (signal,) = inertial_signals(truth, WGS84)
-    increments = step * (signal[:3] + imu_errors(imu, truth, count, step, WGS84, seed=1).gyro) / lsb
+    increments = (
+        step * (signal[:3] + imu_errors(imu.all_parts(), truth, count, step, WGS84, seed=1).gyro) / lsb
+    )
     assert np.abs(increments - np.rint(increments)).max() < 1e-6
     assert len(np.unique(np.rint(increments[:, 1]))) > 3
 
@@ -131,7 +134,7 @@ def test_counting_a_swing_does_not_drift() -> None:
 def test_counting_follows_the_level_body() -> None:
     truth = StaticMotion(heading_deg=90.0).truth(1, 0.5, SITE, WGS84)
     imu = Imu(accel_bias_ug=(10.0, 0.0, 0.0), accel_lsb=(1e-3, 0.0, 0.0))
-    level = imu_errors(imu, truth, 2000, 1.0, WGS84, seed=1, level_body=True)
+    level = imu_errors(imu.all_parts(), truth, 2000, 1.0, WGS84, seed=1, level_body=True)
     total = np.cumsum(level.accel, axis=0)[:, 0]
     assert np.abs(total - 10.0 * MICRO_G * np.arange(1, 2001)).max() <= 0.5e-3 * (1.0 + 1e-9)
     assert not level.accel[:, 1].any()

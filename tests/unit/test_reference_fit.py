@@ -11,7 +11,8 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG
 from navcore.motion.base import AE, AN, COLUMNS, HEADING, VE, VN, Truth
 from navcore.sensors.fit import LogAlongTrack, _autocovariance, fit_delay, fit_log_error
-from navcore.sensors.reference import Reference, reference_errors
+from navcore.sensors.log import reference_errors
+from navcore.sensors.reference import Reference
 from navcore.sensors.true_state import horizontal_state, to_ship
 
 AT_REST = Truth(0.5, np.zeros((1, COLUMNS)))

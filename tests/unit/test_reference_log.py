@@ -11,7 +11,9 @@ from pydantic import ValidationError
 from navcore.foundation.units import DEG, HOUR, KNOT
 from navcore.motion.base import AE, AN, COLUMNS, HEADING, HEADING_RATE, VE, VN, Truth
 from navcore.sensors.base import ReferenceErrors
-from navcore.sensors.reference import LogEvent, Outage, Reference, event_velocity, reference_errors
+from navcore.sensors.log import reference_errors
+from navcore.sensors.log_errors.events import LogEvent, event_velocity
+from navcore.sensors.reference import Outage, Reference
 from navcore.sensors.true_state import horizontal_state, to_navigation, to_ship
 
 

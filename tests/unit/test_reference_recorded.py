@@ -14,8 +14,10 @@ from navcore.motion.base import HEADING, Site, Truth
 from navcore.motion.static import StaticMotion
 from navcore.motion.track import TrackMotion
 from navcore.sensors.base import ReferenceErrors
+from navcore.sensors.log import reference_errors
+from navcore.sensors.log_errors.events import LogEvent
 from navcore.sensors.recorded import recorded_window, recording_notices
-from navcore.sensors.reference import LogEvent, Outage, Reference, reference_errors
+from navcore.sensors.reference import Outage, Reference
 from tests.nmea import rmc, ship_files, stamped, vbw, write
 
 SECONDS = 299.0

@@ -28,7 +28,7 @@ SCENARIO = {
         },
     ],
 }
-ALL = ("initial error", "gyro bias", "gyro noise", "accelerometer bias", "log noise", "log events")
+ALL = ("initial error", "gyro bias", "accelerometer bias", "gyro noise", "log noise", "log events")
 
 
 def test_what_is_switched_on_is_named():

@@ -12,7 +12,8 @@ from app.shell.fields_view import FieldsView
 from app.shell.palette import COPY_LOG, PASTE
 from app.shell.view import Tab, if_user
 from navcore.scenario.model import Scenario
-from navcore.sensors.reference import LogEvent, Outage, Reference
+from navcore.sensors.log_errors.events import LogEvent
+from navcore.sensors.reference import Outage, Reference
 
 if TYPE_CHECKING:
     from navcore.sensors.fit import LogErrorFit

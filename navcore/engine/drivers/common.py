@@ -20,7 +20,7 @@ from navcore.motion.base import COLUMNS
 from navcore.networks.base import LinearNetwork
 from navcore.scenario.model import Method, Scenario
 from navcore.sensors.base import ReferenceErrors
-from navcore.sensors.reference import event_velocity
+from navcore.sensors.log_errors.events import event_velocity
 
 Progress = Callable[[float], None]
 Cancelled = Callable[[], bool]

@@ -44,8 +44,7 @@ def simulate_blocks(
     k,
     flags,
     key,
-    bias,
-    drift,
+    slow,
     white,
     coupling,
     lsb,
@@ -56,7 +55,7 @@ def simulate_blocks(
     """Measured increments of ``blocks`` blocks of ``block_samples`` each into ``measured`` (n, 6).
 
     ``kind`` to ``attitude``: the motion (`navcore.motion.kinematics.Kinematics`); ``turns``: its
-    oscillations' turns in a tile; ``place`` (2,): legs and nodes reached; ``drift`` (blocks, 6); ``left``
+    oscillations' turns in a tile; ``place`` (2,): legs and nodes reached; ``slow`` (blocks, 6); ``left``
     (6,): what quantisation carries over; ``sums`` (blocks, 6) or (0, 6).
     """
     w = np.zeros(WORK)
@@ -97,7 +96,7 @@ def simulate_blocks(
                 fill_signals(padded, w)
                 fill_increments(samples, dt, w)
             tile = block * _MOST_TILES + first // size
-            fill_errors(tile, samples, dt, flags, key, bias, drift, n, white, coupling, lsb, left, w)
+            fill_errors(tile, samples, dt, flags, key, slow, n, white, coupling, lsb, left, w)
             write_measured(n * block_samples + first, samples, measured, w)
             if flags & SUMS:
                 add_sums(n, samples, sums, w)

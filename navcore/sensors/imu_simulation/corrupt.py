@@ -55,20 +55,20 @@ def _summed(a, b, row, first, samples, w):
 
 
 @inlined
-def fill_errors(place, samples, dt, flags, key, bias, drift, block, white, coupling, lsb, left, w):
+def fill_errors(place, samples, dt, flags, key, slow, block, white, coupling, lsb, left, w):
     """Errors of a tile's increments.
 
-    ``bias`` (6,) and row ``block`` of ``drift`` (n, 6): rad/s, m/s^2; ``white`` (6,): random walk times
+    Row ``block`` of ``slow`` (n, 6): rad/s, m/s^2; ``white`` (6,): random walk times
     sqrt(dt); ``coupling`` (6, 3); ``lsb``, ``left`` (6,): rad, m/s.
     """
     if flags & NOISE:
         fill_normals(place, key, (3 * samples + 7) // 8 * 8, w)
-    _fill_error(0, 0, samples, flags, (bias[0] + drift[block, 0]) * dt, white[0], coupling, w)
-    _fill_error(1, 0, samples, flags, (bias[1] + drift[block, 1]) * dt, white[1], coupling, w)
-    _fill_error(2, 0, samples, flags, (bias[2] + drift[block, 2]) * dt, white[2], coupling, w)
-    _fill_error(3, 3, samples, flags, (bias[3] + drift[block, 3]) * dt, white[3], coupling, w)
-    _fill_error(4, 3, samples, flags, (bias[4] + drift[block, 4]) * dt, white[4], coupling, w)
-    _fill_error(5, 3, samples, flags, (bias[5] + drift[block, 5]) * dt, white[5], coupling, w)
+    _fill_error(0, 0, samples, flags, slow[block, 0] * dt, white[0], coupling, w)
+    _fill_error(1, 0, samples, flags, slow[block, 1] * dt, white[1], coupling, w)
+    _fill_error(2, 0, samples, flags, slow[block, 2] * dt, white[2], coupling, w)
+    _fill_error(3, 3, samples, flags, slow[block, 3] * dt, white[3], coupling, w)
+    _fill_error(4, 3, samples, flags, slow[block, 4] * dt, white[4], coupling, w)
+    _fill_error(5, 3, samples, flags, slow[block, 5] * dt, white[5], coupling, w)
     if flags & COUNTS:
         for j in range(6):
             left[j] = _count(j, samples, lsb[j], left[j], w)

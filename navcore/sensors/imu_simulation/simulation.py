@@ -12,10 +12,10 @@ from navcore.foundation.errors import InputError
 from navcore.motion.base import MotionParameters, Site
 from navcore.motion.kinematics import Kinematics
 from navcore.sensors.imu import Imu
+from navcore.sensors.imu_errors.base import Clock
 from navcore.sensors.imu_simulation.blocks import simulate_blocks
 from navcore.sensors.imu_simulation.corrupt import COUNTS, COUPLING, NOISE, SUMS
 from navcore.sensors.imu_simulation.normal import stream_key
-from navcore.sensors.noise import gauss_markov, unit_noise
 
 CHUNK_S = 60.0
 """Length of a chunk: 3 MB at 1000 Hz."""
@@ -42,11 +42,13 @@ class ImuSimulation:
         Seed of the scenario.
     start_utc : float, optional
         UTC of t = 0 of a recorded track.
+    begin_s : float
+        Time of the first sample, s after the start of navigation; negative for an alignment.
 
     Attributes
     ----------
     block : int
-        Samples of a block, about 1 s: white noise is drawn and Gauss-Markov drift is held by the block.
+        Samples of a block, about 1 s: white noise is drawn and slow errors are held by the block.
 
     Raises
     ------
@@ -64,12 +66,14 @@ class ImuSimulation:
         samples: int,
         seed: int,
         start_utc: float | None = None,
+        begin_s: float = 0.0,
     ) -> None:
         self.motion, self.site, self.earth, self.rate_hz, self.samples = motion, site, earth, rate_hz, samples
         self.block = max(1, round(rate_hz))
         self.blocks = -(-samples // self.block)
         self._start_utc = start_utc
-        self._errors = _Errors(imu, seed, self.block, self.blocks, 1.0 / rate_hz)
+        clock = Clock(self.block / rate_hz, self.blocks, seed, begin_s)
+        self._errors = _Errors(imu, clock, 1.0 / rate_hz)
         end_s = (samples + self.block) / rate_hz
         self._kinematics = motion.kinematics(end_s, site, earth, start_utc)
         self._turns = self._kinematics.turns(1.0 / rate_hz)
@@ -151,8 +155,7 @@ class ImuSimulation:
             earth.somigliana_k,
             e.flags | (SUMS if len(sums) else 0),
             e.key,
-            e.bias,
-            e.drift[first : first + blocks],
+            e.slow[first : first + blocks],
             e.white,
             e.coupling,
             e.lsb,
@@ -165,20 +168,15 @@ class ImuSimulation:
 class _Errors:
     """The IMU's errors as the compiled loop takes them."""
 
-    def __init__(self, imu: Imu, seed: int, block: int, blocks: int, dt: float) -> None:
-        models = imu.gyro(), imu.accel()
-        self.key = np.uint64(stream_key(seed, "imu.white"))
-        self.bias = np.concatenate([m.bias for m in models]).astype(float)
-        self.white = np.repeat([m.white * math.sqrt(dt) for m in models], 3).astype(float)
-        self.coupling = np.concatenate([m.coupling for m in models])
-        self.lsb = np.concatenate([m.lsb for m in models]).astype(float)
+    def __init__(self, imu: Imu, clock: Clock, dt: float) -> None:
+        triads = imu.gyro(), imu.accel()
+        self.key = np.uint64(stream_key(clock.seed, "imu.white"))
+        self.white = np.repeat([triad.white * math.sqrt(dt) for triad in triads], 3)
+        self.coupling = np.concatenate([triad.coupling for triad in triads])
+        self.lsb = np.concatenate([triad.lsb for triad in triads])
         self.left = np.zeros(6)
-        self.drift = np.zeros((blocks, 6))
-        for i, model in enumerate(models):
-            if model.instability > 0.0:
-                unit = unit_noise(seed, f"{model.stream}.instability", blocks, 3)
-                decay = math.exp(-block * dt / model.tau_s)
-                self.drift[:, 3 * i : 3 * i + 3] = model.instability * gauss_markov(unit, decay)
+        self.slow = np.empty((clock.count, 6))
+        self.slow[:, :3], self.slow[:, 3:] = (triad.slow(clock) for triad in triads)
         self.flags = (
             (NOISE if self.white.any() else 0)
             | (COUPLING if self.coupling.any() else 0)

@@ -1,0 +1,14 @@
+"""Terms of the IMU's error, one file each: fields of the block ``imu`` and what they do to the readings."""
+
+from __future__ import annotations
+
+from navcore.sensors.base import load_terms
+
+TERMS = load_terms(
+    "navcore.sensors.imu_errors.bias:Bias",
+    "navcore.sensors.imu_errors.noise:White",
+    "navcore.sensors.imu_errors.noise:Drift",
+    "navcore.sensors.imu_errors.coupling:Coupling",
+    "navcore.sensors.imu_errors.counts:Counts",
+)
+"""All terms, in the order in which the page offers their fields."""

@@ -1,0 +1,54 @@
+"""The terms of a log's error: what each one adds to a sample and to the covariance."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from navcore.foundation.parameters import Parameters
+from navcore.sensors.base import ErrorPart
+
+
+@dataclass(frozen=True, eq=False)
+class LogPart(ErrorPart):
+    """Contribution of one term to the readings of the simulated log, m/s, in the log's own axes.
+
+    Attributes
+    ----------
+    scale : float
+        Relative error of the measured velocity.
+    delay_s : float
+        Age of the velocity that is measured, s.
+    water : callable, optional
+        Velocity of the water over the ground, E and N: takes times (m,), returns (m, 2) or (1, 2).
+    after : callable, optional
+        Error of the finished reading, E and N: takes times (m,), returns (m, 2) or (1, 2).
+    responses : tuple of LogPart
+        What the error budget takes in place of the part where it is not the part itself.
+    """
+
+    scale: float = 0.0
+    delay_s: float = 0.0
+    water: Callable[[np.ndarray], np.ndarray] | None = None
+    after: Callable[[np.ndarray], np.ndarray] | None = None
+    responses: tuple[LogPart, ...] = ()
+
+    @property
+    def has_shape(self) -> bool:
+        """Whether the error budget knows it by the numbers of the scenario as they stand."""
+        return any((self.scale, self.delay_s, self.water, self.after))
+
+    def elements(self) -> Iterator[LogPart]:
+        """Yield the parts that make one response of the budget each."""
+        yield from self.responses or (self,)
+
+
+class LogTerm(Parameters):
+    """Base of the terms: fields of the block ``reference``, and the parts that they make."""
+
+    @abstractmethod
+    def parts(self) -> Iterator[LogPart]:
+        """Yield the parts."""

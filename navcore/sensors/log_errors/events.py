@@ -1,0 +1,94 @@
+"""Passing disturbances of the log."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import partial
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from navcore.foundation.parameters import Parameters, bounded, quantity, vector_quantity
+from navcore.foundation.units import HOUR
+from navcore.sensors.log_errors.base import LogPart, LogTerm
+
+_Acceleration = Annotated[float, bounded(unit="m/s2", ge=-50.0, le=50.0)]
+
+
+class LogEvent(Parameters):
+    """Passing disturbance of the log: an acceleration integrated into dV_r, which stays after the event."""
+
+    t_h: float = quantity(
+        0.0, unit="h", ge=0.0, le=10000.0, slider=(0.0, 72.0), label="begins", help="Time of the event."
+    )
+    duration_s: float = quantity(
+        60.0,
+        unit="s",
+        gt=0.0,
+        le=1e7,
+        slider=(1.0, 7200.0),
+        log=True,
+        label="lasts",
+        help="Length of the event.",
+    )
+    accel_mps2: tuple[_Acceleration, _Acceleration] = vector_quantity(
+        (0.0, 0.0),
+        unit="m/s2",
+        elements=("E", "N"),
+        slider=(-0.1, 0.1),
+        label="acceleration of δVr",
+        help="East, north (Liu 2021, fig. 4). Its integral stays after the event; events add up.",
+    )
+    sine_hz: float = quantity(
+        0.0,
+        unit="Hz",
+        ge=0.0,
+        le=10.0,
+        slider=(0.0, 0.1),
+        label="frequency",
+        help="0: constant acceleration; else the acceleration is a sin(2π f (t - t_h)).",
+    )
+
+
+def event_velocity(events: Iterable[LogEvent], time_s: np.ndarray) -> np.ndarray:
+    """Velocity error that events have left behind at each time.
+
+    Constant acceleration a: a tau; with a frequency f: a (1 - cos 2 pi f tau) / (2 pi f), where tau is the
+    time since the beginning of the event, at most its duration (Liu 2021, fig. 4; contract "Events").
+
+    Parameters
+    ----------
+    events : iterable of LogEvent
+        They add up.
+    time_s : ndarray, shape (m,)
+        Times after the start of navigation.
+
+    Returns
+    -------
+    ndarray, shape (m, 2)
+        dV_r, E and N, m/s.
+    """
+    total = np.zeros((time_s.size, 2))
+    for event in events:
+        elapsed = np.clip(time_s - event.t_h * HOUR, 0.0, event.duration_s)
+        if event.sine_hz > 0.0:
+            angular = 2.0 * np.pi * event.sine_hz
+            elapsed = (1.0 - np.cos(angular * elapsed)) / angular
+        for axis, acceleration in enumerate(event.accel_mps2):  # by axis: many times faster than rows of two
+            if acceleration != 0.0:
+                total[:, axis] += elapsed * acceleration
+    return total
+
+
+class LogEvents(LogTerm):
+    """Events of the log."""
+
+    event: tuple[LogEvent, ...] = Field(
+        default=(), max_length=200, description="Disturbances of the log, [[reference.event]]."
+    )
+
+    def parts(self) -> Iterator[LogPart]:
+        """Yield all events as one part."""
+        after = partial(event_velocity, self.event) if self.event else None
+        yield LogPart(("event",), "log_events", "log events", after=after)

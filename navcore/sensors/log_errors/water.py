@@ -1,0 +1,76 @@
+"""Motion of the water, which the log does not see: current and tide."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Annotated
+
+import numpy as np
+
+from navcore.foundation.parameters import bounded, quantity, vector_quantity
+from navcore.foundation.units import DEG, HOUR
+from navcore.sensors.log_errors.base import LogPart, LogTerm
+
+_Speed = Annotated[float, bounded(unit="m/s", ge=-50.0, le=50.0)]
+
+
+class Water(LogTerm):
+    """Current and tide."""
+
+    current_mps: tuple[_Speed, _Speed] = vector_quantity(
+        (0.0, 0.0),
+        unit="m/s",
+        elements=("E", "N"),
+        slider=(-2.0, 2.0),
+        label="current",
+        help="Velocity of the water over the ground, east, north; the log misses it: δVr = -current.",
+    )
+    tide_mps: tuple[_Speed, _Speed] = vector_quantity(
+        (0.0, 0.0),
+        unit="m/s",
+        elements=("E", "N"),
+        slider=(-2.0, 2.0),
+        label="tide",
+        help="Amplitude of the tidal stream, east, north: tide sin(2π t / period + phase) is added.",
+    )
+    tide_period_h: float = quantity(
+        12.42,
+        unit="h",
+        ge=0.01,
+        le=10000.0,
+        slider=(1.0, 48.0),
+        label="tide period",
+        help="12.42 h: the principal lunar tide.",
+    )
+    tide_phase_deg: float = quantity(
+        0.0,
+        unit="deg",
+        ge=-360.0,
+        le=360.0,
+        slider=(-180.0, 180.0),
+        label="tide phase",
+        help="Phase at t = 0.",
+    )
+
+    def parts(self) -> Iterator[LogPart]:
+        """Yield both; of the tide the phase is unknown beforehand: a sine and a cosine share its square."""
+        current = LogPart(("current_mps",), "log_current", "current and tide")
+        if any(self.current_mps):
+            current = replace(current, water=lambda time_s: np.array([self.current_mps]))
+        tide = LogPart(("tide_mps",), "log_tide", "current and tide")
+        if any(self.tide_mps):
+            phases = 0.0, 0.5 * np.pi
+            tide = replace(
+                tide,
+                water=lambda time_s: self._tide(time_s, 1.0, self.tide_phase_deg * DEG),
+                responses=tuple(
+                    replace(tide, water=lambda time_s, phase=phase: self._tide(time_s, np.sqrt(0.5), phase))
+                    for phase in phases
+                ),
+            )
+        yield from (current, tide)
+
+    def _tide(self, time_s: np.ndarray, share: float, phase: float) -> np.ndarray:
+        angle = 2.0 * np.pi * time_s / (self.tide_period_h * HOUR) + phase
+        return np.sin(angle)[:, None] * (share * np.array(self.tide_mps))
