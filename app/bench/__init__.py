@@ -31,22 +31,19 @@ def bench(tell: Callable[[str], None] = lambda _: None) -> dict[str, float]:
     RuntimeError, TimeoutError
         The dashboard does not start or does not answer.
     """
+    from app.bench import runs
     from app.bench.dashboard import measure_dashboard
-    from app.bench.design import measure_design
-    from app.bench.error_model import measure_error_model
-    from app.bench.memory import measure_memory
     from app.bench.strapdown import measure_strapdown
-    from app.bench.strapdown_day import measure_strapdown_day
 
-    tell("error model, 24 h")
-    numbers = measure_error_model()
-    tell("memory of a run")
-    numbers |= measure_memory()
-    tell("strapdown, a sample")
-    numbers |= measure_strapdown()
-    tell("strapdown, 24 h at 100 Hz")
-    numbers |= measure_strapdown_day()
-    tell("error budget")
-    numbers |= measure_design()
-    tell("dashboard")
-    return numbers | measure_dashboard()
+    numbers: dict[str, float] = {}
+    for what, measure in (
+        ("error model, 24 h", runs.measure_error_model),
+        ("memory of a run", runs.measure_memory),
+        ("strapdown, a sample", measure_strapdown),
+        ("strapdown, 24 h at 100 Hz", runs.measure_strapdown_day),
+        ("error budget", runs.measure_budgets),
+        ("dashboard", measure_dashboard),
+    ):
+        tell(what)
+        numbers |= measure()
+    return numbers

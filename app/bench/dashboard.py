@@ -20,35 +20,35 @@ DESIGN = "1920x1080|Method|Design|Errors"
 """The steady budget and its floor follow the slider."""
 _ALL_VIEWS = "1920x1080|Method|Frequency|Poles|Step|Errors|Metrics|Compare|Spectrum|Requirements|Scenario"
 """As if every tab were in front: more than any window shows at once."""
-_PINS = 2
+_MEASURED = (
+    ("slider_to_frame", _WINDOW, 0),
+    ("slider_design", DESIGN, 0),
+    ("slider_all_views", _ALL_VIEWS, 2),
+)
+"""Name of the figure, window, and number of pinned runs."""
 ZETA = form.full_label("zeta", ComplementaryNetwork.model_fields["zeta"])
 """Label of the slider that is moved."""
 
 
 def measure_dashboard() -> dict[str, float]:
     """Median start; median and 95th percentile from the slider's message to the last byte of the figures."""
-    starts = []
-    for _ in range(STARTS - 1):
+    starts: list[float] = []
+    numbers: dict[str, float] = {}
+    for start in range(STARTS):
         with Server() as server:
             starts.append(server.startup_s)
-    with Server() as server:
-        starts.append(server.startup_s)
-        answers = _percentiles("slider_to_frame", slider_to_frame_ms(server.port))
-        answers |= _percentiles("slider_design", slider_to_frame_ms(server.port, DESIGN))
-        answers |= _percentiles("slider_all_views", slider_to_frame_ms(server.port, _ALL_VIEWS, _PINS))
-        memory = server.rss_mb()
-    return answers | {"startup_s": statistics.median(starts), "rss_mb": memory}
+            if start == STARTS - 1:
+                for name, window, pins in _MEASURED:
+                    quantiles = median_and_p95(slider_to_frame_ms(server.port, window, pins))
+                    numbers |= zip((f"{name}_ms_p50", f"{name}_ms_p95"), quantiles, strict=True)
+                numbers["rss_mb"] = server.rss_mb()
+    return numbers | {"startup_s": statistics.median(starts)}
 
 
 def median_and_p95(times_ms: list[float]) -> tuple[float, float]:
     """Median and 95th percentile of at least two times."""
     hundredths = statistics.quantiles(times_ms, n=100, method="inclusive")
     return hundredths[49], hundredths[94]
-
-
-def _percentiles(name: str, times_ms: list[float]) -> dict[str, float]:
-    median, p95 = median_and_p95(times_ms)
-    return {f"{name}_ms_p50": median, f"{name}_ms_p95": p95}
 
 
 def slider_to_frame_ms(port: int, window: str = _WINDOW, pins: int = 0, steps: int = STEPS) -> list[float]:

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import http.client
 import os
-import signal
 import socket
 import subprocess
 import sys
 import tempfile
 import time
+import urllib.request
 from pathlib import Path
-from types import TracebackType
 from typing import Self
-from urllib.parse import urljoin
 
 _ROOT = Path(__file__).resolve().parents[2]
 _MIB = 1024.0 * 1024.0
@@ -69,15 +66,19 @@ class Server:
         try:
             self._wait_for_page()
         except BaseException:
-            self._end()
+            self.__exit__()
             raise
         self.startup_s = time.perf_counter() - began
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._end()
+    def __exit__(self, *_: object) -> None:
+        self._process.terminate()
+        try:
+            self._process.wait(6.0)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._state.cleanup()
 
     def rss_mb(self) -> float:
         """Memory that the server holds now, the door and all workers together, MiB."""
@@ -91,8 +92,7 @@ class Server:
 
     def cpu_s(self) -> float:
         """Processor time that the server has used, s; 0 where the system does not tell."""
-        statistics = [_after_name(pid) for pid in self._pids()]
-        ticks = sum(int(fields[11]) + int(fields[12]) for fields in statistics if fields)
+        ticks = sum(int(number) for pid in self._pids() for number in _after_name(pid)[11:13])
         return ticks / os.sysconf("SC_CLK_TCK")
 
     def threads(self) -> int:
@@ -110,42 +110,17 @@ class Server:
 
     def _wait_for_page(self, seconds: float = 30.0) -> None:
         until = time.monotonic() + seconds
+        direct = urllib.request.build_opener(urllib.request.ProxyHandler({}))
         while time.monotonic() < until:
             if self._process.poll() is not None:
                 raise RuntimeError(f"the dashboard ended with exit code {self._process.returncode}")
             try:
-                if self._page() == 200:
-                    return
+                with direct.open(f"http://127.0.0.1:{self.port}/", timeout=10.0) as page:
+                    page.read()
+                return
             except OSError:
                 time.sleep(0.005)
         raise TimeoutError(f"the dashboard served no page within {seconds:g} s")
-
-    def _page(self) -> int:
-        """Ask for the page, follow the way to a new session; return the status."""
-        path, status = "/", 0
-        for _ in range(3):
-            connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
-            try:
-                connection.request("GET", path)
-                response = connection.getresponse()
-                response.read()
-                status = response.status
-                if status not in (301, 302, 303, 307, 308):
-                    return status
-                path = urljoin(path, response.headers["Location"])
-            finally:
-                connection.close()
-        return status
-
-    def _end(self) -> None:
-        if self._process.poll() is None:
-            self._process.send_signal(signal.SIGTERM)
-            try:
-                self._process.wait(6.0)
-            except subprocess.TimeoutExpired:
-                self._process.kill()
-                self._process.wait()
-        self._state.cleanup()
 
 
 def _statistic(pid: int, name: str) -> str:

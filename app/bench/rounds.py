@@ -1,4 +1,4 @@
-"""Several pieces of work timed in turn, so that a slow minute of the machine hits all of them alike."""
+"""Wall times: of calls one after the other, and of several pieces of work in turn."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import statistics
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from app.bench.process import environment
@@ -23,27 +23,26 @@ def seconds_of(work: Callable[[], Any]) -> float:
     return time.perf_counter() - began
 
 
-def median_ms(work: Callable[[], Any], repeats: int) -> float:
-    """Median wall time of a call, ms; one before warms up."""
-    return 1e3 * statistics.median(timed_rounds({"": lambda: seconds_of(work)}, repeats)[""])
+def median_s(works: Iterable[Callable[[], Any]]) -> float:
+    """Median wall time of some calls, s."""
+    return statistics.median(map(seconds_of, works))
 
 
-def in_own_process(module: str) -> Any:
-    """Run ``python -m module`` and read the JSON document it prints; its memory is its own."""
-    words = [sys.executable, "-m", module]
-    ended = subprocess.run(words, env=environment(), capture_output=True, text=True, check=True)
-    return json.loads(ended.stdout)
+def in_own_process(module: str, *words: str) -> Any:
+    """Run ``python -m module words`` and read the JSON document it prints; its memory is its own."""
+    command = [sys.executable, "-m", module, *words]
+    return json.loads(
+        subprocess.run(command, env=environment(), capture_output=True, text=True, check=True).stdout
+    )
 
 
 def timed_rounds(works: Mapping[str, Timed], rounds: int) -> dict[str, list[float]]:
-    """Seconds of each piece of work in each of some rounds; a round before them warms up."""
-    times: dict[str, list[float]] = {name: [] for name in works}
-    for number in range(rounds + 1):
-        for name, work in works.items():
-            seconds = work()
-            if number:
-                times[name].append(seconds)
-    return times
+    """Seconds of each piece of work in each of some rounds; a round before them warms up.
+
+    In turn, so that a slow minute of the machine hits all of them alike.
+    """
+    every = [{name: work() for name, work in works.items()} for _ in range(rounds + 1)]
+    return {name: [times[name] for times in every[1:]] for name in works}
 
 
 def median_ratio(numerator: list[float], denominator: list[float]) -> float:

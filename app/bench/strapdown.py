@@ -62,49 +62,41 @@ class StaticRecord:
         self.before, self.truth = imu.before(), imu.truth_rows(1, 1.0)
         self.increments = np.tile(self.before, (self.samples, 1))
 
-    def settings(self, law_every: int) -> Settings:
-        """States recorded and output every second."""
-        return Settings(RATE_HZ, self.samples, law_every, self.second, 1.0)
-
-    def law(self, damping: str, network: NetworkParameters, law_every: int) -> Law:
-        """A method's law, always damped."""
-        transfer = network.transfer(WGS84.schuler_frequency(SITE.lat))
-        return prepare_law(damping, network, transfer, Constant(), Hard(), law_every / RATE_HZ)
-
-    def log(self, law_every: int) -> VelocityReference:
-        """A sample at each call of the law."""
+    def _started(self, law_every: int) -> tuple[Settings, VelocityReference]:
+        """States and output every second; a sample of the log at each call of the law."""
         times = np.arange(self.samples // law_every + 1) * (law_every / RATE_HZ)
-        return VelocityReference(
-            times, np.zeros((len(times), 2)), np.ones(len(times), bool), body_frame=False, hold_s=5.0
-        )
+        still, valid = np.zeros((len(times), 2)), np.ones(len(times), bool)
+        log = VelocityReference(times, still, valid, body_frame=False, hold_s=5.0)
+        return Settings(RATE_HZ, self.samples, law_every, self.second, 1.0), log
 
     def run(self, damping: str, network: NetworkParameters, law_every: int) -> Timed:
-        """One method over the whole length."""
-        log = self.log(law_every)
+        """Time one method, always damped, over the whole length."""
+        settings, log = self._started(law_every)
 
         def once() -> float:
-            law = self.law(damping, network, law_every)
-            run = start_run(
-                start_from(self.truth[0]), self.settings(law_every), WGS84, law, self.truth, log, self.before
-            )
+            law, start = _law(damping, network, law_every), start_from(self.truth[0])
+            run = start_run(start, settings, WGS84, law, self.truth, log, self.before)
             return seconds_of(lambda: run.advance(self.increments))
 
         return once
 
     def batch(self, runs: int, noise: BatchNoise | None) -> Timed:
-        """Compass damping of many runs, each with its own biases."""
-        log = self.log(self.second)
+        """Time compass damping of many runs, each with its own biases."""
+        settings, log = self._started(self.second)
         biases = np.random.default_rng(1).normal(size=(runs, 6)) * np.repeat([1e-7, 5e-4], 3)
 
         def once() -> float:
-            laws = [self.law("external", CompassNetwork(), self.second) for _ in range(runs)]
+            laws = [_law("external", CompassNetwork(), self.second) for _ in range(runs)]
             starts = [start_from(self.truth[0])] * runs
-            batch = BatchRun(
-                starts, laws, biases, self.settings(self.second), WGS84, self.truth, log, self.before, noise
-            )
+            batch = BatchRun(starts, laws, biases, settings, WGS84, self.truth, log, self.before, noise)
             return seconds_of(lambda: batch.advance(self.increments, workers=os.cpu_count() or 1))
 
         return once
+
+
+def _law(damping: str, network: NetworkParameters, law_every: int) -> Law:
+    transfer = network.transfer(WGS84.schuler_frequency(SITE.lat))
+    return prepare_law(damping, network, transfer, Constant(), Hard(), law_every / RATE_HZ)
 
 
 def swinging_imu(samples: int) -> Timed:
@@ -149,14 +141,15 @@ def measure_strapdown(rounds: int = ROUNDS, seconds: int = SECONDS) -> dict[str,
         "imu_simulation_ns_per_sample": (swinging_imu(samples), samples),
     }
     works = {name: work for name, (work, _) in pieces.items()}
-    yardstick = _yardstick(samples)
-    if yardstick is not None:
+    if (yardstick := _yardstick(samples)) is not None:
         works["yardstick"] = yardstick
     times = timed_rounds(works, rounds)
     numbers = {name: 1e9 * statistics.median(times[name]) / count for name, (_, count) in pieces.items()}
-    if yardstick is not None:
-        numbers["yardstick_ns_per_sample"] = 1e9 * statistics.median(times["yardstick"]) / samples
-        for name, (_, count) in pieces.items():
-            ratio = median_ratio(times[name], times["yardstick"]) * samples / count
-            numbers[f"{name.split('_ns_')[0]}_to_yardstick"] = ratio
-    return numbers
+    if yardstick is None:
+        return numbers
+    reference = times["yardstick"]
+    ratios = {
+        f"{name.split('_ns_')[0]}_to_yardstick": median_ratio(times[name], reference) * samples / count
+        for name, (_, count) in pieces.items()
+    }
+    return numbers | {"yardstick_ns_per_sample": 1e9 * statistics.median(reference) / samples} | ratios

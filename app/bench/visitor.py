@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import json
 import re
 import time
 from collections.abc import Callable
-from contextlib import ExitStack
 from html import unescape
-from types import TracebackType
 from typing import Any, Self
+
+import msgspec
+import viser
+import zstandard
+from websockets.sync.client import connect
+from websockets.typing import Origin, Subprotocol
 
 _RUN = re.compile(r'data-run="(\d+)"')
 _PICTURE = re.compile(r'data-number="(\d+)"')
 _PIECE = 512 * 1024
-_CAMERA = {
+CAMERA = {
     "type": "ViewerCameraMessage",
     "wxyz": [1, 0, 0, 0],
     "position": [3, 3, 3],
@@ -44,7 +49,6 @@ class Visitor:
     def __init__(self, port: int, session: str = "bench-session") -> None:
         self._address = f"ws://127.0.0.1:{port}/s/{session}"
         self._origin = f"http://127.0.0.1:{port}"
-        self._stack = ExitStack()
         self.controls: dict[str, dict[str, Any]] = {}
         """Newest control of each label, as the server described it."""
         self._held: dict[str, Any] = {}
@@ -58,27 +62,19 @@ class Visitor:
         """When the last byte of the newest run had come, by `time.perf_counter`."""
 
     def __enter__(self) -> Self:
-        import viser
-        from websockets.sync.client import connect
-        from websockets.typing import Origin, Subprotocol
-
-        self._socket = self._stack.enter_context(
-            connect(
-                self._address,
-                origin=Origin(self._origin),
-                subprotocols=[Subprotocol(f"viser-v{viser.__version__}")],
-                compression=None,
-                max_size=None,
-                close_timeout=1,
-            )
+        self._socket = connect(
+            self._address,
+            origin=Origin(self._origin),
+            subprotocols=[Subprotocol(f"viser-v{viser.__version__}")],
+            compression=None,
+            max_size=None,
+            close_timeout=1,
         )
-        self._send(_CAMERA)
+        self._send(CAMERA)
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._stack.close()
+    def __exit__(self, *_: object) -> None:
+        self._socket.close()
 
     def set(self, label: str, value: Any) -> float:
         """Set the control with this label; return when that was, by `time.perf_counter`."""
@@ -110,8 +106,6 @@ class Visitor:
     @property
     def metrics(self) -> dict[str, Any]:
         """Metrics that came with the newest run."""
-        import json
-
         return json.loads(unescape(self._told.partition(">")[2].removesuffix("</div>")))
 
     def wait_for_run(self, number: int) -> float:
@@ -147,14 +141,12 @@ class Visitor:
                 return
 
     def _send(self, message: dict[str, Any]) -> None:
-        import msgspec
-
         self._socket.send(msgspec.msgpack.encode(message))
 
     def _read(self, seconds: float) -> None:
         raw = self._socket.recv(timeout=seconds)
         came = time.perf_counter()
-        for message in _decoded(bytes(raw)):  # pyright: ignore[reportArgumentType]
+        for message in decoded(bytes(raw)):  # pyright: ignore[reportArgumentType]
             props = message.get("props") or message.get("updates") or {}
             if "label" in props and "uuid" in message and "props" in message:
                 self.controls[props["label"]] = message
@@ -172,11 +164,8 @@ class Visitor:
                 self.picture_number = int(number[1])
 
 
-def _decoded(raw: bytes) -> list[dict[str, Any]]:
-    """Undo viser's wire format: two lengths, then zstd-compressed msgpack."""
-    import msgspec
-    import zstandard
-
+def decoded(raw: bytes) -> list[dict[str, Any]]:
+    """Messages of a frame in viser's wire format: two lengths, then zstd-compressed msgpack."""
     packed = int.from_bytes(raw[8:16], "little")
     inner = zstandard.ZstdDecompressor().decompress(
         raw[16 : 16 + packed], max_output_size=int.from_bytes(raw[:8], "little")

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.error_model import day
+from app.bench.runs import day
 from navcore.design.measures import Setting, Ship
 from navcore.design.tune import tune
 from navcore.design.vary import changed, read_varied

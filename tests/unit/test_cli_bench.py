@@ -10,11 +10,10 @@ import sys
 import pytest
 
 from app.bench.dashboard import DESIGN, slider_to_frame_ms
-from app.bench.error_model import day
 from app.bench.process import Server
 from app.bench.rounds import median_ratio, timed_rounds
+from app.bench.runs import KALMAN, day, strapdown_day
 from app.bench.strapdown import YARDSTICK, measure_strapdown
-from app.bench.strapdown_day import KALMAN, strapdown_day
 from app.cli import main
 from app.cli.bench_text import bench_text
 
@@ -40,24 +39,20 @@ NUMBERS = {
 }
 
 
-def test_json_is_one_document_of_numbers(capsys, monkeypatch):
+def assert_told_in_words(numbers) -> None:
+    assert not [key for key in numbers if any(key in line for line in bench_text(numbers))]
+
+
+def test_numbers_are_one_document_or_lines_with_units_and_goals(capsys, monkeypatch):
     monkeypatch.setattr("app.bench.bench", lambda tell: NUMBERS)
     assert main(["bench", "--json"]) == 0
-    document = json.loads(capsys.readouterr().out)
-    assert document == {**NUMBERS, "error_model_24h_ms_per_method": 12.3457}
-
-
-def test_people_get_units_and_goals(capsys, monkeypatch):
-    monkeypatch.setattr("app.bench.bench", lambda tell: NUMBERS)
+    assert json.loads(capsys.readouterr().out) == NUMBERS | {"error_model_24h_ms_per_method": 12.3457}
     assert main(["bench"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 1 + len(NUMBERS)
     (start,) = (line for line in lines if "process start to page served" in line)
     assert "0.9" in start and "<= 1.5" in start
-
-
-def test_every_number_has_its_words():
-    assert not [key for key in NUMBERS if any(key in line for line in bench_text(NUMBERS))]
+    assert_told_in_words(NUMBERS)
 
 
 def test_a_dashboard_that_does_not_answer_is_one_line(capsys, monkeypatch):
@@ -69,23 +64,21 @@ def test_a_dashboard_that_does_not_answer_is_one_line(capsys, monkeypatch):
     assert capsys.readouterr().err == "bench: stopped: the dashboard served no page within 30 s\n"
 
 
-def test_the_day_is_damped_noisy_and_moving():
-    scenario = day(seed=1)
-    assert (scenario.run.duration_h, scenario.run.step_s, len(scenario.method)) == (24.0, 1.0, 3)
-    assert {method.damping for method in scenario.method} == {"external"}
+@pytest.mark.parametrize(
+    ("scenario", "methods", "motion", "step"),
+    [
+        (day(seed=1), ["external"] * 3, "legs", 1.0),
+        (strapdown_day(seed=1), ["external"] * 2, "swing", 0.01),
+        (strapdown_day(seed=1, methods=KALMAN), ["kalman"], "swing", 0.01),
+    ],
+    ids=["error model", "strapdown", "filter"],
+)
+def test_the_day_is_damped_noisy_and_moving(scenario, methods, motion, step):
+    assert [method.damping for method in scenario.method] == methods
     assert min(scenario.imu.gyro_arw_dpsh, scenario.imu.accel_vrw_ugpshz, scenario.reference.noise_mps) > 0.0
-    assert scenario.motion.kind == "legs"
-
-
-def test_the_strapdown_day_is_damped_noisy_and_moving():
-    scenario = strapdown_day(seed=1)
-    assert scenario.strapdown and len(scenario.method) == 2
-    assert (scenario.run.duration_h, scenario.run.rate_hz) == (24.0, 100.0)
-    assert min(scenario.imu.gyro_arw_dpsh, scenario.imu.accel_vrw_ugpshz, scenario.reference.noise_mps) > 0.0
-    assert scenario.motion.kind == "swing"
-    filtered = strapdown_day(seed=1, methods=KALMAN)
-    assert [method.damping for method in filtered.method] == ["kalman"]
-    assert filtered.imu == scenario.imu and filtered.reference == scenario.reference
+    run = scenario.run
+    assert (scenario.motion.kind, run.duration_h) == (motion, 24.0)
+    assert (1.0 / run.rate_hz if scenario.strapdown else run.step_s) == step
 
 
 def test_strapdown_gives_its_keys_and_with_a_yardstick_the_ratios(tmp_path, monkeypatch):
@@ -93,33 +86,22 @@ def test_strapdown_gives_its_keys_and_with_a_yardstick_the_ratios(tmp_path, monk
     plain = measure_strapdown(rounds=1, seconds=2)
     assert set(plain) == {key for key in NUMBERS if key.endswith(("_per_sample", "_per_sample_run"))}
     assert min(plain.values()) > 0.0
-    assert not [key for key in plain if any(key in line for line in bench_text(plain))]
     file = tmp_path / "yardstick.py"
     file.write_text("def quick(samples, repeats):\n    return 50.0 if repeats == 1 else None\n")
     monkeypatch.setenv(YARDSTICK, str(file))
-    with_ratios = measure_strapdown(rounds=1, seconds=2)
-    assert with_ratios["yardstick_ns_per_sample"] == pytest.approx(50.0)
-    for key in plain:
-        ratio = with_ratios[key.split("_ns_")[0] + "_to_yardstick"]
-        assert ratio == pytest.approx(with_ratios[key] / 50.0)
-    assert not [key for key in with_ratios if any(key in line for line in bench_text(with_ratios))]
+    numbers = measure_strapdown(rounds=1, seconds=2)
+    assert_told_in_words(numbers)
+    ratios = {f"{key.split('_ns_')[0]}_to_yardstick": numbers[key] / 50.0 for key in plain}
+    times = {key: numbers[key] for key in plain}
+    assert numbers == pytest.approx({**times, **ratios, "yardstick_ns_per_sample": 50.0})
     monkeypatch.setenv(YARDSTICK, str(tmp_path / "missing.py"))
     with pytest.raises(FileNotFoundError, match=r"no Python file: .*missing\.py"):
         measure_strapdown(rounds=1, seconds=2)
 
 
 def test_rounds_do_every_work_in_turn_and_leave_out_the_first():
-    seen: list[str] = []
-
-    def work(name: str, seconds: list[float]):
-        def once() -> float:
-            seen.append(name)
-            return seconds.pop(0)
-
-        return once
-
-    times = timed_rounds({"a": work("a", [9.0, 2.0, 6.0]), "b": work("b", [9.0, 1.0, 2.0])}, 2)
-    assert seen == ["a", "b"] * 3
+    seen = iter([9.0, 9.5, 2.0, 1.0, 6.0, 2.0])
+    times = timed_rounds({"a": lambda: next(seen), "b": lambda: next(seen)}, 2)
     assert times == {"a": [2.0, 6.0], "b": [1.0, 2.0]}
     assert median_ratio(times["a"], times["b"]) == 2.5
 
@@ -128,11 +110,10 @@ def test_rounds_do_every_work_in_turn_and_leave_out_the_first():
 def test_a_slider_is_answered_by_figures_of_a_running_server():
     with Server() as server:
         assert server.startup_s > 0.0
-        answers = slider_to_frame_ms(server.port, steps=3)
-        design = slider_to_frame_ms(server.port, DESIGN, steps=3)
+        answers = [slider_to_frame_ms(server.port, steps=3), slider_to_frame_ms(server.port, DESIGN, steps=3)]
         assert server.rss_mb() > 50.0
-    assert len(answers) == len(design) == 3
-    assert min(answers + design) > 1.0  # a run of 24 h and its figures cannot be there sooner
+    # A run of 24 h and its figures cannot be there sooner than in 1 ms.
+    assert [sum(answer > 1.0 for answer in part) for part in answers] == [3, 3]
 
 
 def test_a_compiled_yardstick_is_found_again_in_the_cache(tmp_path):
@@ -145,9 +126,11 @@ def test_a_compiled_yardstick_is_found_again_in_the_cache(tmp_path):
         "from app.bench.strapdown import _yardstick; from numba import config;"
         f"config.CACHE_DIR = {str(tmp_path / 'cache')!r}; print(_yardstick(10)())"
     )
-    environment = os.environ | {YARDSTICK: str(file)}
     for _ in range(2):
         ended = subprocess.run(
-            [sys.executable, "-c", program], env=environment, capture_output=True, text=True
+            [sys.executable, "-c", program],
+            env=os.environ | {YARDSTICK: str(file)},
+            capture_output=True,
+            text=True,
         )
         assert (ended.returncode, ended.stdout) == (0, "5e-07\n"), ended.stderr
