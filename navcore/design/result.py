@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Literal
 
 from navcore.design.figures import Entry, Series
 from navcore.design.floor import FLOOR_OF_ZERO
+
+if TYPE_CHECKING:
+    from plotly.graph_objects import Figure
 
 Shown = Literal["steady", "covariance", "seeds", "none"]
 
@@ -102,6 +106,10 @@ class Budget:
                 {**method.as_dict(), "times_floor": self.times_floor(method)} for method in self.methods
             ],
         }
+
+    def figure(self) -> Figure:
+        """Draw the bars of the tab Design, for a notebook, as `plotly.graph_objects.Figure`."""
+        return import_module("app.notebook").budget_bars(self)
 
     @property
     def floor_note(self) -> str:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from navcore.mechanization.recorder import Recorder
 from navcore.networks.base import LinearNetwork
 from navcore.scenario.model import Method, Scenario
 from navcore.scenario.sampling import Sampling
+
+if TYPE_CHECKING:
+    from plotly.graph_objects import Figure
 
 _DAMPED, _XI = 1, 2
 Status = Literal["ok", "diverged", "stopped"]
@@ -178,6 +182,28 @@ class Run:
         """Worst status of the methods."""
         states = {m.status for m in self.methods}
         return "stopped" if "stopped" in states else "diverged" if "diverged" in states else "ok"
+
+    def figure(self, name: str = "errors", **options: Any) -> Figure:
+        """Draw what the page shows of a run, for a notebook.
+
+        Parameters
+        ----------
+        name : {"errors", "switching", "spectrum", "bode", "nyquist", "poles", "step"}
+            What is drawn.
+        **options
+            Of that figure: ``group`` of the errors ("Overview", "Attitude", "Velocity", "Position"), ``key``
+            of the spectrum ("dve"), ``transfer_id`` of the Bode plots ("phi/dv_r").
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+
+        Raises
+        ------
+        InputError
+            There is no figure of this name, or nothing that it could show.
+        """
+        return import_module("app.notebook").run_figure(self, name, **options)
 
 
 def plot_series(recorder: Recorder, step_s: float) -> PlotSeries:

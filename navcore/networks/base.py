@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
@@ -22,6 +23,7 @@ from navcore.networks.transfer_function import transfer_function
 
 if TYPE_CHECKING:
     from control import TransferFunction
+    from plotly.graph_objects import Figure
 
     from navcore.networks.lqg import SensorFigures
     from navcore.networks.pair import MainPair, Placement
@@ -190,6 +192,29 @@ class NetworkParameters(Entry):
             These parameters make no network (field names relative to the network block).
         """
         raise NotImplementedError
+
+    def figure(self, name: str = "bode", lat_deg: float = 45.0, **options: Any) -> Figure:
+        """Draw what the page shows of a network that damps with a log, for a notebook.
+
+        Parameters
+        ----------
+        name : {"bode", "nyquist", "poles", "step"}
+            What is drawn.
+        lat_deg : float
+            Latitude, which gives the Schuler frequency, deg.
+        **options
+            Of that figure: ``transfer_id`` of the Bode plots ("phi/dv_r").
+
+        Returns
+        -------
+        plotly.graph_objects.Figure
+
+        Raises
+        ------
+        InputError
+            There is no figure of this name, or these parameters make no network.
+        """
+        return import_module("app.notebook").network_figure(self, name, lat_deg, **options)
 
     def damping_coefficient(self) -> float | None:
         """Return the parameter that sets the damping (xi or zeta); None where there is none."""

@@ -1,0 +1,86 @@
+"""The page's figures for a notebook, as `plotly.graph_objects.Figure`: behind `Run.figure` and the like."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from app.plots.plotly_data import Packed, PlotlyFigure
+from app.plots.time_figure import time_figure
+from app.views.design.figure import budget_figure
+from app.views.errors.figure import GROUPS, error_plots
+from app.views.frequency.figure import bode, nyquist
+from app.views.poles.figure import poles
+from app.views.spectrum.figure import spectrum
+from app.views.step.figure import step
+from app.views.switching.figure import switching_plots
+from navcore.design.budget import Budget
+from navcore.engine.run import Run
+from navcore.engine.simulation import simulate
+from navcore.foundation.errors import Fault, InputError
+from navcore.networks.base import NetworkParameters
+from navcore.scenario.model import Scenario
+
+if TYPE_CHECKING:
+    from plotly.graph_objects import Figure
+
+Maker = Callable[..., PlotlyFigure]
+WIDTH_PX = 940
+
+
+def _errors(run: Run, group: str = "Overview") -> PlotlyFigure:
+    plots = error_plots(run)
+    return time_figure([plots[key] for key in GROUPS[group]])
+
+
+def _switching(run: Run) -> PlotlyFigure:
+    plots = switching_plots(run)
+    if not plots:
+        raise InputError(Fault("", "figure", "switching", "no method of this run switches"))
+    return time_figure(plots)
+
+
+OF_NETWORK: dict[str, Maker] = {"bode": bode, "nyquist": nyquist, "poles": poles, "step": step}
+OF_RUN: dict[str, Maker] = {
+    "errors": _errors,
+    "switching": _switching,
+    "spectrum": spectrum,
+    **OF_NETWORK,
+}
+
+
+def run_figure(run: Run, name: str, **options: Any) -> Figure:
+    """Make a figure of a run; see `Run.figure`."""
+    return _made(OF_RUN, name, run, options)
+
+
+def network_figure(network: NetworkParameters, name: str, lat_deg: float, **options: Any) -> Figure:
+    """Make a figure of a network that damps with a log; see `NetworkParameters.figure`."""
+    damped = {"damping": "external", "network": network.model_dump(exclude_unset=False), "name": network.id}
+    data = {
+        "run": {"duration_h": 0.01},
+        "site": {"lat_deg": lat_deg},
+        "reference": {"kind": "log"},
+        "method": [damped],
+    }
+    return _made(OF_NETWORK, name, simulate(Scenario.parse(data)), options)
+
+
+def budget_bars(budget: Budget) -> Figure:
+    """Make the bars of an error budget; see `Budget.figure`."""
+    return _made({"budget": budget_figure}, "budget", budget, {})
+
+
+def _made(offered: dict[str, Maker], name: str, subject: Any, options: dict[str, Any]) -> Figure:
+    from plotly.graph_objects import Figure
+
+    if name not in offered:
+        raise InputError(Fault("", "figure", name, f"must be one of {', '.join(offered)}"))
+    figure = offered[name](subject, **options)
+    size = {"width": WIDTH_PX, "height": round(WIDTH_PX * figure.aspect)}
+    return Figure(data=[_in_full(trace) for trace in figure["data"]], layout=figure["layout"] | size)
+
+
+def _in_full(trace: dict[str, Any]) -> dict[str, Any]:
+    """Give a trace with its packed arrays as numbers."""
+    return {key: value.full if isinstance(value, Packed) else value for key, value in trace.items()}
