@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from importlib.metadata import Distribution
@@ -23,7 +24,9 @@ assert len(parse_network('id = "unity2"').figure("bode").data)
 
 def command(*arguments: str | Path, cwd: Path) -> str:
     """Run a program; return what it prints."""
-    ended = subprocess.run([str(a) for a in arguments], cwd=cwd, capture_output=True, text=True, check=False)
+    clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    line = [str(argument) for argument in arguments]
+    ended = subprocess.run(line, cwd=cwd, env=clean, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stdout[-5000:] + ended.stderr[-5000:]
     return ended.stdout
 

@@ -30,13 +30,12 @@ def test_notebook_runs(path: Path, monkeypatch: pytest.MonkeyPatch):
     shown: list[Any] = []
     for number, cell in enumerate(code_cells(path), start=1):
         body = ast.parse("".join(cell["source"]), f"{path.name}, code cell {number}").body
-        last = (
-            ast.Expression(body.pop().value)
-            if isinstance(body[-1], ast.Expr)
-            else ast.parse("None", mode="eval")
-        )
+        last = body.pop()
         exec(compile(ast.Module(body, []), path.name, "exec"), names)
-        shown.append(eval(compile(last, path.name, "eval"), names))
+        if isinstance(last, ast.Expr):
+            shown.append(eval(compile(ast.Expression(last.value), path.name, "eval"), names))
+        else:
+            exec(compile(ast.Module([last], []), path.name, "exec"), names)
     assert any(isinstance(value, go.Figure) for value in shown)
 
 
