@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import pytest
@@ -21,6 +21,7 @@ class Bench:
 
     server: DashboardServer
     handles: dict[str, dict[str, Any]]
+    """Controls of each session, by label."""
     events: list[tuple[Any, ...]]
 
     @property
@@ -33,14 +34,14 @@ class Bench:
         return self.handles[session]
 
 
-@dataclass
-class Recorder:
-    handles: dict[str, dict[str, Any]] = field(default_factory=dict)
-    events: list[tuple[Any, ...]] = field(default_factory=list)
+@contextmanager
+def running(**options: Any) -> Iterator[Bench]:
+    handles: dict[str, dict[str, Any]] = {}
+    events: list[tuple[Any, ...]] = []
 
-    def connected(self, client: viser.ClientHandle, session: str) -> None:
+    def connected(client: viser.ClientHandle, session: str) -> None:
         gui = client.gui
-        handles = {
+        own: dict[str, Any] = {
             "gain": gui.add_slider("gain", 0.0, 1.0, 0.1, 0.5),
             "count": gui.add_number("count", 3),
             "network": gui.add_dropdown("network", ("compass", "pole2")),
@@ -51,30 +52,20 @@ class Recorder:
             "log": gui.add_upload_button("log"),
             "last": gui.add_button("last"),
         }
-        for label, handle in handles.items():
-            attach = (
-                handle.on_click
-                if label == "last"
-                else handle.on_upload
-                if label == "log"
-                else handle.on_update
-            )
-            attach(lambda event, label=label: self.events.append((label, event.target.value)))
-        self.handles[session] = handles
-        self.events.append(("connect", session))
+        for label, handle in own.items():
+            attach = {"last": "on_click", "log": "on_upload"}.get(label, "on_update")
+            getattr(handle, attach)(lambda event, label=label: events.append((label, event.target.value)))
+        handles[session] = own
+        events.append(("connect", session))
 
-    def disconnected(self, client: viser.ClientHandle, session: str) -> None:
-        self.events.append(("disconnect", session))
+    def disconnected(client: viser.ClientHandle, session: str) -> None:
+        events.append(("disconnect", session))
 
-
-@contextmanager
-def running(**options: Any) -> Iterator[Bench]:
-    recorder = Recorder()
-    # The tests name their sessions themselves; test_ids.py attacks with the ids that servers accept.
+    # The tests name their sessions themselves; test_doors.py attacks with the ids that servers accept.
     options = {"session_ids": SessionIds(known=lambda _: True)} | options
-    server = start(port=0, on_connect=recorder.connected, on_disconnect=recorder.disconnected, **options)
+    server = start(port=0, on_connect=connected, on_disconnect=disconnected, **options)
     try:
-        yield Bench(server, recorder.handles, recorder.events)
+        yield Bench(server, handles, events)
     finally:
         server.stop()
 

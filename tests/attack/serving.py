@@ -63,15 +63,21 @@ class Entry:
         return f"| {number} | {self.what} | {self.wanted} | {ours} | {met} | {shown} |\n"
 
     def _of_test(self, record: dict[str, Any]) -> tuple[dict[str, float], str, str]:
-        found = record["tests"].get(self.test, {"outcome": "not run", "figures": {}})
-        met = {"passed": "yes", "failed": "**no**"}.get(found["outcome"], "not run")
-        return found["figures"], met, f"`{self.test}`"
+        result = record["tests"].get(self.test, {"outcome": "not run", "figures": {}})
+        met = {"passed": "yes", "failed": "**no**"}.get(result["outcome"], "not run")
+        return result["figures"], met, f"`{self.test}`"
 
     def _of_soak(self, record: dict[str, Any]) -> tuple[dict[str, float], str, str]:
         lines = {line["key"]: line for line in record["soak"]["rows"]}
         met = "yes" if all(lines.get(key, {}).get("met") for key in self.soak) else "**no**"
         shown = "`make soak`: " + ", ".join(f"`{key}`" for key in self.soak)
         return {key: line["measured"] for key, line in lines.items()}, met, shown
+
+
+def machine() -> str:
+    """Cores, load, Python and date."""
+    load, day = os.getloadavg()[0], time.strftime("%Y-%m-%d", time.gmtime())
+    return f"{os.cpu_count()} cores, load {load:.1f} before, Python {platform.python_version()}, {day}"
 
 
 def entries() -> list[Entry]:
@@ -137,12 +143,8 @@ def main() -> int:
     if arguments.soak.exists():
         record["soak"] = json.loads(arguments.soak.read_text("utf-8"))
     if not arguments.table:
-        load = os.getloadavg()[0]
+        record["circumstances"] = machine()
         record["tests"] = measure([row.test for row in rows if row.test])
-        record["circumstances"] = (
-            f"{os.cpu_count()} cores, load {load:.1f} before they began, Python {platform.python_version()}, "
-            f"{time.strftime('%Y-%m-%d', time.gmtime())}"
-        )
     RECORD.write_text(json.dumps(record, indent=1, sort_keys=True) + "\n", "utf-8")
     written = table(rows, record)
     PAGE.write_text(with_table(PAGE.read_text("utf-8"), written), "utf-8")

@@ -15,15 +15,15 @@ import argparse
 import json
 import math
 import os
-import platform
 import queue
 import signal
 import statistics
 import sys
 import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
-from functools import partial
 from pathlib import Path
 
 from app.bench.process import Server
@@ -40,6 +40,7 @@ from tests.attack.load import (
     long_under_way,
     pausing,
 )
+from tests.attack.serving import machine
 
 BESIDE_S = 30.0
 _BESIDE_PAUSE_S = (0.3, 0.8)
@@ -76,9 +77,8 @@ class Row:
     @property
     def met(self) -> bool:
         """Whether it is where it is to be."""
-        return (self.most is None or self.measured <= self.most) and (
-            self.least is None or self.measured >= self.least
-        )
+        above = self.least is not None and self.measured < self.least
+        return not above and (self.most is None or self.measured <= self.most)
 
     @property
     def line(self) -> str:
@@ -88,50 +88,58 @@ class Row:
         return f"| {self.what:<62} | {self.measured:>10.4g} | {self.unit:<8} | {wanted:>8} | {verdict:<6} |"
 
 
+def counted(key: str, what: str, count: float) -> Row:
+    """Line of what must not happen even once."""
+    return Row(key, what, count, "", most=0, strict=True)
+
+
 HEAD = (
     f"| {'what':<62} | {'measured':>10} | {'unit':<8} | {'wanted':>8} | {'':<6} |",
     f"|{'-' * 64}|{'-' * 11}:|{'-' * 10}|{'-' * 9}:|{'-' * 8}|",
 )
 
 
-class Memory(threading.Thread):
-    """Notes the server's memory every few seconds."""
+@contextmanager
+def memory_noted(server: Server, every_s: float = 5.0) -> Iterator[list[float]]:
+    """Server's memory every few seconds, MB."""
+    notes: list[float] = []
+    ended = threading.Event()
 
-    def __init__(self, server: Server, every_s: float = 5.0) -> None:
-        super().__init__(daemon=True)
-        self._server, self._every_s = server, every_s
-        self.ended = threading.Event()
-        self.mb: list[float] = []
+    def note() -> None:
+        while not ended.wait(every_s):
+            notes.append(server.rss_mb())
 
-    def run(self) -> None:
-        while not self.ended.wait(self._every_s):
-            self.mb.append(self._server.rss_mb())
+    thread = threading.Thread(target=note, daemon=True)
+    thread.start()
+    try:
+        yield notes
+    finally:
+        ended.set()
+        thread.join()
 
-    def growth_mb(self) -> float:
-        """Median of the last tenth less the median of the tenth after the first third."""
-        third, tenth = len(self.mb) // 3, max(1, len(self.mb) // 10)
-        if len(self.mb) < 6:
-            return math.nan
-        return statistics.median(self.mb[-tenth:]) - statistics.median(self.mb[third : third + tenth])
+
+def growth_mb(notes: list[float]) -> float:
+    """Median of the last tenth less the median of the tenth after the first third."""
+    third, tenth = len(notes) // 3, max(1, len(notes) // 10)
+    if len(notes) < 6:
+        return math.nan
+    return statistics.median(notes[-tenth:]) - statistics.median(notes[third : third + tenth])
 
 
 def answers(key: str, name: str, seen: Seen, p95_ms: float | None) -> list[Row]:
     """Rows of what some visitors saw."""
-    slowest_ms, rate = (
-        1e3 * max(seen.answers_s, default=math.inf),
-        len(seen.answers_s) / max(seen.seconds, 1e-9),
-    )
-    compared = f"{name}: answers of somebody else's run, of {seen.compared}"
-    recomputed = f"{name}: other numbers than run here, of {seen.recomputed}"
+    counts, number = seen.counts, len(seen.answers_s)
+    strangers = f"{name}: answers of somebody else's run, of {counts['compared']}"
+    others = f"{name}: other numbers than run here, of {counts['recomputed']}"
     return [
-        Row(f"{key}_answers", f"{name}: answers", len(seen.answers_s), "", least=1, strict=True),
-        Row(f"{key}_rate", f"{name}: answers a second", rate, "1/s"),
+        Row(f"{key}_answers", f"{name}: answers", number, "", least=1, strict=True),
+        Row(f"{key}_rate", f"{name}: answers a second", number / max(seen.seconds, 1e-9), "1/s"),
         Row(f"{key}_p50", f"{name}: median", seen.quantile_ms(50), "ms"),
         Row(f"{key}_p95", f"{name}: 95th percentile", seen.quantile_ms(95), "ms", most=p95_ms),
-        Row(f"{key}_slowest", f"{name}: slowest", slowest_ms, "ms"),
-        Row(f"{key}_lost", f"{name}: moves without an answer", seen.lost, "", most=0, strict=True),
-        Row(f"{key}_wrong", compared, seen.wrong, "", most=0, strict=True),
-        Row(f"{key}_other", recomputed, seen.other_numbers, "", most=0, strict=True),
+        Row(f"{key}_slowest", f"{name}: slowest", 1e3 * max(seen.answers_s, default=math.inf), "ms"),
+        counted(f"{key}_lost", f"{name}: moves without an answer", counts["lost"]),
+        counted(f"{key}_wrong", strangers, counts["wrong"]),
+        counted(f"{key}_other", others, counts["other"]),
     ]
 
 
@@ -139,36 +147,40 @@ def lecture(server: Server, arguments: argparse.Namespace) -> list[Row]:
     """Everybody at once, for the whole time."""
     order = Order(server.port, 60.0 * arguments.minutes, (arguments.shortest, arguments.longest))
     before_mb, began = server.rss_mb(), []
-    memory = Memory(server)
-
-    def ready() -> None:
-        began.append(server.cpu_s())
-        memory.start()
-
     people = arguments.clients - arguments.browsers
-    seen, browsers = crowds(order, people, arguments.browsers, ready=ready)
-    memory.ended.set()
+    with memory_noted(server) as notes:
+
+        def ready() -> None:
+            notes.clear()
+            began.append(server.cpu_s())
+
+        seen, browsers = crowds(order, people, arguments.browsers, ready=ready)
     cpu_ms = 1e3 * (server.cpu_s() - began[0]) / max(1, len(seen.answers_s) + len(browsers.answers_s))
     rows = answers("lecture", f"{people} visitors", seen, 500.0)
     if arguments.browsers:
         rows += answers("browsers", f"{arguments.browsers} browsers", browsers, None)
-    most_mb = max(memory.mb or [before_mb])
-    for_each = (most_mb - before_mb) / arguments.clients
-    rows += [
+    most_mb, growth = max(notes or [before_mb]), "memory: growth after the first third"
+    time.sleep(arguments.rest)
+    left = f"memory for each, {arguments.rest:g} s after all have left"
+    left_mb = (server.rss_mb() - before_mb) / arguments.clients
+    each_mb = (most_mb - before_mb) / arguments.clients
+    return [
+        *rows,
         Row("lecture_cpu", "processor time of an answer, everything included", cpu_ms, "ms"),
         Row("before_mb", "memory before the visitors", before_mb, "MB"),
-        Row("each_mb", "memory for each visitor, at most", for_each, "MB", most=25.0),
-        Row(
-            "growth_mb", "memory: growth after the first third", memory.growth_mb(), "MB", most=0.1 * most_mb
-        ),
+        Row("each_mb", "memory for each visitor, at most", each_mb, "MB", most=25.0),
+        Row("growth_mb", growth, growth_mb(notes), "MB", most=0.1 * most_mb),
+        Row("left_mb", left, left_mb, "MB", most=5.0),
     ]
-    time.sleep(arguments.rest)
-    left = (server.rss_mb() - before_mb) / arguments.clients
-    said = f"memory for each, {arguments.rest:g} s after all have left"
-    return [*rows, Row("left_mb", said, left, "MB", most=5.0)]
 
 
-def cost(server: Server) -> list[Row]:
+def alone(server: Server, _: argparse.Namespace) -> list[Row]:
+    """One visitor."""
+    seen = beside(Order(server.port, BESIDE_S, (0.5, 2.0)), None, 0, 0.0, 700_000)
+    return answers("alone", "one visitor alone", seen, None)
+
+
+def cost(server: Server, _: argparse.Namespace) -> list[Row]:
     """Processor time of one answer, and how many a server gives."""
     drag_ms, pause_ms = dragging(server.port, server.cpu_s, 8.0), pausing(server.port, server.cpu_s, 6)
     busy, _ = crowds(Order(server.port, BESIDE_S, (0.0, 0.0), check=False), 10, first=500_000)
@@ -184,36 +196,29 @@ def fairness(server: Server, arguments: argparse.Namespace) -> list[Row]:
     """One visitor beside those who take what they can, and the same visitor alone just before."""
     order = Order(server.port, BESIDE_S, _BESIDE_PAUSE_S, check=False)
     attacks = [
-        ("slider_flood", "one who floods a slider", flood_of_a_slider, 1),
-        ("command_flood", "one who floods commands", flood_of_commands, 1),
+        ("slider_flood", "one who floods a slider", flood_of_a_slider, 1, 8.0),
+        ("command_flood", "one who floods commands", flood_of_commands, 1, 8.0),
     ]
     if arguments.long:
-        processes = arguments.long // _LONG_PER_PROCESS
-        attacks.append(("long_runs", f"{arguments.long} long runs", long_runs, processes))
+        processes, settle_s = arguments.long // _LONG_PER_PROCESS, 8.0 + 0.25 * arguments.long
+        attacks.append(("long_runs", f"{arguments.long} long runs", long_runs, processes, settle_s))
     rows = []
-    for number, (key, name, attack, processes) in enumerate(attacks):
+    for number, (key, name, attack, processes, settle_s) in enumerate(attacks):
         first = 600_000 + 20_000 * number
-        alone = beside(order, None, 0, 0.0, first)
-        settle_s = 8.0 + 0.25 * arguments.long * (attack is long_runs)
+        by_itself = beside(order, None, 0, 0.0, first)
         under_way: list[float] = []
-        ready = partial(_count_long, server.port, under_way)
+        ready = lambda counts=under_way: counts.append(long_under_way(server.port))  # noqa: E731
         seen = beside(order, attack, processes, settle_s, first + 10_000, ready)
-        for hundredth in (50, 95):
-            own, other = alone.quantile_ms(hundredth), seen.quantile_ms(hundredth)
-            which = "median" if hundredth == 50 else "95th percentile"
-            said = f"beside {name}: {which} {other:.0f} ms, times alone"
-            rows.append(Row(f"{key}_p{hundredth}", said, other / own, "", most=2.0))
-        said = f"beside {name}: moves without an answer"
-        rows.append(Row(f"{key}_lost", said, seen.lost, "", most=0, strict=True))
+        for hundredth, which in ((50, "median"), (95, "95th percentile")):
+            own, other = by_itself.quantile_ms(hundredth), seen.quantile_ms(hundredth)
+            what = f"beside {name}: {which} {other:.0f} ms, times alone"
+            rows.append(Row(f"{key}_p{hundredth}", what, other / own, "", most=2.0))
+        rows.append(counted(f"{key}_lost", f"beside {name}: moves without an answer", seen.counts["lost"]))
         if attack is long_runs:
-            said, least = f"of {arguments.long} long runs, under way or waiting", 0.9 * arguments.long
-            rows.append(Row(f"{key}_count", said, under_way[0], "", None, least, strict=True))
+            what, least = f"of {arguments.long} long runs, under way or waiting", 0.9 * arguments.long
+            rows.append(Row(f"{key}_count", what, under_way[0], "", None, least, strict=True))
         time.sleep(3.0)
     return rows
-
-
-def _count_long(port: int, counts: list[float]) -> None:
-    counts.append(long_under_way(port))
 
 
 def coming_and_going(server: Server, arguments: argparse.Namespace) -> list[Row]:
@@ -221,10 +226,9 @@ def coming_and_going(server: Server, arguments: argparse.Namespace) -> list[Row]
     before_mb = server.rss_mb()
     connects(server.port, arguments.connects)
     time.sleep(arguments.rest)
-    grown = server.rss_mb() - before_mb
-    said = f"memory: growth by {arguments.connects} visitors who came and left"
+    what = f"memory: growth by {arguments.connects} visitors who came and left"
     return [
-        Row("connects_mb", said, grown, "MB", most=100.0),
+        Row("connects_mb", what, server.rss_mb() - before_mb, "MB", most=100.0),
         Row("connects_threads", "threads of the server then", server.threads(), "", most=64.0),
     ]
 
@@ -232,65 +236,51 @@ def coming_and_going(server: Server, arguments: argparse.Namespace) -> list[Row]
 def measure(arguments: argparse.Namespace) -> list[Row]:
     """All rows; each part is told as it ends."""
     rows: list[Row] = []
+    print("\n".join(HEAD), flush=True)
     with Server(arguments.workers) as server:
         time.sleep(5.0)  # the kernels are loaded behind the first page
-        parts = [
-            lambda: answers(
-                "alone",
-                "one visitor alone",
-                beside(Order(server.port, BESIDE_S, (0.5, 2.0)), None, 0, 0.0, 700_000),
-                None,
-            ),
-            lambda: cost(server),
-            lambda: lecture(server, arguments),
-            lambda: fairness(server, arguments),
-            lambda: coming_and_going(server, arguments),
-        ]
-        for part in parts:
+        for part in (alone, cost, lecture, fairness, coming_and_going):
             try:
-                made = part()
+                fresh = part(server, arguments)
             except (TimeoutError, threading.BrokenBarrierError, queue.Empty, OSError) as error:
-                said = f"not ended: {type(error).__name__}: {error}"[:62]
-                made = [Row("not_ended", said, 1.0, "", most=0.0, strict=True)]
-            rows += made
-            if rows == made:
-                print("\n".join(HEAD), flush=True)
-            for row in made:
-                print(row.line, flush=True)
+                fresh = [counted("not_ended", f"not ended: {type(error).__name__}: {error}"[:62], 1.0)]
+            rows += fresh
+            print("\n".join(row.line for row in fresh), flush=True)
     return rows
 
 
-def told_of_machine(arguments: argparse.Namespace) -> str:
-    """What was measured, where and when, in one line."""
-    load = os.getloadavg()[0]
+def circumstances_of(arguments: argparse.Namespace) -> str:
+    """What is measured, where and when, in one line."""
     return (
         f"{arguments.clients} visitors, {arguments.browsers} of them browsers, {arguments.minutes:g} min; "
         f"{arguments.workers} server process{'es' * (arguments.workers > 1)}; "
-        f"{os.cpu_count()} cores, load {load:.1f} before it began, Python {platform.python_version()}, "
-        f"{time.strftime('%Y-%m-%d', time.gmtime())}"
+        f"{machine()}"
     )
 
 
-def main() -> int:
-    """Measure and print the table; 1 when an answer was lost or belonged to somebody else."""
+def main() -> None:
+    """Measure and print the table; exit with 1 when an answer was lost or belonged to somebody else."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--clients", type=int, default=30)
-    parser.add_argument("--browsers", type=int, default=3, help="how many of them are headless Chromium")
-    parser.add_argument("--minutes", type=float, default=3.0)
-    parser.add_argument("--workers", type=int, default=1, help="as of schuler serve")
-    parser.add_argument("--shortest", type=float, default=0.5, help="pause between two moves, s")
-    parser.add_argument("--longest", type=float, default=2.0)
-    parser.add_argument("--long", type=int, default=40, help="visitors with a long run each; 0: none")
-    parser.add_argument("--connects", type=int, default=400)
-    parser.add_argument("--rest", type=float, default=20.0, help="pause after all have left, s")
+    for name, value, about in (
+        ("--clients", 30, "visitors of the lecture"),
+        ("--browsers", 3, "how many of them are headless Chromium"),
+        ("--minutes", 3.0, "length of the lecture"),
+        ("--workers", 1, "as of schuler serve"),
+        ("--shortest", 0.5, "pause between two moves, s"),
+        ("--longest", 2.0, "the same"),
+        ("--long", 40, "visitors with a long run each; 0: none"),
+        ("--connects", 400, "visitors who come and leave"),
+        ("--rest", 20.0, "pause after all have left, s"),
+    ):
+        parser.add_argument(name, type=type(value), default=value, help=about)
     parser.add_argument("--json", type=Path, help="file for the rows")
     arguments = parser.parse_args()
-    signal.signal(signal.SIGTERM, _end)
-    until_s = 60.0 * arguments.minutes + 1500.0
-    alarm = threading.Timer(until_s, _give_up, [until_s])
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(3))  # the way that ends server and visitors too
+    patience_s = 60.0 * arguments.minutes + 1500.0
+    alarm = threading.Timer(patience_s, _give_up, [patience_s])
     alarm.daemon = True
     alarm.start()
-    began, circumstances = time.monotonic(), told_of_machine(arguments)
+    began, circumstances = time.monotonic(), circumstances_of(arguments)
     print(f"{circumstances}\n", flush=True)
     rows = measure(arguments)
     missed, took_s = [row.what for row in rows if not row.met], time.monotonic() - began
@@ -308,11 +298,5 @@ def _give_up(after_s: float) -> None:
     os.kill(os.getpid(), signal.SIGTERM)
 
 
-def _end(number: int, frame: object) -> None:
-    """Leave by the way that ends the server and the visitors too."""
-    del number, frame
-    sys.exit(3)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -5,85 +5,87 @@ from __future__ import annotations
 import socket
 import threading
 import time
-from collections.abc import Callable
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 
 import pytest
 
 from app.http.limits import MIB, Limits
-from tests.attack.conftest import TOKEN, eventually, running
-from tests.attack.wire import SESSION, Visitor, ask, shake_hands, visit
+from tests.attack.conftest import TOKEN, Bench, eventually, running
+from tests.attack.wire import SESSION, UPGRADE, ask, shake_hands, statuses, upload, visit
 
 pytestmark = pytest.mark.attack
 
 
+@contextmanager
+def crowded(**limits: object) -> Iterator[tuple[Bench, ExitStack]]:
+    """A server with these limits, and a crowd that leaves at the end."""
+    with running(limits=Limits(**limits)) as bench, ExitStack() as crowd:
+        yield bench, crowd
+
+
 def test_visitors_beyond_the_limit_are_told() -> None:
-    with running(limits=Limits(visitors=5)) as bench:
-        with ExitStack() as crowd:
-            for number in range(5):
-                crowd.enter_context(visit(bench.port, f"visitor-{number}"))
-            assert shake_hands(bench.port).status == 503
-            page = ask(bench.port, f"/s/{SESSION}/")
-            assert page.status == 503 and b"All places are taken" in page.body
-            assert page.headers["Retry-After"] and page.headers["X-Frame-Options"] == "DENY"
-            assert ask(bench.port, "/healthz").status == 200
+    with crowded(visitors=5) as (bench, crowd):
+        for number in range(5):
+            crowd.enter_context(visit(bench.port, f"visitor-{number}"))
+        assert shake_hands(bench.port).status == 503
+        page = ask(bench.port, f"/s/{SESSION}/")
+        assert page.status == 503 and b"All places are taken" in page.body
+        assert page.headers["Retry-After"] and page.headers["X-Frame-Options"] == "DENY"
+        assert ask(bench.port, "/healthz").status == 200
+        crowd.close()
         eventually(lambda: ask(bench.port, f"/s/{SESSION}/").status == 200)
 
 
 def test_silent_sockets_keep_nobody_out() -> None:
-    with running(limits=Limits(half_open=40)) as bench, ExitStack() as crowd:
-        with visit(bench.port, "already-there") as visitor:
-            visitor.control("last")
-            silent = [
-                crowd.enter_context(socket.create_connection(("127.0.0.1", bench.port))) for _ in range(200)
-            ]
-            # The oldest are told and closed; whoever asks for something gets it.
-            told = [s for s in silent[:160] if s.recv(100).startswith(b"HTTP/1.1 503")]
-            assert len(told) == 160
-            assert ask(bench.port, "/healthz").status == 200
-            assert shake_hands(bench.port).status == 101
-            visitor.set(visitor.control("gain"), 0.9)
-            eventually(lambda: bench.of("already-there")["gain"].value == 0.9)
+    with crowded(half_open=40) as (bench, crowd), visit(bench.port, "already-there") as visitor:
+        gain = visitor.control("gain")
+        silent = [
+            crowd.enter_context(socket.create_connection(("127.0.0.1", bench.port))) for _ in range(200)
+        ]
+        # The oldest are told and closed; whoever asks for something gets it.
+        assert {one.recv(100)[:12] for one in silent[:160]} == {b"HTTP/1.1 503"}
+        assert ask(bench.port, "/healthz").status == 200
+        assert shake_hands(bench.port).status == 101
+        visitor.set(gain, 0.9)
+        eventually(lambda: bench.of("already-there")["gain"].value == 0.9)
 
 
 def test_renewed_sockets_do_not_stop_health_and_page(record_property: Callable[[str, object], None]) -> None:
     """260 sockets without a request, each opened anew as soon as it is closed."""
-    with running() as bench:
+    with crowded() as (bench, crowd):
         ended = threading.Event()
 
         def renew() -> None:
-            held: list[socket.socket] = []
-            while not ended.is_set():
-                try:
-                    held.append(socket.create_connection(("127.0.0.1", bench.port), timeout=1))
-                except OSError:
-                    continue
-                if len(held) > 65:
-                    held.pop(0).close()
-            for one in held:
-                one.close()
+            with ExitStack() as closing:
+                held: list[socket.socket] = []
+                while not ended.is_set():
+                    try:
+                        held.append(socket.create_connection(("127.0.0.1", bench.port), timeout=1))
+                    except OSError:
+                        continue
+                    closing.callback(held[-1].close)
+                    if len(held) > 65:
+                        held.pop(0).close()
 
         attackers = [threading.Thread(target=renew) for _ in range(4)]
         for one in attackers:
             one.start()
-        try:
-            time.sleep(0.3)
-            slowest_s = 0.0
-            for _ in range(10):
-                began = time.monotonic()
-                assert ask(bench.port, "/healthz").status == 200
-                slowest_s = max(slowest_s, time.monotonic() - began)
-                assert ask(bench.port, "/").status == 302
-                assert shake_hands(bench.port).status == 101
-            record_property("health_s", slowest_s)
-        finally:
-            ended.set()
-            for one in attackers:
-                one.join()
+            crowd.callback(one.join)
+        crowd.callback(ended.set)
+        time.sleep(0.3)
+        slowest_s = 0.0
+        for _ in range(10):
+            began = time.monotonic()
+            assert ask(bench.port, "/healthz").status == 200
+            slowest_s = max(slowest_s, time.monotonic() - began)
+            assert ask(bench.port, "/").status == 302
+            assert shake_hands(bench.port).status == 101
+        record_property("health_s", slowest_s)
 
 
 def test_an_idle_page_gives_up_its_place_and_comes_back() -> None:
-    with running(limits=Limits(visitors=3, idle_s=0.2)) as bench, ExitStack() as crowd:
+    with crowded(visitors=3, idle_s=0.2) as (bench, crowd):
         idle = [crowd.enter_context(visit(bench.port, f"idle-page-{number}")) for number in range(3)]
         for page in idle:
             page.control("last")
@@ -103,50 +105,34 @@ def test_an_idle_page_gives_up_its_place_and_comes_back() -> None:
 
 
 def test_a_page_that_is_used_keeps_its_place() -> None:
-    with running(limits=Limits(visitors=1, idle_s=30.0)) as bench, visit(bench.port, "in-use-1") as page:
+    with crowded(visitors=1, idle_s=30.0) as (bench, _), visit(bench.port, "in-use-1") as page:
         page.control("last")
-        assert ask(bench.port, "/s/newcomer-2/").status == 503
-        assert shake_hands(bench.port, "/s/newcomer-2").status == 503
+        assert statuses(bench.port, "/s/newcomer-2/") == (503, 503)
         page.set(page.control("gain"), 0.9)
         eventually(lambda: bench.of("in-use-1")["gain"].value == 0.9)
 
 
 def test_one_address_leaves_places_to_others() -> None:
-    with running(limits=Limits(visitors=10, pages_per_address=2)) as bench, ExitStack() as crowd:
+    with crowded(visitors=10, pages_per_address=2) as (bench, crowd):
         for number in range(2):
             crowd.enter_context(visit(bench.port, f"neighbour-{number}"))
         assert shake_hands(bench.port).status == 503
 
 
 def test_unfinished_uploads_of_all_together_are_bounded_and_released() -> None:
-    limits = Limits(upload_bytes=MIB, all_uploads_bytes=3 * MIB, upload_stall_s=0.3)
-    with running(limits=limits) as bench, ExitStack() as crowd:
+    limits = {"upload_bytes": MIB, "all_uploads_bytes": 3 * MIB, "upload_stall_s": 0.3}
+    with crowded(**limits) as (bench, crowd):
         pages = [crowd.enter_context(visit(bench.port, f"uploader-{number}")) for number in range(4)]
         for number, page in enumerate(pages[:3]):
-            announce(page, f"t{number}")
-        pages[2].wait_for(lambda m: m["type"] == "FileTransferPartAck")
-        announce(pages[3], "t3", wait=False)
+            upload(page, "log", f"t{number}", [b"x" * 1000], size=MIB)
+            page.wait_for(lambda m: m["type"] == "FileTransferPartAck")
+        upload(pages[3], "log", "t3", [], size=MIB)
         assert "other visitors" in pages[3].notice()
         time.sleep(0.4)
-        announce(pages[3], "t4")
+        upload(pages[3], "log", "t4", [b"x" * 1000], size=MIB)
+        pages[3].wait_for(lambda m: m["type"] == "FileTransferPartAck" and m["transfer_uuid"] == "t4")
         states = [c.gui._current_file_upload_states for c in bench.server.viser.get_clients().values()]
-        assert sum(len(state) for state in states) == 1
-
-
-def announce(page: Visitor, transfer: str, wait: bool = True) -> None:
-    log = page.control("log")
-    common = {"source_component_uuid": log, "transfer_uuid": transfer}
-    page.send(
-        type="FileTransferStartUpload",
-        **common,
-        filename="x",
-        mime_type="",
-        part_count=2,
-        size_bytes=MIB,
-    )
-    if wait:
-        page.send(type="FileTransferPart", **common, part_index=0, content=b"x" * 1000)
-        page.wait_for(lambda m: m["type"] == "FileTransferPartAck" and m["transfer_uuid"] == transfer)
+        assert sum(map(len, states)) == 1
 
 
 def test_wrong_tokens_are_slowed_down() -> None:
@@ -163,23 +149,20 @@ def test_wrong_tokens_are_slowed_down() -> None:
 
 
 def test_a_page_that_never_reads_is_dropped() -> None:
-    with running(limits=Limits(ping_s=0.3)) as bench:
-        request = (
-            f"GET /s/{SESSION} HTTP/1.1\r\nHost: 127.0.0.1:{bench.port}\r\nUpgrade: websocket\r\n"
-            "Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: viser-v1.1.1\r\n"
-            "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
-        )
-        with socket.create_connection(("127.0.0.1", bench.port)) as deaf:
-            deaf.sendall(request.encode())
-            places = bench.server.viser._websock_server._live_connections
-            eventually(lambda: len(places) == 1)
-            for _ in range(50):
-                bench.server.viser.gui.add_markdown("x" * 100_000)
-            eventually(lambda: len(places) == 0)
+    with crowded(ping_s=0.3) as (bench, crowd):
+        head = {"Host": f"127.0.0.1:{bench.port}"} | UPGRADE
+        lines = [f"GET /s/{SESSION} HTTP/1.1", *(f"{name}: {value}" for name, value in head.items())]
+        deaf = crowd.enter_context(socket.create_connection(("127.0.0.1", bench.port)))
+        deaf.sendall("\r\n".join([*lines, "", ""]).encode())
+        places = bench.server.viser._websock_server._live_connections
+        eventually(lambda: len(places) == 1)
+        for _ in range(50):
+            bench.server.viser.gui.add_markdown("x" * 100_000)
+        eventually(lambda: len(places) == 0)
 
 
 def test_a_flood_is_slowed_not_lost() -> None:
-    with running(limits=Limits(frames_per_second=50)) as bench, visit(bench.port, "the-flooder") as visitor:
+    with crowded(frames_per_second=50) as (bench, _), visit(bench.port, "the-flooder") as visitor:
         gain, last = visitor.control("gain"), visitor.control("last")
         started = time.monotonic()
         for number in range(120):

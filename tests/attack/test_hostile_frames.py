@@ -9,33 +9,37 @@ from typing import Any
 
 import msgspec
 import pytest
+import viser._viser
 from websockets.exceptions import ConnectionClosed
 
+from app.bridge.controls import lock_controls
 from app.http.limits import MIB
 from tests.attack.conftest import Bench, eventually
-from tests.attack.wire import CAMERA, visit
+from tests.attack.wire import CAMERA, upload, visit
 
 pytestmark = pytest.mark.attack
+
+
+def pressed(bench: Bench) -> bool:
+    """Whether the button ``last`` was pressed: all that was sent before it has been read."""
+    return ("last", True) in bench.events
 
 
 def still_served(bench: Bench) -> None:
     """A well-behaved visitor finds everything as it should be."""
     with visit(bench.port, "well-behaved") as visitor:
-        gain = visitor.control("gain")
-        visitor.set(gain, 0.7)
+        visitor.set(visitor.control("gain"), 0.7)
         eventually(lambda: bench.of("well-behaved")["gain"].value == 0.7)
 
 
 def test_a_good_value_arrives(bench: Bench) -> None:
+    sent = {"gain": 0.9, "count": 8, "network": "pole2", "on": False, "title": "new", "triple": [3, 2, 1]}
     with visit(bench.port, "good-values") as visitor:
-        sent = {"gain": 0.9, "count": 8, "network": "pole2", "on": False, "title": "new", "triple": [3, 2, 1]}
-        for label, value in sent.items():
+        for label, value in [*sent.items(), ("last", True)]:
             visitor.set(visitor.control(label), value)
-        visitor.set(visitor.control("last"), True)
-        handles = bench.of("good-values")
-        eventually(lambda: ("last", True) in bench.events)
-        held = {label: handles[label].value for label in sent}
-    assert held == {**sent, "triple": (3.0, 2.0, 1.0)}
+        eventually(lambda: pressed(bench))
+        held = {label: bench.of("good-values")[label].value for label in sent}
+    assert held == sent | {"triple": (3.0, 2.0, 1.0)}
 
 
 @pytest.mark.parametrize(
@@ -60,14 +64,13 @@ def test_bad_values_are_not_stored(bench: Bench, label: str, values: list[Any]) 
         for value in values:
             visitor.set(uuid, value)
         visitor.set(visitor.control("last"), True)
-        eventually(lambda: ("last", True) in bench.events)
+        eventually(lambda: pressed(bench))
         assert bench.of(session)[label].value == before
         assert label not in {event[0] for event in bench.events}
         if label not in ("frozen", "log"):
             assert visitor.notice().startswith(f"{label} must ")
-            held = list(before) if isinstance(before, tuple) else before
             back = visitor.wait_for(lambda m: m["type"] == "GuiUpdateMessage" and m["uuid"] == uuid)
-            assert back["updates"] == {"value": held}
+            assert back["updates"] == {"value": list(before) if isinstance(before, tuple) else before}
 
 
 @pytest.mark.parametrize("name", ["update_cb", "props", "removed", "sync_cb", "gui_api", "no_such_name"])
@@ -78,33 +81,45 @@ def test_nothing_but_the_value_can_be_overwritten(bench: Bench, name: str) -> No
         before = getattr(state, name, None)
         visitor.set(uuid, 0.6, **{name: []})
         assert visitor.closed_with() == 1008
-        assert getattr(state, name, None) is before
-        assert state.value == 0.5
+        assert getattr(state, name, None) is before and state.value == 0.5
     still_served(bench)
 
 
 @pytest.mark.parametrize(
-    "frame",
+    ("frame", "code"),
     [
-        b"",
-        b"\xc1\xc1",
-        b"\x91" * 50_000,
-        "text",
-        msgspec.msgpack.encode({"type": "NoSuchMessage"}),
-        msgspec.msgpack.encode({"type": "RunJavascriptMessage", "source": "alert(1)"}),
-        msgspec.msgpack.encode({**CAMERA, "wxyz": "north"}),
-        msgspec.msgpack.encode({"type": "GuiUpdateMessage", "uuid": ["x"], "updates": {}}),
+        (b"", 1008),
+        (b"\xc1\xc1", 1008),
+        (b"\x91" * 50_000, 1008),
+        ("text", 1008),
+        (msgspec.msgpack.encode({"type": "NoSuchMessage"}), 1008),
+        (msgspec.msgpack.encode({"type": "RunJavascriptMessage", "source": "alert(1)"}), 1008),
+        (msgspec.msgpack.encode({**CAMERA, "wxyz": "north"}), 1008),
+        (msgspec.msgpack.encode({"type": "GuiUpdateMessage", "uuid": ["x"], "updates": {}}), 1008),
+        (b"\x00" * (9 * MIB), 1009),
     ],
-    ids=["empty", "no msgpack", "deep", "text", "unknown", "of the server", "wrong field", "wrong id"],
+    ids=[
+        "empty",
+        "no msgpack",
+        "deep",
+        "text",
+        "unknown",
+        "of the server",
+        "wrong field",
+        "wrong id",
+        "huge",
+    ],
 )
-def test_malformed_frames_end_that_connection_only(bench: Bench, frame: bytes | str, capfd) -> None:
+def test_malformed_frames_end_that_connection_only(
+    bench: Bench, frame: bytes | str, code: int, capfd: pytest.CaptureFixture[str]
+) -> None:
     with visit(bench.port, "bystander") as bystander, visit(bench.port, "offender") as offender:
         bystander.control("last")
         offender.control("last")
-        offender.socket.send(frame)
-        with contextlib.suppress(ConnectionClosed):
+        with contextlib.suppress(ConnectionClosed):  # a huge one is still being sent
+            offender.socket.send(frame)
             offender.set(offender.control("gain"), 0.9)
-        assert offender.closed_with() == 1008
+        assert offender.closed_with() == code
         assert bench.of("offender")["gain"].value == 0.5, "nothing after it is obeyed"
         bystander.set(bystander.control("gain"), 0.8)
         eventually(lambda: bench.of("bystander")["gain"].value == 0.8)
@@ -112,18 +127,7 @@ def test_malformed_frames_end_that_connection_only(bench: Bench, frame: bytes | 
     assert "".join(capfd.readouterr()) == ""
 
 
-def test_huge_frame_ends_that_connection_only(bench: Bench) -> None:
-    with visit(bench.port, "huge-sender") as visitor:
-        visitor.control("last")
-        with contextlib.suppress(ConnectionClosed):  # while it is still being sent
-            visitor.socket.send(b"\x00" * (9 * MIB))
-        assert visitor.closed_with() == 1009
-    still_served(bench)
-
-
 def test_share_tunnel_request_opens_nothing(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
-    import viser._viser
-
     opened = []
     monkeypatch.setattr(viser._viser, "ViserTunnel", lambda *arguments: opened.append(arguments))
     before = threading.active_count()
@@ -133,54 +137,58 @@ def test_share_tunnel_request_opens_nothing(bench: Bench, monkeypatch: pytest.Mo
         visitor.send(type="ShareUrlDisconnect")
         bench.events.clear()
         visitor.set(last, True)
-        eventually(lambda: ("last", True) in bench.events)
+        eventually(lambda: pressed(bench))
     assert opened == [] and bench.server.viser._share_tunnel is None
     assert threading.active_count() <= before + 8, "no tunnel thread; a few pool threads may be new"
 
 
 def test_controls_of_another_visitor_are_out_of_reach(bench: Bench) -> None:
     with visit(bench.port, "visitor-a") as a, visit(bench.port, "visitor-b") as b:
-        of_b = b.control("gain")
-        a.control("last")
+        of_b, own = b.control("gain"), a.control("last")
         bench.events.clear()
         a.set(of_b, 0.9)
         a.send(type="GuiButtonHoldMessage", uuid=b.control("last"), frequency=10.0)
         a.set(b.control("last"), True)
-        a.set(a.control("last"), True)
-        eventually(lambda: ("last", True) in bench.events)
+        a.set(own, True)
+        eventually(lambda: pressed(bench))
         assert bench.of("visitor-b")["gain"].value == 0.5
         assert bench.events.count(("last", True)) == 1
 
 
+def test_controls_of_a_page_that_only_watches_take_nothing_until_it_is_freed(bench: Bench) -> None:
+    with visit(bench.port, "the-watched") as visitor:
+        ids = {label: visitor.control(label) for label in ("gain", "on", "title", "frozen", "last")}
+        handles = bench.of("the-watched")
+        client = next(iter(bench.server.viser.get_clients().values()))
+        bench.events.clear()
+        lock_controls(client, frozenset({ids["title"]}))
+        disabled = {label: handles[label].disabled for label in ids}
+        assert disabled == {"gain": True, "on": True, "title": False, "frozen": True, "last": True}
+        for label, value in (("gain", 0.7), ("on", False), ("last", True)):
+            visitor.set(ids[label], value)
+        late = client.gui.add_number("late", 1)  # made after the lock
+        visitor.set(visitor.control("late"), 5)
+        visitor.set(ids["title"], "said")
+        eventually(lambda: ("title", "said") in bench.events)
+        assert bench.events == [("title", "said")]
+        assert (handles["gain"].value, handles["on"].value, late.value) == (0.5, True, 1)
+        lock_controls(client, None)
+        assert [handles[label].disabled for label in ("gain", "frozen")] == [False, True]
+        visitor.set(ids["gain"], 0.7)
+        eventually(lambda: ("gain", 0.7) in bench.events)
+
+
 class TestUpload:
-    def announce(self, visitor: Any, size: int, parts: int, name: str = "log.txt") -> None:
-        visitor.send(
-            type="FileTransferStartUpload",
-            source_component_uuid=visitor.control("log"),
-            transfer_uuid="t",
-            filename=name,
-            mime_type="text/plain",
-            part_count=parts,
-            size_bytes=size,
-        )
-
-    def part(self, visitor: Any, index: int, content: bytes, label: str = "log") -> None:
-        component = visitor.control(label)
-        kind = {"type": "FileTransferPart", "source_component_uuid": component, "transfer_uuid": "t"}
-        visitor.send(**kind, part_index=index, content=content)
-
     def test_arrives_with_a_clean_name(self, bench: Bench) -> None:
         with visit(bench.port, "uploader") as visitor:
-            self.announce(visitor, 6, 2, "../../etc/passwd")
-            self.part(visitor, 0, b"abc")
-            self.part(visitor, 1, b"def")
+            upload(visitor, "log", "../../etc/passwd", [b"abc", b"def"])
             handle = bench.of("uploader")["log"]
             eventually(lambda: handle.value.content == b"abcdef")
             assert handle.value.name == "passwd"
 
     def test_of_64_mib_is_refused_before_it_is_sent(self, bench: Bench) -> None:
         with visit(bench.port, "heavy-uploader") as visitor:
-            self.announce(visitor, 64 * MIB, 128)
+            upload(visitor, "log", "log.txt", [], size=64 * MIB)
             assert "at most 16 MiB" in visitor.notice()
             done = visitor.wait_for(lambda m: m["type"] == "FileTransferPartAck")
             assert done["transferred_bytes"] == done["total_bytes"], "the page's progress bar ends"
@@ -189,8 +197,8 @@ class TestUpload:
 
     def test_cannot_be_written_into_another_control(self, bench: Bench) -> None:
         with visit(bench.port, "cross-writer") as visitor:
-            self.announce(visitor, 6, 2)
-            self.part(visitor, 0, b"abc")
-            self.part(visitor, 1, b"def", label="gain")
+            upload(visitor, "log", "t", [b"abc"], size=6)
+            other = {"source_component_uuid": visitor.control("gain"), "transfer_uuid": "t"}
+            visitor.send(type="FileTransferPart", **other, part_index=1, content=b"def")
             assert visitor.closed_with() == 1008
             assert bench.of("cross-writer")["gain"].value == 0.5

@@ -5,13 +5,14 @@ from __future__ import annotations
 import http.client
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
 import msgspec
-import zstandard
 from websockets.sync.client import ClientConnection, connect
+
+from app.bench.visitor import CAMERA, decoded
 
 SESSION = "session-of-a-test"
 UPGRADE = {
@@ -20,18 +21,6 @@ UPGRADE = {
     "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA==",
     "Sec-WebSocket-Version": "13",
     "Sec-WebSocket-Protocol": "viser-v1.1.1",
-}
-CAMERA = {
-    "type": "ViewerCameraMessage",
-    "wxyz": [1, 0, 0, 0],
-    "position": [3, 3, 3],
-    "fov": 1.3,
-    "near": 0.01,
-    "far": 1000,
-    "image_height": 600,
-    "image_width": 800,
-    "look_at": [0, 0, 0],
-    "up_direction": [0, 0, 1],
 }
 
 
@@ -45,39 +34,26 @@ class Answer:
 def ask(port: int, path: str = "/", headers: dict[str, str | list[str]] | None = None) -> Answer:
     """GET, without following redirects; a header may come several times, Host may be wrong or missing."""
     given = {"Host": f"127.0.0.1:{port}", **(headers or {})}
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
-    try:
+    with closing(http.client.HTTPConnection("127.0.0.1", port, timeout=10)) as connection:
         connection.putrequest("GET", path, skip_host=True, skip_accept_encoding=True)
         for name, values in given.items():
             for value in [values] if isinstance(values, str) else values:
                 connection.putheader(name, value)
         connection.endheaders()
-        response = connection.getresponse()
-        body = b"" if response.status == 101 else response.read()
-        answer = Answer(response.status, response.headers, body)
-        response.close()
-        return answer
-    finally:
-        connection.close()
+        with connection.getresponse() as response:
+            return Answer(
+                response.status, response.headers, b"" if response.status == 101 else response.read()
+            )
 
 
-def shake_hands(port: int, path: str = f"/s/{SESSION}", **headers: str) -> Answer:
+def shake_hands(port: int, path: str = f"/s/{SESSION}", **headers: str | list[str]) -> Answer:
     """Ask for a websocket and hang up; status 101 means it would have opened."""
-    given: dict[str, str | list[str]] = {
-        **UPGRADE,
-        **{name.replace("_", "-"): v for name, v in headers.items()},
-    }
-    return ask(port, path, given)
+    return ask(port, path, UPGRADE | {name.replace("_", "-"): value for name, value in headers.items()})
 
 
-def decode(raw: bytes) -> list[dict[str, Any]]:
-    """viser's wire format: two lengths, then zstd-compressed msgpack."""
-    packed = int.from_bytes(raw[8:16], "little")
-    inner = zstandard.ZstdDecompressor().decompress(
-        raw[16 : 16 + packed],
-        max_output_size=int.from_bytes(raw[:8], "little"),
-    )
-    return msgspec.msgpack.decode(inner)["messages"]
+def statuses(port: int, path: str = f"/s/{SESSION}/", **headers: str | list[str]) -> tuple[int, int]:
+    """Statuses with which the page and the websocket of a path are answered."""
+    return ask(port, path, headers).status, shake_hands(port, path, **headers).status
 
 
 @dataclass
@@ -101,7 +77,7 @@ class Visitor:
                 if wanted(message):
                     return message
             seen = len(self.received)
-            self.received += decode(self.socket.recv(timeout=until - time.monotonic()))
+            self.received += decoded(self.socket.recv(timeout=until - time.monotonic()))
 
     def control(self, label: str) -> str:
         """Wait for a control; return its id."""
@@ -123,6 +99,17 @@ class Visitor:
             return None
         except Exception:
             return self.socket.close_code
+
+
+def upload(visitor: Visitor, label: str, name: str, parts: list[bytes], size: int = 0) -> None:
+    """Announce a file of ``size`` bytes (0: those of the parts) to a control, and send its first parts."""
+    common = {"source_component_uuid": visitor.control(label), "transfer_uuid": name}
+    whole = sum(map(len, parts))
+    count = len(parts) + (size > whole)
+    start = {"filename": name, "mime_type": "text/plain", "part_count": count, "size_bytes": size or whole}
+    visitor.send(type="FileTransferStartUpload", **common, **start)
+    for index, content in enumerate(parts):
+        visitor.send(type="FileTransferPart", **common, part_index=index, content=content)
 
 
 @contextmanager

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from app.bench.visitor import decoded as decode
 from app.editing import edits
 from app.shell.page import Page
 from app.shell.plotly_view import PlotlyView
 from app.shell.reports import PAGE_STATE
 from app.views import load
 from app.views.tune.view import TuneView
-from tests.attack.wire import Visitor, decode, visit
+from tests.attack.wire import Visitor, visit
 from tests.browser.fields import label_of
 
 if TYPE_CHECKING:
