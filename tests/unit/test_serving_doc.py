@@ -27,17 +27,9 @@ def names(path: Path) -> set[str]:
 
 
 def keys_of_the_soak(path: Path) -> re.Pattern[str]:
-    """First arguments of all ``Row(...)``: what is put into them at run time is a word or two."""
-    tree = ast.parse(path.read_text("utf-8"))
-    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and node.args]
-    keys = [call.args[0] for call in calls if isinstance(call.func, ast.Name) and call.func.id == "Row"]
-    patterns = [
-        "".join(str(part.value) if isinstance(part, ast.Constant) else r"[a-z0-9_]+" for part in key.values)
-        if isinstance(key, ast.JoinedStr)
-        else str(ast.literal_eval(key))
-        for key in keys
-    ]
-    return re.compile("|".join(patterns))
+    """First arguments of ``Row`` and ``counted``: what is put into them at run time is a word or two."""
+    keys = re.findall(r'\b(?:Row|counted)\(\s*f?"([^"]+)"', path.read_text("utf-8"))
+    return re.compile("|".join(re.sub(r"\{[^}]*\}", "[a-z0-9_]+", key) for key in keys))
 
 
 def test_every_row_has_its_test_or_line(repo_root: Path) -> None:
