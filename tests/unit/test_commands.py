@@ -55,49 +55,63 @@ def commands(gui: Gui, failed: list[Exception]) -> Commands:
     return Commands(gui, failed.append)
 
 
-def test_commands_are_carried_out_once_and_in_order(commands: Commands, gui: Gui) -> None:
-    done: list[str] = []
-    commands.register("one", lambda text: done.append(f"one({text})"))
-    commands.register("two", lambda text: done.append(f"two({text})"))
-    gui.ask([1, "one", "a b"])
-    gui.ask([2, "two", ""], [1, "one", "a b"], [3, "one", ""])
-    gui.ask([3, "one", ""])
-    assert done == ["one(a b)", "two()", "one()"]
-    assert 'data-count="3"' in commands._heard.content
+@pytest.fixture
+def done(commands: Commands) -> list[tuple[str, str]]:
+    """What the registered commands were asked to do, in order."""
+    done: list[tuple[str, str]] = []
+    for name, more in {
+        "place": {},
+        "undo": {"title": "Undo", "keys": "Ctrl+Z"},
+        "redo": {"title": "Redo", "keys": ("Ctrl+Y", "Ctrl+Shift+Z")},
+        "keys": {"title": "Keys", "watcher": True},
+        "long": {"longest": LONGEST_TEXT},
+    }.items():
+        commands.register(name, lambda text, name=name: done.append((name, text)), **more)
+    return done
 
 
-def test_only_a_command_that_takes_a_long_text_is_given_one(commands: Commands, gui: Gui) -> None:
-    done: list[str] = []
-    commands.register("short", lambda text: done.append(f"short {len(text)}"))
-    commands.register("long", lambda text: done.append(f"long {len(text)}"), longest=LONGEST_TEXT)
-    long = "x" * (LONGEST_ARGUMENT + 1)
-    gui.ask([1, "short", long], [2, "long", long], [3, "short", long[1:]])
-    assert done == [f"long {len(long)}", f"short {LONGEST_ARGUMENT}"]
-    assert 'data-count="3"' in commands._heard.content
+LONG, MOST = "x" * (LONGEST_ARGUMENT + 1), "x" * LONGEST_ARGUMENT
+
+
+@pytest.mark.parametrize(
+    ("asked", "expected", "count"),
+    [
+        ([[[1, "place", "a b"]]], [("place", "a b")], 1),
+        ([[[2, "undo", ""], [1, "place", ""], [3, "place", ""]], [[3, "place", ""]]],
+         [("place", ""), ("undo", ""), ("place", "")], 3),
+        ([[[1, "place", LONG], [2, "long", LONG], [3, "place", MOST]]], [("long", LONG), ("place", MOST)], 3),
+    ],
+    ids=["asked", "in order and once", "only a command that takes a long text is given one"],
+)  # fmt: skip
+def test_commands_are_carried_out(
+    commands: Commands,
+    gui: Gui,
+    done: list[tuple[str, str]],
+    asked: list[list[Any]],
+    expected: list[tuple[str, str]],
+    count: int,
+) -> None:
+    for together in asked:
+        gui.ask(*together)
+    assert done == expected and f'data-count="{count}"' in commands._heard.content
 
 
 def test_an_unknown_command_is_ignored_with_a_log_line(
     commands: Commands, gui: Gui, caplog: pytest.LogCaptureFixture, failed: list[Exception]
 ) -> None:
     with caplog.at_level(logging.WARNING, "schuler.commands"):
-        gui.ask([1, "rm" * 500, "x"])
-        assert "unknown command" in caplog.text
-        assert len(caplog.records[0].getMessage()) < 120
-        for number in range(2, 200):
-            gui.ask([number, "nothing", ""])
-    assert len(caplog.records) <= 20
-    assert failed == []
+        for number in range(1, 200):
+            gui.ask([number, "rm" * 500, "x"])
+    assert "unknown command" in caplog.messages[0] and len(caplog.messages[0]) < 120
+    assert len(caplog.messages) <= 20 and failed == []
 
 
 def test_a_fault_is_told_and_the_next_command_is_carried_out(
-    commands: Commands, gui: Gui, failed: list[Exception]
+    commands: Commands, gui: Gui, failed: list[Exception], done: list[tuple[str, str]]
 ) -> None:
-    done: list[str] = []
     commands.register("bad", lambda _: 1 / 0)
-    commands.register("good", done.append)
-    gui.ask([1, "bad", ""], [2, "good", "x"])
-    assert done == ["x"]
-    assert [type(error) for error in failed] == [ZeroDivisionError]
+    gui.ask([1, "bad", ""], [2, "place", "x"])
+    assert done == [("place", "x")] and list(map(type, failed)) == [ZeroDivisionError]
 
 
 @pytest.mark.parametrize(
@@ -126,36 +140,25 @@ def test_only_so_many_at_once() -> None:
     assert len(read_commands(json.dumps([[n, "a", ""] for n in range(1, 500)]))) == MOST_AT_ONCE
 
 
-def test_palette_and_keys_are_the_registered_ones(commands: Commands, gui: Gui) -> None:
-    done: list[str] = []
-    commands.register("undo", lambda _: done.append("undo"), "Undo", "Ctrl+Z")
-    commands.register("place", lambda _: None)
+def test_palette_and_keys_are_the_registered_ones(
+    commands: Commands, gui: Gui, done: list[tuple[str, str]]
+) -> None:
     assert gui.entries == []
     commands.show()
-    commands.register("redo", lambda _: None, "Redo", ("Ctrl+Y", "Ctrl+Shift+Z"))
-    labels = [(entry.label, entry.description) for entry in gui.entries]
-    assert labels == [("Undo", "Ctrl+Z"), ("Redo", "Ctrl+Y or Ctrl+Shift+Z")]
+    undo, redo, keys = gui.entries
+    told = [(entry.label, entry.description) for entry in gui.entries]
+    assert told == [("Undo", "Ctrl+Z"), ("Redo", "Ctrl+Y or Ctrl+Shift+Z"), ("Keys", None)]
     assert "ctrl+shift+z&quot;: &quot;redo" in commands._keys.content
-    gui.entries[0].act(None)
-    assert done == ["undo"]
+    undo.act(None)
     commands.rename("undo", "Undo xi: 1 → 2")
-    assert gui.entries[0].label == "Undo xi: 1 → 2"
     commands.remove("redo")
-    assert gui.entries[1].removed
-
-
-def test_a_watcher_may_only_what_is_for_watchers(commands: Commands, gui: Gui) -> None:
-    done: list[str] = []
-    commands.register("undo", lambda _: done.append("undo"), "Undo")
-    commands.register("keys", lambda _: done.append("keys"), "Keys", watcher=True)
-    commands.show()
-    commands.watching = True
+    assert (undo.label, redo.removed) == ("Undo xi: 1 → 2", True)
+    commands.watching = True  # only what is for watchers
     gui.ask([1, "undo", ""], [2, "keys", ""])
-    gui.entries[0].act(None)
-    assert done == ["keys"]
+    undo.act(None)
     commands.watching = False
-    gui.entries[0].act(None)
-    assert done == ["keys", "undo"]
+    undo.act(None)
+    assert [name for name, _ in done] == ["undo", "keys", "undo"]
 
 
 @pytest.mark.parametrize("name", ["", "Undo", "a b", "1", "x" * 81])
@@ -165,7 +168,7 @@ def test_a_malformed_name_is_refused(commands: Commands, name: str) -> None:
 
 
 def test_two_commands_cannot_have_the_same_key(commands: Commands) -> None:
-    commands.register("undo", print, "Undo", "Ctrl+Z")
-    commands.register("undo", print, "Undo", "Ctrl+Z")
+    for _ in range(2):
+        commands.register("undo", print, "Undo", "Ctrl+Z")
     with pytest.raises(ValueError, match="same key"):
         commands.register("other", print, "Other", ("A", "ctrl+z"))

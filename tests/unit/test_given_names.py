@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+from contextlib import closing
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 from viser import _messages as messages
@@ -16,7 +17,7 @@ from app.session.names import GivenNames
 from app.session.session import Session
 from navcore.scenario.file import load
 
-CHINESE = wording("zh-CN")
+CHINESE = cast("Wording", wording("zh-CN"))
 GIVEN = (
     "drift of log",
     "run with DVL",
@@ -37,7 +38,6 @@ RECORDING = b"time_s,speed_mps\n" + b"".join(b"%d,2.0\n" % second for second in 
 
 
 def named(text: str, *names: str) -> str:
-    assert CHINESE is not None
     return CHINESE.text(text, Names(names or GIVEN))
 
 
@@ -65,7 +65,6 @@ def test_the_sentence_around_a_name_is_translated(name: str, english: str, chine
 
 def test_the_program_s_own_sentences_are_translated_beside_names() -> None:
     for text in ("tilt from log error", "position error", "Nothing to undo", "Undo"):
-        assert CHINESE is not None
         assert named(text) == CHINESE.text(text) != text
     # the network "optimal" names the method in which it is chosen
     assert named("optimal H", "optimal") == "最优 H"
@@ -80,37 +79,36 @@ def test_markup_in_a_name_is_no_markup() -> None:
 
 def test_names_of_a_session_reach_the_page(tmp_path: Path) -> None:
     scenario = load("zha-fast", ['method.0.name="drift of log"', 'method.1.name="run with DVL"'])
-    session = Session("a" * 22, scenario, "zha-fast", tmp_path)
-    session.redo_run()
-    try:
+    page = Translator(CHINESE)
+
+    def updates(**fields: Any) -> dict[str, Any]:
+        message: Any = page.message(messages.GuiUpdateMessage("u", fields))
+        return message.updates
+
+    with closing(Session("a" * 22, scenario, "zha-fast", tmp_path)) as session:
+        session.redo_run()
         assert session.wait_idle(60.0) and session.run is not None
-        session.pins.add(session.run, "zha-fast", "tilt and drift")
-        session.pins.add(session.run, "zha-fast")
-        assert CHINESE is not None
-        page = Translator(CHINESE)
+        for name in ("tilt and drift", ""):
+            session.pins.add(session.run, "zha-fast", name)
         page.names = names = GivenNames(session)
         figure = {"data": [{"name": "drift of log"}, {"name": "tilt and drift"}, {"name": "Tilt"}]}
         props = messages.GuiPlotlyProps(
             order=1.0, _plotly_json_str=json.dumps(figure), aspect=1.0, visible=True
         )
-        shown: Any = page.message(messages.GuiPlotlyMessage("p", "root", props))
-        told = json.loads(shown.props._plotly_json_str)
-        assert [line["name"] for line in told["data"]] == ["drift of log", "tilt and drift", "水平失准角"]
+        plot: Any = page.message(messages.GuiPlotlyMessage("p", "root", props))
+        lines = json.loads(plot.props._plotly_json_str)["data"]
+        assert [line["name"] for line in lines] == ["drift of log", "tilt and drift", "水平失准角"]
         session.uploads.add("speed.log", RECORDING)
         assert names().are("speed.log") and page.text("speed.log: heading") == "speed.log：航向"
-        series = ({"label": "time (h)"}, {"label": "run with DVL"})
-        sent: Any = page.message(messages.GuiUpdateMessage("u", {"series": series}))
-        assert [line["label"] for line in sent.updates["series"]] == ["时间 (h)", "run with DVL"]
+        series = updates(series=({"label": "time (h)"}, {"label": "run with DVL"}))["series"]
+        assert [line["label"] for line in series] == ["时间 (h)", "run with DVL"]
         # A method called like a control does not keep the control in English.
         assert names().are("drift of log") and not names().are("pin 2")
-        box: Any = page.message(messages.GuiUpdateMessage("c", {"label": "damping", "hint": "drift of log"}))
-        assert box.updates == {"label": "阻尼", "hint": "drift of log"}
+        box = {"label": "damping", "hint": "drift of log"}
+        assert updates(**box) == box | {"label": "阻尼"}
         session.change(load("zha-fast", ['method.0.name="damping"']), None)
         assert names().are("drift of log") and names().are("damping")
-        box = page.message(messages.GuiUpdateMessage("c", {"label": "damping"}))
-        assert box.updates == {"label": "阻尼"}
-    finally:
-        session.close()
+        assert updates(label="damping") == {"label": "阻尼"}
 
 
 def test_without_names_nothing_changes() -> None:

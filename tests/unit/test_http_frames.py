@@ -1,4 +1,4 @@
-"""The gate, apart from any connection: what is passed on, dropped, or ends the connection."""
+"""The gate, apart from any connection: values that fit; what is passed on, dropped, or closes it."""
 
 from __future__ import annotations
 
@@ -13,14 +13,68 @@ from hypothesis import strategies as st
 
 from app.bridge.controls import Control
 from app.bridge.server import FRAME_TYPES
-from app.http.frames import BadFrame, Gate, safe_file_name
+from app.http.frames import BadFrame, Gate, safe_file_name, shown, why_not
 from app.http.limits import MIB, Limits
 from tests.attack.wire import CAMERA
 
+# ------------------------------------------------------------ values of controls
 
-def control(value: object, **changes: object) -> Control:
+
+def control(held: object, **changes: Any) -> Control:
     given = {"disabled": False, "options": None, "bounds": None, "takes_files": False} | changes
-    return Control(label="Gain", value=value, **given)
+    return Control(label="Gain", value=held, **given)
+
+
+SLIDER = control(0.5, bounds=(0.0, 1.0))
+CHOICE = control("a", options=("a", "b"))
+RANGE, A_NUMBER = "be from 0 to 1", "be a number"
+
+
+@pytest.mark.parametrize(
+    ("held", "value", "reason"),
+    [
+        (SLIDER, 0, None),
+        (SLIDER, 1.0, None),
+        (SLIDER, 1.0 + 1e-12, None),
+        (SLIDER, 1.001, RANGE),
+        (SLIDER, 1e9, RANGE),
+        (SLIDER, -5, RANGE),
+        (SLIDER, math.nan, A_NUMBER),
+        (control(0.5), 1e300, None),
+        (control(0.5), -5, None),
+        (control(0.5), math.inf, A_NUMBER),
+        (control(0.5), "0.5", A_NUMBER),
+        (control(0.5), True, A_NUMBER),
+        (control(0.5), None, A_NUMBER),
+        (control(0.5), [0.5], A_NUMBER),
+        (control(3), 7, None),
+        (control(3), 7.0, None),
+        (control(3), 7.5, "be a whole number"),
+        (control(3), 2**70, None),
+        (CHOICE, "b", None),
+        (CHOICE, "c", "be one of the choices offered"),
+        (CHOICE, 1, "be text"),
+        (control("t"), "<img onerror=1>", None),
+        (control("t"), "x" * 101, "have at most 100 characters"),
+        (control(True), False, None),
+        (control(True), 1, "be on or off"),
+        (control(True), "yes", "be on or off"),
+        (control((1.0, 2.0)), [3, 4.5], None),
+        (control((1.0, 2.0)), [1.0], "have 2 values"),
+        (control((1.0, 2.0)), "12", "have 2 values"),
+        (control((1.0, 2.0)), [1.0, math.nan], A_NUMBER),
+        (control(b"file"), b"file", "not be set in this way"),
+    ],
+)
+def test_whether_a_value_fits_its_control(held: Control, value: object, reason: str | None) -> None:
+    assert why_not(held, value, 100) == reason
+
+
+def test_long_values_are_shown_short() -> None:
+    assert (len(shown("x" * 1000)), shown(math.nan)) == (60, "nan")
+
+
+# ------------------------------------------------------------ the gate
 
 
 @dataclass
@@ -28,7 +82,7 @@ class Guest:
     controls: dict[str, Control]
     restored: list[str] = field(default_factory=list)
     ended: list[str] = field(default_factory=list)
-    told: list[str] = field(default_factory=list)
+    notices: list[str] = field(default_factory=list)
 
     def control(self, uuid: str) -> Control | None:
         return self.controls.get(uuid)
@@ -43,17 +97,13 @@ class Guest:
         self.ended.append(transfer)
 
     def tell(self, text: str) -> None:
-        self.told.append(text)
+        self.notices.append(text)
 
 
 @pytest.fixture
 def guest() -> Guest:
     return Guest(
-        {
-            "gain": control(0.5, bounds=(0.0, 1.0)),
-            "frozen": control(0.5, disabled=True),
-            "log": control(None, takes_files=True),
-        }
+        {"gain": SLIDER, "frozen": control(0.5, disabled=True), "log": control(None, takes_files=True)}
     )
 
 
@@ -66,18 +116,90 @@ def judge(gate: Gate, **message: Any) -> bytes | None:
     return gate.judge(msgspec.msgpack.encode(message))
 
 
-def update(gate: Gate, uuid: str, **updates: Any) -> bytes | None:
-    return judge(gate, type="GuiUpdateMessage", uuid=uuid, updates=updates)
+def update(uuid: Any, updates: Any) -> dict[str, Any]:
+    return {"type": "GuiUpdateMessage", "uuid": uuid, "updates": updates}
+
+
+@pytest.mark.parametrize("message", [CAMERA, update("gain", {"value": 1})])
+def test_a_good_message_passes_unchanged(gate: Gate, message: dict[str, Any]) -> None:
+    assert judge(gate, **message) == msgspec.msgpack.encode(message)
+
+
+def test_a_value_that_does_not_fit_is_dropped_and_told(gate: Gate, guest: Guest) -> None:
+    values = [1e9, -5, math.nan, "x"]
+    assert [judge(gate, **update("gain", {"value": value})) for value in values] == [None] * 4
+    assert guest.restored == ["gain"] * 4
+    assert guest.notices[0] == "Gain must be from 0 to 1; 1000000000.0 was not taken over."
+
+
+@pytest.mark.parametrize(
+    ("message", "restored"),
+    [
+        (update("frozen", {"value": 0.7}), ["frozen"]),
+        (update("of somebody else", {"value": 0.7}), []),
+        ({"type": "GuiButtonHoldMessage", "uuid": "frozen", "frequency": 10.0}, []),
+        ({"type": "ShareUrlRequest"}, []),
+        ({"type": "ShareUrlDisconnect"}, []),
+        ({**CAMERA, "position": [math.nan, 0.0, 0.0]}, []),
+        ({**CAMERA, "far": math.inf}, []),
+    ],
+)
+def test_what_has_no_effect_is_dropped(
+    gate: Gate, guest: Guest, message: dict[str, Any], restored: list[str]
+) -> None:
+    assert judge(gate, **message) is None
+    assert (guest.restored, guest.notices) == (restored, [])
+
+
+@pytest.mark.parametrize("frame", [b"", b"\xc1", b"\x81" * 100_000, "text", msgspec.msgpack.encode([1, 2]),
+                                   msgspec.msgpack.encode({"type": "GuiUpdateMessage"}) + b"trailing"],
+                         ids=range(6))  # fmt: skip
+def test_what_is_no_message_ends_the_connection(gate: Gate, frame: bytes | str) -> None:
+    with pytest.raises(BadFrame):
+        gate.judge(frame)
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        {"type": ["x"]},
+        {"uuid": "x"},
+        {"type": "Nonsense"},
+        {"type": "RunJavascriptMessage", "source": "1"},
+        {**CAMERA, "fov": "wide"},
+        {**CAMERA, "wxyz": [1, 0, 0]},
+        {**CAMERA, "more": 1},
+        {"type": "ViewerCameraMessage"},
+        update(3, {}),
+        update("gain", [1]),
+        update("gain", {"update_cb": []}),
+        update("gain", {"value": 0.1, "removed": True}),
+        update("gain", {}),
+        update("gain", {"props": 1}),
+    ],
+)
+def test_what_no_page_sends_ends_the_connection(gate: Gate, message: dict[str, Any]) -> None:
+    with pytest.raises(BadFrame):
+        judge(gate, **message)
+
+
+@given(frame=st.one_of(st.binary(max_size=200), st.sampled_from(sorted(FRAME_TYPES))))
+def test_nothing_else_is_ever_raised(frame: bytes | str) -> None:
+    raw = frame if isinstance(frame, bytes) else msgspec.msgpack.encode({"type": frame, "uuid": "x"})
+    try:
+        Gate(Guest({}), Limits()).judge(raw)
+    except BadFrame:
+        pass
+
+
+# ------------------------------------------------------------ uploads
 
 
 def begin(gate: Gate, **changes: Any) -> bytes | None:
     message = {
-        "source_component_uuid": "log",
-        "transfer_uuid": "t",
-        "filename": "a.txt",
-        "mime_type": "text/plain",
-    }
-    message |= {"type": "FileTransferStartUpload", "part_count": 2, "size_bytes": 6}
+        "type": "FileTransferStartUpload", "source_component_uuid": "log", "transfer_uuid": "t",
+        "filename": "a.txt", "mime_type": "text/plain", "part_count": 2, "size_bytes": 6,
+    }  # fmt: skip
     return judge(gate, **(message | changes))
 
 
@@ -86,145 +208,67 @@ def part(gate: Gate, index: int, content: Any = b"abc", **changes: Any) -> bytes
     return judge(gate, **({"type": "FileTransferPart"} | message | changes))
 
 
-def test_a_good_message_passes_unchanged(gate: Gate) -> None:
-    for message in (CAMERA, {"type": "GuiUpdateMessage", "uuid": "gain", "updates": {"value": 1}}):
-        frame = msgspec.msgpack.encode(message)
-        assert gate.judge(frame) == frame
+def test_an_upload_passes_with_its_name_cleaned(gate: Gate) -> None:
+    passed = begin(gate, filename="../../etc/passwd")
+    assert passed is not None and msgspec.msgpack.decode(passed)["filename"] == "passwd"
+    assert [part(gate, index) is not None for index in (0, 1, 1)] == [True, True, False]  # it has ended
+    assert begin(gate) is not None, "its place is free again"
 
 
-def test_a_value_that_does_not_fit_is_dropped_and_told(gate: Gate, guest: Guest) -> None:
-    for value in (1e9, -5, math.nan, "x"):
-        assert update(gate, "gain", value=value) is None
-    assert guest.restored == ["gain"] * 4
-    assert guest.told[0] == "Gain must be from 0 to 1; 1000000000.0 was not taken over."
+def test_a_large_upload_is_refused_before_it_is_sent(gate: Gate, guest: Guest) -> None:
+    assert begin(gate, size_bytes=64 * MIB, part_count=128) is None
+    assert guest.notices == ["a.txt has 64.0 MiB; at most 1 MiB are accepted."]
+    assert guest.ended == ["t"] and part(gate, 0) is None
 
 
-@pytest.mark.parametrize("updates", [{"update_cb": []}, {"value": 0.1, "removed": True}, {}, {"props": 1}])
-def test_only_values_may_be_set(gate: Gate, updates: dict[str, Any]) -> None:
-    with pytest.raises(BadFrame):
-        update(gate, "gain", **updates)
+def test_too_many_uploads_or_too_much_at_once(gate: Gate, guest: Guest) -> None:
+    sizes = {"1": MIB // 2, "2": MIB // 2 + 1, "3": 6, "4": 6}
+    passed = [begin(gate, transfer_uuid=id, size_bytes=size) is not None for id, size in sizes.items()]
+    assert (passed, guest.ended) == ([True, False, True, False], ["2", "4"])
 
 
-def test_disabled_and_unknown_controls_take_nothing(gate: Gate, guest: Guest) -> None:
-    assert update(gate, "frozen", value=0.7) is None
-    assert update(gate, "of somebody else", value=0.7) is None
-    assert judge(gate, type="GuiButtonHoldMessage", uuid="frozen", frequency=10.0) is None
-    assert guest.restored == ["frozen"]
-
-
-@pytest.mark.parametrize("kind", ["ShareUrlRequest", "ShareUrlDisconnect"])
-def test_tunnel_requests_are_ignored(gate: Gate, kind: str) -> None:
-    assert judge(gate, type=kind) is None
+def test_only_upload_buttons_take_files_and_a_file_may_be_empty(gate: Gate) -> None:
+    assert begin(gate, source_component_uuid="gain") is begin(gate, source_component_uuid="unknown") is None
+    assert begin(gate, size_bytes=0, part_count=0) is not None
 
 
 @pytest.mark.parametrize(
-    "frame",
+    "changes",
     [
-        b"",
-        b"\xc1",
-        b"\x81" * 100_000,
-        "text",
-        msgspec.msgpack.encode([1, 2]),
-        msgspec.msgpack.encode({"type": ["x"]}),
-        msgspec.msgpack.encode({"uuid": "x"}),
-        msgspec.msgpack.encode({"type": "Nonsense"}),
-        msgspec.msgpack.encode({"type": "RunJavascriptMessage", "source": "1"}),
-        msgspec.msgpack.encode({**CAMERA, "fov": "wide"}),
-        msgspec.msgpack.encode({**CAMERA, "wxyz": [1, 0, 0]}),
-        msgspec.msgpack.encode({**CAMERA, "more": 1}),
-        msgspec.msgpack.encode({"type": "GuiUpdateMessage", "uuid": 3, "updates": {}}),
-        msgspec.msgpack.encode({"type": "GuiUpdateMessage", "uuid": "gain", "updates": [1]}),
-        msgspec.msgpack.encode({"type": "GuiUpdateMessage"}) + b"trailing",
-        msgspec.msgpack.encode({"type": "ViewerCameraMessage"}),
+        {"size_bytes": -1},
+        {"part_count": -1},
+        {"part_count": 7},
+        {"part_count": 0},
+        {"size_bytes": 0},
+        {"size_bytes": 1.5},
+        {"filename": b"x"},
+        {"transfer_uuid": "another"},
     ],
 )
-def test_what_no_page_sends_ends_the_connection(gate: Gate, frame: bytes | str) -> None:
+def test_impossible_announcements(gate: Gate, changes: dict[str, Any]) -> None:
+    begin(gate, transfer_uuid="another")
     with pytest.raises(BadFrame):
-        gate.judge(frame)
+        begin(gate, **changes)
 
 
-def test_a_camera_out_of_this_world_is_dropped(gate: Gate) -> None:
-    assert judge(gate, **{**CAMERA, "position": [math.nan, 0.0, 0.0]}) is None
-    assert judge(gate, **{**CAMERA, "far": math.inf}) is None
-
-
-@given(frame=st.one_of(st.binary(max_size=200), st.sampled_from(sorted(FRAME_TYPES))))
-def test_nothing_else_is_ever_raised(frame: bytes | str) -> None:
-    gate = Gate(Guest({}), Limits())
-    raw = frame if isinstance(frame, bytes) else msgspec.msgpack.encode({"type": frame, "uuid": "x"})
-    try:
-        gate.judge(raw)
-    except BadFrame:
-        pass
-
-
-class TestUpload:
-    def test_passes_with_its_name_cleaned(self, gate: Gate) -> None:
-        passed = begin(gate, filename="../../etc/passwd")
-        assert msgspec.msgpack.decode(passed)["filename"] == "passwd"
-        assert part(gate, 0) is not None and part(gate, 1) is not None
-        assert part(gate, 1) is None, "the transfer has ended"
-        assert begin(gate) is not None, "its place is free again"
-
-    def test_too_large_is_refused_before_it_is_sent(self, gate: Gate, guest: Guest) -> None:
-        assert begin(gate, size_bytes=64 * MIB, part_count=128) is None
-        assert guest.told == ["a.txt has 64.0 MiB; at most 1 MiB are accepted."]
-        assert guest.ended == ["t"]
-        assert part(gate, 0) is None
-
-    def test_too_many_or_too_much_at_once(self, gate: Gate, guest: Guest) -> None:
-        assert begin(gate, transfer_uuid="1", size_bytes=MIB // 2) is not None
-        assert begin(gate, transfer_uuid="2", size_bytes=MIB // 2 + 1) is None
-        assert begin(gate, transfer_uuid="3") is not None
-        assert begin(gate, transfer_uuid="4") is None
-        assert guest.ended == ["2", "4"]
-
-    def test_only_upload_buttons_take_files(self, gate: Gate) -> None:
-        assert begin(gate, source_component_uuid="gain") is None
-        assert begin(gate, source_component_uuid="unknown") is None
-
-    @pytest.mark.parametrize(
-        "changes",
-        [
-            {"size_bytes": -1},
-            {"part_count": -1},
-            {"part_count": 7},
-            {"part_count": 0},
-            {"size_bytes": 0},
-            {"size_bytes": 1.5},
-            {"filename": b"x"},
-        ],
-    )
-    def test_impossible_announcements(self, gate: Gate, changes: dict[str, Any]) -> None:
-        with pytest.raises(BadFrame):
-            begin(gate, **changes)
-
-    @pytest.mark.parametrize(
-        "changes",
-        [
-            {"index": 0},
-            {"index": 2},
-            {"index": -1},
-            {"index": 1, "content": b"abcd"},
-            {"index": 1, "content": b""},
-            {"index": 1, "content": "YWJj"},
-            {"index": 1, "source_component_uuid": "gain"},
-            {"index": 1, "source_component_uuid": None},
-        ],
-    )
-    def test_parts_that_were_not_announced(self, gate: Gate, changes: dict[str, Any]) -> None:
-        begin(gate)
-        part(gate, 0)
-        with pytest.raises(BadFrame):
-            part(gate, **changes)
-
-    def test_the_same_transfer_twice(self, gate: Gate) -> None:
-        begin(gate)
-        with pytest.raises(BadFrame):
-            begin(gate)
-
-    def test_empty_file(self, gate: Gate) -> None:
-        assert begin(gate, size_bytes=0, part_count=0) is not None
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"index": 0},
+        {"index": 2},
+        {"index": -1},
+        {"index": 1, "content": b"abcd"},
+        {"index": 1, "content": b""},
+        {"index": 1, "content": "YWJj"},
+        {"index": 1, "source_component_uuid": "gain"},
+        {"index": 1, "source_component_uuid": None},
+    ],
+)
+def test_parts_that_were_not_announced(gate: Gate, changes: dict[str, Any]) -> None:
+    begin(gate)
+    part(gate, 0)
+    with pytest.raises(BadFrame):
+        part(gate, **changes)
 
 
 @pytest.mark.parametrize(

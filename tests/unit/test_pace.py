@@ -23,11 +23,8 @@ class Played:
         self.sent: list[tuple[int, bool]] = []
         self.followed = threading.Semaphore(0)
         self.pace = Pace(
-            lambda number, whole: self.sent.append((number, whole)), self.follow, lambda: self.now_s
+            lambda *picture: self.sent.append(picture), self.followed.release, lambda: self.now_s
         )
-
-    def follow(self) -> None:
-        self.followed.release()
 
     def play(self, step: Step) -> None:
         if isinstance(step, tuple):
@@ -122,24 +119,20 @@ def test_every_state_has_its_way_on(state: State) -> None:
         return
     # A slider that is held or rests stays so until the page says otherwise, and no run is forgotten by it.
     assert NEXT[held][Event.RESTS.value] not in (State.CLOSED, held)
-    assert NEXT[held][Event.HELD.value] is held and NEXT[rests][Event.RESTS.value] is rests
-    assert NEXT[run][Event.RUN.value] is run
+    lasting = ((held, Event.HELD), (rests, Event.RESTS), (run, Event.RUN))
+    assert all(NEXT[state][event.value] is state for state, event in lasting)
     assert {s.name.startswith("HELD") for s in (run, sent)} == {state.name.startswith("HELD")}
     assert sent not in (State.FIRST, State.DUE, State.HELD_DUE)
 
 
-@pytest.fixture
-def soon(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_controls_follow_late_until_they_have_and_may_be_put_off(
+    played: Played, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(module, "CONTROLS_LATE_S", 0.01)
-
-
-@pytest.mark.usefixtures("soon")
-def test_controls_follow_late_until_they_have_and_may_be_put_off(played: Played) -> None:
     for _ in range(3):
         played.pace.follow_later()
         assert played.followed.acquire(timeout=5.0)
         assert played.pace.controls_wait, "until the page says that they are shown"
-    played.pace.controls_wait = False
 
 
 def test_controls_that_a_picture_has_shown_do_not_follow_again(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,57 +16,64 @@ from tests.unit.figures_runs import run_of, static_run
 
 
 @pytest.fixture
-def told() -> list[str]:
+def changes() -> list[str]:
     return []
 
 
 @pytest.fixture
-def pins(told: list[str]) -> Pins:
-    return Pins(lambda: told.append("changed"), simulate)
+def pins(changes: list[str]) -> Pins:
+    return Pins(lambda: changes.append("changed"), simulate)
 
 
-def test_pins_get_names_and_colours_of_their_own(pins: Pins, told: list[str]) -> None:
-    first, second = pins.add(static_run(), "preset"), pins.add(static_run(), "preset", "  best\n so far ")
+def test_pins_get_names_and_colours_of_their_own(pins: Pins, changes: list[str]) -> None:
+    first, second = (pins.add(static_run(), "preset", name) for name in ("", "  best\n so far "))
     assert (first.name, second.name) == ("pin 1", "best so far")
-    assert first.color != second.color and first.shown
-    assert pins.shown == (first, second)
-    assert pins.baseline(None) is first and pins.baseline(2) is second and pins.baseline(99) is first
-    assert len(told) == 2
+    assert first.color != second.color and pins.shown == (first, second)
+    assert [pins.baseline(id) for id in (None, 2, 99)] == [first, second, first]
+    assert len(changes) == 2
 
 
 def test_more_than_the_most_are_refused_and_an_id_is_never_used_again(pins: Pins) -> None:
-    for _ in range(MOST_PINS):
-        pins.add(static_run(), "")
-    assert len({pin.color for pin in pins.all}) == len(COLORS) == MOST_PINS
+    colors = {pins.add(static_run(), "").color for _ in range(MOST_PINS)}
+    assert len(colors) == len(COLORS) == MOST_PINS
     with pytest.raises(InputError, match=f"at most {MOST_PINS}"):
         pins.add(static_run(), "")
     pins.remove(3)
-    assert pins.add(static_run(), "").id == MOST_PINS + 1
-    assert pins.get(3) is None
+    assert (pins.add(static_run(), "").id, pins.get(3)) == (MOST_PINS + 1, None)
 
 
-def test_a_pin_is_renamed_hidden_recoloured_and_annotated(pins: Pins, told: list[str]) -> None:
-    pins.add(static_run(), "")
-    pins.change(1, name="x" * 100, note=" good ", color="moss", shown=False)
-    pin = pins.get(1)
-    assert pin is not None and (len(pin.name), pin.note, pin.hex) == (LONGEST_NAME, "good", COLORS["moss"])
-    assert pins.shown == ()
-    pins.change(1, name="")
-    assert pins.all[0].name == "pin 1"
+@pytest.mark.parametrize(
+    ("id", "change", "now"),
+    [
+        (1, {"name": "x" * 100}, {"name": "x" * LONGEST_NAME}),
+        (1, {"name": ""}, {}),
+        (1, {"note": " good "}, {"note": "good"}),
+        (1, {"color": "moss"}, {"color": "moss", "hex": COLORS["moss"]}),
+        (1, {"shown": False}, {"shown": False}),
+        (1, {"name": "pin 1"}, {}),
+        (99, {"name": "nobody"}, {}),
+    ],
+)
+def test_a_pin_is_renamed_hidden_recoloured_and_annotated(
+    pins: Pins, changes: list[str], id: int, change: dict[str, Any], now: dict[str, Any]
+) -> None:
+    before = pins.add(static_run(), "")
+    pins.change(id, **change)
+    (pin,) = pins.all
+    assert {name: getattr(pin, name) for name in now} == now and (pin == before) is (not now)
+    assert pins.shown == ((pin,) if pin.shown else ())
+    pins.remove(99)
+    assert len(changes) == 1 + bool(now)
+
+
+def test_a_colour_that_is_not_offered_is_refused(pins: Pins) -> None:
     with pytest.raises(InputError, match="color"):
         pins.change(1, color="red")
-    count = len(told)
-    pins.change(1, name="pin 1")
-    pins.change(99, name="nobody")
-    pins.remove(99)
-    assert len(told) == count
 
 
 def test_a_pinned_run_keeps_its_curves_and_numbers_but_few_rows() -> None:
-    run = static_run()
-    assert len(run.t_s) > MOST_ROWS
-    few = few_rows(run)
-    assert len(few.t_s) <= MOST_ROWS + 1
+    run, few = static_run(), few_rows(static_run())
+    assert len(few.t_s) <= MOST_ROWS + 1 <= len(run.t_s)
     assert (few.t_s[0], few.t_s[-1]) == (run.t_s[0], run.t_s[-1])
     assert len(few.truth) == len(few.t_s) == len(few.methods[0].rows) == len(few.methods[0].law_series)
     for whole, thin in zip(run.methods, few.methods, strict=True):
@@ -74,25 +82,23 @@ def test_a_pinned_run_keeps_its_curves_and_numbers_but_few_rows() -> None:
     assert few_rows(few) is few
 
 
-def test_pins_come_back_from_a_file_and_are_computed_again(pins: Pins, told: list[str]) -> None:
+def test_pins_come_back_from_a_file_and_are_computed_again(pins: Pins, changes: list[str]) -> None:
     run = run_of()
     pins.add(run, "preset", "old")
     pins.change(1, note="why", shown=False)
-    kept = json.loads(json.dumps(pins.to_json()))
-    again = Pins(lambda: told.append("again"), simulate)
-    again.from_json(kept)
+    again = Pins(lambda: changes.append("again"), simulate)
+    again.from_json(json.loads(json.dumps(pins.to_json())))
     assert again.wait_idle(20.0)
     pin = again.all[0]
     assert (pin.name, pin.note, pin.shown, pin.origin) == ("old", "why", False, "preset")
     assert pin.scenario == run.scenario and pin.run is not None
     np.testing.assert_array_equal(pin.run.methods[0].plot.values, run.methods[0].plot.values)
-    assert "again" in told
-    assert again.add(run, "").id == 2
+    assert "again" in changes and again.add(run, "").id == 2
 
 
 @pytest.mark.parametrize("wrong", [5, [{}], [{"name": "a"}], [5], None])
 def test_what_is_no_list_of_pins_is_refused_and_changes_nothing(pins: Pins, wrong: object) -> None:
-    pins.add(static_run(), "")
+    pin = pins.add(static_run(), "")
     with pytest.raises((ValueError, TypeError, KeyError)):
         pins.from_json(wrong)
-    assert len(pins) == 1
+    assert pins.all == (pin,)

@@ -20,36 +20,6 @@ BOTH = pytest.mark.parametrize("shown", ["light", "dark"])
 LESSONS = Path(app.__file__).parent / "views" / "learn" / "learn.css"
 
 
-def ratio(color: str, ground: str, shown: theme.Theme) -> float:
-    return theme.contrast(theme.shown(color, shown), theme.shown(ground, shown))
-
-
-@BOTH
-@pytest.mark.parametrize("color", COLORS.values(), ids=COLORS)
-def test_the_banner_of_a_flipped_pin_is_readable(color: str, shown: theme.Theme) -> None:
-    assert ratio(WHITE, color, shown) >= theme.LEAST_TEXT
-
-
-@BOTH
-@pytest.mark.parametrize("color", METHOD_COLORS)
-def test_curves_stand_out(color: str, shown: theme.Theme) -> None:
-    assert ratio(color, WHITE, shown) >= theme.LEAST_CURVE
-
-
-@BOTH
-@pytest.mark.parametrize("color", [style.INK, style.MUTED, style.DANGER, style.TRUTH_COLOR])
-@pytest.mark.parametrize("ground", [WHITE, style.SEA])
-def test_text_is_readable(color: str, ground: str, shown: theme.Theme) -> None:
-    assert ratio(color, ground, shown) >= theme.LEAST_TEXT
-
-
-@BOTH
-@pytest.mark.parametrize("tone", sorted(notices._TONES))
-def test_notes_are_readable(tone: notices.Tone, shown: theme.Theme) -> None:
-    ink, ground = notices._TONES[tone]
-    assert ratio(ink, ground, shown) >= theme.LEAST_TEXT
-
-
 def rules() -> list[tuple[str, str, str]]:
     """Selector, text and ground of every rule of ours that names a colour of text."""
     found = []
@@ -65,10 +35,26 @@ def full(color: str) -> str:
     return color if len(color) == 7 else "#" + "".join(2 * digit for digit in color[1:])
 
 
+TEXTS = [
+    *((f"banner of a flipped pin, {name}", WHITE, color) for name, color in COLORS.items()),
+    *(
+        (f"text {ink} on {ground}", ink, ground)
+        for ink in (style.INK, style.MUTED, style.DANGER, style.TRUTH_COLOR)
+        for ground in (WHITE, style.SEA)
+    ),
+    *((f"note, {tone}", *colors) for tone, colors in notices._TONES.items()),
+    *rules(),
+]
+
+
 @BOTH
-@pytest.mark.parametrize(("selector", "ink", "ground"), rules())
-def test_the_style_sheet_is_readable(selector: str, ink: str, ground: str, shown: theme.Theme) -> None:
-    assert ratio(ink, ground, shown) >= theme.LEAST_TEXT, selector
+@pytest.mark.parametrize(
+    ("ink", "ground", "least"),
+    [pytest.param(*colors, theme.LEAST_TEXT, id=name) for name, *colors in TEXTS]
+    + [pytest.param(color, WHITE, theme.LEAST_CURVE, id=f"curve {color}") for color in METHOD_COLORS],
+)
+def test_it_stands_out_from_its_ground(ink: str, ground: str, least: float, shown: theme.Theme) -> None:
+    assert theme.contrast(theme.shown(ink, shown), theme.shown(ground, shown)) >= least
 
 
 @pytest.mark.parametrize("color", METHOD_COLORS)
