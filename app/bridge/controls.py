@@ -6,6 +6,7 @@ the public interface lacks; `tests/attack/test_viser_insides.py` fails when an i
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,8 +15,9 @@ import viser
 from viser import _gui_api as viser_gui
 from viser import _messages as messages
 
-from app.bridge.curves import same_numbers
+from app.bridge import texts
 
+_NOTICE_EVERY_S = 1.0
 _FREE, _GREYED = "_schuler_free", "_schuler_greyed"
 """Marks on a client's gui: ids that a locked page may still use, and those that the lock has disabled."""
 
@@ -49,25 +51,83 @@ class Control:
     takes_files: bool
 
 
-def find_control(server: viser.ViserServer, client_id: int, uuid: str) -> Control | None:
-    """Return the control a browser's message is about; viser offers no look-up by its id."""
-    handle = _find_handle(server, client_id, uuid)
-    if handle is None:
-        return None
-    state, props = handle._impl, handle._impl.props
-    bounds = None
-    if isinstance(handle, (viser.GuiSliderHandle, viser.GuiMultiSliderHandle)):
-        bounds = (float(props.min), float(props.max))
-    elif isinstance(handle, (viser.GuiRgbHandle, viser.GuiRgbaHandle)):
-        bounds = (0.0, 255.0)
-    return Control(
-        label=str(getattr(props, "label", "") or ""),
-        value=state.value,
-        disabled=bool(getattr(props, "disabled", False)) or _is_locked(server, client_id, uuid),
-        options=getattr(props, "options", None),
-        bounds=bounds,
-        takes_files=isinstance(handle, viser.GuiUploadButtonHandle),
-    )
+@dataclass
+class Guest:
+    """The visitor behind a connection, as the gate of messages sees them; viser has no look-up by ids.
+
+    Attributes
+    ----------
+    server : viser.ViserServer
+        The server.
+    client_id : int
+        viser's number of the connection.
+    """
+
+    server: viser.ViserServer
+    client_id: int
+    _last_notice_s: float = -_NOTICE_EVERY_S
+
+    @property
+    def _client(self) -> viser.ClientHandle | None:
+        return self.server.get_clients().get(self.client_id)
+
+    def _handle(self, uuid: str) -> Any:
+        owners = [owner for owner in (self._client, self.server) if owner is not None]
+        handles = (owner.gui._gui_input_handle_from_uuid.get(uuid) for owner in owners)
+        return next((handle for handle in handles if handle is not None), None)
+
+    def _queue(self, message: messages.Message) -> None:
+        client = self._client
+        if client is not None:
+            client._websock_connection.queue_message(message)
+
+    def control(self, uuid: str) -> Control | None:
+        """Return the control with that id, if the visitor has it."""
+        handle, client = self._handle(uuid), self._client
+        if handle is None:
+            return None
+        state, props = handle._impl, handle._impl.props
+        free = None if client is None else getattr(client.gui, _FREE, None)
+        bounds = None
+        if isinstance(handle, (viser.GuiSliderHandle, viser.GuiMultiSliderHandle)):
+            bounds = (float(props.min), float(props.max))
+        elif isinstance(handle, (viser.GuiRgbHandle, viser.GuiRgbaHandle)):
+            bounds = (0.0, 255.0)
+        return Control(
+            label=str(getattr(props, "label", "") or ""),
+            value=state.value,
+            disabled=bool(getattr(props, "disabled", False)) or (free is not None and uuid not in free),
+            options=getattr(props, "options", None),
+            bounds=bounds,
+            takes_files=isinstance(handle, viser.GuiUploadButtonHandle),
+        )
+
+    def meant(self, uuid: str, value: object) -> object:
+        """Return an option that was chosen in the page's language as the server offers it."""
+        return texts.meant(self.server, self.client_id, uuid, value)
+
+    def restore(self, uuid: str) -> None:
+        """Send the held value to a page that shows another one; assigning an equal value sends nothing."""
+        handle = self._handle(uuid)
+        if handle is not None and not handle._impl.is_button:
+            self._queue(messages.GuiUpdateMessage(uuid, {"value": handle._impl.value}))
+
+    def end_upload(self, component: str, transfer: str, size: int) -> None:
+        """Let the page's progress bar end. Without it the button of a refused upload stays blocked."""
+        self._queue(messages.FileTransferPartAck(component, transfer, size, size))
+
+    def forget_upload(self, transfer: str) -> None:
+        """Drop the parts of an upload that have come: viser keeps them until the last one has come."""
+        client = self._client
+        if client is not None:
+            client.gui._current_file_upload_states.pop(transfer, None)
+
+    def tell(self, text: str) -> None:
+        """Show a short notice, at most one a second."""
+        client, now_s = self._client, time.monotonic()
+        if client is not None and now_s - self._last_notice_s >= _NOTICE_EVERY_S:
+            self._last_notice_s = now_s
+            client.add_notification("Not accepted", text, color="red", auto_close_seconds=8.0)
 
 
 def lock_controls(client: viser.ClientHandle, but: frozenset[str] | None) -> None:
@@ -98,46 +158,6 @@ def lock_controls(client: viser.ClientHandle, but: frozenset[str] | None) -> Non
         greyed.clear()
 
 
-def _is_locked(server: viser.ViserServer, client_id: int, uuid: str) -> bool:
-    client = server.get_clients().get(client_id)
-    free = None if client is None else getattr(client.gui, _FREE, None)
-    return free is not None and uuid not in free
-
-
-def show_held_value(server: viser.ViserServer, client_id: int, uuid: str) -> None:
-    """Send the held value to a page that shows another one; assigning an equal value sends nothing."""
-    handle = _find_handle(server, client_id, uuid)
-    if handle is not None and not handle._impl.is_button:
-        _queue(server, client_id, messages.GuiUpdateMessage(uuid, {"value": handle._impl.value}))
-
-
-def end_upload(server: viser.ViserServer, client_id: int, component: str, transfer: str, size: int) -> None:
-    """Let the page's progress bar end. Without it the button of a refused upload stays blocked."""
-    _queue(server, client_id, messages.FileTransferPartAck(component, transfer, size, size))
-
-
-def forget_upload(server: viser.ViserServer, client_id: int, transfer: str) -> None:
-    """Drop the parts of an upload that have come: viser keeps them until the last one has come."""
-    client = server.get_clients().get(client_id)
-    if client is not None:
-        client.gui._current_file_upload_states.pop(transfer, None)
-
-
-def _queue(server: viser.ViserServer, client_id: int, message: messages.Message) -> None:
-    client = server.get_clients().get(client_id)
-    if client is not None:
-        client._websock_connection.queue_message(message)
-
-
-def _find_handle(server: viser.ViserServer, client_id: int, uuid: str) -> Any:
-    client = server.get_clients().get(client_id)
-    for owner in (client, server):
-        handle = None if owner is None else owner.gui._gui_input_handle_from_uuid.get(uuid)
-        if handle is not None:
-            return handle
-    return None
-
-
 def show_numbers(plot: viser.GuiUplotHandle, data: tuple[np.ndarray, ...]) -> None:
     """Send a plot over time its numbers, if they are others, as float32: viser sends float64 only."""
     single = in_single(data)
@@ -147,6 +167,11 @@ def show_numbers(plot: viser.GuiUplotHandle, data: tuple[np.ndarray, ...]) -> No
         return
     props.data = single
     plot._queue_update("data", single)
+
+
+def same_numbers(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two curves are equal, NaN counted as equal to NaN."""
+    return one is other or np.array_equal(one, other, equal_nan=True)
 
 
 def in_single(data: tuple[np.ndarray, ...]) -> tuple[np.ndarray, ...]:

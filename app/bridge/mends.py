@@ -7,6 +7,7 @@ more slowly, and without the queue in English. ``SCHULER_PLAIN_VISER=1`` leaves 
 from __future__ import annotations
 
 import asyncio
+import dataclasses
 import logging
 import os
 from collections.abc import AsyncGenerator, Callable, Sequence
@@ -16,12 +17,14 @@ from types import SimpleNamespace
 from typing import Any, ClassVar, get_type_hints
 
 import msgspec
+import numpy as np
 import viser
+from viser import _messages as messages
 from viser._assignable_props_api import AssignablePropsBase
 from viser.infra import _infra
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
-from app.bridge.curves import shortened
+from app.bridge.controls import same_numbers
 from app.bridge.pool import FairPool
 from app.bridge.texts import Translator
 
@@ -105,10 +108,50 @@ class MendedBuffer(AsyncMessageBuffer):
     def window_generator(
         self, client_id: int, backlog_done_message: Any = None
     ) -> AsyncGenerator[Sequence[Any], None]:
-        """Take out what is to be sent; of the curves that the page has, nothing (`app.bridge.curves`)."""
+        """Take out what is to be sent; of the curves that the page has, nothing."""
         windows = super().window_generator(client_id, backlog_done_message)
         # What is queued for all pages is kept for those to come: it stays as it is.
-        return windows if self.persistent_messages or not self.shortens else shortened(windows)
+        return windows if self.persistent_messages or not self.shortens else _shortened(windows)
+
+
+async def _shortened(
+    windows: AsyncGenerator[Sequence[Any], None],
+) -> AsyncGenerator[Sequence[Any], None]:
+    """Leave out the curves that a page has, for which `curves.js` puts in the page's own.
+
+    A slider changes one of several methods, but viser sends a plot whole: the time and the curves of all
+    methods. What is left out is decided when a message is taken from the page's queue, not when it is put
+    into it. In the queue a plot's newer numbers replace those that have not been sent yet, so a message
+    shortened there could refer to curves that the page never gets. What is taken from the queue is sent next,
+    over one connection, which keeps the order. When the connection is lost, the page that comes back is
+    another client with a queue of its own, and is sent all plots whole.
+    """
+    sent: dict[str, tuple[np.ndarray, ...]] = {}
+    try:
+        async for window in windows:
+            yield [_shorter(message, sent) for message in window]
+    finally:
+        await windows.aclose()
+
+
+def _shorter(message: Any, sent: dict[str, tuple[np.ndarray, ...]]) -> Any:
+    """Put None in the place of each curve that was sent; the message itself stays as it is."""
+    if isinstance(message, messages.GuiUplotMessage):
+        # The handle and its message share these, and the handle goes on changing them.
+        props = dataclasses.replace(message.props)
+        sent[message.uuid] = props.data
+        return dataclasses.replace(message, props=props)
+    if isinstance(message, messages.GuiRemoveMessage):
+        sent.pop(message.uuid, None)
+    elif isinstance(message, messages.GuiUpdateMessage) and "data" in message.updates:
+        before, data = sent.get(message.uuid), message.updates["data"]
+        if before is not None:
+            sent[message.uuid] = data
+            if len(before) == len(data):
+                pairs = zip(before, data, strict=True)
+                curves = tuple(None if same_numbers(old, new) else new for old, new in pairs)
+                return dataclasses.replace(message, updates={**message.updates, "data": curves})
+    return message
 
 
 def mend_queues() -> None:

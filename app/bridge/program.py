@@ -27,10 +27,10 @@ _LARGEST = 1 << 25
 _WORKER = (b"type:`set_server`", b"type:`send`", b"{type:`message_batch`,messages:", b"{type:`connected`}")
 """What page and worker say to each other, which curves.js and socket.js hear."""
 
-SOCKET_SCRIPT = Path(__file__).parent / "socket.js"
-"""Script for the page, to run before viser's program, which sends through it: ``schuler.send(message)``."""
-FILL_SCRIPT = Path(__file__).parent / "fill.js"
-"""Script for the page, by which viser's program changes HTML: ``schuler.fill(element, html)``."""
+SCRIPTS = tuple(Path(__file__).parent / f"{name}.js" for name in ("socket", "curves", "fill"))
+"""Scripts for the page, to run before viser's program, which sends through ``schuler.send(message)`` and
+changes HTML by ``schuler.fill(element, html)``; the second puts in the curves that `app.bridge.mends` leaves
+out."""
 
 
 class Mend(NamedTuple):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import email.utils
 import hashlib
 import hmac
+import json
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Collection
@@ -13,6 +15,7 @@ from typing import Protocol
 
 from app.http.address import LOOPBACK_NAMES, authority
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.version import __version__
 
 SHORTEST_TOKEN = 8
 """Characters of a token beyond this machine: guesses are throttled, see `app.http.access`."""
@@ -232,6 +235,22 @@ def security_headers(host: str, framed_by: Collection[str] = ()) -> dict[str, st
         "Cross-Origin-Resource-Policy": "same-origin",
         "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
     }
+
+
+def answer_headers(length: int, content_type: str) -> dict[str, str]:
+    """Return what every answer says of itself."""
+    return {
+        "Date": email.utils.formatdate(usegmt=True),
+        "Content-Type": content_type,
+        "Content-Length": str(length),
+        "Cache-Control": "no-store",
+        "Connection": "close",
+    }
+
+
+def health() -> str:
+    """Answer to ``/healthz``, JSON."""
+    return json.dumps({"status": "ok", "version": __version__})
 
 
 _MOST_ADDRESSES = 4096

@@ -7,19 +7,15 @@ import fcntl
 import termios
 import time
 from array import array
-from dataclasses import dataclass
 from typing import Any
 
-import viser
 from websockets.asyncio.server import ServerConnection
 from websockets.frames import CloseCode
 
-from app.bridge import controls, texts
 from app.http.frames import BadFrame, Gate
 from app.http.limits import Limits
 from app.http.places import Door, Places
 
-_NOTICE_EVERY_S = 1.0
 GAVE_UP_PLACE = "This page was idle and gave up its place."
 """Reason with which an idle page is closed."""
 
@@ -132,52 +128,6 @@ class Connection(ServerConnection):
         self._frames_in_window += 1
         if self._frames_in_window >= self._limits.frames_per_second:
             await asyncio.sleep(max(0.0, self._window_start_s + 1.0 - now_s))
-
-
-@dataclass
-class Guest:
-    """The visitor behind a connection, as the gate sees them.
-
-    Attributes
-    ----------
-    server : viser.ViserServer
-        The server.
-    client_id : int
-        viser's number of the connection.
-    """
-
-    server: viser.ViserServer
-    client_id: int
-    _last_notice_s: float = -_NOTICE_EVERY_S
-
-    def control(self, uuid: str) -> controls.Control | None:
-        """Return the control with that id, if the visitor has it."""
-        return controls.find_control(self.server, self.client_id, uuid)
-
-    def meant(self, uuid: str, value: object) -> object:
-        """Return an option that was chosen in the page's language as the server offers it."""
-        return texts.meant(self.server, self.client_id, uuid, value)
-
-    def restore(self, uuid: str) -> None:
-        """Show the server's value of a control again."""
-        controls.show_held_value(self.server, self.client_id, uuid)
-
-    def end_upload(self, component: str, transfer: str, size: int) -> None:
-        """Let the page's progress bar end."""
-        controls.end_upload(self.server, self.client_id, component, transfer, size)
-
-    def forget_upload(self, transfer: str) -> None:
-        """Drop what has come of an upload."""
-        controls.forget_upload(self.server, self.client_id, transfer)
-
-    def tell(self, text: str) -> None:
-        """Show a short notice, at most one a second."""
-        client = self.server.get_clients().get(self.client_id)
-        now_s = time.monotonic()
-        if client is None or now_s - self._last_notice_s < _NOTICE_EVERY_S:
-            return
-        self._last_notice_s = now_s
-        client.add_notification("Not accepted", text, color="red", auto_close_seconds=8.0)
 
 
 def _unread(transport: asyncio.BaseTransport) -> int:

@@ -11,14 +11,14 @@ import dataclasses
 import math
 import time
 import unicodedata
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import PurePosixPath
-from typing import Any, Protocol
+from typing import Any
 
 import msgspec
 
-from app.bridge.controls import Control
+from app.bridge.controls import Control, Guest
 from app.bridge.server import FRAME_TYPES, IGNORED_FRAMES
 from app.http.limits import MIB, Limits
 from navcore.foundation.text import Text
@@ -28,28 +28,6 @@ _LONGEST_FILE_NAME = 120
 
 class BadFrame(Exception):
     """The message is none that a page sends: its connection is to be closed."""
-
-
-class Visitor(Protocol):
-    """What the gate needs of the visitor behind a connection."""
-
-    def control(self, uuid: str) -> Control | None:
-        """Return the control with that id, if the visitor has it."""
-
-    def meant(self, uuid: str, value: object) -> object:
-        """Return an option that was chosen in the page's language as the server offers it."""
-
-    def restore(self, uuid: str) -> None:
-        """Show the server's value of a control again."""
-
-    def end_upload(self, component: str, transfer: str, size: int) -> None:
-        """Let the page's progress bar end."""
-
-    def forget_upload(self, transfer: str) -> None:
-        """Drop what has come of an upload."""
-
-    def tell(self, text: str) -> None:
-        """Show a short notice."""
 
 
 @dataclass
@@ -88,12 +66,13 @@ class Uploading:
     def _bytes(self) -> int:
         return sum(gate.uploading_bytes for gate in self._gates)
 
-    def begin(self, gate: Gate) -> None:
-        """Count the uploads of a page."""
-        self._gates.append(gate)
+    def gate(self, visitor: Guest) -> Gate:
+        """Make the gate of a page, whose uploads are counted from now on."""
+        self._gates.append(Gate(visitor, self))
+        return self._gates[-1]
 
     def end(self, gate: Gate) -> None:
-        """Forget a page that has gone."""
+        """Forget the uploads of a page that has gone."""
         self._gates = [other for other in self._gates if other is not gate]
 
 
@@ -103,24 +82,15 @@ class Gate:
 
     Attributes
     ----------
-    visitor : Visitor
+    visitor : Guest
         Whose messages these are.
-    limits : Limits
-        Sizes.
-    others : Uploading, optional
-        Uploads of all visitors; of this one alone when it is left out.
+    others : Uploading
+        Uploads of all visitors.
     """
 
-    visitor: Visitor
-    limits: Limits
-    others: Uploading | None = None
+    visitor: Guest
+    others: Uploading
     _uploads: dict[str, _Upload] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        """Let the uploads be counted among those of all visitors."""
-        if self.others is None:
-            self.others = Uploading(self.limits)
-        self.others.begin(self)
 
     @property
     def uploading_bytes(self) -> int:
@@ -134,12 +104,6 @@ class Gate:
                 del self._uploads[transfer]
                 self.visitor.forget_upload(transfer)
                 self.visitor.end_upload(upload.component, transfer, upload.size)
-
-    def close(self) -> None:
-        """The page has gone."""
-        self._uploads.clear()
-        if self.others is not None:
-            self.others.end(self)
 
     def judge(self, frame: bytes | str) -> bytes | None:
         """Return the message to pass on, or None to drop it.
@@ -164,31 +128,23 @@ class Gate:
         return frame if _all_finite(fields) else None  # pyright: ignore[reportReturnType]
 
     def _judge_update(self, frame: bytes, fields: dict[str, Any]) -> bytes | None:
-        updates = fields["updates"]
+        uuid, updates = fields["uuid"], fields["updates"]
         if set(updates) != {"value"}:
             raise BadFrame("only the value of a control may be set")
-        control = self.visitor.control(fields["uuid"])
+        control = self.visitor.control(uuid)
         if control is None:
             return None
-        if control.disabled:
-            self.visitor.restore(fields["uuid"])
-            return None
-        value = self.visitor.meant(fields["uuid"], updates["value"])
-        reason = why_not(control, value, self.limits.text_characters)
-        if reason is None and value is not updates["value"]:
-            return msgspec.msgpack.encode({**fields, "type": "GuiUpdateMessage", "updates": {"value": value}})
-        if reason is None:
-            return frame
-        self.visitor.restore(fields["uuid"])
-        name = control.label or "The control"
-        self.visitor.tell(
-            Text(
-                "{name} must {reason}; {value} was not taken over.",
-                name=name,
-                reason=reason,
-                value=shown(updates["value"]),
-            )
-        )
+        given = updates["value"]
+        value = self.visitor.meant(uuid, given)
+        reason = why_not(control, value, self.others.limits.text_characters)
+        if not control.disabled and reason is None:
+            changed = {**fields, "type": "GuiUpdateMessage", "updates": {"value": value}}
+            return frame if value is given else msgspec.msgpack.encode(changed)
+        self.visitor.restore(uuid)
+        if not control.disabled:
+            text = "{name} must {reason}; {value} was not taken over."
+            name = control.label or "The control"
+            self.visitor.tell(Text(text, name=name, reason=reason, value=shown(given)))
         return None
 
     def _judge_hold(self, frame: bytes, fields: dict[str, Any]) -> bytes | None:
@@ -215,16 +171,17 @@ class Gate:
         return msgspec.msgpack.encode({**fields, "type": "FileTransferStartUpload", "filename": name})
 
     def _why_not_upload(self, size: int) -> str | None:
-        largest = self.limits.upload_bytes
-        if size > largest:
+        limits = self.others.limits
+        if size > limits.upload_bytes:
             return Text(
                 "has {size:.1f} MiB; at most {largest:.0f} MiB are accepted",
                 size=size / MIB,
-                largest=largest / MIB,
+                largest=limits.upload_bytes / MIB,
             )
-        if len(self._uploads) >= self.limits.uploads_at_once or self.uploading_bytes + size > largest:
+        many = len(self._uploads) >= limits.uploads_at_once
+        if many or self.uploading_bytes + size > limits.upload_bytes:
             return "must wait until the other uploads have ended"
-        if self.others is not None and not self.others.has_room(size):
+        if not self.others.has_room(size):
             return "must wait until the uploads of other visitors have ended"
         return None
 
@@ -316,9 +273,12 @@ def why_not(control: Control, value: object, longest_text: int) -> str | None:
         A phrase that follows "must": ``be from 0 to 1``.
     """
     held = control.value
-    if isinstance(held, tuple):
-        return _why_not_tuple(control, held, value, longest_text)
-    return _why_not_scalar(control, held, value, longest_text)
+    if not isinstance(held, tuple):
+        return _why_not_scalar(control, held, value, longest_text)
+    if not isinstance(value, (list, tuple)) or len(value) != len(held):
+        return Text("have {held} values", held=len(held))
+    reasons = (_why_not_scalar(control, old, new, longest_text) for old, new in zip(held, value, strict=True))
+    return next((reason for reason in reasons if reason is not None), None)
 
 
 def shown(value: object) -> str:
@@ -327,33 +287,20 @@ def shown(value: object) -> str:
     return text if len(text) <= _LONGEST_SHOWN else text[: _LONGEST_SHOWN - 3] + "..."
 
 
-def _why_not_tuple(control: Control, held: Sequence[object], value: object, longest_text: int) -> str | None:
-    if not isinstance(value, (list, tuple)) or len(value) != len(held):
-        return Text("have {held} values", held=len(held))
-    reasons = (_why_not_scalar(control, old, new, longest_text) for old, new in zip(held, value, strict=True))
-    return next((reason for reason in reasons if reason is not None), None)
-
-
 def _why_not_scalar(control: Control, held: object, value: object, longest_text: int) -> str | None:
     if isinstance(held, bool):
         return None if isinstance(value, bool) else "be on or off"
-    if isinstance(held, str):
-        return _why_not_text(control, value, longest_text)
     if isinstance(held, (int, float)):
         return _why_not_number(control, isinstance(held, int), value)
-    return "not be set in this way"
-
-
-def _why_not_text(control: Control, value: object, longest_text: int) -> str | None:
+    if not isinstance(held, str):
+        return "not be set in this way"
     if not isinstance(value, str):
         return "be text"
     if control.options is not None and value not in control.options:
         return "be one of the choices offered"
-    return (
-        None
-        if len(value) <= longest_text
-        else Text("have at most {longest_text} characters", longest_text=longest_text)
-    )
+    if len(value) > longest_text:
+        return Text("have at most {longest_text} characters", longest_text=longest_text)
+    return None
 
 
 def _why_not_number(control: Control, whole: bool, value: object) -> str | None:

@@ -8,19 +8,16 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import email.utils
-import json
 import re
 import socket
 import time
 import zlib
 from collections.abc import Callable, Sequence
 
-from app.http.access import security_headers
+from app.http.access import answer_headers, health, security_headers
 from app.http.address import FORWARDED
 from app.http.limits import Limits
 from app.http.places import Door
-from navcore.foundation.version import __version__
 
 _SESSION = re.compile(rb"^[A-Z]+ /s/([A-Za-z0-9_-]{8,64})[/? ]")
 _HEALTH = re.compile(rb"^GET /healthz[? ]")
@@ -39,12 +36,10 @@ class _Guest:
         self._writer = writer
 
     def turn_away(self) -> None:
-        """Close the connection."""
-        self._writer.transport.abort()
-
-    def give_up_place(self) -> None:
         """Close the connection; the places themselves are kept by the workers."""
         self._writer.transport.abort()
+
+    give_up_place = turn_away
 
 
 class Front:
@@ -86,7 +81,7 @@ class Front:
                 head = await reader.readuntil(b"\r\n\r\n")
             guest.asked = True
             if _HEALTH.match(head):
-                writer.write(_health())
+                writer.write(_answer(200, "OK", health().encode(), "application/json"))
                 await writer.drain()
             else:
                 await self._pass_on(head, guest, reader, writer)
@@ -137,20 +132,7 @@ def _told(head: bytes, address: str) -> bytes:
     return b"\r\n".join([first, *kept, name + b": " + address.encode(), b"", b""])
 
 
-def _health() -> bytes:
-    return _answer(
-        200, "OK", json.dumps({"status": "ok", "version": __version__}).encode(), "application/json"
-    )
-
-
 def _answer(status: int, phrase: str, body: bytes, kind: str = "text/plain; charset=utf-8") -> bytes:
-    headers = {
-        "Date": email.utils.formatdate(usegmt=True),
-        "Content-Type": kind,
-        "Content-Length": str(len(body)),
-        "Cache-Control": "no-store",
-        "Connection": "close",
-        **security_headers(""),
-    }
+    headers = answer_headers(len(body), kind) | security_headers("")
     lines = [f"HTTP/1.1 {status} {phrase}", *(f"{name}: {value}" for name, value in headers.items()), "", ""]
     return "\r\n".join(lines).encode() + body

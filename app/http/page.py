@@ -9,11 +9,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from app.bridge.curves import CURVES_SCRIPT
-from app.bridge.program import FILL_SCRIPT, SOCKET_SCRIPT, viser_program
+from app.bridge.program import SCRIPTS, viser_program
 
 _STATIC = Path(__file__).parent / "static"
-FIRST_SCRIPTS = (SOCKET_SCRIPT, CURVES_SCRIPT, FILL_SCRIPT, _STATIC / "first.js", _STATIC / "plotly.js")
+FIRST_SCRIPTS = (*SCRIPTS, _STATIC / "first.js", _STATIC / "plotly.js")
 """Ours that every page has; the last loads plotly.js."""
 PLOTLY = _STATIC / "plotly-basic.min.js"
 """plotly.js with scatter, bar and pie alone (npm: plotly.js-basic-dist-min): a fifth of the whole to read."""
@@ -79,40 +78,28 @@ def build_page(scripts: Sequence[Path], later: Sequence[Path], title: str) -> Pa
     before, found, after = viser.html.partition("<title>Viser</title>")
     if not found:
         raise ValueError("viser's page has changed: no title to replace")
+    files: dict[str, File] = {}
+
+    def address(name: str, content: bytes, content_type: str = _JAVASCRIPT) -> str:
+        """Add a file under a name that carries a hash of its content."""
+        stem, _, suffix = name.rpartition(".")
+        hashed = f"{stem}.{hashlib.sha256(content).hexdigest()[:12]}.{suffix}"
+        files[hashed] = File(content_type, content)
+        return f"../../static/{hashed}"
+
     # One file: each would be a connection of its own.
-    first = _file("bench.js", _JAVASCRIPT, b"\n".join(path.read_bytes() for path in scripts))
-    others = _files(later)
-    style = _file("viser.css", "text/css; charset=utf-8", viser.style)
-    zstd = _file("zstd.wasm", "application/wasm", viser.zstd)
-    program = _file("viser.js", _JAVASCRIPT, viser.program)
-    start = _file("start.js", _JAVASCRIPT, _START.read_bytes())
+    first = address("bench.js", b"\n".join(path.read_bytes() for path in scripts))
+    others = [address(path.name, path.read_bytes()) for path in later]
+    style = address("viser.css", viser.style, "text/css; charset=utf-8")
     tags = [
         # Fetched side by side, the largest first.
-        f'<link rel="modulepreload" data-program href="../../static/{_name(program)}">',
-        f'<link rel="preload" as="fetch" crossorigin data-zstd href="../../static/{_name(zstd)}">',
-        f'<script src="../../static/{_name(first)}"></script>',
-        f'<link rel="stylesheet" href="../../static/{_name(style)}">',
-        f'<script type="module" src="../../static/{_name(start)}"></script>',
-        *(f'<link rel="preload" as="script" data-later href="../../static/{name}">' for name in others),
+        f'<link rel="modulepreload" data-program href="{address("viser.js", viser.program)}">',
+        '<link rel="preload" as="fetch" crossorigin data-zstd '
+        f'href="{address("zstd.wasm", viser.zstd, "application/wasm")}">',
+        f'<script src="{first}"></script>',
+        f'<link rel="stylesheet" href="{style}">',
+        f'<script type="module" src="{address("start.js", _START.read_bytes())}"></script>',
+        *(f'<link rel="preload" as="script" data-later href="{other}">' for other in others),
     ]
     html = f"{before}<title>{title}</title>{''.join(tags)}{after}"
-    files = first | others | style | zstd | program | start
     return Page(html=File("text/html; charset=utf-8", html.encode()), files=files)
-
-
-def _files(paths: Sequence[Path]) -> dict[str, File]:
-    files: dict[str, File] = {}
-    for path in paths:
-        files |= _file(path.name, _JAVASCRIPT, path.read_bytes())
-    return files
-
-
-def _file(name: str, content_type: str, content: bytes) -> dict[str, File]:
-    """One file under a name that carries a hash of its content."""
-    stem, _, suffix = name.rpartition(".")
-    return {f"{stem}.{hashlib.sha256(content).hexdigest()[:12]}.{suffix}": File(content_type, content)}
-
-
-def _name(file: dict[str, File]) -> str:
-    (name,) = file
-    return name

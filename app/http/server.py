@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import asyncio
-import logging
 import os
 import signal
 import socket
 import threading
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from app.http.access import access_rules
 from app.http.address import authority, is_loopback, listen, parse_origins
@@ -22,18 +19,12 @@ from app.http.limits import Limits
 if TYPE_CHECKING:
     import viser
 
-    from app.http.access import Throttle
-    from app.http.connection import Connection
     from app.http.ids import SessionIds
     from app.http.metrics import Metrics
-    from app.http.places import Door, Places
-    from app.http.site import Site
 
 SessionCallback = Callable[["viser.ClientHandle", str], None]
 
-_TITLE = "Schuler Bench"
 _EXIT_WITHIN_S = 3.0
-_log = logging.getLogger("schuler.http")
 
 
 @dataclass(frozen=True)
@@ -50,12 +41,6 @@ class Inner:
 
     listener: socket.socket
     loopback: bool
-
-
-@dataclass
-class _Visit:
-    session_id: str
-    shown: Future[None] | None = None
 
 
 @dataclass
@@ -177,182 +162,15 @@ def start(
         access = access_rules(host, bound_port, loopback=loopback, token=token, origins=origins)
         access = replace(access, framed_by=framed_by)
         # Only now: what is refused above is refused without the half second that importing viser takes.
-        from app.bridge import server as bridge
-        from app.bridge.mends import pool_of
-        from app.http.access import Throttle
-        from app.http.ids import SessionIds
-        from app.http.page import FIRST_SCRIPTS, PLOTLY, build_page
-        from app.http.places import Door, Places
-        from app.http.site import Site
-        from navcore.foundation.version import __version__
+        from app.http.running import Running
 
-        bridge.require_known_version()
-        limits = limits or Limits()
-        places = Places(limits)
-        site = Site(
-            access=access,
-            ids=session_ids or SessionIds(),
-            places=places,
-            forwarded=inner is not None,
-            throttle=Throttle(limits.token_guesses, limits.token_refill_s),
-            version=__version__,
-            load_page=lambda: build_page([*FIRST_SCRIPTS, *page_scripts], [PLOTLY], _TITLE),
-        )
-        door = Door(limits)
-        serve = partial(_serve, listener=listener, site=site, limits=limits, door=door, places=places)
-        server = bridge.make_server(serve, _TITLE)
+        forwarded, limits = inner is not None, limits or Limits()
+        running = Running(listener, access, limits, session_ids, page_scripts, metrics, forwarded=forwarded)
     except BaseException:
         listener.close()
         raise
-    if metrics is not None:
-        throttle, pool = site.throttle, pool_of(server)
-        site.metrics = _metrics_of(metrics, lambda: _figures(places, door, throttle, pool))
     callbacks = ThreadPoolExecutor(max_workers=8, thread_name_prefix="session")
-    _follow_visits(server, limits, callbacks, on_connect, on_disconnect)
-    bridge.plotly_is_on_the_page(server)
-    server.gui.configure_theme(show_share_button=False)
-    site.ready.set()
+    running.follow_visits(callbacks, on_connect, on_disconnect)
     shown = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
-    return DashboardServer(
-        server, host, bound_port, f"http://{authority(shown, bound_port)}/", site.prepare, callbacks
-    )
-
-
-def _serve(
-    handler: Callable[[Any], Any],
-    host: str,
-    port: int,
-    *,
-    listener: socket.socket,
-    site: Site,
-    limits: Limits,
-    door: Door,
-    places: Places,
-    **keywords: Any,
-) -> Any:
-    """Stand in for websockets' ``serve`` in viser: its arguments, our socket, answers and checks."""
-    import websockets.asyncio.server
-
-    from app.http.connection import Connection
-
-    del host, port
-
-    async def placed(connection: Any) -> None:
-        door.leave(connection)
-        try:
-            await handler(connection)
-        finally:
-            places.leave(connection)
-
-    ours = {
-        "process_request": site.process_request,
-        "process_response": site.process_response,
-        "server_header": None,
-        "open_timeout": limits.request_s,
-        "max_size": limits.frame_bytes,
-        "max_queue": limits.frames_waiting,
-        "ping_interval": limits.ping_s,
-        "ping_timeout": limits.ping_s,
-        "close_timeout": limits.close_s,
-        "logger": _quiet_log(),
-        "create_connection": partial(Connection, limits=limits, door=door, places=places),
-    }
-    return websockets.asyncio.server.serve(placed, sock=listener, **{**keywords, **ours})
-
-
-def _metrics_of(make: Callable[[], Metrics], own: Callable[[], dict[str, float]]) -> Callable[[], bytes]:
-    made: list[Metrics] = []
-
-    def text() -> bytes:
-        if not made:
-            made.append(make())
-            made[0].sources.append(own)
-        return made[0].text()
-
-    return text
-
-
-def _figures(places: Places, door: Door, throttle: Throttle, pool: Any) -> dict[str, float]:
-    return {
-        "open_pages": float(len(places)),
-        "connections_at_the_door": float(len(door)),
-        "places_given_up_total": float(places.given_up),
-        "connections_turned_away_total": float(door.turned_away),
-        "wrong_tokens_total": float(throttle.guesses),
-        "callbacks_dropped_total": float(getattr(pool, "dropped", 0)),
-    }
-
-
-def _follow_visits(
-    server: viser.ViserServer,
-    limits: Limits,
-    callbacks: ThreadPoolExecutor,
-    on_connect: SessionCallback,
-    on_disconnect: SessionCallback,
-) -> None:
-    from app.bridge import server as bridge
-    from app.bridge.mends import forget_callbacks
-    from app.bridge.texts import speak
-    from app.http.connection import Guest
-    from app.http.frames import Gate, Uploading
-    from app.http.language import language_of
-    from app.languages.wording import wording
-
-    visits: dict[int, _Visit] = {}
-    gates: dict[int, Gate] = {}
-    uploading = Uploading(limits)
-
-    def opened(client_id: int, connection: Connection) -> None:
-        visits[client_id] = _Visit(connection.session_id)
-        connection.gate = gates[client_id] = Gate(Guest(server, client_id), limits, uploading)
-        if connection.request is not None:
-            speak(server, client_id, wording(language_of(connection.request.headers)))
-
-    # The page is shown once viser knows its camera; viser calls this in the event loop, before `closed`.
-    @server.on_client_connect
-    async def _(client: viser.ClientHandle) -> None:
-        visit = visits.get(client.client_id)
-        if visit is not None:
-            bridge.plotly_is_on_the_page(client)
-            visit.shown = callbacks.submit(_call, on_connect, client, visit.session_id)
-
-    @server.on_client_disconnect
-    async def _(client: viser.ClientHandle) -> None:
-        visit = visits.get(client.client_id)
-        if visit is not None and visit.shown is not None:
-            await asyncio.wrap_future(visit.shown)
-            await asyncio.wrap_future(callbacks.submit(_call, on_disconnect, client, visit.session_id))
-
-    async def closed(client_id: int) -> None:
-        visits.pop(client_id, None)
-        gates.pop(client_id).close()
-        forget_callbacks(server, client_id)
-
-    bridge.on_socket(server, opened, closed)
-
-
-def _call(callback: SessionCallback, client: viser.ClientHandle, session_id: str) -> None:
-    try:
-        callback(client, session_id)
-    except Exception as error:
-        _log.exception("a session callback failed")
-        client.add_notification("Something went wrong", f"{type(error).__name__}: {error}", color="red")
-
-
-def _quiet_log() -> logging.Logger:
-    """Return the log for websockets: never the requests (they carry the token), one line a fault."""
-    log = logging.getLogger("schuler.http.websockets")
-    log.setLevel(logging.WARNING)
-    if not log.filters:
-        log.addFilter(_one_line)
-    return log
-
-
-def _one_line(record: logging.LogRecord) -> bool:
-    # A stranger's malformed request is not worth a line.
-    if record.getMessage() == "opening handshake failed":
-        return False
-    if record.exc_info and record.exc_info[1] is not None:
-        record.msg = f"{record.msg} ({type(record.exc_info[1]).__name__})"
-        record.exc_info = record.exc_text = None
-    return True
+    address = f"http://{authority(shown, bound_port)}/"
+    return DashboardServer(running.viser, host, bound_port, address, running.site.prepare, callbacks)

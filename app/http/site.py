@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import email.utils
 import html
-import json
 import math
 import re
 import threading
@@ -21,6 +19,8 @@ from app.http.access import (
     Access,
     Refusal,
     Throttle,
+    answer_headers,
+    health,
     offers_token,
     refuse_address,
     refuse_unknown,
@@ -53,8 +53,6 @@ class Site:
         How many may come in.
     throttle : Throttle
         Of guesses of the token.
-    version : str
-        For ``/healthz``.
     load_page : callable
         Makes the page at the first request for it.
     forwarded : bool
@@ -67,7 +65,6 @@ class Site:
     ids: SessionIds
     places: Places
     throttle: Throttle
-    version: str
     load_page: Callable[[], Page]
     forwarded: bool = False
     metrics: Callable[[], bytes] | None = None
@@ -88,15 +85,16 @@ class Site:
         if refusal is not None:
             return _refuse(refusal)
         if path == "/healthz":
-            health = json.dumps({"status": "ok", "version": self.version})
-            return _respond(HTTPStatus.OK, health, "application/json")
+            return _respond(HTTPStatus.OK, health(), "application/json")
         websocket = any("websocket" in value.lower() for value in headers.get_all("Upgrade"))
         if not websocket and "token" in dict(parse_qsl(query)) and self.access.token is not None:
             return self._guarded(connection, lambda: self._exchange_token(path, query, headers))
-        if offers_token(headers):
-            refused = self._guarded(connection, lambda: self._ask_token(headers))
-        else:
-            refused = self._ask_token(headers)
+
+        def ask_token() -> Response | None:
+            refusal = refuse_unknown(self.access, headers)
+            return None if refusal is None else _refuse(refusal)
+
+        refused = self._guarded(connection, ask_token) if offers_token(headers) else ask_token()
         if refused is not None:
             return refused
         return (
@@ -115,10 +113,6 @@ class Site:
         if answer is not None and answer.status_code == HTTPStatus.UNAUTHORIZED:
             self.throttle.failed(connection.address)
         return answer
-
-    def _ask_token(self, headers: Headers) -> Response | None:
-        refusal = refuse_unknown(self.access, headers)
-        return None if refusal is None else _refuse(refusal)
 
     def process_response(self, connection: Connection, request: Request, response: Response) -> None:
         """Add the security headers to whatever is answered, the library's own refusals included."""
@@ -145,24 +139,23 @@ class Site:
         if path == "/":
             return _redirect(_with_query(f"s/{self.ids.new()}/", query))
         session = _SESSION_PATH.fullmatch(path)
-        if session is not None and is_shared(session.group(1)):
-            # A shared state is never worked on: whoever opens it gets a copy of their own.
-            copy = f"{self.ids.new_copy(session.group(1))}/"
-            return _redirect(_with_query(f"../{copy}" if session.group(2) else copy, query))
-        if session is not None and not self.ids.accepts(session.group(1)):
-            own = f"{self.ids.new()}/"
-            return _redirect(_with_query(f"../{own}" if session.group(2) else own, query))
-        if session is not None and not session.group(2):
-            return _redirect(_with_query(f"{session.group(1)}/", query))
         if session is not None:
-            self.places.invite(session.group(1))
-            if not self.places.has_room(connection.address, session.group(1)):
+            asked, slash = session.groups()
+            # A shared state is never worked on: whoever opens it gets a copy of their own.
+            copy = self.ids.new_copy(asked) if is_shared(asked) else None
+            id = copy or (asked if self.ids.accepts(asked) else self.ids.new())
+            if id != asked or not slash:
+                return _redirect(_with_query(f"../{id}/" if slash else f"{id}/", query))
+            self.places.invite(id)
+            if not self.places.has_room(connection.address, id):
                 return _full()
-            page = await self._loaded()
-            return await _serve(page.html, headers, "no-cache")
+            return await _serve((await self._loaded()).html, headers, "no-cache")
         returning = _PLACE_PATH.fullmatch(path)
-        if returning is not None:
-            return self._come_back(returning.group(1))
+        if returning is not None:  # a person has come back to a page that was idle (static/place.js)
+            if not self.ids.accepts(returning.group(1)):
+                return _respond(HTTPStatus.GONE, "This session is not known here; open the page anew.")
+            self.places.invite(returning.group(1))
+            return _respond(HTTPStatus.NO_CONTENT, "")
         if path == "/metrics" and self.metrics is not None:
             return _respond(HTTPStatus.OK, await asyncio.to_thread(self.metrics), _METRICS)
         if path.startswith("/static/"):
@@ -170,13 +163,6 @@ class Site:
             if file is not None:
                 return await _serve(file, headers, _FOR_EVER)
         return _not_found()
-
-    def _come_back(self, id: str) -> Response:
-        """Answer a page that a person has come back to after it was idle (static/place.js)."""
-        if not self.ids.accepts(id):
-            return _respond(HTTPStatus.GONE, "This session is not known here; open the page anew.")
-        self.places.invite(id)
-        return _respond(HTTPStatus.NO_CONTENT, "")
 
     def prepare(self) -> None:
         """Make the page and compress its files before they are asked for; from any thread."""
@@ -246,14 +232,7 @@ def _respond(
     content = body if isinstance(body, bytes) else body.encode()
     if isinstance(body, str) and content_type.startswith("text/plain") and content:
         content += b"\n"
-    headers = {
-        "Date": email.utils.formatdate(usegmt=True),
-        "Content-Type": content_type,
-        "Content-Length": str(len(content)),
-        "Cache-Control": "no-store",
-        "Connection": "close",
-        **(extra or {}),
-    }
+    headers = answer_headers(len(content), content_type) | (extra or {})
     return Response(status.value, status.phrase, Headers(headers), content)
 
 

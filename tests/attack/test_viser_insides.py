@@ -208,10 +208,10 @@ def test_controls_are_found_with_all_that_is_judged(bench: Bench) -> None:
         ids = {label: visitor.control(label) for label in ("gain", "network", "frozen", "log", "last")}
         (client_id,) = bench.server.viser.get_clients()
         found = {
-            label: controls.find_control(bench.server.viser, client_id, uuid) for label, uuid in ids.items()
+            label: controls.Guest(bench.server.viser, client_id).control(uuid) for label, uuid in ids.items()
         }
-        assert controls.find_control(bench.server.viser, client_id, "nobody's") is None
-        assert controls.find_control(bench.server.viser, 10_000, ids["gain"]) is None
+        assert controls.Guest(bench.server.viser, client_id).control("nobody's") is None
+        assert controls.Guest(bench.server.viser, 10_000).control(ids["gain"]) is None
     assert (found["gain"].label, found["gain"].value, found["gain"].bounds) == ("gain", 0.5, (0.0, 1.0))
     assert found["network"].options == ("compass", "pole2")
     assert found["frozen"].disabled and not found["gain"].disabled
@@ -222,7 +222,7 @@ def test_held_value_is_sent_even_when_nothing_changed(bench: Bench) -> None:
     with visit(bench.port, "restored") as visitor:
         uuid = visitor.control("gain")
         (client_id,) = bench.server.viser.get_clients()
-        controls.show_held_value(bench.server.viser, client_id, uuid)
+        controls.Guest(bench.server.viser, client_id).restore(uuid)
         sent = visitor.wait_for(lambda message: message["type"] == "GuiUpdateMessage")
         assert (sent["uuid"], sent["updates"]) == (uuid, {"value": 0.5})
 

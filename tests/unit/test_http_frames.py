@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from typing import Any
 
 import msgspec
@@ -11,9 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.bridge.controls import Control
+from app.bridge.controls import Control, Guest
 from app.bridge.server import FRAME_TYPES
-from app.http.frames import BadFrame, Gate, safe_file_name, shown, why_not
+from app.http.frames import BadFrame, Gate, Uploading, safe_file_name, shown, why_not
 from app.http.limits import MIB, Limits
 from tests.attack.wire import CAMERA
 
@@ -77,12 +76,14 @@ def test_long_values_are_shown_short() -> None:
 # ------------------------------------------------------------ the gate
 
 
-@dataclass
-class Guest:
-    controls: dict[str, Control]
-    restored: list[str] = field(default_factory=list)
-    ended: list[str] = field(default_factory=list)
-    notices: list[str] = field(default_factory=list)
+class Page(Guest):
+    """A visitor who only notes what is done."""
+
+    def __init__(self, controls: dict[str, Control]) -> None:
+        self.controls = controls
+        self.restored: list[str] = []
+        self.ended: list[str] = []
+        self.notices: list[str] = []
 
     def control(self, uuid: str) -> Control | None:
         return self.controls.get(uuid)
@@ -101,15 +102,15 @@ class Guest:
 
 
 @pytest.fixture
-def guest() -> Guest:
-    return Guest(
+def guest() -> Page:
+    return Page(
         {"gain": SLIDER, "frozen": control(0.5, disabled=True), "log": control(None, takes_files=True)}
     )
 
 
 @pytest.fixture
-def gate(guest: Guest) -> Gate:
-    return Gate(guest, Limits(upload_bytes=MIB, uploads_at_once=2))
+def gate(guest: Page) -> Gate:
+    return Uploading(Limits(upload_bytes=MIB, uploads_at_once=2)).gate(guest)
 
 
 def judge(gate: Gate, **message: Any) -> bytes | None:
@@ -125,7 +126,7 @@ def test_a_good_message_passes_unchanged(gate: Gate, message: dict[str, Any]) ->
     assert judge(gate, **message) == msgspec.msgpack.encode(message)
 
 
-def test_a_value_that_does_not_fit_is_dropped_and_told(gate: Gate, guest: Guest) -> None:
+def test_a_value_that_does_not_fit_is_dropped_and_told(gate: Gate, guest: Page) -> None:
     values = [1e9, -5, math.nan, "x"]
     assert [judge(gate, **update("gain", {"value": value})) for value in values] == [None] * 4
     assert guest.restored == ["gain"] * 4
@@ -145,7 +146,7 @@ def test_a_value_that_does_not_fit_is_dropped_and_told(gate: Gate, guest: Guest)
     ],
 )
 def test_what_has_no_effect_is_dropped(
-    gate: Gate, guest: Guest, message: dict[str, Any], restored: list[str]
+    gate: Gate, guest: Page, message: dict[str, Any], restored: list[str]
 ) -> None:
     assert judge(gate, **message) is None
     assert (guest.restored, guest.notices) == (restored, [])
@@ -187,7 +188,7 @@ def test_what_no_page_sends_ends_the_connection(gate: Gate, message: dict[str, A
 def test_nothing_else_is_ever_raised(frame: bytes | str) -> None:
     raw = frame if isinstance(frame, bytes) else msgspec.msgpack.encode({"type": frame, "uuid": "x"})
     try:
-        Gate(Guest({}), Limits()).judge(raw)
+        Uploading(Limits()).gate(Page({})).judge(raw)
     except BadFrame:
         pass
 
@@ -215,13 +216,13 @@ def test_an_upload_passes_with_its_name_cleaned(gate: Gate) -> None:
     assert begin(gate) is not None, "its place is free again"
 
 
-def test_a_large_upload_is_refused_before_it_is_sent(gate: Gate, guest: Guest) -> None:
+def test_a_large_upload_is_refused_before_it_is_sent(gate: Gate, guest: Page) -> None:
     assert begin(gate, size_bytes=64 * MIB, part_count=128) is None
     assert guest.notices == ["a.txt has 64.0 MiB; at most 1 MiB are accepted."]
     assert guest.ended == ["t"] and part(gate, 0) is None
 
 
-def test_too_many_uploads_or_too_much_at_once(gate: Gate, guest: Guest) -> None:
+def test_too_many_uploads_or_too_much_at_once(gate: Gate, guest: Page) -> None:
     sizes = {"1": MIB // 2, "2": MIB // 2 + 1, "3": 6, "4": 6}
     passed = [begin(gate, transfer_uuid=id, size_bytes=size) is not None for id, size in sizes.items()]
     assert (passed, guest.ended) == ([True, False, True, False], ["2", "4"])
