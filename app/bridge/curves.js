@@ -1,4 +1,4 @@
-// The server does not send again the curves that the page has of a plot over time (app/bridge/curves.py): null stands in
+// The server does not send again the curves that the page has of a plot over time (app/bridge/mends.py): null stands in
 // their place. Here the page's own curves are put there, before viser's program sees the messages.
 (() => {
   const kept = new Map(); // curves by plot

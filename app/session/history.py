@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from itertools import zip_longest
+from operator import itemgetter
 from typing import Any
+
+from pydantic import BaseModel
+from pydantic_core import to_jsonable_python
 
 from navcore.foundation.notation import symbol
 from navcore.foundation.parameters import sharing
@@ -17,6 +21,7 @@ MOST_STEPS = 200
 DRAG_S = 1.0
 """Changes of one field that follow each other faster than this are one step: a slider being dragged."""
 _LONGEST = 24
+_NO_DRAG: tuple[tuple[str, ...], float] = ((), 0.0)
 
 
 @dataclass(frozen=True)
@@ -41,12 +46,6 @@ class State:
     opened: Scenario
 
 
-@dataclass(frozen=True)
-class _Step:
-    state: State
-    name: str
-
-
 class History:
     """States in the order in which they came, and where among them the user stands.
 
@@ -56,48 +55,44 @@ class History:
         To begin with.
     clock : callable, optional
         Seconds, monotonic.
+
+    Attributes
+    ----------
+    steps : list of (State, str)
+        Every state, oldest first, and the name of the change that led to it.
+    at : int
+        Index of the present one.
     """
 
     def __init__(self, state: State, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
-        self._steps = [_Step(state, "")]
-        self._at = 0
-        self._drag: tuple[tuple[str, ...], float] = ((), 0.0)
-
-    @property
-    def steps(self) -> tuple[tuple[State, str], ...]:
-        """Every state, oldest first, and the name of the change that led to it."""
-        return tuple((step.state, step.name) for step in self._steps)
-
-    @property
-    def at(self) -> int:
-        """Index of the present one among `steps`."""
-        return self._at
+        self.steps: list[tuple[State, str]] = [(state, "")]
+        self.at = 0
+        self._drag: tuple[tuple[str, ...], float] = _NO_DRAG
 
     @classmethod
     def of(cls, steps: Sequence[tuple[State, str]], at: int) -> History:
         """A history with these `steps` that stands `at` one of them; ValueError if there is none such."""
         if not 0 <= at < len(steps):
             raise ValueError(f"no step {at} among {len(steps)}")
-        made = cls(steps[0][0])
-        made._steps = [_Step(state, name) for state, name in steps]
-        made._at = at
-        return made
+        history = cls(steps[0][0])
+        history.steps, history.at = list(steps), at
+        return history
 
     @property
     def state(self) -> State:
         """Where the user stands."""
-        return self._steps[self._at].state
+        return self.steps[self.at][0]
 
     @property
     def undo_name(self) -> str | None:
         """What undo would take back, in words; None when there is nothing."""
-        return self._steps[self._at].name if self._at > 0 else None
+        return self.steps[self.at][1] if self.at > 0 else None
 
     @property
     def redo_name(self) -> str | None:
         """What redo would bring back, in words; None when there is nothing."""
-        return self._steps[self._at + 1].name if self._at + 1 < len(self._steps) else None
+        return self.steps[self.at + 1][1] if self.at + 1 < len(self.steps) else None
 
     def push(self, state: State, name: str = "", gesture: str = "") -> None:
         """Note a change; what had been undone is forgotten. Nothing happens when nothing changed.
@@ -123,33 +118,31 @@ class History:
         now, (dragged, last_s) = self._clock(), self._drag
         moved = (gesture,) if gesture else () if name else fields
         self._drag = moved, now
-        del self._steps[self._at + 1 :]
+        del self.steps[self.at + 1 :]
         if moved and moved == dragged and (gesture or now - last_s < DRAG_S):
-            start = self._steps[self._at - 1].state
-            if start.scenario == state.scenario and start.origin == state.origin:
-                self._at -= 1  # dragged back to where it was
-                del self._steps[self._at + 1 :]
-                self._replace(state)
-                self._drag = ((), 0.0)  # its step is gone: what follows is another one
+            before = self.steps[self.at - 1][0]
+            self.steps.pop()
+            self.at -= 1
+            if before.scenario == state.scenario and before.origin == state.origin:
+                self._replace(state)  # dragged back to where it was
+                self._drag = _NO_DRAG  # its step is gone: what follows is another one
                 return
-            self._steps[self._at] = _Step(state, name or change_name(start, state))
-            return
-        self._steps.append(_Step(state, name or change_name(before, state)))
-        del self._steps[: max(0, len(self._steps) - MOST_STEPS - 1)]
-        self._at = len(self._steps) - 1
+        self.steps.append((state, name or change_name(before, state)))
+        del self.steps[: max(0, len(self.steps) - MOST_STEPS - 1)]
+        self.at = len(self.steps) - 1
 
     def undo(self) -> State | None:
         """Go one step back; None at the beginning."""
-        if self._at == 0:
-            return None
-        self._at, self._drag = self._at - 1, ((), 0.0)
-        return self.state
+        return self._walk(-1)
 
     def redo(self) -> State | None:
         """Go one step forward again; None at the end."""
-        if self._at + 1 >= len(self._steps):
+        return self._walk(1)
+
+    def _walk(self, by: int) -> State | None:
+        if not 0 <= self.at + by < len(self.steps):
             return None
-        self._at, self._drag = self._at + 1, ((), 0.0)
+        self.at, self._drag = self.at + by, _NO_DRAG
         return self.state
 
     def take_back(self, to: State) -> None:
@@ -161,26 +154,48 @@ class History:
             The last one that was good; if no step has it (it was passed within a drag), the present step
             ends there.
         """
-        self._drag = ((), 0.0)
-        for at in (*range(self._at - 1, -1, -1), self._at + 1):
-            if at < len(self._steps) and self._steps[at].state == to:
+        self._drag = _NO_DRAG
+        for at in (*range(self.at - 1, -1, -1), self.at + 1):
+            if at < len(self.steps) and self.steps[at][0] == to:
                 # Undone into: later steps stay. Else the refused step goes, and what was never run with it.
-                del self._steps[at + 1 if at < self._at else self._at : self._at + 1]
-                self._at = min(at, self._at)
+                del self.steps[at + 1 if at < self.at else self.at : self.at + 1]
+                self.at = min(at, self.at)
                 return
-        if self._at == 0:
-            self._replace(to)
-        else:
-            self._steps[self._at] = _Step(to, change_name(self._steps[self._at - 1].state, to))
+        self._replace(to)
+        if self.at:
+            self.steps[self.at] = to, change_name(self.steps[self.at - 1][0], to)
 
     def _replace(self, state: State) -> None:
-        self._steps[self._at] = _Step(state, self._steps[self._at].name)
+        self.steps[self.at] = state, self.steps[self.at][1]
+
+
+def differences(before: Any, after: Any, path: str = "") -> Iterator[tuple[str, Any, Any]]:
+    """Dotted path, value before and value after of each field that differs; lists of numbers are values.
+
+    Parameters
+    ----------
+    before, after : object
+        Parameter models, lists of such, or values. What both share is not looked at.
+    """
+    if before is after:
+        return
+    parts: list[tuple[str, Any, Any]] = []
+    both = before, after
+    if any(isinstance(one, BaseModel) for one in both):
+        names = dict.fromkeys(name for one in both if one is not None for name in type(one).model_fields)
+        parts += [(name, getattr(before, name, None), getattr(after, name, None)) for name in names]
+    elif any(isinstance(one, tuple) and one and isinstance(one[0], BaseModel) for one in both):
+        blocks = zip_longest(before or (), after or ())
+        parts += [(str(index), *pair) for index, pair in enumerate(blocks)]
+    elif before != after:
+        yield path, to_jsonable_python(before), to_jsonable_python(after)
+    for name, old, new in parts:
+        yield from differences(old, new, f"{path}.{name}" if path else name)
 
 
 def changed_fields(before: Scenario, after: Scenario) -> tuple[str, ...]:
     """Dotted paths of the fields that differ, e.g. ``method.0.network.xi``, sorted."""
-    old, new = fields_of(before), fields_of(after)
-    return tuple(sorted(path for path in old.keys() | new.keys() if old.get(path) != new.get(path)))
+    return tuple(sorted(path for path, _, _ in differences(before, after)))
 
 
 def change_name(before: State, after: State) -> str:
@@ -196,17 +211,14 @@ def change_name(before: State, after: State) -> str:
     count = len(after.scenario.method) - len(before.scenario.method)
     if count:
         return "add a method" if count > 0 else "remove a method"
-    fields = changed_fields(before.scenario, after.scenario)
-    if len(fields) != 1:
-        blocks = {field.rsplit(".", 1)[0] for field in fields}
-        return (
-            Text("change of {pop}", pop=blocks.pop())
-            if len(blocks) == 1
-            else Text("change of {fields} fields", fields=len(fields))
-        )
-    (field,) = fields
-    old, new = fields_of(before.scenario).get(field), fields_of(after.scenario).get(field)
-    return f"{_named(field, after.scenario)}: {_short(old)} → {_short(new)}"
+    changes = sorted(differences(before.scenario, after.scenario), key=itemgetter(0))
+    if len(changes) == 1:
+        field, old, new = changes[0]
+        return f"{_named(field, after.scenario)}: {_short(old)} → {_short(new)}"
+    blocks = {field.rpartition(".")[0] or field for field, _, _ in changes}
+    if len(blocks) == 1:
+        return Text("change of {pop}", pop=blocks.pop())
+    return Text("change of {fields} fields", fields=len(changes))
 
 
 def _named(field: str, scenario: Scenario) -> str:
@@ -217,32 +229,6 @@ def _named(field: str, scenario: Scenario) -> str:
         return field
     inner = symbol(inner.removeprefix("network.")) if inner.startswith("network.") else inner
     return Text("{inner} of {short}", inner=inner, short=_short(scenario.method[int(index)].name))
-
-
-def fields_of(scenario: Scenario) -> Mapping[str, Any]:
-    """Values of all fields by dotted path, e.g. ``method.0.network.xi``; kept for the last few scenarios."""
-    key: Any = scenario  # frozen, and so hashable, which its type does not tell
-    return _kept_fields(key)
-
-
-@lru_cache(maxsize=32)
-def _kept_fields(scenario: Scenario) -> Mapping[str, Any]:
-    return _flat(scenario.canonical())
-
-
-def _flat(value: Any, path: str = "") -> dict[str, Any]:
-    """Leaves of a nested mapping by dotted path; lists of numbers are leaves."""
-    if isinstance(value, dict):
-        items = [(str(key), item) for key, item in value.items()]
-    elif isinstance(value, list) and any(isinstance(item, dict) for item in value):
-        items = [(str(index), item) for index, item in enumerate(value)]
-    else:
-        return {path: value}
-    return {
-        leaf: item
-        for key, inner in items
-        for leaf, item in _flat(inner, f"{path}.{key}" if path else key).items()
-    }
 
 
 def _short(value: Any) -> str:

@@ -8,11 +8,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
+from app.jobs.envelopes import Simulate
 from app.jobs.load import spare_load
 from app.jobs.rows import few_rows
 from app.jobs.scheduler import Lane, Load
 from app.jobs.worker import Watch, Worker
-from app.session.simulating import Simulate
 from navcore.engine.run import Run
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text

@@ -9,7 +9,7 @@ from collections.abc import Callable, Set
 from pathlib import Path
 
 from app.http.ids import log_name
-from app.jobs.envelopes import Envelopes
+from app.jobs.envelopes import Envelopes, Simulate
 from app.jobs.load import refuse_too_large, run_load, runs_on_demand
 from app.jobs.searches import Searches
 from app.jobs.verifier import Verifier, Verify
@@ -18,7 +18,6 @@ from app.jobs.worker import Watch, Worker
 from app.session.display import Display
 from app.session.history import History, State
 from app.session.pins import Pins
-from app.session.simulating import Simulate, first_editable, simulate_after
 from app.session.uploads import Uploads
 from app.session.view import View
 from navcore.engine.run import Run
@@ -95,10 +94,7 @@ class Session:
         name = log_name(id)
         self.id = id
         self.lock = threading.RLock()
-        self.scenario = scenario
-        self.origin = origin
-        self.opened = scenario
-        self.selected = first_editable(scenario)
+        self._take(State(scenario, origin, first_editable(scenario), scenario))
         self.history = History(self.state)
         self.on_change: Callable[[], None] = lambda: None
         self.on_answer: Callable[[float], None] = lambda _: None
@@ -108,13 +104,12 @@ class Session:
         self.run: Run | None = None
         self.prepared: Run | None = None
         self.run_number = 0
-        self.outdated = True
         self.display = Display()
         self.uploads = Uploads(folder)
         self._before = self.state
         self._views: list[View] = []
         self._after_run: list[Callable[[], None]] = []
-        self._simulate = simulate or simulate_after(lambda: self.run or self.prepared)
+        self._simulate = simulate or self._simulate_after
         self._worker: Worker[State] = Worker(
             self._work, visitor=name, load=lambda state: run_load(state.scenario)
         )
@@ -204,21 +199,19 @@ class Session:
             if same:
                 return False
             opened = self.opened if origin is None else scenario
-            state = State(scenario, origin or self.origin, self.selected, opened)
-            self.history.push(
-                state, name or ("" if origin is None else Text("open {origin}", origin=origin)), gesture
-            )
-            self._go_to(state, by, opens=origin is not None)
+            if origin is not None:
+                name = name or Text("open {origin}", origin=origin)
+            self.history.push(State(scenario, origin or self.origin, self.selected, opened), name, gesture)
+            # The history's own: it shares with the state before what has not changed.
+            self._go_to(self.history.state, by, opens=origin is not None)
             return True
 
     def resume(self, history: History, display: Display) -> None:
         """Take over what was kept of this session, before any page is open."""
         with self.lock:
             self.history, self.display, self.restored = history, display, True
-            state = history.state
-            self.scenario, self.origin = state.scenario, state.origin
-            self.selected, self.opened = state.selected, state.opened
-            self._before = state
+            self._before = history.state
+            self._take(history.state)
 
     def undo(self) -> bool:
         """Take the last change back; False when there is none."""
@@ -260,9 +253,12 @@ class Session:
         self.outdated = self.run is None or self.run.scenario != state.scenario
         self._tell(lambda view: view.run_waits() if self.outdated else view.run_ended())
 
+    def _take(self, state: State) -> None:
+        self.scenario, self.origin = state.scenario, state.origin
+        self.selected, self.opened, self.outdated = state.selected, state.opened, True
+
     def _show_state(self, state: State, by: object) -> None:
-        self.scenario, self.origin, self.outdated = state.scenario, state.origin, True
-        self.selected, self.opened = state.selected, state.opened
+        self._take(state)
         self.verifier.follow(state.scenario)
         self.searches.changed()
         for view in list(self._views):
@@ -349,12 +345,11 @@ class Session:
         try:
             refuse_too_large(scenario)
             run = self._simulate(scenario, progress, watch.cancelled)
-        except InputError as error:
-            self._after_run = []
-            self._refuse(state, error)
-            return
         except Exception as error:
             self._after_run = []
+            if isinstance(error, InputError):
+                self._refuse(state, error)
+                return
             _log.exception("a run failed")
             failure = error
             self._tell(lambda view: view.run_failed(failure))
@@ -378,6 +373,14 @@ class Session:
             act()
         self.on_answer(time.monotonic() - watch.asked_s)
 
+    def _simulate_after(
+        self, scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]
+    ) -> Run:
+        """Run a scenario; what the run that is shown has computed already is taken from it."""
+        from navcore.engine.simulation import simulate
+
+        return simulate(scenario, progress, cancelled, self.run or self.prepared)
+
     def _refuse(self, state: State, error: InputError) -> None:
         """Go back to the last scenario that ran, unless the user has gone on already."""
         with self.lock:
@@ -397,3 +400,11 @@ class Session:
             except Exception as error:
                 _log.exception("a page could not be brought up to date")
                 view.run_failed(error)
+
+
+def first_editable(scenario: Scenario) -> int:
+    """Index of the first method with something to tune; 0 if there is none."""
+    tunable = (
+        i for i, m in enumerate(scenario.method) if not m.undamped and len(type(m.network).model_fields) > 1
+    )
+    return next(tunable, 0)

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pydantic import BaseModel
 
 from app.jobs.verifier import Verified
 from app.plots.envelope import Envelope
 from app.session.display import Display
-from app.session.history import fields_of
+from app.session.history import differences
 from app.session.pins import LONGEST_NAME, Pin
-from navcore.engine.run import Run
+from app.session.requirements import loop_of
+from navcore.engine.run import MethodRun, Run
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text
+from navcore.foundation.units import HOUR
+from navcore.mechanization.recorder import NAMES
 from navcore.scenario.model import Scenario
 
 if TYPE_CHECKING:
@@ -146,40 +152,31 @@ def _with_needed(pin: Pin, scenario: Scenario) -> Pin:
 
 def _parts(pin: Pin, scenario: Scenario) -> Iterator[str]:
     """Differences, those of the edited method first: ``ζ 0.5``."""
-    old, new = fields_of(pin.scenario), fields_of(scenario)
-    present = {method.name: place for place, method in enumerate(scenario.method)}
+    present = {method.name: method for method in scenario.method}
     others: list[str] = []
-    for place, method in enumerate(pin.scenario.method):
+    for method in pin.scenario.method:
         now = present.get(method.name)
-        mine = _block(old, f"method.{place}.")
-        words = [method.name] if now is None else _differing(mine, _block(new, f"method.{now}."))
+        words = [method.name] if now is None else _differing(method, now)
         if method.name == pin.method:
             yield from words
         else:
             others += [f"{method.name}: {word}" if now is not None else word for word in words]
     yield from others
-    yield from _differing(_block(old, "", "method."), _block(new, "", "method."))
+    yield from _differing(*(one.model_copy(update={"method": ()}) for one in (pin.scenario, scenario)))
 
 
-def _block(fields: Mapping[str, Any], within: str, without: str = "\n") -> dict[str, Any]:
-    return {
-        path.removeprefix(within): value
-        for path, value in fields.items()
-        if path.startswith(within) and not path.startswith(without)
-    }
-
-
-def _differing(old: dict[str, Any], new: dict[str, Any]) -> list[str]:
-    paths = [path for path in dict.fromkeys((*old, *new)) if old.get(path) != new.get(path)]
-    kinds = [path for path in paths if path.rpartition(".")[2] in _KINDS and path in old]
-    if kinds:
-        # Another kind of block has other fields: they say nothing that its name does not.
-        paths = [path for path in paths if path in kinds or not _beside(path, kinds)]
-    return [_words(path, old.get(path)) for path in paths]
-
-
-def _beside(path: str, kinds: list[str]) -> bool:
-    return any(path.rpartition(".")[0] == kind.rpartition(".")[0] for kind in kinds)
+def _differing(old: BaseModel, new: BaseModel) -> list[str]:
+    values = {path: value for path, value, _ in differences(old, new)}
+    kinds = [
+        path for path, value in values.items() if path.rpartition(".")[2] in _KINDS and value is not None
+    ]
+    # Another kind of block has other fields: they say nothing that its name does not.
+    named = {kind.rpartition(".")[0] for kind in kinds}
+    return [
+        _words(path, value)
+        for path, value in values.items()
+        if path in kinds or path.rpartition(".")[0] not in named
+    ]
 
 
 def _words(path: str, value: Any) -> str:
@@ -192,3 +189,103 @@ def _words(path: str, value: Any) -> str:
     if value is None:
         return Text("no {name}", name=name)
     return f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}"
+
+
+# ------------------------------------------------------------ the part that is measured
+
+_FEWEST_ROWS = 2
+
+
+@dataclass(frozen=True)
+class Window:
+    """What the errors of a run are measured over.
+
+    Attributes
+    ----------
+    run : Run
+        The run, its `MethodRun.errors` measured over the window.
+    from_s, to_s : float or None
+        Ends of the window, s; None: the whole run.
+    told : str
+        The window in words; empty while the whole run is asked for.
+    possible : bool
+        False where the window that was asked for holds nothing, so that the whole run is measured.
+    """
+
+    run: Run
+    from_s: float | None = None
+    to_s: float | None = None
+    told: str = ""
+    possible: bool = True
+
+    def of(self, other: Run) -> Run:
+        """Measure another run over the same window."""
+        if self.from_s is None or self.to_s is None:
+            return other
+        return _measured(other, self.from_s, self.to_s)
+
+
+def window_of(run: Run, display: Display) -> Window:
+    """Measure a run over what the display asks for.
+
+    "After settling" begins where the slowest of the damped, stable methods has come down to 2 % of an initial
+    tilt: one window for all methods, so that their numbers can be compared.
+    """
+    if display.window == "whole" or not len(run.t_s):
+        return Window(run)
+    begins, end = 0.0, float(run.t_s[-1])
+    why = ""
+    if display.window == "settled":
+        settling = [s for method in run.methods if (s := loop_of(method).settling_s) is not None]
+        if not settling:
+            return Window(run, told="No method settles: the errors are of the whole run.", possible=False)
+        begins, why = max(settling), " (the slowest damped method has settled)"
+    else:
+        begins = display.window_from_h * HOUR
+        end = end if display.window_to_h is None else min(end, display.window_to_h * HOUR)
+    rows = int(np.count_nonzero((run.t_s >= begins) & (run.t_s <= end)))
+    if rows < _FEWEST_ROWS:
+        told = Text(
+            "The run of {t_s:.3g} h has nothing between {begins:.3g} h{why} and "
+            "{end:.3g} h: the errors are of the whole run.",
+            t_s=run.t_s[-1] / HOUR,
+            begins=begins / HOUR,
+            why=why,
+            end=end / HOUR,
+        )
+        return Window(run, told=told, possible=False)
+    told = Text(
+        "Errors from {begins:.3g} h{why} to {end:.3g} h, on {rows} output rows.",
+        begins=begins / HOUR,
+        why=why,
+        end=end / HOUR,
+        rows=rows,
+    )
+    return Window(_measured(run, begins, end), begins, end, told)
+
+
+def _measured(run: Run, from_s: float, to_s: float) -> Run:
+    return replace(run, methods=tuple(_method(method, from_s, to_s) for method in run.methods))
+
+
+def _method(method: MethodRun, from_s: float, to_s: float) -> MethodRun:
+    """Statistics on the output rows; the largest magnitude on the curves too, which keep every extreme."""
+    rows = method.rows[(method.t_s >= from_s) & (method.t_s <= to_s), : len(NAMES)]
+    drawn = method.plot.values[(method.plot.t_s >= from_s) & (method.plot.t_s <= to_s)]
+    if not len(rows):
+        empty = dict.fromkeys(("mean", "std", "rms", "max_abs", "final"), float("nan"))
+        return replace(method, errors=dict.fromkeys(NAMES, empty))
+    largest = np.abs(np.concatenate([rows, drawn])).max(axis=0)
+    return replace(
+        method,
+        errors={
+            name: {
+                "mean": float(rows[:, i].mean()),
+                "std": float(rows[:, i].std()),
+                "rms": float(np.sqrt(np.mean(rows[:, i] ** 2))),
+                "max_abs": float(largest[i]),
+                "final": float(rows[-1, i]),
+            }
+            for i, name in enumerate(NAMES)
+        },
+    )

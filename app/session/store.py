@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import logging
 import os
 import re
@@ -14,12 +15,10 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any
 
 from app.http.ids import log_name
-from app.session.content import Contents, link_files
 from app.session.database import Database, parsed
 from navcore.foundation.text import Text
 
@@ -38,6 +37,9 @@ CLAIMED = "SCHULER_STATE_CLAIMED"
 _UPKEEP_EVERY_S = 600.0
 _ORPHAN_S = 86_400.0
 _ID = re.compile(r"[A-Za-z0-9_-]{1,64}")
+_KEY_BYTES = 32
+_UNLINKED_S = 3600.0
+_CONTENT = re.compile(r"[0-9a-f]{64}")
 _log = logging.getLogger("schuler.store")
 
 
@@ -296,7 +298,7 @@ class Store:
 
     def _remove_orphans(self, now: float) -> None:
         for path in self.folder.iterdir():
-            with suppress(OSError):
+            with contextlib.suppress(OSError):
                 if now - path.lstat().st_mtime < _ORPHAN_S:
                     continue
                 if path.suffix == ".tmp" and path.name.startswith("."):
@@ -311,10 +313,6 @@ def _checked(id: str) -> str:
     return id
 
 
-_NAME = "session.key"
-_BYTES = 32
-
-
 def session_key(folder: Path | None) -> bytes:
     """Read the key of a state folder, or make one there.
 
@@ -323,10 +321,10 @@ def session_key(folder: Path | None) -> bytes:
     folder : Path or None
         Made if need be. Where nothing can be kept, the key is that of this process alone.
     """
-    made = secrets.token_bytes(_BYTES)
+    made = secrets.token_bytes(_KEY_BYTES)
     if folder is None:
         return made
-    path = folder / _NAME
+    path = folder / "session.key"
     with contextlib.suppress(OSError):
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         if not path.exists():
@@ -334,8 +332,8 @@ def session_key(folder: Path | None) -> bytes:
         # A FIFO of that name must not hold up the start.
         handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOFOLLOW", 0))
         with os.fdopen(handle, "rb") as file:
-            kept = file.read(_BYTES + 1) if stat.S_ISREG(os.fstat(handle).st_mode) else b""
-        if len(kept) == _BYTES:
+            kept = file.read(_KEY_BYTES + 1) if stat.S_ISREG(os.fstat(handle).st_mode) else b""
+        if len(kept) == _KEY_BYTES:
             return kept
     return made
 
@@ -350,3 +348,84 @@ def _place(key: bytes, path: Path) -> None:
             os.link(fresh, path)
     finally:
         fresh.unlink(missing_ok=True)
+
+
+# ------------------------------------------------------------ uploaded files
+
+
+class Contents:
+    """A folder of contents, named after their hash.
+
+    A file in a session's folder is a hard link to its content: it has a name and a place of its own, takes no
+    room of its own, and the content stays as long as anybody links to it.
+
+    Parameters
+    ----------
+    folder : Path
+        Made when the first content comes; on one file system with the sessions' folders.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def keep_once(self, path: Path) -> None:
+        """Let a file share its content with every equal one; where links cannot be made it stays as it is."""
+        with path.open("rb") as file:
+            content = self.folder / hashlib.file_digest(file, "sha256").hexdigest()
+        try:
+            self.folder.mkdir(mode=0o700, exist_ok=True)
+            if not content.exists():
+                os.link(path, content)
+                return
+            if os.path.samefile(path, content):
+                return
+            fresh = path.with_name(f".{path.name}.link")
+            fresh.unlink(missing_ok=True)
+            os.link(content, fresh)
+            fresh.replace(path)
+        except OSError:
+            return
+
+    def bytes(self) -> int:
+        """Room that all contents take."""
+        try:
+            return sum(entry.stat().st_size for entry in os.scandir(self.folder) if entry.is_file())
+        except FileNotFoundError:
+            return 0
+
+    def remove_unused(self) -> None:
+        """Remove the contents that no session links to any more; nothing of another name, or elsewhere.
+
+        Raises
+        ------
+        OSError
+            The folder is a link, or cannot be read.
+        """
+        try:
+            folder = os.open(self.folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+        except FileNotFoundError:
+            return
+        try:
+            for name in filter(_CONTENT.fullmatch, os.listdir(folder)):
+                state = os.stat(name, dir_fd=folder, follow_symlinks=False)
+                unused = stat.S_ISREG(state.st_mode) and state.st_nlink == 1
+                if unused and time.time() - state.st_ctime > _UNLINKED_S:
+                    os.unlink(name, dir_fd=folder)
+        finally:
+            os.close(folder)
+
+
+def link_files(source: Path, target: Path) -> None:
+    """Give a session the files of another one without copying their contents, where the system can."""
+    if not source.is_dir():
+        return
+    target.mkdir(mode=0o700, parents=True, exist_ok=True)
+    for path in source.iterdir():
+        if path.name.startswith(".") or path.is_symlink() or not path.is_file():
+            continue
+        there = target / path.name
+        there.unlink(missing_ok=True)
+        try:
+            os.link(path, there)
+        except OSError:
+            shutil.copy2(path, there)

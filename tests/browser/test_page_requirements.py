@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from app.session.requirements import Requirements, verdicts
-from app.session.window import window_of
+from app.session.shown import window_of
 from tests.browser.driver import Bench
 from tests.browser.test_page_layout import SIZES, resize, wait_until_it_fits
 

@@ -112,7 +112,7 @@ def test_what_was_done_is_kept_as_steps(actions: list[Any], steps: list[tuple[st
                 history.push(changed(overrides), *named)
             case _:
                 history.push(changed(action))
-    assert history.steps == ((FIRST, ""), *((changed(overrides), name) for overrides, name in steps))
+    assert history.steps == [(FIRST, ""), *((changed(overrides), name) for overrides, name in steps)]
     assert (history.at, history.state) == (at, history.steps[at][0])
     names = [None, *(name for _, name in steps), None]
     assert (history.undo_name, history.redo_name) == (names[at], names[at + 1])

@@ -23,7 +23,7 @@ from app.session.requirements import (
     read_limit,
     verdicts,
 )
-from app.session.window import window_of
+from app.session.shown import window_of
 from app.views.poles.figure import allowed_poles
 from app.views.requirements.table import requirements_html
 from app.views.requirements.view import RequirementsView

@@ -15,9 +15,8 @@ from app.bridge.texts import language_of, text_said
 from app.editing.edits import files_of
 from app.plots import table
 from app.session.pins import Pin
-from app.session.shown import Shown, shown, titled
+from app.session.shown import Shown, shown, titled, window_of
 from app.session.uploads import with_plain_names
-from app.session.window import window_of
 from app.shell import notices
 from app.shell.layout import layout_for
 from app.shell.plotly_view import PlotlyView

@@ -12,8 +12,7 @@ from app.plots.table import cell, row, table
 from app.plots.units import rounded, settling
 from app.session.pins import Pin
 from app.session.requirements import MEASURES, Requirements, verdicts
-from app.session.shown import edited
-from app.session.window import Window
+from app.session.shown import Window, edited
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from navcore.foundation.units import MINUTE

@@ -10,8 +10,7 @@ from typing import Any
 from app.plots import style
 from app.session.pins import COLORS, MOST_PINS, Pin
 from app.session.session import first_editable
-from app.session.shown import Shown, titled
-from app.session.window import window_of
+from app.session.shown import Shown, titled, window_of
 from app.shell import notices
 from app.shell.view import Frame, PictureView, Tab, if_user
 from app.views.compare.table import COLUMNS, lines_of, pins_html

@@ -9,8 +9,7 @@ from app.jobs.verifier import Verified
 from app.plots import style
 from app.plots.table import parts
 from app.plots.warnings import severity, warnings_for
-from app.session.shown import Shown
-from app.session.window import window_of
+from app.session.shown import Shown, window_of
 from app.shell import notices
 from app.shell.control import Widget
 from app.shell.view import PictureView, Tab, if_user

@@ -6,8 +6,7 @@ import threading
 from dataclasses import replace
 
 from app.session.requirements import Requirements, label_of, read_limit
-from app.session.shown import Shown
-from app.session.window import window_of
+from app.session.shown import Shown, window_of
 from app.shell import notices
 from app.shell.control import Widget
 from app.shell.view import Frame, PictureView, Tab, if_user

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from app.session.requirements import Requirements, verdicts
-from app.session.window import window_of
+from app.session.shown import window_of
 from app.views.errors.view import OWN_NOISE
 from app.views.learn.lessons import MISSING, lessons
 from app.views.metrics.table import verdict
