@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from itertools import zip_longest
 from operator import itemgetter
 from typing import Any
 
@@ -169,28 +168,33 @@ class History:
         self.steps[self.at] = state, self.steps[self.at][1]
 
 
-def differences(before: Any, after: Any, path: str = "") -> Iterator[tuple[str, Any, Any]]:
+def differences(before: Any, after: Any, path: str = "") -> list[tuple[str, Any, Any]]:
     """Dotted path, value before and value after of each field that differs; lists of numbers are values.
 
     Parameters
     ----------
     before, after : object
-        Parameter models, lists of such, or values. What both share is not looked at.
+        Parameter models, lists of such, or values. What is equal in both is not looked into.
+    path : str
+        Of both.
     """
-    if before is after:
-        return
-    parts: list[tuple[str, Any, Any]] = []
-    both = before, after
-    if any(isinstance(one, BaseModel) for one in both):
-        names = dict.fromkeys(name for one in both if one is not None for name in type(one).model_fields)
-        parts += [(name, getattr(before, name, None), getattr(after, name, None)) for name in names]
-    elif any(isinstance(one, tuple) and one and isinstance(one[0], BaseModel) for one in both):
-        blocks = zip_longest(before or (), after or ())
-        parts += [(str(index), *pair) for index, pair in enumerate(blocks)]
-    elif before != after:
-        yield path, to_jsonable_python(before), to_jsonable_python(after)
-    for name, old, new in parts:
-        yield from differences(old, new, f"{path}.{name}" if path else name)
+    old, new = _parts(before), _parts(after)
+    if not (old or new):
+        return [(path, to_jsonable_python(before), to_jsonable_python(after))]
+    found: list[tuple[str, Any, Any]] = []
+    for name in old | new:
+        one, other = old.get(name), new.get(name)
+        if one is not other and one != other:
+            found += differences(one, other, f"{path}.{name}" if path else name)
+    return found
+
+
+def _parts(value: Any) -> dict[str, Any]:
+    """Fields of a model, or models of a list by place; nothing of a value."""
+    if isinstance(value, BaseModel):
+        return dict(value)
+    models = isinstance(value, tuple) and len(value) > 0 and isinstance(value[0], BaseModel)
+    return dict(zip(map(str, range(len(value))), value, strict=True)) if models else {}
 
 
 def changed_fields(before: Scenario, after: Scenario) -> tuple[str, ...]:

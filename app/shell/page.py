@@ -28,8 +28,7 @@ from app.shell.opening import Opening
 from app.shell.pace import Pace
 from app.shell.palette import Palette
 from app.shell.reports import Reports, run_element, views_element
-from app.shell.styles import page_styles
-from app.shell.view import Frame, View
+from app.shell.view import Frame, View, page_styles
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 

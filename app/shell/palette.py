@@ -3,27 +3,36 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Iterable
 from functools import lru_cache
-from typing import Any
+from html import escape
+from typing import TYPE_CHECKING, Any
 
 from app.bridge.controls import lock_controls
 from app.editing.excerpt import disturbances_toml, method_toml, paste
 from app.editing.typed import read_typed, unit_of
-from app.session.history import changed_fields
+from app.session.history import History, changed_fields
 from app.session.view import View
 from app.shell import notices
-from app.shell.commands import LONGEST_TEXT
+from app.shell.commands import LONGEST_TEXT, Command
 from app.shell.control import Control
 from app.shell.opening import Opening
 from app.shell.reports import view_names
-from app.shell.reset import Resets
-from app.shell.toolbar import PRESENT, REDO, RESET_ALL, SHARE, UNDO, Toolbar
+from app.shell.reset import RESET_FIELD, Resets
 from app.shell.view import Frame
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.scenario.file import load, presets
 
+if TYPE_CHECKING:
+    import viser
+
+UNDO, REDO, RESET_ALL, SHARE, PRESENT = "undo", "redo", "reset-all", "share", "present"
+"""Names of the commands behind the buttons."""
+_ICONS = {
+    UNDO: "M9 14 4 9l5-5M4 9h10a6 6 0 0 1 0 12h-3",
+    REDO: "m15 14 5-5-5-5M20 9H10a6 6 0 0 0 0 12h3",
+    RESET_ALL: "M4 4v6h6M4.6 10A8 8 0 1 1 4 14",
+}
 COPY_METHOD, COPY_LOG, PASTE = "copy-method-text", "copy-log-text", "paste-text"
 _LONGEST_UNDO = 48
 
@@ -46,58 +55,72 @@ class Palette:
         self._frame, self._page, self._free = frame, page, free
         self._toolbar = Toolbar(frame.gui, order=5)
         self._register(frame.opening)
-        self._offer_tabs(kind.title for kind in frame.kinds if kind.title and kind.always)
         self._shown: tuple[object, ...] = ()
         self._values: list[Any] = []
         self._resets = Resets(self._commands, frame.editor.put)
 
     def _register(self, opening: Opening) -> None:
-        add, session, ask = self._commands.register, self._session, self._commands.ask_page
-        add(UNDO, lambda _: self._if(session.undo(), "Nothing to undo"), "Undo", "Ctrl+Z")
-        add(REDO, lambda _: self._if(session.redo(), "Nothing to redo"), "Redo", ("Ctrl+Shift+Z", "Ctrl+Y"))
-        add(RESET_ALL, lambda _: self._if(session.reset(None), "Nothing has been changed"), "Reset all")
-        add(SHARE, lambda _: self._share(), "Share: a link that opens this state")
-        add("share-view", lambda _: self._share("link-view"), "Share this view: a link that opens these tabs")
-        add("no-tab", self._tell_no_tab, watcher=True)
-        add("no-view", self._tell_no_view, watcher=True)
-        add(PRESENT, lambda _: self._present(), "Present: drive alone, others watch")
-        add("run", lambda _: session.redo_run(), "Run again")
-        add("stop", lambda _: session.cancel_run(), "Stop the run")
-        add("keys", lambda _: ask("keys", ""), "Keys: what they do", "?", watcher=True)
-        add("tab", lambda name: ask("tab", name), watcher=True)
-        add("typed", self._typed)
-        add("reset-named", self._reset_named)
-        add(
-            COPY_METHOD,
-            lambda _: ask("copy", method_toml(session.scenario, session.selected)),
-            "Copy the method as TOML",
-            watcher=True,
-        )
-        add(
-            COPY_LOG,
-            lambda _: ask("copy", disturbances_toml(session.scenario)),
-            "Copy the log's events and outages as TOML",
-            watcher=True,
-        )
-        paste_title = "Paste a method, or the log's events and outages (TOML)"
-        add(PASTE, self._paste, paste_title, longest=LONGEST_TEXT)
-        for name, title in _preset_titles():
-            add(
-                f"preset-{name}",
-                lambda _, name=name: opening.choose_scenario(name),
-                Text("Open {name}: {title}", name=name, title=title),
-            )
-
-    def _offer_tabs(self, names: Iterable[str]) -> None:
-        """Let each of these tabs be brought to the front by a command."""
-        for name in names:
-            slug = "".join(letter for letter in name.lower() if letter.isalnum())
-            self._commands.register(
-                f"tab-{slug}",
-                lambda _, name=name: self._commands.ask_page("tab", name),
-                Text("Show {name}", name=name),
+        session, ask, tell = self._session, self._commands.ask_page, self._if
+        tabs = [kind.title for kind in self._frame.kinds if kind.title and kind.always]
+        commands = [
+            Command(UNDO, lambda _: tell(session.undo(), "Nothing to undo"), "Undo", ("Ctrl+Z",)),
+            Command(
+                REDO, lambda _: tell(session.redo(), "Nothing to redo"), "Redo", ("Ctrl+Shift+Z", "Ctrl+Y")
+            ),
+            Command(RESET_ALL, lambda _: tell(session.reset(None), "Nothing has been changed"), "Reset all"),
+            Command(SHARE, lambda _: self._share(), "Share: a link that opens this state"),
+            Command(
+                "share-view",
+                lambda _: self._share("link-view"),
+                "Share this view: a link that opens these tabs",
+            ),
+            Command("no-tab", self._tell_no_tab, watcher=True),
+            Command("no-view", self._tell_no_view, watcher=True),
+            Command(PRESENT, lambda _: self._present(), "Present: drive alone, others watch"),
+            Command("run", lambda _: session.redo_run(), "Run again"),
+            Command("stop", lambda _: session.cancel_run(), "Stop the run"),
+            Command("keys", lambda _: ask("keys", ""), "Keys: what they do", ("?",), watcher=True),
+            Command("tab", lambda name: ask("tab", name), watcher=True),
+            Command("typed", self._typed),
+            Command("reset-named", self._reset_named),
+            Command(
+                COPY_METHOD,
+                lambda _: ask("copy", method_toml(session.scenario, session.selected)),
+                "Copy the method as TOML",
                 watcher=True,
-            )
+            ),
+            Command(
+                COPY_LOG,
+                lambda _: ask("copy", disturbances_toml(session.scenario)),
+                "Copy the log's events and outages as TOML",
+                watcher=True,
+            ),
+            Command(
+                PASTE,
+                self._paste,
+                "Paste a method, or the log's events and outages (TOML)",
+                longest=LONGEST_TEXT,
+            ),
+            *(
+                Command(
+                    f"preset-{name}",
+                    lambda _, name=name: opening.choose_scenario(name),
+                    Text("Open {name}: {title}", name=name, title=title),
+                )
+                for name, title in _preset_titles()
+            ),
+            *(
+                Command(
+                    f"tab-{''.join(filter(str.isalnum, name.lower()))}",
+                    lambda _, name=name: ask("tab", name),
+                    Text("Show {name}", name=name),
+                    watcher=True,
+                )
+                for name in tabs
+            ),
+        ]
+        for c in commands:
+            self._commands.register(c.name, c.act, c.title, c.keys, watcher=c.watcher, longest=c.longest)
 
     # ------------------------------------------------------------ showing
 
@@ -117,11 +140,10 @@ class Palette:
         self._shown, self._values = state, values
         self._resets.show(session.opened, session.scenario, controls)
         changed = len(changed_fields(session.opened, session.scenario))
-        self._toolbar.show(history, session.origin, changed, self._drives, self._watches)
         control = None if self._watches else self._frame.editor.moved
         last = self._resets.of(control)
         found = None if control is None or last is None else (last[0], control.spec.label, last[1])
-        self._toolbar.show_changed(session.origin, changed, found)
+        self._toolbar.show(history, session.origin, changed, found, self._drives, self._watches)
         self._commands.rename(UNDO, _titled("Undo", history.undo_name))
         self._commands.rename(REDO, _titled("Redo", history.redo_name))
         self._commands.rename(RESET_ALL, Text("Reset all: back to {origin} as opened", origin=session.origin))
@@ -264,3 +286,110 @@ def _titled(what: str, name: str | None) -> str:
     if name is None:
         return what
     return f"{what} {name}" if len(name) <= _LONGEST_UNDO else f"{what} {name[: _LONGEST_UNDO - 1]}…"
+
+
+class Toolbar:
+    """The buttons, as HTML of ours: small enough to stand in one row, each a command.
+
+    Parameters
+    ----------
+    gui : viser.GuiApi
+        Of the client.
+    order : float
+        Place in the left column.
+    """
+
+    def __init__(self, gui: viser.GuiApi, order: float) -> None:
+        self._buttons = gui.add_html("", order=order)
+        self._changed = gui.add_html("", order=order + 0.1)
+        self._banner = gui.add_html("", order=order + 0.2)
+
+    def show(
+        self,
+        history: History,
+        origin: str,
+        changed: int,
+        last: tuple[str, str, str] | None,
+        presents: bool,
+        watches: bool,
+    ) -> None:
+        """Show what each button would do now, and what differs from the opened scenario.
+
+        Parameters
+        ----------
+        history : History
+            What can be undone and redone.
+        origin : str
+            To what reset goes back.
+        changed : int
+            Fields that differ from it.
+        last : tuple of str or None
+            Dotted path and label of the field in hand, and the value to which it goes back.
+        presents, watches : bool
+            The page drives alone; it watches another one.
+        """
+        undo, redo, free = history.undo_name, history.redo_name, not watches
+        back = Text("back to {origin} as opened", origin=origin)
+        buttons = [
+            _icon(UNDO, "Undo", undo or "nothing to undo", "Ctrl+Z", undo is not None and free),
+            _icon(REDO, "Redo", redo or "nothing to redo", "Ctrl+Shift+Z", redo is not None and free),
+            _icon(RESET_ALL, "Reset all", back, "", changed > 0 and free),
+            _button(SHARE, "Share", "A link that opens this state", free),
+            _button(PRESENT, "Present", _PRESENTING if presents else _PRESENT, free, presents),
+            _COMMANDS,
+        ]
+        row = f'<div class="sb-row" role="toolbar" aria-label="Commands">{"".join(buttons)}</div>'
+        _put(self._buttons, row)
+        text, button = Text("Unchanged since {origin} was opened", origin=origin), ""
+        if changed:
+            text = Text.plural(
+                "{changed} field changed from {origin}",
+                "{changed} fields changed from {origin}",
+                count=not changed,
+                changed=changed,
+                origin=origin,
+            )
+        if last is not None:
+            name, label, value = last
+            text = Text("{label} was {value}", label=label, value=value)
+            hint = Text("Reset {label} to {value}", label=label, value=value)
+            button = _button(f"{RESET_FIELD} {name}", "Reset", hint, True)
+        words = f'<span title="{escape(text)}">{escape(text)}</span>'
+        _put(self._changed, f'<div class="sb-changed">{words}{button}</div>')
+
+    def show_banner(self, text: str, drives: bool) -> None:
+        """Say who presents; nothing for an empty text."""
+        mine, style = (" sb-drives", "") if drives else ("", _WATCHING)
+        banner = f'{style}<div class="sb-banner{mine}" role="status">{escape(text)}</div>'
+        _put(self._banner, banner if text else "")
+
+
+def _put(handle: Any, html: str) -> None:
+    if handle.content != html:
+        handle.content = html
+
+
+_WATCHING = "<style>.sb-handle, .sb-handle-scale, .sb-handle-told { display: none; }</style>"
+"""For a page that watches: it sees no handle (static/handle.js), for one would do nothing."""
+_PRESENT = "Drive alone: other pages of this session watch until you press it again or leave"
+_COMMANDS = (
+    '<button class="sb-do" data-palette title="All commands (Ctrl+K); their keys: ?">Commands</button>'
+)
+_PRESENTING = "You present; press to let the other pages take part again"
+
+
+def _icon(command: str, label: str, what: str, key: str, able: bool) -> str:
+    shape = f'<svg viewBox="0 0 24 24" aria-hidden="true"><path d="{_ICONS[command]}"/></svg>'
+    hint = f"{label}: {what}" + (f" ({key})" if key else "")
+    state = "" if able else ' aria-disabled="true"'
+    named = f'title="{escape(hint)}" aria-label="{label}"{state}'
+    return f'<button class="sb-do" data-command="{command}" {named}>{shape}</button>'
+
+
+def _button(command: str, label: str, hint: str, able: bool, pressed: bool | None = None) -> str:
+    state = "" if able else ' aria-disabled="true"'
+    state += "" if pressed is None else f' aria-pressed="{str(pressed).lower()}"'
+    return (
+        f'<button class="sb-do" data-command="{escape(command)}" title="{escape(hint)}"{state}>'
+        f"{escape(label)}</button>"
+    )

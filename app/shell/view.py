@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
 
+from app.editing import edits
+from app.editing.form import FieldSpec
+from app.plots import style, table
 from app.plots.plotly_data import PlotlyFigure
 from app.plots.uplot import UplotFigure
 from app.session.session import Session
 from app.session.shown import Shown
 from app.shell.commands import Commands
-from app.shell.control import Control
+from app.shell.control import Control, Section
 from app.shell.editor import Editor
 from app.shell.layout import Layout
 from app.shell.opening import Opening
@@ -197,12 +200,52 @@ class PictureView(View, Generic[P]):
         raise NotImplementedError
 
 
-def styles_of(kinds: Sequence[type[View]]) -> str:
-    """Style sheets in the folders of some views, each once."""
+class FieldsView(View):
+    """Makes a section at each of `places`, and shows fields in them.
+
+    Attributes
+    ----------
+    places : dict
+        Name of a section -> place of its first control in the tab.
+    """
+
+    places: ClassVar[dict[str, float]] = {}
+
+    def build(self, tab: Tab) -> None:
+        """Make the sections."""
+        gui, edit = self.frame.gui, self.frame.editor.edit
+        self.sections = {name: Section(gui, tab, edit, order) for name, order in self.places.items()}
+
+    @property
+    def controls(self) -> list[Control]:
+        """Controls of the fields."""
+        return [control for section in self.sections.values() for control in section.controls.values()]
+
+    def show_fields(self, fields: Mapping[str, list[FieldSpec]]) -> None:
+        """Show fields of the session's scenario in the sections with these names."""
+        scenario, moved = self.session.scenario, self.frame.editor.moved
+        for name, specs in fields.items():
+            self.sections[name].show(specs, edits.values_at(scenario, [spec.path for spec in specs]), moved)
+
+
+def page_styles(kinds: Sequence[type[View]], state_id: str, command_id: str) -> str:
+    """CSS of a page: of the shell, of its views, each folder once, and of the plots over time.
+
+    Parameters
+    ----------
+    kinds : sequence of type
+        The registered views.
+    state_id, command_id : str
+        Ids of the controls through which the page reports and asks.
+    """
     folders = dict.fromkeys(Path(inspect.getfile(kind)).parent for kind in kinds)
-    return "".join(
-        path.read_text(encoding="utf-8") for folder in folders for path in sorted(folder.glob("*.css"))
+    of_shell = [Path(__file__).parent / "static" / f"{name}.css" for name in ("page", "commands", "touch")]
+    of_views = [path for folder in folders for path in sorted(folder.glob("*.css"))]
+    first, last = (
+        "".join(path.read_text(encoding="utf-8") for path in paths) for paths in (of_shell, of_views)
     )
+    first = first.replace("PAGE_STATE", state_id).replace("PAGE_COMMAND", command_id)
+    return first + table.CSS + last + style.UPLOT_CSS
 
 
 def if_user(act: Callable[[], None]) -> Callable[[Any], None]:

@@ -8,9 +8,8 @@ from app.editing import edits, form
 from app.editing.form import FieldSpec
 from app.session.log_fit import can_fit, fit_of, told, with_fitted_log
 from app.shell import notices
-from app.shell.fields_view import FieldsView
 from app.shell.palette import COPY_LOG, PASTE
-from app.shell.view import Tab, if_user
+from app.shell.view import FieldsView, Tab, if_user
 from navcore.scenario.model import Scenario
 from navcore.sensors.log_errors.events import LogEvent
 from navcore.sensors.reference import Outage, Reference

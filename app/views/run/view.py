@@ -5,8 +5,7 @@ from __future__ import annotations
 from app.editing import form
 from app.editing.form import FieldSpec, Path
 from app.shell import notices
-from app.shell.fields_view import FieldsView
-from app.shell.view import Tab
+from app.shell.view import FieldsView, Tab
 from navcore.foundation.registry import blocks_of
 from navcore.foundation.text import Text
 from navcore.motion import MOTIONS

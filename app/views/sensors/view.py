@@ -6,8 +6,7 @@ from pathlib import Path
 
 from app.editing import edits, form
 from app.shell import notices
-from app.shell.fields_view import FieldsView
-from app.shell.view import Tab, if_user
+from app.shell.view import FieldsView, Tab, if_user
 from navcore.sensors.imu import Imu
 
 _FIRST = 8
