@@ -122,12 +122,12 @@ class Guest:
         if client is not None:
             client.gui._current_file_upload_states.pop(transfer, None)
 
-    def tell(self, text: str) -> None:
+    def tell(self, title: str, text: str) -> None:
         """Show a short notice, at most one a second."""
         client, now_s = self._client, time.monotonic()
         if client is not None and now_s - self._last_notice_s >= _NOTICE_EVERY_S:
             self._last_notice_s = now_s
-            client.add_notification("Not accepted", text, color="red", auto_close_seconds=8.0)
+            client.add_notification(title, text, color="red", auto_close_seconds=8.0)
 
 
 def lock_controls(client: viser.ClientHandle, but: frozenset[str] | None) -> None:

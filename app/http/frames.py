@@ -144,7 +144,7 @@ class Gate:
         if not control.disabled:
             text = "{name} must {reason}; {value} was not taken over."
             name = control.label or "The control"
-            self.visitor.tell(Text(text, name=name, reason=reason, value=shown(given)))
+            self.visitor.tell("Not accepted", Text(text, name=name, reason=reason, value=shown(given)))
         return None
 
     def _judge_hold(self, frame: bytes, fields: dict[str, Any]) -> bytes | None:
@@ -164,7 +164,7 @@ class Gate:
         refusal = self._why_not_upload(size)
         if refusal is not None:
             self.visitor.end_upload(component, transfer, size)
-            self.visitor.tell(f"{name} {refusal}.")
+            self.visitor.tell("Not accepted", f"{name} {refusal}.")
             return None
         if parts:
             self._uploads[transfer] = _Upload(component, size, size, parts, time.monotonic())

@@ -97,7 +97,7 @@ class Page(Guest):
     def end_upload(self, component: str, transfer: str, size: int) -> None:
         self.ended.append(transfer)
 
-    def tell(self, text: str) -> None:
+    def tell(self, title: str, text: str) -> None:
         self.notices.append(text)
 
 
