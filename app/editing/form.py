@@ -22,6 +22,7 @@ Path = tuple[str | int, ...]
 Kind = Literal["number", "integer", "flag", "choice", "text", "roots", "numbers", "pairs"]
 
 _AXES = {2: ("E", "N"), 3: ("x", "y", "z")}
+_PLAIN: dict[Any, Kind] = {bool: "flag", int: "integer", float: "number", str: "text"}
 _SLIDER_STEPS = 200
 _SIGNIFICANT = 3
 _OUTSIDE = 1e-6
@@ -232,67 +233,45 @@ def choice(model: type[BaseModel], name: str, path: Path, label: str = "") -> Fi
 
 def _field(name: str, info: FieldInfo, path: Path, prefix: str) -> list[FieldSpec]:
     annotation = _without_none(info.annotation)
-    label = full_label(name, info, prefix)
     offered = _literals(annotation)
-    if offered:
-        return [FieldSpec(path, label, _hint(info, ""), "choice", info.default, offered)]
-    if annotation is bool:
-        return [FieldSpec(path, label, _hint(info, ""), "flag", info.default)]
-    if annotation in (int, float):
-        kind: Kind = "integer" if annotation is int else "number"
-        hint = _hint(info, allowed_range(info))
-        return [FieldSpec(path, label, hint, kind, info.default, (), _slider(info), bounds_of(info))]
-    if annotation is str:
-        return [FieldSpec(path, label, _hint(info, ""), "text", info.default)]
-    return _sequence(info, annotation, path, prefix, label, name)
+    kind: Kind | None = "choice" if offered else _PLAIN.get(annotation)
+    if kind is None and get_origin(annotation) is tuple:
+        items = [_bare(item) for item in get_args(annotation)]
+        if Ellipsis not in items:
+            return _vector(name, info, path, prefix) if items and set(items) == {float} else []
+        kind = _kind_of_list(items[0])
+    if kind is None:
+        return []
+    hint = _hint(info, allowed_range(info) if kind in ("integer", "number") else "")
+    if kind == "pairs":
+        columns = ": ".join(_bare(get_args(annotation)[0])._fields)
+        hint = Text("{hint} Written as {columns}, ...", hint=hint, columns=columns)
+    label = full_label(name, info, prefix)
+    return [FieldSpec(path, label, hint, kind, info.default, offered, _slider(info), bounds_of(info))]
 
 
-def _sequence(
-    info: FieldInfo, annotation: Any, path: Path, prefix: str, label: str, name: str
-) -> list[FieldSpec]:
-    arguments = [a for a in get_args(_bare(annotation)) if a is not Ellipsis]
-    if get_origin(_bare(annotation)) is not tuple or not arguments:
-        return []
-    endless = Ellipsis in get_args(_bare(annotation))
-    if endless and get_origin(_bare(arguments[0])) is tuple:
-        return [FieldSpec(path, label, _hint(info, ""), "roots", info.default)]
-    if endless and _is_row(_bare(arguments[0])):
-        columns = ": ".join(_bare(arguments[0])._fields)
-        return [
-            FieldSpec(
-                path,
-                label,
-                Text("{hint} Written as {columns}, ...", hint=_hint(info, ""), columns=columns),
-                "pairs",
-                info.default,
-            )
-        ]
-    if endless and _bare(arguments[0]) is float:
-        return [FieldSpec(path, label, _hint(info, ""), "numbers", info.default)]
-    if endless or any(_bare(argument) is not float for argument in arguments):
-        return []
-    names = extra_of(info).get("elements") or _AXES.get(
-        len(arguments), tuple(map(str, range(len(arguments))))
-    )
-    element = element_of(info)
+def _kind_of_list(item: Any) -> Kind | None:
+    """Kind of a field that is a list of such items: roots, rows with two columns, or numbers."""
+    if get_origin(item) is tuple:
+        return "roots"
+    if isinstance(item, type) and len(getattr(item, "_fields", ())) == 2:
+        return "pairs"
+    return "numbers" if item is float else None
+
+
+def _vector(name: str, info: FieldInfo, path: Path, prefix: str) -> list[FieldSpec]:
+    """One control for each element of a vector."""
+    element, size = element_of(info), len(info.default)
+    names = extra_of(info).get("elements") or _AXES.get(size, tuple(map(str, range(size))))
     hint = _hint(info, allowed_range(element) if element is not None else "")
+    allowed = (-math.inf, math.inf) if element is None else bounds_of(element)
     return [
         FieldSpec(
-            (*path, i),
-            full_label(name, info, prefix, part),
-            hint,
-            "number",
-            info.default[i],
-            slider=_slider(info),
-            allowed=(-math.inf, math.inf) if element is None else bounds_of(element),
+            (*path, i), full_label(name, info, prefix, part), hint, "number", info.default[i], (),
+            _slider(info), allowed,
         )
         for i, part in enumerate(names)
-    ]
-
-
-def _is_row(annotation: Any) -> bool:
-    """Whether this is a named pair: a row of a table with two columns."""
-    return isinstance(annotation, type) and len(getattr(annotation, "_fields", ())) == 2
+    ]  # fmt: skip
 
 
 def full_label(name: str, info: FieldInfo, prefix: str = "", part: str = "") -> str:

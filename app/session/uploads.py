@@ -109,52 +109,45 @@ class Uploads:
         fresh.write_bytes(content)
         try:
             report = guarded.call(name, check_recording, fresh)
+            if not report.ok:
+                raise InputError(Fault(name, f.field, f.value, f.allowed) for f in report.faults)
         except InputError:
             fresh.unlink()
             raise
-        if not report.ok:
-            fresh.unlink()
-            raise InputError(Fault(name, f.field, f.value, f.allowed) for f in report.faults)
         self.keep_once(fresh)
         fresh.replace(path)
         self.files[name] = _understood(path, report)
         return self.files[name]
 
     def _refuse_excess(self, name: str, size: int) -> None:
-        if size > LARGEST_FILE:
-            allowed = Text(
-                "has {size:.1f} MiB; at most {largest_file:.0f} MiB are accepted",
-                size=size / MIB,
-                largest_file=LARGEST_FILE / MIB,
-            )
-            raise InputError(Fault(name, "", None, allowed))
-        if not self.has_room(size):
-            allowed = "cannot be kept: the room of this server for uploaded files is used up"
-            raise InputError(Fault(name, "", None, allowed))
-        if name not in self.files and len(self.files) >= MOST_FILES:
-            raise InputError(
-                Fault(
-                    name,
-                    "",
-                    None,
-                    Text(
-                        "at most {most_files} files are kept; remove the others first", most_files=MOST_FILES
-                    ),
-                )
-            )
         kept = sum(upload.path.stat().st_size for other, upload in self.files.items() if other != name)
-        if kept + size > LARGEST_FOLDER:
-            raise InputError(
-                Fault(
-                    name,
-                    "",
-                    None,
-                    Text(
-                        "all files together have more than {largest_folder:.0f} MiB",
-                        largest_folder=LARGEST_FOLDER / MIB,
-                    ),
-                )
-            )
+        for excess, allowed in (
+            (
+                size > LARGEST_FILE,
+                Text(
+                    "has {size:.1f} MiB; at most {largest_file:.0f} MiB are accepted",
+                    size=size / MIB,
+                    largest_file=LARGEST_FILE / MIB,
+                ),
+            ),
+            (
+                not self.has_room(size),
+                "cannot be kept: the room of this server for uploaded files is used up",
+            ),
+            (
+                name not in self.files and len(self.files) >= MOST_FILES,
+                Text("at most {most_files} files are kept; remove the others first", most_files=MOST_FILES),
+            ),
+            (
+                kept + size > LARGEST_FOLDER,
+                Text(
+                    "all files together have more than {largest_folder:.0f} MiB",
+                    largest_folder=LARGEST_FOLDER / MIB,
+                ),
+            ),
+        ):
+            if excess:
+                raise InputError(Fault(name, "", None, allowed))
 
     def reopen(self) -> None:
         """Take over the files that lie in the folder, from before the server was started; others are left."""
@@ -230,7 +223,8 @@ def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, l
         notes.append(
             Text("The track is not used yet: a {missing} is missing. Upload it too.", missing=missing)
         )
-    logs = [path for path in speeds if _is_log(uploads, path)] or speeds
+    # A speed log proper has speeds along the ship's axes; a receiver has its course and speed.
+    logs = uploads.holding("water", "ground") or speeds
     if logs:
         kept = {k: v for k, v in data["reference"].items() if k in ("event", "outage")}
         data["reference"] = {"kind": "file", "file": logs, **kept, "frame": "body"}
@@ -303,12 +297,6 @@ def _on_recorded_imu(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, li
     return Scenario.parse(data), notes
 
 
-def _is_log(uploads: Uploads, path: str) -> bool:
-    """A speed log proper, with speeds along the ship's axes; not a receiver's course and speed."""
-    held = uploads.files[Path(path).name].quantities
-    return bool(held & {"water", "ground"})
-
-
 def shared_files(scenario: Scenario, names: Mapping[str, Path]) -> Scenario:
     """Let the file names of a scenario mean the uploaded files of the same name.
 
@@ -319,20 +307,16 @@ def shared_files(scenario: Scenario, names: Mapping[str, Path]) -> Scenario:
     InputError
         A file is named that has not been uploaded.
     """
-    data, faults = scenario.canonical(), []
-    names = {path.name: path for path in asset_path("recordings").glob("*.csv")} | dict(names)
-    for block in _WITH_FILES:
-        named = data.get(block, {}).get("file")
-        if not named:
-            continue
-        wanted = [named] if isinstance(named, str) else list(named)
-        plain = [Path(str(name).replace("\\", "/")).name for name in wanted]
-        missing = [name for name in plain if name not in names]
-        faults += [
-            Fault("", f"{block}.file", name, "upload this file first, then the scenario") for name in missing
-        ]
-        found = [str(names[name]) for name in plain if name in names]
-        data[block]["file"] = found[0] if isinstance(named, str) and found else found
+    ours = {path.name: path for path in asset_path("recordings").glob("*.csv")} | dict(names)
+    data, faults = plain_names(scenario.canonical()), list[Fault]()
+
+    def path_of(block: str, name: str) -> str:
+        if name not in ours:
+            wanted = "upload this file first, then the scenario"
+            faults.append(Fault("", f"{block}.file", name, wanted))
+        return str(ours.get(name, name))
+
+    data = _renamed(data, path_of)
     if faults:
         raise InputError(faults)
     return Scenario.parse(data)
@@ -375,11 +359,16 @@ def with_plain_names(scenario: Scenario) -> Scenario:
 
 def plain_names(data: dict[str, Any]) -> dict[str, Any]:
     """A scenario's canonical data with its files by their names alone."""
+    return _renamed(data, lambda _, name: Path(name.replace("\\", "/")).name)
+
+
+def _renamed(data: dict[str, Any], rename: Callable[[str, str], str]) -> dict[str, Any]:
+    """Give every file in a scenario's canonical data the name ``rename(block, name)``."""
     data = dict(data)
     for block in _WITH_FILES:
         named = data.get(block, {}).get("file")
         if named:
             single = isinstance(named, str)
-            plain = Path(named).name if single else [Path(name).name for name in named]
-            data[block] = data[block] | {"file": plain}
+            names = [rename(block, str(name)) for name in ([named] if single else named)]
+            data[block] = data[block] | {"file": names[0] if single else names}
     return data

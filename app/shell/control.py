@@ -16,8 +16,12 @@ if TYPE_CHECKING:
 
 DECIMALS = 12
 """Decimals that a number box takes and shows."""
-_READ = {"roots": typed.read_roots, "numbers": typed.read_numbers, "pairs": typed.read_pairs}
-_WRITE = {"roots": typed.write_roots, "numbers": typed.write_numbers, "pairs": typed.write_pairs}
+_TEXTS = {
+    "roots": (typed.read_roots, typed.write_roots),
+    "numbers": (typed.read_numbers, typed.write_numbers),
+    "pairs": (typed.read_pairs, typed.write_pairs),
+}
+"""Kinds of fields that are shown as text: how that is read and written."""
 _AS_THEY_ARE = ("integer", "choice", "flag")
 EXACT = ", exact"
 """Ends the label of a number box that stands beside a slider."""
@@ -46,79 +50,60 @@ class Control:
 
     def __init__(self, gui: viser.GuiApi, spec: FieldSpec, edit: Edit, order: float, value: Any) -> None:
         self.spec = spec
-        self.value = value
-        self._range = spec.slider
-        self._slider: Widget | None = None
-        self._slider_moved = self._behind = False
+        self.value: Any = value
+        self._slider_moved = self._behind = self.removed = False
         self._shown: Any = _UNKNOWN
-        self.removed = False
-        make = {
-            "choice": self._make_choice,
-            "flag": self._make_flag,
-            "integer": self._make_integer,
-            "number": self._make_number,
-        }
-        self._box = Widget(make.get(spec.kind, self._make_text)(gui, order, value))
-        self._box.handle.on_update(lambda event: edit(self, False) if event.client is not None else None)
-        if self._slider is not None:
-            self._slider.handle.on_update(
-                lambda event: edit(self, True) if event.client is not None else None
+        self._range, self._slider = self._make_slider(gui, order)
+        self._box = Widget(self._make_box(gui, order))
+        self._widgets = [self._box] if self._slider is None else [self._slider, self._box]
+        for widget in self._widgets:
+            by_slider = widget is self._slider
+            widget.handle.on_update(
+                lambda event, by_slider=by_slider: edit(self, by_slider) if event.client is not None else None
             )
         self._note = gui.add_html("", order=order + 0.5, visible=False)
 
     # ------------------------------------------------------------ making
 
-    def _make_choice(self, gui: viser.GuiApi, order: float, value: Any) -> Any:
-        spec = self.spec
-        return gui.add_dropdown(
-            spec.label, spec.choices, initial_value=str(value), hint=spec.hint or None, order=order
-        )
-
-    def _make_flag(self, gui: viser.GuiApi, order: float, value: Any) -> Any:
-        return gui.add_checkbox(self.spec.label, bool(value), hint=self.spec.hint or None, order=order)
-
-    def _make_integer(self, gui: viser.GuiApi, order: float, value: Any) -> Any:
-        spec, label = self.spec, self._make_slider(gui, order, value)
-        return gui.add_number(label, int(value), step=1, hint=spec.hint or None, order=order + 0.2)
-
-    def _make_text(self, gui: viser.GuiApi, order: float, value: Any) -> Any:
-        return gui.add_text(self.spec.label, self.as_text(value), hint=self.spec.hint or None, order=order)
-
-    def _make_slider(self, gui: viser.GuiApi, order: float, value: Any) -> str:
-        """Make the slider, if the field has one; return the label of the box beside it."""
+    def _make_slider(self, gui: viser.GuiApi, order: float) -> tuple[Slider | None, Widget | None]:
+        """Make the slider, if the field has one."""
         spec = self.spec
         if spec.slider is None:
-            return spec.label
-        shown = 0.0 if value is None else float(value)
-        self._range = slider = spec.slider.reaching(shown, spec.allowed)
-        (low, high), position = slider.ends, slider.position(shown)
-        self._slider = Widget(
-            gui.add_slider(
-                spec.label,
-                low,
-                high,
-                slider.step,
-                position,
-                marks=_marks(slider),
-                hint=spec.hint or None,
-                order=order,
-            )
+            return None, None
+        shown = float(self.value or 0.0)
+        slider = spec.slider.reaching(shown, spec.allowed)
+        handle = gui.add_slider(
+            spec.label,
+            *slider.ends,
+            slider.step,
+            slider.position(shown),
+            marks=_marks(slider),
+            hint=spec.hint or None,
+            order=order,
         )
-        return spec.label + EXACT
+        return slider, Widget(handle)
 
-    def _make_number(self, gui: viser.GuiApi, order: float, value: Any) -> Any:
-        spec, label = self.spec, self._make_slider(gui, order, value)
-        shown = 0.0 if value is None else float(value)
+    def _make_box(self, gui: viser.GuiApi, order: float) -> Any:
+        """Make what holds the exact value."""
+        spec, value, hint = self.spec, self.value, self.spec.hint or None
+        if spec.kind == "choice":
+            return gui.add_dropdown(
+                spec.label, spec.choices, initial_value=str(value), hint=hint, order=order
+            )
+        if spec.kind == "flag":
+            return gui.add_checkbox(spec.label, bool(value), hint=hint, order=order)
+        if spec.kind not in ("integer", "number"):
+            return gui.add_text(spec.label, self.as_text(value), hint=hint, order=order)
+        label, slider = spec.label + (EXACT if spec.slider is not None else ""), spec.slider
+        if spec.kind == "integer":
+            return gui.add_number(label, int(value), step=1, hint=hint, order=order + 0.2)
+        step = 1.0
+        if slider is not None:
+            step = form.round_step(slider.low) if slider.log else slider.step
         # Explicitly a float, or viser would cast every later value to a whole number.
-        box = gui.add_number(label, shown, step=self._box_step(), hint=spec.hint or None, order=order + 0.2)
+        box = gui.add_number(label, float(value or 0.0), step=step, hint=hint, order=order + 0.2)
         box.precision = DECIMALS
         return box
-
-    def _box_step(self) -> float:
-        slider = self.spec.slider
-        if slider is None:
-            return 1.0
-        return form.round_step(slider.low) if slider.log else slider.step
 
     # ------------------------------------------------------------ showing
 
@@ -129,12 +114,7 @@ class Control:
         self.value, self._behind = value, False
         self._box.show(self._as_shown(value))
         self._show_on_slider(value)
-        self._shown = _UNKNOWN if self._awaited else value
-
-    @property
-    def _awaited(self) -> bool:
-        """Whether a widget has a value that is still to be dealt with."""
-        return any(widget.awaited for widget in (self._box, self._slider) if widget is not None)
+        self._shown = _UNKNOWN if any(widget.awaited for widget in self._widgets) else value
 
     def take(self, by_slider: bool) -> Any:
         """What the user has given: a number, a choice, or text as typed."""
@@ -175,13 +155,13 @@ class Control:
 
     def as_text(self, value: Any) -> str:
         """Text of a value in a text box."""
-        write = _WRITE.get(self.spec.kind)
-        return str(value or "") if write is None else write(value)
+        kind = self.spec.kind
+        return _TEXTS[kind][1](value) if kind in _TEXTS else str(value or "")
 
     def read(self, shown: Any) -> Any:
         """Value of the field from what its box holds; raises ValueError for text that cannot be read."""
-        read = _READ.get(self.spec.kind)
-        return shown if read is None else read(shown)
+        kind = self.spec.kind
+        return _TEXTS[kind][0](shown) if kind in _TEXTS else shown
 
     @property
     def held(self) -> Any:
@@ -191,8 +171,7 @@ class Control:
     @property
     def moving(self) -> bool:
         """Whether the user has given another value that is still to be dealt with."""
-        widget = self._slider if self._slider_moved and self._slider is not None else self._box
-        return widget.awaited
+        return self._widgets[0 if self._slider_moved else -1].awaited
 
     @property
     def typed(self) -> bool:
@@ -212,15 +191,13 @@ class Control:
     def remove(self) -> None:
         """Take the widgets off the page."""
         self.removed = True
-        self._note.remove()
-        for widget in (self._slider, self._box):
-            if widget is not None:
-                widget.handle.remove()
+        for handle in (self._note, *(widget.handle for widget in self._widgets)):
+            handle.remove()
 
     @property
     def ids(self) -> list[str]:
         """Ids of its widgets in viser."""
-        return [id_of(widget.handle) for widget in (self._slider, self._box) if widget is not None]
+        return [id_of(widget.handle) for widget in self._widgets]
 
 
 def _marks(slider: Slider) -> tuple[tuple[float, str], tuple[float, str]]:

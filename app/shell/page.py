@@ -8,7 +8,7 @@ thing sent for a run. A control is found by its label's exact text.
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence, Set
+from collections.abc import Callable, Sequence, Set
 from contextlib import nullcontext
 from html import escape
 from typing import TYPE_CHECKING
@@ -179,17 +179,16 @@ class Page:
         """Draw the pictures in front as the session's display says."""
         del by
         self._arrange(keeping_front=True)
-        with self.session.lock, self.client.atomic():
-            if self._closed:
-                return
-            found = shown(self.session)
-            self._fold()
-            for view in self._views:
-                view.follow_display()
-                if found is not None:
-                    view.draw(found)
-        self.client.flush()
+        self._update(self._follow_display)
         self._again_pictures()
+
+    def _follow_display(self) -> None:
+        found = shown(self.session)
+        self._fold()
+        for view in self._views:
+            view.follow_display()
+            if found is not None:
+                view.draw(found)
 
     def _fold(self) -> None:
         self.header.fold(self.session.display.enlarged)
@@ -223,10 +222,7 @@ class Page:
 
     def presenter_changed(self) -> None:
         """Another page drives now, or none."""
-        with self.session.lock, self.client.atomic():
-            if not self._closed:
-                self.palette.show_presenter()
-        self.client.flush()
+        self._update(self.palette.show_presenter)
         self.session.tell_front(self, self._front)
 
     def front_changed(self, front: Set[str]) -> None:
@@ -256,11 +252,18 @@ class Page:
             self._again_pictures()
 
     def _jobs_changed(self) -> None:
+        self._update(self._follow_jobs)
+
+    def _follow_jobs(self) -> None:
+        for view in self._views:
+            view.follow_jobs()
+
+    def _update(self, act: Callable[[], None]) -> None:
+        """Change the page in one piece, unless it has gone."""
         with self.session.lock, self.client.atomic():
             if self._closed:
                 return
-            for view in self._views:
-                view.follow_jobs()
+            act()
         self.client.flush()
 
     def run_refused(self, error: InputError) -> None:
@@ -320,11 +323,8 @@ class Page:
         """Let the controls follow a slider whose picture takes its time; while it moves they wait for it."""
         if moving := self._pace.moving:
             self._pace.follow_later()
-        with self.session.lock, self.client.atomic():
-            if self._closed or not self._pace.controls_wait:
-                return
-            self.editor.catch_up() if moving else self.refresh()
-        self.client.flush()
+        if self._pace.controls_wait:
+            self._update(self.editor.catch_up if moving else self.refresh)
 
     def _again_pictures(self) -> None:
         """Make the pictures in front anew, from the run there is."""
