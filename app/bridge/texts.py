@@ -56,7 +56,8 @@ class Translator:
         self.names: Callable[[], Names] = lambda: NONE
         self._meant: dict[str, dict[str, str]] = {}
 
-    def _say(self, text: str) -> str:
+    def text(self, text: str) -> str:
+        """Return a text with its translation."""
         return self._language.text(text, self.names())
 
     def _say_label(self, label: str) -> str:
@@ -103,7 +104,7 @@ class Translator:
             if name == "label" and isinstance(value, str):
                 changed[name] = self._say_label(value)
             elif name in _TEXTS and isinstance(value, str):
-                changed[name] = self._say(value)
+                changed[name] = self.text(value)
             elif name == "options":
                 changed[name] = self._offer(uuid, value)
             elif name in _LISTS:
@@ -121,14 +122,10 @@ class Translator:
     def _offer(self, uuid: str, options: tuple[str, ...]) -> tuple[str, ...]:
         meant: dict[str, str] = {}
         for option in options:
-            said = self._say(option)
+            said = self.text(option)
             meant[option if said in meant else said] = option
         self._meant[uuid] = meant
         return tuple(meant)
-
-    def text(self, text: str) -> str:
-        """Return a text with its translation."""
-        return self._say(text)
 
     def figure(self, figure: str) -> str:
         """Return a plotly figure (JSON) with its texts translated."""
@@ -147,17 +144,17 @@ class Translator:
             if part and isinstance(part[0], (int, float)):
                 return part
             return [self._walk(one, is_text) for one in part]
-        return self._say(part) if is_text and isinstance(part, str) else part
+        return self.text(part) if is_text and isinstance(part, str) else part
 
     def _meta(self, meta: Any) -> Any:
         """Of what a figure tells our scripts only ``told`` is for a reader."""
         told = meta.get("told") if isinstance(meta, dict) else None
-        return {**meta, "told": self._say(told)} if told else meta
+        return {**meta, "told": self.text(told)} if told else meta
 
     def _uplot(self, part: Mapping[str, Any]) -> dict[str, Any]:
         told = {name: part[name] for name in _UPLOT_TEXTS & part.keys()}
         said = {
-            name: self._say(value) if isinstance(value, str) else tuple(map(self._say, value))
+            name: self.text(value) if isinstance(value, str) else tuple(map(self.text, value))
             for name, value in told.items()
             if isinstance(value, str) or all(isinstance(one, str) for one in value)
         }

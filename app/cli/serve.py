@@ -56,7 +56,7 @@ class ServeCommand:
 
     def execute(self) -> int:
         """Serve; 0 when asked to end."""
-        from app.http.token import find_token
+        from app.http.address import find_token
         from app.jobs.elsewhere import CLUSTER
         from app.serve import serve
         from app.workers import serve_with_workers

@@ -1,4 +1,4 @@
-"""Where the server listens, and under which names it may be addressed."""
+"""Where the server listens, under which names it may be addressed, and where its token comes from."""
 
 from __future__ import annotations
 
@@ -6,8 +6,11 @@ import errno
 import ipaddress
 import os
 import re
+import secrets
 import socket
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
 from urllib.parse import urlsplit
 
 from navcore.foundation.errors import Fault, InputError
@@ -16,6 +19,7 @@ LOOPBACK_NAMES = ("localhost", "127.0.0.1", "[::1]")
 FORWARDED = "x-schuler-address"
 """Header by which the door of several workers tells where a request comes from; a stranger's is removed."""
 _DEFAULT_PORT = {"http": 80, "https": 443}
+_LONGEST_TOKEN = 4096
 _HOST = re.compile(r"[a-z0-9]([a-z0-9._-]*[a-z0-9])?|\[[0-9a-f:.]+\]")
 
 
@@ -140,3 +144,84 @@ def _why_not_bound(error: OSError, host: str, port: int) -> InputError:
     if error.errno == errno.EADDRNOTAVAIL:
         return _fault("--host", host, "is not an address of this machine")
     return _fault("--host", host, f"cannot be listened on: {error.strerror or error}")
+
+
+# ------------------------------------------------------------ the token
+
+
+@dataclass(frozen=True)
+class Token:
+    """What a visitor must know.
+
+    Attributes
+    ----------
+    value : str or None
+        None: nothing.
+    generated : bool
+        It was made just now, and nobody knows it yet.
+    """
+
+    value: str | None
+    generated: bool = False
+
+
+def find_token(given: str | None, file: Path | None, generate: bool, environment: Mapping[str, str]) -> Token:
+    """Find the token: what is given goes before SCHULER_TOKEN, a file before SCHULER_TOKEN_FILE.
+
+    Parameters
+    ----------
+    given : str or None
+        On the command line.
+    file : Path or None
+        Its first line is the token.
+    generate : bool
+        Make one when there is none; it is written to the file, if one is named.
+    environment : mapping
+        SCHULER_TOKEN, SCHULER_TOKEN_FILE.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read or written, or holds no token.
+    """
+    if given is None and file is None:
+        given = environment.get("SCHULER_TOKEN") or None
+    if file is None and environment.get("SCHULER_TOKEN_FILE"):
+        file = Path(environment["SCHULER_TOKEN_FILE"])
+    if given is not None:
+        return Token(given)
+    if file is not None and (file.exists() or not generate):
+        return Token(_first_line(file))
+    if not generate:
+        return Token(None)
+    made = secrets.token_urlsafe(24)
+    if file is not None:
+        _write(file, made)
+    return Token(made, generated=True)
+
+
+def _first_line(file: Path) -> str:
+    try:
+        if not file.is_file():
+            raise _token_fault(file, "must be a file that holds the token")
+        with file.open("rb") as opened:
+            line = opened.read(_LONGEST_TOKEN).partition(b"\n")[0].decode().strip()
+    except UnicodeDecodeError:
+        raise _token_fault(file, "must hold text") from None
+    except OSError as error:
+        raise _fault("--token-file", str(file), f"cannot be read: {error.strerror or error}") from None
+    if not line:
+        raise _token_fault(file, "must hold the token in its first line")
+    return line
+
+
+def _write(file: Path, token: str) -> None:
+    try:
+        with os.fdopen(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as opened:
+            opened.write(token + "\n")
+    except OSError as error:
+        raise _fault("--token-file", str(file), f"cannot be written: {error.strerror or error}") from None
+
+
+def _token_fault(file: Path, allowed: str) -> InputError:
+    return _fault("--token-file", str(file), allowed)

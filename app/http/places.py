@@ -113,10 +113,12 @@ class Places:
 
     def has_room(self, address: str, session_id: str) -> bool:
         """Whether a page of this session could be opened now."""
-        if self._of(address) >= self.limits.pages_per_address:
+        of_address = sum(page.address == address for page in self._pages.values())
+        if of_address >= self.limits.pages_per_address:
             return False
         full = len(self._pages) >= self.limits.visitors
-        return not full or (self._is_invited(session_id) and self._idlest() is not None)
+        invited = self._invited.get(session_id, 0.0) > self.clock()
+        return not full or (invited and self._idlest() is not None)
 
     def take(self, page: Connected) -> bool:
         """Give the page a place, in exchange for an idle one if need be; False when there is no room."""
@@ -136,12 +138,6 @@ class Places:
     def leave(self, page: Connected) -> None:
         """Forget a page that was closed."""
         self._pages.pop(id(page), None)
-
-    def _of(self, address: str) -> int:
-        return sum(page.address == address for page in self._pages.values())
-
-    def _is_invited(self, session_id: str) -> bool:
-        return self._invited.get(session_id, 0.0) > self.clock()
 
     def _idlest(self) -> Connected | None:
         page = min(self._pages.values(), key=lambda page: page.active_s, default=None)

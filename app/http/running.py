@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import re
 import socket
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor, Future
 from functools import partial
 from pathlib import Path
@@ -18,16 +19,15 @@ from app.bridge import server as bridge
 from app.bridge.controls import Guest
 from app.bridge.mends import forget_callbacks, pool_of
 from app.bridge.texts import speak
-from app.http.access import Access, Throttle
+from app.http.access import Access, RequestHeaders, Throttle, cookies
 from app.http.connection import Connection
 from app.http.frames import Gate, Uploading
 from app.http.ids import SessionIds
-from app.http.language import language_of
 from app.http.limits import Limits
 from app.http.page import FIRST_SCRIPTS, PLOTLY, build_page
 from app.http.places import Door, Places
 from app.http.site import Site
-from app.languages.wording import wording
+from app.languages.wording import NAMES, wording
 
 if TYPE_CHECKING:
     from app.http.metrics import Metrics
@@ -35,6 +35,10 @@ if TYPE_CHECKING:
 SessionCallback = Callable[[viser.ClientHandle, str], None]
 
 _TITLE = "Schuler Bench"
+COOKIE = "schuler_language"
+"""Written by language.js: ``?lang=``, the visitor's last choice, or the browser's first language we have."""
+ENGLISH = "en"
+_LONGEST_HEADER = 500
 _log = logging.getLogger("schuler.http")
 
 
@@ -190,3 +194,48 @@ def _one_line(record: logging.LogRecord) -> bool:
         record.msg = f"{record.msg} ({type(record.exc_info[1]).__name__})"
         record.exc_info = record.exc_text = None
     return True
+
+
+# ------------------------------------------------------------ the language of a page
+
+
+def language_of(headers: RequestHeaders) -> str:
+    """Language for a request: one of `app.languages.wording.NAMES`."""
+    chosen = cookies(headers, COOKIE)
+    if chosen:
+        return _known(chosen[-1:])
+    return _known(_accepted(headers.get_all("Accept-Language")))
+
+
+def _known(wanted: Iterable[str]) -> str:
+    """First of some languages that we have.
+
+    Examples
+    --------
+    >>> _known(["fr-CH", "zh-TW", "en"]), _known(["de", "en-GB", "zh"]), _known(["xx"])
+    ('zh-CN', 'en', 'en')
+    """
+    for name in wanted:
+        first = name.strip().lower().partition("-")[0]
+        for own in NAMES:
+            if own.partition("-")[0] == first:
+                return own
+    return ENGLISH
+
+
+def _accepted(lines: Iterable[str]) -> list[str]:
+    """Languages of an Accept-Language header, the most wanted first; what cannot be read is left out.
+
+    Examples
+    --------
+    >>> _accepted(["en;q=0.7, zh-CN, *;q=0.1, zh;q=0.9"])
+    ['zh-CN', 'zh', 'en']
+    """
+    found: list[tuple[float, str]] = []
+    for part in ",".join(lines)[:_LONGEST_HEADER].split(","):
+        one = re.fullmatch(
+            r"\s*([A-Za-z]{1,8}(?:-[A-Za-z0-9]{1,8})*)\s*(?:;\s*q=([01](?:\.[0-9]{0,3})?))?\s*", part
+        )
+        if one is not None:
+            found.append((-float(one[2] or 1.0), one[1]))
+    return [name for _, name in sorted(found, key=lambda pair: pair[0])]

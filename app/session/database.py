@@ -75,10 +75,14 @@ class Database:
                 connection.execute("UPDATE document SET used_s = ? WHERE id = ?", (time.time(), id))
         return None if row is None else bytes(row[0])
 
+    def _first(self, query: str, *values: str) -> Any:
+        """First row of an answer."""
+        with self._changing() as connection:
+            return connection.execute(query, values).fetchone()
+
     def has(self, id: str) -> bool:
         """Whether there is a document of that id."""
-        with self._changing() as connection:
-            return connection.execute("SELECT 1 FROM document WHERE id = ?", (id,)).fetchone() is not None
+        return self._first("SELECT 1 FROM document WHERE id = ?", id) is not None
 
     def write(self, id: str, content: bytes, shared_by: str | None = None) -> None:
         """Put a document in place of an earlier one; ``shared_by`` is the session a shared state is of."""
@@ -91,10 +95,7 @@ class Database:
 
     def shared_by(self, id: str) -> int:
         """How many states were shared from a session."""
-        with self._changing() as connection:
-            return connection.execute("SELECT count(*) FROM document WHERE shared_by = ?", (id,)).fetchone()[
-                0
-            ]
+        return self._first("SELECT count(*) FROM document WHERE shared_by = ?", id)[0]
 
     def remove_old(self, sessions_before_s: float, shared_before_s: float, most: int) -> list[str]:
         """Remove what was last used before these times, and the oldest beyond ``most``; their ids."""
@@ -110,11 +111,8 @@ class Database:
 
     def figures(self) -> dict[str, float]:
         """Documents and bytes kept, for ``/metrics``."""
-        with self._changing() as connection:
-            sessions, shared = connection.execute(
-                "SELECT count(*) - count(shared_by), count(shared_by) FROM document"
-            ).fetchone()
-        return {"kept_sessions": float(sessions), "kept_shared": float(shared)}
+        counts = self._first("SELECT count(*) - count(shared_by), count(shared_by) FROM document")
+        return dict(zip(("kept_sessions", "kept_shared"), map(float, counts), strict=True))
 
     @contextmanager
     def _changing(self) -> Iterator[sqlite3.Connection]:

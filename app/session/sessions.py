@@ -11,7 +11,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 from weakref import WeakKeyDictionary
 
 from pydantic import ValidationError
@@ -41,6 +41,7 @@ STEPS_BACK, STEPS_FORWARD = 50, 20
 _LONGEST_NAME = 60
 
 Document = dict[str, Any]
+T = TypeVar("T")
 _made: WeakKeyDictionary[Session, dict[int, tuple[Scenario, Document]]] = WeakKeyDictionary()
 """What each session's last document holds: scenarios by their identity, as they are written."""
 Unreadable = (InputError, ValidationError, ValueError, TypeError, KeyError, IndexError, AttributeError)
@@ -310,26 +311,31 @@ def restore(session: Session, document: Document) -> None:
         selected = min(max(int(step["selected"]), 0), len(found[0].method) - 1)
         return State(found[0], str(step["origin"])[:_LONGEST_NAME], selected, found[1])
 
+    def part(name: str, read: Callable[[], T], otherwise: T) -> T:
+        """Read a part that the session can do without."""
+        try:
+            return read()
+        except Unreadable as error:
+            _document_log.warning("the %s of a kept session cannot be read: %s", name, _line(error))
+            return otherwise
+
+    def history() -> History:
+        return History.of([(state(step), str(step.get("name", ""))[:200]) for step in steps], at)
+
+    def pins() -> list[Document]:
+        kept = document["pins"]
+        return [pin | {"scenario": _scenario(pin["scenario"], names).canonical()} for pin in kept]
+
     present = state(steps[at])
-    history = History(present)
-    try:
-        history = History.of([(state(step), str(step.get("name", ""))[:200]) for step in steps], at)
-    except Unreadable as error:
-        _document_log.warning("the history of a session was left out: %s", _line(error))
-    display, pins = Display(), []
-    try:
-        display = Display.model_validate(document["display"])
-    except Unreadable as error:
-        _document_log.warning("how a session shows its pictures was left out: %s", _line(error))
-    try:
-        pins = [pin | {"scenario": _scenario(pin["scenario"], names).canonical()} for pin in document["pins"]]
-    except Unreadable as error:
-        _document_log.warning("the pins of a session were left out: %s", _line(error))
-    session.resume(history, display)
-    try:
-        session.pins.from_json(pins)
-    except Unreadable as error:
-        _document_log.warning("the pins of a session were left out: %s", _line(error))
+    session.resume(
+        part("history", history, History(present)),
+        part(
+            "display",
+            lambda: Display.model_validate(document["display"]),
+            Display(),
+        ),
+    )
+    part("pins", lambda: session.pins.from_json(pins()), None)
 
 
 def _scenario(data: Any, names: Mapping[str, Path]) -> Scenario:

@@ -142,15 +142,13 @@ class Store:
 
     def read(self, id: str) -> dict[str, Any] | None:
         """Document of that id; None, with a line in the log if it is broken, when there is none."""
+        _checked(id)
         try:
-            content = self.database.read(_checked(id))
+            content = self.database.read(id)
             return None if content is None else parsed(id, content)
-        except OSError as error:
-            _log.warning("session %s cannot be read: %.200s", log_name(id), error.strerror or error)
-        except (ValueError, RecursionError) as error:
-            if _ID.fullmatch(id) is None:
-                raise
-            _log.warning("session %s cannot be read: %.200s", log_name(id), error)
+        except (OSError, ValueError, RecursionError) as error:
+            words = getattr(error, "strerror", None) or error
+            _log.warning("session %s cannot be read: %.200s", log_name(id), words)
         return None
 
     def has(self, id: str) -> bool:

@@ -92,15 +92,12 @@ class Commands:
         """Only the commands for watchers are carried out."""
         self._box = gui.add_text(PAGE_COMMAND, "", order=1)
         self._box.on_update(lambda _: self.take(self._box.value))
+        self.box_id = id_of(self._box)
+        """Of the hidden control, in viser and in the page."""
         self._heard = gui.add_html("", order=3)
         self._keys = gui.add_html("", order=3)
         self._asks = gui.add_html("", order=3)
         self._asked: list[tuple[int, str, str]] = []
-
-    @property
-    def box_id(self) -> str:
-        """Id of the hidden control, in viser and in the page."""
-        return id_of(self._box)
 
     def register(
         self,

@@ -40,7 +40,7 @@ _SAY_AGAIN_S = 120.0
 
 
 class Page:
-    """A browser page on a session (`app.session.view.View`).
+    """A browser page on a session (`app.session.session.View`).
 
     Parameters
     ----------

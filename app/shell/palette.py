@@ -8,10 +8,10 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 from app.bridge.controls import lock_controls
-from app.editing.excerpt import disturbances_toml, method_toml, paste
+from app.editing.edits import disturbances_toml, method_toml, paste
 from app.editing.typed import read_typed, unit_of
 from app.session.history import History, changed_fields
-from app.session.view import View
+from app.session.session import View
 from app.shell import notices
 from app.shell.commands import LONGEST_TEXT, Command
 from app.shell.control import Control

@@ -38,6 +38,11 @@ class Reports:
         ``on_window(window, front, told)``: its window, the tabs in front by title, and the report itself.
     on_painted : callable
         ``on_painted(picture, moving=...)``: it has painted this picture, and whether a slider moves.
+
+    Attributes
+    ----------
+    window_id, painted_id : str
+        Ids of the two controls.
     """
 
     def __init__(
@@ -52,16 +57,7 @@ class Reports:
         self._window.on_update(lambda _: self._take_window())
         self._painted = gui.add_text(PAGE_PAINTED, "", order=1)
         self._painted.on_update(lambda _: self._take_painted())
-
-    @property
-    def window_id(self) -> str:
-        """Id of the control that tells of the window and its tabs."""
-        return id_of(self._window)
-
-    @property
-    def painted_id(self) -> str:
-        """Id of the control that tells which picture is painted."""
-        return id_of(self._painted)
+        self.window_id, self.painted_id = id_of(self._window), id_of(self._painted)
 
     def wait_for_window(self, timeout_s: float) -> bool:
         """Block until the page has told of its window; False after the timeout."""

@@ -9,7 +9,7 @@ from typing import Any, cast
 import pytest
 
 from app.editing import edits, form
-from app.editing.excerpt import WHERE, disturbances_toml, method_toml, paste
+from app.editing.edits import WHERE, disturbances_toml, method_toml, paste
 from app.shell.editor import Editor
 from app.shell.reset import opened_value
 from navcore.foundation.errors import InputError

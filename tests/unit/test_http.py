@@ -12,8 +12,7 @@ import pytest
 from websockets.datastructures import Headers
 
 from app.http.access import Access, Throttle, access_rules, refuse_address, refuse_unknown
-from app.http.address import authority, is_loopback, listen, parse_origins
-from app.http.token import find_token
+from app.http.address import authority, find_token, is_loopback, listen, parse_origins
 from navcore.foundation.errors import InputError
 
 # ------------------------------------------------------------ addresses

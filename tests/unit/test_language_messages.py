@@ -11,7 +11,7 @@ from viser import _messages as messages
 from websockets.datastructures import Headers
 
 from app.bridge.texts import Translator
-from app.http.language import language_of
+from app.http.running import language_of
 from app.languages.wording import Wording
 
 WORDS = {

@@ -1,5 +1,5 @@
 // The page's language: that of ?lang=, else the visitor's last choice, else the browser's. What comes from the server is
-// translated there: the cookie tells it the language before viser's websocket is opened (app/http/language.py). What
+// translated there: the cookie tells it the language before viser's websocket is opened (app/http/running.py). What
 // scripts write themselves, and what viser's page says, is exchanged here as it appears; the words are in zh-CN.js.
 (() => {
   const COOKIE = "schuler_language";
