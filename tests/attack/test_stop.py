@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import socket
 import subprocess
@@ -10,16 +9,15 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from pathlib import Path
 
 import pytest
 
+from app.bench.process import environment
+from app.http.server import start
 from tests.attack.conftest import eventually, running
 from tests.attack.wire import ask, shake_hands, visit
 
 pytestmark = pytest.mark.attack
-
-ROOT = Path(__file__).parents[2]
 
 PROGRAM = """
 import signal, threading, time
@@ -39,6 +37,17 @@ threading.Thread(target=announce).start()
 server.wait()
 print("left", flush=True)
 """
+NEVER_DONE = 'server.stop = lambda: (print("stopping", flush=True), time.sleep(60))\nserver.wait()'
+BUSY_PORT = """
+import sys
+from app.http.server import start
+from navcore.foundation.errors import InputError
+try:
+    start(port=PORT, on_connect=None, on_disconnect=None)
+except InputError as error:
+    print(error)
+print("viser" in sys.modules)
+"""
 
 
 @contextmanager
@@ -48,8 +57,7 @@ def process(program: str = PROGRAM) -> Iterator[subprocess.Popen[str]]:
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        cwd=ROOT,
-        env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error"},
+        env=environment() | {"PYTHONWARNINGS": "error"},
     )
     try:
         yield child
@@ -62,8 +70,7 @@ def process(program: str = PROGRAM) -> Iterator[subprocess.Popen[str]]:
 def test_signal_ends_the_process_in_time_and_quietly(number: signal.Signals) -> None:
     with process() as child, ExitStack() as crowd:
         port = int(child.stdout.readline())
-        visitors = [crowd.enter_context(visit(port, f"visitor-{n}")) for n in range(8)]
-        for visitor in visitors:
+        for visitor in [crowd.enter_context(visit(port, f"visitor-{n}")) for n in range(8)]:
             visitor.control("last")
         child.send_signal(number)
         out, errors = child.communicate(timeout=5)
@@ -73,20 +80,17 @@ def test_signal_ends_the_process_in_time_and_quietly(number: signal.Signals) -> 
 def test_signal_ends_the_process_although_a_callback_computes(
     record_property: Callable[[str, object], None],
 ) -> None:
-    with process() as child:
-        port = int(child.stdout.readline())
-        with visit(port) as visitor:
-            visitor.set(visitor.control("last"), True)
-            assert child.stdout.readline() == "computing\n"
-            began = time.monotonic()
-            child.send_signal(signal.SIGTERM)
-            assert child.wait(timeout=5) == 0
-            record_property("ended_s", time.monotonic() - began)
+    with process() as child, visit(int(child.stdout.readline())) as visitor:
+        visitor.set(visitor.control("last"), True)
+        assert child.stdout.readline() == "computing\n"
+        began = time.monotonic()
+        child.send_signal(signal.SIGTERM)
+        assert child.wait(timeout=5) == 0
+        record_property("ended_s", time.monotonic() - began)
 
 
 def test_second_signal_ends_it_at_once() -> None:
-    never_done = 'server.stop = lambda: (print("stopping", flush=True), time.sleep(60))\nserver.wait()'
-    with process(PROGRAM.replace("server.wait()", never_done)) as child:
+    with process(PROGRAM.replace("server.wait()", NEVER_DONE)) as child:
         child.stdout.readline()
         child.send_signal(signal.SIGINT)
         assert child.stdout.readline() == "stopping\n"
@@ -96,22 +100,12 @@ def test_second_signal_ends_it_at_once() -> None:
 
 def test_busy_port_is_refused_before_viser_is_imported() -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
-        port = other.getsockname()[1]
-        program = f"""
-import sys
-from app.http.server import start
-from navcore.foundation.errors import InputError
-try:
-    start(port={port}, on_connect=None, on_disconnect=None)
-except InputError as error:
-    print(error)
-print("viser" in sys.modules)
-"""
-        with process(program) as child:
+        port = str(other.getsockname()[1])
+        with process(BUSY_PORT.replace("PORT", port)) as child:
             out, errors = child.communicate(timeout=10)
-    lines = out.splitlines()
-    assert len(lines) == 2 and f"--port = {port}: is in use" in lines[0]
-    assert lines[1] == "False" and errors == ""
+    told, imported = out.splitlines()
+    assert f"--port = {port}: is in use" in told
+    assert (imported, errors) == ("False", "")
 
 
 def test_stop_closes_pages_and_frees_the_port(capfd: pytest.CaptureFixture[str]) -> None:
@@ -146,8 +140,6 @@ def test_strangers_leave_no_trace_on_the_console(capfd: pytest.CaptureFixture[st
 
 
 def test_a_failing_callback_is_shown_in_the_page(caplog: pytest.LogCaptureFixture) -> None:
-    from app.http.server import start
-
     def fail(client: object, session: str) -> None:
         raise RuntimeError("no picture")
 

@@ -7,7 +7,6 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -20,13 +19,11 @@ from app.bench.visitor import PAGE_STATE, Visitor
 from app.http.front import Front, _told
 from app.http.limits import Limits
 from app.session.store import open_store, session_key
-from tests.attack.wire import ask, shake_hands
+from tests.attack.conftest import eventually
+from tests.attack.wire import ask, statuses
 from tests.browser.fields import label_of
 
 pytestmark = pytest.mark.attack
-
-TOKEN = "a-token-for-the-door"
-KNOWN = {"Authorization": f"Bearer {TOKEN}"}
 
 
 @dataclass
@@ -35,13 +32,19 @@ class Door:
     port: int
     state: Path
 
-    def workers(self) -> list[int]:
+    def workers(self) -> set[int]:
         """Process numbers of the workers that are there."""
         tasks = Path(f"/proc/{self.process.pid}/task").glob("*/children")
-        return [int(pid) for task in tasks for pid in task.read_text().split()]
+        return {int(pid) for task in tasks for pid in task.read_text().split()}
 
     def session(self) -> str:
         return ask(self.port, "/").headers["Location"].split("/")[1]
+
+    def answers(self, path: str, status: int) -> bool:
+        try:
+            return ask(self.port, path).status == status
+        except OSError:
+            return False
 
 
 def started(state: Path, *more: str) -> subprocess.Popen[str]:
@@ -61,56 +64,39 @@ def door(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Door]:
     state = tmp_path_factory.mktemp("state")
     process = started(state)
     assert process.stdout is not None
-    line = process.stdout.readline()
-    found = Door(process, int(line.split("127.0.0.1:")[1].split("/")[0]), state)
-    until(lambda: _status(found.port, "/") == 302)
+    found = Door(process, int(process.stdout.readline().split("127.0.0.1:")[1].split("/")[0]), state)
+    eventually(lambda: found.answers("/", 302))
     yield found
     process.terminate()
     process.communicate(timeout=10.0)
     assert process.returncode == 0
 
 
-def _status(port: int, path: str) -> int:
-    try:
-        return ask(port, path).status
-    except OSError:
-        return 0
-
-
-def until(true, seconds: float = 30.0) -> None:
-    end = time.monotonic() + seconds
-    while not true():
-        assert time.monotonic() < end, "did not happen"
-        time.sleep(0.05)
-
-
 def test_page_and_websocket_come_through_the_door(door: Door) -> None:
     assert len(door.workers()) == 2
-    assert ask(door.port, "/healthz").status == 200
-    own = door.session()
-    page = ask(door.port, f"/s/{own}/", {"Accept-Encoding": "gzip"})
+    own = f"/s/{door.session()}/"
+    page = ask(door.port, own, {"Accept-Encoding": "gzip"})
     assert page.status == 200 and page.headers["Content-Security-Policy"]
-    assert shake_hands(door.port, f"/s/{own}", Origin=f"http://127.0.0.1:{door.port}").status == 101
-    assert shake_hands(door.port, f"/s/{own}", Origin="http://evil.example").status == 403
-    assert ask(door.port, f"/s/{own}/", {"Host": "evil.example"}).status == 421
+    assert statuses(door.port, own, Origin=f"http://127.0.0.1:{door.port}") == (200, 101)
+    assert statuses(door.port, own, Origin="http://evil.example") == (403, 403)
+    assert statuses(door.port, own, Host="evil.example") == (421, 421)
 
 
 def test_sessions_of_a_crashed_worker_reopen(door: Door) -> None:
-    own, before = door.session(), door.workers()
+    own, before, zeta = door.session(), door.workers(), label_of("network.zeta")
     with Visitor(door.port, own) as page:
         page.set(PAGE_STATE, "1920x1080|Method|Errors")
         page.wait_for_run(1)
-        page.set(label_of("network.zeta"), 0.37)
+        page.set(zeta, 0.37)
         page.wait_for_run(2)
         page.rest(1.5)  # written down after half a second
     for pid in before:
         os.kill(pid, signal.SIGKILL)
-    until(lambda: len(door.workers()) == 2 and not set(door.workers()) & set(before))
-    until(lambda: _status(door.port, f"/s/{own}/") == 200)
+    eventually(lambda: len(door.workers() - before) == 2 and door.answers(f"/s/{own}/", 200))
     with Visitor(door.port, own) as page:
-        page.control(label_of("network.zeta"))
+        page.control(zeta)
         page.wait_for_run(1)
-        assert page.held(label_of("network.zeta")) == pytest.approx(0.37)
+        assert page.held(zeta) == pytest.approx(0.37)
 
 
 def test_silent_sockets_at_the_door_keep_nobody_out(door: Door) -> None:
@@ -121,24 +107,23 @@ def test_silent_sockets_at_the_door_keep_nobody_out(door: Door) -> None:
         assert ask(door.port, "/").status == 302
 
 
-def test_a_second_server_on_the_same_folder_is_refused(door: Door) -> None:
-    second = started(door.state)
-    told, errors = second.communicate(timeout=30.0)
-    assert second.returncode == 2 and told == ""
-    assert len(errors.strip().splitlines()) == 1 and "another server keeps its sessions there" in errors
-
-
-@pytest.mark.parametrize("count", ["0", "65", "-1"])
-def test_a_strange_number_of_workers_is_refused(tmp_path: Path, count: str) -> None:
-    process = started(tmp_path, "--workers", count)
-    _, errors = process.communicate(timeout=30.0)
-    assert process.returncode == 2 and len(errors.strip().splitlines()) == 1 and "Traceback" not in errors
-
-
-def test_workers_of_an_open_server_need_the_token(tmp_path: Path) -> None:
-    process = started(tmp_path, "--host", "0.0.0.0")
-    _, errors = process.communicate(timeout=30.0)
-    assert process.returncode == 2 and "--token" in errors
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--workers", "0"], "--workers"),
+        (["--workers", "65"], "--workers"),
+        (["--workers", "-1"], "--workers"),
+        (["--host", "0.0.0.0"], "--token"),
+        ([], "another server keeps its sessions there"),
+    ],
+    ids=["none", "too many", "negative", "open without a token", "a folder in use"],
+)
+def test_what_cannot_be_served_is_one_line(door: Door, tmp_path: Path, words: list[str], told: str) -> None:
+    process = started(tmp_path if words else door.state, *words)
+    out, errors = process.communicate(timeout=30.0)
+    assert (process.returncode, out) == (2, "")
+    assert told in errors and "Traceback" not in errors
+    assert len(errors.strip().splitlines()) == 1
 
 
 def test_a_session_always_goes_to_the_same_worker_and_others_are_spread() -> None:
@@ -167,12 +152,6 @@ def test_workers_know_each_others_sessions(tmp_path: Path) -> None:
         "from pathlib import Path; from app.session.database import Database; import sys;"
         "print(Database(Path(sys.argv[1])).has('a' * 24))"
     )
-    told = subprocess.run(
-        [sys.executable, "-c", code, str(tmp_path)],
-        env=environment(),
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    command = [sys.executable, "-c", code, str(tmp_path)]
+    assert subprocess.check_output(command, env=environment(), text=True) == "True\n"
     first.close()
-    assert told.stdout.strip() == "True"
