@@ -43,6 +43,8 @@ _SEPARATORS = tuple(
         r"( and | or )",
     )
 )
+_WITHIN = _SEPARATORS[3:]
+"""Separators within a sentence."""
 _JOINTS = {"; ": "；", ": ": "：", ", ": "，", ", and ": "和", ", or ": "或", " and ": " 且 ", " or ": " 或 "}
 _LONGEST = 6000
 _DEEPEST = 12
@@ -56,6 +58,8 @@ _NUMBERED = re.compile(r"\d+ [a-z]{3,}")
 _FIELD = re.compile(r"[\w-]+(?:\.[\w-]+)+(?: = [^:]*)?: ")
 """The file or field in which something is wrong, and its value, before what is said of it."""
 _UNENDED = re.compile(r"[A-Za-z%)]\Z")
+_PROSE = re.compile(r"[a-z]{3,} [a-z]{2,} [a-z]{2,}")
+"""Several words of a sentence: where they have no translation, nothing around them is translated."""
 _TWO_WORDS = re.compile(r"(?<![A-Za-z])[A-Za-z]+,? [A-Za-z]+,? ")
 _MANY = re.compile(r"(?<![A-Za-z])[A-Za-z]{2,},? [A-Za-z]{2}")
 _ENDED = re.compile(r"[.;:] ")
@@ -281,7 +285,7 @@ class Wording:
         for separator in _SEPARATORS:
             parts = separator.split(text)
             if len(parts) > 1:
-                said = self._part_by_part(parts, depth)
+                said = self._part_by_part(parts, depth, separator in _WITHIN)
                 if said is not None:
                     return said
         return self._begin(text, depth)
@@ -298,8 +302,11 @@ class Wording:
                 return " ".join([said, *number, *([self._value(rest, depth)] if rest else [])])
         return None
 
-    def _part_by_part(self, parts: list[str], depth: int) -> str | None:
-        """Translate parts and the separators between them: as many parts at once as are one text."""
+    def _part_by_part(self, parts: list[str], depth: int, within: bool) -> str | None:
+        """Translate parts and the separators between them: as many parts at once as are one text.
+
+        ``within`` a sentence all of it is translated or nothing.
+        """
         said: list[str] = []
         place, known = 0, False
         while place < len(parts):
@@ -312,6 +319,8 @@ class Wording:
                     break
             else:
                 end, found = place + 1, self._look_up(parts[place], depth + 1)
+            if found is None and within and _PROSE.search(parts[place]):
+                return None
             known = known or found is not None
             if found is None and self._missed is not None and _LETTERS.search(parts[place]):
                 self._missed(parts[place].strip())
