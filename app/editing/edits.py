@@ -122,17 +122,18 @@ def without_method(scenario: Scenario, index: int) -> Scenario:
 
 def with_block(scenario: Scenario, path: Path) -> Scenario:
     """Append a block with defaults to a list of blocks such as ``reference.event``; raises `InputError`."""
-    data = scenario.canonical()
-    blocks = _at(data, path[:-1])
-    blocks[path[-1]] = [*blocks.get(path[-1], []), {}]
-    return Scenario.parse(data)
+    return _with_blocks(scenario, path, lambda blocks: [*blocks, {}])
 
 
 def without_block(scenario: Scenario, path: Path) -> Scenario:
     """Remove the last block of a list of blocks."""
+    return _with_blocks(scenario, path, lambda blocks: blocks[:-1])
+
+
+def _with_blocks(scenario: Scenario, path: Path, change: Callable[[list[Any]], list[Any]]) -> Scenario:
     data = scenario.canonical()
-    blocks = _at(data, path[:-1])
-    blocks[path[-1]] = blocks.get(path[-1], [])[:-1]
+    parent = _at(data, path[:-1])
+    parent[path[-1]] = change(parent.get(path[-1], []))
     return Scenario.parse(data)
 
 

@@ -10,7 +10,6 @@ import prometheus_client
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
 from prometheus_client.registry import Collector, CollectorRegistry
 
-CONTENT_TYPE = prometheus_client.CONTENT_TYPE_LATEST
 _ANSWER_S = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
 
 Figures = Callable[[], Mapping[str, float]]

@@ -101,9 +101,6 @@ class Pins:
 
     # ------------------------------------------------------------ asking
 
-    def __len__(self) -> int:
-        return len(self._pins)
-
     @property
     def all(self) -> tuple[Pin, ...]:
         """Every pin, oldest first."""
@@ -180,20 +177,17 @@ class Pins:
                     )
                 ]
             )
-        with self._lock:
-            before = self._pins
-            self._pins = tuple(replace(pin, **changes) if pin.id == id else pin for pin in before)
-            same = self._pins == before
-        if not same:
-            self._changed()
+        self._exchange(lambda pins: tuple(replace(pin, **changes) if pin.id == id else pin for pin in pins))
 
     def remove(self, id: int) -> None:
         """Take a pin away; unknown ids do nothing."""
+        self._exchange(lambda pins: tuple(pin for pin in pins if pin.id != id))
+
+    def _exchange(self, change: Callable[[tuple[Pin, ...]], tuple[Pin, ...]]) -> None:
         with self._lock:
-            count = len(self._pins)
-            self._pins = tuple(pin for pin in self._pins if pin.id != id)
-            same = len(self._pins) == count
-        if not same:
+            before = self._pins
+            self._pins = after = change(before)
+        if after != before:
             self._changed()
 
     def stop(self) -> None:

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     import viser
 
 RUN_AGAIN, RUN_STRAPDOWN = "Run again", "Run the strapdown"
+_WAITS = "#B26A00"
+"""Colour of a state that will not last."""
 # While a picture is old it is dimmed.
 _DIM = "<style>.js-plotly-plot,.uplot,.sb-table{opacity:.45}</style>"
 
@@ -86,58 +88,51 @@ class HeaderPanel:
         count = len(run.methods)
         span = duration(float(run.t_s[-1])) if len(run.t_s) else "0 s"
         text = f"Run {number}: {span}, {count} method{'s' * (count != 1)}, {frame_ms:.0f} ms{ended}"
-        self._show_state(text, "#2E7D32" if run.status == "ok" else style.DANGER)
         if outdated:
-            self._show_state(Text("{text}; a new run follows", text=text), "#B26A00")
-        self._hide_progress(again=False)
-        self._say(notices.note(run.warnings, "info"))
+            self._show_state(Text("{text}; a new run follows", text=text), _WAITS)
+        else:
+            self._show_state(text, "#2E7D32" if run.status == "ok" else style.DANGER)
+        self._show_buttons(progress=False, again=False)
+        self._note.content = notices.note(run.warnings, "info")
+        self._note.visible = bool(run.warnings)
 
     def show_moving(self) -> None:
         """Say that only the pictures in front follow the slider; the rest is shown when it rests."""
-        self._show_state("The slider moves; 3D view and numbers follow when it rests", "#B26A00")
+        self._show_state("The slider moves; 3D view and numbers follow when it rests", _WAITS)
 
     def show_progress(self, fraction: float, number: int) -> None:
         """Say that the pictures are old and a run is under way."""
         self._progress.value = round(100.0 * fraction, 1)
         if not self._progress.visible:
-            self._show_state(
-                Text("Computing; the pictures still show run {number}", number=number), "#B26A00", old=True
-            )
-            self._progress.visible = self._stop.visible = True
-            self._again.visible = False
+            text = Text("Computing; the pictures still show run {number}", number=number)
+            self._show_state(text, _WAITS, old=True)
+            self._show_buttons(progress=True, again=False)
 
     def show_stopped(self, number: int) -> None:
         """Say that the pictures are old because the run was stopped."""
-        self._show_state(
-            Text("Stopped; the pictures still show run {number}", number=number), "#B26A00", old=True
-        )
-        self._hide_progress(again=True)
+        self._show_old(Text("Stopped; the pictures still show run {number}", number=number))
 
     def show_waiting(self, scenario: Scenario, number: int) -> None:
         """Say that the pictures are old until the user starts a run that would take long."""
         samples = scenario.run.duration_h * HOUR * scenario.run.rate_hz / 1e6
         text = Text("{samples:.3g} million samples a method: run it when you are ready", samples=samples)
-        self._show_state(
-            Text("Strapdown, {text}; the pictures still show run {number}", text=text, number=number),
-            "#B26A00",
-            old=True,
-        )
-        self._hide_progress(again=True, label=RUN_STRAPDOWN)
+        whole = Text("Strapdown, {text}; the pictures still show run {number}", text=text, number=number)
+        self._show_old(whole, again=RUN_STRAPDOWN)
 
     def show_failed(self, number: int) -> None:
         """Say that the pictures are the last good ones."""
-        self._show_state(
-            Text("The run failed; the pictures show run {number}", number=number), style.DANGER, old=True
-        )
-        self._hide_progress(again=True)
+        text = Text("The run failed; the pictures show run {number}", number=number)
+        self._show_old(text, style.DANGER)
 
-    def _hide_progress(self, *, again: bool, label: str = RUN_AGAIN) -> None:
-        self._progress.visible = self._stop.visible = False
-        self._again.label = label
+    def _show_old(self, text: str, color: str = _WAITS, again: str = RUN_AGAIN) -> None:
+        """Say why the pictures are old, beside a button that runs the scenario."""
+        self._show_state(text, color, old=True)
+        self._again.label = again
+        self._show_buttons(progress=False, again=True)
+
+    def _show_buttons(self, *, progress: bool, again: bool) -> None:
+        self._progress.visible = self._stop.visible = progress
         self._again.visible = again
-
-    def _say(self, html: str) -> None:
-        self._note.content, self._note.visible = html, bool(html)
 
     def _show_state(self, text: str, color: str, *, old: bool = False) -> None:
         self._state.content = (
