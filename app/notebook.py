@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from app.plots.plotly_data import Packed, PlotlyFigure
-from app.plots.time_figure import time_figure
+from app.plots.saved import time_figure
 from app.views.design.figure import budget_figure
 from app.views.errors.figure import GROUPS, error_plots
 from app.views.frequency.figure import bode, nyquist

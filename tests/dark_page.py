@@ -11,7 +11,7 @@ import math
 from typing import Literal
 
 from app.plots.style import rgb
-from app.views.appearance.look import _INVERT
+from app.views.appearance.view import _INVERT
 
 Theme = Literal["light", "dark"]
 HUE_DEG = 180.0

@@ -15,7 +15,7 @@ FrontAxis = Literal["tilt_rms", "velocity_rms", "settling_s", "log_tilt", "overs
 
 
 def _known_transfer(id: str) -> str:
-    from app.plots.transfer_views import SHOWN
+    from app.plots.effective import SHOWN
 
     if id not in SHOWN:
         raise ValueError(f"must be one of {', '.join(SHOWN)}")
@@ -28,7 +28,7 @@ class Display(BaseModel):
     Attributes
     ----------
     transfer : str
-        What the frequency side shows: a key of `app.plots.transfer_views.SHOWN`.
+        What the frequency side shows: a key of `app.plots.effective.SHOWN`.
     discrete : bool
         The measured gain and phase of the running filters are drawn on H.
     optimal : bool

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from app.plots.enlarged import enlarged
 from app.plots.pinned import restyled, together
-from app.plots.plotly_data import PlotlyFigure
+from app.plots.plotly_data import PlotlyFigure, enlarged
 from app.session.shown import Shown
 from app.shell.layout import CHOOSER_PX
 from app.shell.view import Figures, Frame, PictureView, Tab

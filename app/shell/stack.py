@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from app.bridge.controls import in_single, show_numbers
-from app.plots.enlarged import enlarged_time_plot
+from app.plots.plotly_data import enlarged_time_plot
 from app.plots.style import legend_px
 from app.plots.uplot import UplotFigure
 from app.shell.layout import CHOOSER_PX, Layout

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from app.plots.style import INK, method_color
-from app.views.appearance.look import DARK
+from app.views.appearance.view import DARK
 from tests import dark_page as theme
 from tests.browser.driver import Bench
 from tests.browser.fields import label_of

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.plots.earth_mode import earth_mode_text
+from app.plots.effective import earth_mode_text
 from app.session.requirements import Requirements
 from app.views.poles.whole import LATITUDES
 from navcore.analysis.whole_system import growth_over_latitude

@@ -8,7 +8,7 @@ import pytest
 from app.jobs.envelopes import Envelopes
 from app.plots.envelope import covariance_envelope
 from app.views.errors.figure import error_plots
-from app.views.errors.legend import legend_html
+from app.views.errors.view import legend_html
 from navcore.design.bands import Bands, covariance_bands
 from navcore.design.budget import budget
 from navcore.engine.results import timeseries

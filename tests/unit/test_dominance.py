@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.jobs.why import Explainer
-from app.views.metrics.why import cause_text, why_html
+from app.views.metrics.view import cause_text, why_html
 from navcore.averaging.lines import line_phases
 from navcore.design.dominance import HEADING, POSITION, TILT, swing, why
 from navcore.engine.run import Run

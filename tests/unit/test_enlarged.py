@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from app.plots import style
-from app.plots.enlarged import enlarged, enlarged_time_plot
-from app.plots.plotly_data import figure, packed
+from app.plots.plotly_data import enlarged, enlarged_time_plot, figure, packed
 from app.shell.layout import layout_for
 from app.views.errors.figure import error_plots
 from tests.unit.figures_runs import static_run

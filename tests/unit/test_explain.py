@@ -9,7 +9,7 @@ import pytest
 
 from app.editing import form
 from app.editing.form import FieldSpec
-from app.views.explain.text import (
+from app.views.explain.view import (
     Explanation,
     explain_html,
     explanation,

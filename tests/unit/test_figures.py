@@ -15,10 +15,10 @@ import pytest
 
 from app.misprints import MISPRINTS
 from app.plots import style
+from app.plots.effective import TRANSFERS
 from app.plots.pinned import restyled, together
 from app.plots.plotly_data import PlotlyFigure, values_of
-from app.plots.time_figure import time_figure
-from app.plots.transfer_views import TRANSFERS
+from app.plots.saved import time_figure
 from app.session.display import Display
 from app.views.errors.figure import QUANTITIES, error_plots
 from app.views.frequency.figure import OPEN_LOOP, frequency_view
@@ -162,7 +162,7 @@ def test_figures_load_neither_viser_nor_plotly_nor_scipy() -> None:
     code = (
         "import sys; import app.views.frequency.figure, app.views.poles.figure, app.views.step.figure;"
         "import app.views.errors.figure;"
-        "import app.views.scene.track, app.views.metrics.table, app.plots.warnings;"
+        "import app.views.scene.track, app.views.metrics.table, app.plots.legend;"
         # numba itself loads the bare scipy package
         "slow = {'viser', 'plotly', 'control', 'matplotlib', 'scipy.linalg', 'scipy.signal'};"
         "bad = slow & set(sys.modules);"

@@ -16,8 +16,7 @@ from app.plots.uplot import stack_heights
 from app.session.display import Display
 from app.session.shown import Shown
 from app.views.errors.figure import GROUPS, VERIFIED, Overlay, error_plots, verification_plots
-from app.views.errors.legend import legend_html
-from app.views.errors.view import error_curves
+from app.views.errors.view import error_curves, legend_html
 from navcore.engine.simulation import simulate
 from navcore.engine.verification import Verification, verify
 from navcore.mechanization.recorder import NAMES

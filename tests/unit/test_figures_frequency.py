@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from app.plots import style
-from app.plots.transfer_views import TRANSFERS, VIEWS
-from app.views.frequency.discrete import law_step_s, measured_gain
+from app.plots.effective import TRANSFERS, VIEWS
+from app.views.frequency.curves import law_step_s, measured_gain
 from app.views.frequency.figure import OMEGA_MAX, OMEGA_MIN, bode, natural_frequencies, omega_grid
 from app.views.frequency.nyquist import margin_words, margins_of, nyquist
 from navcore.analysis import frequency_response

@@ -11,8 +11,7 @@ import pytest
 
 from app.session.display import Display
 from app.views.learn.lessons import lessons
-from app.views.scene.moment import moment, readout_html, row_at
-from app.views.scene.pendulum import pendulum, pendulum_svg, plane_ends
+from app.views.scene.moment import moment, pendulum, pendulum_svg, plane_ends, readout_html, row_at
 from navcore.engine.simulation import simulate
 from navcore.foundation.units import ARCMIN, DEG
 from navcore.mechanization.recorder import PHI_E, PHI_N, PHI_U

@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.plots.earth_mode import earth_mode_text
+from app.plots.effective import earth_mode_text
 from app.views.method.view import loop_text
 from app.views.poles.figure import poles
-from app.views.poles.grid import Allowed, settling_lines
-from app.views.poles.locus import locus_fields, locus_of
+from app.views.poles.grid import Allowed, locus_fields, locus_of, settling_lines
 from app.views.poles.whole import LATITUDES, whole_system_figure
 from app.views.step.figure import StepLimits, step
 from navcore.analysis import initial_tilt_response

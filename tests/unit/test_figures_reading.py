@@ -12,8 +12,7 @@ import pytest
 from app.jobs.envelopes import SEEDS, Envelopes, with_seed
 from app.plots.envelope import Envelope, envelope
 from app.plots.plotly_data import packed, unpacked, values_of
-from app.plots.saved import plotly_csv, time_csv
-from app.plots.time_figure import time_figure
+from app.plots.saved import plotly_csv, time_csv, time_figure
 from app.session.display import Display
 from app.views.errors.figure import error_plots
 from app.views.frequency.figure import bode

@@ -18,8 +18,7 @@ from app.plots.units import round_down, round_up
 from app.session.pins import Pin
 from app.views.scene.cameras import CAMERAS, FOLLOW, SIDE, Cameras, Window
 from app.views.scene.drawer import ShipPart, ship_parts
-from app.views.scene.graticule import LocalMap, angle_text, graticule, scale_bar
-from app.views.scene.polyline import dashes, needed, segments
+from app.views.scene.graticule import LocalMap, angle_text, dashes, graticule, needed, scale_bar, segments
 from app.views.scene.track import HALF_WIDTH, LINE_WIDTH, attitude_quaternions, track
 from navcore.foundation.earth import WGS84, attitude_matrix
 from navcore.foundation.units import ARCSEC, DEG

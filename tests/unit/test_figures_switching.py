@@ -12,7 +12,7 @@ import pytest
 from app.plots import style
 from app.session.display import Display
 from app.session.shown import Shown
-from app.views.appearance.export import _numbers
+from app.views.appearance.document import _numbers
 from app.views.switching.figure import (
     MARGIN,
     STATE,

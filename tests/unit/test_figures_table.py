@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from app.plots import style
+from app.plots.legend import severity, warnings_for
 from app.plots.units import angle_unit, length_unit, rounded, settling, speed_unit, time_unit
-from app.plots.warnings import severity, warnings_for
 from app.views.metrics.table import (
     STATISTICS,
     difference_rows,

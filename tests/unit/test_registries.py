@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from app.editing import form
-from app.views.explain.text import explanation
+from app.views.explain.view import explanation
 from navcore.analysis import analyse
 from navcore.analysis.placement import place
 from navcore.engine.simulation import simulate

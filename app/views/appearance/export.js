@@ -1,5 +1,5 @@
 // Draws the plots that are to be saved, and saves them: the server asks by #sb-export, which carries the figures
-// (app/views/appearance/export.py). A plot that is in front is saved alone as it is seen, with its zoom; every other one
+// (app/views/appearance/document.py). A plot that is in front is saved alone as it is seen, with its zoom; every other one
 // as the server made it. Between two pictures the page goes on with its other work.
 (() => {
   const GAP = 24;

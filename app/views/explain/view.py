@@ -1,10 +1,129 @@
-"""The panel that explains the selected control; app/views/learn/learn.js asks for it."""
+"""The panel that explains the selected control; app/views/learn/learn.js asks for it.
+
+The words, unit and range are the field's own (`navcore.foundation.parameters.quantity`); the equation and its
+source come from ``assets/explain.toml``, by the field's place in the scenario, or from the registry entry
+(network, motion, policy, switching) that the field belongs to.
+"""
 
 from __future__ import annotations
 
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from functools import lru_cache
+from html import escape
+
 from app.bridge.controls import control_with
+from app.editing.form import FieldSpec, Path
 from app.shell.view import Frame, Tab, View
-from app.views.explain.text import explain_html, told_html
+from app.views.learn.lessons import formula_html
+from navcore.foundation.assets import asset_path
+from navcore.foundation.parameters import Parameters, extra_of
+from navcore.law.policy import POLICIES
+from navcore.law.switching import SWITCHINGS
+from navcore.motion import MOTIONS
+from navcore.networks import NETWORKS
+from navcore.scenario.model import Scenario
+
+_REGISTRIES: Mapping[str, Mapping[str, type[Parameters]]] = {
+    "network": NETWORKS,
+    "policy": POLICIES,
+    "switching": SWITCHINGS,
+    "motion": MOTIONS,
+}
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Explanation of a field, beside its help.
+
+    Attributes
+    ----------
+    latex : str
+        Its equation; empty when none says more than the words.
+    source : str
+        Paper and equation, or section of the product's own physics.
+    says : str
+        A sentence more than the field's help.
+    """
+
+    latex: str = ""
+    source: str = ""
+    says: str = ""
+
+
+@lru_cache(maxsize=1)
+def explanations() -> dict[str, Explanation]:
+    """All explanations by their pattern, in the file's order."""
+    data = tomllib.loads(asset_path("explain.toml").read_text(encoding="utf-8"))
+    return {pattern: Explanation(**entry) for pattern, entry in data.items()}
+
+
+def key_of(path: Path, scenario: Scenario) -> str:
+    """Name of a field in ``assets/explain.toml``.
+
+    Examples
+    --------
+    >>> from navcore.scenario.model import Scenario
+    >>> key_of(("method", 0, "network", "sigma"), Scenario())
+    'network.none.sigma'
+    >>> key_of(("imu", "gyro_bias_dph", 1), Scenario())
+    'imu.gyro_bias_dph'
+    """
+    names = [str(step) for step in path if not isinstance(step, int)]
+    block, last = names[0], names[-1]
+    if block != "method" or len(path) < 4:
+        kind = scenario.motion.kind if block == "motion" and last != "kind" else ""
+        return ".".join([block, kind, *names[1:]] if kind else names)
+    part = names[1]
+    if last == "id" or part == "averaging":
+        return f"{part}.{last}"
+    chosen = getattr(scenario.method[int(path[1])], part)
+    return ".".join([part, chosen.id, *names[2:]])
+
+
+def explanation(key: str) -> Explanation | None:
+    """Explanation of a field: of ``assets/explain.toml`` if it names the field's entry, else the entry's own.
+
+    The first pattern that fits counts. Patterns for all entries of a registry, such as ``motion.*``, come
+    last. None where nothing fits.
+    """
+    fits = [pattern for pattern in explanations() if fnmatchcase(key, pattern)]
+    block, _, rest = key.partition(".")
+    id, _, field = rest.partition(".")
+    entry = _REGISTRIES.get(block, {}).get(id)
+    if entry is not None and not any(pattern.startswith(f"{block}.{id}.") for pattern in fits):
+        own = _of_entry(entry, field)
+        if own is not None:
+            return own
+    return explanations()[fits[0]] if fits else None
+
+
+def _of_entry(entry: type[Parameters], field: str) -> Explanation | None:
+    """Explanation that a registry entry brings: of the field, else its class's source."""
+    info = entry.model_fields.get(field)
+    extra = {} if info is None else extra_of(info)
+    source = extra.get("source") or getattr(entry, "source", "")
+    return Explanation(latex=extra.get("latex", ""), source=source) if source else None
+
+
+def explain_html(spec: FieldSpec, scenario: Scenario) -> str:
+    """HTML of the explanation of a field's control."""
+    return told_html(spec.label, spec.hint, explanation(key_of(spec.path, scenario)))
+
+
+def told_html(label: str, hint: str, more: Explanation | None = None) -> str:
+    """HTML of an explanation: heading, words, equation, source."""
+    parts = [f"<h2>{escape(label)}</h2>", f"<p>{escape(hint)}</p>" if hint else ""]
+    if more is not None:
+        parts += [
+            f"<p>{escape(more.says)}</p>" if more.says else "",
+            *(formula_html(part, block=True) for part in more.latex.split(r"\qquad") if part.strip()),
+            f'<p class="sb-source">Source: {escape(more.source)}</p>' if more.source else "",
+        ]
+    return "".join(parts)
+
 
 COMMAND = "explain"
 """``explain ID``: the control with that id in the page."""

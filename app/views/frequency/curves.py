@@ -1,14 +1,103 @@
-"""Curves of the Bode plots, magnitude above phase, and vertical axes as wide as they need."""
+"""Curves of the Bode plots: each method's, the measured dots of its filter, and the optimal network's."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from app.plots import style
+from app.plots.effective import Loop, effective_network, loop_of, realisation
 from app.plots.plotly_data import packed
+from navcore.engine.run import MethodRun, Run
+from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
+from navcore.networks.base import ComplexArray, LinearNetwork
+from navcore.networks.lqg import SensorFigures
+from navcore.networks.optimal import OptimalNetwork
+from navcore.scenario.model import Scenario
+
+LOWEST, HIGHEST = 2e-4, 0.15
+"""Range of the measured frequencies, rad/s: the slowest takes nine hours of the filter's time."""
+_COUNT = 14
+_OF_NYQUIST = 0.8
+
+
+def law_step_s(run: Run) -> float:
+    """Time between two steps of the damping filter, s."""
+    return run.scenario.run.step_s if run.sampling is None else run.sampling.law_step_s
+
+
+def measured_gain(method: MethodRun, step_s: float) -> tuple[np.ndarray, ComplexArray] | None:
+    """Frequencies (rad/s) and complex gains of a method's filter; None where no filter runs.
+
+    None runs in a free method, nor for gains that act as velocity feedback; a filter that does not come to
+    rest cannot be measured.
+    """
+    network = effective_network(method)
+    gains = realisation(method) != "network" and network.feedback_p is None
+    if network.order == 0 or gains:
+        return None
+    return _measure(loop_of(method), step_s)
+
+
+# A slider of one method leaves the filters of the others as they were.
+@lru_cache(maxsize=32)
+def _measure(loop: Loop, step_s: float) -> tuple[np.ndarray, ComplexArray] | None:
+    from navcore.analysis.measured import measured_response
+    from navcore.foundation.errors import InputError
+    from navcore.networks.discrete import discretise
+
+    omega = np.geomspace(LOWEST, min(HIGHEST, _OF_NYQUIST * math.pi / step_s), _COUNT)
+    try:
+        gain = measured_response(discretise(loop.network, step_s), omega)
+    except InputError:
+        return None
+    return None if gain is None else (omega, gain)
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """Optimal network that is drawn, or why there is none.
+
+    Attributes
+    ----------
+    label : str
+        In the legend.
+    network : LinearNetwork or None
+        None where these sensors have no optimal network.
+    """
+
+    label: str
+    network: LinearNetwork | None = None
+
+
+def optimal_reference(scenario: Scenario) -> Reference:
+    """Optimal network (theory.md 17) with its default weights, for the scenario's own sensors and log."""
+    return _reference(scenario.figures(), scenario.reference.kind, scenario.omega_s)
+
+
+@lru_cache(maxsize=16)
+def _reference(figures: SensorFigures, log: str, omega_s: float) -> Reference:
+    if log == "none":
+        return Reference("no optimal H: the scenario has no log")
+    known = {"gyros and accelerometers": figures.inertial, "log": figures.log}
+    missing = [sensors for sensors, there in known.items() if not there]
+    if missing:
+        return Reference(Text("no optimal H: no random error of {missing}", missing=" and ".join(missing)))
+    try:
+        optimal = OptimalNetwork().with_sensors(figures)
+        network = optimal.transfer(omega_s)
+    except InputError as error:
+        return Reference(Text("no optimal H: {allowed}", allowed=error.faults[0].allowed))
+    fragile = ", fragile" if network.warnings else ""
+    return Reference(
+        Text("optimal for these sensors (ρ = {rho:g}{fragile})", rho=optimal.rho, fragile=fragile), network
+    )
+
 
 _MOST_DECADES = 8.0
 NOTHING = packed(np.array([]))

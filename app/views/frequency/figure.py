@@ -9,17 +9,24 @@ from typing import Any
 import numpy as np
 
 from app.plots import style
-from app.plots.effective import effective_network, frequency
+from app.plots.effective import OPEN_LOOP as OPEN_LOOP
+from app.plots.effective import SHOWN as SHOWN
+from app.plots.effective import TRANSFERS as TRANSFERS
+from app.plots.effective import VIEWS, TransferView, effective_network, frequency
 from app.plots.plotly_data import PlotlyFigure, figure, packed
-from app.plots.transfer_views import OPEN_LOOP as OPEN_LOOP
-from app.plots.transfer_views import SHOWN as SHOWN
-from app.plots.transfer_views import TRANSFERS as TRANSFERS
-from app.plots.transfer_views import VIEWS, TransferView
 from app.plots.units import duration
-from app.views.frequency.curves import decibel, level_axis, log_axis, pair, phase, phase_axis
-from app.views.frequency.discrete import law_step_s, measured_gain
+from app.views.frequency.curves import (
+    Reference,
+    decibel,
+    law_step_s,
+    level_axis,
+    log_axis,
+    measured_gain,
+    pair,
+    phase,
+    phase_axis,
+)
 from app.views.frequency.nyquist import nyquist
-from app.views.frequency.reference import Reference
 from navcore.analysis import frequency_response
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.earth import EARTH_RATE

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from app.plots.effective import OPEN_LOOP, SHOWN
 from app.plots.plotly_data import PlotlyFigure
-from app.plots.transfer_views import OPEN_LOOP, SHOWN
 from app.session.shown import Shown
 from app.shell.layout import TOOLS
 from app.shell.pair_handle import PairHandle
 from app.shell.plotly_view import PlotlyView
 from app.shell.view import Frame, if_user
+from app.views.frequency.curves import optimal_reference
 from app.views.frequency.figure import HANDLE_PANEL, frequency_view
-from app.views.frequency.reference import optimal_reference
 from navcore.engine.run import Run
 
 DISCRETE, OPTIMAL = "measured filter", "optimal H"

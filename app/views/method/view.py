@@ -9,9 +9,9 @@ from typing import Any
 from app.editing import edits, form
 from app.editing.form import FieldSpec, Path
 from app.plots import style
-from app.plots.earth_mode import earth_mode_text
+from app.plots.effective import earth_mode_text
+from app.plots.legend import severity, warnings_for
 from app.plots.units import number, settling
-from app.plots.warnings import severity, warnings_for
 from app.session.shown import Shown
 from app.shell import notices
 from app.shell.control import Control, Section, controls_of

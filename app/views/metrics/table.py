@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from app.plots import style
 from app.plots.budgets import times_the_floor
-from app.plots.earth_mode import earth_mode_text
+from app.plots.effective import earth_mode_text
 from app.plots.pinned import Pinned, difference_text
 from app.plots.table import cell, row, table
 from app.plots.units import (

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any
 
 from app.misprints import MISPRINTS, Comparison
-from app.plots.enlarged import enlarged
+from app.plots.plotly_data import enlarged
 from app.shell.layout import CHOOSER_PX
 from app.shell.view import Frame, Tab, View, if_user
 from app.views.misprints.figure import SHOWN, Shown, comparison_plot, words_html

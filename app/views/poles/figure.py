@@ -16,15 +16,17 @@ from app.session.requirements import Requirements, fastest_rate
 from app.views.poles.grid import (
     ANYWHERE,
     DAMPING,
+    NO_LOCUS,
     PAPER,
     Allowed,
     Interval,
     damping_lines,
     forbidden,
+    locus_note,
+    locus_traces,
     settling_labels,
     settling_shapes,
 )
-from app.views.poles.locus import NO_LOCUS, locus_note, locus_traces
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
 

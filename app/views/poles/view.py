@@ -15,7 +15,7 @@ from app.shell.pair_handle import PairHandle
 from app.shell.plotly_view import PlotlyView
 from app.shell.view import Frame, if_user
 from app.views.poles.figure import PANELS, allowed_poles, poles
-from app.views.poles.locus import NO_LOCUS, locus_fields
+from app.views.poles.grid import NO_LOCUS, locus_fields
 from app.views.poles.whole import whole_system_figure
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from app.plots import style
-from app.plots.earth_mode import earth_mode_text
+from app.plots.effective import earth_mode_text
 from app.plots.plotly_data import PlotlyFigure, figure, packed
 from navcore.analysis.whole_system import (
     EARTH_MODE,

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from app.plots import style
-from app.views.scene.graticule import SceneLabel
-from app.views.scene.polyline import segments
+from app.views.scene.graticule import SceneLabel, segments
 from app.views.scene.track import HALF_WIDTH, LINE_WIDTH, SHIP_LENGTH, MethodTrack, Place, TrackScene
 
 if TYPE_CHECKING:

@@ -1,9 +1,16 @@
-"""One moment of a run: true attitude and velocity, what each method takes them for, and its errors."""
+"""One moment of a run: attitude, velocity and errors of each method, and the Schuler pendulum's swing.
+
+The pendulum: left a side view in the vertical plane in which the pendulums swung most during the last Schuler
+period, right a view from above with their way over that period: there an undamped platform draws the ellipse
+that the Foucault rotation turns, and a damped one a spiral or a point. All tilts are drawn larger by the same
+factor.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from html import escape
 from typing import NamedTuple
 
@@ -19,6 +26,7 @@ from app.plots.units import (
     duration,
     length_unit,
     number,
+    round_down,
     speed_unit,
     wanted_unit,
 )
@@ -26,9 +34,172 @@ from app.session.display import Display
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.earth import attitude_matrix
 from navcore.foundation.notation import with_unit
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
-from navcore.mechanization.recorder import DV_E, DV_N, PHI_E, PHI_U, POSITION, QUANTITIES
+from navcore.mechanization.recorder import DV_E, DV_N, PHI_E, PHI_N, PHI_U, POSITION, QUANTITIES
 from navcore.motion.base import HEADING, PITCH, ROLL, VE, VN
+
+WIDTH, HEIGHT = 296, 134
+_WIDEST = 30.0 * DEG
+"""The largest tilt of a run is drawn about this large."""
+_FACTORS = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)
+_PIVOT = (74.0, 22.0)
+_ROD = 98.0
+_PLAN = (222.0, 76.0)
+_PLAN_HALF = 52.0
+_TRAIL_POINTS = 48
+_POINTS = "N NNE NE ENE E ESE SE SSE S SSW SW WSW W WNW NW NNW".split()
+_TRUE = "#6B7A89"
+
+
+class Bob(NamedTuple):
+    """The lower end of one method's pendulum.
+
+    ``trail``, shape (k, 2): its way east and north over the last Schuler period, rad of tilt, not
+    exaggerated, the present end last. The platform's down axis leans by -phi_N and +phi_E.
+    """
+
+    color: str
+    trail: np.ndarray
+
+
+class Pendulum(NamedTuple):
+    """All methods' pendulums at a time, in the scenario's order.
+
+    All tilts are drawn larger by ``factor``; ``plane``: east and north components of the unit vector to the
+    right of the side view.
+    """
+
+    bobs: tuple[Bob, ...]
+    factor: float
+    period_s: float
+    plane: tuple[float, float] = (1.0, 0.0)
+
+
+def pendulum(run: Run, t_s: float) -> Pendulum:
+    """Pendulums of a run at a time."""
+    period = math.tau / run.scenario.omega_s
+    peak = max((_peak(m) for m in run.methods if m.status != "diverged"), default=0.0)
+    peak = peak or max((_peak(m) for m in run.methods), default=0.0)
+    factor = round_down(_WIDEST / peak, _FACTORS) if 0.0 < peak < _WIDEST else 1.0
+    bobs = tuple(_bob(index, method, t_s, period) for index, method in enumerate(run.methods))
+    return Pendulum(bobs, factor, period, _plane([bob.trail for bob in bobs]))
+
+
+def _plane(trails: list[np.ndarray]) -> tuple[float, float]:
+    """Direction (east, north) in which bobs swung most: the larger principal axis of their ways."""
+    points = np.vstack(trails)
+    points = points[np.isfinite(points).all(axis=1)]
+    if not len(points) or not np.any(points):
+        return 1.0, 0.0
+    points = points / np.abs(points).max()
+    _, axes = np.linalg.eigh(points.T @ points)
+    east, north = axes[:, 1]
+    # One of both ends is to the right: that of the north-eastern half.
+    sign = 1.0 if east + north >= 0.0 else -1.0
+    return float(sign * east), float(sign * north)
+
+
+def plane_ends(plane: tuple[float, float]) -> tuple[str, str]:
+    """Points of the compass to the left and to the right of the side view.
+
+    Examples
+    --------
+    >>> plane_ends((1.0, 0.0)), plane_ends((0.0, 1.0))
+    (('W', 'E'), ('S', 'N'))
+    """
+    point = round(math.degrees(math.atan2(*plane)) / 22.5)
+    return _POINTS[(point + 8) % 16], _POINTS[point % 16]
+
+
+def _peak(method: MethodRun) -> float:
+    return max(method.errors[name]["max_abs"] for name in ("phi_e_rad", "phi_n_rad"))
+
+
+def _bob(index: int, method: MethodRun, t_s: float, period: float) -> Bob:
+    first, last = np.searchsorted(method.t_s, [t_s - period, t_s])
+    chosen = np.unique(np.linspace(first, max(last - 1, first), _TRAIL_POINTS).astype(int))
+    past = method.rows[chosen[chosen < len(method.rows)]]
+    trail = np.vstack([past, row_at(method.t_s, method.rows, t_s)])
+    return Bob(style.method_color(index), trail[:, [PHI_N, PHI_E]] * (-1.0, 1.0))
+
+
+def pendulum_svg(now: Pendulum) -> str:
+    """The picture, `WIDTH` x `HEIGHT` px: from the side, and from above."""
+    parts = [_background(), *_plane_marks(now.plane)]
+    parts += [_swing(bob, now.factor, now.plane) for bob in now.bobs]
+    parts += [_way(bob, now.factor) for bob in now.bobs]
+    caption = caption_of(now)
+    return (
+        f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" role="img" '
+        f'aria-label="Schuler pendulum: platform {caption}" data-factor="{now.factor:g}" '
+        f'font-family="{style.FONT_FAMILY.replace(chr(34), chr(39))}">{"".join(parts)}</svg>'
+    )
+
+
+def caption_of(now: Pendulum) -> str:
+    """Describe the picture in words."""
+    larger = "to scale" if now.factor == 1.0 else f"x {number(now.factor)}"
+    return Text("tilt {larger}; length R, period {period_s}", larger=larger, period_s=duration(now.period_s))
+
+
+_SMALL = f'font-size="12" fill="{style.MUTED}"'
+
+
+@lru_cache(maxsize=1)
+def _background() -> str:
+    (x, y), (px, py), half = _PIVOT, _PLAN, _PLAN_HALF
+    return (
+        f'<path d="M8 {y + 8} Q{x} {y - 8} 140 {y + 8}" fill="none" stroke="#7FB2DC" stroke-width="2"/>'
+        f'<path d="M{x - 11} {y - 4} h22 l-4 5 h-14 z M{x - 5} {y - 4} v-5 h9 v5 z" fill="{style.INK}"/>'
+        f'<line x1="{x}" y1="{y}" x2="{x}" y2="{y + _ROD + 12}" stroke="{_TRUE}" stroke-dasharray="4 4"/>'
+        f'<circle cx="{px}" cy="{py}" r="{half}" fill="none" stroke="{style.GRID}"/>'
+        f'<circle cx="{px}" cy="{py}" r="{half / 2}" fill="none" stroke="{style.GRID}"/>'
+        f'<path d="M{px - half} {py} h{2 * half} M{px} {py - half} v{2 * half}" stroke="{style.GRID}"/>'
+        f'<text x="{px}" y="{py - half - 6}" text-anchor="middle" {_SMALL}>N</text>'
+        f'<text x="{px + half + 5}" y="{py + 4}" {_SMALL}>E</text>'
+    )
+
+
+def _plane_marks(plane: tuple[float, float]) -> tuple[str, str]:
+    """Where the ends of the side view lie, and its plane in the view from above."""
+    left, right = plane_ends(plane)
+    (px, py), (east, north) = _PLAN, (_PLAN_HALF * part for part in plane)
+    return (
+        f'<text x="2" y="{HEIGHT - 4}" {_SMALL}>{left}</text>'
+        f'<text x="146" y="{HEIGHT - 4}" text-anchor="end" {_SMALL}>{right}</text>',
+        f'<path d="M{px - east:.1f} {py + north:.1f} L{px + east:.1f} {py - north:.1f}" '
+        f'stroke="{_TRUE}" stroke-dasharray="4 4"/>',
+    )
+
+
+def _swing(bob: Bob, factor: float, plane: tuple[float, float]) -> str:
+    """Rod and bob in the plane of the side view; how far it swung in the last period as an arc."""
+    x, y = _PIVOT
+    angles = np.clip(factor * (bob.trail @ np.array(plane)), -1.2, 1.2)
+    ends = np.array([angles.min(), angles.max(), angles[-1]])
+    (x0, x1, tip_x), (y0, y1, tip_y) = x + _ROD * np.sin(ends), y + _ROD * np.cos(ends)
+    return (
+        f'<path d="M{x0:.1f} {y0:.1f} A{_ROD} {_ROD} 0 0 0 {x1:.1f} {y1:.1f}" '
+        f'fill="none" stroke="{bob.color}" stroke-opacity=".35" stroke-width="5"/>'
+        f'<line x1="{x}" y1="{y}" x2="{tip_x:.1f}" y2="{tip_y:.1f}" stroke="{bob.color}" '
+        f'stroke-width="1.8"/><circle class="sb-bob" cx="{tip_x:.1f}" cy="{tip_y:.1f}" r="5.5" '
+        f'fill="{bob.color}"/>'
+    )
+
+
+def _way(bob: Bob, factor: float) -> str:
+    """The way of the last period as seen from above, and where the bob is."""
+    scale = factor * _PLAN_HALF / _WIDEST
+    at = np.clip(scale * bob.trail, -1.1 * _PLAN_HALF, 1.1 * _PLAN_HALF)
+    points = " ".join(f"{_PLAN[0] + e:.1f},{_PLAN[1] - n:.1f}" for e, n in at)
+    e, n = at[-1]
+    return (
+        f'<polyline points="{points}" fill="none" stroke="{bob.color}" stroke-width="1.4" '
+        f'stroke-opacity=".7"/><circle cx="{_PLAN[0] + e:.1f}" cy="{_PLAN[1] - n:.1f}" r="4" '
+        f'fill="{bob.color}"/>'
+    )
+
 
 _AS_IT_FITS = Display()
 _LEAST = 0.01

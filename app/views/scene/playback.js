@@ -1,5 +1,5 @@
 // The bar over the 3D view: play, time, speed, loop, cameras; the pendulum and the readout above it; and the present
-// time as a line in every plot over time. All it shows comes from #sb-playback (app/views/scene/bar.py); what is
+// time as a line in every plot over time. All it shows comes from #sb-playback (app/views/scene/view.py); what is
 // pressed goes back as commands (commands.js).
 (() => {
   const PERIOD_MS = 300;

@@ -13,8 +13,17 @@ from app.plots import style
 from app.plots.legend import State, counts
 from app.plots.pinned import Pinned, pinned_methods
 from app.plots.units import length_unit, number, round_down, round_up, rounded
-from app.views.scene.graticule import MOST_BESIDE, Graticule, LocalMap, SceneLabel, graticule, scale_bar
-from app.views.scene.polyline import dashes, needed, segments
+from app.views.scene.graticule import (
+    MOST_BESIDE,
+    Graticule,
+    LocalMap,
+    SceneLabel,
+    dashes,
+    graticule,
+    needed,
+    scale_bar,
+    segments,
+)
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
 from navcore.mechanization.recorder import D_LAT, D_LON

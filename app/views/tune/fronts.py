@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from app.plots import style
-from app.plots.earth_mode import earth_mode_text
+from app.plots.effective import earth_mode_text
 from app.plots.plotly_data import PlotlyFigure, figure
 from app.plots.units import number
 from navcore.design.pareto import Pareto, Point
