@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import Any, Literal
 
 from pydantic import Field, ValidationError
@@ -269,21 +270,7 @@ class Scenario(Parameters):
 
     def figures(self) -> SensorFigures:
         """Random errors of gyros, accelerometers and log, SI."""
-        gyro, accel, log = self.imu.gyro(), self.imu.accel(), self.reference
-        known = 1.0 if log.kind == "log" else 0.0
-        (gyro_drift, gyro_tau_s), (accel_drift, accel_tau_s) = gyro.markov, accel.markov
-        return SensorFigures(
-            gyro_white=gyro.white,
-            gyro_drift=gyro_drift,
-            gyro_tau_s=gyro_tau_s,
-            accel_white=accel.white,
-            accel_drift=accel_drift,
-            accel_tau_s=accel_tau_s,
-            log_noise=known * log.white,
-            log_rate_hz=log.rate_hz,
-            log_drift=known * log.markov[0],
-            log_tau_s=log.markov[1],
-        )
+        return _figures(self.imu, self.reference)
 
     @property
     def earth(self) -> Earth:
@@ -388,3 +375,22 @@ def _method_faults(scenario: Scenario) -> Iterator[Fault]:
             )  # fmt: skip
             if found:
                 yield from InputError(found).located("", f"{at}.").faults
+
+
+@lru_cache(maxsize=64)
+def _figures(imu: Imu, log: Reference) -> SensorFigures:
+    gyro, accel = imu.gyro(), imu.accel()
+    known = 1.0 if log.kind == "log" else 0.0
+    (gyro_drift, gyro_tau_s), (accel_drift, accel_tau_s) = gyro.markov, accel.markov
+    return SensorFigures(
+        gyro_white=gyro.white,
+        gyro_drift=gyro_drift,
+        gyro_tau_s=gyro_tau_s,
+        accel_white=accel.white,
+        accel_drift=accel_drift,
+        accel_tau_s=accel_tau_s,
+        log_noise=known * log.white,
+        log_rate_hz=log.rate_hz,
+        log_drift=known * log.markov[0],
+        log_tau_s=log.markov[1],
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
+from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -56,7 +57,7 @@ class Imu(_Errors):
 
     def all_parts(self) -> tuple[Part, ...]:
         """Contributions of all terms, whether they do anything or not."""
-        return tuple(part for term in TERMS for part in term.parts(self))
+        return _parts_of(self)
 
     def gyro(self) -> Triad:
         """Errors of the gyros, SI."""
@@ -65,6 +66,11 @@ class Imu(_Errors):
     def accel(self) -> Triad:
         """Errors of the accelerometers, SI."""
         return Triad("accel", self.all_parts())
+
+
+@lru_cache(maxsize=64)
+def _parts_of(imu: Imu) -> tuple[Part, ...]:
+    return tuple(part for term in TERMS for part in term.parts(imu))
 
 
 def imu_errors(

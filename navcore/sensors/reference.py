@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -98,7 +99,7 @@ class Reference(_Errors):
 
     def all_parts(self) -> tuple[LogPart, ...]:
         """Contributions of all terms, whether they do anything or not."""
-        return tuple(part for term in TERMS for part in term.parts(self))
+        return _parts_of(self)
 
     @property
     def white(self) -> float:
@@ -115,6 +116,11 @@ class Reference(_Errors):
     def deviation(self) -> np.ndarray:
         """Standard deviations of the constant errors in the log's axes, m/s, shape (2,)."""
         return np.sqrt(sum((part.deviation**2 for part in self.all_parts()), np.zeros(2)))
+
+
+@lru_cache(maxsize=64)
+def _parts_of(reference: Reference) -> tuple[LogPart, ...]:
+    return tuple(part for term in TERMS for part in term.parts(reference))
 
 
 def in_service(outages: Iterable[Outage], time_s: np.ndarray) -> np.ndarray:
