@@ -18,6 +18,7 @@ from navcore.design.budget import Budget
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.networks.base import NetworkParameters
 from navcore.scenario.model import Scenario
 
@@ -75,7 +76,7 @@ def _made(offered: dict[str, Maker], name: str, subject: Any, options: dict[str,
     from plotly.graph_objects import Figure
 
     if name not in offered:
-        raise InputError(Fault("", "figure", name, f"must be one of {', '.join(offered)}"))
+        raise InputError(Fault("", "figure", name, Text("must be one of {known}", known=", ".join(offered))))
     figure = offered[name](subject, **options)
     size = {"width": WIDTH_PX, "height": round(WIDTH_PX * figure.aspect)}
     return Figure(data=[_in_full(trace) for trace in figure["data"]], layout=figure["layout"] | size)

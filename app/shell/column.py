@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from app.session.shown import Shown
 from app.shell.layout import Layout
 from app.shell.view import PictureView, View
+from app.shell.view_faults import ViewFaults
 
 if TYPE_CHECKING:
     import viser
@@ -23,10 +24,12 @@ class Column:
         Of the client.
     views : sequence of View
         Those of the page that stand there, in the order of their tabs.
+    faults : ViewFaults
+        Calls their methods.
     """
 
-    def __init__(self, gui: viser.GuiApi, views: Sequence[View]) -> None:
-        self._gui, self._views = gui, views
+    def __init__(self, gui: viser.GuiApi, views: Sequence[View], faults: ViewFaults) -> None:
+        self._gui, self._views, self._faults = gui, views, faults
         self._pictured = {view.title: view for view in views if isinstance(view, PictureView)}
         self._panels: list[viser.PanelHandle] = []
         self._tabs: dict[str, viser.GuiTabHandle] = {}
@@ -52,11 +55,12 @@ class Column:
     def _add(self, view: View) -> None:
         panel = self._panels[0 if view.place == "upper" else -1]
         tab = self._tabs[view.title] = panel.add_tab(view.title)
-        if view.look_for:
-            with tab:
+        with tab:
+            self._faults.place(view)
+            if view.look_for:
                 told = escape(view.look_for)
                 self._gui.add_html(f'<div class="sb-look" title="{told}">{told}</div>', order=-1)
-        view.build(tab)
+        self._faults.call(view.build, tab)
 
     @property
     def foremost(self) -> frozenset[str]:
@@ -91,16 +95,21 @@ class Column:
     def make(self, found: Shown, wanted: Iterable[str]) -> dict[str, Any]:
         """Make the wanted pictures: title -> picture; nothing is sent yet."""
         views = [self._pictured[title] for title in wanted]
-        return {view.title: view.picture(found) for view in views if view.stands(found.run)}
+        pictures = {
+            view.title: self._faults.call(view.picture, found)
+            for view in views
+            if self._faults.call(view.stands, found.run)
+        }
+        return {title: picture for title, picture in pictures.items() if picture is not None}
 
     def show(self, found: Shown, pictures: dict[str, Any], wanted: set[str]) -> None:
         """Send pictures that `make` gave for ``wanted``; they are up to date from now on."""
         self._stale -= wanted
         for view in self._pictured.values():
             if not view.always:
-                self._place(view, view.stands(found.run))
+                self._place(view, bool(self._faults.call(view.stands, found.run)))
         for title, picture in pictures.items():
-            self._pictured[title].show(picture)
+            self._faults.call(self._pictured[title].show, picture)
 
     def _place(self, view: PictureView[Any], stands: bool) -> None:
         """Let a tab be there exactly while its view has something to show."""
@@ -113,4 +122,4 @@ class Column:
         """Let the views in front know that they are."""
         for view in self._views:
             if view.title in front:
-                view.to_front()
+                self._faults.call(view.to_front)

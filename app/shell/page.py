@@ -29,6 +29,7 @@ from app.shell.pace import Pace
 from app.shell.palette import Palette
 from app.shell.reports import Reports, run_element, views_element
 from app.shell.view import Frame, View, page_styles
+from app.shell.view_faults import ViewFaults
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 
@@ -61,6 +62,7 @@ class Page:
         self._selected = session.selected
         self._front: frozenset[str] = frozenset()
         self._views: list[View] = []
+        self._faults = ViewFaults(client)
         self._pace = Pace(self._draw, self._refresh_late)
         self._build(kinds)
 
@@ -95,13 +97,13 @@ class Page:
             self.refresh()
             self._fold()
             for view in self._views:
-                view.follow_display()
+                self._faults.call(view.follow_display)
             self.commands.show()
         self.client.flush()
         self._built = True
         self._arrange()
         for view in self._views:
-            view.resize()
+            self._faults.call(view.resize)
         session.attach(self)
         session.searches.watch(self._searches_changed)
         if session.run is not None:
@@ -123,11 +125,15 @@ class Page:
         group = gui.add_tab_group(order=20)
         for view in self._views:
             if view.place == "edit":
-                view.build(group.add_tab(view.title))
+                with (tab := group.add_tab(view.title)):
+                    self._faults.place(view)
+                self._faults.call(view.build, tab)
             elif view.place == "page":
-                view.build(nullcontext())
-        self.column = Column(gui, [view for view in self._views if view.place in ("upper", "lower")])
+                self._faults.call(view.build, nullcontext())
+        self.column = Column(gui, [v for v in self._views if v.place in ("upper", "lower")], self._faults)
         self.column.build(self._layout)
+        # One that could not be built has no widgets to show anything with: its fault stands in its tab.
+        self._views = [view for view in self._views if not self._faults.failed(view)]
         free = frozenset({self._reports.window_id, self._reports.painted_id, self.commands.box_id})
         self.palette = Palette(frame, self, free)
 
@@ -139,7 +145,7 @@ class Page:
         self._pace.close()
         self.commands.close()
         for view in self._views:
-            view.close()
+            self._faults.call(view.close)
         self.session.searches.unwatch(self._searches_changed)
         self.session.detach(self)
 
@@ -171,8 +177,8 @@ class Page:
         self.editor.catch_up()
         self.header.show_scenario()
         for view in self._views:
-            view.follow_scenario()
-            view.follow_jobs()
+            self._faults.call(view.follow_scenario)
+            self._faults.call(view.follow_jobs)
         self.palette.show()
 
     def display_changed(self, by: object) -> None:
@@ -186,9 +192,9 @@ class Page:
         found = shown(self.session)
         self._fold()
         for view in self._views:
-            view.follow_display()
+            self._faults.call(view.follow_display)
             if found is not None:
-                view.draw(found)
+                self._faults.call(view.draw, found)
 
     def _fold(self) -> None:
         self.header.fold(self.session.display.enlarged)
@@ -247,7 +253,7 @@ class Page:
     def _searches_changed(self) -> None:
         self._jobs_changed()
         with self.session.lock:
-            fresh = not self._closed and [view for view in self._views if view.take_new()]
+            fresh = not self._closed and [view for view in self._views if self._faults.call(view.take_new)]
         if fresh:
             self._again_pictures()
 
@@ -256,7 +262,7 @@ class Page:
 
     def _follow_jobs(self) -> None:
         for view in self._views:
-            view.follow_jobs()
+            self._faults.call(view.follow_jobs)
 
     def _update(self, act: Callable[[], None]) -> None:
         """Change the page in one piece, unless it has gone."""
@@ -302,8 +308,8 @@ class Page:
                 else:
                     self.palette.show()
                 for view in self._views:
-                    view.draw(found)
-                    view.follow_jobs()
+                    self._faults.call(view.draw, found)
+                    self._faults.call(view.follow_jobs)
                 frame_ms = 1e3 * (run.elapsed_s + time.perf_counter() - began)
                 self.header.show_run(run, found.number, outdated=session.outdated, frame_ms=frame_ms)
                 self._run_element.content = content
@@ -385,9 +391,9 @@ class Page:
             else:
                 self._front = frozenset()
             for view in self._views:
-                view.follow_scenario()
-                view.follow_display()
-                view.follow_jobs()
+                self._faults.call(view.follow_scenario)
+                self._faults.call(view.follow_display)
+                self._faults.call(view.follow_jobs)
         for view in self._views:
-            view.resize()
+            self._faults.call(view.resize)
         self.client.flush()

@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from navcore.design.figures import Entry, Series
 from navcore.design.floor import FLOOR_OF_ZERO
-
-if TYPE_CHECKING:
-    from plotly.graph_objects import Figure
 
 Shown = Literal["steady", "covariance", "seeds", "none"]
 
@@ -107,7 +104,7 @@ class Budget:
             ],
         }
 
-    def figure(self) -> Figure:
+    def figure(self) -> Any:
         """Draw the bars of the tab Design, for a notebook, as `plotly.graph_objects.Figure`."""
         return import_module("app.notebook").budget_bars(self)
 

@@ -6,7 +6,7 @@ import hashlib
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -17,9 +17,6 @@ from navcore.mechanization.recorder import Recorder
 from navcore.networks.base import LinearNetwork
 from navcore.scenario.model import Method, Scenario
 from navcore.scenario.sampling import Sampling
-
-if TYPE_CHECKING:
-    from plotly.graph_objects import Figure
 
 _DAMPED, _XI = 1, 2
 Status = Literal["ok", "diverged", "stopped"]
@@ -183,7 +180,7 @@ class Run:
         states = {m.status for m in self.methods}
         return "stopped" if "stopped" in states else "diverged" if "diverged" in states else "ok"
 
-    def figure(self, name: str = "errors", **options: Any) -> Figure:
+    def figure(self, name: str = "errors", **options: Any) -> Any:
         """Draw what the page shows of a run, for a notebook.
 
         Parameters

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,17 +18,15 @@ from numpy.typing import NDArray
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.registry import Entry
 from navcore.foundation.text import Text
-from navcore.networks.roots import sorted_roots
+from navcore.networks.roots import fixed, leading, sorted_roots
 from navcore.networks.transfer_function import transfer_function
 
 if TYPE_CHECKING:
     from control import TransferFunction
-    from plotly.graph_objects import Figure
 
     from navcore.networks.lqg import SensorFigures
     from navcore.networks.pair import MainPair, Placement
 
-_T = TypeVar("_T", bound=np.generic)
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
@@ -193,26 +191,11 @@ class NetworkParameters(Entry):
         """
         raise NotImplementedError
 
-    def figure(self, name: str = "bode", lat_deg: float = 45.0, **options: Any) -> Figure:
-        """Draw what the page shows of a network that damps with a log, for a notebook.
+    def figure(self, name: str = "bode", lat_deg: float = 45.0, **options: Any) -> Any:
+        """Draw the network damping with a log at a latitude, as `plotly.graph_objects.Figure`.
 
-        Parameters
-        ----------
-        name : {"bode", "nyquist", "poles", "step"}
-            What is drawn.
-        lat_deg : float
-            Latitude, which gives the Schuler frequency, deg.
-        **options
-            Of that figure: ``transfer_id`` of the Bode plots ("phi/dv_r").
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-
-        Raises
-        ------
-        InputError
-            There is no figure of this name, or these parameters make no network.
+        ``name`` is "bode", "nyquist", "poles" or "step", ``options`` as of `navcore.Run.figure`; raises
+        `InputError` for another name, or parameters that make no network.
         """
         return import_module("app.notebook").network_figure(self, name, lat_deg, **options)
 
@@ -377,7 +360,7 @@ def linear_network(
     """
     if not (math.isfinite(omega_s) and omega_s > 0.0):
         raise refuse("omega_s", omega_s, "must be > 0 (rad/s)")
-    num, den = _leading(num_p), _leading(den_p)
+    num, den = leading(num_p), leading(den_p)
     if len(den) == 0 or len(num) == 0:
         raise refuse("", None, "H(s) must have a numerator and a denominator that are not zero")
     if len(num) > len(den):
@@ -397,28 +380,16 @@ def linear_network(
     degree = len(den) - len(num)
     return LinearNetwork(
         id=id,
-        num=_fixed(num * omega_s ** (degree + np.arange(len(num)))),
-        den=_fixed(den * omega_s ** np.arange(len(den))),
+        num=fixed(num * omega_s ** (degree + np.arange(len(num)))),
+        den=fixed(den * omega_s ** np.arange(len(den))),
         omega_s=omega_s,
-        zeros=_fixed(sorted_roots(zeros) * omega_s),
-        poles=_fixed(sorted_roots(poles) * omega_s),
+        zeros=fixed(sorted_roots(zeros) * omega_s),
+        poles=fixed(sorted_roots(poles) * omega_s),
         gain=float(num[0] * omega_s**degree),
-        num_p=_fixed(num),
-        den_p=_fixed(den),
+        num_p=fixed(num),
+        den_p=fixed(den),
         warnings=warnings,
         realisation=realisation,
-        feedback_p=None if feedback is None else _fixed(feedback),
-        closed_loop_p=None if closed_loop_p is None else _fixed(sorted_roots(np.asarray(closed_loop_p))),
+        feedback_p=None if feedback is None else fixed(feedback),
+        closed_loop_p=None if closed_loop_p is None else fixed(sorted_roots(np.asarray(closed_loop_p))),
     )
-
-
-def _leading(coefficients: Sequence[float] | np.ndarray) -> np.ndarray:
-    """Coefficients from the first that is not zero; `numpy.trim_zeros` takes twenty times as long."""
-    array = np.asarray(coefficients, dtype=float)
-    return array[np.logical_or.accumulate(array != 0.0)]
-
-
-def _fixed(array: NDArray[_T]) -> NDArray[_T]:
-    array = np.ascontiguousarray(array)
-    array.setflags(write=False)
-    return array

@@ -269,14 +269,14 @@ def test_a_key_is_kept_and_is_ours_alone(tmp_path: Path) -> None:
     ("chosen", "platform", "base"),
     [
         ("/state", "linux", "/state"),
-        ("relative", "linux", "/home/me/.local/state"),
-        ("", "darwin", "/home/me/Library/Application Support"),
+        ("relative", "linux", "/me/.local/state"),
+        ("", "darwin", "/me/Library/Application Support"),
     ],
 )
 def test_the_place_is_the_one_the_user_names(
     monkeypatch: pytest.MonkeyPatch, chosen: str, platform: str, base: str
 ) -> None:
     monkeypatch.setenv("XDG_STATE_HOME", chosen)
-    monkeypatch.setattr(Path, "home", lambda: Path("/home/me"))
+    monkeypatch.setattr(Path, "home", lambda: Path("/me"))
     monkeypatch.setattr("sys.platform", platform)
     assert default_folder() == Path(base, "schuler-bench", "sessions")

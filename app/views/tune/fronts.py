@@ -33,6 +33,7 @@ _NEAR = 0.05
 _PAD = 0.06
 _LEFT_PX, _RIGHT_PX, _TOP_PX, _TICKS_PX, _LEGEND_ROW_PX = 66, 14, 44, 48, 21
 _EMPTY = "Find the fronts: the best of every network in place of this one."
+_OFF = "The present design is not shown: an objective of 0 has no place on a logarithmic axis."
 _FEW_TICKS, _MANY_TICKS = (1.0, 2.0, 5.0), (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 _FINEST_DECADES = 0.12
 """Below this range plotly's own, even ticks are finer."""
@@ -83,6 +84,8 @@ def fronts_figure(
         What is to be heeded, above the plot.
     """
     (_, across, x_unit, x_size), (_, up, y_unit, y_size) = (AXES[name] for name in objectives)
+    if present is not None and not all(map(_on_axis, present)):
+        note, present = note or _OFF, None
     fronts = {} if found is None else found.fronts
     data = [
         _front(name, points, k, (x_size, y_size))
@@ -189,11 +192,16 @@ def _ranges(found: Pareto | None, present: Pair | None, sizes: Pair) -> tuple[Pa
             values += [point.values[axis] for points in found.fronts.values() for point in points]
             floor = found.floor[axis]
             values += [floor] if floor else []
-        logs = [math.log10(value / sizes[axis]) for value in values] or [0.0, 1.0]
+        logs = [math.log10(value / sizes[axis]) for value in values if _on_axis(value)] or [0.0, 1.0]
         low, high = min(logs), max(logs)
         pad = max(_PAD * (high - low), 0.03 if found is not None else _ALONE)
         ends.append((10.0 ** (low - pad), 10.0 ** (high + pad)))
     return ends[0], ends[1]
+
+
+def _on_axis(value: float) -> bool:
+    """Whether a logarithmic axis can show a value."""
+    return 0.0 < value < math.inf
 
 
 def _axis(title: str, ends: Pair) -> dict[str, Any]:
