@@ -54,10 +54,10 @@ _READERS = (
     "navcore.checks.file",
     "navcore.checks.imu",
     "navcore.io.csv",
+    "navcore.io.nmea_recording",
     "navcore.io.tables",
     "navcore.scenario.file",
     "pyarrow.parquet",
-    "pynmea2",
     "scipy.io",
 )
 """What reads uploaded files: imported once by the helper from which its child processes are forked."""

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 _READERS = (
     "app.cli.check_scenario", "navcore.checks.file", "navcore.checks.imu", "navcore.io.csv",
-    "navcore.io.tables", "navcore.scenario.file", "pynmea2",
+    "navcore.io.nmea_recording", "navcore.io.tables", "navcore.scenario.file",
 )  # fmt: skip
 _BY_ENDING = {".parquet": ("pyarrow.parquet",), ".mat": ("scipy.io",)}
 """What reads the file is imported before the bounds are set: a child can write no file, not even a cache."""

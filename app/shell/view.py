@@ -9,19 +9,25 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
 
+from pydantic import ValidationError
+
 from app.editing import edits
 from app.editing.form import FieldSpec
 from app.plots import style, table
 from app.plots.plotly_data import PlotlyFigure
 from app.plots.uplot import UplotFigure
+from app.session.display import Display
 from app.session.session import Session
 from app.session.shown import Shown
+from app.shell import notices
 from app.shell.commands import Commands
 from app.shell.control import Control, Section
 from app.shell.editor import Editor
 from app.shell.layout import Layout
 from app.shell.opening import Opening
 from navcore.engine.run import Run
+from navcore.foundation.errors import InputError
+from navcore.foundation.faults import faults_from
 
 if TYPE_CHECKING:
     import viser
@@ -84,8 +90,14 @@ class Frame:
         return [control for view in self.views() for control in view.controls]
 
     def show(self, **choices: object) -> None:
-        """Change how the pictures are shown; raises `pydantic.ValidationError`."""
-        self.session.show(None, **choices)
+        """Change how the pictures are shown; a choice out of its range is refused by name."""
+        try:
+            self.session.show(None, **choices)
+        except ValidationError as error:
+            refused = InputError(faults_from(error, Display, choices, ""))
+            notices.tell(self.client, "Not changed", notices.fault_lines(refused))
+            for view in self.views():
+                view.follow_display()
 
 
 class View:

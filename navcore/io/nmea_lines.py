@@ -10,6 +10,8 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import reduce
+from operator import xor
 from typing import NamedTuple
 
 from navcore.io.stamps import LONGEST_STAMP, Stamp, StampReader, day_comes_first
@@ -21,6 +23,8 @@ MOST_KINDS = 200
 OTHER_KINDS = "others"
 _ADDRESS = re.compile(r"[A-Z0-9]{3,10}")
 _CHECKSUM = re.compile(r"[0-9A-Fa-f]{2}")
+_PLAIN = re.compile(r"[$!]([A-Z0-9]{3,10}),[^$!*]*\*([0-9A-Fa-f]{2})")
+"""A line that holds a sentence and nothing else, as most do."""
 _SENTENCE_START = re.compile(r"[$!][A-Z]{2,9},")
 _SOURCE = re.compile(r"(?<![A-Za-z])[A-Za-z][A-Za-z_-]{1,30}\d{0,6}")
 _WEEKDAYS = frozenset("mon tue wed thu fri sat sun".split())
@@ -101,13 +105,13 @@ def intact_lines(text: str, tally: Tally) -> Iterator[Line]:
             continue
         before, sentences, after = found
         try:
-            stamp, rest = stamps.read(before[-LONGEST_STAMP:])
+            stamp, rest = stamps.read(before[-LONGEST_STAMP:]) if before else (None, "")
             if stamp is None and after:
                 stamp, _ = stamps.read(after[:LONGEST_STAMP])
         except ValueError:
             tally.unparsable += 1
             continue
-        source = _source(rest)
+        source = _source(rest) if rest else ""
         for address, sentence, checksum in sentences:
             if checksum is None:
                 tally.without_checksum += 1
@@ -119,9 +123,7 @@ def intact_lines(text: str, tally: Tally) -> Iterator[Line]:
 
 
 def _exclusive_or(body: str) -> int:
-    from pynmea2 import NMEASentence
-
-    return NMEASentence.checksum(body)
+    return reduce(xor, body.encode("latin-1", "replace"), 0)
 
 
 def _before(line: str) -> str:
@@ -138,6 +140,8 @@ def _split(line: str) -> tuple[str, list[tuple[str, str, str | None]], str] | No
 
     Of several sentences run together, one without a checksum was cut off and is left out.
     """
+    if plain := _PLAIN.fullmatch(line):
+        return "", [(plain[1], line, plain[2])], ""
     first = _first_start(line)
     if first < 0:
         return None

@@ -1,4 +1,4 @@
-"""The sentences that are used, decoded to SI: NMEA 0183 by pynmea2, and makers' own by their places.
+"""The sentences that are used, NMEA 0183 and makers' own, decoded to SI by the places of their fields.
 
 A decoder returns a `Reading` or raises ValueError when the fields make no sense; an instrument's own
 "invalid" gives a reading with ``valid`` False.
@@ -8,18 +8,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import Any
+from functools import lru_cache
+from typing import NamedTuple
 
 from navcore.foundation.units import DEG, KNOT
 
 _KMPH = 1.0 / 3.6
 _FASTEST = 1000.0
+_NOTHING = (None,) * 5
 
 
-@dataclass(frozen=True, slots=True)
-class Reading:
+class Reading(NamedTuple):
     """What one sentence says; None where it says nothing.
 
     Attributes
@@ -52,13 +52,12 @@ class Reading:
     @property
     def says_nothing(self) -> bool:
         """Whether it holds no more than a time."""
-        quantities = (self.position, self.velocity, self.water, self.ground, self.heading)
-        return self.valid and all(quantity is None for quantity in quantities)
+        return self.valid and self[2:7] == _NOTHING
 
 
-def _number(value: Any, low: float, high: float) -> float | None:
+def _number(value: str, low: float, high: float) -> float | None:
     """Value of an optional numeric field; ValueError when out of range or no number."""
-    if value is None or value == "":
+    if value == "":
         return None
     number = float(value)
     if not low <= number <= high:
@@ -66,17 +65,17 @@ def _number(value: Any, low: float, high: float) -> float | None:
     return number
 
 
-def _speed(value: Any, unit: float = KNOT) -> float | None:
+def _speed(value: str, unit: float = KNOT) -> float | None:
     number = _number(value, -_FASTEST / unit, _FASTEST / unit)
     return None if number is None else number * unit
 
 
-def _heading(value: Any) -> float | None:
+def _heading(value: str) -> float | None:
     degrees = _number(value, 0.0, 360.0)
     return None if degrees is None else (degrees % 360.0) * DEG
 
 
-def _over_ground(course: Any, knots: Any, kmph: Any = None) -> tuple[float, float] | None:
+def _over_ground(course: str, knots: str, kmph: str = "") -> tuple[float, float] | None:
     """East and north velocity of course and speed; a standing vessel has no course."""
     speed = _speed(knots)
     speed = _speed(kmph, _KMPH) if speed is None else speed
@@ -87,7 +86,7 @@ def _over_ground(course: Any, knots: Any, kmph: Any = None) -> tuple[float, floa
     return speed * math.sin(angle), speed * math.cos(angle)
 
 
-def _axes(transverse: Any, longitudinal: Any, status: str) -> tuple[float, float, bool] | None:
+def _axes(longitudinal: str, transverse: str, status: str) -> tuple[float, float, bool] | None:
     """Speeds along the ship's axes; a single-axis log has no transverse speed."""
     forward = _speed(longitudinal)
     if status != "A" or forward is None:
@@ -95,98 +94,106 @@ def _axes(transverse: Any, longitudinal: Any, status: str) -> tuple[float, float
     return _speed(transverse) or 0.0, forward, True
 
 
-def _vbw(sentence: Any) -> Reading:
-    return Reading(
-        water=_axes(sentence.trans_water_spd, sentence.lon_water_spd, sentence.data_validity_water_spd),
-        ground=_axes(sentence.trans_grnd_spd, sentence.lon_grnd_spd, sentence.data_validity_grnd_spd),
-    )
+def _vbw(fields: list[str]) -> Reading:
+    return Reading(water=_axes(*fields[:3]), ground=_axes(*fields[3:6]) if len(fields) > 5 else None)
 
 
-def _vhw(sentence: Any) -> Reading:
-    forward = _speed(sentence.water_speed_knots)
-    forward = _speed(sentence.water_speed_km, _KMPH) if forward is None else forward
-    return Reading(
-        water=None if forward is None else (0.0, forward, True), heading=_heading(sentence.heading_true)
-    )
+def _vhw(fields: list[str]) -> Reading:
+    knots, kmph = fields[4], fields[6] if len(fields) > 6 else ""
+    forward = _speed(knots) if knots else _speed(kmph, _KMPH)
+    return Reading(water=None if forward is None else (0.0, forward, True), heading=_heading(fields[0]))
 
 
-def _vtg(sentence: Any) -> Reading:
-    if getattr(sentence, "faa_mode", "") == "N":
+def _vtg(fields: list[str]) -> Reading:
+    if fields[8:9] == ["N"]:
         return Reading(valid=False)
-    course, knots, kmph = sentence.true_track, sentence.spd_over_grnd_kts, sentence.spd_over_grnd_kmph
-    return Reading(velocity=_over_ground(course, knots, kmph))
+    return Reading(velocity=_over_ground(fields[0], fields[4], fields[6] if len(fields) > 6 else ""))
 
 
-def _seconds_of_day(moment: Any) -> float:
-    return moment.hour * 3600.0 + moment.minute * 60.0 + moment.second + moment.microsecond * 1e-6
+def _time_of_day(field: str) -> float:
+    """UTC of ``hhmmss`` or ``hhmmss.sss``, s."""
+    hours, minutes, seconds = int(field[:2]), int(field[2:4]), float(field[4:])
+    if not (field[:6].isdigit() and hours < 24 and minutes < 60 and 0.0 <= seconds < 60.0):
+        raise ValueError(f"{field} is no time")
+    return hours * 3600.0 + minutes * 60.0 + seconds
 
 
-def _place(sentence: Any, height: float) -> tuple[float, float, float]:
-    if not sentence.lat or not sentence.lon or sentence.lat_dir not in "NS" or sentence.lon_dir not in "EW":
+@lru_cache(maxsize=64)
+def _midnight(day: str, month: str, year: str) -> float:
+    return datetime(int(year), int(month), int(day), tzinfo=UTC).timestamp()
+
+
+def _angle(field: str, side: str, positive: str, negative: str, most: float) -> float:
+    """Degrees and minutes, ``dddmm.mmmm``, in rad."""
+    whole = field.partition(".")[0]
+    degrees = (int(whole[:-2]) if len(whole) > 2 else 0) + float(field[max(0, len(whole) - 2) :]) / 60.0
+    if side not in (positive, negative) or not whole.isdigit() or degrees > most:
         raise ValueError("no position")
-    latitude, longitude = _number(sentence.latitude, -90.0, 90.0), _number(sentence.longitude, -180.0, 180.0)
-    if latitude is None or longitude is None:
-        raise ValueError("no position")
-    return latitude * DEG, longitude * DEG, height
+    return (degrees if side == positive else -degrees) * DEG
 
 
-def _rmc(sentence: Any) -> Reading:
-    if sentence.status != "A":
+def _place(fields: list[str], height: float) -> tuple[float, float, float]:
+    """Latitude, its side, longitude and its side."""
+    lat, north, lon, east = fields
+    return _angle(lat, north, "N", "S", 90.0), _angle(lon, east, "E", "W", 180.0), height
+
+
+def _height(altitude: str, separation: str) -> float:
+    """Height above the ellipsoid, m; NaN where it is not given."""
+    above, geoid = _number(altitude, -1e4, 1e5), _number(separation, -200.0, 200.0)
+    return math.nan if above is None else above + (geoid or 0.0)
+
+
+def _rmc(fields: list[str]) -> Reading:
+    if fields[1] != "A":
         return Reading(valid=False)
-    date = sentence.datestamp
-    day = datetime(date.year, date.month, date.day, tzinfo=UTC).timestamp() if date else None
+    date = fields[8]
+    century = "19" if date[4:6] >= "69" else "20"
     return Reading(
-        time_of_day=_seconds_of_day(sentence.timestamp),
-        day=day,
-        position=_place(sentence, math.nan),
-        velocity=_over_ground(sentence.true_course, sentence.spd_over_grnd),
+        time_of_day=_time_of_day(fields[0]),
+        day=_midnight(date[:2], date[2:4], century + date[4:6]) if date else None,
+        position=_place(fields[2:6], math.nan),
+        velocity=_over_ground(fields[7], fields[6]),
     )
 
 
-def _gga(sentence: Any) -> Reading:
-    if not sentence.gps_qual:
+def _gga(fields: list[str]) -> Reading:
+    if not fields[5] or int(fields[5]) == 0:
         return Reading(valid=False)
-    altitude = _number(sentence.altitude, -1e4, 1e5)
-    separation = _number(sentence.geo_sep, -200.0, 200.0)
-    height = math.nan if altitude is None else altitude + (separation or 0.0)
-    return Reading(time_of_day=_seconds_of_day(sentence.timestamp), position=_place(sentence, height))
+    height = _height(fields[8], fields[10])
+    return Reading(time_of_day=_time_of_day(fields[0]), position=_place(fields[1:5], height))
 
 
-def _hdt(sentence: Any) -> Reading:
-    heading = _heading(sentence.heading)
-    if heading is None:
-        raise ValueError("no heading")
-    return Reading(heading=heading)
+def _hdt(fields: list[str]) -> Reading:
+    return _needed_heading(fields[0])
 
 
-def _gll(sentence: Any) -> Reading:
-    if sentence.status != "A":
+def _gll(fields: list[str]) -> Reading:
+    if fields[5] != "A":
         return Reading(valid=False)
-    return Reading(time_of_day=_seconds_of_day(sentence.timestamp), position=_place(sentence, math.nan))
+    return Reading(time_of_day=_time_of_day(fields[4]), position=_place(fields[:4], math.nan))
 
 
-def _gns(sentence: Any) -> Reading:
-    if not set(sentence.mode_indicator or "N") - {"N"}:
+def _gns(fields: list[str]) -> Reading:
+    if not set(fields[5] or "N") - {"N"}:
         return Reading(valid=False)
-    altitude = _number(sentence.altitude, -1e4, 1e5)
-    separation = _number(sentence.geo_sep, -200.0, 200.0)
-    height = math.nan if altitude is None else altitude + (separation or 0.0)
-    return Reading(time_of_day=_seconds_of_day(sentence.timestamp), position=_place(sentence, height))
+    height = _height(fields[8], fields[9])
+    return Reading(time_of_day=_time_of_day(fields[0]), position=_place(fields[1:5], height))
 
 
-def _zda(sentence: Any) -> Reading:
-    midnight = datetime(int(sentence.year), int(sentence.month), int(sentence.day), tzinfo=UTC)
-    return Reading(time_of_day=_seconds_of_day(sentence.timestamp), day=midnight.timestamp())
+def _zda(fields: list[str]) -> Reading:
+    return Reading(time_of_day=_time_of_day(fields[0]), day=_midnight(*fields[1:4]))
 
 
-def _hdg(sentence: Any) -> Reading:
+def _hdg(fields: list[str]) -> Reading:
     """Magnetic heading with its deviation and variation; without the variation it is no true heading."""
-    compass, variation = _heading(sentence.heading), _number(sentence.variation, 0.0, 180.0)
-    if compass is None or variation is None or sentence.var_dir not in ("E", "W"):
+    heading, deviation_deg, deviation_side, variation_deg, variation_side = fields[:5]
+    compass, variation = _heading(heading), _number(variation_deg, 0.0, 180.0)
+    if compass is None or variation is None or variation_side not in ("E", "W"):
         return Reading()
-    deviation = _number(sentence.deviation, 0.0, 180.0) or 0.0
-    east = variation * (1.0 if sentence.var_dir == "E" else -1.0)
-    east += deviation * (-1.0 if sentence.dev_dir == "W" else 1.0)
+    deviation = _number(deviation_deg, 0.0, 180.0) or 0.0
+    east = variation * (1.0 if variation_side == "E" else -1.0)
+    east += deviation * (-1.0 if deviation_side == "W" else 1.0)
     return Reading(heading=(compass + east * DEG) % (2.0 * math.pi))
 
 
@@ -223,45 +230,41 @@ def _needed_heading(value: str) -> Reading:
     return Reading(heading=heading)
 
 
-_BY_NAME: dict[str, Callable[[Any], Reading]] = {
+_KINDS: dict[str, Callable[[list[str]], Reading]] = {
     "GGA": _gga,
     "GLL": _gll,
     "GNS": _gns,
     "HDG": _hdg,
     "HDT": _hdt,
     "RMC": _rmc,
+    "THS": _ths,
     "VBW": _vbw,
     "VHW": _vhw,
     "VTG": _vtg,
     "ZDA": _zda,
 }
-"""Decoders of kinds that pynmea2 names the fields of."""
-_BY_PLACE: dict[str, Callable[[list[str]], Reading]] = {"THS": _ths}
-"""Decoders of kinds that are read by the places of their fields."""
 _MAKERS: dict[str, Callable[[list[str]], Reading]] = {"PASHR": _pashr, "PRDID": _prdid, "PSXN": _psxn}
 """Decoders of makers' own sentences, by the whole address."""
-KINDS = ", ".join((*sorted(_BY_NAME | _BY_PLACE), *_MAKERS))
+KINDS = ", ".join((*_KINDS, *_MAKERS))
 """What a person is told can be read."""
+
+
+def _decoder(address: str) -> Callable[[list[str]], Reading] | None:
+    standard = len(address) == 5 and address[0] != "P"
+    return _MAKERS.get(address) or (_KINDS.get(address[2:]) if standard else None)
 
 
 def is_used(address: str) -> bool:
     """Whether sentences of this address are decoded."""
-    kind = address[2:]
-    standard = len(address) == 5 and address[0] != "P" and (kind in _BY_NAME or kind in _BY_PLACE)
-    return standard or address in _MAKERS
+    return _decoder(address) is not None
 
 
 def decode(sentence: str, address: str) -> Reading | None:
     """Reading of a sentence of a used kind; None for other kinds and for nonsense in its fields."""
-    if not is_used(address):
+    decoder = _decoder(address)
+    if decoder is None:
         return None
-    from pynmea2 import ParseError, parse
-
-    kind = address[2:]
     try:
-        if address not in _MAKERS and kind in _BY_NAME:
-            return _BY_NAME[kind](parse(sentence))
-        fields = sentence.partition("*")[0].split(",")[1:]
-        return (_MAKERS.get(address) or _BY_PLACE[kind])(fields)
-    except (ParseError, ValueError, TypeError, ArithmeticError, AttributeError, LookupError):
+        return decoder(sentence.partition("*")[0].split(",")[1:])
+    except (ValueError, TypeError, LookupError, OverflowError):
         return None

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import math
+from datetime import UTC, datetime
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
+import pynmea2
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from navcore.foundation import guarded
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, KNOT
+from navcore.io.nmea_sentences import decode
 from navcore.io.recording import read_recording
 from navcore.io.source import LARGEST_FILE_BYTES, require_file
 from tests.nmea import START, gga, rmc, sentence, stamped, vbw, write
@@ -241,3 +248,55 @@ def test_a_too_large_file_is_refused_before_it_is_read(tmp_path):
 def test_paths_that_are_no_file_are_refused(tmp_path, name):
     with pytest.raises(InputError):
         require_file(tmp_path / name, "", "file")
+
+
+SENTENCES = st.one_of(
+    st.builds(
+        rmc, st.floats(0, 1e5), st.floats(-89, 89), st.floats(-179, 179), st.floats(0, 60), st.floats(0, 360)
+    ),
+    st.builds(gga, st.floats(0, 1e5), st.floats(-89, 89), st.floats(-179, 179), st.floats(-50, 9000)),
+    st.builds(
+        vbw, st.tuples(st.floats(-5, 5), st.floats(-9, 60)), st.tuples(st.floats(-5, 5), st.floats(-9, 60))
+    ),
+)
+
+
+@given(body=SENTENCES)
+def test_fields_are_those_that_pynmea2_names(body: str) -> None:
+    line = sentence(body)
+    theirs, ours = pynmea2.parse(line), decode(line, body[:5])
+    assert ours is not None
+    if ours.position is not None:
+        assert ours.position[:2] == pytest.approx((theirs.latitude * DEG, theirs.longitude * DEG), abs=1e-14)
+        moment = theirs.timestamp
+        seconds = 3600.0 * moment.hour + 60.0 * moment.minute + moment.second + 1e-6 * moment.microsecond
+        assert ours.time_of_day == pytest.approx(seconds, abs=2e-6)
+    if body[2:5] == "RMC":
+        assert ours.day == datetime(*theirs.datestamp.timetuple()[:3], tzinfo=UTC).timestamp()
+        assert np.hypot(*(ours.velocity or (0.0, 0.0))) == pytest.approx(float(theirs.spd_over_grnd) * KNOT)
+    if body[2:5] == "GGA":
+        assert ours.position is not None and ours.position[2] == float(theirs.altitude) + float(
+            theirs.geo_sep
+        )
+    if body[2:5] == "VBW":
+        assert ours.water == (float(theirs.trans_water_spd) * KNOT, float(theirs.lon_water_spd) * KNOT, True)
+        assert ours.ground == (float(theirs.trans_grnd_spd) * KNOT, float(theirs.lon_grnd_spd) * KNOT, True)
+
+
+@pytest.mark.nightly
+def test_the_largest_log_that_can_be_uploaded_is_read_within_the_bounds(tmp_path: Path) -> None:
+    """16 MiB, in a child with the server's bounds of memory and processor time."""
+    bodies = (
+        body
+        for k in range(10**6)
+        for body in (rmc(0.1 * k, 45.0, 12.0, 10.0, 45.0), vbw((0.1, 10.0), (0.0, 9.9)))
+    )
+    lines = [sentence(body) for body in islice(bodies, 284_000)]
+    path = write(tmp_path / "large.txt", lines)
+    assert 16 * 2**20 < path.stat().st_size < 18 * 2**20
+    guarded.start(("navcore.io.recording",))
+    try:
+        recording = guarded.call(path.name, read_recording, path)
+    finally:
+        guarded.stop()
+    assert recording.water.time_s.size == 142_000
