@@ -20,24 +20,22 @@ import subprocess
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
-
-KNOWN = {"CMD", "COPY", "ENV", "EXPOSE", "FROM", "HEALTHCHECK", "RUN", "USER", "VOLUME", "WORKDIR"}
+from typing import NamedTuple
 
 # They need root and the image's user database; the folders that `install -d` makes are made all the same.
 LEFT_OUT = ("useradd", "install")
 
+_INSTRUCTION = re.compile(r"(\w+)\s+((?:--\S+\s+)*)(.*)")
 # An absolute path: not the inside of a relative path, a URL, a pattern or a variable.
 _ABSOLUTE = re.compile(r"(?<![\w.:/*$}-])/(?=[a-z])|(?<=:)/(?=[a-z])")
 
 
-@dataclass(frozen=True)
-class Instruction:
+class Instruction(NamedTuple):
     """One instruction: its keyword, its flags (``--from=builder``), and the rest of its text."""
 
     keyword: str
     flags: dict[str, str]
     text: str
-    line: int
 
     def words(self) -> list[str]:
         """Arguments of the JSON form or of the plain one."""
@@ -45,34 +43,19 @@ class Instruction:
 
 
 def parse(text: str) -> list[Instruction]:
-    """Split a Dockerfile into instructions; an unknown keyword is an error."""
-    instructions, pending, first = [], "", 0
-    for number, raw in enumerate(text.splitlines(), start=1):
-        if not raw.strip() or raw.lstrip().startswith("#"):
-            continue
-        first = first if pending else number
-        pending += raw.strip()
-        if pending.endswith("\\"):
-            pending = pending[:-1].rstrip() + " "
-            continue
-        instructions.append(_instruction(pending, first))
-        pending = ""
-    if pending:
-        raise ValueError(f"line {first}: the last instruction does not end")
-    return instructions
+    """Split a Dockerfile into instructions.
 
-
-def _instruction(text: str, line: int) -> Instruction:
-    keyword, _, rest = text.partition(" ")
-    if keyword.upper() not in KNOWN:
-        raise ValueError(f"line {line}: {keyword} is not known here")
-    flags = {}
-    rest = rest.strip()
-    while rest.startswith("--"):
-        flag, _, rest = rest.partition(" ")
-        name, _, value = flag[2:].partition("=")
-        flags[name], rest = value, rest.strip()
-    return Instruction(keyword.upper(), flags, rest, line)
+    Examples
+    --------
+    >>> [tuple(each) for each in parse("# note\\nRUN a \\\\\\n  # in\\n && b\\nCOPY --from=x a /b\\n")]
+    [('RUN', {}, 'a && b'), ('COPY', {'from': 'x'}, 'a /b')]
+    """
+    code = "\n".join(line.strip() for line in text.splitlines() if not line.lstrip().startswith("#"))
+    lines = filter(None, re.sub(r"\s*\\\n\s*", " ", code).splitlines())
+    return [
+        Instruction(keyword, dict(flag[2:].split("=", 1) for flag in flags.split()), rest)
+        for keyword, flags, rest in (_INSTRUCTION.fullmatch(line).groups() for line in lines)
+    ]
 
 
 def below(root: Path, text: str) -> str:
@@ -135,14 +118,17 @@ class Build:
     def environment(self) -> dict[str, str]:
         """Variables a command sees: those of the image, and what pip needs to reach its index here."""
         passed = {
-            k: v for k, v in os.environ.items() if k.startswith("PIP_") or k.endswith(("_proxy", "_PROXY"))
+            name: value
+            for name, value in os.environ.items()
+            if name.startswith("PIP_")
+            or name.endswith(("_proxy", "_PROXY"))
+            or name in ("SSL_CERT_FILE", "REQUESTS_CA_BUNDLE")
         }
-        passed |= {k: os.environ[k] for k in ("SSL_CERT_FILE", "REQUESTS_CA_BUNDLE") if k in os.environ}
-        passed["PIP_CACHE_DIR"] = os.environ.get("PIP_CACHE_DIR") or _pip_cache()
-        passed["PIP_DISABLE_PIP_VERSION_CHECK"] = "1"
-        # "0" switches --no-compile on: byte code takes a third of the time and nothing here looks at it.
-        passed["PIP_NO_COMPILE"] = "0"
         base = {
+            "PIP_CACHE_DIR": os.environ.get("PIP_CACHE_DIR") or _pip_cache(),
+            "PIP_DISABLE_PIP_VERSION_CHECK": "1",
+            # "0" switches --no-compile on: byte code takes a third of the time and nothing here looks at it.
+            "PIP_NO_COMPILE": "0",
             "PATH": f"{self.root}/usr/local/bin:/usr/bin:/bin",
             "HOME": f"{self.root}/root",
             "LANG": "C.UTF-8",
@@ -171,14 +157,14 @@ class Build:
             self.root.rename(self.folder / f"stage-{self.name}")
         image, _, name = instruction.text.partition(" AS ")
         if not image.startswith("python:"):
-            raise ValueError(f"line {instruction.line}: no stand-in for the base {image}")
+            raise ValueError(f"no stand-in for the base {image}")
         self.name, self.workdir, self.variables, self.user = name or "last", "/", {}, "root"
-        base, kept = self.root / "usr" / "local", self.folder / "base"
-        if kept.is_dir():
-            shutil.copytree(kept, base, symlinks=True, copy_function=os.link)
+        base = self.folder / "base"
+        if not base.is_dir():
+            subprocess.run([sys.executable, "-m", "venv", str(self.root / "usr" / "local")], check=True)
+            shutil.copytree(self.root / "usr" / "local", base, symlinks=True, copy_function=os.link)
         else:
-            subprocess.run([sys.executable, "-m", "venv", str(base)], check=True)
-            shutil.copytree(base, kept, symlinks=True, copy_function=os.link)
+            shutil.copytree(base, self.root / "usr" / "local", symlinks=True, copy_function=os.link)
         (self.root / "root").mkdir()
 
     def _run(self, instruction: Instruction) -> None:
@@ -192,9 +178,7 @@ class Build:
                 parts.append(part.strip())
         done = self.run(["/bin/sh", "-e", "-c", below(self.root, " && ".join(parts) or "true")])
         if done.returncode != 0:
-            raise StepFailed(
-                f"line {instruction.line}: RUN {instruction.text}: exit {done.returncode}\n{done.stdout}"
-            )
+            raise StepFailed(f"RUN {instruction.text}: exit {done.returncode}\n{done.stdout}")
 
     def _copy(self, instruction: Instruction) -> None:
         *sources, target = instruction.words()
@@ -217,8 +201,7 @@ class Build:
         for word in instruction.words():
             name, _, value = word.partition("=")
             # What a variable holds is already moved below the folder: move, then expand.
-            expanded = string.Template(below(self.root, value)).substitute(known)
-            self.variables[name] = expanded
+            self.variables[name] = string.Template(below(self.root, value)).substitute(known)
 
     def _workdir(self, instruction: Instruction) -> None:
         self.workdir = instruction.text
@@ -233,7 +216,7 @@ class Build:
     def _healthcheck(self, instruction: Instruction) -> None:
         keyword, _, rest = instruction.text.partition(" ")
         if keyword != "CMD":
-            raise ValueError(f"line {instruction.line}: HEALTHCHECK {keyword} is not known here")
+            raise ValueError(f"HEALTHCHECK {keyword} is not known here")
         self.health = json.loads(rest)
 
     def _volume(self, instruction: Instruction) -> None:

@@ -6,7 +6,6 @@ import os
 import re
 import shutil
 import signal
-import socket
 import subprocess
 import tempfile
 import time
@@ -16,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+from app.bench.process import free_port
 from tests.docker.dockerfile import Build, StepFailed, below, copy_context, parse
 
 UNREACHABLE = re.compile(
@@ -70,33 +70,24 @@ def test_the_shipped_stage_has_no_build_tools_and_no_root(instructions):
     assert any(i.keyword == "RUN" and "uninstall --yes pip" in i.text for i in stage)
 
 
-def test_one_folder_is_written_to(instructions):
+def test_one_folder_is_written_to_and_no_token_is_in_the_image(instructions):
     stage = last_stage(instructions)
     assert one(stage, "VOLUME").words() == ["/data"]
-    environment = one(stage, "ENV").words()
-    assert {"HOME=/data", "TMPDIR=/data"} <= set(environment)
-
-
-def test_the_token_is_not_in_the_image(instructions):
+    assert {"HOME=/data", "TMPDIR=/data"} <= set(one(stage, "ENV").words())
     assert not [i for i in instructions if "TOKEN" in i.text.upper()]
 
 
-def test_parser_joins_lines_and_refuses_what_it_does_not_know():
-    [run, command] = parse('# note\nRUN a \\\n  # inside\n && b\nCMD ["x", "--y"]\n')
-    assert (run.text, run.line) == ("a && b", 2)
-    assert command.words() == ["x", "--y"]
-    with pytest.raises(ValueError, match="line 1: ADD"):
-        parse("ADD x y")
-    with pytest.raises(ValueError, match="does not end"):
-        parse("RUN a \\")
-
-
-def test_paths_are_moved_below_the_folder_and_addresses_are_not():
-    root = Path("/r")
-    assert below(root, "python -m venv /opt/x") == "python -m venv /r/opt/x"
-    assert below(root, "/opt/x/bin:$PATH") == "/r/opt/x/bin:$PATH"
-    assert below(root, "http://127.0.0.1:8080/healthz") == "http://127.0.0.1:8080/healthz"
-    assert below(root, "app/ ./a/b /wheels/*.whl") == "app/ ./a/b /r/wheels/*.whl"
+@pytest.mark.parametrize(
+    ("text", "moved"),
+    [
+        ("python -m venv /opt/x", "python -m venv /r/opt/x"),
+        ("/opt/x/bin:$PATH", "/r/opt/x/bin:$PATH"),
+        ("http://127.0.0.1:8080/healthz", "http://127.0.0.1:8080/healthz"),
+        ("app/ ./a/b /wheels/*.whl", "app/ ./a/b /r/wheels/*.whl"),
+    ],
+)
+def test_paths_are_moved_below_the_folder_and_addresses_are_not(text: str, moved: str):
+    assert below(Path("/r"), text) == moved
 
 
 def test_dockerignore_lets_only_the_program_through(repo_root: Path, tmp_path: Path):
@@ -235,7 +226,7 @@ class TestBuilt:
 
     def test_serves_and_is_healthy(self, image: Build, read_only: list[str]):
         """CMD and HEALTHCHECK as they stand, but on loopback and on a free port."""
-        port = _free_port()
+        port = free_port()
         health = [part.replace("8080", str(port)) for part in image.health]
         command = [part.replace("0.0.0.0", "127.0.0.1").replace("8080", str(port)) for part in image.command]
         with_token = replace(image, variables=image.variables | {"SCHULER_TOKEN": "a-token-of-this-test"})
@@ -264,9 +255,3 @@ class TestBuilt:
                 output, _ = server.communicate()
                 pytest.fail(f"did not end on SIGTERM:\n{output}")
         assert "a-token-of-this-test" not in output
-
-
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]

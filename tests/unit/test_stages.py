@@ -15,33 +15,24 @@ from tests import stages
 from tests.stages import BESIDE, CHECKS, CODE, STAGES, Count, closing_line, read_counts, run_beside
 
 
-def report(folder: Path, tests: int, failures: int = 0, errors: int = 0, skipped: int = 0) -> Path:
-    """JUnit report as pytest writes it."""
-    path = folder / "report.xml"
-    counted = f'tests="{tests}" failures="{failures}" errors="{errors}" skipped="{skipped}"'
-    path.write_text(f"<testsuites><testsuite {counted}/></testsuites>")
-    return path
-
-
-def test_counts_are_those_of_the_report(tmp_path: Path):
-    path = report(tmp_path, 10, failures=1, errors=2, skipped=3)
-    assert read_counts("unit", path, 1, 2.5) == Count("unit", 4, 3, 3, 2.5)
-
-
 @pytest.mark.parametrize(
-    ("tests", "exit_code"),
+    ("counted", "exit_code", "expected"),
     [
-        pytest.param(0, 5, id="no test ran"),
-        pytest.param(0, 0, id="no test, good exit"),
-        pytest.param(7, 3, id="died"),
+        pytest.param({"tests": 10, "failures": 1, "errors": 2, "skipped": 3}, 1, (4, 3, 3), id="a report"),
+        pytest.param({"tests": 0}, 5, (0, 1, 0), id="no test ran"),
+        pytest.param({"tests": 0}, 0, (0, 1, 0), id="no test, good exit"),
+        pytest.param({"tests": 7}, 3, (7, 1, 0), id="died"),
+        pytest.param(None, 0, (0, 1, 0), id="no report"),
     ],
 )
-def test_a_stage_that_went_wrong_counts_as_failed(tmp_path: Path, tests: int, exit_code: int):
-    assert read_counts("unit", report(tmp_path, tests), exit_code, 0.0).failed == 1
-
-
-def test_a_stage_without_report_counts_as_failed(tmp_path: Path):
-    assert read_counts("unit", tmp_path / "none.xml", 0, 0.0).failed == 1
+def test_a_stage_is_counted_by_its_report_and_fails_where_it_went_wrong(
+    tmp_path: Path, counted: dict[str, int] | None, exit_code: int, expected: tuple[int, int, int]
+) -> None:
+    path = tmp_path / "report.xml"
+    if counted is not None:
+        words = " ".join(f'{name}="{number}"' for name, number in counted.items())
+        path.write_text(f"<testsuites><testsuite {words}/></testsuites>")
+    assert read_counts("unit", path, exit_code, 2.5) == Count("unit", *expected, 2.5)
 
 
 def test_closing_line_is_the_sum():
@@ -49,18 +40,13 @@ def test_closing_line_is_the_sum():
     assert closing_line(counts) == "7 passed, 2 failed, 1 skipped"
 
 
-def test_every_folder_of_tests_is_in_exactly_one_stage():
+def test_every_folder_is_in_exactly_one_stage_and_lanes_name_each_once() -> None:
     first, *others = STAGES.values()
     taken = [part for stage in others for part in stage if not part.startswith("-")]
     left_out = [part.removeprefix("--ignore=") for part in first if part.startswith("--ignore=")]
-    assert sorted(taken) == sorted(left_out)
-    assert set(CODE) <= set(first)
-
-
-def test_lanes_name_checks_and_stages_once():
+    assert sorted(taken) == sorted(left_out) and set(CODE) <= set(first)
     named = [name for lane in BESIDE for name in lane]
-    assert len(set(named)) == len(named)
-    assert set(named) <= {*CHECKS, *STAGES}
+    assert len(set(named)) == len(named) and set(named) <= {*CHECKS, *STAGES}
 
 
 def test_stages_side_by_side_run_their_files_and_fail_where_these_are_gone(
@@ -86,36 +72,32 @@ def bare_checkout(repo_root: Path, tmp_path: Path) -> Path:
     return tmp_path
 
 
-def make(folder: Path, python: Path) -> subprocess.CompletedProcess[str]:
-    """Run make setup with some Python."""
-    environment = {"PATH": "/usr/bin:/bin:/usr/local/bin", "HOME": str(folder)}
-    command = ["make", "setup", f"PYTHON={python}"]
-    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
-
-
-def stand_in(folder: Path, script: str) -> Path:
-    """Python that answers as told."""
-    path = folder / "python-stand-in"
-    path.write_text(f"#!/bin/sh\n{script}\n")
-    path.chmod(0o755)
-    return path
-
-
-def test_an_old_python_is_named_and_refused(bare_checkout: Path):
-    python = stand_in(bare_checkout, 'if [ "$1" = --version ]; then echo "Python 3.9.6"; else exit 1; fi')
-    done = make(bare_checkout, python)
-    assert done.returncode != 0
-    assert "needs Python 3.11 or newer" in done.stderr
-    assert "Python 3.9.6" in done.stderr
-    assert not (bare_checkout / ".venv").exists()
-
-
-def test_a_python_without_venv_is_told_how_to_get_it(bare_checkout: Path):
-    python = stand_in(bare_checkout, 'case "$2" in *ensurepip*) exit 1;; *) exit 0;; esac')
-    done = make(bare_checkout, python)
-    assert done.returncode != 0
-    assert "apt-get install python3-venv" in done.stderr
-    assert not (bare_checkout / ".venv").exists()
+@pytest.mark.parametrize(
+    ("script", "told"),
+    [
+        (
+            'if [ "$1" = --version ]; then echo "Python 3.9.6"; else exit 1; fi',
+            ["needs Python 3.11 or newer", "Python 3.9.6"],
+        ),
+        ('case "$2" in *ensurepip*) exit 1;; *) exit 0;; esac', ["apt-get install python3-venv"]),
+    ],
+    ids=["old", "without venv"],
+)
+def test_a_python_that_will_not_do_is_told_before_anything_is_made(
+    bare_checkout: Path, script: str, told: list[str]
+) -> None:
+    python = bare_checkout / "python-stand-in"
+    python.write_text(f"#!/bin/sh\n{script}\n")
+    python.chmod(0o755)
+    done = subprocess.run(
+        ["make", "setup", f"PYTHON={python}"],
+        cwd=bare_checkout,
+        env={"PATH": "/usr/bin:/bin:/usr/local/bin", "HOME": str(bare_checkout)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode != 0 and not (bare_checkout / ".venv").exists()
+    assert [text for text in told if text not in done.stderr] == []
 
 
 @dataclass
