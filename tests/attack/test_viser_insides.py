@@ -6,12 +6,13 @@ import asyncio
 import dataclasses
 import importlib.util
 import inspect
+import json
 import re
 import threading
 import types
 from collections import deque
-from collections.abc import Callable
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import get_type_hints
 
@@ -30,7 +31,7 @@ from app.http.page import FIRST_SCRIPTS, PLOTLY, build_page
 from app.languages.names import NONE, Names
 from navcore.foundation.errors import InputError
 from tests.attack.conftest import Bench, eventually
-from tests.attack.wire import visit
+from tests.attack.wire import Visitor, visit
 
 pytestmark = pytest.mark.attack
 
@@ -116,10 +117,17 @@ def test_a_mend_whose_place_is_missing_is_left_out(
     assert not hasattr(owner, name) and len(caplog.messages) == 1
 
 
-def test_numbers_of_a_plot_are_sent_once_and_in_single_precision(bench: Bench) -> None:
-    with visit(bench.port, "the-watcher") as visitor:
+@contextmanager
+def visited(bench: Bench, session: str) -> Iterator[tuple[Visitor, viser.ClientHandle]]:
+    """The only visitor, whose page stands, and viser's handle of it."""
+    with visit(bench.port, session) as visitor:
         visitor.control("last")
         (client,) = bench.server.viser.get_clients().values()
+        yield visitor, client
+
+
+def test_numbers_of_a_plot_are_sent_once_and_in_single_precision(bench: Bench) -> None:
+    with visited(bench, "the-watcher") as (visitor, client):
         time = np.linspace(0.0, 1.0, 5)
         plot = client.gui.add_uplot((time, time), ({}, {}))
         visitor.wait_for(lambda message: message["type"] == "GuiUplotMessage")
@@ -187,14 +195,16 @@ def test_tunnel_handlers_are_gone(bench: Bench) -> None:
     assert _messages.GuiUpdateMessage in handlers, "the table is still the one that is used"
 
 
-def test_plotly_is_not_sent_through_the_socket(bench: Bench) -> None:
-    class Figure:
-        def to_json(self) -> str:
-            return '{"data": [], "layout": {}}'
+@dataclasses.dataclass
+class Figure:
+    title: str = ""
 
-    with visit(bench.port, "the-plotter") as visitor:
-        visitor.control("last")
-        (client,) = bench.server.viser.get_clients().values()
+    def to_json(self) -> str:
+        return json.dumps({"data": [], "layout": {"title": {"text": self.title}}})
+
+
+def test_plotly_is_not_sent_through_the_socket(bench: Bench) -> None:
+    with visited(bench, "the-plotter") as (visitor, client):
         client.gui.add_plotly(Figure())
         visitor.wait_for(lambda message: message["type"] == "GuiPlotlyMessage")
         assert "RunJavascriptMessage" not in {message["type"] for message in visitor.received}
@@ -204,25 +214,22 @@ def test_plotly_is_not_sent_through_the_socket(bench: Bench) -> None:
 
 
 def test_controls_are_found_with_all_that_is_judged(bench: Bench) -> None:
-    with visit(bench.port, "the-looker") as visitor:
+    with visited(bench, "the-looker") as (visitor, client):
+        guest = controls.Guest(bench.server.viser, client.client_id)
         ids = {label: visitor.control(label) for label in ("gain", "network", "frozen", "log", "last")}
-        (client_id,) = bench.server.viser.get_clients()
-        found = {
-            label: controls.Guest(bench.server.viser, client_id).control(uuid) for label, uuid in ids.items()
-        }
-        assert controls.Guest(bench.server.viser, client_id).control("nobody's") is None
+        found = {label: guest.control(uuid) for label, uuid in ids.items()}
+        assert guest.control("nobody's") is None
         assert controls.Guest(bench.server.viser, 10_000).control(ids["gain"]) is None
     assert (found["gain"].label, found["gain"].value, found["gain"].bounds) == ("gain", 0.5, (0.0, 1.0))
     assert found["network"].options == ("compass", "pole2")
-    assert found["frozen"].disabled and not found["gain"].disabled
-    assert found["log"].takes_files and not found["last"].takes_files
+    assert [label for label in found if found[label].disabled] == ["frozen"]
+    assert [label for label in found if found[label].takes_files] == ["log"]
 
 
 def test_held_value_is_sent_even_when_nothing_changed(bench: Bench) -> None:
-    with visit(bench.port, "restored") as visitor:
+    with visited(bench, "restored") as (visitor, client):
         uuid = visitor.control("gain")
-        (client_id,) = bench.server.viser.get_clients()
-        controls.Guest(bench.server.viser, client_id).restore(uuid)
+        controls.Guest(bench.server.viser, client.client_id).restore(uuid)
         sent = visitor.wait_for(lambda message: message["type"] == "GuiUpdateMessage")
         assert (sent["uuid"], sent["updates"]) == (uuid, {"value": 0.5})
 
@@ -244,49 +251,31 @@ def test_texts_stand_in_the_fields_that_are_translated() -> None:
 
 
 def test_a_page_is_sent_its_language_and_its_choice_is_read_back(bench: Bench) -> None:
-    class Figure:
-        def to_json(self) -> str:
-            return '{"data": [], "layout": {"title": {"text": "tilt"}}}'
-
-    with visit(bench.port, "the-reader") as visitor:
-        visitor.control("last")
-        viser_server = bench.server.viser
-        (client,) = viser_server.get_clients().values()
+    """What becomes of each kind of message stands in test_language_messages.py."""
+    with visited(bench, "the-reader") as (visitor, client):
+        viser_server, page = bench.server.viser, client.client_id
         assert texts.language_of(client) == "en"
-        texts.speak(viser_server, client.client_id, _Loud())
+        texts.speak(viser_server, page, _Loud())
         assert texts.language_of(client) == "loud"
-
         chooser = client.gui.add_dropdown("policy", ("calm", "rough"))
-        sent = visitor.wait_for(
-            lambda message: (
-                message["type"] == "GuiDropdownMessage" and message["uuid"] == controls.id_of(chooser)
-            )
-        )
-        assert (sent["props"]["label"], *sent["props"]["options"], sent["value"]) == (
+        uuid = controls.id_of(chooser)
+        sent = visitor.wait_for(lambda m: m["type"] == "GuiDropdownMessage" and m["uuid"] == uuid)
+        assert [sent["props"]["label"], sent["props"]["options"], sent["value"]] == [
             "POLICY",
+            ["CALM", "ROUGH"],
             "CALM",
-            "ROUGH",
-            "CALM",
-        )
+        ]
         assert chooser.options == ("calm", "rough") and chooser.value == "calm"
-        assert texts.meant(viser_server, client.client_id, sent["uuid"], "ROUGH") == "rough"
+        assert texts.meant(viser_server, page, uuid, "ROUGH") == "rough"
         chooser.value = "rough"
-        changed = visitor.wait_for(lambda message: "value" in (message.get("updates") or {}))
+        changed = visitor.wait_for(lambda m: "value" in (m.get("updates") or {}))
         assert changed["updates"] == {"value": "ROUGH"}
-
-        client.gui.add_plotly(Figure())
+        client.gui.add_plotly(Figure("tilt"))
         # viser makes the plot empty, and then sends its figure
-        visitor.wait_for(
-            lambda message: '"TILT"' in (message.get("updates") or {}).get("_plotly_json_str", "")
-        )
-        client.gui.add_uplot((np.arange(3.0), np.arange(3.0)), ({}, {"label": "drift"}))
-        chart = visitor.wait_for(lambda message: message["type"] == "GuiUplotMessage")
-        assert chart["props"]["series"][1]["label"] == "DRIFT"
-
-        texts.speak(viser_server, client.client_id, None)
+        visitor.wait_for(lambda m: '"TILT"' in (m.get("updates") or {}).get("_plotly_json_str", ""))
+        texts.speak(viser_server, page, None)
         assert texts.language_of(client) == "en"
-        assert texts.meant(viser_server, client.client_id, sent["uuid"], "ROUGH") == "ROUGH"
-        assert texts.meant(viser_server, 10_000, sent["uuid"], "ROUGH") == "ROUGH"
+        assert [texts.meant(viser_server, who, uuid, "ROUGH") for who in (page, 10_000)] == ["ROUGH", "ROUGH"]
 
 
 class _Interleaved(deque):
@@ -334,14 +323,11 @@ def test_a_message_pushed_while_the_loop_begins_to_wait_is_sent(
 
 
 def test_mended_queue_and_fair_pool_are_the_ones_in_use(bench: Bench) -> None:
-    with visit(bench.port, "mended-1") as visitor:
-        visitor.control("last")
-        (client,) = bench.server.viser.get_clients().values()
+    with visited(bench, "mended-1") as (_, client):
         buffer = client._websock_connection.get_message_buffer()
-        assert isinstance(buffer, mends.MendedBuffer)
-        assert isinstance(buffer.message_event, mends._LoopEvent)
-        for api in (client.gui, client.scene, bench.server.viser.gui, bench.server.viser):
-            assert isinstance(api._thread_executor, FairPool)
+        assert isinstance(buffer, mends.MendedBuffer) and isinstance(buffer.message_event, mends._LoopEvent)
+        apis = (client.gui, client.scene, bench.server.viser.gui, bench.server.viser)
+        assert {type(api._thread_executor) for api in apis} == {FairPool}
 
 
 def test_handles_of_a_kind_share_their_types_and_convert_as_viser_does(bench: Bench) -> None:
@@ -373,14 +359,13 @@ def test_slider_messages_that_wait_are_read_once(bench: Bench) -> None:
             visitor.set(uuid, number / 100)
         eventually(lambda: gain.value == 0.29)
         release.set()
-        eventually(lambda: bool(seen) and seen[-1] == 0.29)
+        eventually(lambda: seen[-1:] == [0.29])
         assert len(seen) <= 3
 
 
 def test_nothing_of_a_visitor_stays_behind(bench: Bench) -> None:
     inner = bench.server.viser._websock_server
-    with visit(bench.port, "short-stay") as visitor:
-        visitor.control("last")
+    with visited(bench, "short-stay"):
         assert len(inner._live_connections) == 1
     eventually(lambda: not inner._live_connections and not inner._client_state_from_id)
     assert bench.server.viser.get_clients() == {}
