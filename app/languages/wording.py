@@ -32,7 +32,6 @@ _SEPARATORS = tuple(
     re.compile(separator)
     for separator in (
         r"(\n+)",
-        r"( ┊ | · | \| | – | — )",
         r"(?<=[.!?])(?<!eq\.)(?<!eqs\.)(?<!fig\.)(?<!figs\.)( )(?=[A-Z0-9(])",
         r"(; )",
         r"(: )",
@@ -40,12 +39,11 @@ _SEPARATORS = tuple(
         rf"(^{NAME} )(?=\()",
         r"( \(|\))",
         r"( / |/(?=[a-z]{3})| -> | → )",
-        r"( and | or )",
     )
 )
-_WITHIN = _SEPARATORS[3:]
+_WITHIN = _SEPARATORS[2:]
 """Separators within a sentence."""
-_JOINTS = {"; ": "；", ": ": "：", ", ": "，", ", and ": "和", ", or ": "或", " and ": " 且 ", " or ": " 或 "}
+_JOINTS = {"; ": "；", ": ": "：", ", ": "，", ", and ": "和", ", or ": "或"}
 _LONGEST = 6000
 _DEEPEST = 12
 _MOST_PARTS = 15
@@ -53,7 +51,6 @@ _WEAK = 11
 _LONGEST_VALUE = 40
 _ENDS = {".": "。", ":": "："}
 _WITH_UNIT = re.compile(r"(.+?) (\([^()]*\))((?:, [a-z]+)?)")
-_PARENTHESIS, _CLOSED = re.compile("[()]"), re.compile(r"\([^()]*\)")
 _NUMBERED = re.compile(r"\d+ [a-z]{3,}")
 _FIELD = re.compile(r"[\w-]+(?:\.[\w-]+)+(?: = [^:]*)?: ")
 """The file or field in which something is wrong, and its value, before what is said of it."""
@@ -101,7 +98,7 @@ class _Pattern:
         if self.pattern.pattern.startswith("(?P") and not self.labels and ": " in values[0]:
             return None
         by_chance = self.weight < _WEAK and _TAGS.search(text) is not None
-        return None if by_chance or any(_is_torn(value) for value in values) else values
+        return None if by_chance else values
 
 
 class Wording:
@@ -346,21 +343,10 @@ def _joined(parts: list[str]) -> str:
         chinese = _is_wide(out[-1:]) or _is_wide(part[:1])
         if joint == " " and _is_wide(out[-1:]):
             joint = ""
-        elif joint == " and " and chinese:
-            joint = "和"
-        elif chinese or joint in (" and ", " or "):
+        elif chinese:
             joint = _JOINTS.get(joint, joint)
         out += joint + part
     return out
-
-
-def _is_torn(value: str) -> bool:
-    """Whether an element or a parenthesis begins or ends in a value, but not both."""
-    if _PARENTHESIS.search(_CLOSED.sub("", _CLOSED.sub("", value))):
-        return True
-    return "<" in value and any(
-        value.count(f"<{tag}>") != value.count(f"</{tag}>") for tag in _TAGS.findall(value)
-    )
 
 
 def _is_wide(letter: str) -> bool:
