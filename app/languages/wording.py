@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import gettext
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -110,18 +109,13 @@ class Wording:
         English and its translation; values as ``{0}``, literal braces nowhere.
     name : str
         Of the language, as a browser tells it.
-    missed : callable, optional
-        Is told each text without a translation.
     """
 
-    def __init__(
-        self, texts: dict[str, str], name: str = "", missed: Callable[[str], None] | None = None
-    ) -> None:
+    def __init__(self, texts: dict[str, str], name: str = "") -> None:
         self.name = name
         self._templates = texts
         texts = dict(positional(key, said) for key, said in texts.items())
         self._exact = {key: said for key, said in texts.items() if _VALUE.search(key) is None}
-        self._missed = missed
         self._by_word: dict[str, list[_Pattern]] = {}
         patterns = {key: said for key, said in texts.items() if key not in self._exact}
         often: dict[str, int] = {}
@@ -201,8 +195,6 @@ class Wording:
 
     def _say(self, text: str) -> str:
         found = self._look_up(text)
-        if found is None and _LETTERS.search(text) is not None and self._missed is not None:
-            self._missed(text)
         return text if found is None else found
 
     def _look_up(self, text: str, depth: int = 0) -> str | None:
@@ -319,8 +311,6 @@ class Wording:
             if found is None and within and _PROSE.search(parts[place]):
                 return None
             known = known or found is not None
-            if found is None and self._missed is not None and _LETTERS.search(parts[place]):
-                self._missed(parts[place].strip())
             said += ["".join(parts[place:end]) if found is None else found, *parts[end : end + 1]]
             place = end + 1
         return _joined(said) if known else None

@@ -187,13 +187,6 @@ def test_texts_in_html_are_translated_and_the_rest_stays(say: Wording) -> None:
     assert say.text(hidden) == hidden
 
 
-def test_a_text_without_a_translation_is_reported() -> None:
-    missed: list[str] = []
-    for text in ("known", "quite unknown"):
-        Wording({"known": "知"}, missed=missed.append).text(text)
-    assert missed == ["quite unknown"]
-
-
 def test_a_translation_cannot_bring_in_elements() -> None:
     assert (
         Wording({"a text": "<script>x</script>"}).text("<p>a text</p>")

@@ -52,7 +52,7 @@ def test_every_folder_is_in_exactly_one_stage_and_lanes_name_each_once() -> None
 def test_stages_side_by_side_run_their_files_and_fail_where_these_are_gone(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
-    monkeypatch.setitem(stages.STAGES, "one file", ["tests/unit/test_chromium.py"])
+    monkeypatch.setitem(stages.STAGES, "one file", ["tests/unit/test_text.py"])
     monkeypatch.setitem(stages.STAGES, "lost", ["tests/no-such-folder"])
     monkeypatch.setitem(stages.CHECKS, "broken", ["no_such_module"])
     counts = run_beside([["one file"], ["broken", "lost"]])
