@@ -59,24 +59,22 @@ def changed(source: str, place: int) -> str:
 
 
 def _change(node: ast.expr) -> None:
-    if isinstance(node, ast.BinOp | ast.BoolOp):
-        node.op = _OPERATORS[type(node.op)]()  # pyright: ignore[reportAttributeAccessIssue]
-    elif isinstance(node, ast.Compare):
-        node.ops[0] = _OPERATORS[type(node.ops[0])]()  # pyright: ignore[reportArgumentType, reportCallIssue]
-    elif isinstance(node, ast.UnaryOp):
-        node.op = ast.UAdd()
-    elif isinstance(node, ast.Call):
-        if isinstance(node.func, ast.Name):
-            node.func.id = _CALLS[node.func.id]
-        elif isinstance(node.func, ast.Attribute):
-            node.func.attr = _CALLS[node.func.attr]
-    elif isinstance(node, ast.Constant):
-        value = node.value
-        if isinstance(value, bool):
+    match node:
+        case ast.BinOp() | ast.BoolOp():
+            node.op = _OPERATORS[type(node.op)]()  # pyright: ignore[reportAttributeAccessIssue]
+        case ast.Compare():
+            node.ops[0] = _OPERATORS[type(node.ops[0])]()  # pyright: ignore[reportArgumentType, reportCallIssue]
+        case ast.UnaryOp():
+            node.op = ast.UAdd()
+        case ast.Call(func=ast.Name() as called):
+            called.id = _CALLS[called.id]
+        case ast.Call(func=ast.Attribute() as called):
+            called.attr = _CALLS[called.attr]
+        case ast.Constant(value=bool() as value):
             node.value = not value
-        elif isinstance(value, int):
+        case ast.Constant(value=int() as value):
             node.value = value + 1
-        elif isinstance(value, float):
+        case ast.Constant(value=float() as value):
             node.value = 1.1 * value or 0.1
 
 
@@ -108,23 +106,21 @@ def _counts(node: ast.Constant, parent: ast.AST | None) -> bool:
 
 
 def _can_change(node: ast.expr) -> bool:
-    if isinstance(node, ast.BinOp):
-        texts = any(
-            isinstance(side, ast.JoinedStr)
-            or (isinstance(side, ast.Constant) and isinstance(side.value, str))
-            for side in (node.left, node.right)
-        )
-        return type(node.op) in _OPERATORS and not texts
-    if isinstance(node, ast.BoolOp):
-        return True
-    if isinstance(node, ast.Compare):
-        return type(node.ops[0]) in _OPERATORS
-    if isinstance(node, ast.UnaryOp):
-        return isinstance(node.op, ast.USub)
-    if isinstance(node, ast.Call):
-        name = getattr(node.func, "id", getattr(node.func, "attr", ""))
-        return name in _CALLS
-    return isinstance(node, ast.Constant)
+    match node:
+        case ast.BinOp():
+            return type(node.op) in _OPERATORS and not (_is_text(node.left) or _is_text(node.right))
+        case ast.Compare():
+            return type(node.ops[0]) in _OPERATORS
+        case ast.UnaryOp():
+            return isinstance(node.op, ast.USub)
+        case ast.Call():
+            return getattr(node.func, "id", getattr(node.func, "attr", "")) in _CALLS
+        case _:
+            return isinstance(node, ast.BoolOp | ast.Constant)
+
+
+def _is_text(node: ast.expr) -> bool:
+    return isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str))
 
 
 def _words(node: ast.expr) -> str:

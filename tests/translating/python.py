@@ -202,40 +202,46 @@ def _alternatives(node: ast.expr) -> list[str] | None:
 
 def _quiet(tree: ast.AST) -> set[int]:
     """What nobody is shown: documentation, names for the program, texts of its own errors and of its log."""
-    quiet: set[int] = set()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
-            quiet.add(id(node))
-        elif isinstance(node, (ast.AnnAssign, ast.arg)) and node.annotation is not None:
-            quiet.add(id(node.annotation))
-        elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.returns is not None:
-            quiet.add(id(node.returns))
-        elif isinstance(node, ast.Subscript):
-            quiet.add(id(node.slice))
-        elif isinstance(node, ast.Compare):
-            quiet |= {id(part) for part in (node.left, *node.comparators)}
-        elif isinstance(node, ast.Assign) and any(
-            _named(t) in ("__all__", "id", "kind") for t in node.targets
-        ):
-            quiet.add(id(node.value))
-        elif isinstance(node, ast.Call):
-            called = _named(node.func)
-            if called in _PROGRAMMERS or called in _QUIET:
-                quiet |= {id(part) for part in (*node.args, *(word.value for word in node.keywords))}
-        elif isinstance(node, ast.If) and "__main__" in ast.dump(node.test):
-            quiet |= {id(part) for part in node.body}
-    return quiet
+    return {id(part) for node in ast.walk(tree) for part in _quiet_parts(node)}
+
+
+def _quiet_parts(node: ast.AST) -> list[ast.AST]:
+    match node:
+        case ast.Expr(value=ast.Constant()):
+            return [node]
+        case ast.AnnAssign(annotation=ast.AST() as kind) | ast.arg(annotation=ast.AST() as kind):
+            return [kind]
+        case ast.FunctionDef(returns=ast.AST() as kind) | ast.AsyncFunctionDef(returns=ast.AST() as kind):
+            return [kind]
+        case ast.Subscript():
+            return [node.slice]
+        case ast.Compare():
+            return [node.left, *node.comparators]
+        case ast.Assign() if any(_named(target) in ("__all__", "id", "kind") for target in node.targets):
+            return [node.value]
+        case ast.Call() if _named(node.func) in (*_PROGRAMMERS, *_QUIET):
+            return [*node.args, *(word.value for word in node.keywords)]
+        case ast.If() if "__main__" in ast.dump(node.test):
+            return [*node.body]
+        case _:
+            return []
 
 
 def _told(tree: ast.AST) -> set[int]:
+    """Expressions that a name of `_TOLD` is given."""
     told: set[int] = set()
     for node in ast.walk(tree):
-        if isinstance(node, ast.keyword) and node.arg in _TOLD:
-            told.add(id(node.value))
-        elif isinstance(node, ast.Assign) and any(_named(target) in _TOLD for target in node.targets):
-            told.add(id(node.value))
-        elif isinstance(node, ast.AnnAssign) and _named(node.target) in _TOLD and node.value is not None:
-            told.add(id(node.value))
+        match node:
+            case ast.keyword(arg=str() as name, value=value):
+                names = [name]
+            case ast.Assign(targets=targets, value=value):
+                names = [_named(target) for target in targets]
+            case ast.AnnAssign(target=target, value=ast.expr() as value):
+                names = [_named(target)]
+            case _:
+                continue
+        if not set(names).isdisjoint(_TOLD):
+            told.add(id(value))
     return told
 
 

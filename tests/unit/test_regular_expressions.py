@@ -31,26 +31,20 @@ LOOKS = 3
 
 
 def _expressions(root: Path) -> Iterator[tuple[str, str | bytes, int, tuple[str, ...]]]:
-    """Where, pattern, flags and the methods used, of every expression that is written out in the source."""
+    """Where, pattern, flags and the methods used, of every expression that is written out in the source.
+
+    Of those made at run time, `_compiled` finds the ones of a module.
+    """
     for path in sorted([*(root / "navcore").rglob("*.py"), *(root / "app").rglob("*.py")]):
         text = path.read_text(encoding="utf-8")
         for node in ast.walk(ast.parse(text)):
-            if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)):
-                continue
-            if not (isinstance(node.func.value, ast.Name) and node.func.value.id == "re" and node.args):
-                continue
-            name = node.func.attr
-            if name != "compile" and name not in METHODS:
-                continue
-            where = f"{path.relative_to(root)}:{node.lineno}"
-            if not (isinstance(node.args[0], ast.Constant) and isinstance(node.args[0].value, str | bytes)):
-                continue  # made at run time: the compiled ones of a module are found below
-            pattern = node.args[0].value
-            if name == "compile":
-                used = _methods_of(text, node)
-            else:
-                used = (name,)
-            yield where, pattern, 0, used
+            match node:
+                case ast.Call(
+                    func=ast.Attribute(value=ast.Name(id="re"), attr=name),
+                    args=[ast.Constant(value=str() | bytes() as pattern), *_],
+                ) if name in ("compile", *METHODS):
+                    used = _methods_of(text, node) if name == "compile" else (name,)
+                    yield f"{path.relative_to(root)}:{node.lineno}", pattern, 0, used
 
 
 def _methods_of(text: str, node: ast.Call) -> tuple[str, ...]:
@@ -74,36 +68,40 @@ def _compiled(root: Path) -> Iterator[tuple[str, str | bytes, int, tuple[str, ..
 
 def _sample(parsed: Any, most: bool) -> str:
     """A text that the parsed expression matches, or nearly so: its shortest, or with repetitions."""
-    out = []
-    for op, argument in parsed:
-        if op in (codes.LITERAL,):
-            out.append(chr(argument))
-        elif op is codes.NOT_LITERAL or op is codes.ANY:
-            out.append("x")
-        elif op is codes.IN:
-            out.append(_member(argument))
-        elif op in (codes.MAX_REPEAT, codes.MIN_REPEAT, codes.POSSESSIVE_REPEAT):
+    return "".join(_sample_of(op, argument, most) for op, argument in parsed)
+
+
+def _sample_of(op: Any, argument: Any, most: bool) -> str:
+    match op:
+        case codes.LITERAL:
+            return chr(argument)
+        case codes.NOT_LITERAL | codes.ANY:
+            return "x"
+        case codes.IN:
+            return _member(*argument[0])
+        case codes.MAX_REPEAT | codes.MIN_REPEAT | codes.POSSESSIVE_REPEAT:
             least, largest, inner = argument
-            times = max(least, min(int(largest), 3)) if most else least
-            out.append(_sample(inner, most) * times)
-        elif op is codes.SUBPATTERN:
-            out.append(_sample(argument[3], most))
-        elif op is codes.ATOMIC_GROUP:
-            out.append(_sample(argument, most))
-        elif op is codes.BRANCH:
-            out.append(_sample(argument[1][0], most))
-    return "".join(out)
+            return _sample(inner, most) * (max(least, min(int(largest), 3)) if most else least)
+        case codes.SUBPATTERN:
+            return _sample(argument[3], most)
+        case codes.ATOMIC_GROUP:
+            return _sample(argument, most)
+        case codes.BRANCH:
+            return _sample(argument[1][0], most)
+        case _:
+            return ""
 
 
-def _member(members: Any) -> str:
-    op, argument = members[0]
-    if op is codes.LITERAL:
-        return chr(argument)
-    if op is codes.RANGE:
-        return chr(argument[0])
-    if op is codes.CATEGORY:
-        return {codes.CATEGORY_DIGIT: "1", codes.CATEGORY_SPACE: " "}.get(argument, "x")
-    return "~"
+def _member(op: Any, argument: Any) -> str:
+    match op:
+        case codes.LITERAL:
+            return chr(argument)
+        case codes.RANGE:
+            return chr(argument[0])
+        case codes.CATEGORY:
+            return {codes.CATEGORY_DIGIT: "1", codes.CATEGORY_SPACE: " "}.get(argument, "x")
+        case _:
+            return "~"
 
 
 def _units(pattern: str) -> list[str]:
