@@ -98,8 +98,7 @@ def restyled(figure: PlotlyFigure, run: Run, pins: Sequence[Pinned]) -> PlotlyFi
 
     Traces carry their method's place as ``legendgroup``.
     """
-    first = len(run.methods)
-    pinned = {str(place): each for place, each in enumerate(pinned_methods(pins), start=first)}
+    pinned = {str(place): each for place, each in enumerate(pinned_methods(pins), start=len(run.methods))}
     for trace in figure["data"]:
         pin = pinned.get(str(trace.get("legendgroup", "")))
         if pin is None:

@@ -171,8 +171,7 @@ def _axis_title(layout: dict[str, Any], trace: dict[str, Any], which: str) -> st
     axis = layout.get(f"{which}axis{trace.get(f'{which}axis', which)[1:]}", {})
     if not axis.get("title", {}).get("text") and axis.get("matches"):
         axis = layout.get(f"{which}axis{axis['matches'][1:]}", {})
-    text = axis.get("title", {}).get("text", "")
-    return text.replace("<sub>", "").replace("</sub>", "")
+    return axis.get("title", {}).get("text", "").replace("<sub>", "").replace("</sub>", "")
 
 
 def _csv(about: Iterable[str], heads: list[str], rows: Iterable[Sequence[Any]]) -> bytes:

@@ -239,8 +239,7 @@ def legend_rows(names: Sequence[str], width_px: float) -> int:
     needs = list(map(legend_px, names))
     if not needs or sum(needs) <= width_px:
         return 1
-    columns = max(1, int(width_px // max(needs)))
-    return math.ceil(len(names) / columns)
+    return math.ceil(len(names) / max(1, int(width_px // max(needs))))
 
 
 def column(inner_px: float) -> float:

@@ -17,7 +17,7 @@ PAGES = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "Makefile")
 _GAP = r"[\s#*\"']*"
 _NUMBERS = rf"\d+(?:\.\d+)?(?:(?:,| and| to){_GAP}\d+(?:\.\d+)?)*"
 _SECTION = re.compile(rf"theory\.md`?,?{_GAP}(?:sections?{_GAP})?({_NUMBERS})")
-_NOT_CITING = ("theory.py", "test_theory.py", "test_pages.py", "test_explain.py", "stage.py")
+_NOT_CITING = ("theory.py", "test_theory.py", "test_pages.py", "test_lessons.py", "stage.py")
 _OUTSIDE = ("physics", "design", "contract", "dashboard", "house", "speed", "serving")
 
 

@@ -39,8 +39,7 @@ def compass() -> Scenario:
 
 
 def test_the_parts_of_a_bar_add_up_to_its_height_and_divide_like_variances(ship):
-    found = budget(ship, steady=True)
-    method = found.methods[2]
+    method = budget(ship, steady=True).methods[2]
     heights = parts(method, "tilt_rad")
     assert sum(heights.values()) == pytest.approx(method.total.rms.tilt_rad, rel=1e-12)
     known = {name: entry.rms.tilt_rad or 0.0 for name, entry in method.sources.items()}

@@ -137,8 +137,7 @@ class TestNyquist:
         assert (words[0], words[3]) == ("no margin: undamped", "unstable")
         assert re.fullmatch(r"phase 4\d\.\d°, gain to ×9\.\d+, delay 6\.\d+ min", words[1])
         assert all(any(word in note for note in texts_of(nyquist(run))) for word in words)
-        narrow = texts_of(nyquist(run, 1.0, width_px=560.0))
-        lines = [line for note in narrow for line in note.split("<br>")]
+        lines = [line for note in texts_of(nyquist(run, 1.0, width_px=560.0)) for line in note.split("<br>")]
         assert max(len(line) for line in lines if "phase" in line or "gain" in line) <= 36
         assert all(any(part in line for line in lines) for word in words for part in word.split(", "))
 

@@ -167,8 +167,7 @@ class TestWholeSystem:
             ):
                 assert len(trace_of(figure, f"{name}{suffix}")["text"]) == len(method.whole.named(kind))
             assert len(of_trace(figure, f"{name} growth", "y2")[0]) == len(LATITUDES)
-            site = trace_of(figure, f"{name} at the site", "y2")
-            assert site["y"] == [method.whole.earth_growth * 86400.0]
+            assert trace_of(figure, f"{name} at the site", "y2")["y"] == [method.whole.earth_growth * 86400.0]
 
     @pytest.mark.parametrize(
         ("growth", "text"),

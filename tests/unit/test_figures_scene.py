@@ -102,8 +102,7 @@ class TestMoving:
     def test_a_method_is_drawn_whole_or_as_far_as_the_ship_has_come(self) -> None:
         method = track(moving_run()).methods[1]
         whole, part = method.drawn(), method.drawn(40)
-        ends = [whole[0, 0], whole[-1, 1], part[-1, 1]]
-        np.testing.assert_array_equal(ends, method.points[[0, -1, 40]])
+        np.testing.assert_array_equal([whole[0, 0], whole[-1, 1], part[-1, 1]], method.points[[0, -1, 40]])
         assert distance(method.points[:41], np.concatenate([part[:1, 0], part[:, 1]])) <= 0.2 * LINE_WIDTH
         np.testing.assert_array_equal(method.drawn(10**6), whole)
 
@@ -224,8 +223,7 @@ class TestPinned:
 
 def distance(points: np.ndarray, line: np.ndarray) -> float:
     """Largest distance of the points from a line."""
-    drawn = shapely.linestrings(line[:, :2])
-    return float(np.max(shapely.distance(drawn, shapely.points(points[:, :2]))))
+    return float(np.max(shapely.distance(shapely.linestrings(line[:, :2]), shapely.points(points[:, :2]))))
 
 
 class TestPolyline:

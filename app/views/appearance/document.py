@@ -236,8 +236,7 @@ def document(
 
 def command(session: Session) -> str:
     """Command that runs the scenario again: by its name while it is a preset, else from the file."""
-    scenario = session.now.run.scenario
-    if session.origin in presets() and load(session.origin) == scenario:
+    if session.origin in presets() and load(session.origin) == session.now.run.scenario:
         return Text("schuler run {origin}", origin=session.origin)
     return "schuler run scenario.toml"
 

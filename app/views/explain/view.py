@@ -79,8 +79,7 @@ def key_of(path: Path, scenario: Scenario) -> str:
     part = names[1]
     if last == "id" or part == "averaging":
         return f"{part}.{last}"
-    chosen = getattr(scenario.method[int(path[1])], part)
-    return ".".join([part, chosen.id, *names[2:]])
+    return ".".join([part, getattr(scenario.method[int(path[1])], part).id, *names[2:]])
 
 
 def explanation(key: str) -> Explanation | None:

@@ -158,8 +158,7 @@ _Responses = tuple[np.ndarray | None, np.ndarray | None]
 
 
 def _responses(method: MethodRun, view: TransferView, omega: np.ndarray) -> _Responses:
-    h = effective_network(method).response(omega)
-    return h, frequency(method, view.source, view.output, omega)
+    return effective_network(method).response(omega), frequency(method, view.source, view.output, omega)
 
 
 def _of_reference(reference: Reference, view: TransferView, omega: np.ndarray) -> _Responses:

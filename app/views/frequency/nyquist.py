@@ -197,11 +197,10 @@ def _shapes() -> list[dict[str, Any]]:
 
 
 def _notes(run: Run, words: list[str], column_px: float) -> list[dict[str, Any]]:
-    critical = {"size": 20, "color": style.DANGER}
     return [
         style.heading("<b>Open loop L(jω) = ω<sub>s</sub>² H/s²</b>", 16, "x domain"),
         style.heading("<b>Nyquist plot near −1 (✚)</b>", 16, "x2 domain"),
-        style.text(-1.0, 0.0, "✚", xref="x2", yref="y3", font=critical, yshift=0),
+        style.text(-1.0, 0.0, "✚", xref="x2", yref="y3", font={"size": 20, "color": style.DANGER}, yshift=0),
         *_listed(run, words, column_px),
     ]
 

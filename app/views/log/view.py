@@ -138,10 +138,9 @@ class LogView(FieldsView):
 
 
 def _blocks(scenario: Scenario, name: str) -> list[FieldSpec]:
-    blocks = getattr(scenario.reference, name)
     return [
         spec
-        for i in range(len(blocks))
+        for i in range(len(getattr(scenario.reference, name)))
         for spec in form.fields(_KINDS[name], ("reference", name, i), prefix=f"{name} {i + 1}")
     ]
 

@@ -227,8 +227,7 @@ class MetricsView(PictureView[tuple[str, str]]):
         layout, run, verified, baseline = self.frame.layout(), window.run, now.verified, now.baseline
         if baseline is not None and baseline.run is not None:
             baseline = replace(baseline, run=window.of(baseline.run))
-        rows = metrics_rows(run, now.display)
-        each_px = method_px(rows, _LETTER_PX[layout.wide], _PADDING_PX[layout.wide])
+        each_px = method_px(metrics_rows(run, now.display), _LETTER_PX[layout.wide], _PADDING_PX[layout.wide])
         each_px += 0 if baseline is None else _DELTA_PX[layout.wide]
         most = max(int((layout.plot_px - _ROW_NAME_PX - _MARGINS_PX) / each_px), 1)
         beside = None if verified is None else verified.verification

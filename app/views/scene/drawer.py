@@ -98,8 +98,7 @@ def _hull() -> ShipPart:
 
 def _deck() -> ShipPart:
     edges = [(side * beam, y, top - 0.004) for y, beam, _, top in _STATIONS for side in (1, -1)]
-    starts = range(0, len(edges) - 2, 2)
-    faces = [face for a in starts for face in ((a, a + 2, a + 1), (a + 2, a + 3, a + 1))]
+    faces = [face for a in range(0, len(edges) - 2, 2) for face in ((a, a + 2, a + 1), (a + 2, a + 3, a + 1))]
     return _part("deck", edges, faces, _DECK)
 
 
@@ -244,9 +243,8 @@ class SceneDrawer:
     def _make_sea(self) -> None:
         corners = [[x * HALF_WIDTH, y * HALF_WIDTH, -0.03] for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
         faces = np.array([[0, 1, 2], [0, 2, 3]])
-        color = style.rgb("#8FC3EE")
         self._scene.add_mesh_simple(
-            "/map/sea", np.array(corners), faces, color=color, side="double", **_UNSHADOWED
+            "/map/sea", np.array(corners), faces, color=style.rgb("#8FC3EE"), side="double", **_UNSHADOWED
         )
 
     def _make_ship(self, name: str, color: tuple[int, int, int] | None = None) -> Any:

@@ -60,8 +60,7 @@ def dashes(points: np.ndarray, length: float) -> np.ndarray:
     ndarray of float32, shape (n, 2, 3)
         Segments.
     """
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    along = np.concatenate([[0.0], np.cumsum(steps)])
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     at = np.union1d(along, np.arange(0.0, along[-1], length))
     cut = np.column_stack([np.interp(at, along, axis) for axis in points.T]).astype(np.float32)
     drawn = np.floor((at[:-1] + at[1:]) / (2.0 * length)).astype(int) % 2 == 0
@@ -161,8 +160,7 @@ def angle_text(value: float, step: float, letters: str) -> str:
         minutes = round(size / ARCMIN)
         return f"{minutes // 60}°{minutes % 60:02d}′{side}"
     decimals = max(0, -math.floor(math.log10(step / ARCSEC * (1.0 + 1e-9))))
-    ticks = round(size / ARCSEC * 10**decimals)
-    seconds, fraction = divmod(ticks, 10**decimals)
+    seconds, fraction = divmod(round(size / ARCSEC * 10**decimals), 10**decimals)
     tail = f".{fraction:0{decimals}d}" if decimals else ""
     return f"{seconds // 3600}°{seconds // 60 % 60:02d}′{seconds % 60:02d}{tail}″{side}"
 
@@ -182,8 +180,7 @@ def _multiples(centre: float, half: float, step: float) -> np.ndarray:
 
 def _metre_grid(area: LocalMap, half_width: float, beside: int) -> Graticule:
     half_m = half_width * area.metres_per_unit
-    step = round_up(2.0 * half_m / _MOST_LINES)
-    offsets = _multiples(0.0, half_m, step)
+    offsets = _multiples(0.0, half_m, round_up(2.0 * half_m / _MOST_LINES))
     unit = length_unit(half_m)
     at = offsets / area.metres_per_unit
     values = [f"{number(offset / unit.si, 4)} {unit.name}" for offset in offsets]

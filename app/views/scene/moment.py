@@ -119,8 +119,7 @@ def _peak(method: MethodRun) -> float:
 def _bob(index: int, method: MethodRun, t_s: float, period: float) -> Bob:
     first, last = np.searchsorted(method.t_s, [t_s - period, t_s])
     chosen = np.unique(np.linspace(first, max(last - 1, first), _TRAIL_POINTS).astype(int))
-    past = method.rows[chosen[chosen < len(method.rows)]]
-    trail = np.vstack([past, row_at(method.t_s, method.rows, t_s)])
+    trail = np.vstack([method.rows[chosen[chosen < len(method.rows)]], row_at(method.t_s, method.rows, t_s)])
     return Bob(style.method_color(index), trail[:, [PHI_N, PHI_E]] * (-1.0, 1.0))
 
 

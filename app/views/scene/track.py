@@ -256,7 +256,6 @@ def track(
     )
     bar, bar_label = scale_bar(metres, HALF_WIDTH)
     lines = [_scene(points, middle, metres, _LIFT) for points in tracks_m]
-    count = len(run.methods)
     return TrackScene(
         t_s=t_s,
         truth=_scene(true_m, middle, metres, 2.0 * _LIFT),
@@ -274,7 +273,7 @@ def track(
         ),
         pinned=tuple(
             PinnedTrack(other.label, style.rgb(other.color), segments(line[needed(line, _UNSEEN)]), state)
-            for other, line, state in zip(pinned, lines[count:], others, strict=True)
+            for other, line, state in zip(pinned, lines[len(run.methods) :], others, strict=True)
         ),
         exaggeration=factor,
         metres_per_unit=metres,

@@ -199,9 +199,8 @@ class SceneView(View):
         if self._run is not None:
             display, selected = self.session.display, self.session.selected
             self._count += 1
-            camera = self._cameras.chosen
             self._bar.content = bar_html(
-                self._count, state, camera, self._run, selected, display, self._scene
+                self._count, state, self._cameras.chosen, self._run, selected, display, self._scene
             )
 
 

@@ -123,8 +123,7 @@ def amplitude_spectrum(method: MethodRun, column: int) -> tuple[np.ndarray, np.n
     starts = np.flatnonzero(np.diff(places, prepend=-1.0))
     largest = np.maximum.reduceat(amplitude, starts)
     ends = np.append(starts[1:], len(frequency)) - 1
-    single = ends == starts
-    middle = np.where(single, frequency[starts], np.sqrt(frequency[starts] * frequency[ends]))
+    middle = np.where(ends == starts, frequency[starts], np.sqrt(frequency[starts] * frequency[ends]))
     return 1.0 / middle, largest
 
 

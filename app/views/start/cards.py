@@ -53,11 +53,10 @@ def card_svg(run: Run, of: str) -> str:
         f'stroke="{style.method_color(i)}"/>'
         for i, m in enumerate(run.methods)
     )
-    count = len(run.methods)
     words = Text(
         "Velocity error {symbol} of {count} methods, up to {peak} m/s in {span}",
         symbol=symbol,
-        count=count,
+        count=len(run.methods),
         peak=rounded(peak),
         span=duration(span),
     )

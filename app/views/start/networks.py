@@ -16,7 +16,7 @@ from navcore.foundation.units import ARCSEC
 from navcore.networks import NETWORKS
 from navcore.networks.base import LinearNetwork
 
-WIDTH, HEIGHT = 150, 62
+_WIDTH, _HEIGHT = 150, 62
 _LOW_DB, _HIGH_DB = -12.0, 18.0
 _FIRST, _LAST = -2.0, 2.0
 """Powers of ten of the frequency over omega_s at the ends."""
@@ -71,26 +71,25 @@ def _trade(network: LinearNetwork, gain_db: np.ndarray) -> str:
     gain = (
         Text("|H| rises to {peak} dB", peak=rounded(peak, 2)) if peak > 0.1 else "|H| stays at or below 0 dB"
     )
-    damping = rounded(loop.damping_ratio, 2)
     return Text(
         "Settles to 2 % in {settling}, least damping ratio {damping}. {gain}; a step "
         "of the log's error by 1 m/s tilts it by up to {tilt} arcsec.",
         settling=settling(loop.settling_s),
-        damping=damping,
+        damping=rounded(loop.damping_ratio, 2),
         gain=gain,
         tilt=rounded(tilt, 2),
     )
 
 
 def _svg(power: np.ndarray, gain_db: np.ndarray) -> str:
-    x = WIDTH * (power - _FIRST) / (_LAST - _FIRST)
-    y = HEIGHT * (_HIGH_DB - np.clip(gain_db, _LOW_DB, _HIGH_DB)) / (_HIGH_DB - _LOW_DB)
+    x = _WIDTH * (power - _FIRST) / (_LAST - _FIRST)
+    y = _HEIGHT * (_HIGH_DB - np.clip(gain_db, _LOW_DB, _HIGH_DB)) / (_HIGH_DB - _LOW_DB)
     points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))
-    zero, schuler = HEIGHT * _HIGH_DB / (_HIGH_DB - _LOW_DB), WIDTH * (0.0 - _FIRST) / (_LAST - _FIRST)
+    zero, schuler = _HEIGHT * _HIGH_DB / (_HIGH_DB - _LOW_DB), _WIDTH * (0.0 - _FIRST) / (_LAST - _FIRST)
     return (
-        f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img"><title>|H| from {_LOW_DB:g} to {_HIGH_DB:g} dB over '
-        f'the frequency; the dashed line is the Schuler frequency</title><path d="M0 {zero:.1f}H{WIDTH}" '
-        f'stroke="{style.GRID}"/><path d="M{schuler:.1f} 0V{HEIGHT}" stroke="{style.REFERENCE}" '
+        f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img"><title>|H| from {_LOW_DB:g} to {_HIGH_DB:g} dB over '
+        f'the frequency; the dashed line is the Schuler frequency</title><path d="M0 {zero:.1f}H{_WIDTH}" '
+        f'stroke="{style.GRID}"/><path d="M{schuler:.1f} 0V{_HEIGHT}" stroke="{style.REFERENCE}" '
         f'stroke-dasharray="3 3"/><polyline points="{points}" fill="none" '
         f'stroke="{style.METHOD_COLORS[0]}" stroke-width="1.8"/></svg>'
     )
