@@ -7,8 +7,7 @@ import re
 import pytest
 
 from app.editing import edits
-from app.views.start.cards import card_path, mark
-from app.views.start.networks import network_cards
+from app.views.start.cards import card_path, mark, network_cards
 from navcore.networks import NETWORKS
 from navcore.scenario.file import load, presets
 

@@ -132,7 +132,14 @@ def bode(
     transfer_hover = "%{y:.2f} dB" if _in_decibel(view) else "%{y:.4g} " + view.unit
     data: list[dict[str, Any]] = []
     drawn: dict[str, list[np.ndarray]] = {"y": [], "y2": [], "y3": [], "y4": []}
-    lines = [(style.lines(m.method.name, i), *_responses(m, view, omega)) for i, m in enumerate(run.methods)]
+    lines: list[tuple[dict[str, Any], np.ndarray | None, np.ndarray | None]] = [
+        (
+            style.lines(method.method.name, index),
+            effective_network(method).response(omega),
+            frequency(method, view.source, view.output, omega),
+        )
+        for index, method in enumerate(run.methods)
+    ]
     names = [method.method.name for method in run.methods]
     silent = [name for name, (_, _, value) in zip(names, lines, strict=True) if value is None]
     if reference is not None:
@@ -155,10 +162,6 @@ def bode(
 
 
 _Responses = tuple[np.ndarray | None, np.ndarray | None]
-
-
-def _responses(method: MethodRun, view: TransferView, omega: np.ndarray) -> _Responses:
-    return effective_network(method).response(omega), frequency(method, view.source, view.output, omega)
 
 
 def _of_reference(reference: Reference, view: TransferView, omega: np.ndarray) -> _Responses:

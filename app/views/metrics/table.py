@@ -310,7 +310,10 @@ def _html_row(line: Row, columns: int, decimals: int = 0, look: str = "") -> str
     cells = [cell(escape(line.label)), cell(escape(line.unit), "sb-m")]
     for place, texts in enumerate(line.cells):
         best = line.best[place] if line.best else (False,) * len(texts)
-        marked = [_marked(escape(text), mark) for text, mark in zip(texts, best, strict=True)]
+        marked = [
+            cell(escape(text), "sb-best", tag="span", title=style.BEST) if mark else escape(text)
+            for text, mark in zip(texts, best, strict=True)
+        ]
         if len(texts) == 1:
             cells.append(cell(marked[0], "sb-c", colspan=columns))
             continue
@@ -319,10 +322,6 @@ def _html_row(line: Row, columns: int, decimals: int = 0, look: str = "") -> str
         if line.deltas:
             cells.append(cell(escape(line.deltas[place]), "sb-n sb-delta"))
     return row(cells, look)
-
-
-def _marked(text: str, best: bool) -> str:
-    return cell(text, "sb-best", tag="span", title=style.BEST) if best else text
 
 
 def _filled(text: str, decimals: int) -> str:

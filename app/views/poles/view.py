@@ -83,7 +83,9 @@ class PolesView(PlotlyView):
             PLACE,
             hint="Sets the parameters of the selected method's network that give this pair, where it can.",
         )
-        self._locus.on_update(if_user(self._choose))
+        self._locus.on_update(
+            if_user(lambda: self.frame.show(locus=self._fields.get(self._locus.value, NO_LOCUS)))
+        )
         self._placing = self._xi, self._ratio, button
         button.on_click(if_user(lambda: self._place(lambda: typed_pair(self._xi.value, self._ratio.value))))
 
@@ -107,9 +109,6 @@ class PolesView(PlotlyView):
     @property
     def _method(self) -> Method:
         return self.session.scenario.method[self.session.selected]
-
-    def _choose(self) -> None:
-        self.frame.show(locus=self._fields.get(self._locus.value, NO_LOCUS))
 
     def _limit_slope(self) -> None:
         wanted = self.session.display.requirements.model_copy(

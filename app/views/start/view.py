@@ -8,8 +8,7 @@ from html import escape
 from app.editing import edits
 from app.shell import notices
 from app.shell.view import Frame, Tab, View
-from app.views.start.cards import card_path
-from app.views.start.networks import network_cards
+from app.views.start.cards import card_path, network_cards
 from navcore.networks import NETWORKS
 from navcore.scenario.file import load, presets
 
