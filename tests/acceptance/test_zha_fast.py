@@ -14,6 +14,7 @@ from navcore.foundation.units import DEG_PER_HOUR
 from navcore.mechanization.recorder import PHI_E
 from navcore.networks import parse_network
 from navcore.scenario.file import load
+from tests.papers.measure import last_above
 
 DRIFT = 0.01 * DEG_PER_HOUR
 
@@ -26,10 +27,6 @@ def run() -> Run:
 @pytest.fixture(scope="module")
 def methods(run) -> dict[str, MethodRun]:
     return {m.method.network.id: m for m in run.methods}
-
-
-def last_above(time_s: np.ndarray, response: np.ndarray, fraction: float) -> float:
-    return float(time_s[np.flatnonzero(np.abs(response) > fraction * np.max(np.abs(response)))[-1]])
 
 
 def test_the_setting_is_the_papers(run):

@@ -8,7 +8,7 @@ from __future__ import annotations
 ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "law": (
         ("test_control_*", "test_scenario_guide"),
-        ("test_history", "test_tuning", "test_sun_table_1", "test_sun_step"),
+        ("test_history", "test_tuning", "test_sun_table_1", "test_network_values"),
     ),
     "mechanization": (
         (
@@ -17,7 +17,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ),
         (
             "test_scenario_guide", "test_strapdown_*", "test_control_twin", "test_control_strapdown",
-            "test_averaging_*", "test_alignment", "test_results", "test_simulation", "test_zhao_free",
+            "test_averaging_*", "test_alignment", "test_results", "test_simulation", "test_zhao_values",
             "test_presets_golden",
         ),
     ),
@@ -31,11 +31,12 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     ),
     "analysis": (
         (
-            "test_loop_*", "test_whole_system*", "test_held_log", "test_network_report", "test_sun_step",
+            "test_loop_*", "test_whole_system*", "test_held_log", "test_network_report",
+            "test_network_values",
         ),
         (
             "test_network_*", "test_pages", "test_placing", "test_any_network", "test_figures_poles",
-            "test_figures_frequency", "test_closed_loop_values", "test_liu_networks", "test_zha_transient",
+            "test_figures_frequency", "test_liu_networks",
         ),
     ),
 }  # fmt: skip

@@ -1,14 +1,19 @@
-"""Zhao 2015, eq. 17 and theory.md 9.4: what averaging leaves of oscillations from initial errors, 24 h."""
+"""Zhao 2015, eq. 17 and theory.md 9.4: oscillations from initial errors, 24 h at rest, free and averaged."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from navcore.averaging import Averaging
+from navcore.averaging.copies import Copies
 from navcore.averaging.lines import line_amplitudes, line_phases
+from navcore.engine.simulation import simulate
 from navcore.foundation.earth import SPHERE, WGS84
 from navcore.foundation.units import ARCSEC
+from navcore.scenario.model import Scenario
 from tests.averaging import DAY, averaged, made, peaks, truth_row
 
 
@@ -55,17 +60,44 @@ def test_a_fraction_of_the_schuler_oscillation_stays():
     # theory.md 5: sin(pi Omega sin L / (2 omega_s)) = 6.6 % at 45.78 deg, of each of the two lines
     time_s = np.arange(0, DAY + 1, 60.0)
     phases = line_phases(time_s, truth_row()[None, :], SPHERE)
-    # no copies: the main navigation alone
+    alone = replace(made(Averaging(earth=False)), copies=Copies((0.0,), (0,), (0,)))
     free, left = (
         line_amplitudes(time_s, averaged(plan).recorder.rows[:, :2] / ARCSEC, phases).amplitude
-        for plan in (_alone(), made(Averaging(variant="schuler", earth=False)))
+        for plan in (alone, made(Averaging(variant="schuler", earth=False)))
     )
     np.testing.assert_allclose(left[:, :2] / free[:, :2], 0.066, atol=2e-3)
 
 
-def _alone():
-    from dataclasses import replace
+# theory.md section 7, zhao-initial: 2", 2", 0.1 m/s, 0.6', 0.6', 7'; section 9.4: sphere, 45.7796 N, 24 h
+SCENARIO = Scenario.parse(
+    {
+        "run": {"duration_h": 24.0, "earth": "sphere"},
+        "site": {"lat_deg": 45.7796, "lon_deg": 126.6705},
+        "initial_error": {
+            "attitude_arcmin": [0.6, 0.6, 7.0],
+            "velocity_mps": [0.1, 0.1],
+            "position_arcsec": [2.0, 2.0],
+        },
+    }
+)
 
-    from navcore.averaging.copies import Copies
 
-    return replace(made(Averaging(earth=False)), copies=Copies((0.0,), (0,), (0,)))
+@pytest.fixture(scope="module")
+def free_errors() -> dict[str, dict[str, float]]:
+    return simulate(SCENARIO).methods[0].errors
+
+
+@pytest.mark.parametrize(
+    ("quantity", "unit", "peak"),
+    [
+        ("dve_mps", 1.0, 2.132),
+        ("dvn_mps", 1.0, 2.476),
+        ("phi_e_rad", ARCSEC, 52.9),
+        ("phi_n_rad", ARCSEC, 53.5),
+        ("dlat_m", 1.0, 9815.0),
+        ("phi_u_rad", ARCSEC, 440.0),
+    ],
+)
+def test_peaks_without_averaging(free_errors, quantity, unit, peak):
+    # 0.5 % is asked; what is left is the rounding of the printed figures
+    assert free_errors[quantity]["max_abs"] / unit == pytest.approx(peak, rel=1e-3)

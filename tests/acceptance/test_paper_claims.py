@@ -1,0 +1,143 @@
+"""Claims of the reproduction report as tests: verdicts of the linear half, and what they rest on.
+
+Liu 2021, figure 7: overshoot of a step of the log's error against that of a switch. Sun 2017, figures 10 to
+12: a ship accelerates at 10 h; conventional, adaptive and free. Zha 2019, figures 2 to 5 and tables 1, 2:
+roll error without and with a reference, velocity on a drive.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from navcore.foundation.units import HOUR, KNOT
+from navcore.motion.base import VE, VN
+from navcore.scenario.file import load
+from tests.papers import zha, zha_drive
+from tests.papers.liu_fig_7 import FIGURE_7
+from tests.papers.liu_switching import fig_7, overshoot, switched
+from tests.papers.markdown import check
+from tests.papers.runs import Runs, method
+from tests.papers.sun_ship import ANGLES, EQ_8_GYROS, METHODS, SHIP, SMALL_ERRORS, measured, over_conventional
+from tests.papers.sun_vehicle import VEHICLE
+
+
+@pytest.fixture(scope="module")
+def runs() -> Runs:
+    return Runs()
+
+
+@pytest.mark.parametrize(
+    ("exhibit", "verdicts"),
+    [
+        (FIGURE_7, ["differs", "agrees"]),
+        (
+            SHIP,
+            ["agrees"] * 4 + ["differs"] * 3 + ["agrees", "differs", "agrees"] + ["differs"] * 3,
+        ),
+        (VEHICLE, ["undecided", "agrees", "agrees"]),
+        (zha.FAST, ["agrees"] * 2 + ["differs"] * 4),
+        (zha.INTERNAL, ["agrees"] * 2),
+        (zha.EXTERNAL, ["agrees", "agrees", "undecided", "differs"]),
+        (zha.LAB, ["agrees"] * 2),
+        (zha_drive.DRIVE, ["agrees", "differs", "agrees", "differs"]),
+    ],
+    ids=lambda value: getattr(value, "name", ""),
+)
+def test_what_is_claimed(runs, exhibit, verdicts):
+    """`check` refuses a verdict that the claim's reason contradicts; the strapdown half is the report's."""
+    assert [check(replace(claim, strapdown=False), runs).verdict for claim in exhibit.claims] == verdicts
+
+
+def test_liu_figure_7_overshoot_of_a_step(runs):
+    assert overshoot(fig_7(runs), 0) == pytest.approx(0.115, abs=5e-4)
+    assert overshoot(fig_7(runs), 2) == pytest.approx(0.115 * 0.45 / 0.25, abs=1e-3)
+
+
+def test_liu_figure_7_clearing_the_filter_acts_like_a_step_of_the_whole_error(runs):
+    assert overshoot(switched(runs, "hard")) == pytest.approx(0.228, abs=5e-4)
+    assert overshoot(switched(runs, "hard")) == pytest.approx(2.0 * overshoot(fig_7(runs), 0), rel=0.01)
+
+
+def test_liu_figure_7_the_ramp_alone_softens_nothing_and_lius_recursion_does(runs):
+    assert overshoot(switched(runs, "ramp")) == pytest.approx(overshoot(switched(runs, "hard")), rel=1e-3)
+    assert overshoot(switched(runs, "ramp", form="as_printed")) < 1e-3
+
+
+@pytest.mark.parametrize("switching", ["keep", "bumpless"])
+def test_liu_figure_7_a_filter_that_is_not_cleared_makes_no_overshoot(runs, switching):
+    assert overshoot(switched(runs, switching)) < 1e-4
+
+
+def test_sun_the_setting_is_the_papers(runs):
+    scenario = load("sun-ship")
+    assert scenario.initial_error.attitude_arcmin == (6.0, 6.0, 90.0)
+    assert scenario.imu.gyro_bias_dph == (0.02, 0.02, 0.02)
+    assert scenario.reference.scale_ppm == 20000.0
+    run = runs("sun-ship")
+    speed = np.hypot(run.truth[:, VE], run.truth[:, VN]) / KNOT
+    np.testing.assert_allclose(
+        np.interp(np.array([5.0, 15.0]) * HOUR, run.t_s, speed), [2.0, 10.0], rtol=1e-6
+    )
+    # 4 kn/min at 10 h 2 min: half of the 8 kn are gained there
+    assert np.interp(10.0 * HOUR + 120.0, run.t_s, speed) == pytest.approx(6.0, abs=0.01)
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+def test_sun_figure_10_adaptive_overshoots_less_than_conventional(runs, angle):
+    assert np.all(over_conventional(runs, "overshoot", angle) < 0.7)
+
+
+def test_sun_the_law_stays_at_the_end_of_its_table_with_the_printed_initial_errors(runs):
+    assert measured(runs)["largest xi"] == pytest.approx(0.04)
+
+
+def test_sun_small_initial_errors_do_not_change_that_but_better_gyros_do(runs):
+    assert np.mean(measured(runs, SMALL_ERRORS)["xi"]) < 0.07
+    assert np.mean(measured(runs, EQ_8_GYROS)["xi"]) > 0.25
+    for angle in ("pitch", "heading"):
+        assert np.mean(over_conventional(runs, "overshoot", angle, EQ_8_GYROS)) > 1.0
+
+
+def test_sun_every_method_finishes(runs):
+    assert all(method(runs("sun-ship"), name).status == "ok" for name in METHODS)
+
+
+def test_zha_the_sensors_are_the_papers():
+    for name in ("zha-internal", "zha-external"):
+        imu = load(name).imu
+        assert imu.gyro_bias_dph == (0.01, 0.01, 0.01) and imu.gyro_arw_dpsh == 0.005
+        assert imu.accel_bias_ug == (100.0, 100.0, 100.0)
+        assert set(imu.gyro_scale_ppm + imu.accel_scale_ppm) == {5.0}
+        assert set(imu.gyro_misalignment_arcsec + imu.accel_misalignment_arcsec) == {5.0}
+    assert load("zha-internal").motion == load("zha-external").motion
+    assert load("zha-internal").reference.kind == "none"
+    assert load("zha-external").reference.bias_mps == (0.5, 0.5)
+
+
+def test_zha_figure_2_fast_damping_without_a_reference_is_worse_than_none(runs):
+    free, fast = (np.mean(zha.roll_spreads(runs, "zha-internal", name)) for name in ("free", "fast"))
+    assert fast > 2.0 * free
+
+
+def test_zha_figure_3_percentages_come_with_an_initial_tilt(runs):
+    assert zha.reduction(runs, "free") == pytest.approx(86.0, rel=0.1)
+    assert zha.reduction(runs, "classic2") == pytest.approx(48.9, rel=0.1)
+    assert zha.reduction(runs, "classic2", zha.NO_TILT) < 35.0
+    assert zha.reduction(runs, "classic2", zha.AT_REST, zha.NO_TILT) < 0.0
+
+
+def test_zha_the_schedule_is_the_papers():
+    scenario = load("zha-drive").canonical()
+    policy = scenario["method"][2]["policy"]
+    assert policy["from"] == [0.0264, 156.063, 0.904]
+    assert (policy["to"], policy["duration_s"]) == ([7.68e-3, 6.68, 7.68e-3], 60.0)
+    assert scenario["imu"]["accel_bias_ug"] == [500.0, 500.0, 500.0]
+
+
+def test_zha_tables_1_and_2_order_of_the_methods(runs):
+    for axis in zha_drive.COLUMNS:
+        free, classic, fast = (np.mean(zha_drive.spreads(runs, name, axis)) for name in zha_drive.METHODS)
+        assert free > 1.5 * classic > 1.5 * 4.0 * fast
