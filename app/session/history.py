@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 from operator import itemgetter
 from typing import Any
 
-from pydantic import BaseModel
-from pydantic_core import to_jsonable_python
+from pydantic import BaseModel, TypeAdapter
 
 from navcore.foundation.notation import symbol
 from navcore.foundation.parameters import sharing
@@ -20,6 +19,7 @@ MOST_STEPS = 200
 DRAG_S = 1.0
 """Changes of one field that follow each other faster than this are one step: a slider being dragged."""
 _LONGEST = 24
+_ANY = TypeAdapter(Any)
 _NO_DRAG: tuple[tuple[str, ...], float] = ((), 0.0)
 
 
@@ -180,7 +180,7 @@ def differences(before: Any, after: Any, path: str = "") -> list[tuple[str, Any,
     """
     old, new = _parts(before), _parts(after)
     if not (old or new):
-        return [(path, to_jsonable_python(before), to_jsonable_python(after))]
+        return [(path, _ANY.dump_python(before, mode="json"), _ANY.dump_python(after, mode="json"))]
     found: list[tuple[str, Any, Any]] = []
     for name in old | new:
         one, other = old.get(name), new.get(name)
@@ -240,3 +240,11 @@ def _short(value: Any) -> str:
         return "none"
     text = f"{value:g}" if isinstance(value, float) else str(value)
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
+
+
+def first_editable(scenario: Scenario) -> int:
+    """Index of the first method with something to tune; 0 if there is none."""
+    tunable = (
+        i for i, m in enumerate(scenario.method) if not m.undamped and len(type(m.network).model_fields) > 1
+    )
+    return next(tunable, 0)

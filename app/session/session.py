@@ -7,7 +7,6 @@ import threading
 import time
 from collections.abc import Callable, Set
 from pathlib import Path
-from typing import Protocol
 
 from app.http.ids import log_name
 from app.jobs.envelopes import Envelopes, Simulate
@@ -17,9 +16,10 @@ from app.jobs.verifier import Verifier, Verify
 from app.jobs.words import for_a_page
 from app.jobs.worker import Watch, Worker
 from app.session.display import Display
-from app.session.history import History, State
+from app.session.history import History, State, first_editable
 from app.session.pins import Pins
 from app.session.uploads import Uploads
+from app.session.view import View
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
@@ -27,49 +27,6 @@ from navcore.scenario.model import Scenario
 
 _REPORT_EVERY_S = 0.1
 _log = logging.getLogger("schuler.session")
-
-
-class View(Protocol):
-    """An open page of a session. Called from the worker's thread or from that of another page."""
-
-    def scenario_changed(self, by: object) -> None:
-        """Show the session's scenario in all controls; ``by`` is who changed it."""
-
-    def run_progressed(self, fraction: float, elapsed_s: float) -> None:
-        """Show that a run is under way and the picture is an old one."""
-
-    def run_ended(self) -> None:
-        """Show the session's run."""
-
-    def run_stopped(self) -> None:
-        """Say that the picture is still the old one because the user stopped the run."""
-
-    def run_refused(self, error: InputError) -> None:
-        """Say why the scenario cannot run; the last good one is back."""
-
-    def run_failed(self, error: Exception) -> None:
-        """Say that something of ours went wrong; the last good picture stays."""
-
-    def not_kept(self, why: str) -> None:
-        """Say that the work is not kept over a restart at present."""
-
-    def run_waits(self) -> None:
-        """Say that the changed scenario runs only when the user asks for it."""
-
-    def display_changed(self, by: object) -> None:
-        """Draw the pictures anew as ``session.display`` says; ``by`` is who changed it."""
-
-    def presenter_changed(self) -> None:
-        """Another page drives now, or none, or the number of pages has changed."""
-
-    def front_changed(self, front: Set[str]) -> None:
-        """Bring these tabs to the front: the page that presents has them there."""
-
-    def verification_changed(self) -> None:
-        """Show how far the verification is, or what it gave."""
-
-    def envelope_progressed(self) -> None:
-        """Show how far the envelope is, or why there is none."""
 
 
 class Session:
@@ -440,11 +397,3 @@ class Session:
             except Exception as error:
                 _log.exception("a page could not be brought up to date")
                 view.run_failed(error)
-
-
-def first_editable(scenario: Scenario) -> int:
-    """Index of the first method with something to tune; 0 if there is none."""
-    tunable = (
-        i for i, m in enumerate(scenario.method) if not m.undamped and len(type(m.network).model_fields) > 1
-    )
-    return next(tunable, 0)

@@ -17,10 +17,11 @@ from weakref import WeakKeyDictionary
 from pydantic import ValidationError
 
 from app.http.ids import copied_from, log_name, new_shared_id
+from app.session.content import link_files
 from app.session.display import Display
 from app.session.history import History, State
 from app.session.session import Session
-from app.session.store import Store, link_files
+from app.session.store import Store
 from app.session.uploads import plain_names, shared_files
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError

@@ -116,6 +116,7 @@ class Uploads:
             raise
         self.keep_once(fresh)
         fresh.replace(path)
+        fresh.unlink(missing_ok=True)  # two names of one content: to replace one by the other does nothing
         self.files[name] = _understood(path, report)
         return self.files[name]
 

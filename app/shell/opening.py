@@ -6,7 +6,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from app.editing import edits
-from app.session.session import Session, first_editable
+from app.session.history import first_editable
+from app.session.session import Session
 from app.session.uploads import opened_scenario, recorded_scenario, with_plain_names
 from app.shell import notices
 from navcore.engine.measures import metrics

@@ -11,7 +11,7 @@ from app.bridge.controls import lock_controls
 from app.editing.edits import disturbances_toml, method_toml, paste
 from app.editing.typed import read_typed, unit_of
 from app.session.history import History, changed_fields
-from app.session.session import View
+from app.session.view import View
 from app.shell import notices
 from app.shell.commands import LONGEST_TEXT, Command
 from app.shell.control import Control

@@ -15,8 +15,8 @@ from playwright.sync_api import TimeoutError as PlaywrightTimeout
 from app.bridge.mends import pool_of
 from app.languages.wording import wording
 from app.session.display import Display
+from app.session.history import first_editable
 from app.session.names import GivenNames
-from app.session.session import first_editable
 from app.session.sessions import first_scenario
 from app.shell.page import Page as OpenPage
 from navcore.scenario.file import load

@@ -12,7 +12,8 @@ import pytest
 
 from app.editing import edits
 from app.session import sessions
-from app.session.session import Session, first_editable, runs_on_demand
+from app.session.history import first_editable
+from app.session.session import Session, runs_on_demand
 from app.session.sessions import Sessions, first_scenario
 from navcore.engine import simulation
 from navcore.foundation.errors import Fault, InputError

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from app.session import uploads
+from app.session.content import Contents
 from app.session.uploads import (
     Uploads,
     opened_scenario,
@@ -129,6 +130,14 @@ def test_a_recorded_imu_is_aligned_and_navigated_at_its_rate(files: Uploads, sce
     assert (made.alignment.kind, made.alignment.duration_s) == ("compass", 200.0)
     assert made.run.duration_h * 3600.0 == pytest.approx(199.0, abs=1.01)
     assert "taken to stand" in notes[0]
+
+
+def test_the_same_file_again_leaves_nothing_beside_it(files: Uploads, tmp_path: Path) -> None:
+    """Both names are links to one content then."""
+    files.keep_once = Contents(tmp_path / "content").keep_once
+    for _ in range(3):
+        files.add("log.csv", LOG.encode())
+        assert in_folder(files) == {"log.csv": LOG}
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from app.session import content
 from app.session import store as store_module
 from app.session.store import Store, default_folder, open_store, session_key
 
@@ -148,7 +149,7 @@ def test_old_sessions_and_too_many_are_removed_with_their_files_but_no_link(
     store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(store_module, "MOST_KEPT", 3)
-    monkeypatch.setattr(store_module, "_UNLINKED_S", -1.0)
+    monkeypatch.setattr(content, "_UNLINKED_S", -1.0)
 
     def put(name: str, age_s: float, shared_by: str | None = None) -> None:
         store.write(name, document(name), shared_by)
@@ -195,7 +196,7 @@ def test_shared_files_take_room_once(store: Store, monkeypatch: pytest.MonkeyPat
 def test_only_unused_contents_of_ours_are_removed_and_no_linked_folder_is_entered(
     store: Store, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(store_module, "_UNLINKED_S", -1.0)
+    monkeypatch.setattr(content, "_UNLINKED_S", -1.0)
     upload(store, "used", "log.txt", b"used")
     own, elsewhere = store.contents.folder, tmp_path / "elsewhere"
     (used,) = own.iterdir()

@@ -8,8 +8,8 @@ from html import escape
 from typing import Any
 
 from app.plots import style
+from app.session.history import first_editable
 from app.session.pins import COLORS, MOST_PINS, Pin
-from app.session.session import first_editable
 from app.session.shown import Shown, titled, window_of
 from app.shell import notices
 from app.shell.view import Frame, PictureView, Tab, if_user
