@@ -25,7 +25,7 @@ from navcore.networks import NETWORKS
 from navcore.networks.base import LinearNetwork
 from navcore.scenario.file import load, presets, scenario_hash
 
-_WIDTH, _HEIGHT = 150, 62
+_WIDE, _HIGH = 150, 62
 _LOW_DB, _HIGH_DB = -12.0, 18.0
 _FIRST, _LAST = -2.0, 2.0
 """Powers of ten of the frequency over omega_s at the ends."""
@@ -91,15 +91,18 @@ def _trade(network: LinearNetwork, gain_db: np.ndarray) -> str:
 
 
 def _svg(power: np.ndarray, gain_db: np.ndarray) -> str:
-    x = _WIDTH * (power - _FIRST) / (_LAST - _FIRST)
-    y = _HEIGHT * (_HIGH_DB - np.clip(gain_db, _LOW_DB, _HIGH_DB)) / (_HIGH_DB - _LOW_DB)
+    x = _WIDE * (power - _FIRST) / (_LAST - _FIRST)
+    y = _HIGH * (_HIGH_DB - np.clip(gain_db, _LOW_DB, _HIGH_DB)) / (_HIGH_DB - _LOW_DB)
     points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))
-    zero, schuler = _HEIGHT * _HIGH_DB / (_HIGH_DB - _LOW_DB), _WIDTH * (0.0 - _FIRST) / (_LAST - _FIRST)
+    zero, schuler = (
+        _HIGH * _HIGH_DB / (_HIGH_DB - _LOW_DB),
+        _WIDE * (0.0 - _FIRST) / (_LAST - _FIRST),
+    )
     return (
-        f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img"><title>|H| from {_LOW_DB:g} to {_HIGH_DB:g} dB '
+        f'<svg viewBox="0 0 {_WIDE} {_HIGH}" role="img"><title>|H| from {_LOW_DB:g} to {_HIGH_DB:g} dB '
         f"over the frequency; the dashed line is the Schuler frequency</title>"
-        f'<path d="M0 {zero:.1f}H{_WIDTH}" '
-        f'stroke="{style.GRID}"/><path d="M{schuler:.1f} 0V{_HEIGHT}" stroke="{style.REFERENCE}" '
+        f'<path d="M0 {zero:.1f}H{_WIDE}" '
+        f'stroke="{style.GRID}"/><path d="M{schuler:.1f} 0V{_HIGH}" stroke="{style.REFERENCE}" '
         f'stroke-dasharray="3 3"/><polyline points="{points}" fill="none" '
         f'stroke="{style.METHOD_COLORS[0]}" stroke-width="1.8"/></svg>'
     )
