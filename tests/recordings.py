@@ -34,11 +34,15 @@ class Ship(NamedTuple):
     track: tuple[str, ...]
 
 
+OWN_SHIP = Ship(False, str(OWN / "sikuliaq-log.csv"), (str(OWN / "sikuliaq-track.csv"),))
+"""The ship's files that come with the program."""
+
+
 def ship() -> Ship:
     """Find the ship's files."""
     folder = raw_folder()
     if folder is None:
-        return Ship(False, str(OWN / "sikuliaq-log.csv"), (str(OWN / "sikuliaq-track.csv"),))
+        return OWN_SHIP
     names = ("gnss_cnav", "gyro_1")
     track = tuple(str(folder / "ship" / f"SKQ_{name}.txt") for name in names)
     return Ship(True, str(folder / "ship" / "SKQ_speedlog.txt"), track)

@@ -1,4 +1,4 @@
-"""What a misprint is: where it stands, what is right, and both computed side by side."""
+"""A misprint: where it stands, what is right, and both computed side by side."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Number:
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """What the printed and the corrected form give.
+    """Results of the printed and of the corrected form.
 
     Attributes
     ----------

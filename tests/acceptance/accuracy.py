@@ -48,7 +48,7 @@ RATES_HZ = (50.0, 100.0, 200.0, 400.0)
 
 
 def at_rest() -> Iterator[Row]:
-    """What perfect sensors leave after 3 h at rest."""
+    """Measure the errors that perfect sensors leave after 3 h at rest."""
     for attitude in ATTITUDES:
         pitch, roll, heading = attitude
         motion = StaticMotion(pitch_deg=pitch, roll_deg=roll, heading_deg=heading)
@@ -58,7 +58,7 @@ def at_rest() -> Iterator[Row]:
 
 
 def in_motion() -> Iterator[Row]:
-    """What perfect sensors leave in motion, and how it falls with the rate."""
+    """Measure the errors that perfect sensors leave in motion, and how they fall with the rate."""
     limit = "1e-8 rad, 1e-5 m/s, 0.05 m (swing)"
     for name, (motion, vertical, hours) in MOTIONS.items():
         found = worst(motion, 200.0, hours * 3600.0, vertical=vertical)

@@ -19,7 +19,7 @@ FOLDER = Path(__file__).resolve().parent / "golden"
 
 
 def present(name: str) -> list[dict[str, Any]]:
-    """What a preset gives now, as far as it must not change: no times, no versions, no wording."""
+    """Compute the metrics of a preset that must not change: no times, no versions, no wording."""
     kept = ("name", "status", "loop", "errors")
     return [{key: method[key] for key in kept} for method in metrics(simulate(load(name)))["methods"]]
 

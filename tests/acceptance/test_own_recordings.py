@@ -1,4 +1,4 @@
-"""The recordings that come with the program: what they hold, and the runs on them, in any clone."""
+"""The recordings that come with the program: their IMU and licences, and the runs on them, in any clone."""
 
 from __future__ import annotations
 
@@ -12,16 +12,10 @@ from navcore.checks.file import check_file
 from navcore.checks.imu import IMU_CHECKER
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import WGS84
-from navcore.foundation.units import DEG, DEG_PER_HOUR, KNOT
-from navcore.io.recording import load
+from navcore.foundation.units import DEG, DEG_PER_HOUR
 from navcore.mechanization.strapdown.attitude import angles_of
-from navcore.motion.base import HEADING, Site
-from navcore.motion.track import TrackMotion
-from navcore.scenario.file import load as load_scenario
-from navcore.sensors.log import reference_errors
-from navcore.sensors.recorded import recorded_window
+from navcore.scenario.file import load
 from navcore.sensors.recorded_imu import check_rest, read_imu
-from navcore.sensors.reference import Reference
 
 SHARED_S = 714.0
 
@@ -41,30 +35,8 @@ def test_the_recordings_are_small_understood_and_licensed(recordings: Path) -> N
     assert all(file.name in licences for file in files)
 
 
-def test_the_log_has_a_resolution_of_a_tenth_of_a_knot(recordings: Path) -> None:
-    log = load(recordings / "sikuliaq-log.csv")
-    assert log.water.time_s.size == log.ground.time_s.size == 2500
-    tenths = log.ground.values / (0.1 * KNOT)
-    assert tenths == pytest.approx(np.rint(tenths), abs=1e-9)
-    assert log.water.values[:, 1].min() == pytest.approx(7.8 * KNOT)
-
-
-def test_ground_speed_agrees_with_the_track_as_stated_with_the_data(recordings: Path) -> None:
-    """Ground minus GNSS speed: -0.05 +- 0.07 kn."""
-    track = TrackMotion(file=str(recordings / "sikuliaq-track.csv"))
-    log = Reference(kind="file", file=str(recordings / "sikuliaq-log.csv"), speed="ground", frame="body")
-    window = recorded_window(track, log)
-    truth = track.truth(1429, 0.5, Site(0.0, 0.0, 0.0), WGS84, start_utc=window.start_s)
-    found = reference_errors(log, truth, SHARED_S, 1, start_utc=window.start_s)
-    heading = np.interp(found.time_s, 0.5 * np.arange(1429), truth.values[:, HEADING])
-    forward = found.error[:, 0] * np.sin(heading) + found.error[:, 1] * np.cos(heading)
-    assert found.time_s.size == 650
-    assert forward.mean() / KNOT == pytest.approx(-0.05, abs=0.02)
-    assert forward.std() / KNOT == pytest.approx(0.07, abs=0.02)
-
-
 def test_the_example_runs_on_them(repo_root: Path) -> None:
-    run = simulate(load_scenario(str(repo_root / "examples" / "sikuliaq.toml")))
+    run = simulate(load(str(repo_root / "examples" / "sikuliaq.toml")))
     assert [m.method.name for m in run.methods] == ["free", "classic2", "complementary"]
     assert [m.status for m in run.methods] == ["ok"] * 3
     assert run.t_s[-1] == pytest.approx(SHARED_S, abs=1.0)

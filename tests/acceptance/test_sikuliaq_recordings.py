@@ -6,14 +6,18 @@ import numpy as np
 import pytest
 
 from navcore.checks.file import check_file
+from navcore.engine.simulation import simulate
+from navcore.foundation.earth import WGS84
 from navcore.foundation.units import DEG, HOUR, KNOT
 from navcore.io.recording import load, shared_window
 from navcore.motion.base import HEADING, VE, VN, Site
 from navcore.motion.track import TrackMotion
+from navcore.scenario.file import read_toml
+from navcore.scenario.model import Scenario
 from navcore.sensors.log import reference_errors
 from navcore.sensors.recorded import recorded_window, recording_notices
 from navcore.sensors.reference import Reference
-from tests.recordings import ship
+from tests.recordings import OWN_SHIP, ship
 
 SHARED_S = 714.0
 NO_HEIGHT = "empty cells, missing samples: height_m 1"
@@ -21,6 +25,10 @@ NO_HEIGHT = "empty cells, missing samples: height_m 1"
 
 
 SHIP = ship()
+EACH_SHIP = pytest.mark.parametrize(
+    "files", dict.fromkeys((SHIP, OWN_SHIP)), ids=lambda files: "raw" if files.raw else "own"
+)
+"""Both, where the raw recordings are at hand."""
 STREAMS = (
     [
         (SHIP.log, 5000, "VDVBW", 2500, 0.911, 2744.07),
@@ -63,9 +71,13 @@ def test_check_tells_the_speeds_of_the_log():
     assert quantities["water"]["start_utc"] == "2018-12-06T00:00:00.6Z"
 
 
-def test_the_log_has_a_resolution_of_a_tenth_of_a_knot():
-    tenths = load(SHIP.log).ground.values / (0.1 * KNOT)
+@EACH_SHIP
+def test_the_log_has_a_resolution_of_a_tenth_of_a_knot(files):
+    log = load(files.log)
+    assert log.water.time_s.size == log.ground.time_s.size == 2500
+    tenths = log.ground.values / (0.1 * KNOT)
     assert tenths == pytest.approx(np.rint(tenths), abs=1e-9)
+    assert log.water.values[:, 1].min() == pytest.approx(7.8 * KNOT)
 
 
 def test_all_streams_share_714_s_from_the_first_fix():
@@ -76,7 +88,7 @@ def test_all_streams_share_714_s_from_the_first_fix():
 
 
 def test_the_track_moves_as_the_receiver_says(track):
-    values = track.truth(714, 1.0, Site(0.0, 0.0, 0.0), _earth()).values
+    values = track.truth(714, 1.0, Site(0.0, 0.0, 0.0), WGS84).values
     recorded = _velocity_of_the_receiver()
     # Course is printed to 0.1 deg and speed to 0.01 kn; the smoothing takes the roll of the antenna out.
     assert np.std(values[:, [VE, VN]] - recorded, axis=0).max() < (0.06 if SHIP.raw else 0.12)
@@ -84,10 +96,12 @@ def test_the_track_moves_as_the_receiver_says(track):
     assert values[0, HEADING] == pytest.approx(92.3 * DEG, abs=0.2 * DEG)
 
 
-def test_ground_speed_agrees_with_the_track_as_stated_with_the_data(track):
-    reference = Reference(kind="file", file=SHIP.log, speed="ground", frame="body")
+@EACH_SHIP
+def test_ground_speed_agrees_with_the_track_as_stated_with_the_data(files):
+    track = TrackMotion(file=files.track)
+    reference = Reference(kind="file", file=files.log, speed="ground", frame="body")
     window = recorded_window(track, reference)
-    truth = track.truth(1429, 0.5, Site(0.0, 0.0, 0.0), _earth(), start_utc=window.start_s)
+    truth = track.truth(1429, 0.5, Site(0.0, 0.0, 0.0), WGS84, start_utc=window.start_s)
     found = reference_errors(reference, truth, SHARED_S, 1, start_utc=window.start_s)
     assert found.time_s.size == 650
     heading = np.interp(found.time_s, 0.5 * np.arange(1429), truth.values[:, HEADING])
@@ -104,7 +118,7 @@ def test_water_speed_differs_by_the_tidal_stream(track):
     for speed in ("water", "ground"):
         reference = Reference(kind="file", file=SHIP.log, speed=speed)
         window = recorded_window(track, reference)
-        truth = track.truth(1429, 0.5, Site(0.0, 0.0, 0.0), _earth(), start_utc=window.start_s)
+        truth = track.truth(1429, 0.5, Site(0.0, 0.0, 0.0), WGS84, start_utc=window.start_s)
         errors[speed] = reference_errors(reference, truth, SHARED_S, 1, start_utc=window.start_s).error
     stream = errors["water"] - errors["ground"]
     assert np.hypot(*stream.mean(axis=0)) > 0.3
@@ -112,10 +126,6 @@ def test_water_speed_differs_by_the_tidal_stream(track):
 
 
 def test_a_run_along_the_recordings_by_all_three_methods(repo_root):
-    from navcore.engine.simulation import simulate
-    from navcore.scenario.file import read_toml
-    from navcore.scenario.model import Scenario
-
     data = read_toml(repo_root / "examples" / "ship_log.toml", "ship_log.toml")
     data["motion"]["file"] = list(SHIP.track)
     data["reference"]["file"] = SHIP.log
@@ -137,11 +147,5 @@ def _velocity_of_the_receiver() -> np.ndarray:
     if SHIP.raw:
         return recording.velocity.values
     lat, lon = recording.position.values[:, 0], recording.position.values[:, 1]
-    m, n = _earth().radii(float(lat[0]))
+    m, n = WGS84.radii(float(lat[0]))
     return np.column_stack([np.gradient(lon) * n * np.cos(lat), np.gradient(lat) * m])
-
-
-def _earth():
-    from navcore.foundation.earth import WGS84
-
-    return WGS84

@@ -1,4 +1,4 @@
-"""What `bridge` leaves at sea with and without changes of the log and an initial heading error."""
+"""Errors that `bridge` leaves at sea with and without changes of the log and an initial heading error."""
 
 from __future__ import annotations
 

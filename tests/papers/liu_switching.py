@@ -204,7 +204,7 @@ def paired(run: Run, without: Run) -> np.ndarray:
 
 
 def added(runs: Runs, case: str) -> np.ndarray:
-    """What the changes of the log add with each method and seed, shape (seeds, methods, 3).
+    """Compute what the changes of the log add with each method and seed, shape (seeds, methods, 3).
 
     Each run is compared with the same run, noise and all, without any change of the log.
     """
@@ -220,7 +220,7 @@ def added(runs: Runs, case: str) -> np.ndarray:
 
 
 def added_by(runs: Runs, case: str, quantity: Quantity, name: str) -> np.ndarray:
-    """What the changes of the log add with one method, with each of the seeds."""
+    """Compute what the changes of the log add with one method, with each of the seeds."""
     return added(runs, case)[:, METHODS.index(name), QUANTITIES.index(quantity)]
 
 

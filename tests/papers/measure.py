@@ -1,4 +1,4 @@
-"""What the claims measure on a run: attitude errors, settling, peaks, spreads, intervals over seeds."""
+"""Measures of the claims on a run: attitude errors, settling, peaks, spreads, intervals over seeds."""
 
 from __future__ import annotations
 

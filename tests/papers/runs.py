@@ -42,7 +42,7 @@ class Runs:
         return self.keep((preset, overrides), lambda: simulate(scenario_of(preset, overrides)))
 
     def keep(self, key: Hashable, make: Callable[[], _Made]) -> _Made:
-        """What ``make`` gave when it was first asked for under this key."""
+        """Return the value that ``make`` gave when this key was first asked for."""
         if key not in self._kept:
             self._kept[key] = make()
         return self._kept[key]

@@ -68,7 +68,7 @@ def errors(runs: Runs, name: str, *overrides: str) -> np.ndarray:
 
 
 def measured(runs: Runs, variant: str = PRINTED) -> dict[str, np.ndarray]:
-    """What a variant gives from 10 h on, with each of the seeds.
+    """Measure what a variant gives from 10 h on, with each of the seeds.
 
     Returns
     -------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import subprocess
 import sys
 from dataclasses import replace
@@ -163,7 +164,7 @@ def test_the_same_code_writes_the_same_files(tmp_path: Path):
         out = tmp_path / seed
         command = [sys.executable, "-m", "tests.papers", "--out", str(out), "--only", "sun-table"]
         done = subprocess.run(
-            command, capture_output=True, text=True, env={**_environment(), "PYTHONHASHSEED": seed}
+            command, capture_output=True, text=True, env=os.environ | {"PYTHONHASHSEED": seed}
         )
         assert done.returncode == 0, done.stderr
         picture = (out / "papers" / "sun-table-1.svg").read_bytes()
@@ -178,9 +179,3 @@ def test_nothing_is_written_when_a_claim_contradicts_its_reason(tmp_path: Path, 
     faults = write_report([replace(every[0], exhibits=(wrong,))], tmp_path)
     assert len(faults) == 1 and "x is two" in faults[0]
     assert not (tmp_path / "papers.md").exists()
-
-
-def _environment() -> dict[str, str]:
-    import os
-
-    return dict(os.environ)
