@@ -1,27 +1,28 @@
 """The dashboard, served from this process, and pages on it."""
 
-from __future__ import annotations
-
-from collections.abc import Generator, Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Generator, Iterator
+from typing import Any
 
 import pytest
+from playwright.sync_api import Browser
 
-from tests.browser.driver import Bench
+from app.http.server import DashboardServer
+from app.serve import Dashboard, open_dashboard
+from app.session.session import Session
+from tests.browser.driver import SIZES, Bench
 
-if TYPE_CHECKING:
-    from playwright.sync_api import Browser
-
-    from app.http.server import DashboardServer
-    from app.serve import Dashboard
-    from app.session.session import Session
+Served = tuple[DashboardServer, Dashboard]
+Another = Callable[..., Bench]
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Let playwright give up before a test's time is over, for that would end the browser of all tests."""
     for item in items:
-        if "tests/browser/" in item.nodeid and item.get_closest_marker("timeout") is None:
-            item.add_marker(pytest.mark.timeout(400))
+        if "tests/browser/" in item.nodeid:
+            item.add_marker(pytest.mark.browser)
+            if item.get_closest_marker("timeout") is None:
+                item.add_marker(pytest.mark.timeout(400))
 
 
 @pytest.hookimpl(wrapper=True)
@@ -37,10 +38,8 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestR
 
 
 @pytest.fixture(scope="session")
-def dashboard() -> Iterator[tuple[DashboardServer, Dashboard]]:
+def dashboard() -> Iterator[Served]:
     """One server for all browser tests; every test has a session of its own."""
-    from app.serve import open_dashboard
-
     server, dashboard = open_dashboard(port=0)
     yield server, dashboard
     server.stop()
@@ -48,36 +47,45 @@ def dashboard() -> Iterator[tuple[DashboardServer, Dashboard]]:
 
 
 @pytest.fixture(scope="session")
-def shared(browser: Browser, dashboard: tuple[DashboardServer, Dashboard]) -> Iterator[Bench]:
+def shared(browser: Browser, dashboard: Served) -> Iterator[Bench]:
     """Open the page that all files share: opening one takes seconds.
 
     In its window frequency and errors are both in view.
     """
     context = browser.new_context(viewport={"width": 1920, "height": 1080}, accept_downloads=True)
-    page = context.new_page()
-    yield Bench(page, dashboard[0].url, dashboard[1].sessions).open()
+    yield Bench(context.new_page(), dashboard[0].url, dashboard[1].sessions).open()
     context.close()
 
 
-@pytest.fixture(scope="module")
-def opened(shared: Bench) -> Bench:
-    """Give the shared page to a file, as a new visitor finds it."""
-    shared.begin()
-    return shared
+@pytest.fixture(scope="session")
+def chinese(browser: Browser, dashboard: Served) -> Iterator[Bench]:
+    """A page in Chinese, which stays open: to load a page takes seconds."""
+    context = browser.new_context(viewport={"width": 1920, "height": 1080}, accept_downloads=True)
+    bench = Bench(context.new_page(), dashboard[0].url, dashboard[1].sessions)
+    yield bench.open(query="?fixedDpr=0.25&start=no&lang=zh")
+    context.close()
 
 
 @pytest.fixture
-def bench(opened: Bench) -> Bench:
-    """Give the shared page without what earlier tests left in its console."""
-    opened.faults.clear()
-    return opened
+def bench(shared: Bench) -> Iterator[Bench]:
+    """Give the shared page as a new visitor finds it, but for the scenario and the tabs in front."""
+    shared.size = SIZES[0]
+    shared.clean()
+    yield shared
+    assert shared.faults == []
 
 
 @pytest.fixture
 def fresh(bench: Bench) -> Bench:
-    """Give the shared page with a still ship in one channel; the compass network in hand."""
-    bench.reset("zha-fast", selected=2)
-    bench.tab("Frequency", "Errors", "Method")
+    """Give the shared page with a still ship in one channel; the compass network is selected."""
+    bench.reset("zha-fast", "Frequency", "Errors", "Method", selected=2)
+    return bench
+
+
+@pytest.fixture
+def moving(bench: Bench) -> Bench:
+    """Give the shared page with a ship under way; the third of its methods is selected."""
+    bench.reset("sikuliaq-like", "Frequency", "Errors", "Method", selected=2)
     return bench
 
 
@@ -85,3 +93,20 @@ def fresh(bench: Bench) -> Bench:
 def session(bench: Bench) -> Session:
     """What the server keeps of the shared page's visitor."""
     return bench.session
+
+
+@pytest.fixture
+def another(browser: Browser, dashboard: Served) -> Iterator[Another]:
+    """Make further pages, not yet open, each in a browser of its own."""
+    contexts, benches = [], []
+
+    def make(width: int = 800, height: int = 600, **options: Any) -> Bench:
+        contexts.append(browser.new_context(viewport={"width": width, "height": height}, **options))
+        benches.append(Bench(contexts[-1].new_page(), dashboard[0].url, dashboard[1].sessions))
+        return benches[-1]
+
+    yield make
+    faults = [fault for bench in benches for fault in bench.faults]
+    for context in contexts:
+        context.close()
+    assert faults == []

@@ -1,37 +1,37 @@
 """Drives the dashboard's page as a user would, and reads what the page itself holds."""
 
-from __future__ import annotations
-
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from itertools import count
-from typing import TYPE_CHECKING, Any, TypeVar
+from pathlib import Path
+from typing import Any, Self, TypeVar
 from weakref import WeakKeyDictionary
 
+import pytest
 from playwright.sync_api import Error as PlaywrightError
-from playwright.sync_api import TimeoutError as PlaywrightTimeout
+from playwright.sync_api import Locator, Page
 
 from app.bridge.mends import pool_of
 from app.languages.wording import wording
 from app.session.display import Display
-from app.session.history import first_editable
 from app.session.names import GivenNames
-from app.session.sessions import first_scenario
+from app.session.session import Session
+from app.session.sessions import Sessions
+from app.shell.layout import WIDE_FROM_PX, layout_for
 from app.shell.page import Page as OpenPage
 from navcore.scenario.file import load
-from tests.browser import scripts
+from navcore.scenario.model import Scenario
 from tests.browser.fields import box_labels, slider_labels
 from tests.browser.patience import GONE, PATIENCE_MS, SLOW, THROTTLE_MS
 
-if TYPE_CHECKING:
-    from playwright.sync_api import Locator, Page
-
-    from app.session.session import Session
-    from app.session.sessions import Sessions
-    from navcore.scenario.model import Scenario
-
 T = TypeVar("T")
+
+SIZES = [(1920, 1080), (1366, 768), (1280, 720)]
+"""Windows in which the page is looked at; most tests run in the first."""
+SWEEP = [SIZES[0], pytest.param(SIZES[1], marks=pytest.mark.nightly), SIZES[2]]
+"""The same for a test that runs in all of them: the one in the middle at night."""
 
 
 def _has_callbacks(view: OpenPage) -> bool:
@@ -52,6 +52,13 @@ class Bench:
         Of the dashboard.
     sessions : Sessions or None
         Of the dashboard; None when it does not run in this process.
+
+    Attributes
+    ----------
+    faults : list of str
+        What the page's console complains of.
+    size : tuple of int
+        Window to which `clean` goes back.
     """
 
     def __init__(self, page: Page, url: str, sessions: Sessions | None) -> None:
@@ -59,10 +66,11 @@ class Bench:
         self.url = url
         self.sessions = sessions
         self.faults: list[str] = []
-        self.language = "en"
+        self.language, self.size = "en", SIZES[0]
         self._marks: WeakKeyDictionary[Any, Any] = WeakKeyDictionary()
         self._mark_numbers = count(1)
         page.set_default_timeout(PATIENCE_MS)
+        page.add_init_script(path=Path(__file__).with_name("look.js"))
         if SLOW > 1.0:
             tools = page.context.new_cdp_session(page)
             tools.send("Emulation.setCPUThrottlingRate", {"rate": SLOW})
@@ -73,7 +81,7 @@ class Bench:
         if not any(gone in text for gone in GONE):
             self.faults.append(text)
 
-    def open(self, path: str = "", query: str = "?fixedDpr=0.25&start=no") -> Bench:
+    def open(self, path: str = "", query: str = "?fixedDpr=0.25&start=no") -> Self:
         """Open the page (a new session without a path) without its start card, and wait for its first run."""
         self.page.goto(f"{self.url}{path}{query}")
         self.page.wait_for_selector("#sb-run[data-run]", state="attached")
@@ -152,17 +160,13 @@ class Bench:
 
     def press(self, name: str, key: str = "ArrowRight") -> None:
         """Move a slider by a key and wait for the run that follows."""
-        number = self.run
-        self.slider(name).press(key)
-        self.wait_for_run(number)
-        self.settle()
+        with self.next_run():
+            self.slider(name).press(key)
 
     def type(self, name: str, text: str) -> None:
         """Type into a field's box and wait for the run that follows."""
-        number = self.run
-        self.box(name).fill(text)
-        self.wait_for_run(number)
-        self.settle()
+        with self.next_run():
+            self.box(name).fill(text)
 
     def choose(self, name: str, option: str) -> None:
         """Choose in a dropdown and wait until what follows is shown; a run need not follow."""
@@ -171,10 +175,8 @@ class Bench:
         self.settle()
 
     def choose_and_run(self, name: str, option: str) -> None:
-        number = self.run
-        self.choose(name, option)
-        self.wait_for_run(number)
-        self.settle()
+        with self.next_run():
+            self.choose(name, option)
 
     def upload(self, file: Any) -> None:
         """Upload a path, or a mapping of name, mimeType and buffer."""
@@ -182,7 +184,7 @@ class Bench:
 
     def close_notices(self) -> None:
         # Not by the mouse: notices move while others close, which lets others come that waited for room.
-        self.page.wait_for_function(scripts.NO_NOTICES, polling=THROTTLE_MS)
+        self.page.wait_for_function("look.noNotices", polling=THROTTLE_MS)
 
     # ------------------------------------------------------------ waiting and reading
 
@@ -194,16 +196,16 @@ class Bench:
     def wait_for_run(self, after: int) -> None:
         """Wait until a later run is shown."""
         later = "n => Number(document.querySelector('#sb-run').dataset.run) > n"
-        try:
-            self.page.wait_for_function(later, arg=after)
-        except PlaywrightTimeout:
-            focus = self.page.evaluate("() => document.activeElement.outerHTML.slice(0, 300)")
-            shown, made = self.run, self.session.run_number
-            raise AssertionError(
-                f"no run after {after}: shown {shown}, made {made}, {self.status!r}; focus {focus}; "
-                f"{self.faults}"
-            ) from None
-        self.page.evaluate(scripts.NEXT_FRAME)
+        self.page.wait_for_function(later, arg=after)
+        self.page.evaluate("look.nextFrame")
+
+    @contextmanager
+    def next_run(self) -> Iterator[None]:
+        """Wait until the run that follows what is done meanwhile is shown, and all that came with it."""
+        number = self.run
+        yield
+        self.wait_for_run(number)
+        self.settle()
 
     def wait_for_change(self, look: Callable[[], T], *before: T) -> T:
         """Wait until something stands still and differs from all that it was; return it."""
@@ -224,20 +226,21 @@ class Bench:
             self.page.wait_for_timeout(20)
         raise AssertionError(f"not within {seconds:g} s; {self.status!r}; {self.faults}")
 
-    def reset(self, preset: str, selected: int = 0) -> None:
-        """Begin the visitor's session anew with a preset, without a click; wait until the page shows it."""
-        self.put(load(preset), origin=preset, selected=selected)
+    def reset(self, preset: str, *tabs: str, selected: int = 0) -> None:
+        """Begin the visitor's session anew with a preset, tabs in front, without a click; wait for it."""
+        self.put(load(preset), *tabs, origin=preset, selected=selected)
 
-    def put(self, scenario: Scenario, *, origin: str | None = None, selected: int = 0) -> None:
+    def put(self, scenario: Scenario, *tabs: str, origin: str | None = None, selected: int = 0) -> None:
         """Give the visitor's session a scenario, without a click; wait until the page shows it."""
         session = self.session
         with session.lock:
             session.change(scenario, None, origin=origin, selected=selected)
             session.select(selected, None)
         self.catch_up()
-        self.page.wait_for_function(scripts.OPENED)
+        self.page.wait_for_function("look.opened")
         self.heard()
         self.close_notices()
+        self.tab(*tabs)
 
     def show(self, **choices: object) -> None:
         """Change how the session's pictures are shown, without a click; wait until the page shows it."""
@@ -249,30 +252,36 @@ class Bench:
         self.session.select(index, None)
         self.catch_up()
 
-    def begin(self) -> None:
-        """Put the page back to what a new visitor finds, for the tests of another file."""
-        page, session = self.page, self.session
-        page.keyboard.press("Escape")
-        page.set_viewport_size({"width": 1920, "height": 1080})
+    def clean(self) -> None:
+        """Take back what an earlier test has left: dialogs, lessons, pins, choices, the window."""
+        session = self.session
+        self.page.keyboard.press("Escape")
         session.present(None)
+        session.verifier.cancel()
         session.verifier.forget()
         for pin in session.pins.all:
             session.pins.remove(pin.id)
         session.pins._next = 1
-        plain = Display()
-        session.show(None, **{name: getattr(plain, name) for name in Display.model_fields})
-        scenario, origin = first_scenario()
-        self.put(scenario, origin=origin, selected=first_editable(scenario))
-        for tabs in page.get_by_role("tablist").all():
-            tabs.get_by_role("tab").first.click()
+        if session.display != Display():
+            self.show(**dict(Display()))
+        if self.page.viewport_size != dict(zip(("width", "height"), self.size, strict=True)):
+            self.resize(self.size)
+        self.page.evaluate("look.clean")
+        self.close_notices()
+        self.faults.clear()
+
+    def resize(self, size: tuple[int, int]) -> None:
+        """Give the window another size and wait until the page is laid out anew."""
+        width, height = size
+        self.page.set_viewport_size({"width": width, "height": height})
+        right, panels = layout_for(width, height).right_px, 2 if width >= WIDE_FROM_PX else 1
+        self.page.wait_for_function("look.laidOut", arg=[panels, right])
         self.heard()
-        for shows in page.locator("#sb-stage [data-shows][aria-pressed=false]").all():
-            shows.click()
 
     def settle(self) -> None:
         """Wait until what was done on the page has been sent, run and shown."""
         self.sent()
-        if self.sessions is not None:  # else it is a server in another process
+        if self.sessions is not None:  # else the server is in another process
             self.catch_up()
 
     def sent(self) -> None:
@@ -295,19 +304,15 @@ class Bench:
 
     def heard(self) -> None:
         """Wait until the server knows window and front tabs, and the page holds what it sent for them."""
-        self.page.wait_for_function(scripts.HEARD)
+        self.page.wait_for_function("look.heard")
         if self.sessions is None:  # a server in another process
             return
         views = [view for view in self._pages if view._front]
-        for _ in range(3000):
-            if all(
+        self.wait_until(
+            lambda: all(
                 view._layout == view.wanted_layout() and not view.column.stale(view._front) for view in views
-            ):
-                break
-            self.page.wait_for_timeout(10)
-        else:
-            stale = [view.column.stale(view._front) for view in views]
-            raise AssertionError(f"not made: pictures of {stale}; {self.status!r}; {self.faults}")
+            )
+        )
         self._receive()
 
     @property
@@ -326,12 +331,12 @@ class Bench:
                 self._marks[view].content = f'<div hidden data-mark="{number}"></div>'
                 view.client.flush()
         self.page.wait_for_selector(f'[data-mark="{number}"]', state="attached")
-        self.page.evaluate(scripts.NEXT_FRAME)
+        self.page.evaluate("look.nextFrame")
 
     def account(self) -> str:
         """What page and server hold, in lines: for the report of a failed test."""
         try:
-            told = {"address": self.page.url, **self.page.evaluate(scripts.ACCOUNT)}
+            told = {"address": self.page.url, **self.page.evaluate("look.account")}
         except PlaywrightError as error:
             told = {"page": str(error).strip()}
         told["faults in the console"] = self.faults
@@ -373,18 +378,13 @@ class Bench:
 
     def plotly(self) -> list[dict[str, Any]]:
         """Traces of the plotly figures in view, as plotly holds them, once they are those of the run."""
-        self.page.wait_for_function(scripts.UP_TO_DATE)
-        return self.page.evaluate(scripts.PLOTLY)
-
-    def sums(self, methods: int = 3) -> dict[str, Any]:
-        """Sums over what plotly, uPlot and the 3D scene hold, once the plots in view are those of the run."""
-        self.page.wait_for_function(scripts.UP_TO_DATE)
-        return self.page.evaluate(scripts.SUMS, methods)
+        self.page.wait_for_function("look.upToDate")
+        return self.page.evaluate("look.plotly")
 
     def curves(self) -> list[dict[str, Any]]:
         """Error curves, as uPlot holds them."""
-        return self.page.evaluate(scripts.UPLOT)
+        return self.page.evaluate("look.uplot")
 
     def line(self, name: str) -> list[float] | None:
         """Points of a line in the 3D scene, as the page's scene tree holds them."""
-        return self.page.evaluate(scripts.LINE, name)
+        return self.page.evaluate("look.line", name)

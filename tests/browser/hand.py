@@ -5,37 +5,28 @@ Everything is read from the page alone, so that the same script measures the tre
 ``--before`` both are served side by side and measured in turns, and the ratios are told.
 """
 
-from __future__ import annotations
-
 import argparse
-import os
-import re
 import statistics
-import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections import defaultdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-from urllib.request import urlopen
+from typing import Any
+
+from playwright.sync_api import Browser, Page
 
 from app.bench.dashboard import median_and_p95
 from app.bench.process import free_port
-from tests.browser.cpu import browser_cpu_ms
 from tests.browser.fields import slider_labels
+from tests.browser.measuring import WINDOW, browser_cpu_ms, served, server_cpu_ms, step_times_ms, thumb
 from tests.chromium import launched
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
 
 HERE = Path(__file__).parents[2]
 SLIDER = ["zeta", *slider_labels("network.zeta")]
 """Its labels, that of an earlier commit first."""
 SIZES: dict[str, tuple[Any, tuple[str, ...]]] = {
-    "Frequency, Errors, 3D": ({"width": 1920, "height": 1080}, ("Method", "Frequency", "Errors")),
+    "Frequency, Errors, 3D": (WINDOW, ("Method", "Frequency", "Errors")),
     "Errors alone": ({"width": 1366, "height": 768}, ("Method", "Errors")),
 }
 _THREADS = ("main thread", "painting")
@@ -48,7 +39,6 @@ _PAUSE_MS = 700
 """Between steps whose cost is counted: longer than the slowest takes."""
 _AWAY = 6
 """Steps beyond the pins: one that equals the run has another name, and the legend is laid out anew."""
-
 _WATCH = """() => {
   const charts = () => Object.values(window.__viserTestpoints?.uplots ?? {}).map(entry => entry.chart);
   const plots = () => [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null);
@@ -73,21 +63,6 @@ _TRACK = """labels => {
     .querySelector('.mantine-Slider-track').getBoundingClientRect();
   return [track.left, track.right];
 }"""
-_STEP = """after => new Promise(resolve => {
-  let start = null;
-  addEventListener('keydown', () => { start = performance.now(); }, {capture: true, once: true});
-  const shown = () => [...document.querySelectorAll('.js-plotly-plot')]
-    .filter(p => p.offsetParent !== null).map(p => Number(p._fullLayout?.meta?.run));
-  const current = () => {
-    const run = Number(document.querySelector('#sb-run').dataset.run);
-    return run > after && shown().every(number => number === run);
-  };
-  const look = () => requestAnimationFrame(() => {
-    if (start === null || !current()) return look();
-    requestAnimationFrame(() => requestAnimationFrame(() => resolve(performance.now() - start)));
-  });
-  look();
-})"""
 _FIRST_PICTURE = """() => {
   const charts = Object.values(window.__viserTestpoints?.uplots ?? {});
   return charts.length > 0 || document.querySelector('.js-plotly-plot .trace') !== null;
@@ -96,7 +71,6 @@ _CLOSE_NOTICES = """() =>
   document.querySelectorAll('.mantine-Notification-closeButton').forEach(button => button.click())"""
 _SERIES = """() => Math.max(...Object.values(window.__viserTestpoints?.uplots ?? {})
   .map(entry => entry.chart.series.length))"""
-_SHOWN_RUN = "Number(document.querySelector('#sb-run').dataset.run)"
 _EVERYTHING = """() => {
   const run = document.querySelector('#sb-run')?.dataset.run;
   const plots = [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null);
@@ -105,52 +79,8 @@ _EVERYTHING = """() => {
     && plots.every(p => String(p._fullLayout?.meta?.run) === run);
 }"""
 
-
-@dataclass
-class Followed:
-    """What was seen of one tree, over all rounds."""
-
-    figures: dict[str, list[float]] = field(default_factory=dict)
-
-    def note(self, name: str, *values: float) -> None:
-        """Add values of a figure."""
-        self.figures.setdefault(name, []).extend(values)
-
-    def median(self, name: str) -> float:
-        """Median of a figure."""
-        return statistics.median(self.figures[name])
-
-
-@contextmanager
-def served(tree: Path) -> Iterator[str]:
-    """Serve a tree in a process of its own; gives the address."""
-    port = free_port()
-    with tempfile.TemporaryDirectory() as state:
-        environment = os.environ | {"XDG_STATE_HOME": state, "XDG_DATA_HOME": state}
-        command = [sys.executable, "-m", "app", "serve", "--port", str(port)]
-        process = subprocess.Popen(
-            command, cwd=tree, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-        )
-        try:
-            url = f"http://127.0.0.1:{port}/"
-            _wait_for(url)
-            time.sleep(_WARM_S)
-            yield url
-        finally:
-            process.kill()
-            process.wait()
-
-
-def _wait_for(url: str) -> None:
-    until = time.monotonic() + 60.0
-    while True:
-        try:
-            urlopen(f"{url}healthz", timeout=5.0).close()
-            return
-        except OSError:
-            if time.monotonic() > until:
-                raise
-            time.sleep(0.1)
+Followed = dict[str, list[float]]
+"""Values of each figure that was seen of one tree, over all rounds."""
 
 
 def open_page(browser: Browser, url: str, size: Any, tabs: tuple[str, ...], seen: Followed) -> Page:
@@ -160,14 +90,12 @@ def open_page(browser: Browser, url: str, size: Any, tabs: tuple[str, ...], seen
     began = time.monotonic()
     page.goto(f"{url}?fixedDpr=0.25&start=no", wait_until="commit")
     page.wait_for_function(_FIRST_PICTURE, polling=20)
-    seen.note("opening, first picture (ms)", 1e3 * (time.monotonic() - began))
-    if size["width"] >= 1600:
+    seen["opening, first picture (ms)"].append(1e3 * (time.monotonic() - began))
+    if size == WINDOW:
         page.wait_for_function(_EVERYTHING, polling=20)
-        seen.note("opening, everything (ms)", 1e3 * (time.monotonic() - began))
+        seen["opening, everything (ms)"].append(1e3 * (time.monotonic() - began))
     page.wait_for_timeout(2500)
-    page.evaluate(
-        "() => document.querySelectorAll('.mantine-Notification-closeButton').forEach(b => b.click())"
-    )
+    page.evaluate(_CLOSE_NOTICES)
     for name in tabs:
         tab = page.get_by_role("tab", name=name, exact=True)
         if tab.get_attribute("aria-selected") != "true":
@@ -177,14 +105,9 @@ def open_page(browser: Browser, url: str, size: Any, tabs: tuple[str, ...], seen
     return page
 
 
-def _thumb(page: Page) -> Any:
-    script = "l => [...document.querySelectorAll('label')].find(e => l.includes(e.textContent)).htmlFor"
-    return page.locator(f"[id='{page.evaluate(script, SLIDER)}'] [role=slider]")
-
-
 def drag(page: Page, seconds: float, what: str, seen: Followed) -> None:
     """Move the slider to and fro with the mouse held down, and note the pictures that come meanwhile."""
-    box, track = _thumb(page).bounding_box(), page.evaluate(_TRACK, SLIDER)
+    box, track = thumb(page, SLIDER).bounding_box(), page.evaluate(_TRACK, SLIDER)
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     swing = min(_SWING_PX, track[1] - x)  # beyond the slider's end a move changes nothing
     page.mouse.move(x, y)
@@ -200,15 +123,15 @@ def drag(page: Page, seconds: float, what: str, seen: Followed) -> None:
     painted = browser_cpu_ms()
     page.mouse.move(x, y)  # the next drag begins here: at the slider's end it would move nothing
     page.mouse.up()
-    pictures = max(len(found["curves"]), 1)
+    curves, figures = found["curves"], found["figures"]
     for thread, before, after in zip(_THREADS, began_cpu, painted, strict=True):
-        seen.note(f"drag, {what}: {thread}, CPU a picture (ms)", (after - before) / pictures)
-    seen.note(f"drag, {what}: curves/s", len(found["curves"]) / seconds)
-    if found["figures"]:
-        seen.note(f"drag, {what}: plotly figures/s", len(found["figures"]) / seconds)
-    seen.note(f"drag, {what}: worst frame (ms)", max(found["frames"]))
-    gaps = [later - sooner for sooner, later in zip(found["curves"], found["curves"][1:], strict=False)]
-    seen.note(f"drag, {what}: longest wait for curves (ms)", max(gaps, default=1e3 * seconds))
+        seen[f"drag, {what}: {thread}, CPU a picture (ms)"].append((after - before) / max(len(curves), 1))
+    seen[f"drag, {what}: curves/s"].append(len(curves) / seconds)
+    if figures:
+        seen[f"drag, {what}: plotly figures/s"].append(len(figures) / seconds)
+    seen[f"drag, {what}: worst frame (ms)"].append(max(found["frames"]))
+    gaps = [later - sooner for sooner, later in zip(curves, curves[1:], strict=False)]
+    seen[f"drag, {what}: longest wait for curves (ms)"].append(max(gaps, default=1e3 * seconds))
     page.wait_for_timeout(1500)
 
 
@@ -218,23 +141,14 @@ def steps(page: Page, count: int, pid: int, seen: Followed, what: str) -> None:
     What looks for the last paint asks for frames and measures the page, so the cost is that of other steps,
     at which nothing looks.
     """
-    thumb = _thumb(page)
-    taken = []
-    thumb.focus()
-    for step in range(count):
-        page.evaluate(f"window.paint = ({_STEP})({_SHOWN_RUN}); null")
-        page.keyboard.press("ArrowRight" if step % 2 else "ArrowLeft")
-        page.wait_for_function("() => window.paint.then(time => (window.painted = time))")
-        taken.append(page.evaluate("() => window.painted"))
-        page.wait_for_timeout(300)
-    seen.note(f"step{what} to last paint (ms)", *taken[1:])
-    cpu, painting = _server_cpu_ms(pid), browser_cpu_ms()
+    seen[f"step{what} to last paint (ms)"] += step_times_ms(page, SLIDER, count)[1:]
+    cpu, painting = server_cpu_ms(pid), browser_cpu_ms()
     for step in range(count):
         page.keyboard.press("ArrowRight" if step % 2 else "ArrowLeft")
         page.wait_for_timeout(_PAUSE_MS)
     for thread, before, after in zip(_THREADS, painting, browser_cpu_ms(), strict=True):
-        seen.note(f"step{what}: {thread}, CPU (ms)", (after - before) / count)
-    seen.note(f"step{what}: server, CPU (ms)", (_server_cpu_ms(pid) - cpu) / count)
+        seen[f"step{what}: {thread}, CPU (ms)"].append((after - before) / count)
+    seen[f"step{what}: server, CPU (ms)"].append((server_cpu_ms(pid) - cpu) / count)
 
 
 def pin(page: Page) -> None:
@@ -251,37 +165,28 @@ def pin(page: Page) -> None:
 def move_on(page: Page, count: int) -> None:
     """Press the slider's key some times."""
     for _ in range(count):
-        _thumb(page).press("ArrowRight")
+        thumb(page, SLIDER).press("ArrowRight")
         page.wait_for_timeout(300)
 
 
-def _server_cpu_ms(pid: int) -> float:
-    fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
-    return 1e3 * (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
-def _listener(url: str) -> int:
-    port = re.search(r":(\d+)/", url)[1]
-    found = subprocess.run(["pgrep", "-f", f"app serve --port {port}"], capture_output=True, text=True)
-    return int(found.stdout.split()[0])
-
-
-def measure(browser: Browser, url: str, options: Any, seen: Followed) -> None:
-    """One round on one server."""
-    for what, (size, tabs) in SIZES.items():
-        if options.only and options.only not in what:
-            continue
-        page = open_page(browser, url, size, tabs, seen)
-        drag(page, options.seconds, what, seen)
-        if "3D" in what:
-            steps(page, options.steps, _listener(url), seen, "")
-            if options.pins:
+def measure(browser: Browser, tree: Path, options: Any, seen: Followed) -> None:
+    """One round on the server of one tree."""
+    with tempfile.TemporaryDirectory() as state, served(tree, Path(state), free_port()) as (url, process):
+        time.sleep(_WARM_S)
+        for what, (size, tabs) in SIZES.items():
+            if options.only and options.only not in what:
+                continue
+            page = open_page(browser, url, size, tabs, seen)
+            drag(page, options.seconds, what, seen)
+            if size == WINDOW:
+                steps(page, options.steps, process.pid, seen, "")
+            if size == WINDOW and options.pins:
                 for _ in range(2):
                     pin(page)
                 drag(page, options.seconds, "two pins", seen)
                 move_on(page, _AWAY)
-                steps(page, options.steps, _listener(url), seen, ", two pins,")
-        page.context.close()
+                steps(page, options.steps, process.pid, seen, ", two pins,")
+            page.context.close()
 
 
 def main() -> int:
@@ -295,25 +200,23 @@ def main() -> int:
     parser.add_argument("--no-pins", dest="pins", action="store_false")
     options = parser.parse_args()
     trees = [HERE] if options.before is None else [options.before, HERE]
-    followed = [Followed() for _ in trees]
+    followed: list[Followed] = [defaultdict(list) for _ in trees]
     with launched() as browser:
         for _ in range(options.rounds):
             for tree, seen in zip(trees, followed, strict=True):
-                with served(tree) as url:
-                    measure(browser, url, options, seen)
-    for name in followed[-1].figures:
-        told = [_told(name, seen) for seen in followed if name in seen.figures]
-        ratio = ""
-        if len(told) == 2 and followed[0].median(name) > 0.0:
-            ratio = f"   ratio {followed[1].median(name) / followed[0].median(name):.2f}"
+                measure(browser, tree, options, seen)
+    for name in followed[-1]:
+        told = [_told(name, seen[name]) for seen in followed if name in seen]
+        medians = [statistics.median(seen[name]) for seen in followed if name in seen]
+        ratio = f"   ratio {medians[1] / medians[0]:.2f}" if len(medians) == 2 and medians[0] > 0.0 else ""
         print(f"{name:62s} {'  ->  '.join(told)}{ratio}", flush=True)
     return 0
 
 
-def _told(name: str, seen: Followed) -> str:
+def _told(name: str, values: list[float]) -> str:
     if "last paint" in name:
-        return "{:.0f} / {:.0f}".format(*median_and_p95(seen.figures[name]))
-    return f"{seen.median(name):.1f}"
+        return "{:.0f} / {:.0f}".format(*median_and_p95(values))
+    return f"{statistics.median(values):.1f}"
 
 
 if __name__ == "__main__":

@@ -1,280 +1,168 @@
-"""What a slider does not move stays as it is, and what it moves is drawn as if it were drawn anew."""
+"""What a slider does not move stays as it is, and what it moves is drawn as if it were drawn anew.
 
-from __future__ import annotations
+Only curves that have changed are sent: each page of a session still has all curves of the run.
+"""
 
-from typing import TYPE_CHECKING, Any
+import base64
+from typing import Any
 
+import numpy as np
 import pytest
 
+from app.bridge.controls import in_single
 from app.editing import edits
+from app.session.shown import shown
+from app.shell.reports import run_element
+from app.views.errors.view import _OVERVIEW_KEYS, error_curves
+from navcore.engine.measures import metrics
+from tests.browser.conftest import Another, Served
 from tests.browser.driver import Bench
 
-if TYPE_CHECKING:
-    from playwright.sync_api import Browser
-
-pytestmark = pytest.mark.browser
-
-_PLOT = "[...document.querySelectorAll('.js-plotly-plot')].find(p => p.offsetParent !== null)"
-# How often plotly has laid a figure out since, what is drawn, and what a drawing anew makes of it.
-_COUNT = f"() => {{ window.laidOut = 0; {_PLOT}.on('plotly_afterplot', () => {{ window.laidOut += 1; }}); }}"
-_PATHS = f"""() => [...{_PLOT}.querySelectorAll('.scatterlayer path.js-line')]
-  .map(line => line.getAttribute('d').match(/-?[0-9.]+/g).map(Number))"""
-_ANEW = f"() => Plotly.redraw({_PLOT})"
-_AXES = f"() => ['xaxis', 'yaxis', 'yaxis2', 'yaxis3', 'yaxis4'].map(name => {_PLOT}._fullLayout[name].range)"
-_MAP_AXES = f"() => ['xaxis', 'yaxis', 'xaxis2', 'yaxis2'].map(name => {_PLOT}._fullLayout[name].range)"
-
+ZETA = "network.zeta"
 # Titles and widths (px) of the figures, in the order in which they are drawn.
 _DRAWN = """window.drawn = [];
 addEventListener('drawn', ({target: {_fullLayout: {meta, width}}}) => drawn.push([meta.view, width]));"""
+_LARGE = ".mantine-Modal-content .uplot canvas"
 
 
-def test_only_what_is_in_sight_is_drawn(browser: Browser, dashboard: Any) -> None:
-    context = browser.new_context(viewport={"width": 1920, "height": 1080})
-    try:
-        context.add_init_script(_DRAWN)
-        opened = Bench(context.new_page(), dashboard[0].url, dashboard[1].sessions).open()
-        opened.settle()
-        opened.heard()
-        opened.plotly()
-        drawn = opened.page.evaluate("window.drawn")
-        assert {title for title, _ in drawn} == {"Frequency"}
-        assert len({width for _, width in drawn}) == 1, "no figure is drawn before its width is known"
-        opened.tab("Poles")
-        opened.plotly()
-        assert {title for title, _ in opened.page.evaluate("window.drawn")} == {"Frequency", "Poles"}
-        assert opened.faults == []
-    finally:
-        context.close()
-
-
-def test_a_slider_step_moves_the_curves_without_a_layout(bench: Bench) -> None:
-    bench.reset("sikuliaq-like", selected=2)
-    bench.tab("Frequency", "Errors", "Method")
-    bench.press("network.zeta")
-    bench.plotly()
-    page = bench.page
-    page.evaluate(_COUNT)
-    before = page.evaluate(_PATHS)
-    in_place = 0
-    for _ in range(4):
-        was = page.evaluate("window.laidOut")
-        bench.press("network.zeta")
-        bench.plotly()
-        in_place += page.evaluate("window.laidOut") == was
-    assert in_place >= 2, "an axis may be laid out anew now and then, not at each step"
-    moved = page.evaluate(_PATHS)
-    assert moved != before
-    held = bench.plotly()
-    page.evaluate(_ANEW)
-    for line, anew in zip(moved, page.evaluate(_PATHS), strict=True):
+def drawn_as_anew(bench: Bench) -> None:
+    """The lines in view are as plotly draws them when it draws the whole figure."""
+    lines = bench.page.evaluate("look.paths")
+    bench.page.evaluate("look.anew")
+    for line, anew in zip(lines, bench.page.evaluate("look.paths"), strict=True):
         assert line == pytest.approx(anew, abs=0.02), "as plotly draws it"
-    assert bench.plotly() == held, "plotly holds the numbers that are drawn"
-    assert bench.faults == []
 
 
-_LABELS = f"""() => [...{_PLOT}.querySelectorAll('.ytick text')]
-  .map(label => [label.textContent, label.getAttribute('y')]).sort()"""
-_HOMES = f"""() => ['yaxis', 'yaxis2'].map(name => {_PLOT}._fullLayout[name])
-  .map(axis => [axis._rangeInitial0, axis._rangeInitial1])"""
-# plotly keeps its points unless it lays out the whole figure
-_KEEP = f"() => {{ {_PLOT}.calcdata.kept = true; }}"
-_KEPT = f"() => {_PLOT}.calcdata.kept === true"
+def test_only_what_is_in_sight_is_drawn(another: Another) -> None:
+    opened = another(1920, 1080)
+    opened.page.add_init_script(_DRAWN)
+    opened.open().settle()
+    opened.heard()
+    opened.plotly()
+    drawn = opened.page.evaluate("window.drawn")
+    assert {title for title, _ in drawn} == {"Frequency"}
+    assert len({width for _, width in drawn}) == 1, "no figure is drawn before its width is known"
+    opened.tab("Poles")
+    opened.plotly()
+    assert {title for title, _ in opened.page.evaluate("window.drawn")} == {"Frequency", "Poles"}
 
 
-def test_an_axis_that_a_slider_step_changes_is_laid_out_alone(bench: Bench) -> None:
-    bench.reset("sikuliaq-like", selected=2)
-    bench.tab("Frequency", "Errors", "Method")
-    bench.type("network.zeta", "0.6")
-    bench.plotly()
-    page = bench.page
-    before = page.evaluate(_AXES)
-    page.evaluate(_KEEP)
+def test_an_axis_that_a_slider_step_changes_is_laid_out_alone(moving: Bench) -> None:
+    page = moving.page
+    moving.type(ZETA, "0.6")
+    moving.plotly()
+    before = page.evaluate("look.bodeAxes")
+    page.evaluate("look.keep")
     for zeta in ("0.9", "1.6"):
-        bench.type("network.zeta", zeta)
-        bench.plotly()
-    axes = page.evaluate(_AXES)
+        moving.type(ZETA, zeta)
+        moving.plotly()
+    axes = page.evaluate("look.bodeAxes")
     assert axes[1] != before[1], "otherwise nothing is shown here"
-    assert page.evaluate(_KEPT)
-    assert page.evaluate(_HOMES) == axes[1:3], "to which a double click goes back"
-    labels, lines = page.evaluate(_LABELS), page.evaluate(_PATHS)
+    assert page.evaluate("look.kept")
+    assert page.evaluate("look.homes") == axes[1:3], "to which a double click goes back"
+    labels = page.evaluate("look.labels")
     assert len(labels) > 3
-    page.evaluate(_ANEW)
-    assert not page.evaluate(_KEPT)
-    assert page.evaluate(_AXES) == axes
-    assert page.evaluate(_LABELS) == labels
-    for line, anew in zip(lines, page.evaluate(_PATHS), strict=True):
-        assert line == pytest.approx(anew, abs=0.02), "as plotly draws it"
-    assert bench.faults == []
+    drawn_as_anew(moving)
+    assert not page.evaluate("look.kept")
+    assert (page.evaluate("look.bodeAxes"), page.evaluate("look.labels")) == (axes, labels)
 
 
-def test_a_zoom_outlives_a_slider_step(bench: Bench) -> None:
-    bench.reset("sikuliaq-like", selected=2)
-    bench.tab("Frequency", "Errors", "Method")
-    bench.press("network.zeta")
-    bench.plotly()
-    page = bench.page
+def zoomed(bench: Bench, axes: str) -> tuple[Any, Any, tuple[float, float]]:
+    """Zoom into the first panel in view; return its axes before and after, and its middle."""
+    page, mouse = bench.page, bench.page.mouse
     box = page.locator(".js-plotly-plot:visible .nsewdrag").first.bounding_box()
-    whole = page.evaluate(_AXES)
-    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.3 * box["height"])
-    page.mouse.down()
-    page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 0.7 * box["height"], steps=5)
-    page.mouse.up()
-    zoomed = bench.wait_for_change(lambda: page.evaluate(_AXES), whole)
+
+    def at(part: float) -> tuple[float, float]:
+        return box["x"] + part * box["width"], box["y"] + part * box["height"]
+
+    home = page.evaluate(axes)
+    mouse.move(*at(0.3))
+    mouse.down()
+    mouse.move(*at(0.7), steps=5)
+    mouse.up()
+    return home, bench.wait_for_change(lambda: page.evaluate(axes), home), at(0.5)
+
+
+def axes_after_double_click(bench: Bench, axes: str, place: tuple[float, float]) -> Any:
+    """Click twice; a busy page may take the second click too late for a double click."""
+    bench.page.mouse.dblclick(*place)
+    bench.settle()
+    return bench.page.evaluate(axes)
+
+
+def test_a_zoom_outlives_a_slider_step(moving: Bench) -> None:
+    page = moving.page
+    moving.press(ZETA)
+    moving.plotly()
+    _, axes, middle = zoomed(moving, "look.bodeAxes")
     for _ in range(3):
-        bench.press("network.zeta")
-        bench.plotly()
-    assert page.evaluate(_AXES)[0] == pytest.approx(zoomed[0])
-    x_axis = page.evaluate(_AXES)[0]
+        moving.press(ZETA)
+        moving.plotly()
+    x_axis = page.evaluate("look.bodeAxes")[0]
+    assert x_axis == pytest.approx(axes[0])
 
-    def is_whole() -> bool:
-        # a busy page may take the second click too late for a double click
-        page.mouse.dblclick(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
-        bench.settle()
-        return page.evaluate(_AXES)[0] != x_axis
-
-    bench.wait_until(is_whole)
-    assert bench.faults == []
+    moving.wait_until(lambda: axes_after_double_click(moving, "look.bodeAxes", middle)[0] != x_axis)
 
 
-def test_a_double_click_goes_back_to_the_ranges_of_the_figure_that_is_shown(bench: Bench) -> None:
+def test_a_double_click_goes_back_to_the_ranges_of_the_figure_that_is_shown(moving: Bench) -> None:
     """Both of a view's figures are drawn in one place: the first one's ranges would come back otherwise."""
-    bench.reset("sikuliaq-like", selected=2)
-    bench.tab("Frequency")
-    bench.show(poles="whole")
-    bench.tab("Poles")
-    bench.plotly()
-    bench.show(poles="channel")
-    bench.plotly()
-    page = bench.page
-    box = page.locator(".js-plotly-plot:visible .nsewdrag").first.bounding_box()
-    home = page.evaluate(_MAP_AXES)
-    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.3 * box["height"])
-    page.mouse.down()
-    page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 0.7 * box["height"], steps=5)
-    page.mouse.up()
-    zoomed = bench.wait_for_change(lambda: page.evaluate(_MAP_AXES), home)
+    moving.show(poles="whole")
+    moving.tab("Poles")
+    moving.plotly()
+    moving.show(poles="channel")
+    moving.plotly()
+    home, axes, middle = zoomed(moving, "look.mapAxes")
 
-    def is_back() -> bool:
-        # a busy page may take the second click too late for a double click
-        page.mouse.dblclick(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
-        bench.settle()
-        return page.evaluate(_MAP_AXES) == home
-
-    assert zoomed != home
-    bench.wait_until(is_back)
+    assert axes != home
+    moving.wait_until(lambda: axes_after_double_click(moving, "look.mapAxes", middle) == home)
     # one more leaves it there: all that is drawn, the ends of the rays with it, would be a point
-    page.mouse.dblclick(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
-    bench.settle()
-    assert page.evaluate(_MAP_AXES) == home
-    assert bench.faults == []
+    assert axes_after_double_click(moving, "look.mapAxes", middle) == home
 
 
-def test_of_two_hundred_steps_none_is_lost_and_everything_follows_at_rest(bench: Bench) -> None:
-    bench.reset("sikuliaq-like", selected=2)
-    bench.tab("Frequency", "Errors", "Method")
-    bench.settle()
-    start, thumb = bench.value("network.zeta"), bench.slider("network.zeta")
-    thumb.press("ArrowRight")
-    bench.settle()
-    step = bench.value("network.zeta") - start
+def test_of_two_hundred_steps_none_is_lost_and_everything_follows_at_rest(moving: Bench) -> None:
+    session, thumb, start = moving.session, moving.slider(ZETA), moving.value(ZETA)
+    session.pins.add(session.run, "sikuliaq-like")
+    moving.press(ZETA)
+    step = moving.value(ZETA) - start
     for key, count in (("ArrowRight", 119), ("ArrowLeft", 80)):
         for _ in range(count):
             thumb.press(key)
-    bench.settle()
-    assert bench.value("network.zeta") == pytest.approx(start + 40 * step)
-    session = bench.session
-    assert edits.network_values(session.scenario, 2)["zeta"] == pytest.approx(start + 40 * step)
-    assert bench.run == session.run_number
-    assert {trace["name"] for trace in bench.plotly()}
-    assert "moves" not in bench.status
+    moving.settle()
+    before = moving.run, moving.digest
+    for _ in range(3):  # nothing that is older comes after it
+        moving.page.wait_for_timeout(400)
+        assert (moving.run, moving.digest) == before
+    zeta = edits.network_values(session.scenario, 2)["zeta"]
+    assert (zeta, moving.value(ZETA)) == pytest.approx((start + 40 * step, start + 40 * step))
+    assert float(thumb.get_attribute("aria-valuenow") or "nan") == pytest.approx(zeta, abs=0.006)
+    assert moving.run == session.run_number and session.run.scenario == session.scenario
+    assert f'data-digest="{moving.digest}"' in run_element(session.run, session.run_number)
+    assert moving.metrics["methods"] == metrics(session.run)["methods"]
+    assert moving.plotly()
+    assert "moves" not in moving.status
 
 
-# The page's thread has no time for three seconds; then come three steps before what the server has sent
-# meanwhile, and three after it.
-_BUSY = """async id => {
-  const thumb = document.getElementById(id).querySelector('[role=slider]');
-  const press = kind => thumb.dispatchEvent(
-    new KeyboardEvent(kind, {key: 'ArrowRight', code: 'ArrowRight', bubbles: true, cancelable: true}));
-  for (const end = performance.now() + 3000; performance.now() < end; );
-  for (let step = 1; step <= 6; step++) {
-    ['keydown', 'keyup'].forEach(press);
-    for (let turn = 0; turn < 100; turn++) await null; // React has taken it
-    if (step === 3) await new Promise(go => setTimeout(go, 300));
-  }
-}"""
-
-
-def test_steps_that_a_busy_page_takes_late_are_not_lost(bench: Bench) -> None:
-    bench.reset("sikuliaq-like", selected=2)
-    bench.tab("Frequency", "Errors", "Method")
-    bench.settle()
-    start = bench.value("network.zeta")
-    bench.press("network.zeta")
-    step = bench.value("network.zeta") - start
-    bench.page.evaluate(_BUSY, bench.id("network.zeta"))
-    bench.settle()
-    assert bench.value("network.zeta") == pytest.approx(start + 7 * step)
-    assert edits.network_values(bench.session.scenario, 2)["zeta"] == pytest.approx(start + 7 * step)
-
-
-_INK = """width => {
-  const wrap = Object.assign(document.createElement('div'), {className: 'u-wrap'});
-  const plain = document.createElement('div');
-  document.body.append(wrap, plain);
-  const ink = [wrap, plain].map(parent => {
-    const canvas = Object.assign(document.createElement('canvas'), {width: 300, height: 120});
-    parent.append(canvas);
-    const context = canvas.getContext('2d'), curve = new Path2D();
-    for (let x = 0; x <= 300; x++) curve.lineTo(x, 60 + 45 * Math.sin(x / 18));
-    [context.lineWidth, context.strokeStyle] = [width, '#1a6fb5'];
-    context.stroke(curve);
-    const shades = context.getImageData(0, 0, 300, 120).data.filter((_, place) => place % 4 === 3);
-    return [shades.reduce((sum, shade) => sum + shade, 0), context.lineWidth, shades.join()];
-  });
-  wrap.remove();
-  plain.remove();
-  const [[hairlines, left, one], [line, , other]] = ink;
-  return {ratio: hairlines / line, left, same: one === other};
-}"""
+def test_steps_that_a_busy_page_takes_late_are_not_lost(moving: Bench) -> None:
+    start = moving.value(ZETA)
+    moving.press(ZETA)
+    wanted = start + 7 * (moving.value(ZETA) - start)
+    moving.page.evaluate("look.busy", moving.id(ZETA))
+    moving.settle()
+    assert moving.value(ZETA) == pytest.approx(wanted)
+    assert edits.network_values(moving.session.scenario, 2)["zeta"] == pytest.approx(wanted)
 
 
 def test_a_curve_of_hairlines_is_as_wide_as_its_line(bench: Bench) -> None:
     for width in (1.5, 2.0):
-        found = bench.page.evaluate(_INK, width)
+        found = bench.page.evaluate("look.ink", width)
         assert found["left"] == width, "for the next curve"
         assert not found["same"] and 0.8 < found["ratio"] < 1.1
     for width in (1.0, 3.0):
-        assert bench.page.evaluate(_INK, width)["same"], "drawn as it is"
-
-
-_STILL = """() => {
-  const wrap = Object.assign(document.createElement('div'), {className: 'u-wrap'});
-  const canvas = Object.assign(document.createElement('canvas'), {width: 300, height: 120});
-  wrap.append(canvas);
-  document.body.append(wrap);
-  const context = canvas.getContext('2d'), curve = new Path2D();
-  for (let x = 0; x <= 300; x++) curve.lineTo(x, 60 + 45 * Math.sin(x / 18));
-  context.lineWidth = 2;
-  const shades = color => {
-    context.resetTransform();
-    context.fillStyle = '#fff';
-    context.fillRect(0, 0, 300, 120);
-    context.strokeStyle = color;
-    context.setTransform(1, 0, 0, 1, 0.5, 0.5);
-    context.stroke(curve);
-    const {e, f} = context.getTransform();
-    return {left: [e, f], pixels: [...context.getImageData(0, 0, 300, 120).data]};
-  };
-  const drawn = ['#1a6fb5', '#1a6fb5', '#1a6fb5', '#b51a1a'].map(shades);
-  wrap.remove();
-  const [{pixels: first}] = drawn;
-  const most = pixels => pixels.reduce((worst, pixel, at) => Math.max(worst, Math.abs(pixel - first[at])), 0);
-  return {apart: drawn.map(({pixels}) => most(pixels)), left: drawn.map(({left}) => left)};
-}"""
+        assert bench.page.evaluate("look.ink", width)["same"], "drawn as it is"
 
 
 def test_the_picture_of_a_curve_that_stands_still_is_the_curve(bench: Bench) -> None:
-    found = bench.page.evaluate(_STILL)
+    found = bench.page.evaluate("look.still")
     first, second, third, red = found["apart"]
     assert first == 0
     assert max(second, third) <= 8, "of 255: but for rounding where the hairlines overlap"
@@ -282,56 +170,19 @@ def test_the_picture_of_a_curve_that_stands_still_is_the_curve(bench: Bench) -> 
     assert found["left"] == [[0.5, 0.5]] * 4, "for the next curve"
 
 
-# The buttons above the panel with their texts, marked.
-_BUTTONS = "[...document.querySelectorAll('.sb-row[role=toolbar]:not(.sb-lecture) button')]"
-_NODES = f"{_BUTTONS}.flatMap(button => [button, ...button.childNodes])"
-_MARK = f"() => {_NODES}.forEach(node => {{ node.made = true; }})"
-_MARKED = f"() => {_NODES}.map(node => node.made === true)"
-
-
-def test_of_a_block_of_html_only_what_differs_is_made_anew(bench: Bench) -> None:
-    bench.reset("sikuliaq-like", selected=2)
-    bench.tab("Frequency", "Errors", "Method")
-    bench.press("network.zeta")
-    bench.settle()
-    page, undo = bench.page, bench.page.locator("[data-command=undo]")
-    page.evaluate(_MARK)
-    marked, title = page.evaluate(_MARKED), undo.get_attribute("title")
+def test_of_a_block_of_html_only_what_differs_is_made_anew(moving: Bench) -> None:
+    moving.press(ZETA)
+    page, undo = moving.page, moving.page.locator("[data-command=undo]")
+    page.evaluate("look.mark")
+    marked, title = page.evaluate("look.marked"), undo.get_attribute("title")
     assert len(marked) > 8 and all(marked)
-    bench.press("network.zeta")
-    bench.wait_for_change(lambda: undo.get_attribute("title"), title)
-    assert page.evaluate(_MARKED) == marked
-
-
-_FILL = """() => {
-  const box = document.createElement('div');
-  document.body.append(box);
-  const seen = [];
-  const fill = html => {
-    schuler.fill(box, html);
-    seen.push(box.innerHTML);
-  };
-  fill('<p title="a" lang="en">one <b>1</b></p><i>two</i>');
-  const [p, b, i] = ['p', 'b', 'i'].map(name => box.querySelector(name));
-  fill('<p title="b">one <b>2</b></p><i>two</i>');
-  const stays = [p, b, i].every(node => box.contains(node));
-  i.textContent = 'zwei'; // as a script of ours may have put it
-  fill('<p title="b">one <b>3</b></p><i>two</i>');
-  fill('<p title="b">one</p><u>two</u><i>two</i>');
-  fill('<p title="b">one</p><s>two</s><i>three</i>');
-  fill('<button data-command="undo">four</button>');
-  const button = box.firstChild;
-  fill('<button data-command="redo">four</button>');
-  const pressed = box.contains(button);
-  const other = document.createElement('div'); // nothing is known of what it had
-  schuler.fill(other, '<i>four</i>');
-  box.remove();
-  return {seen, stays, pressed, other: other.innerHTML};
-}"""
+    moving.press(ZETA)
+    moving.wait_for_change(lambda: undo.get_attribute("title"), title)
+    assert page.evaluate("look.marked") == marked
 
 
 def test_html_that_is_put_into_the_page_in_pieces_is_the_whole(bench: Bench) -> None:
-    found = bench.page.evaluate(_FILL)
+    found = bench.page.evaluate("look.fill")
     assert found["stays"]
     assert found["seen"] == [
         '<p title="a" lang="en">one <b>1</b></p><i>two</i>',
@@ -344,3 +195,84 @@ def test_html_that_is_put_into_the_page_in_pieces_is_the_whole(bench: Bench) -> 
     ]
     assert not found["pressed"], "what does something else is another button"
     assert found["other"] == "<i>four</i>"
+
+
+# ------------------------------------------------------------ curves of each page
+
+
+def wrong_curves(page: Bench) -> list[str]:
+    """Name the curves of the session's run that a page does not show, or shows otherwise."""
+    plots = error_curves(shown(page.session), _OVERVIEW_KEYS).plots.values()
+    found, wrong = page.page.evaluate("look.curves"), []
+    for plot in plots:
+        label, names = plot.axes()[1]["label"], ("time", *plot.names)
+        held = [np.frombuffer(base64.b64decode(curve), np.float32) for curve in found.get(label, ())]
+        if len(held) != len(names):
+            wrong.append(f"{label}: {len(held)} curves")
+            continue
+        each = zip(names, held, in_single(plot.data), strict=True)
+        wrong += [f"{label}: {name}" for name, *pair in each if not np.array_equal(*pair, equal_nan=True)]
+    return wrong
+
+
+def has_all_curves(page: Bench) -> None:
+    """Wait until a page shows the session's run, which is not to change meanwhile."""
+    assert page.session.wait_idle(60.0)
+    try:
+        page.wait_until(lambda: wrong_curves(page) == [])
+    except AssertionError as error:
+        raise AssertionError(f"{wrong_curves(page)}: {error}") from None
+
+
+def test_every_page_has_all_curves_after_a_drag_and_after_its_connection_was_lost(
+    moving: Bench, another: Another, dashboard: Served
+) -> None:
+    moving.press(ZETA)
+    has_all_curves(moving)
+    (first,) = moving._pages
+
+    moving.page.evaluate("look.drag", moving.id(ZETA))
+    late = another(1920, 1080).open(path=f"s/{moving.session_id}/")
+    moving.page.evaluate("() => clearInterval(window.drag)")
+    moving.settle()
+    has_all_curves(moving)
+    has_all_curves(late)
+
+    (second,) = (view for view in late._pages if view is not first)
+    websockets: Any = dashboard[0].viser._websock_server
+    lost = websockets._live_connections[second.client.client_id]
+    lost.loop.call_soon_threadsafe(lost.transport.abort)
+    # Meanwhile the session goes on; viser's page connects again by itself.
+    moving.press(ZETA)
+    late.wait_until(lambda: second not in late._pages and len(late._pages) > 1)
+    has_all_curves(late)
+    moving.press(ZETA)
+    has_all_curves(moving)
+    has_all_curves(late)
+    late.faults.clear()
+
+
+def test_a_curve_that_stands_still_keeps_its_path(moving: Bench) -> None:
+    moving.press(ZETA)
+    moving.page.evaluate("look.samePaths")
+    moving.press(ZETA)
+    assert moving.page.evaluate("look.samePaths") == [
+        True,
+        True,
+        False,
+    ]  # free, classic2, the selected method
+    moving.press(ZETA, "ArrowLeft")
+    has_all_curves(moving)
+
+
+def test_a_plot_in_its_large_window_follows_the_run(moving: Bench) -> None:
+    page, session, plot = moving.page, moving.session, moving.page.locator(".uplot-container").first
+    plot.hover(position={"x": 30, "y": 30})
+    plot.locator("button").click()
+    page.wait_for_selector(_LARGE)
+    before = page.evaluate(f"document.querySelector('{_LARGE}').toDataURL()")
+    session.change(edits.with_value(session.scenario, ("method", 2, "network", "zeta"), 1.2), None)
+    changed = f"before => document.querySelector('{_LARGE}').toDataURL() !== before"
+    page.wait_for_function(changed, arg=before)
+    page.keyboard.press("Escape")
+    page.wait_for_selector(_LARGE, state="detached")

@@ -1,31 +1,30 @@
-"""The page seen from the wire: what a websocket gets, without a browser."""
-
-from __future__ import annotations
+"""The page seen from the wire: what a websocket gets, without a browser; what each control moves."""
 
 import json
 import re
 import time
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Iterator
 from html import unescape
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
-from app.bench.visitor import decoded as decode
+from app.bench.visitor import decoded
 from app.editing import edits
 from app.shell.page import Page
 from app.shell.plotly_view import PlotlyView
 from app.shell.reports import PAGE_STATE
 from app.views import load
 from app.views.tune.view import TuneView
+from navcore.scenario.file import load as load_preset
+from navcore.scenario.file import scenario_hash
+from navcore.scenario.model import Scenario
+from tests.attack.conftest import eventually
 from tests.attack.wire import Visitor, visit
-from tests.browser.fields import label_of
+from tests.browser.conftest import Served
+from tests.browser.fields import box_labels, label_of, slider_labels
 
-if TYPE_CHECKING:
-    from app.http.server import DashboardServer
-    from app.serve import Dashboard
-
-Served = tuple["DashboardServer", "Dashboard"]
 WIDE = "1920x1080|Method|Frequency|Errors"
 
 
@@ -39,7 +38,7 @@ def runs(visitor: Visitor, seconds: float) -> list[dict[str, Any]]:
     until = time.monotonic() + seconds
     while (left := until - time.monotonic()) > 0.0:
         try:
-            visitor.received += decode(visitor.socket.recv(timeout=left))
+            visitor.received += decoded(visitor.socket.recv(timeout=left))
         except TimeoutError:
             break
     return [message for message in visitor.received if is_run(message)]
@@ -47,13 +46,6 @@ def runs(visitor: Visitor, seconds: float) -> list[dict[str, Any]]:
 
 def number(message: dict[str, Any]) -> int:
     return int(re.search(r'data-run="(\d+)"', message["updates"]["content"])[1])
-
-
-def eventually(true: Callable[[], bool], seconds: float = 60.0) -> None:
-    until = time.monotonic() + seconds
-    while not true():
-        assert time.monotonic() < until, "did not happen"
-        time.sleep(0.02)
 
 
 def ready(visitor: Visitor, state: str = WIDE) -> None:
@@ -99,7 +91,7 @@ def test_a_page_that_opens_has_the_pictures_in_front_before_all_else(dashboard: 
         assert kinds.index("GuiUplotMessage") < kinds.index("MeshMessage"), "the 3D view"
 
 
-def _pages(served: Dashboard, session_id: str) -> list[Page]:
+def _pages(served: Any, session_id: str) -> list[Page]:
     """Open pages of a session: one is listed once it is built, just after its first run is sent."""
     return [page for page in list(served._pages.values()) if page.session.id == session_id]
 
@@ -118,21 +110,14 @@ def test_a_flood_of_slider_moves_becomes_a_few_runs_and_the_last_wins(dashboard:
         for step in range(200):
             visitor.set(zeta, 0.5 + 0.005 * step)
         session = served.sessions.get("flood-of-moves")
-        eventually(lambda: edits.network_values(session.scenario, session.selected)["zeta"] == 1.495)
-        eventually(lambda: session.run is not None and session.run.scenario == session.scenario)
+        eventually(lambda: edits.network_values(session.scenario, session.selected)["zeta"] == 1.495, 60.0)
+        eventually(lambda: session.run is not None and session.run.scenario == session.scenario, 60.0)
         assert session.wait_idle(20.0)
         visitor.wait_for(lambda message: is_run(message) and number(message) == session.run_number, 30.0)
         shown = [message for message in visitor.received if is_run(message)]
         assert 1 <= len(shown) <= 60
         document = json.loads(unescape(re.sub(r"<[^>]*>", "", shown[-1]["updates"]["content"])))
-        assert document["scenario_sha256"] == _hash(session.run.scenario)
-        assert session.run.scenario == session.scenario
-
-
-def _hash(scenario: Any) -> str:
-    from navcore.scenario.file import scenario_hash
-
-    return scenario_hash(scenario)
+        assert document["scenario_sha256"] == scenario_hash(session.run.scenario)
 
 
 def test_one_visitor_cannot_move_the_controls_of_another(dashboard: Served) -> None:
@@ -163,12 +148,251 @@ def test_writing_to_a_visitor_who_has_just_gone_is_no_fault(dashboard: Served) -
     server, served = dashboard
     with visit(server.port, named(dashboard, "gone-in-a-moment")) as visitor:
         ready(visitor)
-        eventually(lambda: bool(_pages(served, "gone-in-a-moment")))
+        eventually(lambda: bool(_pages(served, "gone-in-a-moment")), 60.0)
         page = _pages(served, "gone-in-a-moment")[0]
-        session = page.session
-    eventually(lambda: page._closed)
+    eventually(lambda: page._closed, 60.0)
     # The test run turns every warning into an error.
     page.header.show_stopped(1)
     page.gui.add_html("to nobody")
-    assert session.open_pages == 0
+    assert page.session.open_pages == 0
     assert page not in served._pages.values()
+
+
+# ------------------------------------------------------------ what each control moves
+
+
+FIGURE, CURVES, TRACK = "_plotly_json_str", "data", "points"
+"""What holds a plotly figure, a plot over time and a line in 3D in viser's messages."""
+ALL = {FIGURE, CURVES, TRACK}
+
+
+class Wire:
+    """A page without a browser, on a scenario of its own: its controls, and which pictures it is sent."""
+
+    def __init__(self, visitor: Visitor, page: Page) -> None:
+        self.visitor, self.page, self.session = visitor, page, page.session
+        self.controls: dict[str, dict[str, Any]] = {}
+        self.moved: Counter[str] = Counter()
+        self.texts: dict[Any, str] = {}
+        self._held: dict[str, Any] = {}
+        self._values: dict[str, Any] = {}
+        self._run = self._mark = 0
+
+    def put(self, scenario: Scenario, *, selected: int = 0, front: str = WIDE) -> None:
+        """Begin anew with a scenario, and these tabs in front."""
+        self.visitor.set(self.page._reports.window_id, front)
+        with self.session.lock:
+            self.session.change(scenario, None, selected=selected)
+            self.session.select(selected, None)
+        self.catch_up()
+
+    def catch_up(self) -> None:
+        """Wait for all that the server sends of the present run: a mark that is sent last has come."""
+        assert self.session.wait_idle(60.0)
+        if (wanted := self.session.run_number) != self._run:
+            self.visitor.wait_for(lambda message: is_run(message) and number(message) == wanted, 60.0)
+        self._run, self._mark = wanted, self._mark + 1
+        self.page.gui.add_html(f"mark {self._mark}", order=1000)
+        self.page.client.flush()
+        self.visitor.wait_for(lambda m: (m.get("props") or {}).get("content") == f"mark {self._mark}", 60.0)
+        self.moved.clear()
+        for message in self.visitor.received:
+            self._take(message)
+        self.visitor.received.clear()
+
+    def _take(self, message: dict[str, Any]) -> None:
+        about = message.get("props") or message.get("updates") or {}
+        key = message.get("uuid") or message.get("name")
+        self._values[key] = (message.get("updates") or message).get("value", self._values.get(key))
+        self.texts[key] = str(about.get("content"))
+        if "label" in about and "uuid" in message:
+            self.controls[about["label"]] = message
+        if message["type"] == "GuiRemoveMessage":
+            self.controls = {label: made for label, made in self.controls.items() if made["uuid"] != key}
+        # Of the curves those that have not changed are left out, and lines in 3D are not sent at all.
+        self.moved[CURVES] += any(curve is not None for curve in about.get(CURVES, ())[1:])
+        self.moved[TRACK] += TRACK in about and str(key).startswith("/track/method")
+        if FIGURE in about:
+            figure = json.loads(about[FIGURE])
+            figure["layout"].pop("meta", None)  # the number of the run
+            self.moved[FIGURE] += self._held.get(key) != figure
+            self._held[key] = figure
+
+    def named(self, labels: list[str]) -> str:
+        """The label of a control under which the page has it."""
+        eventually(lambda: self.catch_up() or set(labels) & self.controls.keys(), 60.0)
+        return next(label for label in labels if label in self.controls)
+
+    def set(self, name: str, value: Any, *, exact: bool = True) -> Counter[str]:
+        """Set a control of a field; return how many pictures of each kind changed."""
+        label = self.named(box_labels(name) if exact else slider_labels(name))
+        number = self.session.run_number
+        self.visitor.set(self.controls[label]["uuid"], value)
+        self._values[self.controls[label]["uuid"]] = value
+        eventually(lambda: self.session.run_number > number, 60.0)
+        self.catch_up()
+        return +self.moved
+
+    def slide(self, name: str) -> Counter[str]:
+        """Move the slider of a field by a step, as a key does."""
+        label = self.named(slider_labels(name))
+        control = self.controls[label]
+        value, step = self._values[control["uuid"]], control["props"]["step"]
+        up = value + step <= control["props"]["max"]
+        return self.set(name, value + step if up else value - step, exact=False)
+
+
+@pytest.fixture
+def wire(dashboard: Served) -> Iterator[Wire]:
+    """A page of its own, on a ship under way; the third of its methods is selected."""
+    server, served = dashboard
+    with visit(server.port, named(dashboard, "controls-by-wire")) as visitor:
+        ready(visitor)
+        eventually(lambda: bool(_pages(served, "controls-by-wire")), 60.0)
+        wire = Wire(visitor, _pages(served, "controls-by-wire")[0])
+        wire.put(load_preset("sikuliaq-like"), selected=2)
+        yield wire
+
+
+NETWORKS = {
+    "complementary": ("zeta", "eta"),
+    "compass": ("sigma", "xi", "k1", "k2", "k3"),
+    "pole2": ("xi", "n1", "n2"),
+    "unity2": ("zeta", "r", "zeta2", "alpha"),
+}
+
+
+@pytest.mark.parametrize("network", NETWORKS)
+def test_network_sliders_move_every_picture(wire: Wire, network: str) -> None:
+    wire.slide("imu.gyro_bias_dph.1")
+    for tab in ("Frequency", "Poles"):
+        wire.put(load_preset("sikuliaq-like"), selected=2, front=WIDE.replace("Frequency", tab))
+        if network != "complementary":
+            wire.set("network", network)
+        for name in NETWORKS[network]:
+            assert set(wire.slide(f"network.{name}")) == ALL, (tab, name)
+
+
+def test_variant_zeros_and_poles_change_the_loop(wire: Wire) -> None:
+    wire.set("network", "pole2")
+    wire.set("network.xi", 0.08)
+    assert set(wire.set("network.variant", "as_printed")) == ALL
+    assert any("unstable" in text for text in wire.texts.values())
+    wire.set("network", "custom")
+    assert set(wire.set("network.zeros", "-0.001, -0.08")) == ALL
+    before = wire.session.scenario
+    label = label_of("network.zeros")
+    wire.visitor.set(wire.controls[label]["uuid"], "-0.001, -0.08+")
+    assert wire.visitor.notice()
+    assert wire.session.scenario == before
+
+
+@pytest.mark.parametrize(
+    ("changes", "moved"),
+    [
+        *[
+            ({name: None}, {CURVES, TRACK})
+            for name in (
+                "imu.gyro_bias_dph.1",
+                "imu.gyro_arw_dpsh",
+                "imu.accel_bias_ug.0",
+                "imu.accel_vrw_ugpshz",
+                "reference.bias_mps.1",
+                "reference.noise_mps",
+                "reference.drift_mps",
+                "initial_error.attitude_arcmin.2",
+                "initial_error.velocity_mps.0",
+            )
+        ],
+        ({"site.lat_deg": None}, ALL),
+        ({"run.seed": 4}, {CURVES, TRACK}),
+        ({"run.duration_h": 7.5}, {CURVES, TRACK}),
+        ({"policy": "threshold", "policy.limit_mps": 0.1}, {CURVES, TRACK}),
+    ],
+    ids=lambda value: next(reversed(value)) if isinstance(value, dict) else "",
+)
+def test_a_control_moves_what_it_should(wire: Wire, changes: dict[str, Any], moved: set[str]) -> None:
+    found: Counter[str] = Counter()
+    for name, value in changes.items():
+        found = wire.slide(name) if value is None else wire.set(name, value)
+    assert set(found) == moved
+
+
+def test_events_of_the_log_and_rarer_errors_come_and_go(wire: Wire) -> None:
+    acceleration, rare = "event 1 acceleration of δVr E (m/s²)", label_of("imu.gyro_misalignment_arcsec.0")
+    wire.set("events", "add event")
+    assert set(wire.slide(acceleration)) == {CURVES, TRACK}
+    wire.set("events", "remove event")
+    assert acceleration not in wire.controls and rare not in wire.controls
+    wire.visitor.set(wire.controls["all errors"]["uuid"], True)
+    assert set(wire.slide(rare)) == {CURVES, TRACK}
+    wire.visitor.set(wire.controls["all errors"]["uuid"], False)
+    wire.catch_up()
+    assert rare in wire.controls, "it is set now"
+
+
+UNITY = {"id": "unity2", "zeta": 0.5}
+COMPASS = {"id": "compass", "sigma": 0.0088, "xi": 0.7}
+POLICIES = {
+    "threshold": ("limit_mps",),
+    "yaw_rate": ("window_s", "limit_deg"),
+    "acceleration": ("limit_mps2", "mean_s"),
+    "variation": ("n_s", "t0_s", "a", "b", "c", "count"),
+    "adaptive": ("lowpass_s",),
+    "schedule": ("duration_s",),
+}
+SWITCHINGS = {
+    "hard": (),
+    "keep": (),
+    "ramp": ("duration_s",),
+    "step": ("size", "every_s"),
+    "bumpless": ("n_s", "memory_s"),
+}
+
+
+def scenario(policy: dict[str, Any], network: dict[str, Any]) -> Scenario:
+    """Three hours with a turn, a change of speed and a step of the log; the second method has the policy."""
+    data = load_preset("sikuliaq-like").canonical()
+    data["run"] |= {"duration_h": 3.0, "output_step_s": 1.0}
+    data["motion"] = {
+        "kind": "legs",
+        "leg": [
+            {"duration_s": 2000.0, "speed_kn": 10.0, "heading_deg": 40.0},
+            {"duration_s": 300.0, "heading_deg": 100.0, "turn_dps": 0.5},
+            {"duration_s": 60.0, "speed_kn": 4.0, "accel_mps2": 0.06},
+            {"duration_s": 20000.0},
+        ],
+    }
+    data["reference"] = {
+        "kind": "log",
+        "noise_mps": 0.1,
+        "event": [{"t_h": 1.0, "duration_s": 30.0, "accel_mps2": [0.03, 0.0]}],
+    }
+    switched = {"name": "switched", "damping": "external", "network": network, "policy": policy}
+    data["method"] = [{"name": "free"}, switched]
+    return Scenario.parse(data)
+
+
+@pytest.mark.parametrize("id", POLICIES)
+def test_every_slider_of_a_policy_moves_the_view(wire: Wire, id: str) -> None:
+    front = WIDE.replace("Errors", "Switching")
+    wire.put(scenario({"id": id}, COMPASS if id == "schedule" else UNITY), selected=1, front=front)
+    for name in POLICIES[id]:
+        assert wire.slide(f"policy.{name}")[CURVES], name
+
+
+def test_every_switching_method_and_its_sliders_move_the_curves(wire: Wire) -> None:
+    wire.put(scenario({"id": "variation"}, UNITY), selected=1)
+    for id, sliders in SWITCHINGS.items():
+        if id != "hard":
+            assert wire.set("switching", id)[CURVES], id
+        assert wire.session.scenario.method[1].switching.id == id
+        for name in sliders:
+            assert wire.slide(f"switching.{name}")[CURVES], (id, name)
+
+
+def test_a_table_is_edited_as_text(wire: Wire) -> None:
+    wire.put(scenario({"id": "adaptive"}, UNITY), selected=1, front=WIDE.replace("Errors", "Switching"))
+    assert wire.set("policy.table", "0: 0.9, 1: 0.3, 3: 0.1")[CURVES] >= 2
+    table = edits.value_at(wire.session.scenario, ("method", 1, "policy", "table"))
+    assert [tuple(row) for row in table] == [(0.0, 0.9), (1.0, 0.3), (3.0, 0.1)]

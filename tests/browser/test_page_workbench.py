@@ -1,93 +1,64 @@
-"""The frequency workbench as the user drives it: Nyquist, measured dots, locus, placing a pair."""
-
-from __future__ import annotations
+"""The frequency workbench: Nyquist, measured dots, locus, placing a pair, the whole system, limits."""
 
 import math
+import re
 from typing import Any
 
 import numpy as np
 import pytest
 
+from app.plots.effective import earth_mode_text
+from app.session.requirements import Requirements
 from app.views.frequency.nyquist import margins_of
+from app.views.poles.whole import LATITUDES
 from navcore.analysis import analyse
+from navcore.analysis.whole_system import growth_over_latitude
+from navcore.foundation.units import DEG
 from navcore.scenario.model import Scenario
-from tests.browser.driver import Bench
+from tests.browser.driver import SIZES, Bench
 from tests.browser.fields import label_of
-from tests.browser.placing import placing_scenario
-from tests.browser.test_page_layout import SIZES, resize
-
-pytestmark = pytest.mark.browser
-
-# Where a point of the right pole map lies in the window, CSS px.
-_SPOT = """([re, im]) => {
-  const plot = [...document.querySelectorAll('.js-plotly-plot')].find(
-    p => p.offsetParent !== null && p._fullLayout?.meta?.pick);
-  const frame = plot.getBoundingClientRect();
-  const {xaxis2, yaxis2} = plot._fullLayout;
-  return [frame.left + xaxis2._offset + xaxis2.d2p(re), frame.top + yaxis2._offset + yaxis2.d2p(im)];
-}"""
-_HAS_TRACE = """name => [...document.querySelectorAll('.js-plotly-plot')].some(
-  p => p.offsetParent !== null && p._fullData?.some(t => t.name === name && t.x?.length > 0))"""
-_HAS_NO_TRACE = f"name => !({_HAS_TRACE})(name)"
-_TOOLS_IN_ROW = """() => {
-  const tools = [...document.querySelectorAll('.sb-tools')].map(e => e.parentElement.parentElement);
-  return tools.filter(t => t.offsetParent !== null).map(t => {
-    const controls = [...t.children].filter(c => c.querySelector('.js-plotly-plot') === null);
-    const found = controls.flatMap(c => [...c.querySelectorAll('input:not([type=hidden]), button')]);
-    const boxes = found.map(e => e.getBoundingClientRect());
-    const middles = boxes.filter(b => b.width > 0).map(b => b.top + b.height / 2);
-    const labels = [...t.querySelectorAll('p:has(> label)')].map(p => p.scrollWidth - p.clientWidth);
-    return [Math.max(...middles) - Math.min(...middles), Math.max(...labels)];
-  });
-}"""
-
+from tests.browser.placing import NEAR, place, placing_scenario, spot
+from tests.browser.windows.test_results import ask, box, cells, wait_for
 
 FREE = {"name": "free"}
 
 
 @pytest.fixture
 def workbench(bench: Bench) -> Bench:
-    """The shared page on a scenario of its own; its second method in hand, all choices as at first."""
-    bench.put(placing_scenario(FREE), origin=f"workbench {bench.session.run_number}", selected=1)
-    bench.show(transfer="phi/dv_r", discrete=False, locus="")
+    """The shared page on a scenario of its own; its second method selected."""
+    place(bench, "Frequency", FREE)
     return bench
 
 
 def poles_of(bench: Bench, index: int) -> np.ndarray:
-    made = bench.session.scenario
-    return analyse(made.method[index].network.transfer(made.omega_s)).poles / made.omega_s
+    scenario = bench.session.scenario
+    return analyse(scenario.method[index].network.transfer(scenario.omega_s)).poles / scenario.omega_s
 
 
 def trace(bench: Bench, name: str, place: int = 0) -> dict[str, Any]:
-    bench.page.wait_for_function(_HAS_TRACE, arg=name)
+    bench.page.wait_for_function("look.hasTrace", arg=name)
     return [t for t in bench.plotly() if t["name"] == name][place]
 
 
 def test_the_chooser_shows_nyquist_with_margins(workbench: Bench) -> None:
-    workbench.tab("Frequency")
     workbench.choose("transfer", "open loop: Nyquist plot and margins")
-    run = workbench.session.run
-    assert run is not None
-    found = margins_of(run.methods[1])
-    assert found is not None and found.phase_rad is not None
+    phase = margins_of(workbench.session.run.methods[1]).phase_rad
     dot = trace(workbench, "placed margin", 2)
     assert np.hypot(dot["x"][0], dot["y"][0]) == pytest.approx(1.0)
-    assert np.angle(-complex(dot["x"][0], dot["y"][0])) == pytest.approx(found.phase_rad, rel=1e-6)
-    words = workbench.page.locator(".annotation-text").all_text_contents()
-    assert any(f"placed: phase {math.degrees(found.phase_rad):.3g}°" in text for text in words)
-    assert any("free: no margin: undamped" in text for text in words)
+    assert np.angle(-complex(dot["x"][0], dot["y"][0])) == pytest.approx(phase, rel=1e-6)
+    words = " ".join(workbench.page.locator(".annotation-text").all_text_contents())
+    assert f"placed: phase {math.degrees(phase):.3g}°" in words
+    assert "free: no margin: undamped" in words
     # a second method's slider moves the margin
-    workbench.tab("Method")
     workbench.press("network.zeta")
-    after = trace(workbench, "placed margin", 2)
-    assert after["x"] != dot["x"]
+    assert trace(workbench, "placed margin", 2)["x"] != dot["x"]
+    number = workbench.run
     workbench.choose("transfer", "tilt from log error")
-    workbench.page.wait_for_function(_HAS_NO_TRACE, arg="placed margin")
-    assert workbench.faults == []
+    workbench.page.wait_for_function("look.hasNoTrace", arg="placed margin")
+    assert workbench.run == number
 
 
 def test_measured_filter_lies_on_h(workbench: Bench) -> None:
-    workbench.tab("Frequency")
     switch = workbench.page.locator(f"[id='{workbench.id('measured filter')}']")
     switch.click()
     dots, curve = trace(workbench, "placed measured"), trace(workbench, "placed")
@@ -97,10 +68,10 @@ def test_measured_filter_lies_on_h(workbench: Bench) -> None:
     assert workbench.session.display.discrete
     workbench.settle()
     switch.click()
-    workbench.page.wait_for_function(_HAS_NO_TRACE, arg="placed measured")
+    workbench.page.wait_for_function("look.hasNoTrace", arg="placed measured")
 
 
-def test_locus_over_each_parameter_of_the_network_in_hand(workbench: Bench) -> None:
+def test_locus_over_each_parameter_of_the_selected_network(workbench: Bench) -> None:
     workbench.tab("Poles")
     workbench.choose("locus", label_of("network.zeta"))
     locus = trace(workbench, "placed locus")
@@ -112,119 +83,195 @@ def test_locus_over_each_parameter_of_the_network_in_hand(workbench: Bench) -> N
     workbench.page.get_by_text("over r: ○ 0.5").wait_for()
     # a network without parameters has no locus
     workbench.select(0)
-    workbench.page.wait_for_function(_HAS_NO_TRACE, arg="placed locus")
+    workbench.page.wait_for_function("look.hasNoTrace", arg="placed locus")
     assert workbench.box("locus").input_value() == "nothing"
-    assert workbench.faults == []
 
 
 def test_a_click_into_the_pole_map_places_the_pair_in_one_step(workbench: Bench) -> None:
+    mouse = workbench.page.mouse
     workbench.tab("Poles")
     trace(workbench, "placed")
-    before, number = workbench.session.scenario, workbench.run
-    x, y = workbench.page.evaluate(_SPOT, [-1.0, 1.25])
-    workbench.page.mouse.click(x, y)
-    workbench.wait_for_run(number)
+    before, (x, y), wanted = workbench.session.scenario, spot(workbench, *NEAR, -1.0, 1.25), -1.0 + 1.25j
+    with workbench.next_run():
+        mouse.click(x, y)
     assert "pair at" in workbench.notice("Placed")
-    assert np.abs(poles_of(workbench, 1) - (-1.0 + 1.25j)).min() < 0.03
+    assert np.abs(poles_of(workbench, 1) - wanted).min() < 0.03
     made = workbench.session.scenario
     assert (made.method[0], made.method[2]) == (before.method[0], before.method[2])
     shown = trace(workbench, "placed", 1)
-    assert np.min(np.abs(np.array(shown["x"]) + 1j * np.array(shown["y"]) - (-1.0 + 1.25j))) < 0.03
+    assert np.min(np.abs(np.array(shown["x"]) + 1j * np.array(shown["y"]) - wanted)) < 0.03
     # one step back is the scenario as it was
-    number = workbench.run
-    workbench.page.keyboard.press("Control+z")
-    workbench.wait_for_run(number)
+    with workbench.next_run():
+        workbench.page.keyboard.press("Control+z")
     assert workbench.session.scenario == before
     # a drag zooms and places nothing
-    workbench.page.mouse.move(x, y)
-    workbench.page.mouse.down()
-    workbench.page.mouse.move(x + 60, y + 60, steps=4)
-    workbench.page.mouse.up()
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x + 60, y + 60, steps=4)
+    mouse.up()
     workbench.page.wait_for_timeout(600)  # a click is told so late, for it may become a double click
     workbench.settle()
-    assert workbench.session.scenario == before
-    workbench.page.mouse.dblclick(x, y)
+    mouse.dblclick(x, y)
     workbench.page.wait_for_timeout(600)
     workbench.settle()
     assert workbench.session.scenario == before
-    assert workbench.faults == []
 
 
 def test_what_cannot_be_placed_is_said(workbench: Bench) -> None:
     workbench.tab("Poles")
     trace(workbench, "placed")
     before = workbench.session.scenario
-    x, y = workbench.page.evaluate(_SPOT, [0.2, 1.0])
-    workbench.page.mouse.click(x, y)
+    workbench.page.mouse.click(*spot(workbench, *NEAR, 0.2, 1.0))
     assert "nearest possible" in workbench.notice("The pair was not placed")
     workbench.close_notices()
     workbench.select(0)
-    workbench.page.get_by_role("button", name="Place", exact=True).click()
+    workbench.button("Place").click()
     assert "no parameter" in workbench.notice("The pair was not placed")
     assert workbench.session.scenario == before
-
-
-def test_a_typed_pair_is_placed(workbench: Bench) -> None:
-    workbench.tab("Poles")
-    number = workbench.run
-    workbench.box("pair ζ").fill("0.35")
-    workbench.box("pair ω/ωₛ").fill("1.6")
-    workbench.page.get_by_role("button", name="Place", exact=True).click()
-    workbench.wait_for_run(number)
-    wanted = 1.6 * (-0.35 + 1j * np.sqrt(1 - 0.35**2))
-    assert np.abs(poles_of(workbench, 1) - wanted).min() < 1e-6
-    network = workbench.session.scenario.method[1].network
-    assert network.model_dump()["zeta"] == pytest.approx(0.35)
-    assert network.model_dump()["r"] == pytest.approx(1.6)
 
 
 def test_margin_of_a_law_over_time_stands_in_the_switching_view(workbench: Bench) -> None:
     data = placing_scenario(FREE).canonical()
     data["method"][1]["policy"] = {"id": "adaptive"}
-    workbench.put(Scenario.parse(data), selected=1)
-    workbench.tab("Switching")
-    label = """() => Object.values(window.__viserTestpoints?.uplots ?? {})
-      .some(entry => entry.chart.axes[1].label.startsWith('least ζ'))"""
-    workbench.page.wait_for_function(label)
+    workbench.put(Scenario.parse(data), "Switching", selected=1)
+    workbench.page.wait_for_function("look.hasLabel", arg="least ζ")
     charts = {chart["label"]: chart["data"] for chart in workbench.curves()}
-    xi, margin = charts["ζ (–)"][1], charts["least ζ (–)"][1]
+    margin, xi = charts["least ζ (–)"], charts["ζ (–)"]
     # unity2 has the damping ratio that its coefficient says
-    assert margin == pytest.approx(xi, rel=1e-3)
-    assert charts["least ζ (–)"][0] == charts["ζ (–)"][0]
+    assert margin[1] == pytest.approx(xi[1], rel=1e-3)
+    assert margin[0] == xi[0]
 
 
-def test_tools_stand_in_one_row_in_every_window(workbench: Bench) -> None:
-    try:
-        for size in reversed(SIZES):
-            resize(workbench, size)
-            for tab in ("Frequency", "Poles"):
-                workbench.tab(tab)
-                workbench.page.wait_for_function(_HAS_TRACE, arg="placed")
-                rows = workbench.page.evaluate(_TOOLS_IN_ROW)
-                assert rows, tab
-                for apart, cut in rows:
-                    assert apart < 8 and cut <= 0, (size, tab, rows)
-    finally:
-        resize(workbench, SIZES[0])
-    assert workbench.faults == []
+def test_the_view_comes_with_the_first_policy_and_goes_with_the_last(moving: Bench) -> None:
+    tab = moving.page.get_by_role("tab", name="Switching", exact=True)
+    assert tab.count() == 0
+    moving.choose_and_run("policy", "threshold")
+    tab.click()
+    moving.page.get_by_text("wanted state", exact=True).wait_for()
+    moving.choose("curve above", "Position error")
+    moving.page.wait_for_function("look.hasLabel", arg="position")
+    moving.choose_and_run("policy", "constant")
+    tab.wait_for(state="detached")
+    # another tab has come to the front
+    moving.page.get_by_role("tab", name="Errors", exact=True, selected=True).wait_for()
 
 
-def test_the_whole_system_stands_beside_the_channel(workbench: Bench) -> None:
-    workbench.tab("Poles")
-    workbench.choose("poles of", "system")
-    growth = trace(workbench, "placed growth")
-    run = workbench.session.run
-    assert run is not None
-    whole = run.methods[1].whole
-    site = trace(workbench, "placed at the site")
-    assert site["y"][0] == pytest.approx(whole.earth_growth * 86400.0, rel=1e-6)
-    at = np.interp(abs(run.scenario.site.lat_deg), growth["x"], growth["y"])
-    assert at == pytest.approx(site["y"][0], rel=0.01)
-    mode = trace(workbench, "placed 24 h")
-    assert len(mode["x"]) == len(whole.named("24 h"))
-    workbench.tab("Method")
-    workbench.page.get_by_text("Whole system: 24 h mode").first.wait_for()
-    workbench.tab("Poles")
-    workbench.choose("poles of", "channel")
-    workbench.page.wait_for_function(_HAS_NO_TRACE, arg="placed growth")
-    assert workbench.faults == []
+# ------------------------------------------------------------ the whole system
+
+
+@pytest.fixture
+def whole(bench: Bench) -> Bench:
+    """The shared page with a network that can be placed, under way; the tab Poles in front."""
+    bench.reset("sikuliaq-like")
+    data = bench.session.scenario.canonical()
+    data["method"][1]["network"] = {"id": "unity2", "zeta": 0.5, "zeta2": 0.3}
+    bench.put(Scenario.parse(data), "Poles", "Method", selected=1)
+    bench.box("pair ζ").wait_for()
+    return bench
+
+
+def test_modes_growth_and_the_line_under_the_network_are_the_engines(whole: Bench) -> None:
+    whole.choose("poles of", "system")
+    whole.page.wait_for_selector(".gtitle, .annotation-text:has-text('Growth of the 24 h mode')")
+    run = whole.session.run
+    traces, scenario = {trace["name"]: trace for trace in whole.plotly()}, run.scenario
+    for method in run.methods[1:]:
+        name = method.method.name
+        rates = growth_over_latitude(method.network, method.method.damping, LATITUDES * DEG, scenario.earth)
+        assert traces[f"{name} growth"]["y"] == pytest.approx((rates * 86400.0).tolist(), rel=1e-6, abs=1e-9)
+        (here,) = traces[f"{name} at the site"]["y"]
+        assert here == pytest.approx(method.whole.earth_growth * 86400.0, rel=1e-6)
+        assert len(traces[f"{name} 24 h"]["x"]) == len(method.whole.named("24 h")) >= 1
+    told = earth_mode_text(run.methods[1].whole.earth_growth)
+    line = f"Whole system: 24 h mode {told} at {abs(scenario.site.lat_deg):.3g}°."
+    whole.page.get_by_text(line).first.wait_for()
+    for size in reversed(SIZES):
+        whole.resize(size)
+        whole.tab("Poles")
+        whole.page.wait_for_function("() => look.plotsCut().length > 0")
+        assert all(right <= 0 and below <= 0 for right, below in whole.page.evaluate("look.plotsCut")), size
+    whole.choose("poles of", "channel")
+    whole.page.wait_for_function("look.hasNoTrace", arg=f"{scenario.method[1].name} growth")
+
+
+def test_a_typed_pair_that_lets_the_24_h_mode_grow_is_not_placed_when_it_must_not(whole: Bench) -> None:
+    session, frequency = whole.session, whole.box("pair ω/ωₛ")
+    before = session.scenario
+    whole.box("H'(0) ≤ 0").click()
+    frequency.fill("1.2")
+    whole.button("Place").click()
+    told = whole.notice("The pair was not placed")
+    assert "H'(0)" in told and "the 24 h mode grows" in told and "unity2 with a pair below ωₛ" in told
+    assert session.scenario == before and session.display.requirements.h_slope_s == 0.0
+    whole.close_notices()
+    with whole.next_run():
+        frequency.fill("0.8")
+        whole.box("pair ζ").fill("0.35")
+        whole.button("Place").click()
+    assert session.run.methods[1].whole.earth_growth < 0.0
+    assert np.abs(poles_of(whole, 1) - 0.8 * (-0.35 + 1j * np.sqrt(1 - 0.35**2))).min() < 1e-6
+    network = session.scenario.method[1].network.model_dump()
+    assert (network["zeta"], network["r"]) == pytest.approx((0.35, 0.8))
+    # one limit: the tab Requirements has it too, and emptied there it is gone here
+    whole.tab("Requirements")
+    limit = box(whole, "H'(0) ≤ (s)")
+    assert limit.input_value() == "0"
+    limit.fill("")
+    ticked = "id => !document.getElementById(id).checked"
+    whole.page.wait_for_function(ticked, arg=whole.id("H'(0) ≤ 0"))
+
+
+# ------------------------------------------------------------ limits
+
+
+@pytest.fixture
+def asked(bench: Bench) -> Bench:
+    """The shared page with no requirement, the tab in front."""
+    bench.reset("sikuliaq-like", "Requirements", selected=2)
+    wait_for(bench, "settling_min", ["", "", ""])
+    return bench
+
+
+def test_limits_are_drawn_as_regions_and_lines_and_each_run_is_judged_anew(asked: Bench) -> None:
+    for label, text in (
+        ("settling ≤ (min)", "90"),
+        ("overshoot ≤ (%)", "30"),
+        ("damping ratio ≥", "0.6"),
+        ("tilt after log step ≤ (arcsec)", "10"),
+        ("largest tilt ≤ (arcsec)", "12"),
+    ):
+        ask(asked, label, text)
+    wait_for(asked, "damping_ratio", ["missed", "met", "missed"])
+    table = asked.page.locator(".sb-verdicts").inner_text()
+    assert re.findall(r"✗ misses \d of \d", table) and "✗ missed" in table
+    before = cells(asked, "overshoot_percent")[2][0]
+    asked.press("network.zeta")
+    judged = "old => Math.abs(look.cells().filter(c => c[0] === 'overshoot_percent')[2][1] - old) > 1e-6"
+    asked.page.wait_for_function(judged, arg=before)
+    asked.tab("Step")
+    asked.page.wait_for_function("() => look.shapes().some(s => s[0] === 'overshoot')")
+    shapes = asked.page.evaluate("look.shapes")
+    assert ["overshoot", "x", 0, -0.3, None] in shapes
+    assert {x0 for name, _, x0, _, _ in shapes if name == "settling"} == {90}
+    asked.tab("Errors")
+    asked.page.wait_for_function("() => look.limits().length >= 2")
+    drawn = dict(asked.page.evaluate("look.limits"))
+    assert {label.split()[0] for label in drawn} == {"φE", "φN"}
+    assert all(sorted(found) == pytest.approx([-12.0, 12.0]) for found in drawn.values())
+    # and gone with the limit
+    asked.tab("Requirements")
+    ask(asked, "overshoot ≤ (%)", "")
+    asked.page.wait_for_function("() => !look.shapes().some(s => s[0] === 'overshoot')")
+
+
+def test_bad_input_is_refused_beside_the_boxes_and_the_old_limit_kept(asked: Bench) -> None:
+    ask(asked, "settling ≤ (min)", "90")
+    for text in ("soon", "-5", "1e9"):
+        box(asked, "settling ≤ (min)").fill(text)
+        note = (
+            asked.page.locator(".sb-note:visible").filter(has_text="settling ≤ (min)").filter(has_text=text)
+        )
+        told = note.inner_text()
+        assert "was not taken over" in told and "<= 100000 (min)" in told and "90 is kept" in told
+        assert box(asked, "settling ≤ (min)").input_value() == "90"
+        assert asked.session.display.requirements == Requirements(settling_min=90.0)

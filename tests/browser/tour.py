@@ -26,6 +26,12 @@ LARGEST_BYTES = 3_000_000
 _QUALITIES = (82, 70, 60, 50, 40)
 
 
+def rest(page: Page, wait_ms: int = 900) -> None:
+    """Let the 3D view and the plots come to rest before a picture is taken, and tooltips close."""
+    page.mouse.move(0.35 * WIDTH, 0.9 * HEIGHT)
+    page.wait_for_timeout(wait_ms)
+
+
 @dataclass
 class Film:
     """Frames with captions.
@@ -41,8 +47,10 @@ class Film:
     lasts_ms: list[int] = field(default_factory=list)
     caption: str = ""
 
-    def shoot(self, lasts_ms: int, caption: str = "") -> None:
-        """Take a frame of the page as it is, with a caption (the last one, when none is given)."""
+    def shoot(self, lasts_ms: int, caption: str = "", *, rest_ms: int = 900) -> None:
+        """Take a frame of the page at rest, with a caption (the last one, when none is given)."""
+        if rest_ms:
+            rest(self.page, rest_ms)
         self.caption = caption or self.caption
         shot = Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")
         frame = Image.new("RGB", (WIDTH, HEIGHT), "#0b2a44")
@@ -87,39 +95,40 @@ def film(bench: Bench, take: Film) -> None:
         bench.close_notices()
     page.locator("body").press("d")
     page.wait_for_selector("#sb-theme[data-theme=dark]", state="attached")
-    _rest(page)
     take.shoot(1800, "Press D in a dim room, ? for the keys, Ctrl+K for everything")
 
 
 def _preset(bench: Bench, take: Film) -> None:
     bench.tab("Method", "Errors")
-    _rest(bench.page)
     take.shoot(2000, "Schuler Bench: design and judge the damping of an inertial navigator")
     bench.box("scenario").click()
     bench.page.get_by_role("option", name="zha-external", exact=True).hover()
-    take.shoot(1200, "Choose a preset: the figures and tables of five papers")
+    take.shoot(1200, "Choose a preset: the figures and tables of five papers", rest_ms=0)
     before = bench.run
     bench.page.get_by_role("option", name="zha-external", exact=True).click()
     bench.wait_for_run(before)
     bench.choose("method", "fast (compass)")
     bench.tab("Errors")
-    _rest(bench.page)
     take.shoot(1500)
 
 
 def _slider(bench: Bench, take: Film) -> None:
     for step in range(5):
         _slide(bench, "ArrowLeft")
-        take.shoot(1000 if step == 4 else 350, "Move a slider: loop, curves and track answer at once")
+        take.shoot(
+            1000 if step == 4 else 350, "Move a slider: loop, curves and track answer at once", rest_ms=500
+        )
 
 
 def _pin(bench: Bench, take: Film) -> None:
     bench.page.locator("body").press("p")
-    while not len(bench.session.pins):
+    while not len(bench.session.pins.all):
         bench.page.wait_for_timeout(THROTTLE_MS)
     for step in range(4):
         _slide(bench, "ArrowRight")
-        take.shoot(1100 if step == 3 else 350, "Pin a run and compare: dashed is what you pinned")
+        take.shoot(
+            1100 if step == 3 else 350, "Pin a run and compare: dashed is what you pinned", rest_ms=500
+        )
 
 
 def _slide(bench: Bench, key: str) -> None:
@@ -128,13 +137,11 @@ def _slide(bench: Bench, key: str) -> None:
         bench.slider("network.sigma").press(key)
     bench.page.wait_for_timeout(4 * THROTTLE_MS)
     bench.press("network.sigma", key)
-    _rest(bench.page, 500)
 
 
 def _poles(bench: Bench, take: Film) -> None:
     bench.tab("Poles")
     bench.plotly()
-    _rest(bench.page)
     take.shoot(1900, "Poles, root locus, Nyquist: place a pole and get its parameters")
 
 
@@ -142,13 +149,11 @@ def _verify(bench: Bench, take: Film) -> None:
     bench.tab("Errors")
     button = bench.page.get_by_role("button", name="Verify with full strapdown")
     button.focus()
-    _rest(bench.page)
     take.shoot(1100, "Verify: the full nonlinear strapdown on the same noise, dashed")
     button.click()
     bench.page.locator(".sb-note:visible", has_text="Verified.").wait_for(timeout=120_000)
     bench.close_notices()
-    _rest(bench.page, 2000)
-    take.shoot(2000)
+    take.shoot(2000, rest_ms=2000)
 
 
 def _lesson(bench: Bench, take: Film) -> None:
@@ -164,25 +169,17 @@ def _lesson(bench: Bench, take: Film) -> None:
     page.locator("[data-command='lesson next']").click()
     page.get_by_label("Your answer").fill("84.5")
     page.get_by_label("Your answer").scroll_into_view_if_needed()
-    _rest(page)
     take.shoot(1600, "Learn: each lesson drives the page and asks about it")
     page.keyboard.press("Enter")
     page.locator(".sb-question[data-right=true]").wait_for()
     page.locator("[data-command='lesson next']").scroll_into_view_if_needed()
-    _rest(page)
     take.shoot(1700)
-
-
-def _rest(page: Page, wait_ms: int = 900) -> None:
-    """Let the 3D view and the plots come to rest before a picture is taken, and tooltips close."""
-    page.mouse.move(0.35 * WIDTH, 0.9 * HEIGHT)
-    page.wait_for_timeout(wait_ms)
 
 
 def still(bench: Bench) -> None:
     """The README's one picture: the page as a new visitor sees it."""
     bench.tab("Method", "Frequency", "Errors")
-    _rest(bench.page, 3000)
+    rest(bench.page, 3000)
     bench.page.screenshot(path=STILL)
 
 

@@ -145,7 +145,7 @@
     if (!scrubbing) mark(now.time);
   }
 
-  // Leans on viser's handles of its charts, as pinned: tests/browser/test_page_playback.py looks at the result. The width
+  // Leans on viser's handles of its charts, as pinned: tests/browser/test_page_scene.py looks at the result. The width
   // is the chart's own: asked of the element, the browser would lay the page out again for each plot.
   function mark(time) {
     const charts = Object.values(window.__viserTestpoints?.uplots ?? {});

@@ -1,69 +1,67 @@
 """Looks at the page as a person does: what is there, whole and uncovered, and in which language it speaks."""
 
-from __future__ import annotations
-
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
+from functools import lru_cache
 
-from tests.browser.test_page_language import left_out
+from playwright.sync_api import Locator
 
-if TYPE_CHECKING:
-    from playwright.sync_api import Locator
-
-    from tests.browser.driver import Bench
+from app.editing import form
+from app.views.learn.lessons import lessons
+from navcore.foundation.parameters import Parameters
+from navcore.scenario.file import load, presets
+from tests.browser.driver import Bench
 
 CHINESE = re.compile("[\u4e00-\u9fff]")
 PATIENCE_S = 20.0
+WORD = re.compile(r"[A-Za-z]{3,}")
+KEY = re.compile(r"\b[a-z]+(?:[._][a-z0-9]+)+\b")
+"""A field of the scenario file, a column, a file."""
+SYMBOLS = frozenset(
+    "Schuler Bench CSV SVG PNG TOML JSON HTML NMEA Parquet MAT PSINS arcsec arcmin min nmi MiB sin per "
+    "log linear exact Deng Liu Zhao Sun Zha Sikuliaq fig eq theory md RMS GPS LQG IMU WGS ENE ESE SSE SSW "
+    "WSW WNW NNW NNE Ctrl Shift Enter Esc English Viser WorldAxes light map metrics scenario toml json "
+    "page state painted command serve host mas rms and pole2 imu reference".split()
+)
+"""Product, formats, symbols, units, keys, citations, the scene's nodes, the page's own hidden controls."""
 
-# What keeps a person from seeing an element; empty: it is seen. Where its panel scrolls, it is scrolled to
-# first, and what lets the pointer through is asked for as if it did not.
-_HIDDEN = """element => {
-  const outside = (box, frame) => box.left < frame.left - 1.5 || box.top < frame.top - 1.5
-    || box.right > frame.right + 1.5 || box.bottom > frame.bottom + 1.5;
-  const told = box => [box.left, box.top, box.right, box.bottom].map(Math.round).join();
-  const frames = [];
-  for (let at = element.parentElement; at; at = at.parentElement) {
-    const {overflowX, overflowY} = getComputedStyle(at);
-    if (overflowX === 'visible' && overflowY === 'visible') continue;
-    const frame = at.getBoundingClientRect(), box = element.getBoundingClientRect();
-    if (['auto', 'scroll'].includes(overflowY)) {
-      const [above, below] = [frame.top - box.top, box.bottom - frame.bottom];
-      if (below > 0) at.scrollTop += Math.min(below, -above) + 2;
-      else if (above > 0) at.scrollTop -= above + 2;
-    }
-    frames.push(at);
-  }
-  const box = element.getBoundingClientRect();
-  const shown = element.checkVisibility({visibilityProperty: true, opacityProperty: true});
-  if (!shown || box.width < 2 || box.height < 2) return 'it is not shown';
-  const all = {left: 0, top: 0, right: innerWidth, bottom: innerHeight};
-  if (outside(box, all)) return `it leaves the window: ${told(box)}`;
-  const frame = frames.find(each => outside(box, each.getBoundingClientRect()));
-  if (frame) return `${told(box)} is cut by ${frame.className} ${told(frame.getBoundingClientRect())}`;
-  for (const part of [element, ...element.querySelectorAll('*')]) {
-    const typed = part.tagName === 'INPUT';
-    const written = typed || [...part.childNodes].some(n => n.nodeType === 3 && n.data.trim() !== '');
-    const clips = typed || getComputedStyle(part).overflowX !== 'visible';
-    if (written && clips && !part.readOnly && part.clientWidth > 2 && part.scrollWidth > part.clientWidth + 1)
-      return `its text is cut: ${part.value ?? part.textContent}`;
-  }
-  const through = getComputedStyle(element).pointerEvents === 'none';
-  const kept = element.style.pointerEvents;
-  if (through) element.style.pointerEvents = 'auto';
-  const whole = element.closest('.mantine-Input-wrapper') ?? element; // a box has parts over its ends
-  const over = [[.5, .5], [.2, .2], [.8, .2], [.2, .8], [.8, .8]]
-    .map(([x, y]) => document.elementFromPoint(box.left + x * box.width, box.top + y * box.height))
-    .find(top => top === null || !(whole.contains(top) || top.contains(element)));
-  if (through) element.style.pointerEvents = kept;
-  return over === undefined ? '' : `it is covered by ${over?.outerHTML.slice(0, 120)}`;
-}"""
+
+@lru_cache(maxsize=1)
+def as_written() -> frozenset[str]:
+    """Words of a scenario file, which stay as they are: fields, choices, names and units."""
+    words = set(SYMBOLS)
+    scenarios = [load(name) for name in presets()]
+    scenarios += [lesson.scenario_of(step) for lesson in lessons() for step in range(len(lesson.steps))]
+    for name in presets():
+        words |= set(re.findall(r"[A-Za-z]+", name))
+    for scenario in scenarios:
+        for method in scenario.method:
+            words |= set(re.findall(r"[A-Za-z]+", method.name))
+    for kind in models(Parameters):
+        for info in kind.model_fields.values():
+            words |= {
+                part for one in form._literals(info.annotation) for part in re.findall("[A-Za-z]+", one)
+            }
+            words |= set(re.findall("[A-Za-z]+", str((info.json_schema_extra or {}).get("unit", ""))))
+    return frozenset(words)
+
+
+def models(base: type) -> list[type]:
+    return [kind for inner in base.__subclasses__() for kind in (inner, *models(inner))]
+
+
+def left_out(seen: Iterable[str]) -> list[str]:
+    """Texts with a word of English in them, be the rest translated or not."""
+    known = as_written()
+    bare = {text: KEY.sub("", text) for text in seen}
+    return sorted(text for text in seen if any(word not in known for word in WORD.findall(bare[text])))
 
 
 def see(bench: Bench, found: Locator) -> Locator:
     """Wait until what is found first can be seen: in the window, not cut, not covered; return it."""
     first, why = found.first, "nothing is there"
     for _ in range(round(PATIENCE_S / 0.05)):
-        why = first.evaluate(_HIDDEN) if first.count() else why
+        why = first.evaluate("look.hidden") if first.count() else why
         if not why:
             return first
         bench.page.wait_for_timeout(50)

@@ -1,113 +1,132 @@
 """Seen in pictures of the page: pins, legends, the table of metrics, names, and what stands over the map."""
 
-from __future__ import annotations
-
 import re
-from collections.abc import Iterator
+from itertools import combinations
 
 import pytest
 
 from app.editing import edits
+from app.session.pins import MOST_PINS
 from app.session.requirements import Requirements
-from tests.browser.driver import Bench
+from app.shell.layout import layout_for
+from tests.browser.driver import SIZES, Bench
 from tests.browser.fields import label_of
-from tests.browser.test_page_compare import _UPLOT_NAMES
+from tests.browser.test_page_layout import wait_until_it_fits
 from tests.browser.test_page_scene import overlap
 from tests.browser.windows.seeing import read, see, speaks
 
-pytestmark = pytest.mark.browser
-
 ZETA = ("method", 2, "network", "zeta")
-_RUNS = "() => [...document.querySelectorAll('.sb-pins tbody tr b')].map(b => b.textContent)"
-# Numbers of the table of metrics as they are seen, by the place of their decimal points in each column.
-_POINTS = """() => {
-  const rows = [...document.querySelectorAll('.sb-table tbody tr')].map(row => [...row.cells]);
-  const found = {};
-  const shown = rows.filter(row => row.length > 6 && row[0].offsetParent !== null);
-  for (const cells of shown) for (const [place, cell] of cells.entries()) {
-    const text = cell.querySelector('.sb-best')?.firstChild ?? cell.firstChild;
-    if (place < 2 || text?.nodeType !== 3 || !/^-?[0-9]+[.][0-9]+$/.test(text.data)) continue;
-    const range = document.createRange();
-    range.setStart(text, 0);
-    range.setEnd(text, text.data.indexOf('.'));
-    (found[place] ??= []).push([text.data, range.getBoundingClientRect().right]);
-  }
-  return Object.values(found);
-}"""
-# Where the labels of the map's lines stand in the 3D view, px, and the view's size.
-_LABELS = """() => {
-  const {camera, nodeRefFromName: nodes} = window.__viserMutable;
-  const view = document.querySelector('canvas[data-engine]').getBoundingClientRect();
-  const pen = document.createElement('canvas').getContext('2d');
-  pen.font = '11px sans-serif';
-  const found = [];
-  for (const [name, {message}] of Object.entries(window.__viserSceneTree.getState())) {
-    const text = message?.props.text ?? '', {position} = window.__viserMutable.nodePoseData[name] ?? {};
-    if (!name.startsWith('/map/labels') || !text.includes('°') || !position) continue;
-    const at = camera.position.clone().set(...position).applyMatrix4(nodes[''].matrixWorld).project(camera);
-    const [x, y] = [view.width * (1 + at.x) / 2, view.height * (1 - at.y) / 2];
-    const half = pen.measureText(text).width / 2;
-    found.push([text, x - half, y, x + half, y + 11]);
-  }
-  return [found, view.width, view.height];
-}"""
-# How much of the 3D view's width and height what is drawn in it takes.
-_FILLED = """() => {
-  const view = document.querySelector('canvas[data-engine]');
-  const copy = Object.assign(document.createElement('canvas'), {width: view.width, height: view.height});
-  const pen = copy.getContext('2d');
-  pen.drawImage(view, 0, 0);
-  const seen = new Uint32Array(pen.getImageData(0, 0, view.width, view.height).data.buffer);
-  const [across, up] = [new Set(), new Set()];
-  for (const [place, color] of seen.entries()) if (color !== seen[0]) {
-    across.add(place % view.width);
-    up.add(Math.floor(place / view.width));
-  }
-  return [across.size / view.width, up.size / view.height];
-}"""
 
 
 @pytest.fixture
-def pinned(window: Bench) -> Iterator[Bench]:
+def pinned(window: Bench) -> Bench:
     """A pin, and the run with another damping ratio."""
-    session = window.session
     window.tab("Compare")
     see(window, window.button("Pin this run")).click()
-    window.wait_until(lambda: len(session.pins) == 1)
-    window.press("network.zeta")
-    yield window
-    for pin in session.pins.all:
-        session.pins.remove(pin.id)
-    session.pins._next = 1
-    window.show(requirements=Requirements(), pins_by="pinned")
+    window.wait_until(lambda: len(window.session.pins.all) == 1)
+    for _ in range(4):
+        window.press("network.zeta")
+    return window
+
+
+def name_of_pin(window: Bench) -> str:
+    """What the pin is called: by what differs."""
+    return f"ζ {edits.value_at(window.session.pins.all[0].scenario, ZETA):g}"
+
+
+def wait_for_names(window: Bench, condition: str) -> None:
+    """Wait until the names of every plot's curves fulfil a condition."""
+    window.page.wait_for_function(f"() => look.uplotNames().every(names => {condition})")
 
 
 def test_a_pin_is_called_by_what_differs_and_is_of_the_edited_method(pinned: Bench) -> None:
-    (pin,) = pinned.session.pins.all
-    name = f"ζ {edits.value_at(pin.scenario, ZETA):g}"
+    name = name_of_pin(pinned)
     assert name in read(pinned, pinned.page.locator(".sb-pins tbody tr", has_text="ζ"))
     pinned.tab("Errors")
-    pinned.page.wait_for_function(
-        f"label => ({_UPLOT_NAMES})().every(names => names.length === 4 && names[3] === label)",
-        arg=f"{name}: complementary",
-    )
+    # only the method that was edited is laid over: the others are as they were
+    wait_for_names(pinned, f"names.length === 4 && names[3] === '{name}: complementary'")
     assert read(pinned, pinned.page.locator(".sb-legend .sb-entry", has_text=name))
+    data = next(chart["data"] for chart in pinned.curves() if chart["label"].startswith("δVE"))
+    assert len(data) == 5 and data[3] != pytest.approx(data[4], rel=1e-3)
+    line = pinned.line("/track/pinned0")
+    assert line and line != pytest.approx(pinned.line("/track/method2"), abs=1e-3), "on the map too"
+    assert pinned.line("/track/pinned1") is None
+    for tab in ("Frequency", "Poles", "Step", "Spectrum"):
+        pinned.tab(tab)
+        assert f"{name}: complementary" in {trace["name"] for trace in pinned.plotly()}, tab
+
+
+def test_the_table_says_what_has_changed_since_the_pin(pinned: Bench) -> None:
+    (pin,) = pinned.session.pins.all
+    new, old = (run.methods[2].errors["phi_e_rad"]["rms"] for run in (pinned.session.run, pin.run))
+    pinned.tab("Metrics")
+    row = pinned.page.locator(".sb-table tr", has_text="φE").filter(has=pinned.page.locator(".sb-delta"))
+    row.first.wait_for()
+    percent = f"({100.0 * (new / old - 1.0):+.1f} %)"
+    assert any(percent in text for text in row.locator(".sb-delta").all_inner_texts())
+    pinned.page.locator(".sb-table", has_text=re.compile("Δ.*ζ")).first.wait_for()
+    pinned.tab("Compare")
+    pinned.choose("Δ of", "final")
+    pinned.tab("Metrics")
+    pinned.page.get_by_text(pinned.said("Δ final")).first.wait_for()
+
+
+def test_b_flips_between_the_present_run_and_the_pin(pinned: Bench) -> None:
+    pinned.tab("Errors")
+    page, (pin,) = pinned.page, pinned.session.pins.all
+    wait_for_names(pinned, "names[3]?.startsWith('ζ')")
+    before = pinned.curves()
+    page.evaluate("() => document.activeElement.blur()")
+    page.keyboard.press("b")
+    page.wait_for_selector("#sb-flip", state="attached")
+    assert "ζ" in page.evaluate("look.banner")
+    wait_for_names(pinned, "!names.some(n => n.startsWith('ζ'))")
+    data = next(chart for chart in pinned.curves() if chart["label"].startswith(pinned.said("position")))
+    peak = max(value for value in data["data"][3] if value is not None)
+    ratio = peak / pin.run.methods[2].errors["position_m"]["max_abs"]
+    assert min(abs(ratio * metres - 1.0) for metres in (1.0, 1000.0, 1852.0)) < 1e-6
+    assert page.evaluate("() => getComputedStyle(document.querySelector('.uplot')).outlineStyle") == "solid"
+    page.keyboard.press("b")
+    page.wait_for_selector("#sb-flip", state="detached")
+    wait_for_names(pinned, "names[3]?.startsWith('ζ')")
+    assert page.evaluate("look.banner") in ("none", "normal") and pinned.curves() == before
+
+
+def test_a_pin_is_renamed_hidden_gone_back_to_and_removed(pinned: Bench) -> None:
+    page, (pin,) = pinned.page, pinned.session.pins.all
+    for label, text in (("pin name", '<b>"old"</b>'), ("pin note", "as delivered")):
+        row = "xpath=ancestor::*[contains(@class, 'mantine-Flex-root')][1]//input"  # viser gives it no id
+        page.locator(f'label:text-is("{pinned.said(label)}")').locator(row).fill(text)
+        page.locator(".sb-pins", has_text=text).wait_for()
+    pinned.tab("Errors")
+    wait_for_names(pinned, "names.some(n => n.includes('\"old\"'))")
+    pinned.tab("Compare")
+    pinned.box("pin shown").click()
+    pinned.wait_until(lambda: pinned.session.pins.shown == ())
+    page.locator(".sb-pins", has_text=pinned.said("hidden")).wait_for()
+    with pinned.next_run():
+        see(pinned, pinned.button("Go back to this pin")).click()
+    assert pinned.session.scenario == pin.scenario
+    see(pinned, pinned.button("Remove this pin")).click()
+    page.locator(".sb-pins table").wait_for(state="detached")
+    assert len(pinned.session.pins.all) == 0
 
 
 def test_pins_stand_in_one_table_that_sorts_and_judges(pinned: Bench) -> None:
-    page = pinned.page
+    page, session = pinned.page, pinned.session
     pinned.show(requirements=Requirements(settling_min=1.0))
-    table = page.locator(".sb-pins table")
-    see(pinned, table)
+    table = see(pinned, page.locator(".sb-pins table"))
     text = read(pinned, table)
     for heading in ("settles to 2 %", "velocity RMS (m/s)", "largest tilt (arcsec)", "requirements"):
         assert pinned.said(heading) in text
         see(pinned, page.locator(".sb-sort", has_text=pinned.said(heading)))
     assert text.count("✗") == 2 and text.count(" min") >= 2
-    before = page.evaluate(_RUNS)
-    see(pinned, page.locator(".sb-sort").first).click()
-    page.wait_for_function(f"runs => String(({_RUNS})()) !== runs", arg=",".join(before))
-    assert sorted(page.evaluate(_RUNS)) == sorted(before)
+    settles = [run.methods[2].loop.settling_s for run in (session.run, session.pins.all[0].run)]
+    names = page.evaluate("look.runs")
+    order = sorted(names, key=lambda name: settles["ζ" in name] or 0.0)
+    for wanted in (order, order[::-1]):
+        see(pinned, page.locator(".sb-sort", has_text=pinned.said("settles to 2 %"))).click()
+        page.wait_for_function("runs => String(look.runs()) === String(runs)", arg=wanted)
 
 
 def test_requirements_judge_pins(pinned: Bench) -> None:
@@ -117,33 +136,56 @@ def test_requirements_judge_pins(pinned: Bench) -> None:
     read(pinned, pinned.page.locator(".sb-verdicts table"))
 
 
+def test_many_pins_fit_and_more_than_the_most_are_refused(pinned: Bench) -> None:
+    session = pinned.session
+    session.pins.add(session.run, "sikuliaq-like", "a second one")
+    for tab in ("Compare", "Errors", "Spectrum"):
+        pinned.tab(tab)
+        wait_until_it_fits(pinned, tab, scrolls=tab == "Compare")
+    pinned.tab("Compare")
+    while len(session.pins.all) < MOST_PINS:
+        session.pins.add(session.run, "sikuliaq-like")
+    see(pinned, pinned.button("Pin this run")).click()
+    pinned.notice("Not pinned")
+    read(pinned, pinned.page.locator(".mantine-Notification-root"))
+    assert len(session.pins.all) == MOST_PINS
+
+
 def test_a_click_on_the_legend_dims_hides_and_leaves_out(window: Bench) -> None:
-    page, name = window.page, "free"
-    try:
-        for state in ("unscaled", "dimmed", "hidden"):
-            see(window, page.locator(".sb-legend .sb-entry", has_text=name)).click()
-            page.wait_for_selector(f".sb-legend .sb-entry[data-state={state}]")
-            window.catch_up()
-            assert window.session.display.state_of(name) == state
-            read(window, page.locator(f".sb-legend .sb-entry[data-state={state}]"))
-            # in the key of the map too
-            key = page.locator(f"#sb-stage .sb-entry[data-state={state}]")
-            assert name in read(window, key)
-        assert window.line("/track/method0") is None
-        shown = "() => Object.values(window.__viserTestpoints.uplots).map(e => e.chart.series[1].show)"
-        page.wait_for_function(f"() => ({shown})().every(each => each === false)")
-    finally:
-        window.show(legend=())
+    page, run = window.page, window.session.run
+    names = [method.method.name for method in run.methods]
+    peaks = [method.errors["position_m"]["max_abs"] for method in run.methods]
+    place = peaks.index(max(peaks))
+    entries = page.locator("#sb-stage .sb-entry")
+    page.wait_for_function("() => document.querySelectorAll('#sb-stage .sb-entry').length === 3")
+    assert [text.split("\n")[0] for text in entries.all_inner_texts()] == names
+    top = f"""() => Object.values(window.__viserTestpoints.uplots).map(e => e.chart)
+      .filter(c => c.axes[1].label.startsWith({window.said("position")!r}))
+      .map(c => [c.scales.y.max, c.series[{1 + place}].show])[0]"""
+    drawn = page.evaluate(top)[0]
+    for state in ("unscaled", "dimmed", "hidden"):
+        see(window, page.locator(".sb-legend .sb-entry", has_text=names[place])).click()
+        page.wait_for_selector(f".sb-legend .sb-entry[data-state={state}]")
+        window.catch_up()
+        assert window.session.display.state_of(names[place]) == state
+        assert names[place] in read(window, page.locator(f"#sb-stage .sb-entry[data-state={state}]"))
+        scale = "===" if state == "dimmed" else "<"
+        condition = f"{scale} top && show === (state !== 'hidden')"
+        page.wait_for_function(
+            f"([top, state]) => (([now, show]) => now {condition})(({top})() ?? [])", arg=[drawn, state]
+        )
+    assert window.line(f"/track/method{place}") is None and window.line(f"/track/method{place - 1}")
+    # a click on the key of the map does the same: once more, and it is shown again
+    entries.nth(place).click()
+    window.wait_until(lambda: window.line(f"/track/method{place}") is not None)
 
 
 def test_copies_have_names_of_their_own(window: Bench) -> None:
     for _ in range(3):
-        number = window.run
-        see(window, window.page.get_by_role("button", name=window.said("copy"), exact=True)).click()
-        window.wait_for_run(number)
+        with window.next_run():
+            see(window, window.button("copy")).click()
     names = [method.name for method in window.session.scenario.method]
     assert names[2:] == ["complementary", "complementary 2", "complementary 3", "complementary 4"]
-    window.settle()
     for name in names:
         see(window, window.page.locator(".sb-legend .sb-entry", has_text=re.compile(f"^{name}")))
 
@@ -152,7 +194,7 @@ def test_the_table_of_metrics_is_whole_rounded_aligned_and_marks_the_best(window
     page = window.page
     window.tab("Metrics")
     read(window, page.locator(".sb-table table"))
-    columns = page.evaluate(_POINTS)
+    columns = page.evaluate("look.points")
     assert len(columns) in (6, 9), "of those methods that fit beside each other"
     for column in columns:
         # the best ones are bold: their digits are a little wider
@@ -173,23 +215,33 @@ def test_the_page_speaks_in_plain_words(window: Bench) -> None:
 
 
 def test_the_key_stands_below_the_map_which_fills_its_view(window: Bench) -> None:
-    page = window.page
+    page, (width, _), layout = window.page, window.size, layout_for(*window.size)
     caption = see(window, page.locator("#sb-stage [data-is=caption]"))
     window.wait_until(lambda: caption.inner_text() != "")
     read(window, caption)
-    parts = [".sb-key", ".sb-bar", ".sb-pendulum"]
-    boxes = [see(window, page.locator(f"#sb-stage {part}")).bounding_box() for part in parts]
-    sides = [(b["x"], b["y"], b["x"] + b["width"], b["y"] + b["height"]) for b in boxes]
-    assert not any(overlap(a, b) for i, a in enumerate(sides) for b in sides[i + 1 :])
-    for place in range(3):
-        read(window, page.locator("#sb-stage .sb-entry").nth(place))
-    across, up = page.evaluate(_FILLED)
+    place = [layout.left_px, width - layout.left_px - layout.right_px]
+    view, boxes = page.wait_for_function("look.placed", arg=place).json_value()
+    shown = {name: box for name, box in boxes.items() if box[2] > box[0]}
+    shown["key"] = page.locator("#sb-stage .sb-key").evaluate(
+        "key => (({left, top, right, bottom}) => [left, top, right, bottom])(key.getBoundingClientRect())"
+    )
+    assert {".sb-bar", ".sb-pendulum"} <= set(shown)
+    assert [pair for pair in combinations(shown, 2) if overlap(*map(shown.get, pair))] == []
+    for name, (left, up, right, down) in shown.items():
+        assert left >= view[0] - 1 and right <= view[2] + 1, (name, shown, view)
+        assert up >= view[1] - 1 and down <= view[3] + 1, (name, shown, view)
+    assert shown[".sb-bar"][3] - shown[".sb-bar"][1] < 110
+    pressed = page.locator("#sb-stage [data-shows][aria-pressed=true]").count()
+    assert pressed == (2 if window.size == SIZES[0] else 1), "a small view has room for one instrument"
+    for number in range(3):
+        read(window, page.locator("#sb-stage .sb-entry").nth(number))
+    across, up = page.evaluate("look.viewFilled")
     assert max(across, up) > 0.45, "the map is as large as the room between instruments and key"
 
 
 def test_meridians_are_labelled_apart(window: Bench) -> None:
     see(window, window.page.locator("canvas[data-engine]"))
-    found, width, height = window.page.evaluate(_LABELS)
+    found, width, height = window.page.evaluate("look.meridians")
     labels = {text: tuple(box) for text, *box in found}
     assert len(labels) >= 6 and sum(text.endswith("W") for text in labels) >= 2
     assert [(a, b) for a in labels for b in labels if a < b and overlap(labels[a], labels[b])] == []

@@ -1,21 +1,12 @@
 """The first five minutes and the languages; a new page in a browser of its own."""
 
-from __future__ import annotations
-
 import pytest
 
+from navcore.scenario.file import presets
 from tests.browser.driver import Bench
-from tests.browser.test_page_start import _CLEAR, CARD
-from tests.browser.windows.conftest import Open
 from tests.browser.windows.seeing import read, see, speaks
 
-pytestmark = pytest.mark.browser
-
-_TITLES = "() => [...document.querySelectorAll('[role=tab]')].map(tab => tab.textContent)"
-_VEILED = "() => document.getElementById('sb-veil') !== null"
-# Buttons below the state of the run: each with its area and the colour of its ground.
-_WEIGHTS = """() => [...document.querySelectorAll('.sb-row .sb-do')].filter(b => b.offsetParent !== null)
-  .map(b => [b.dataset.command ?? '', b.offsetHeight, getComputedStyle(b).backgroundColor])"""
+CARD = "dialog[open][aria-label='Schuler Bench']"
 
 
 def links(window: Bench, name: str) -> None:
@@ -24,38 +15,43 @@ def links(window: Bench, name: str) -> None:
     see(window, found).click()
 
 
-def test_a_newcomer_is_greeted_in_the_language_of_the_browser_and_can_change_it(another: Open) -> None:
-    bench = another(query="?fixedDpr=0.25")
-    page = bench.page
-    see(bench, page.locator(CARD))
-    assert not page.evaluate(_VEILED)
-    doors = page.locator(f"{CARD} .sb-door")
-    assert doors.count() == 3
+def test_a_newcomer_is_greeted_in_the_language_of_the_browser_and_can_change_it(visitor: Bench) -> None:
+    page = visitor.page
+    page.goto(f"{visitor.url}?fixedDpr=0.25")
+    page.wait_for_selector("#sb-run[data-run]", state="attached")
+    visitor.language = language = page.evaluate("() => schuler.language")
+    card = see(visitor, page.locator(CARD))
+    assert not page.evaluate("look.veiled")
+    assert card.locator(".sb-door").count() == 3
     for place in range(3):
-        read(bench, doors.nth(place))
+        read(visitor, card.locator(".sb-door").nth(place))
     page.keyboard.press("Escape")
-    page.locator(CARD).wait_for(state="detached")
-    see(bench, page.locator(".uplot"))
+    card.wait_for(state="detached")
+    see(visitor, page.locator(".uplot"))
     # nothing lies over the pendulum, and that 3D is drawn in software is said below the map
-    see(bench, page.locator("#sb-stage .sb-pendulum svg"))
+    see(visitor, page.locator("#sb-stage .sb-pendulum svg"))
     caption = page.locator("#sb-stage [data-is=caption]")
-    bench.wait_until(
-        lambda: {"en": "3D drawn in software"}.get(bench.language, "三维以软件绘制") in caption.inner_text()
-    )
-    read(bench, caption)
-    assert page.locator(".mantine-Notification-root:visible").count() == 0
-    bench.tab("View")
-    before, language = page.evaluate(_TITLES), page.evaluate("() => schuler.language")
-    see(bench, bench.box("language")).click()
+    software = {"en": "3D drawn in software"}.get(language, "三维以软件绘制")
+    visitor.wait_until(lambda: software in caption.inner_text())
+    read(visitor, caption)
+    page.wait_for_function("look.hiddenNotices")
+    # another session in the same browser: the card has been seen
+    visitor.open(query="?fixedDpr=0.25")
+    page.wait_for_selector("#sb-start[data-fresh='1']", state="attached")
+    visitor.settle()
+    assert card.count() == 0
+    visitor.tab("View")
+    before = page.evaluate("look.titles")
+    see(visitor, visitor.box("language")).click()
     other = {"en": "中文（简体）", "zh-CN": "English"}[language]
-    see(bench, page.get_by_role("option", name=other, exact=True)).click()
+    see(visitor, page.get_by_role("option", name=other, exact=True)).click()
     page.wait_for_selector(f"html[lang={'en' if language != 'en' else 'zh-CN'}]", state="attached")
     page.wait_for_selector("#sb-run[data-run]", state="attached")
-    page.wait_for_function(f"before => ({_TITLES})().length === before", arg=len(before))
-    bench.language = page.evaluate("() => schuler.language")
-    after = page.evaluate(_TITLES)
+    page.wait_for_function("before => look.titles().length === before", arg=len(before))
+    visitor.language = page.evaluate("() => schuler.language")
+    after = page.evaluate("look.titles")
     assert not set(before) & set(after)
-    speaks(bench, "\n".join(after))
+    speaks(visitor, "\n".join(after))
 
 
 def test_each_door_leads_to_what_it_says(window: Bench) -> None:
@@ -67,10 +63,9 @@ def test_each_door_leads_to_what_it_says(window: Bench) -> None:
     see(window, page.locator("#sb-stage .sb-play")).click()
     links(window, "Start")
     see(window, page.locator(f"{CARD} [data-command=door-tune]")).click()
-    card = page.locator(".sb-tour")
-    read(window, card)
+    read(window, page.locator(".sb-tour"))
     page.keyboard.press("Escape")
-    card.wait_for(state="detached")
+    page.locator(".sb-tour").wait_for(state="detached")
     window.wait_until(lambda: window.session.origin == "liu-networks")
     links(window, "Start")
     see(window, page.locator(f"{CARD} [data-command=door-files]")).click()
@@ -80,36 +75,48 @@ def test_each_door_leads_to_what_it_says(window: Bench) -> None:
 
 def test_the_tour_has_six_steps_beside_what_they_speak_of(window: Bench) -> None:
     page = window.page
-    links(window, "Tour")
+
+    def step(number: int) -> None:
+        read(window, page.locator(".sb-tour", has_text=window.said(f"Step {number} of 6")))
+        page.wait_for_function("look.clear")
+
+    links(window, "Start")
+    guided = window.said("Guided tour, six steps")
+    see(window, page.locator(CARD).get_by_role("button", name=guided)).press("Enter")
+    page.locator(CARD).wait_for(state="detached")
     for number in range(1, 7):
-        card = page.locator(".sb-tour", has_text=window.said(f"Step {number} of 6"))
-        read(window, card)
-        page.wait_for_function(_CLEAR)
-        if number < 6:
-            see(window, card.locator(".sb-next")).click()
+        step(number)
+        page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowLeft")
+    step(5)
+    see(window, page.locator(".sb-tour .sb-next")).click()
+    step(6)
     page.keyboard.press("Escape")
     page.locator(".sb-tour").wait_for(state="detached")
 
 
-@pytest.mark.parametrize(("name", "pick"), [("Scenarios", "zha-fast"), ("Networks", "pole2")])
-def test_cards_have_a_picture_and_a_sentence(window: Bench, name: str, pick: str) -> None:
-    page, session, number = window.page, window.session, window.run
+@pytest.mark.parametrize(
+    ("name", "pick", "selected"), [("Scenarios", "zha-fast", 0), ("Networks", "pole2", 1)]
+)
+def test_cards_have_a_picture_and_a_sentence(window: Bench, name: str, pick: str, selected: int) -> None:
+    session, cards = window.session, window.page.locator("dialog .sb-card")
     links(window, name)
-    cards = page.locator("dialog .sb-card")
     cards.first.wait_for()
     for place in range(min(3, cards.count())):
         read(window, cards.nth(place))
         see(window, cards.nth(place).locator("svg"))
         assert len(cards.nth(place).locator("span").inner_text()) > 8
     speaks(window, "\n".join(cards.all_inner_texts()))
-    chosen = {"Scenarios": f"preset-{pick}", "Networks": f"network {pick}"}[name]
-    see(window, page.locator(f"dialog [data-command='{chosen}']")).click()
-    window.wait_for_run(number)
-    assert pick in (session.origin, session.scenario.method[min(2, session.selected)].network.id)
+    assert name != "Scenarios" or cards.count() == len(presets())
+    chosen = window.page.locator("dialog .sb-card[aria-pressed=true]")
+    assert name != "Networks" or chosen.locator("svg").count() == 1
+    with window.next_run():
+        see(window, window.page.locator(f"dialog [data-command$='{pick}']")).click()
+    assert pick == (session.origin, session.scenario.method[min(2, session.selected)].network.id)[selected]
 
 
 def test_to_verify_is_a_small_button_and_lessons_are_one_press_away(window: Bench) -> None:
-    weights = {command: weight for command, *weight in window.page.evaluate(_WEIGHTS)}
+    weights = {command: weight for command, *weight in window.page.evaluate("look.weights")}
     assert weights["verify"] == weights["share"]
     see(window, window.page.locator("[data-command=verify]"))
     links(window, "Learn")

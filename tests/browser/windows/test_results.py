@@ -1,8 +1,8 @@
 """Results that would mislead: verification, recordings, transients, limits, motions, lessons."""
 
-from __future__ import annotations
-
+import math
 import re
+from typing import Any
 
 import pytest
 
@@ -14,27 +14,42 @@ from app.views.metrics.table import verdict
 from app.views.verification.view import VERIFY
 from navcore.scenario.file import load
 from tests.browser import test_page_lessons as learning
-from tests.browser import test_page_playback as playing
+from tests.browser import test_page_scene as playing
 from tests.browser.driver import Bench
-from tests.browser.test_page_requirements import _SHAPES, ask, box, cells
-from tests.browser.test_page_verification import _DASHED
 from tests.browser.windows.seeing import read, see
 from tests.recordings import OWN
 
-pytestmark = pytest.mark.browser
 
-# Where the bobs of the pendulum stand in its side view.
-_BOBS = "() => [...document.querySelectorAll('#sb-stage .sb-bob')].map(bob => Number(bob.getAttribute('cx')))"
-# In the front panel of the pole map: left and right end of its axis.
-_NEAR = """() => [...document.querySelectorAll('.js-plotly-plot')]
-  .find(p => p.offsetParent !== null && p._fullLayout?.meta?.view === 'Poles')?._fullLayout.xaxis2.range"""
+def box(bench: Bench, label: str) -> Any:
+    return (
+        bench.page.get_by_text(bench.said(label), exact=True)
+        .locator("xpath=ancestor::div[2]")
+        .locator("input")
+    )
+
+
+def ask(bench: Bench, label: str, text: str) -> None:
+    box(bench, label).fill(text)
+    bench.settle()
+
+
+def cells(bench: Bench, measure: str) -> list[tuple[float, str, str]]:
+    """Value, verdict and text of each method."""
+    return [
+        (value, word, text)
+        for name, value, word, text in bench.page.evaluate("look.cells")
+        if name == measure
+    ]
+
+
+def wait_for(bench: Bench, measure: str, words: list[str]) -> None:
+    found = "look.cells().filter(c => c[0] === m).map(c => c[2])"
+    bench.page.wait_for_function(f"([m, words]) => String({found}) === String(words)", arg=[measure, words])
 
 
 def open_lesson(window: Bench, number: int) -> None:
     """Open a lesson at its first step, without having it shown."""
     window.tab("Learn")
-    if window.page.locator("[data-command='lesson list']").count():
-        learning.press(window, "list")
     learning.press(window, f"open {number}")
     learning.heading(window, lessons()[number].steps[0].title)
 
@@ -42,20 +57,17 @@ def open_lesson(window: Bench, number: int) -> None:
 def test_a_verification_leaves_the_curves_of_the_run(window: Bench) -> None:
     page, verifier = window.page, window.session.verifier
     window.put(load("sikuliaq-like", ["run.duration_h=0.2", "run.rate_hz=50"]), origin="short", selected=2)
-    before = window.curves()
-    try:
-        see(window, window.button(VERIFY)).click()
-        window.wait_until(lambda: verifier.result is not None, 120.0)
-        told = window.said(f"Verified. {verdict(verifier.result)}")
-        read(window, page.locator(".sb-note:visible", has_text=told))
-        assert window.curves() == before and not any(page.evaluate(_DASHED))
-        window.choose("curves", "Verification")
-        page.wait_for_function(f"() => ({_DASHED})().some(lines => lines.length === 3)")
-        see(window, page.locator(".uplot"))
-        read(window, page.locator(".sb-note:visible", has_text=window.said(OWN_NOISE)))
-    finally:
-        window.choose("curves", "Overview")
-        verifier.forget()
+    before, number = window.curves(), window.run
+    see(window, window.button(VERIFY)).click()
+    window.wait_until(lambda: verifier.result is not None, 120.0)
+    told = window.said(f"Verified. {verdict(verifier.result)}")
+    read(window, page.locator(".sb-note:visible", has_text=told))
+    assert (window.curves(), window.run) == (before, number) and not any(page.evaluate("look.dashed"))
+    window.choose("curves", "Verification")
+    page.wait_for_function("() => look.dashed().some(lines => lines.length === 3)")
+    see(window, page.locator(".uplot"))
+    read(window, page.locator(".sb-note:visible", has_text=window.said(OWN_NOISE)))
+    window.choose("curves", "Overview")
 
 
 def test_own_recordings_say_what_is_followed_and_how_short_they_are(window: Bench) -> None:
@@ -65,14 +77,12 @@ def test_own_recordings_say_what_is_followed_and_how_short_they_are(window: Benc
         ("sikuliaq-log.csv", "follows the simulated motion"),
         ("sikuliaq-track.csv", "0.14 of"),
     ):
-        number = window.run
-        window.upload(str(OWN / file))
-        read(window, page.locator(".mantine-Notification-root", has_text=file).last)
-        window.wait_for_run(number)
-        window.settle()
+        with window.next_run():
+            window.upload(str(OWN / file))
+            read(window, page.locator(".mantine-Notification-root", has_text=file).last)
         window.close_notices()
         warnings = [text for text in session.run.warnings if told in text or "of a Schuler period" in text]
-        assert any(told in text for text in warnings) and len(warnings) >= 1
+        assert any(told in text for text in warnings)
         for text in warnings:
             read(window, page.locator(".sb-note:visible", has_text=window.said(text)))
     window.choose_and_run("scenario", "zha-fast")
@@ -82,77 +92,85 @@ def test_own_recordings_say_what_is_followed_and_how_short_they_are(window: Benc
 
 
 def test_the_error_of_a_recorded_log_is_fitted(window: Bench) -> None:
-    window.reset("sikuliaq-recorded")
-    window.tab("Log")
+    window.reset("sikuliaq-recorded", "Log")
     see(window, window.button("Fit this log's error")).click()
     use = see(window, window.button("Simulate a log with this error"))
-    told = window.page.locator("[role=tabpanel] .sb-note:visible, .sb-note:visible").last
-    read(window, told)
-    number = window.run
-    use.click()
-    window.wait_for_run(number)
+    read(window, window.page.locator("[role=tabpanel] .sb-note:visible, .sb-note:visible").last)
+    with window.next_run():
+        use.click()
+    window.button("Fit this log's error").wait_for(state="hidden")
     assert window.session.scenario.reference.kind == "log"
 
 
 def test_errors_are_measured_after_settling(window: Bench) -> None:
+    page, session = window.page, window.session
     window.tab("Metrics")
-    whole = read(window, window.page.locator(".sb-table table"))
-    try:
-        window.choose("errors over", "after settling")
-        measured = window_of(window.session.run, window.session.display)
-        assert measured.from_s
-        read(window, window.page.locator(".sb-note:visible", has_text=window.said(measured.told)))
-        window.page.wait_for_function(
-            "old => document.querySelector('.sb-table table').innerText !== old", arg=whole
-        )
-    finally:
-        window.show(window="whole")
+    whole = read(window, page.locator(".sb-table table"))
+    window.choose("errors over", "after settling")
+    measured = window_of(session.run, session.display)
+    assert measured.from_s
+    note = page.locator(".sb-note:visible", has_text=window.said(measured.told))
+    read(window, note)
+    page.wait_for_function("old => document.querySelector('.sb-table table').innerText !== old", arg=whole)
+    window.tab("Requirements")
+    note.first.wait_for()
+    wanted = verdicts(measured.run, session.display.requirements)
+    (velocity,) = [one for one in wanted if one.name == "velocity_rms_mps"]
+    assert [value for value, *_ in cells(window, "velocity_rms_mps")] == pytest.approx(velocity.measured)
+    window.tab("Metrics")
+    window.choose("errors over", "chosen hours")
+    page.get_by_label(window.said("measured from (h)")).wait_for()
+    window.choose("errors over", "the whole run")
+    note.first.wait_for(state="detached")
 
 
 def test_a_velocity_is_required(window: Bench) -> None:
     window.tab("Requirements")
-    try:
-        see(window, box(window, "velocity RMS ≤ (m/s)"))
-        ask(window, "velocity RMS ≤ (m/s)", "0.1")
-        wanted = window.session.display.requirements
-        (judged,) = [one for one in verdicts(window.session.run, wanted) if one.name == "velocity_rms_mps"]
-        words = [("missed", "met")[met] for met in judged.passed]
-        window.wait_until(lambda: [word for _, word, _ in cells(window, "velocity_rms_mps")] == words)
-        for place in range(3):
-            read(window, window.page.locator("[data-measure=velocity_rms_mps]").nth(place))
-    finally:
-        window.show(requirements=Requirements())
+    wait_for(window, "settling_min", ["", "", ""])
+    limits = {"velocity RMS ≤ (m/s)": "0.1", "settling ≤ (min)": "90", "position RMS ≤ (m)": "1"}
+    see(window, box(window, "velocity RMS ≤ (m/s)"))
+    for label, text in limits.items():
+        ask(window, label, text)
+    wanted = Requirements(velocity_rms_mps=0.1, settling_min=90.0, position_rms_m=1.0)
+    assert window.session.display.requirements == wanted
+    for judged in verdicts(window.session.run, wanted):
+        if getattr(wanted, judged.name) is not None:
+            wait_for(window, judged.name, [("missed", "met")[met] for met in judged.passed])
+        values = [value for value, *_ in cells(window, judged.name)]
+        assert values == pytest.approx(list(judged.measured), rel=1e-6, nan_ok=True)
+    wait_for(window, "settling_min", ["missed", "met", "missed"])
+    # in words, not by colour alone
+    assert "✗" in cells(window, "position_rms_m")[0][2]
+    for place in range(3):
+        read(window, window.page.locator("[data-measure=velocity_rms_mps]").nth(place))
 
 
 def test_a_plot_of_a_switching_that_is_not_there_is_not_saved(window: Bench) -> None:
     window.tab("View")
-    try:
-        window.choose("export plot", "Switching")
-        window.page.get_by_text("CSV", exact=True).click()
-        window.notice("Nothing to save")
-        notice = window.page.locator(".mantine-Notification-root", has_text=window.said("Nothing to save"))
-        assert window.said("No method of this scenario switches.") in read(window, notice)
-    finally:
-        window.close_notices()
-        window.choose("export plot", "Frequency")
+    window.choose("export plot", "Switching")
+    window.page.get_by_text("CSV", exact=True).click()
+    window.notice("Nothing to save")
+    notice = window.page.locator(".mantine-Notification-root", has_text=window.said("Nothing to save"))
+    assert window.said("No method of this scenario switches.") in read(window, notice)
+    window.close_notices()
+    window.choose("export plot", "Frequency")
 
 
 def test_a_limit_of_settling_is_one_edge_in_the_pole_map(window: Bench) -> None:
-    window.show(requirements=Requirements(settling_min=90.0))
+    window.show(requirements=Requirements(settling_min=90.0, damping_ratio=0.5))
     window.tab("Poles")
-    try:
-        settling = window.said("settling")
-        window.page.wait_for_function(f"name => ({_SHAPES})().some(s => s[0] === name)", arg=settling)
-        shapes = window.page.evaluate(_SHAPES)
-        (path,) = (path for name, across, _, _, path in shapes if (name, across) == (settling, "x2"))
-        at = [float(corner.split()[0]) for corner in re.split("[MLZ]", path) if corner.strip()]
-        low, high = window.page.evaluate(_NEAR)
-        # of the four sides only the limit itself can be seen, whatever a zoom shows
-        assert sum(low <= x <= high for x in set(at)) == 1
-        assert all(low <= x <= high or x > 10.0 * abs(low) for x in set(at))
-        see(window, window.page.locator(".js-plotly-plot:visible"))
-    finally:
-        window.show(requirements=Requirements())
+    settling = window.said("settling")
+    window.page.wait_for_function("name => look.shapes().some(s => s[0] === name)", arg=settling)
+    shapes = window.page.evaluate("look.shapes")
+    assert {name for name, *_ in shapes} == {settling, window.said("damping")}
+    (path,) = (path for name, across, _, _, path in shapes if (name, across) == (settling, "x2"))
+    at = [float(corner.split()[0]) for corner in re.split("[MLZ]", path) if corner.strip()]
+    low, high = window.page.evaluate("look.near")
+    # of the four sides only the limit itself can be seen, whatever a zoom shows
+    (edge,) = {x for x in at if low <= x <= high}
+    assert edge == pytest.approx(-math.log(50.0) / (90.0 * 60.0 * window.session.scenario.omega_s))
+    assert all(low <= x <= high or x > 10.0 * abs(low) for x in set(at))
+    see(window, window.page.locator(".js-plotly-plot:visible"))
 
 
 def test_the_legs_come_back_after_another_motion(window: Bench) -> None:
@@ -176,7 +194,7 @@ def test_the_pendulum_of_the_first_lesson_swings(window: Bench) -> None:
         playing.command(window, "seek", seconds)
         playing.wait_for(window, "n.time === arg", seconds)
         window.settle()
-        places.add(tuple(window.page.evaluate(_BOBS)))
+        places.add(tuple(window.page.evaluate("look.bobs")))
     across = [max(each) - min(each) for each in zip(*places, strict=True)]
     assert max(across) > 20.0, across
     window.page.wait_for_function(
@@ -189,11 +207,14 @@ def test_a_lesson_tells_no_number_of_another_scenario(window: Bench) -> None:
     live = window.page.evaluate(learning._LIVE)
     assert live and {text for _, text in live} == {window.said(MISSING)}
     see(window, window.page.locator(f"{learning.SECTION} .sb-live"))
-    learning.show_me(window, lessons()[0], 0)
-    window.page.wait_for_function(
-        f"missing => ({learning._LIVE})().every(([_, text]) => text !== missing)", arg=window.said(MISSING)
-    )
-    read(window, window.page.locator(f"{learning.SECTION} .sb-live"))
+    for told in ("!==", "==="):  # Show me, and another scenario
+        if told == "!==":
+            learning.show_me(window, lessons()[0], 0)
+        else:
+            window.reset("sikuliaq-like")
+        missing = f"missing => ({learning._LIVE})().every(([_, text]) => text {told} missing)"
+        window.page.wait_for_function(missing, arg=window.said(MISSING))
+        read(window, window.page.locator(f"{learning.SECTION} .sb-live"))
 
 
 def test_a_lesson_brings_to_the_front_what_it_speaks_of(window: Bench) -> None:
@@ -207,4 +228,12 @@ def test_a_lesson_brings_to_the_front_what_it_speaks_of(window: Bench) -> None:
     see(window, window.page.locator(".uplot"))
     if window.page.viewport_size["width"] == 1920:
         see(window, window.page.locator(".js-plotly-plot:visible"))
+    window.page.wait_for_timeout(500)
+    assert window.page.evaluate("look.inFront", [window.said("Errors")])
     read(window, window.page.locator(f"{learning.SECTION} h3"))
+
+
+def test_the_line_that_says_why_stands_below_the_table(window: Bench) -> None:
+    window.tab("Metrics")
+    window.page.wait_for_selector("#sb-why[data-fits='1']")
+    assert "complementary" in read(window, window.page.locator("#sb-why"))
