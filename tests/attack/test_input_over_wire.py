@@ -68,7 +68,7 @@ def another(port: int) -> Iterator[list[float]]:
             visitor.set(PAGE_STATE, WINDOW)
             visitor.wait_for_run(1)
             visitor.control(ZETA)
-            for step in itertools.count():
+            for step in itertools.count(1):  # at 0 the slider would stand where it is
                 if ended.is_set():
                     return
                 try:
