@@ -26,22 +26,17 @@ from app.jobs.remote import nothing
 from app.jobs.scheduler import Lane, scheduler
 from app.jobs.search import Search
 from navcore.design.budget import budget
+from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from tests.attack.conftest import eventually
 from tests.attack.wire import ask
 
 pytest.importorskip("distributed", reason="the extra schuler-bench[cluster] is not installed")
 pytestmark = [pytest.mark.attack, pytest.mark.timeout(400)]
 
 SHORT = ("run.duration_h=1",)
-
-
-def until(true: Callable[[], Any], seconds: float = 120.0) -> None:
-    end = time.monotonic() + seconds
-    while not true():
-        assert time.monotonic() < end, "did not happen"
-        time.sleep(0.01)
 
 
 class Machines:
@@ -88,7 +83,7 @@ def there(machines: Machines, monkeypatch: pytest.MonkeyPatch) -> Iterator[Clust
     use_cluster(machines.address)
     made = cluster()
     assert made is not None
-    until(lambda: made.ready)
+    eventually(lambda: made.ready, 120.0)
     yield made
     use_cluster(None)
 
@@ -141,22 +136,21 @@ def test_a_heavy_job_is_done_there_with_the_same_result(there: Cluster, scenario
 def test_bands_over_seeds_are_those_of_this_machine(
     there: Cluster, scenario: Scenario, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from navcore.engine.simulation import simulate
-
     monkeypatch.setattr(envelopes, "SEEDS", 4)
-    told: list[bool] = []
-    made = []
-    for on_cluster in (True, False):
-        if not on_cluster:
-            use_cluster(None)
+
+    def bands_here() -> Any:
+        told: list[bool] = []
         bands = Envelopes(simulate, lambda: told.append(True), lambda: None, still_s=0.0)
         bands.follow(scenario, "seeds")
-        assert bands.wait_idle(120.0)
-        made.append(bands.beside(scenario, "seeds"))
+        assert bands.wait_idle(120.0) and told
+        found = bands.beside(scenario, "seeds")
         bands.stop()
-    one, other = made
-    assert one is not None and other is not None and told
-    np.testing.assert_equal(asdict(one), asdict(other))
+        assert found is not None
+        return asdict(found)
+
+    on_cluster = bands_here()
+    use_cluster(None)
+    np.testing.assert_equal(on_cluster, bands_here())
 
 
 def test_progress_comes_and_a_cancelled_job_is_called_back(
@@ -169,7 +163,7 @@ def test_progress_comes_and_a_cancelled_job_is_called_back(
 
     assert there.compute(endless, [str(tmp_path)], seen.append, cancelled) is None
     assert seen == [0.25] and int((tmp_path / "begun").read_text()) == machines.worker.pid
-    until((tmp_path / "called-back").exists)
+    eventually((tmp_path / "called-back").exists, 120.0)
     # Nothing stays behind: the next job is done at once.
     assert there.compute(nothing, [None], seen.append, lambda: False) == [None]
 
@@ -197,7 +191,7 @@ def test_a_lost_cluster_is_told_and_the_work_done_here(
         lambda _: heavy_load(scenario),
     )
     search.begin(Place(os.getpid(), str(tmp_path)))
-    until((tmp_path / "begun").exists)
+    eventually((tmp_path / "begun").exists, 120.0)
     machines.worker.kill()
     machines.worker.wait()
     assert search.wait_idle(120.0)
@@ -206,7 +200,7 @@ def test_a_lost_cluster_is_told_and_the_work_done_here(
     assert any("heavy jobs are done here" in record.getMessage() for record in caplog.records)
     # It is used again once somebody works there.
     machines.worker = machines.start_worker()
-    until(lambda: there.ready)
+    eventually(lambda: there.ready, 120.0)
     search.stop()
 
 
@@ -215,7 +209,7 @@ def test_a_server_says_how_many_threads_its_cluster_has(
 ) -> None:
     monkeypatch.setenv(CLUSTER, machines.address)
     with Server() as server:
-        until(lambda: b"schuler_cluster_threads 1.0" in ask(server.port, "/metrics").body)
+        eventually(lambda: b"schuler_cluster_threads 1.0" in ask(server.port, "/metrics").body, 120.0)
 
 
 def test_a_cluster_that_is_not_there_keeps_nobody_waiting(scenario: Scenario) -> None:
