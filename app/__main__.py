@@ -1,7 +1,5 @@
 """``python -m app`` is the command ``schuler``."""
 
-from __future__ import annotations
-
 import sys
 
 from app.cli import main

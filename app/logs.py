@@ -1,7 +1,5 @@
 """What the server writes to its log: a line an event, for people or (SCHULER_LOG=json) for programs."""
 
-from __future__ import annotations
-
 import json
 import logging
 import os

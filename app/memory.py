@@ -4,8 +4,6 @@ On Linux what is freed is kept, in an arena for every thread. Python's collector
 it looks through all objects, and nobody is answered meanwhile.
 """
 
-from __future__ import annotations
-
 import ctypes
 import gc
 import threading

@@ -26,8 +26,6 @@ Examples
 [('free', 'ok'), ('classic2', 'ok'), ('fast (compass)', 'ok')]
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:

@@ -4,8 +4,6 @@
 sensors``, compiles the motions and the simulated IMU meanwhile: two fifths of the work.
 """
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import tempfile

@@ -1,7 +1,5 @@
 """Right answers to the questions of lessons, and the numbers of which their texts speak."""
 
-from __future__ import annotations
-
 import re
 
 from app.views.learn.lessons import Question, right_choice

@@ -1,7 +1,5 @@
 """What the tests of half-period averaging share: Zhao's place and initial errors, runs without a scenario."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

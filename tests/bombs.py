@@ -1,7 +1,5 @@
 """Small files that cost a careless reader gigabytes, minutes or the whole process."""
 
-from __future__ import annotations
-
 import io
 
 import numpy as np

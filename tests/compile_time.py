@@ -1,7 +1,5 @@
 """Compiling a kernel never counts against a test's timeout: its clock stands while numba compiles."""
 
-from __future__ import annotations
-
 import signal
 import threading
 from typing import Any

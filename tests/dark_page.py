@@ -5,8 +5,6 @@ The dark page is the light one with its lightness turned round (``invert``) and 
 becomes is computed here with the browser's own matrices (CSS Filter Effects 1).
 """
 
-from __future__ import annotations
-
 import math
 from typing import Literal
 

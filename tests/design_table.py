@@ -4,8 +4,6 @@ For each preset: the source that contributes most to the tilt along its run, how
 of its first damped method is in the steady state, before and after tuning, and which network comes nearest.
 """
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -5,8 +5,6 @@ is written out again, coefficients come straight from the truth, the rate from v
 from `tests.law_twin`.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

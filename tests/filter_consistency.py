@@ -4,8 +4,6 @@ The normalised error e^T P^-1 e of n states has the mean n when P is right (Bar-
 2001, 5.4). ``python -m tests.filter_consistency --seeds 500`` prints it at the end of a run.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from dataclasses import dataclass

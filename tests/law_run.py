@@ -1,7 +1,5 @@
 """What the tests of the control law share: a law called step by step from Python."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -5,8 +5,6 @@ computation: `tests.law_twin_forms` makes networks discrete, windows come from s
 the table's curve from scipy.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Discrete forms of a network for `tests.law_twin`, from matrices and polynomials as in a textbook."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Motions that several tests share."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

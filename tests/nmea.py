@@ -1,7 +1,5 @@
 """Small NMEA 0183 logs of a made-up ship, for tests of readers and of runs on recordings."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from datetime import UTC, datetime, timedelta

@@ -1,7 +1,5 @@
 """Random raw input made from the parameter models themselves: ranges, choices and lengths as declared."""
 
-from __future__ import annotations
-
 import types
 from collections.abc import Callable
 from functools import cache

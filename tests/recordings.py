@@ -1,7 +1,5 @@
 """The recordings that tests run on: the raw ones where they are, else those that come with the program."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 from typing import Literal, NamedTuple

@@ -5,8 +5,6 @@ The last line printed is ``N passed, N failed, N skipped`` over all stages; a ch
 counts as one test. The exit code is 1 when anything failed or when a test stage ran no test at all.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

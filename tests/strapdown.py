@@ -1,7 +1,5 @@
 """What the tests of the strapdown engine share: motions, laws, and a run from simulated increments."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

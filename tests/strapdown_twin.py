@@ -4,8 +4,6 @@ The compiled kernel is tested against this sample by sample. It shares no comput
 matrix, turned by Rodrigues' formula, and the damping is a small object with a ``step`` of its own.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

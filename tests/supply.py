@@ -1,7 +1,5 @@
 """What an installation is made of: ``python -m tests.supply sbom`` and ``audit``, from requirements.lock."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """docs/theory.md as the tests read it: anchors, equations and tables."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

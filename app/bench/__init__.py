@@ -1,7 +1,5 @@
 """``schuler bench``: speed and memory on this machine; needs no network and no browser."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 

@@ -1,7 +1,5 @@
 """Start of the dashboard, and the way from a slider to the figures that answer it."""
 
-from __future__ import annotations
-
 import statistics
 
 from app.bench.process import Server

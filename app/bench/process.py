@@ -1,7 +1,5 @@
 """A dashboard in a process of its own, as ``schuler serve`` starts it."""
 
-from __future__ import annotations
-
 import os
 import socket
 import subprocess

@@ -1,7 +1,5 @@
 """Wall times: of calls one after the other, and of several pieces of work in turn."""
 
-from __future__ import annotations
-
 import json
 import statistics
 import subprocess

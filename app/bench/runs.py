@@ -4,8 +4,6 @@
 whose memory is theirs.
 """
 
-from __future__ import annotations
-
 import json
 import statistics
 import sys

@@ -5,8 +5,6 @@ A dashboard in this process, a visitor by websocket, and a profile function in e
 kernels are not seen.
 """
 
-from __future__ import annotations
-
 import sys
 import threading
 from collections import Counter

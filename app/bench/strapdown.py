@@ -1,7 +1,5 @@
 """Time a sample of the strapdown engine: free, damped, law at the IMU's rate, in a batch; and of its IMU."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import statistics

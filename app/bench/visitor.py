@@ -1,7 +1,5 @@
 """A visitor without a browser: opens the page's websocket, moves controls, waits for the figures."""
 
-from __future__ import annotations
-
 import json
 import re
 import time

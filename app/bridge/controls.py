@@ -4,8 +4,6 @@ viser knows controls by the handles that it returned, not by the ids in its mess
 the public interface lacks; `tests/attack/test_viser_insides.py` fails when an inside changes.
 """
 
-from __future__ import annotations
-
 import time
 from dataclasses import dataclass
 from typing import Any

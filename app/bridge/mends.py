@@ -4,8 +4,6 @@ A mend whose place is missing in the installed viser is left out and logged once
 more slowly, and without the queue in English. ``SCHULER_PLAIN_VISER=1`` leaves out all mends.
 """
 
-from __future__ import annotations
-
 import asyncio
 import dataclasses
 import logging

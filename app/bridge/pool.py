@@ -1,7 +1,5 @@
 """Threads in which the callbacks of all pages run: in turn by visitor, one at a time for each."""
 
-from __future__ import annotations
-
 import threading
 from collections import OrderedDict, deque
 from collections.abc import Callable

@@ -7,8 +7,6 @@ before anything can run, 2.5 MB, and the browser can keep neither the file nor w
 server unpacks it once, so that the browser loads it beside our scripts and keeps it.
 """
 
-from __future__ import annotations
-
 import gzip
 import re
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Each entry says why the public interface does not do; `tests/attack/test_viser_i
 inside changes. Controls are in `app.bridge.controls`.
 """
 
-from __future__ import annotations
-
 import re
 import threading
 import types

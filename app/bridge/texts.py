@@ -4,8 +4,6 @@ The program writes English and knows nothing of a page's language. viser has no 
 page's queue of messages is ours (`app.bridge.mends`), and every message of the page passes it.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol, cast

@@ -3,8 +3,6 @@
 Exit codes: 0 done; 2 the input is wrong (one line per fault on stderr); 3 the run was stopped or diverged.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """``schuler bench``: how fast it is on this machine."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from app.cli.terminal import emit_result, on_terminal, say

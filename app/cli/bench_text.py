@@ -1,7 +1,5 @@
 """The measured numbers as a table for people."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from app.cli.table import columns, number

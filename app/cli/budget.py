@@ -1,7 +1,5 @@
 """``schuler budget``: which source an error is made of, and how far it is from the best possible."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated
 

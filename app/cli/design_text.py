@@ -1,7 +1,5 @@
 """Budgets, best settings and fronts as tables for people."""
 
-from __future__ import annotations
-
 from app.cli.table import columns, number
 from navcore.design.figures import Figures
 from navcore.design.measures import in_display_unit

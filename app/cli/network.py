@@ -1,7 +1,5 @@
 """``schuler network``: one network's H(s), its closed loop and the whole system on the textbook sphere."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Annotated, Any

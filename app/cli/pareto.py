@@ -1,7 +1,5 @@
 """``schuler pareto``: what two objectives cost each other, for every network."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated
 

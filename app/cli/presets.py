@@ -1,7 +1,5 @@
 """``schuler presets``: the scenarios that come with the product."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A progress bar on stderr that shows up only when a run takes long enough to wonder."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

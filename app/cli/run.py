@@ -1,7 +1,5 @@
 """``schuler run``: simulate a scenario, print its metrics, write its files."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal

@@ -1,7 +1,5 @@
 """``schuler serve``: the dashboard."""
 
-from __future__ import annotations
-
 import os
 from dataclasses import dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """Ctrl-C and SIGTERM stop a run; what it computed so far is kept. The second one ends the command at once."""
 
-from __future__ import annotations
-
 import signal
 import threading
 from collections.abc import Callable, Iterator

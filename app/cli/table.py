@@ -1,7 +1,5 @@
 """Aligned text tables for people."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """stdout and stderr: results, one JSON document, notes; none of them can end in a traceback."""
 
-from __future__ import annotations
-
 import io
 import json
 import os

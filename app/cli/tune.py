@@ -1,7 +1,5 @@
 """``schuler tune``: the best setting of a method under requirements."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated

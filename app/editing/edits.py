@@ -1,7 +1,5 @@
 """Changes of a scenario, each giving a new, fully checked one: the only way the page changes anything."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass

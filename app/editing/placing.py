@@ -1,7 +1,5 @@
 """A pair picked in a plot, dragged there, or typed, becomes parameters of the selected network."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass

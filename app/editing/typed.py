@@ -1,7 +1,5 @@
 """Text typed into a box: a number with a unit ("30 min" in hours), and lists of roots, numbers or rows."""
 
-from __future__ import annotations
-
 import math
 import re
 from typing import Any

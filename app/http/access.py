@@ -1,7 +1,5 @@
 """Who may come in: Host, Origin and token of a request, throttled guesses; and what our page may do."""
 
-from __future__ import annotations
-
 import email.utils
 import hashlib
 import hmac

@@ -1,7 +1,5 @@
 """Where the server listens, under which names it may be addressed, and where its token comes from."""
 
-from __future__ import annotations
-
 import errno
 import ipaddress
 import os

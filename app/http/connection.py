@@ -1,7 +1,5 @@
 """One browser's connection: its session, its checked messages, its place among all others."""
 
-from __future__ import annotations
-
 import asyncio
 import fcntl
 import termios

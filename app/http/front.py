@@ -4,8 +4,6 @@ It reads the head of a request, chooses the worker by the session in its path, a
 in both directions. What a request may do is judged by the worker.
 """
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import re

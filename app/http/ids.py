@@ -4,8 +4,6 @@ Whoever knows an id sees the visitor's work, so ids are not to be guessed; and a
 and lure a visitor into it, so only ids that a server has made and signed are accepted.
 """
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import hmac

@@ -1,7 +1,5 @@
 """How much one visitor, and all of them together, may take."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 MIB = 1 << 20

@@ -1,7 +1,5 @@
 """``/metrics``: what the server is doing, for Prometheus. No name, address or id of a visitor is in it."""
 
-from __future__ import annotations
-
 import threading
 import time
 from collections.abc import Callable, Iterable, Mapping

@@ -1,7 +1,5 @@
 """The page and its files: viser's own page, unpacked, with ours added, kept in memory."""
 
-from __future__ import annotations
-
 import gzip
 import hashlib
 from collections.abc import Sequence

@@ -3,8 +3,6 @@
 Everything here runs in the event loop of the server; nothing is locked.
 """
 
-from __future__ import annotations
-
 import time
 from collections import Counter, OrderedDict
 from collections.abc import Callable

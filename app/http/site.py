@@ -1,7 +1,5 @@
 """What is answered to an HTTP request: page, script files, health, redirects, refusals."""
 
-from __future__ import annotations
-
 import asyncio
 import html
 import math

@@ -1,7 +1,5 @@
 """Where heavy jobs are computed: on the Dask cluster of this process, if it has one that answers, or here."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 from app.jobs.cluster import Cluster, Compute, Found, Item

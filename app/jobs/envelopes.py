@@ -1,7 +1,5 @@
 """Computes the bands of a scenario's error curves in the background, once the user's hands are still."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

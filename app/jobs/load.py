@@ -1,7 +1,5 @@
 """What a job will take, from its scenario: which lane it waits in, and the memory it is admitted by."""
 
-from __future__ import annotations
-
 from app.jobs.elsewhere import cluster
 from app.jobs.scheduler import GIB, Lane, Load, largest_run_bytes
 from navcore.engine.load import estimated_bytes, estimated_seconds

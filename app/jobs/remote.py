@@ -1,7 +1,5 @@
 """Carry out one job on a worker of a Dask cluster: report its progress, end it when nobody waits for it."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A run with fewer output rows: for those that are kept beside the present one."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -12,8 +12,6 @@ A fourth lane is for heavy jobs that a Dask cluster computes (`app.jobs.cluster`
 themselves, and neither cores nor memory of this machine.
 """
 
-from __future__ import annotations
-
 import os
 import threading
 import time

@@ -1,7 +1,5 @@
 """One thing computed at a time in the background: progress, cancel, newest wins; the last result stays."""
 
-from __future__ import annotations
-
 import logging
 import threading
 from collections.abc import Callable

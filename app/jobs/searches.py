@@ -1,7 +1,5 @@
 """What is computed beside the runs of a session: what dominates the result, budgets, tuning, fronts."""
 
-from __future__ import annotations
-
 import logging
 import threading
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """What a page may say of a fault: file names, never where on the server the files lie."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Latest-wins execution: a slot for the newest job, cancel of the running one, turns by the scheduler."""
 
-from __future__ import annotations
-
 import logging
 import threading
 import time

@@ -5,8 +5,6 @@ stand in its key without their attributes; formulas and the live numbers of a le
 Texts of plotly are read in the same way: they know a little HTML, and ``%{y:.3g}`` stands for a value there.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable

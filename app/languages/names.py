@@ -1,7 +1,5 @@
 """Names that users gave: a method, a pin, a file. They are found in a text, and stay as they are written."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from functools import lru_cache

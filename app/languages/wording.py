@@ -6,8 +6,6 @@ too. A text that is made of several, such as a help text and the range after it,
 punctuation.
 """
 
-from __future__ import annotations
-
 import gettext
 import re
 from dataclasses import dataclass

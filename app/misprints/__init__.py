@@ -4,8 +4,6 @@ The rows of theory.md section 8; a new one is an entry in its paper's file. Noth
 come from the networks, loops, filters and error model that everything else runs on.
 """
 
-from __future__ import annotations
-
 from app.misprints.base import Axis, Comparison, Curve, Misprint, Number
 from app.misprints.deng import DENG
 from app.misprints.liu import LIU

@@ -1,7 +1,5 @@
 """A misprint: where it stands, what is right, and both computed side by side."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal

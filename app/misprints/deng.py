@@ -1,7 +1,5 @@
 """Deng 2019: periods, the network's extra s, and what the printed damping law leaves out."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

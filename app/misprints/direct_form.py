@@ -4,8 +4,6 @@ What is judged is the filter that the rounded coefficients make, not the noise o
 polynomials in z are moved to z - 1 exactly, in fractions, before anything is computed with them.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import comb
 

@@ -1,7 +1,5 @@
 """Liu 2021: powers of omega_s, a mean over one term too many, the direct form, and figure 7."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from app.misprints.base import (

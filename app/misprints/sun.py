@@ -1,7 +1,5 @@
 """Sun 2017: a missing radius, the sign in the quadratic and what it becomes, and the network's B."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from app.misprints.base import (

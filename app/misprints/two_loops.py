@@ -1,7 +1,5 @@
 """Two loops after the same initial tilt: the one a misprint makes, which grows, beside the corrected one."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from app.misprints.base import TILT, TIME, Comparison, Curve, Number, growth_time

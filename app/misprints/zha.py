@@ -1,7 +1,5 @@
 """Zha 2019: a decimal point in the design of sigma, and K2 of the first set of gains."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

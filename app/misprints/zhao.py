@@ -1,7 +1,5 @@
 """Zhao 2015: two signs of the system matrix, three coefficients of its solution, a unit."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The steady error budget that several views show, computed once for each method of a scenario."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any

@@ -3,8 +3,6 @@
 ``free`` ignores its network, ``internal`` has no velocity feedback.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import lru_cache
 

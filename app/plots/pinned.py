@@ -1,7 +1,5 @@
 """Pinned runs beside the present one: laid over its figures, and subtracted in the table."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol

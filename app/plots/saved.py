@@ -1,7 +1,5 @@
 """Plots as files: their numbers as CSV, and plots over time as one plotly figure, which the page draws."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math

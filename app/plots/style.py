@@ -5,8 +5,6 @@ curves, the 3D scene and the table. They are Okabe and Ito's colour-blind-safe s
 then Tol's muted set.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from html import escape

@@ -1,7 +1,5 @@
 """Tables of the page and of its reports: cells as data, their look in table.css."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from html import escape
 from pathlib import Path

@@ -4,8 +4,6 @@ The time plots' axis labels and cursor values have at most three decimals, so a 
 above 0.01; the bounds below leave a factor of two to spare.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A plot over time for uPlot: what it is made of, and how it is drawn in the house style."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

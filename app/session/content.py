@@ -1,7 +1,5 @@
 """Contents of uploaded files: each kept once, however many sessions link to it."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import re

@@ -1,7 +1,5 @@
 """The documents of sessions and shared states in one SQLite file, and what may be in it."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import logging

@@ -1,7 +1,5 @@
 """Pinned runs of a session: baselines that every picture can be laid over, with name, colour and note."""
 
-from __future__ import annotations
-
 import logging
 import threading
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """What a design has to meet: limits that the user sets, what is measured against each, and who meets them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

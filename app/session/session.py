@@ -1,7 +1,5 @@
 """One visitor's work: scenario, its history, uploads, last good run. No viser here."""
 
-from __future__ import annotations
-
 import logging
 import threading
 import time

@@ -1,7 +1,5 @@
 """The sessions of all visitors, by id: kept over reloads, and over restarts as far as there is a `Store`."""
 
-from __future__ import annotations
-
 import atexit
 import logging
 import shutil

@@ -1,7 +1,5 @@
 """What a session tells the open pages on it."""
 
-from __future__ import annotations
-
 from collections.abc import Set
 from typing import Protocol
 

@@ -1,7 +1,5 @@
 """Where things stand on the page, from the size of the browser's window."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, replace
 

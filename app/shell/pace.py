@@ -7,8 +7,6 @@ without a graphics card the first frame of the 3D view takes half a second. The 
 with its picture, or after a while if none comes.
 """
 
-from __future__ import annotations
-
 import logging
 import threading
 import time

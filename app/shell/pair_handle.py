@@ -1,7 +1,5 @@
 """The handle in a plot with which the pole pair of the method in hand is dragged to where it is wanted."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, Literal
 

@@ -1,7 +1,5 @@
 """A view whose picture is one plotly figure, which fills the tab below a chooser."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar
 
 from app.plots.pinned import restyled, together

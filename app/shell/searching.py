@@ -1,7 +1,5 @@
 """Controls of a search in the background: begin, progress and stop, each shown while it is of use."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -6,8 +6,6 @@ is damped against V_r = 0 by feedback into the platform's rates, first the level
 through the north channel, whose loop is (s^2 + 2 sigma s + sigma^2/xi^2)^2.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

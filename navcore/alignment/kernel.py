@@ -1,7 +1,5 @@
 """Compiled loops of the alignment."""
 
-from __future__ import annotations
-
 import math
 
 from navcore.foundation.compiled import kernel

@@ -1,7 +1,5 @@
 """Design of the compass loop of an alignment (theory.md 6.1): its numbers, gains and where it works."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from navcore.foundation.errors import Fault, InputError

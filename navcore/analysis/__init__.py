@@ -1,7 +1,5 @@
 """Closed-loop analysis of one level channel: poles, damping, settling, transfers, responses, margins."""
 
-from __future__ import annotations
-
 from navcore.analysis.loop import Loop, analyse
 from navcore.analysis.margins import Margins, margins
 from navcore.analysis.python_control import DiskMargin, disk_margin, to_control

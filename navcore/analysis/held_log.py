@@ -6,8 +6,6 @@ either lasts too long: a log each 100 s, or `compass` with sigma = 1 at a law st
 map over one period of the log is linear, so its eigenvalues decide.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

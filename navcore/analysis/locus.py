@@ -1,7 +1,5 @@
 """Root locus over any one parameter of a network: how the closed-loop poles move as it changes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The closed Schuler loop s^2 + omega_s^2 H(s) of one level channel: stability, damping, settling."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Margins of the open loop omega_s^2 H(s)/s^2 from the roots of its crossings: a millisecond, for sliders."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

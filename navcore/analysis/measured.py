@@ -1,7 +1,5 @@
 """Gain and phase of a discrete network, measured: it is driven with sines and its output is fitted."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

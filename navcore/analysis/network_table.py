@@ -3,8 +3,6 @@
 ``python -m navcore.analysis.network_table`` writes the page; a test holds it to what the analysis says now.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from navcore.analysis.loop import analyse

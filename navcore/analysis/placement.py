@@ -1,7 +1,5 @@
 """From a wanted closed-loop pole pair (damping ratio, frequency) to the parameters that give it."""
 
-from __future__ import annotations
-
 import math
 
 from navcore.analysis.loop import H0_TOLERANCE

@@ -1,7 +1,5 @@
 """What ``schuler network`` prints: one network on the sphere and its closed loop (theory.md 3.6)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from typing import Any

@@ -1,7 +1,5 @@
 """Time responses by the matrix exponential, in normalised time; nothing here minds repeated poles."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from navcore.networks.state_space import StateSpace

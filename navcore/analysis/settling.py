@@ -1,7 +1,5 @@
 """When the response to an initial tilt has come to rest."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -5,8 +5,6 @@ North channel: phi' = -[dV - Q (dV - dV_r)]/R - eps, dV' = g phi + nabla, Q = 1 
 polynomials without the cancellations that 1 - H would bring. A network with two outputs adds G dV to dV'.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal, TypedDict, Unpack
 

@@ -6,8 +6,6 @@ the one of theory.md 2 at rest, without longitude, with the network's states in 
 measured in 1/omega_s and velocity in g/omega_s, so that all elements of the matrix lie near 1.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

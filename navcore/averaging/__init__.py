@@ -30,8 +30,6 @@ A simulation joins a method with ``damping = "averaging"`` in four steps:
    `StrapdownRun`.
 """
 
-from __future__ import annotations
-
 from navcore.averaging.parameters import AlignmentMotion, Averaging
 
 __all__ = ["AlignmentMotion", "Averaging"]

@@ -1,7 +1,5 @@
 """From the states of the copies to one method's record: means by group, rows, statistics and plot bins."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

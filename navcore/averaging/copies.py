@@ -5,8 +5,6 @@ so the mean of both has none. The Schuler line of the coupled system is split in
 and 5); a cascade of two half periods, four copies, takes both away.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -6,8 +6,6 @@ costs no more than one free method, and what the method can do is plain: it chan
 nothing after it.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

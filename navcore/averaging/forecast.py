@@ -6,8 +6,6 @@ would be the last segment's mean alone; here each earlier segment is *turned* in
 the gyros themselves, so that all of them count.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

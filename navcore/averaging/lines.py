@@ -5,8 +5,6 @@ section 1): what is called the Foucault oscillation is the beat of the first two
 changes them; the fit follows the phase along the true motion instead of a frequency.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

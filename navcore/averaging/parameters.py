@@ -1,7 +1,5 @@
 """Settings of half-period averaging, and the small base motions that may disturb its alignment record."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 from pydantic import Field

@@ -1,7 +1,5 @@
 """What an averaging method needs before it starts: its copies, its forecast, and what to tell the user."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The alignment record: one-second IMU increments of a vehicle at rest, but for small motions of its base."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

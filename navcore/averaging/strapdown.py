@@ -1,7 +1,5 @@
 """Half-period averaging with the full strapdown algorithm: each copy is a free run on the same increments."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor

@@ -1,7 +1,5 @@
 """What a file holds and what is wrong with it, in words and as data: behind ``schuler check``."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Callable, Sequence

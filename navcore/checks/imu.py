@@ -1,7 +1,5 @@
 """What a recorded IMU holds, for ``schuler check``: rate, span, size of force and turn, which axis is up."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

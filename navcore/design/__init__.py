@@ -4,5 +4,3 @@
 loop and gives the steady error budget; `floor` is the least error that any causal linear damping can reach;
 `along` is the transient budget along the scenario's motion; `budget` joins them (theory.md 14 to 20).
 """
-
-from __future__ import annotations

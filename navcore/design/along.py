@@ -4,8 +4,6 @@ The random processes are carried as covariances, one matrix a source; the consta
 each. The law must be known in advance: `constant` or `schedule`, with outages of the log (theory.md 15).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

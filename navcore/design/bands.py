@@ -4,8 +4,6 @@ By covariance where the law is known in advance, by the filter's own covariance 
 at all where the law looks at the data (theory.md 15, 16).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal

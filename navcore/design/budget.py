@@ -1,7 +1,5 @@
 """The error budget of a scenario: every method by source, beside the floor (theory.md 15, 16)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 

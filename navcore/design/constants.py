@@ -5,8 +5,6 @@ current, events and delay count with the numbers of the scenario as they stand, 
 and an unknown phase.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 

@@ -5,8 +5,6 @@ what integrates (a change of speed, a turn) is kept. Intervals that agree to wha
 one set of matrices: a straight leg is one set, however long.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ share of a part is its mean product with the whole curve, so that all shares and
 are 1 together.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Standard deviations of a budget: one source or all, in the steady state or along a run."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

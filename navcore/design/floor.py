@@ -1,7 +1,5 @@
 """The least error that any causal linear damping can reach in the steady state (theory.md 16)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """A method's law as linear equations: what its network makes of the difference V_r - V_c, in one channel."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

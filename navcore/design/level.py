@@ -4,8 +4,6 @@ Everything is in normalised units, or double precision is lost (theory.md 15): t
 in m/s, tilt times sqrt(g R) in m/s, so that the free loop is dV' = phi, phi' = -dV.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

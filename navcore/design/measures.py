@@ -1,7 +1,5 @@
 """What a method can be tuned for, or be required to keep: one number a name."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable

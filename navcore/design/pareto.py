@@ -1,7 +1,5 @@
 """What two objectives cost each other: the Pareto front of every network of the catalogue (theory.md 18)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Error budgets: every method by source, and the floor."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module

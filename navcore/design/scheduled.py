@@ -1,7 +1,5 @@
 """Laws whose gains change at known times: `schedule`, carried out as a staircase of constant gains."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from navcore.design.course import Course

@@ -1,7 +1,5 @@
 """A bounded global search with a local finish over the parameters of a method, by scipy (theory.md 18)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The budget of a method whose law looks at the data: no covariance exists, so it is run with many seeds."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What all methods of a scenario share in budget, bands and tuning: sensors, motion, responses, floor."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

@@ -6,8 +6,6 @@ run with one source at a time: the noise of a sensor is the same alone and in co
 sensor. Where a policy switches on what it measures, the sources then do not simply add up.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import TypeVar
 

@@ -1,7 +1,5 @@
 """The steady error budget: one level channel at rest, every method by source (theory.md 15, 16)."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -15,8 +15,6 @@ changing (``error = "drift"``) *and* the network approaches H = 1 as its coeffic
 does, `unity2` does not.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import chain, count

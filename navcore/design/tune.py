@@ -1,7 +1,5 @@
 """The best setting of a method: a bounded global search with a local finish, by scipy (theory.md 18)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """What of a scenario the stochastic model does not hold, so that budget, floor and tuning do not either."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from navcore.foundation.text import Text

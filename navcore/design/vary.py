@@ -1,7 +1,5 @@
 """Which parameters a search may move, and between which ends."""
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import Sequence

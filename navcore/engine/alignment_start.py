@@ -1,7 +1,5 @@
 """The start of navigation after a simulated compass alignment (theory.md 6.1), and the errors of a start."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

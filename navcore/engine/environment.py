@@ -4,8 +4,6 @@ Kept by what each stage depends on, so that a slider on a network or policy reco
 a sensor error neither the truth nor its coefficients.
 """
 
-from __future__ import annotations
-
 from collections.abc import Hashable
 from dataclasses import dataclass
 

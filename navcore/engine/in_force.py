@@ -1,7 +1,5 @@
 """How well damped the loop is at each moment of a run whose law switches or re-tunes its network."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from navcore.analysis.loop import closed_loop_poles

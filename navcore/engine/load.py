@@ -5,8 +5,6 @@ fitted to measured runs (peak of the resident set above the start, time of the p
 right to about a factor of two for runs that are large enough to matter.
 """
 
-from __future__ import annotations
-
 import os
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The numbers of a run as one document that JSON can hold (interface.md)."""
 
-from __future__ import annotations
-
 import math
 import platform
 from dataclasses import asdict

@@ -4,8 +4,6 @@ The record runs without a break: ``imu.begin_s`` left out, then the alignment, t
 rests (`static`: at the place that the record gives, else the site) or follows a recorded track.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What a simulation gives back."""
 
-from __future__ import annotations
-
 import hashlib
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """simulate(scenario) -> Run: truth and sensors once, then every method on them, with progress and cancel."""
 
-from __future__ import annotations
-
 from navcore.engine.drivers.common import Cancelled, Progress
 from navcore.engine.drivers.linear import run_linear
 from navcore.engine.run import Run

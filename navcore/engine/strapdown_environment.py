@@ -1,7 +1,5 @@
 """What all methods of a strapdown scenario share: truth, the stream of IMU samples, the start and the log."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Protocol

@@ -5,8 +5,6 @@ fed to the error model, which starts from the same errors and sees the same log.
 the linear model's own.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Iterator

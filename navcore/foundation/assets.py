@@ -1,7 +1,5 @@
 """Where the files that come with the code are: presets, lessons, models, styles."""
 
-from __future__ import annotations
-
 from pathlib import Path, PurePosixPath
 
 _PACKAGE = Path(__file__).resolve().parents[1]

@@ -3,8 +3,6 @@
 ``python -m navcore.warm`` compiles every kernel once.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, TypeVar
 

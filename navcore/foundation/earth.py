@@ -1,7 +1,5 @@
 """Earth: radii of curvature, gravity, rotation; WGS-84 or the textbook sphere."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal

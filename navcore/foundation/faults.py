@@ -1,7 +1,5 @@
 """From pydantic's errors to faults: the path as the user wrote it, the value, the whole allowed range."""
 
-from __future__ import annotations
-
 import difflib
 import types
 from collections.abc import Iterator

@@ -6,8 +6,6 @@ forked from a warm, single-threaded helper: some 10 ms. What a child may take is
 takes more is killed, and the caller is told in one line.
 """
 
-from __future__ import annotations
-
 import os
 import pickle
 import signal

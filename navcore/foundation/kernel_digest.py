@@ -4,8 +4,6 @@ A docstring, a comment, a help text or a moved line changes nothing; an edited c
 does, which numba's own cache would not notice.
 """
 
-from __future__ import annotations
-
 import ast
 import hashlib
 import os

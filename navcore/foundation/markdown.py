@@ -1,7 +1,5 @@
 """Tables of the written documents."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 

@@ -4,8 +4,6 @@ A scenario file, a column or an option spells a unit or a parameter with plain l
 What a person reads has the sign (``°/h``, ``ζ``).
 """
 
-from __future__ import annotations
-
 import re
 
 _UNITS = {

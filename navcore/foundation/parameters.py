@@ -4,8 +4,6 @@ Everything a user can set is a field of such a model. The dashboard builds its w
 descriptions and the error messages their allowed ranges from the same declaration.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Annotated, Any, get_args, get_origin

@@ -4,8 +4,6 @@ numba reads ``p.law_step`` of a record as one load at a known offset. A record i
 kernel changes the record that Python holds. A field may be a small array or a record of its own.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -5,8 +5,6 @@ that holds any of them, the page's form, the guide, the JSON Schema and the cont
 that a new entry is a file with a class and a line in the registry.
 """
 
-from __future__ import annotations
-
 from importlib import import_module
 from typing import Annotated, Any, ClassVar, TypeVar, Union, get_args, get_origin
 

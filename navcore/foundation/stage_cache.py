@@ -6,8 +6,6 @@ for, and what is dropped is the oldest of whoever holds most: one visitor's larg
 all others need at their next step.
 """
 
-from __future__ import annotations
-
 import threading
 from collections import Counter, OrderedDict
 from collections.abc import Callable, Hashable, Iterator, Set

@@ -5,8 +5,6 @@ the same 3e-16. Polynomials and the three-part pi/2: Sun Microsystems' fdlibm, `
 `e_rem_pio2.c`.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Factors to SI of the units that exist at the edges: ``value_si = value * FACTOR``."""
 
-from __future__ import annotations
-
 import math
 
 DEG = math.pi / 180.0

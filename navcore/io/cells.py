@@ -1,7 +1,5 @@
 """Cells of a text table to numbers and times; a fault for each that makes no sense."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from datetime import UTC, datetime

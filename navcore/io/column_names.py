@@ -4,8 +4,6 @@ A name is read without regard to case, spaces and signs. A unit may stand behind
 ``speed_kn``, ``SOG (m/s)``, ``Heading [deg]``, ``Latitude_deg``.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass

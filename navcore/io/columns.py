@@ -1,7 +1,5 @@
 """Tables whose columns are known by name, to a `Recording`; a fault for each wrong cell or column."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 

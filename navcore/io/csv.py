@@ -3,8 +3,6 @@
 The standard library's reader and numpy are enough, name the row of a bad cell, and start faster than pandas.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 from collections.abc import Iterator

@@ -4,8 +4,6 @@ Only whole sentences with a right checksum are used; a file in which too many ar
 backwards, is refused rather than used in part.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple

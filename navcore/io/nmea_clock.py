@@ -4,8 +4,6 @@ In this order: the sentence's own UTC (the stamp says which day, since old recei
 stamp; the last time known. Stamps in local time are told by the first dated sentence and corrected.
 """
 
-from __future__ import annotations
-
 import re
 from datetime import UTC, datetime
 from pathlib import Path

@@ -4,8 +4,6 @@ Before a sentence, or behind it, may stand a time (`navcore.io.stamps`), the nam
 number of a record, an NMEA 4 tag block, quotes: whatever loggers and archives put there.
 """
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """From the sentences of an NMEA 0183 log to its quantities: the best instrument of each."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path

@@ -4,8 +4,6 @@ A decoder returns a `Reading` or raises ValueError when the fields make no sense
 "invalid" gives a reading with ``valid`` False.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from datetime import UTC, datetime

@@ -1,7 +1,5 @@
 """Whether the speeds of a recording agree: a water speed far from the speed over ground is told."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from navcore.foundation.earth import WGS84

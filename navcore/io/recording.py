@@ -1,7 +1,5 @@
 """Loading recorded streams: each file read once (cached), then joined by UTC."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Iterable, Sequence

@@ -1,7 +1,5 @@
 """What a recording holds: time series in UTC, and an account of the files they came from."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, field, fields
 from datetime import UTC, datetime

@@ -1,7 +1,5 @@
 """Reading a file's text, with the refusals that hold for every text format."""
 
-from __future__ import annotations
-
 import os
 import re
 from pathlib import Path

@@ -13,8 +13,6 @@ Read are, anywhere in the text beside the sentence (UTC where no zone is given):
 No expression here repeats a group, and every repetition is bounded, so that each is linear in its input.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Which network, policy and switching method make sense together, and what runs when they do."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from navcore.foundation.errors import Fault

@@ -1,7 +1,5 @@
 """Compiled choice between the functions of a registry, made from the registry itself."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 

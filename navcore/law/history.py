@@ -1,7 +1,5 @@
 """What the law remembers: clock and a ring with one row a call. Compiled."""
 
-from __future__ import annotations
-
 import math
 
 from navcore.foundation.compiled import inlined, kernel

@@ -7,8 +7,6 @@ Q = 1 - H and d = V_r - V_c (external) or -V_c (internal), a = 0. Velocity feedb
 (`optimal` with velocity feedback) has a = G(s) d beside it, from the same states.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The running network of both channels: start, clear, feed. Compiled."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from navcore.foundation.compiled import inlined

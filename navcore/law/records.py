@@ -4,8 +4,6 @@
 The network itself is part of the *state*: `adaptive`, `schedule`, `ramp` and `step` re-tune it while it runs.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ what a `plain` policy and a `plain` switching method need; their step is inlined
 without the rest, which takes half the time.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from navcore.foundation.compiled import inlined, kernel

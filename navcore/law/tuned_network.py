@@ -12,8 +12,6 @@ coefficients does, was tried: after a step of 1 m/s in the log the velocity erro
 with either damping coefficient held.
 """
 
-from __future__ import annotations
-
 import math
 
 from navcore.foundation.compiled import inlined, kernel

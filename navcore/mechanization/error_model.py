@@ -9,8 +9,6 @@ The equations are those of theory.md section 2 with transport and Coriolis terms
 trajectory (Titterton & Weston ch. 12; Groves ch. 14); the vertical channel is locked.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -4,8 +4,6 @@ A 24 h run has 86,401 states; only the output rows are stored. Statistics and th
 are formed on the way, so that a peak of one second is neither lost in the metrics nor on the screen.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

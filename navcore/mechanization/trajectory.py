@@ -1,7 +1,5 @@
 """Coefficients of the linear error model along the true trajectory, each half step."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Motions of the vehicle: one file each, its parameters beside its truth; the scenario's block ``motion``."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, TypeAlias
 
 from navcore.foundation.registry import any_of, registry

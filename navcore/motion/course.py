@@ -7,8 +7,6 @@ between them: it does not depend on the times at which it is asked for. Over 24 
 an integration to 1e-13.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

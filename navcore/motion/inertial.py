@@ -4,8 +4,6 @@ omega_ib^b = C_n^b (omega_ie + omega_en) + omega_nb^b, f^b = C_n^b [dV/dt + (2 o
 (Titterton & Weston 2004, ch. 3; Groves 2013, ch. 5).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from navcore.foundation.compiled import inlined, kernel

@@ -3,8 +3,6 @@
 Every spline is re-expanded on the pieces that all of them share, so that one search serves six quantities.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from navcore.foundation.compiled import inlined, kernel

@@ -8,8 +8,6 @@ What the samples cost is fidelity to the path that was meant: with n samples a p
 sinusoid is followed to (2 pi/n)^4/180 of its amplitude, 3.4e-6 at the 40 samples taken.
 """
 
-from __future__ import annotations
-
 import math
 from abc import abstractmethod
 from collections.abc import Iterator

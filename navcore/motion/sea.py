@@ -1,7 +1,5 @@
 """A seaway as a sum of sinusoids, and a ship's angular and vertical answer to it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

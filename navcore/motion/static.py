@@ -1,7 +1,5 @@
 """Motion `static`: the vehicle rests at any attitude; and the attitude fields that other motions share."""
 
-from __future__ import annotations
-
 import math
 from typing import ClassVar, Literal
 

@@ -1,7 +1,5 @@
 """The registry of networks and the type of a field that holds any of them."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, TypeAlias
 
 from navcore.foundation.registry import any_of, registry

@@ -1,7 +1,5 @@
 """The two textbook networks with fixed coefficients."""
 
-from __future__ import annotations
-
 from typing import ClassVar, Literal
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The compass-alignment loop as a damping network: sigma, xi or K1, K2, K3 (Deng 1, 2; Zha 10-15)."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, ClassVar, Literal
 

@@ -1,7 +1,5 @@
 """Liu's complementary-filter network."""
 
-from __future__ import annotations
-
 from typing import ClassVar, Literal
 
 from navcore.foundation.parameters import quantity

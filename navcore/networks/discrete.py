@@ -3,8 +3,6 @@
 The direct form that Liu prints is never run: at Schuler scale its coefficients do not fit into a double.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """The closed-loop pole pair that parameters set: where it is, where it can be, what became of a wish."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """A network from what a user types: ``id = "compass", sigma = 0.0088, xi = 0.7``."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping
 from typing import Any

@@ -5,8 +5,6 @@ The numerators are formed as differences on paper, not on the machine: they stay
 where `ramp` begins.
 """
 
-from __future__ import annotations
-
 import math
 
 from navcore.foundation.compiled import inlined

@@ -1,7 +1,5 @@
 """Coefficients of polynomials, and their roots, exact where a formula gives them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import TypeVar

@@ -4,8 +4,6 @@ The poles stand on the diagonal as they are, repeated ones included, so nothing 
 form loses; every block has unit DC gain, so all states have the size of the input.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,5 +1,3 @@
 """Codes by which the running law knows a network that it can re-tune; 0 is none."""
 
-from __future__ import annotations
-
 COMPLEMENTARY, POLE2, UNITY2 = 1, 2, 3

@@ -1,7 +1,5 @@
 """No damping: H = 1."""
 
-from __future__ import annotations
-
 from typing import ClassVar, Literal
 
 from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network

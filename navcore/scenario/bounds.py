@@ -6,8 +6,6 @@ digits by an error of its own; each of these is told as a fault,
 here or by `navcore.scenario.file.parse_toml`.
 """
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Scenario files: TOML in and out, presets by name, single fields overridden, one hash for one scenario."""
 
-from __future__ import annotations
-
 import difflib
 import hashlib
 import json

@@ -3,8 +3,6 @@
 A test holds ``docs/scenario.md`` against the models, so that no field is missing from it or told wrongly.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Block ``initial_error`` of a scenario: where navigation starts from, and how well that is known."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from navcore.foundation.parameters import Parameters, bounded, quantity, vector_quantity

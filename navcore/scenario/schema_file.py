@@ -1,7 +1,5 @@
 """The JSON Schema of a scenario as a file: ``python -m navcore.scenario.schema_file`` writes it anew."""
 
-from __future__ import annotations
-
 import json
 
 from navcore.foundation.assets import assets_folder

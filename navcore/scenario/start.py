@@ -1,7 +1,5 @@
 """What the errors at t = 0 owe to constant sensor errors: after an alignment they are correlated."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The stochastic model of a scenario's sensors, log and start, in SI (theory.md 14)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What the terms of a sensor's error have in common, and what the models hand to the mechanizations."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any

@@ -6,8 +6,6 @@ the autocovariance C(k) = drift^2 exp(-k T / tau), whose value at lag 0 exceeds 
 Applied Optimal Estimation, 1974, ch. 2.2). Both axes are fitted together.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The inertial measurement unit: its errors as a scenario gives them, and their effect along a motion."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import lru_cache

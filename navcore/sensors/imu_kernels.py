@@ -4,8 +4,6 @@ An array with one row stands for all steps. Rows are addressed by index: a view 
 (``row = values[i]``) made these loops ten times slower.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from navcore.foundation.compiled import inlined, kernel

@@ -1,7 +1,5 @@
 """Errors of the reference velocity at its own epochs, simulated or recorded."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from navcore.motion.base import Truth

@@ -4,8 +4,6 @@ A sensor's numbers depend on the scenario's seed and the sensor's name only: not
 on, on the order of calls or on the amplitude. So a slider on an amplitude scales numbers already drawn.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 import threading

@@ -1,7 +1,5 @@
 """A recorded log as the reference: its error is what it says minus the true velocity of the motion."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -4,8 +4,6 @@ Body axes are right, forward, up after reading. PSINS: G. Yan's toolbox; increme
 ``gf`` arc-seconds and of velocity in counts of ``af`` ug s.
 """
 
-from __future__ import annotations
-
 import math
 import os
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The reference velocity (log): the block ``reference`` of a scenario."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """The simulated log: truth with current, tide, scale error, bias, drift, noise, events, delay, resolution."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

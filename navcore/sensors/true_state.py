@@ -1,7 +1,5 @@
 """True velocity and heading at any time, from the truth on its grid."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from navcore.motion.base import AE, AN, HEADING, HEADING_RATE, VE, VN, Truth

@@ -3,8 +3,6 @@
 Each is held by a test of the acceptance or unit tests, with a limit; here it is printed.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 from pathlib import Path

@@ -5,8 +5,6 @@ seed draws its own noise, biases, log bias and initial errors. The mean square o
 of the budget is chi-squared; counted is how many comparisons lie within its 99 % interval.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Iterator

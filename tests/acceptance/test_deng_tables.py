@@ -1,7 +1,5 @@
 """Deng 2019, tables 1, 2 and 4: what remains of the Schuler oscillation, and how far the errors scatter."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

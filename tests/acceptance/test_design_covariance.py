@@ -1,7 +1,5 @@
 """The covariance of the budget beside 200 seeds at steps of 2 s; `make covariance`: 2,000 at steps of 1 s."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Reference values of the design mathematics: steady budget by source, floor (theory.md 20), to 0.5 %."""
 
-from __future__ import annotations
-
 import pytest
 
 from navcore.design.budget import Budget, budget

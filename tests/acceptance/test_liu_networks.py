@@ -1,7 +1,5 @@
 """Liu 2021, figures 3 and 5: gain from the log's error to the tilt, R phi / dV_r, of three networks."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

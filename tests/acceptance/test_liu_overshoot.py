@@ -1,7 +1,5 @@
 """Liu 2021, figure 4: the overshoot follows the change of the log's error (theory.md 9.3)."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Liu 2021, tables 1 to 3: when to damp and how to come back, over four seeds (the report takes twenty)."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

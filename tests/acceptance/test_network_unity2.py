@@ -1,7 +1,5 @@
 """theory.md 3.4: exact damping and H(0) = 1 at once."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Values of single networks: theory.md 3, 8, 9.1 and 9.2, with Liu 5, 6, Sun 6, 7, 12 to 18 and Zha 15."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,7 +1,5 @@
 """The recordings that come with the program: their IMU and licences, and the runs on them, in any clone."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -5,8 +5,6 @@ Liu 2021, figure 7: overshoot of a step of the log's error against that of a swi
 roll error without and with a reference, velocity on a drive.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

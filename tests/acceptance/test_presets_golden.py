@@ -5,8 +5,6 @@ which is some 1e-12), 1e-9 for the loop. Where half-period averaging leaves noth
 compared is rounding: see `ROUNDING`. When a change is meant: ``python -m tests.acceptance.golden_files``.
 """
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

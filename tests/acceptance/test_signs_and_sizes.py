@@ -1,7 +1,5 @@
 """Signs and sizes that a run must have, from closed formulas: what golden files alone would notice."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

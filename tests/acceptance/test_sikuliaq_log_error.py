@@ -1,7 +1,5 @@
 """The preset `sikuliaq-like`: its log error is the one that the fit to the R/V Sikuliaq's log gives."""
 
-from __future__ import annotations
-
 import tomllib
 from pathlib import Path
 

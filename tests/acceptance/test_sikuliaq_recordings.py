@@ -1,7 +1,5 @@
 """R/V Sikuliaq, 2018-12-06: what the recordings hold, what they share, and the run on them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

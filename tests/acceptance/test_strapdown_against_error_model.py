@@ -1,7 +1,5 @@
 """The linear error model against the full strapdown mechanization, fed with the same sensor errors, 6 h."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

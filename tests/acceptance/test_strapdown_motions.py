@@ -16,8 +16,6 @@ taken at the middle of the interval with the velocity extrapolated from the last
 alone is of order 2.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A parked vehicle's ring-laser-gyro IMU: aligned in its quiet window, then navigated with V_r = 0."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

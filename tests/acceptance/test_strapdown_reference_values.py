@@ -1,7 +1,5 @@
 """Full strapdown against an independent implementation (theory.md 9.5, 9.6), and with perfect sensors."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

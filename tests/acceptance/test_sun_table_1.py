@@ -1,7 +1,5 @@
 """Sun 2017, Table 1 and eq. 8: the double loop on Sun's own setting, and what it gives instead."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -9,8 +9,6 @@ noise of 0.1 m/s lets s fall below c = 0.45 m/s after 15 calls, of the 20 that `
 damped, and no switching method is asked to do anything.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """theory.md section 4: what the switching methods make of passing and of lasting changes of the log."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The 24 h mode of the whole system: the table of theory.md 10, and runs that grow as it says."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Zha 2019, figure 1: tilt from a gyro drift; 10 min with fast damping against more than a Schuler period."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -5,8 +5,6 @@ needs quiet sensors. Figure 12: turntable, full strapdown mechanization, forecas
 at 20 Hz instead of 100: the table swings with 0.05 Hz, and the noise of a second is the same.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

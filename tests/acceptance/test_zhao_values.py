@@ -1,7 +1,5 @@
 """Zhao 2015, eq. 17 and theory.md 9.4: oscillations from initial errors, 24 h at rest, free and averaged."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

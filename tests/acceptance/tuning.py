@@ -4,8 +4,6 @@ Two parameters of compass (velocity feedback and network form) and of complement
 example ship of theory.md 20. Then a run of 24 h with a moving ship.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from dataclasses import dataclass

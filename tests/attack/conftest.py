@@ -1,7 +1,5 @@
 """A running server with one control of every kind, and a record of what reached it."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

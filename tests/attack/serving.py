@@ -8,8 +8,6 @@ leaves its rows in build/soak.json, which is taken if it is there. The record, d
 beside the page.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -9,8 +9,6 @@ Everything goes to 127.0.0.1, and all ends by itself after a stated time. The lo
 own, on the same cores: on a machine with two, the load and the browsers take part of what is measured.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import math

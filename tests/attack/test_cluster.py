@@ -1,7 +1,5 @@
 """Heavy jobs on a Dask cluster of this machine: the same result, progress, cancel; a lost cluster is told."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """serving 15: too many visitors, sockets, uploads, guesses; a page that never reads, one that floods."""
 
-from __future__ import annotations
-
 import socket
 import threading
 import time

@@ -1,7 +1,5 @@
 """serving 1-6, 12, 16, 19: who gets in, under which name, and what every answer carries."""
 
-from __future__ import annotations
-
 import gzip
 import json
 import logging

@@ -1,7 +1,5 @@
 """serving 6-9, 11, 13: messages no page sends, against a running server."""
 
-from __future__ import annotations
-
 import contextlib
 import math
 import threading

@@ -4,8 +4,6 @@ What each took (until the visitor was told, the other's slowest answer, memory) 
 docs/serving.md. Nothing is asserted about time but that an answer came.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 import threading

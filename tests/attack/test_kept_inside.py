@@ -1,7 +1,5 @@
 """What is shown to whom: figures and the log without anybody's name, no path of the server, a full disk."""
 
-from __future__ import annotations
-
 import json
 import logging
 import re

@@ -1,7 +1,5 @@
 """deploy/nginx.conf before a running server: TLS, websocket, stickiness, as Debian's nginx reads it."""
 
-from __future__ import annotations
-
 import os
 import pwd
 import re

@@ -1,7 +1,5 @@
 """serving 17, 18 and a quiet console: the server as a process of its own."""
 
-from __future__ import annotations
-
 import signal
 import socket
 import subprocess

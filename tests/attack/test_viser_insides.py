@@ -1,7 +1,5 @@
 """Each inside of viser that is used: fails when it is no longer what it was read to be."""
 
-from __future__ import annotations
-
 import asyncio
 import dataclasses
 import importlib.util

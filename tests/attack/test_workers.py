@@ -1,7 +1,5 @@
 """``serve --workers``: one door, sessions stay with their worker, and come back when it has crashed."""
 
-from __future__ import annotations
-
 import os
 import signal
 import socket

@@ -1,7 +1,5 @@
 """A hostile (or plain) client: HTTP and websocket requests as no browser would make them."""
 
-from __future__ import annotations
-
 import http.client
 import time
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """Names a control of the page by its key in the scenario file: a test does not depend on its label."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import lru_cache
 

@@ -1,7 +1,5 @@
 """How long a test waits for a page, and which of its complaints say nothing."""
 
-from __future__ import annotations
-
 import os
 
 THROTTLE_MS = 80

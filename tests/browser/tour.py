@@ -4,8 +4,6 @@ Drives the dashboard in headless Chromium as a visitor would and writes ``docs/t
 captions, and ``docs/dashboard.png``.
 """
 
-from __future__ import annotations
-
 import io
 from collections.abc import Callable
 from dataclasses import dataclass, field

@@ -6,8 +6,6 @@ the machine below. Absolute paths in commands and variables are moved below the 
 at the same place and set aside afterwards, so that what `COPY --from` brings is where it was made.
 """
 
-from __future__ import annotations
-
 import fnmatch
 import functools
 import json

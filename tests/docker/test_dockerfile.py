@@ -1,7 +1,5 @@
 """The Dockerfile: its promises, read off its text, and its steps, carried out without a Docker engine."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

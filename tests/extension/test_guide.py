@@ -4,8 +4,6 @@ The guide's own text is taken: the block behind ``<!-- file: PATH -->`` is the f
 ``<!-- line: PATH -->`` the first line stands in PATH already and the second one is written below it.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

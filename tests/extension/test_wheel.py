@@ -1,7 +1,5 @@
 """The wheel by itself: built, installed beside the locked requirements in a clean environment, and used."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -8,8 +8,6 @@ of `make test`: a change takes 5 to 200 s of CPU time.
     python -m tests.mutation --sample 60 --seed 1 analysis law
 """
 
-from __future__ import annotations
-
 import os
 
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):

@@ -1,7 +1,5 @@
 """One process that runs the tests of a room on a tree, in which one place may be changed."""
 
-from __future__ import annotations
-
 import math
 import os
 import resource

@@ -1,7 +1,5 @@
 """Changes that nothing can notice, as `equivalent.toml` lists them with their reasons."""
 
-from __future__ import annotations
-
 import tomllib
 from functools import cache
 from pathlib import Path

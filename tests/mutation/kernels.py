@@ -5,8 +5,6 @@ other kernel is loaded from the machine code of the unchanged tree. A small inli
 interpreted kernel calls runs as Python. To be used before anything of navcore is imported.
 """
 
-from __future__ import annotations
-
 import ast
 import hashlib
 from collections.abc import Callable

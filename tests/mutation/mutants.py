@@ -4,8 +4,6 @@ Left out by rule, as no number of a run depends on it: type annotations, docstri
 parameter only the page shows (slider, label, help, unit).
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The sample that is drawn, what became of each of its changes, and the scores."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import random

@@ -3,8 +3,6 @@
 Only tests that run within the process: what starts another would compile every kernel of the changed tree.
 """
 
-from __future__ import annotations
-
 ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "law": (
         ("test_control_*", "test_scenario_guide"),

@@ -1,7 +1,5 @@
 """``python -m tests.papers [--out FOLDER] [--only WORD]``: write the reproduction report."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Deng 2019: accuracy of the compass alignment, and the network form against the feedback form."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A number of ours: exact, or a mean over independent seeds with its 95 % confidence interval."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

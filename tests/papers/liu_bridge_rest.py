@@ -1,7 +1,5 @@
 """Errors that `bridge` leaves at sea with and without changes of the log and an initial heading error."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from navcore.engine.simulation import simulate

@@ -1,7 +1,5 @@
 """Liu 2021, figure 7 and tables 1 to 3: when to damp while the log's error changes, over many seeds."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal
 

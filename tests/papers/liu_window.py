@@ -1,7 +1,5 @@
 """Liu 2021, equations 12 to 16: what the window n, its age t0 and the count of the switch do."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

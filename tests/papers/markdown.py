@@ -1,7 +1,5 @@
 """Papers with their claims -> the text of the report."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 

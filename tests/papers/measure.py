@@ -1,7 +1,5 @@
 """Measures of the claims on a run: attitude errors, settling, peaks, spreads, intervals over seeds."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Write the report: run every exhibit, draw its picture, put the text together."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from functools import partial

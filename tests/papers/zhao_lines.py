@@ -1,7 +1,5 @@
 """Amplitudes of the Schuler and 24 h lines in Zhao's presets, over several seeds."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from navcore.averaging.lines import line_amplitudes, line_phases

@@ -4,8 +4,6 @@ A new text is added without a translation, one that has gone is dropped. What ha
 with ``--missing`` nothing is written.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """All texts that a page can show: from Python, from scripts, from lessons, explanations and presets."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Texts in Python files: prose in string literals and f-strings, whatever it is used for."""
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Iterator

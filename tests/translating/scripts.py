@@ -1,7 +1,5 @@
 """Texts in scripts: prose in string literals, and in the HTML of template literals."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Runs that the tests of the figures share; each is simulated once."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any

@@ -1,7 +1,5 @@
 """Coarse and fine alignment (theory.md 6.1): residuals, steady state, noise, refusals."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

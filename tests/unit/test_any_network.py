@@ -1,7 +1,5 @@
 """Any network the models allow: refused in words, or its statements about stability and settling hold."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

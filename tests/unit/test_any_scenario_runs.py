@@ -1,7 +1,5 @@
 """Any scenario the models allow gives finite numbers, a marked end or a refusal in words; no traceback."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

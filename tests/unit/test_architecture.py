@@ -1,7 +1,5 @@
 """Rooms of the two packages: no circles between them, viser's insides in one place, every view registered."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator, Mapping
 from functools import lru_cache

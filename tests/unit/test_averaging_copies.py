@@ -1,7 +1,5 @@
 """Which copies there are, and how far each is ahead."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Averaging on the error model: the mean of copies really run, chunks, divergence."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

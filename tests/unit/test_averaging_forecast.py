@@ -1,7 +1,5 @@
 """The alignment record and the forecast from it."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

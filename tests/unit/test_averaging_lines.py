@@ -1,7 +1,5 @@
 """Amplitudes by least squares on known lines."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

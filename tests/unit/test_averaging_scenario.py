@@ -1,7 +1,5 @@
 """Averaging as a method of a scenario: what is refused, and that both fidelities carry it out."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Averaging with the strapdown algorithm: against the linear model, and no faults at 0 and 180 deg."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """``python -m benchmarks``: both do the same work; how fast they are is not tested."""
 
-from __future__ import annotations
-
 import importlib.util
 import json
 import sys

@@ -1,7 +1,5 @@
 """`check_file`: what a file holds, in words and as JSON; never an exception for a file's content."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

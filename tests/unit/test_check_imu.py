@@ -1,7 +1,5 @@
 """`schuler check` on a recorded IMU: rate, span, which axis looks like up, gaps and NaN."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

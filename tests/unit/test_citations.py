@@ -1,7 +1,5 @@
 """Every section of the theory that code, page, lessons and documents cite exists; no other file is cited."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 from pathlib import Path

@@ -1,7 +1,5 @@
 """``schuler bench``: that it measures what it says. How fast this machine is, is not tested."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """``schuler check`` of scenarios and logs."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

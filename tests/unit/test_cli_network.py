@@ -1,7 +1,5 @@
 """``schuler network``: the numbers of theory.md 9.1, 9.2 and 3.3 from the command line."""
 
-from __future__ import annotations
-
 import json
 import math
 

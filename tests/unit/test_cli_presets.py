@@ -1,7 +1,5 @@
 """``schuler presets``, and the JSON Schema it points to."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

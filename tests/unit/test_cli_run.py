@@ -1,7 +1,5 @@
 """``schuler run``: results on stdout, files, exit codes, stopping."""
 
-from __future__ import annotations
-
 import csv
 import errno
 import json

@@ -1,7 +1,5 @@
 """The command with fidelity strapdown: presets, files, faults, stopping."""
 
-from __future__ import annotations
-
 import csv
 import json
 

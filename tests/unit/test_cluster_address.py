@@ -1,7 +1,5 @@
 """Heavy jobs elsewhere, without a cluster: the address that is refused, the lane, the way back."""
 
-from __future__ import annotations
-
 import importlib.util
 import threading
 

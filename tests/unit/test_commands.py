@@ -1,7 +1,5 @@
 """Commands of a page: what its hidden control may hold, and what is done with it."""
 
-from __future__ import annotations
-
 import json
 import logging
 from types import SimpleNamespace

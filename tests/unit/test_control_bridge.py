@@ -1,7 +1,5 @@
 """The filter of `bridge` against the channel that it models, and gains in force against the network's own."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What does not go together is refused in one line; the adaptive law never leaves the stable region."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Every policy against a sequence computed by hand."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

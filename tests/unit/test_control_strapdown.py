@@ -1,7 +1,5 @@
 """The same law in the full mechanization: policies see the computed motion, re-tuned networks run in it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

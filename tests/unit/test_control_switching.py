@@ -1,7 +1,5 @@
 """Every switching method against a sequence computed by hand; re-tuning keeps the correction continuous."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The compiled law inside the error model against its slow twin: every policy with every switching method."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

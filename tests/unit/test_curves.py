@@ -1,7 +1,5 @@
 """A page is sent a curve only when it does not have it, and always has all of them."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncGenerator, Iterator, Sequence
 from contextlib import closing

@@ -1,7 +1,5 @@
 """Bands by covariance: those of the budget, the Kalman filter's own, none where the law looks at the data."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

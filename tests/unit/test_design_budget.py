@@ -1,7 +1,5 @@
 """The error budget: model from a scenario, steady state, growth, along a run, seeds, floor, faults."""
 
-from __future__ import annotations
-
 import json
 import math
 from typing import Any

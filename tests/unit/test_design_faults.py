@@ -1,7 +1,5 @@
 """Bad input to budget, tune and pareto: plain words with the field's name, exit code 2, nothing on stdout."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """No causal linear method of the catalogue is ever better than the floor."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from hypothesis import assume, given, settings

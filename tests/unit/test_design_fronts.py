@@ -1,7 +1,5 @@
 """Pareto fronts: the picture, which point a click means, and what the point does to the scenario."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Tuning and Pareto fronts: the known optima from any start, requirements, ends of ranges, bad input."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The budget's bars, the fields that a search may move, and the proposal of Tune in words."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

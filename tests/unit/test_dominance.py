@@ -1,7 +1,5 @@
 """What dominates a result: the period by least squares, the source by running the sources apart."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

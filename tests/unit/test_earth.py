@@ -1,7 +1,5 @@
 """The Earth against published values of WGS-84 (NGA.STND.0036, 2014) and the exact field of the ellipsoid."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

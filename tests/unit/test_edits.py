@@ -1,7 +1,5 @@
 """Changes of a scenario: linked parameters, kinds, methods, events; as text; a field as it was opened."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 from typing import Any, cast

@@ -1,7 +1,5 @@
 """The compiled error model against its slow twin, against its eigenvalues and against closed forms."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

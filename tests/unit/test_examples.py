@@ -1,7 +1,5 @@
 """The notebooks of examples/: every code cell runs from a clean start; none is kept with its output."""
 
-from __future__ import annotations
-
 import ast
 import json
 from pathlib import Path

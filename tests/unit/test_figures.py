@@ -1,7 +1,5 @@
 """What every figure keeps to, over all figures and many runs; their own numbers are tested beside it."""
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Error curves over time: units, scales, pins, verification and what the legend makes of them."""
 
-from __future__ import annotations
-
 import inspect
 from dataclasses import replace
 

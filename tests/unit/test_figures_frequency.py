@@ -1,7 +1,5 @@
 """Bode and Nyquist plots: curves, margins and the dots of the running filter, by numbers."""
 
-from __future__ import annotations
-
 import math
 import re
 

@@ -1,7 +1,5 @@
 """The misprint laboratory draws what the physics computed, in readable units."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

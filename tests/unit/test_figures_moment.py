@@ -1,7 +1,5 @@
 """A moment of a run: what is true, what a method computes, and the pendulum it swings like."""
 
-from __future__ import annotations
-
 import math
 import re
 import threading

@@ -1,7 +1,5 @@
 """Pole map, locus, whole system and step responses: by numbers."""
 
-from __future__ import annotations
-
 import math
 import re
 from typing import Any

@@ -1,7 +1,5 @@
 """Envelopes, spectra and files of the plots."""
 
-from __future__ import annotations
-
 import csv
 import io
 from dataclasses import replace

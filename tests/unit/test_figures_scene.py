@@ -1,7 +1,5 @@
 """The map of true and computed tracks, its lines, labels and ships, and the cameras that look at it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """The switching view holds the law's own numbers: measure, thresholds, wish, state and xi."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any, cast

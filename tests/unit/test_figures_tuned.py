@@ -1,7 +1,5 @@
 """The picture and rows of a table that Sun's double loop found."""
 
-from __future__ import annotations
-
 import re
 
 from app.views.method.tuned import HEIGHT, WIDTH, table_html

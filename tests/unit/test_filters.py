@@ -1,7 +1,5 @@
 """Networks in discrete time (theory.md 3.5): every network, every step from 1 s to 5 ms."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import comb
 

@@ -1,7 +1,5 @@
 """Controls are made from the models: labels, ranges, sliders and texts."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """What users have called something stays as they wrote it on a page in another language; sentences do not."""
 
-from __future__ import annotations
-
 import json
 from contextlib import closing
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Hostile files and scenarios: read in a child with bounds, told in a short line, the caller unharmed."""
 
-from __future__ import annotations
-
 import os
 import time
 from collections.abc import Iterator

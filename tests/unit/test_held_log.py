@@ -1,7 +1,5 @@
 """The sampled law: what holding the log's difference does to the loop."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

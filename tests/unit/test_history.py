@@ -1,7 +1,5 @@
 """Undo and redo: steps, their names, and drags that are one step."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Rules of entry apart from any server: addresses, Host and Origin, the token, and guesses of it."""
 
-from __future__ import annotations
-
 import hmac
 import socket
 import stat

@@ -1,7 +1,5 @@
 """The gate, apart from any connection: values that fit; what is passed on, dropped, or closes it."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

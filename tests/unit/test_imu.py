@@ -1,7 +1,5 @@
 """IMU errors in the navigation frame: statistics of the noises, independence of the parts, constant parts."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

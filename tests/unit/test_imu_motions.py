@@ -1,7 +1,5 @@
 """The simulated IMU on every motion: exact increments, independence of chunks, memory, one kind each."""
 
-from __future__ import annotations
-
 import tracemalloc
 
 import numpy as np

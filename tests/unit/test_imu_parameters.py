@@ -1,7 +1,5 @@
 """The `imu` block: ranges element by element, refusals by name, vector fields for the page."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

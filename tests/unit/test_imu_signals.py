@@ -1,7 +1,5 @@
 """What perfect sensors feel, against numeric differentiation in the inertial and the Earth frame."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

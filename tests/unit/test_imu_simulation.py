@@ -1,7 +1,5 @@
 """The simulated IMU: exact increments, errors of the stated size, independence of chunks."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Means over a step while the body turns, and quantisation with carry, against fine numeric twins."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

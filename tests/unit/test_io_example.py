@@ -1,7 +1,5 @@
 """The example scenario for a user's own recordings runs on any ship's files."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """NMEA 0183 logs: sentences to SI, times, counted faults, refusals."""
 
-from __future__ import annotations
-
 import math
 from datetime import UTC, datetime
 from itertools import islice

@@ -1,7 +1,5 @@
 """Joining recorded streams: which file gives what, the time they share, the cache."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Logs as research vessels write them: the time and whatever else stands beside a sentence."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from datetime import datetime, timedelta
 from pathlib import Path

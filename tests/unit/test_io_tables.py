@@ -1,7 +1,5 @@
 """CSV, Parquet and MAT tables: columns named with their units, faults that name row and column."""
 
-from __future__ import annotations
-
 from datetime import UTC, datetime
 from pathlib import Path
 

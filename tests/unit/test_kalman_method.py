@@ -1,7 +1,5 @@
 """The Kalman filter as a method: refused where it cannot work, its covariance true, its limits visible."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 from typing import Any

@@ -1,7 +1,5 @@
 """Where machine code is kept: what names its folder, who waits for whom, what is removed, and when."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import signal

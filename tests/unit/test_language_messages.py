@@ -1,7 +1,5 @@
 """What goes to a page and comes from it in its language, and how the language is chosen."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The page in other languages: nothing is left out, and a text is found again with values in it."""
 
-from __future__ import annotations
-
 import re
 from io import BytesIO
 from pathlib import Path

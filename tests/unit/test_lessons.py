@@ -1,7 +1,5 @@
 """Every lesson is whole: its names, fields, tabs and answers exist and come from the engine."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator

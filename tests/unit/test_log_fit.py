@@ -1,7 +1,5 @@
 """The fit that the tab Log offers: the recorded log against the recorded track, and a log that errs alike."""
 
-from __future__ import annotations
-
 import pytest
 
 from app.session.log_fit import can_fit, fit_of, told, with_fitted_log

@@ -1,7 +1,5 @@
 """Stability, damping and settling of the closed loop."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

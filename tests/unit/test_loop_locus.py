@@ -1,7 +1,5 @@
 """Root locus: branches that follow a pole; values that make no network are left out."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from navcore.analysis.locus import root_locus

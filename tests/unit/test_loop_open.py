@@ -1,7 +1,5 @@
 """Margins by roots, and the gain of the running filter, against python-control and the exact response."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

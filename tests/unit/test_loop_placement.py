@@ -1,7 +1,5 @@
 """Placement: the loop of the parameters found has the pair that was asked for, or a word why not."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,7 +1,5 @@
 """When a response has come to rest: responses whose last crossing of the level is known in closed form."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Transfers of one channel against the differential equations of theory.md section 3."""
 
-from __future__ import annotations
-
 import typing
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The misprint laboratory against the numbers of theory.md sections 3, 8 and 9."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

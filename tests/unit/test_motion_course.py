@@ -1,7 +1,5 @@
 """Position along `legs` against independent integrations: within 0.01 mm over 24 h, whatever the step."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Motion `legs`: what each field means, and what is refused."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Motion `profile`: the papers' profiles, consistent derivatives, what a field means, what is refused."""
 
-from __future__ import annotations
-
 import math
 import re
 from typing import Any

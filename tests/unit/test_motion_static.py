@@ -1,7 +1,5 @@
 """Motion `static` and the registry of motions."""
 
-from __future__ import annotations
-
 import math
 from typing import get_args
 

@@ -1,7 +1,5 @@
 """Motion `swing` against its formula."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Motion `waves`: the seaway has the spectrum asked for, the ship answers it, the truth is consistent."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """`LinearNetwork`: polynomials, roots, gains and frequency response belong to one H(s)."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

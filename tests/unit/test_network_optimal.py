@@ -1,7 +1,5 @@
 """The optimal network: whose sensors it is designed for, what it warns of, that it runs everywhere."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

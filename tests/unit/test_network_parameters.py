@@ -1,7 +1,5 @@
 """The parameter blocks of the networks: defaults, ranges, refusals, round trips."""
 
-from __future__ import annotations
-
 import typing
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The document of ``schuler network --json``."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

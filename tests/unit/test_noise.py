@@ -1,7 +1,5 @@
 """Random numbers of the sensors: statistics, independence, what a cache must not change."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The page writes symbols and units as the field does: no Greek letter and no sign is spelled out."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

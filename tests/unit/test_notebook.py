@@ -1,7 +1,5 @@
 """Figures in a notebook: those of the page, as plotly's own class, which checks every property."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

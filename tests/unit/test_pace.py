@@ -1,7 +1,5 @@
 """A page is sent what it has time for while a slider moves, and everything at rest: one state machine."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """Pages people read: links lead somewhere, the map names every room, the example of CONTRIBUTING works."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any

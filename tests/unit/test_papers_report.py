@@ -1,7 +1,5 @@
 """The reproduction report: verdicts, numbers as text, and that the same code writes the same files."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Pinned runs: how many, what they keep, how they come back from a file."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

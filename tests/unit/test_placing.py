@@ -1,7 +1,5 @@
 """From a point of the pole map, or typed numbers, to a scenario with that pair; else why not."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A water speed far from the speed over ground, and a recording too short for a conclusion, are told."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

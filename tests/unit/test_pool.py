@@ -1,7 +1,5 @@
 """The pool of callbacks: turns by visitor, order, coalescing, bounds."""
 
-from __future__ import annotations
-
 import threading
 
 import pytest

@@ -1,7 +1,5 @@
 """The project itself: what may import what, what the lock files hold, and that a wheel is complete."""
 
-from __future__ import annotations
-
 import ast
 import inspect
 import os

@@ -1,7 +1,5 @@
 """Recorded IMUs: both formats, and one clear line for each fault."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """`imu.file` in a scenario: alignment, then navigation, on a record made here; what cannot serve is told."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The fit of a log's error gives back what simulated logs were made with."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The simulated log: closed forms of every error, epochs, averaging, independence of the streams."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A recorded log as the reference: which speed, which heading, which time, and what is said about it."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The contract of every registry entry: networks, motions, policies and switchings hold the same promises."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any, get_args, get_origin

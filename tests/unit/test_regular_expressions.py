@@ -4,8 +4,6 @@ The expressions are collected from the source. For each, hostile texts are made 
 and the time for twice the text is compared with the time for the text: 2 when linear, 4 when quadratic.
 """
 
-from __future__ import annotations
-
 import ast
 import math
 import re

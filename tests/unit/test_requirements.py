@@ -1,7 +1,5 @@
 """Requirements: measured, against hand computations; bad input; who meets them; over a part of the run."""
 
-from __future__ import annotations
-
 import math
 import threading
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """The folder of results where it cannot simply be exchanged, and metrics that JSON can hold."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The scenario: defaults, faults by name, overrides, one hash for one scenario, TOML out and in."""
 
-from __future__ import annotations
-
 import tomllib
 
 import pytest

@@ -1,7 +1,5 @@
 """docs/scenario.md is what the models say."""
 
-from __future__ import annotations
-
 import pytest
 
 from navcore.scenario.guide import guide

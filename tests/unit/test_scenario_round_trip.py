@@ -1,7 +1,5 @@
 """Any scenario the models allow survives being written and read (same hash), or is refused in words."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from hypothesis import HealthCheck, assume, given, settings

@@ -1,7 +1,5 @@
 """Whose turn it is: visitors in turn, answers before long runs before spare work, bounded memory."""
 
-from __future__ import annotations
-
 import threading
 import time
 

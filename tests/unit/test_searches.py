@@ -1,7 +1,5 @@
 """Searches in the background: what dominates a run that stands still, and a damping table."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable, Iterator
 from types import SimpleNamespace

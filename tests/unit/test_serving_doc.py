@@ -1,7 +1,5 @@
 """docs/serving.md: its table is the one of the record, and every row names a test or a line of the soak."""
 
-from __future__ import annotations
-
 import ast
 import json
 import re

@@ -1,7 +1,5 @@
 """One visitor's work: runs, refusals, undo, several pages, one that presents; and many visitors."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path

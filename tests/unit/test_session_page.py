@@ -1,7 +1,5 @@
 """The session as one HTML page: what it holds, that it is text, that it loads nothing and runs nothing."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from datetime import UTC, datetime

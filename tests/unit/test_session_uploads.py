@@ -1,7 +1,5 @@
 """Uploaded files: kept under safe names, checked, bounded, and turned into runs."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

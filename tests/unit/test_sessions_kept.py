@@ -1,7 +1,5 @@
 """Sessions over a restart and as shared copies: what comes back, and what a strange file can do."""
 
-from __future__ import annotations
-
 import json
 import logging
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """simulate(): identical inputs for all methods, cancel, divergence, rows, statistics, plot curves."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

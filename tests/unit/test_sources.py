@@ -1,7 +1,5 @@
 """Sources of a method's errors: the budget where it models the method, else the scenario run apart."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

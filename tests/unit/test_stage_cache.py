@@ -1,7 +1,5 @@
 """The cache of the stages: bounded by bytes, shared fairly, given back when its owners have gone."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

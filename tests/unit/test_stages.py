@@ -1,7 +1,5 @@
 """The sums over the stages, and the Makefile's answers where it cannot go on."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Pictures of the presets, cards of the networks, and the words of the tour."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

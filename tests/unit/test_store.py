@@ -1,7 +1,5 @@
 """Files of sessions: written soon and whole, ours alone, read with distrust, removed when old."""
 
-from __future__ import annotations
-
 import logging
 import os
 import threading

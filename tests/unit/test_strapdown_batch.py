@@ -1,7 +1,5 @@
 """A batch gives each run what the single run gives."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Driving several runs: progress, cancel, one run that diverges among others."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

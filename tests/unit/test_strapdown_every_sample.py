@@ -1,7 +1,5 @@
 """The loop for the law at the IMU's rate gives, to the last bit, what the general loop gives."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The compiled strapdown kernel against its slow twin, sample by sample, and its bookkeeping."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A strapdown scenario: its rates, and one clear fault for each field that cannot be so."""
 
-from __future__ import annotations
-
 import pytest
 
 from navcore.foundation.errors import InputError

@@ -1,7 +1,5 @@
 """simulate() of fidelity strapdown: identical inputs, cancel, divergence, columns, alignment, law series."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Both themes read well: text against its ground 4.5 to 1, curves 3 to 1 (WCAG 2.2), hues kept."""
 
-from __future__ import annotations
-
 import colorsys
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """docs/theory.md: its numbering and links, and that its formulas and reference values are navcore's."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What the tests are made with: Chromium, audit, mutations, points of the page; the garbage of a server."""
 
-from __future__ import annotations
-
 import ast
 import json
 import subprocess

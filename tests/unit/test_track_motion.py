@@ -1,7 +1,5 @@
 """Motion `track`: the truth from recorded positions is consistent, follows the record, refuses bad ones."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

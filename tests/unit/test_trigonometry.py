@@ -1,7 +1,5 @@
 """The vectorised sine and cosine against the C library's."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

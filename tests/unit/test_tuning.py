@@ -1,7 +1,5 @@
 """Sun's double loop: superposition against direct runs, determinism, cancel, and the table in a scenario."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

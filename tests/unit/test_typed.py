@@ -1,7 +1,5 @@
 """Values typed with a unit."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

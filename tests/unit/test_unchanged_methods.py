@@ -1,7 +1,5 @@
 """A run takes over from the one before it what has not changed: bit by bit what it would compute itself."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

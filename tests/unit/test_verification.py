@@ -1,7 +1,5 @@
 """verify(): the error model beside the strapdown on the same noise, and when it is not to be trusted."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

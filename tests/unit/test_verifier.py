@@ -1,7 +1,5 @@
 """Verification in the background: progress, stop, faults, and results that have become old."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable, Iterator
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Eigenvalues of both channels with heading and latitude."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Latest wins: what waits is replaced, what runs is cancelled once it has run for a while."""
 
-from __future__ import annotations
-
 import threading
 
 import pytest

@@ -1,7 +1,5 @@
 """A session in one file: an HTML page to keep, send and print, or one picture of all plots."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass, replace

@@ -5,8 +5,6 @@ In presentation size the panels are enlarged by the style sheet (presentation.cs
 left tabs the one that leads (`app.shell.view.View.leads`) is shown alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The table of the pins and the present run: what each measures, and whether it meets the requirements."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Tab "Compare": the pins of a session, and the controls of the one that is chosen."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from html import escape

@@ -1,7 +1,5 @@
 """The error budget as stacked bars: one row a method, one colour a source, the floor drawn in."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Tab "Design": the error budget of every method by source, and how many times the floor it is."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from app.plots.budgets import steady_budget

@@ -1,7 +1,5 @@
 """Error curves over time for uPlot: one small plot a quantity, all methods in each, one common time axis."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

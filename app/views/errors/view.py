@@ -1,7 +1,5 @@
 """Tab "Errors": the error curves of a run, in small plots of all quantities or larger ones of a few."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from html import escape

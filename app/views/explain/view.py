@@ -5,8 +5,6 @@ source come from ``assets/explain.toml``, by the field's place in the scenario, 
 (network, motion, policy, switching) that the field belongs to.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Tab "Files": upload of recordings and scenarios, download of the scenario and its numbers."""
 
-from __future__ import annotations
-
 from html import escape
 
 from app.plots import style

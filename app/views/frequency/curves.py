@@ -1,7 +1,5 @@
 """Curves of the Bode plots: each method's, the measured dots of its filter, and the optimal network's."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Bode plots: the network H on the left, a transfer of the closed loop on the right, all methods in each."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache, partial
 from typing import Any

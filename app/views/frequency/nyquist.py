@@ -1,7 +1,5 @@
 """The open loop omega_s^2 H/s^2 of every method: Bode plot left, Nyquist plot right, margins in both."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import Any

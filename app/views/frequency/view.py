@@ -1,7 +1,5 @@
 """Tab "Frequency": Bode plots of the network and of a transfer, or the open loop's Nyquist plot."""
 
-from __future__ import annotations
-
 from app.plots.effective import OPEN_LOOP, SHOWN
 from app.plots.plotly_data import PlotlyFigure
 from app.session.shown import Shown

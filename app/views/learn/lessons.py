@@ -17,8 +17,6 @@ with ``$...$`` and ``$$...$$`` (LaTeX), ``{{name}}`` for a number of the present
     the run: no answer is typed into a file.
 """
 
-from __future__ import annotations
-
 import operator
 import re
 import tomllib

@@ -24,8 +24,6 @@ number, and nothing in a lesson is evaluated as code. ``N`` stands for the numbe
 ==================================  ====================================================================
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple

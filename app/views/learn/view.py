@@ -1,7 +1,5 @@
 """Tab "Learn": a lesson step by step, its button "Show me", its sliders, its question."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Tab "Log": the reference velocity, its errors, events and outages."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 from app.editing import edits, form

@@ -1,7 +1,5 @@
 """In the tab "Method", below an adaptive policy: find its table for this scenario (Sun's double loop)."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Tab "Method": which method the controls edit, its network, policy and switching."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from html import escape
 from typing import Any

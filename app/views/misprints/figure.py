@@ -1,7 +1,5 @@
 """A misprint's two forms in one plot, and what they are in words and numbers."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from html import escape

@@ -1,7 +1,5 @@
 """Tab "Misprints": the papers' printed errors, each computed as printed and corrected."""
 
-from __future__ import annotations
-
 import threading
 from functools import lru_cache
 from typing import Any

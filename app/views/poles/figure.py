@@ -1,7 +1,5 @@
 """Poles and zeros of the closed Schuler loop in units of omega_s: all poles left, the slow ones right."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What lies under the pole map: rays, settling lines, regions without poles, and the root locus."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

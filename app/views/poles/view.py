@@ -1,7 +1,5 @@
 """Tab "Poles": the pole map of one channel with locus and placement, or the modes of the whole system."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The whole system: modes of both channels with heading and latitude, and the growth over the latitude."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The table of verdicts: what each requirement asks, what each method measures, and whether it is met."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from html import escape

@@ -1,7 +1,5 @@
 """Tab "Requirements": limits as numbers, and who meets them."""
 
-from __future__ import annotations
-
 import threading
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Tab "Run": duration, site, motion, initial errors, seed, strapdown settings."""
 
-from __future__ import annotations
-
 from app.editing import form
 from app.editing.form import FieldSpec, Path
 from app.shell import notices

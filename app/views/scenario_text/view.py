@@ -1,7 +1,5 @@
 """Tab "Scenario": the scenario of the run as TOML, as it can be saved."""
 
-from __future__ import annotations
-
 from html import escape
 
 from app.session.shown import Shown

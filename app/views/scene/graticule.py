@@ -4,8 +4,6 @@ Each segment costs a renderer the same, long or short: with software rendering a
 method took longer to paint than everything else on the page.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -6,8 +6,6 @@ that the Foucault rotation turns, and a damped one a spiral or a point. All tilt
 factor.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """True and computed trajectories as a small map: metres scaled to scene units, errors exaggerated."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Tab "Sensors": errors of gyros and accelerometers."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from app.editing import edits, form

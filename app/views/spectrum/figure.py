@@ -1,7 +1,5 @@
 """Amplitude spectrum of an error over its period, all methods, with the natural periods marked."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Tab "Spectrum": amplitude over period of one error."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from app.plots.plotly_data import PlotlyFigure

@@ -3,8 +3,6 @@
 ``python -m app.views.start.cards`` makes those of the presets anew.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape

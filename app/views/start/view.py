@@ -1,7 +1,5 @@
 """Start card with three doors, guided tour, scenarios and networks with pictures (start.js shows them)."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from html import escape
 

@@ -1,7 +1,5 @@
 """Step responses of the loop and of the network, by the linear theory of one level channel."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Tab "Step": responses of tilt and velocity error to steps of log, gyro and accelerometer errors."""
 
-from __future__ import annotations
-
 from app.plots.plotly_data import PlotlyFigure
 from app.session.shown import Shown
 from app.shell.plotly_view import PlotlyView

@@ -1,7 +1,5 @@
 """When each method damps: its policy's measure and thresholds, wanted and actual state, xi(t), its margin."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from html import escape

@@ -1,7 +1,5 @@
 """Tab "Switching": an error curve, and on the same time axis when and why each method damps."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A proposed network takes the place of a method's own: one step of undo."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from app.shell import notices

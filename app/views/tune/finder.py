@@ -1,7 +1,5 @@
 """Controls of the Pareto fronts: the two objectives, begin and stop, and what a click on a point does."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Pareto fronts of all networks in one picture: the present design as a star, the floor shaded."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

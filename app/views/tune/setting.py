@@ -1,7 +1,5 @@
 """Search for the best setting of the selected method, and accept or discard what comes out."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from app.jobs.designer import TuningTask

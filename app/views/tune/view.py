@@ -1,7 +1,5 @@
 """Tab "Tune": the best setting of the selected method, or the Pareto fronts of all networks in its place."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from app.plots.plotly_data import PlotlyFigure

@@ -1,7 +1,5 @@
 """Above the tabs: verify the scenario with the full strapdown, progress, stop, and what came out."""
 
-from __future__ import annotations
-
 from html import escape
 
 from app.jobs.verifier import Verifier

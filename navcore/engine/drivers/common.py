@@ -1,7 +1,5 @@
 """What every fidelity does alike for a method: its network and law, the log it sees, its result."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

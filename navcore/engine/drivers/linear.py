@@ -1,7 +1,5 @@
 """A scenario of fidelity `channel` or `error_model`: two methods at a time on the linear error model."""
 
-from __future__ import annotations
-
 import time
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial

@@ -1,7 +1,5 @@
 """A scenario of fidelity `strapdown`: all methods ride on one stream of IMU samples, chunk by chunk."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator
 from functools import partial

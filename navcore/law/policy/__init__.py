@@ -4,8 +4,6 @@ The field's type, the records of parameters and state, and the compiled choice b
 from the registry.
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, TypeAlias
 
 from navcore.foundation.registry import any_of, registry

@@ -1,7 +1,5 @@
 """Policy `acceleration`: undamped while the vehicle accelerates (the conventional method in Sun 2017, 1)."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar, Literal
 
 import numpy as np

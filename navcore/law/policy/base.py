@@ -1,7 +1,5 @@
 """What every policy has: parameters, a compiled decision, and what it needs to decide."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any, ClassVar, NamedTuple
 

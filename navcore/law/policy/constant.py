@@ -1,7 +1,5 @@
 """Policy `constant`: always damped."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar, Literal
 
 from navcore.foundation.compiled import inlined

@@ -1,7 +1,5 @@
 """Policy `threshold`: undamped while the velocity difference is large ("traditional" in Liu 2021, 3.2)."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, ClassVar, Literal
 

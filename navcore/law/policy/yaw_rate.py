@@ -1,7 +1,5 @@
 """Policy `yaw_rate`: undamped while the heading changes ("traditional method ... change of yaw", Liu 3.2)."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar, Literal
 
 import numpy as np

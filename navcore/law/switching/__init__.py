@@ -1,7 +1,5 @@
 """Switching methods: how the loop passes between damped and undamped. A new one: a file, a registry line."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, TypeAlias
 
 from navcore.foundation.registry import any_of, registry

@@ -1,7 +1,5 @@
 """What every switching method has."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any, ClassVar
 

@@ -6,8 +6,6 @@ network is never frozen, cleared or restored by hand: it is fed with d less the 
 estimate -v^ (theory.md 12).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import Any, ClassVar, Literal

@@ -5,8 +5,6 @@ correction is frozen; on the way back the state returns with the steady state fo
 has changed by (theory.md section 4).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any, ClassVar, Literal
 

@@ -1,7 +1,5 @@
 """Switching `hard`: clear the network on re-engagement, correct nothing while undamped."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar, Literal
 
 from navcore.foundation.compiled import inlined

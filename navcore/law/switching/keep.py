@@ -1,7 +1,5 @@
 """Switching `keep`: the network runs on masked while undamped (for comparison, theory.md section 4)."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar, Literal
 
 from navcore.foundation.compiled import inlined

@@ -1,7 +1,5 @@
 """Switching `ramp`: the damping coefficient rises after re-engagement (Liu 2021, 3.4, fig. 10)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import Any, ClassVar, Literal

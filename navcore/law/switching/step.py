@@ -1,7 +1,5 @@
 """Switching `step`: the damping coefficient moves in steps (Sun 2017, 4.2)."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar, Literal
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The Kalman filter on the linear error model: what it finds of the errors is taken off step by step."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

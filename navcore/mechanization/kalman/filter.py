@@ -6,8 +6,6 @@ once, so that only the estimates of the sensors are carried. The covariance move
 error model itself: the Runge-Kutta step, applied to unit vectors.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

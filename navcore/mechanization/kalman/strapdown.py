@@ -4,8 +4,6 @@ The mechanization runs undamped in between, on samples that are freed of the est
 covariance moves along the *computed* navigation: its position, velocity, attitude and specific force.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, fields
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """The full strapdown mechanization: quaternion, increments in, the damping law inside (theory.md 6)."""
 
-from __future__ import annotations
-
 from navcore.mechanization.strapdown.run import (
     Settings,
     Start,

@@ -1,7 +1,5 @@
 """Attitude in the forms a strapdown run needs: quaternion, angles, and the misalignment phi. Compiled."""
 
-from __future__ import annotations
-
 import math
 
 from navcore.foundation.compiled import inlined

@@ -6,8 +6,6 @@ Vertical channel locked. The law runs once an interval for each run, as in the s
 run's own is drawn inside the loop, from a counter: it depends on the key, the run's number and the sample.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor

@@ -3,8 +3,6 @@
 While the runs advance by one chunk, the calling thread makes the next one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 

@@ -1,7 +1,5 @@
 """The strapdown loop: blocks of samples between two calls of the law, the law, and what is recorded."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Reading the log inside a strapdown run: the newest epoch, its held difference, its use. Compiled."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

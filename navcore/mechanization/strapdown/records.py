@@ -1,7 +1,5 @@
 """What a strapdown run reads and changes: its constants and its state, each in one place."""
 
-from __future__ import annotations
-
 import math
 
 from navcore.foundation.compiled import inlined

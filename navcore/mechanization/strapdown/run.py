@@ -1,7 +1,5 @@
 """A strapdown run under way: start values, constants, and chunks of increments that advance it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal

@@ -7,8 +7,6 @@ variables. The numbers are those of `law_step`, to the last bit, and the loop ha
 ends: a log sample missing, a pole.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from navcore.foundation.compiled import inlined, kernel

@@ -11,8 +11,6 @@ The quaternion turns body to navigation axes. Its *increment* is formed first an
 the renormalisation included: a plain product drifts by 1e-7 m/s in three hours at some attitudes.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

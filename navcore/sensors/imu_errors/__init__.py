@@ -1,7 +1,5 @@
 """Terms of the IMU's error, one file each: fields of the block ``imu`` and what they do to the readings."""
 
-from __future__ import annotations
-
 from navcore.sensors.base import load_terms
 
 TERMS = load_terms(

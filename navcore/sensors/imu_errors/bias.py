@@ -1,7 +1,5 @@
 """Constant bias of each inertial sensor, which budget and tuning know by its standard deviation only."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Annotated
 

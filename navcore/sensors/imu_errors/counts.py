@@ -1,7 +1,5 @@
 """Quantisation: increments in whole counts."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Annotated
 

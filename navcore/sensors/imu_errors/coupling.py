@@ -1,7 +1,5 @@
 """Errors in proportion to the true signal: scale factors and misalignments."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Annotated, TypeAlias
 

@@ -1,7 +1,5 @@
 """Random errors of the inertial sensors: white noise and bias instability."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from navcore.foundation.parameters import quantity

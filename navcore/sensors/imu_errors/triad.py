@@ -1,7 +1,5 @@
 """Three gyros or three accelerometers: what all terms of their errors add up to."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 

@@ -1,7 +1,5 @@
 """The simulation loop over blocks of tiles: kinematics, signals, increments, errors; one for all motions."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from navcore.foundation.compiled import kernel

@@ -1,7 +1,5 @@
 """From perfect to measured increments: the IMU's errors, one tile at a time. Compiled."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from navcore.foundation.compiled import inlined

@@ -1,7 +1,5 @@
 """Kinematic quantities of each motion at the samples of a tile: rows are the columns of `Truth`. Compiled."""
 
-from __future__ import annotations
-
 from navcore.foundation.compiled import inlined
 from navcore.foundation.trigonometry import sincos_cycles
 from navcore.motion.base import (

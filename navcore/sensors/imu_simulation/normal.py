@@ -4,8 +4,6 @@ Philox: Salmon, Moraes, Dror, Shaw, "Parallel random numbers: as easy as 1, 2, 3
 the key and its place only, so chunks of any length, in any order, give the same noise.
 """
 
-from __future__ import annotations
-
 import hashlib
 
 import numpy as np

@@ -5,8 +5,6 @@ quadrature. The increment over one interval is h/24 (-y0 + 13 y1 + 13 y2 - y3), 
 11/720 h^5 y'''', is far below that of the mechanization (order 3), which it does not share a line with.
 """
 
-from __future__ import annotations
-
 import math
 
 from navcore.foundation.compiled import inlined

@@ -1,7 +1,5 @@
 """Increments of an IMU that rides along a motion: made block by block, the same whatever the chunks."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

@@ -4,8 +4,6 @@ Only so does LLVM see that the rows do not overlap and vectorises loops over twe
 dimensions or with row views it did not (twice the time). A tile is small enough for the first-level cache.
 """
 
-from __future__ import annotations
-
 from navcore.motion.base import COLUMNS
 
 TILE = 64

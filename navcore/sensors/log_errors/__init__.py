@@ -1,7 +1,5 @@
 """Terms of the log's error, one file each: fields of the block ``reference`` and what they do to a sample."""
 
-from __future__ import annotations
-
 from navcore.sensors.base import load_terms
 
 TERMS = load_terms(

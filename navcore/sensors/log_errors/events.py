@@ -1,7 +1,5 @@
 """Passing disturbances of the log."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from functools import partial
 from typing import Annotated

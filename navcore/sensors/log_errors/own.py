@@ -1,7 +1,5 @@
 """Errors that the log adds in its own axes: bias, noise, drift."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Annotated
 

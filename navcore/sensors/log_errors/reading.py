@@ -1,7 +1,5 @@
 """How the log reads the velocity: scale, delay, resolution."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from navcore.foundation.parameters import quantity

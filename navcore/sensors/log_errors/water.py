@@ -1,7 +1,5 @@
 """Motion of the water, which the log does not see: current and tide."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Annotated
