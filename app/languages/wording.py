@@ -52,7 +52,7 @@ _NUMBERED = re.compile(r"\d+ [a-z]{3,}")
 _FIELD = re.compile(r"[\w-]+(?:\.[\w-]+)+(?: = [^:]*)?: ")
 """The file or field in which something is wrong, and its value, before what is said of it."""
 _UNENDED = re.compile(r"[A-Za-z%)]\Z")
-_PROSE = re.compile(r"[a-z]{3,} [a-z]{2,} [a-z]{2,}")
+_PROSE = re.compile(r"(?<![a-z])[a-z]{3,} [a-z]{2,} [a-z]{2,}")
 """Several words of a sentence: where they have no translation, nothing around them is translated."""
 _TWO_WORDS = re.compile(r"(?<![A-Za-z])[A-Za-z]+,? [A-Za-z]+,? ")
 _MANY = re.compile(r"(?<![A-Za-z])[A-Za-z]{2,},? [A-Za-z]{2}")
