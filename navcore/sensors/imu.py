@@ -18,12 +18,12 @@ from navcore.sensors.imu_errors.triad import Triad
 from navcore.sensors.imu_kernels import attitude_changes, mean_attitude, scaled_signals, turn_errors
 
 if TYPE_CHECKING:
-    from navcore.sensors.imu_errors.bias import Bias
+    from navcore.sensors.imu_errors.bias import Bias, BiasDeviation
     from navcore.sensors.imu_errors.counts import Counts
     from navcore.sensors.imu_errors.coupling import Coupling
     from navcore.sensors.imu_errors.noise import Drift, White
 
-    class _Errors(Bias, White, Drift, Coupling, Counts):
+    class _Errors(Bias, White, Drift, Coupling, Counts, BiasDeviation):
         pass
 else:
     # pydantic takes the fields of the last base first

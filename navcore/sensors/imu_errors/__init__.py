@@ -8,5 +8,6 @@ TERMS = load_terms(
     "navcore.sensors.imu_errors.noise:Drift",
     "navcore.sensors.imu_errors.coupling:Coupling",
     "navcore.sensors.imu_errors.counts:Counts",
+    "navcore.sensors.imu_errors.bias:BiasDeviation",
 )
 """All terms, in the order in which the page offers their fields."""

@@ -13,23 +13,9 @@ _GyroBias = Annotated[float, bounded(unit="deg/h", ge=-1e5, le=1e5)]
 _AccelBias = Annotated[float, bounded(unit="ug", ge=-1e6, le=1e6)]
 
 
-class Bias(ImuTerm):
-    """Constant errors of gyros and accelerometers."""
+class BiasDeviation(ImuTerm):
+    """Standard deviations of the biases, which `Bias` takes from here; last among the fields of the page."""
 
-    gyro_bias_dph: tuple[_GyroBias, _GyroBias, _GyroBias] = vector_quantity(
-        (0.0, 0.0, 0.0),
-        unit="deg/h",
-        slider=(-0.1, 0.1),
-        label="gyro bias",
-        help="Constant error of each gyro.",
-    )
-    accel_bias_ug: tuple[_AccelBias, _AccelBias, _AccelBias] = vector_quantity(
-        (0.0, 0.0, 0.0),
-        unit="ug",
-        slider=(-200.0, 200.0),
-        label="accelerometer bias",
-        help="Constant error of each accelerometer; 1 µg = 9.80665e-6 m/s².",
-    )
     gyro_bias_std_dph: float | None = quantity(
         None,
         unit="deg/h",
@@ -51,10 +37,37 @@ class Bias(ImuTerm):
     )
 
     def parts(self) -> Iterator[Part]:
+        """Yield nothing of its own."""
+        yield from ()
+
+
+class Bias(ImuTerm):
+    """Constant errors of gyros and accelerometers."""
+
+    gyro_bias_dph: tuple[_GyroBias, _GyroBias, _GyroBias] = vector_quantity(
+        (0.0, 0.0, 0.0),
+        unit="deg/h",
+        slider=(-0.1, 0.1),
+        label="gyro bias",
+        help="Constant error of each gyro.",
+    )
+    accel_bias_ug: tuple[_AccelBias, _AccelBias, _AccelBias] = vector_quantity(
+        (0.0, 0.0, 0.0),
+        unit="ug",
+        slider=(-200.0, 200.0),
+        label="accelerometer bias",
+        help="Constant error of each accelerometer; 1 µg = 9.80665e-6 m/s².",
+    )
+
+    def parts(self) -> Iterator[Part]:
         """Yield both biases."""
         gyro, accel = np.asarray(self.gyro_bias_dph), np.asarray(self.accel_bias_ug)
-        gyro_std = np.abs(gyro) if self.gyro_bias_std_dph is None else np.full(3, self.gyro_bias_std_dph)
-        accel_std = np.abs(accel) if self.accel_bias_std_ug is None else np.full(3, self.accel_bias_std_ug)
+        gyro_std, accel_std = (
+            getattr(self, "gyro_bias_std_dph", None),
+            getattr(self, "accel_bias_std_ug", None),
+        )
+        gyro_std = np.abs(gyro) if gyro_std is None else np.full(3, gyro_std)
+        accel_std = np.abs(accel) if accel_std is None else np.full(3, accel_std)
         yield Part(
             ("gyro_bias_dph",),
             "gyro_bias",
