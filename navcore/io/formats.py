@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 from navcore.io.series import Recording
 from navcore.io.source import read_text
@@ -58,5 +58,5 @@ class Candidate:
 def format_of(path: Path) -> Format:
     """Find the module that reads a file; raises `InputError` for a binary file of no known format."""
     candidate = Candidate(path)
-    modules = (import_module(name) for name in FORMATS)
-    return next((module for module in modules if module.recognises(candidate)), import_module(_OTHERWISE))
+    modules: list[Any] = [import_module(name) for name in (*FORMATS, _OTHERWISE)]
+    return next((module for module in modules if module.recognises(candidate)), modules[-1])

@@ -270,7 +270,7 @@ class Scenario(Parameters):
 
     def figures(self) -> SensorFigures:
         """Random errors of gyros, accelerometers and log, SI."""
-        return _figures(self.imu, self.reference)
+        return _figures(self.imu, self.reference)  # pyright: ignore[reportArgumentType]
 
     @property
     def earth(self) -> Earth:

@@ -55,7 +55,7 @@ class Imu(_Errors):
 
     def all_parts(self) -> tuple[Part, ...]:
         """Contributions of all terms, whether they do anything or not."""
-        return _parts_of(self)
+        return _parts_of(self)  # pyright: ignore[reportArgumentType]
 
     def gyro(self) -> Triad:
         """Errors of the gyros, SI."""

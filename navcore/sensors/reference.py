@@ -97,7 +97,7 @@ class Reference(_Errors):
 
     def all_parts(self) -> tuple[LogPart, ...]:
         """Contributions of all terms, whether they do anything or not."""
-        return _parts_of(self)
+        return _parts_of(self)  # pyright: ignore[reportArgumentType]
 
     @property
     def white(self) -> float:

@@ -132,7 +132,7 @@ def person(order: Order, number: int, ready: Callable[[], Any], seen: Seen) -> N
         def judge(value: float, again: bool) -> dict[str, int]:
             visitor.rest(0.1)
             values = {float(text) for text in _ZETA.findall(visitor.text)}
-            counts = {"compared": bool(values), "wrong": bool(values) and value not in values}
+            counts: dict[str, int] = {"compared": bool(values), "wrong": bool(values) and value not in values}
             if not again:
                 return counts
             text = _PRE.search(visitor.text)

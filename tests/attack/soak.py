@@ -181,7 +181,7 @@ def alone(server: Server, _: argparse.Namespace) -> list[Row]:
 def cost(server: Server, _: argparse.Namespace) -> list[Row]:
     """Processor time of one answer, and how many a server gives."""
     drag_ms, pause_ms = dragging(server.port, server.cpu_s, 8.0), pausing(server.port, server.cpu_s, 6)
-    busy, _ = crowds(Order(server.port, BESIDE_S, (0.0, 0.0), check=False), 10, first=500_000)
+    busy = crowds(Order(server.port, BESIDE_S, (0.0, 0.0), check=False), 10, first=500_000)[0]
     rate = len(busy.answers_s) / busy.seconds
     return [
         Row("drag_cpu", "processor time of an answer while dragging", drag_ms, "ms", 50.0),
