@@ -49,7 +49,7 @@ _LONGEST_VALUE = 40
 _ENDS = {".": "。", ":": "："}
 _WITH_UNIT = re.compile(r"(.+?) (\([^()]*\))((?:, [a-z]+)?)")
 _NUMBERED = re.compile(r"\d+ [a-z]{3,}")
-_FIELD = re.compile(r"[\w-]+(?:\.[\w-]+)+(?: = [^:]*)?: ")
+_FIELD = re.compile(r"[\w-]+\.[\w.-]+(?: = [^:]*)?: ")
 """The file or field in which something is wrong, and its value, before what is said of it."""
 _UNENDED = re.compile(r"[A-Za-z%)]\Z")
 _PROSE = re.compile(r"(?<![a-z])[a-z]{3,} [a-z]{2,} [a-z]{2,}")
