@@ -58,5 +58,9 @@ class Candidate:
 def format_of(path: Path) -> Format:
     """Find the module that reads a file; raises `InputError` for a binary file of no known format."""
     candidate = Candidate(path)
-    modules: list[Any] = [import_module(name) for name in (*FORMATS, _OTHERWISE)]
-    return next((module for module in modules if module.recognises(candidate)), modules[-1])
+    for name in FORMATS:
+        module: Any = import_module(name)
+        if module.recognises(candidate):
+            return module
+    otherwise: Any = import_module(_OTHERWISE)
+    return otherwise

@@ -121,7 +121,7 @@ def intact_lines(text: str, tally: Tally) -> Iterator[Line]:
 
 
 def _exclusive_or(body: str) -> int:
-    return reduce(xor, body.encode("latin-1", "replace"), 0)
+    return reduce(xor, map(ord, body), 0)
 
 
 def _before(line: str) -> str:

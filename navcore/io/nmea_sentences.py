@@ -5,6 +5,7 @@ A decoder returns a `Reading` or raises ValueError when the fields make no sense
 """
 
 import math
+import re
 from collections.abc import Callable
 from datetime import UTC, datetime
 from functools import lru_cache
@@ -15,6 +16,9 @@ from navcore.foundation.units import DEG, KNOT
 _KMPH = 1.0 / 3.6
 _FASTEST = 1000.0
 _NOTHING = (None,) * 5
+_LEFT_OUT = [""] * 12
+_TIME = re.compile(r"(?:[01]\d|2[0-3])[0-5]\d[0-5]\d(?:\.\d*)?")
+_DEGREES = re.compile(r"(\d+)(\d\d\.\d+)")
 
 
 class Reading(NamedTuple):
@@ -93,27 +97,37 @@ def _axes(longitudinal: str, transverse: str, status: str) -> tuple[float, float
 
 
 def _vbw(fields: list[str]) -> Reading:
-    return Reading(water=_axes(*fields[:3]), ground=_axes(*fields[3:6]) if len(fields) > 5 else None)
+    return Reading(water=_axes(*fields[:3]), ground=_axes(*fields[3:6]))
 
 
 def _vhw(fields: list[str]) -> Reading:
-    knots, kmph = fields[4], fields[6] if len(fields) > 6 else ""
-    forward = _speed(knots) if knots else _speed(kmph, _KMPH)
+    forward = _speed(fields[4]) if fields[4] else _speed(fields[6], _KMPH)
     return Reading(water=None if forward is None else (0.0, forward, True), heading=_heading(fields[0]))
 
 
 def _vtg(fields: list[str]) -> Reading:
-    if fields[8:9] == ["N"]:
+    if fields[8] == "N":
         return Reading(valid=False)
-    return Reading(velocity=_over_ground(fields[0], fields[4], fields[6] if len(fields) > 6 else ""))
+    return Reading(velocity=_over_ground(fields[0], fields[4], fields[6]))
+
+
+def _seconds(field: str) -> float:
+    """Time ``hhmmss`` or ``hhmmss.sss``, s."""
+    return int(field[:2]) * 3600.0 + int(field[2:4]) * 60.0 + float(field[4:])
 
 
 def _time_of_day(field: str) -> float:
-    """UTC of ``hhmmss`` or ``hhmmss.sss``, s."""
-    hours, minutes, seconds = int(field[:2]), int(field[2:4]), float(field[4:])
-    if not (field[:6].isdigit() and hours < 24 and minutes < 60 and 0.0 <= seconds < 60.0):
+    """UTC of a standard sentence, s: a time that a clock can show."""
+    if _TIME.fullmatch(field) is None:
         raise ValueError(f"{field} is no time")
-    return hours * 3600.0 + minutes * 60.0 + seconds
+    return _seconds(field)
+
+
+def _day(field: str) -> float:
+    """UTC midnight of ``ddmmyy``, s since 1970; the century as C's library has it."""
+    if len(field) != 6:
+        raise ValueError(f"{field} is no date")
+    return _midnight(field[:2], field[2:4], ("19" if field[4:] >= "69" else "20") + field[4:])
 
 
 @lru_cache(maxsize=64)
@@ -123,9 +137,9 @@ def _midnight(day: str, month: str, year: str) -> float:
 
 def _angle(field: str, side: str, positive: str, negative: str, most: float) -> float:
     """Degrees and minutes, ``dddmm.mmmm``, in rad."""
-    whole = field.partition(".")[0]
-    degrees = (int(whole[:-2]) if len(whole) > 2 else 0) + float(field[max(0, len(whole) - 2) :]) / 60.0
-    if side not in (positive, negative) or not whole.isdigit() or degrees > most:
+    parts = _DEGREES.fullmatch(field)
+    degrees = int(parts[1]) + float(parts[2]) / 60.0 if parts else 0.0 if field == "0" else math.inf
+    if side not in (positive, negative) or degrees > most:
         raise ValueError("no position")
     return (degrees if side == positive else -degrees) * DEG
 
@@ -145,11 +159,9 @@ def _height(altitude: str, separation: str) -> float:
 def _rmc(fields: list[str]) -> Reading:
     if fields[1] != "A":
         return Reading(valid=False)
-    date = fields[8]
-    century = "19" if date[4:6] >= "69" else "20"
     return Reading(
         time_of_day=_time_of_day(fields[0]),
-        day=_midnight(date[:2], date[2:4], century + date[4:6]) if date else None,
+        day=_day(fields[8]) if fields[8] else None,
         position=_place(fields[2:6], math.nan),
         velocity=_over_ground(fields[7], fields[6]),
     )
@@ -207,8 +219,7 @@ def _pashr(fields: list[str]) -> Reading:
     time = fields[0]
     if len(fields) < 5 or fields[2] != "T" or not time[:6].isdigit():
         return Reading()
-    seconds = int(time[:2]) * 3600.0 + int(time[2:4]) * 60.0 + float(time[4:])
-    return Reading(time_of_day=seconds, heading=_heading(fields[1]))
+    return Reading(time_of_day=_seconds(time), heading=_heading(fields[1]))
 
 
 def _psxn(fields: list[str]) -> Reading:
@@ -228,41 +239,42 @@ def _needed_heading(value: str) -> Reading:
     return Reading(heading=heading)
 
 
-_KINDS: dict[str, Callable[[list[str]], Reading]] = {
+_STANDARD: dict[str, Callable[[list[str]], Reading]] = {
     "GGA": _gga,
     "GLL": _gll,
     "GNS": _gns,
     "HDG": _hdg,
     "HDT": _hdt,
     "RMC": _rmc,
-    "THS": _ths,
     "VBW": _vbw,
     "VHW": _vhw,
     "VTG": _vtg,
     "ZDA": _zda,
 }
+"""Decoders of kinds whose last fields an older talker may leave out: these are empty then."""
+_WHOLE: dict[str, Callable[[list[str]], Reading]] = {"THS": _ths}
+"""Decoders of kinds that must have all their fields."""
 _MAKERS: dict[str, Callable[[list[str]], Reading]] = {"PASHR": _pashr, "PRDID": _prdid, "PSXN": _psxn}
 """Decoders of makers' own sentences, by the whole address."""
-KINDS = ", ".join((*_KINDS, *_MAKERS))
+KINDS = ", ".join((*sorted(_STANDARD | _WHOLE), *_MAKERS))
 """What a person is told can be read."""
-
-
-def _decoder(address: str) -> Callable[[list[str]], Reading] | None:
-    standard = len(address) == 5 and address[0] != "P"
-    return _MAKERS.get(address) or (_KINDS.get(address[2:]) if standard else None)
 
 
 def is_used(address: str) -> bool:
     """Whether sentences of this address are decoded."""
-    return _decoder(address) is not None
+    kind = address[2:]
+    standard = len(address) == 5 and address[0] != "P" and (kind in _STANDARD or kind in _WHOLE)
+    return standard or address in _MAKERS
 
 
 def decode(sentence: str, address: str) -> Reading | None:
     """Reading of a sentence of a used kind; None for other kinds and for nonsense in its fields."""
-    decoder = _decoder(address)
-    if decoder is None:
+    if not is_used(address):
         return None
+    fields, kind = sentence.partition("*")[0].split(",")[1:], address[2:]
     try:
-        return decoder(sentence.partition("*")[0].split(",")[1:])
+        if fields and address not in _MAKERS and kind in _STANDARD:
+            return _STANDARD[kind](fields + _LEFT_OUT)
+        return (_MAKERS.get(address) or _WHOLE[kind])(fields)
     except (ValueError, TypeError, LookupError, OverflowError):
         return None

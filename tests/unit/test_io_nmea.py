@@ -283,6 +283,52 @@ def test_fields_are_those_that_pynmea2_names(body: str) -> None:
         assert ours.ground == (float(theirs.trans_grnd_spd) * KNOT, float(theirs.lon_grnd_spd) * KNOT, True)
 
 
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        ("GPRMC,120000.00,A,4500.0,N,01200.0,E,10.0,0.0", {"day": None, "velocity": (0.0, 10.0 * KNOT)}),
+        ("IIVHW,,T,,M,10.0", {"water": (0.0, 10.0 * KNOT, True), "heading": None}),
+        ("VDVBW,10.0,0.0,A", {"water": (0.0, 10.0 * KNOT, True), "ground": None}),
+        ("GPVTG,0.0,T,,M,10.0", {"velocity": (0.0, 10.0 * KNOT)}),
+        ("GPGGA,120000.00,4500.0,N,01200.0,E,0", {"valid": False}),
+        ("HCHDG,101.1", {"heading": None, "valid": True}),
+    ],
+)
+def test_an_older_talker_may_leave_out_the_last_fields(body: str, expected: dict[str, object]) -> None:
+    reading = decode(sentence(body), body[:5])
+    assert reading is not None
+    assert {name: getattr(reading, name) for name in expected} == expected
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "GPRMC,250000.00,A,4500.0,N,01200.0,E,10.0,0.0,030624",
+        "GPRMC,120000e1,A,4500.0,N,01200.0,E,10.0,0.0,030624",
+        "GPRMC,120000.00,A,4500.0,N,01200.0,E,10.0,0.0,0306241",
+        "GPRMC,120000.00,A,4500.0,,01200.0,E,10.0,0.0,030624",
+        "GPRMC,120000.00,A,4500,N,01200.0,E,10.0,0.0,030624",
+        "GPRMC,120000.00,A,4500.1e1,N,01200.0,E,10.0,0.0,030624",
+        "GPGGA,120000.00,9100.0,N,01200.0,E,1,08,1.0,30.0,M,,M",
+        "HETHS,77.5",
+        "HEHDT",
+    ],
+)
+def test_nonsense_in_a_field_is_no_reading(body: str) -> None:
+    assert decode(sentence(body), body[:5]) is None
+
+
+def test_a_damaged_letter_is_no_right_checksum(tmp_path: Path) -> None:
+    """A letter that no sentence holds counts with its own number."""
+    good = sentence("HEHDT,77.5,T")
+    damaged = sentence("HEHDT,77.5?,T").replace("?", "\ufffd")
+    path = tmp_path / "log.txt"
+    path.write_text(
+        "".join(f"2024-02-28T23:58:0{k}Z {good}\n" for k in range(6)) + f"2024-02-28T23:58:07Z {damaged}\n"
+    )
+    assert read_recording(path).sources[0].checksum_faults == 1
+
+
 @pytest.mark.nightly
 def test_the_largest_log_that_can_be_uploaded_is_read_within_the_bounds(tmp_path: Path) -> None:
     """16 MiB, in a child with the server's bounds of memory and processor time."""
