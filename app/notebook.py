@@ -57,7 +57,7 @@ def run_figure(run: Run, name: str, **options: Any) -> Figure:
 
 def network_figure(network: NetworkParameters, name: str, lat_deg: float, **options: Any) -> Figure:
     """Make a figure of a network that damps with a log; see `NetworkParameters.figure`."""
-    damped = {"damping": "external", "network": network.model_dump(exclude_unset=False), "name": network.id}
+    damped = {"damping": "external", "network": network.model_dump(), "name": network.id}
     data = {
         "run": {"duration_h": 0.01},
         "site": {"lat_deg": lat_deg},

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib import import_module
 from typing import Any, Literal
 
 from navcore.design.figures import Entry, Series
 from navcore.design.floor import FLOOR_OF_ZERO
+from navcore.foundation.drawing import drawn
 
 Shown = Literal["steady", "covariance", "seeds", "none"]
 
@@ -104,7 +104,7 @@ class Budget:
 
     def figure(self) -> Any:
         """Draw the bars of the tab Design, for a notebook, as `plotly.graph_objects.Figure`."""
-        return import_module("app.notebook").budget_bars(self)
+        return drawn("budget_bars", self)
 
     @property
     def floor_note(self) -> str:

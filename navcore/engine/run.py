@@ -3,13 +3,13 @@
 import hashlib
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import import_module
 from typing import Any, Literal
 
 import numpy as np
 
 from navcore.analysis import Loop
 from navcore.analysis.whole_system import WholeSystem
+from navcore.foundation.drawing import drawn
 from navcore.foundation.text import Text
 from navcore.mechanization.recorder import Recorder
 from navcore.networks.base import LinearNetwork
@@ -198,7 +198,7 @@ class Run:
         InputError
             There is no figure of this name, or nothing that it could show.
         """
-        return import_module("app.notebook").run_figure(self, name, **options)
+        return drawn("run_figure", self, name, **options)
 
 
 def plot_series(recorder: Recorder, step_s: float) -> PlotSeries:

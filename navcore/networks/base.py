@@ -9,12 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from navcore.foundation.drawing import drawn
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.registry import Entry
 from navcore.foundation.text import Text
@@ -197,7 +197,7 @@ class NetworkParameters(Entry):
         ``name`` is "bode", "nyquist", "poles" or "step", ``options`` as of `navcore.Run.figure`; raises
         `InputError` for another name, or parameters that make no network.
         """
-        return import_module("app.notebook").network_figure(self, name, lat_deg, **options)
+        return drawn("network_figure", self, name, lat_deg, **options)
 
     def damping_coefficient(self) -> float | None:
         """Return the parameter that sets the damping (xi or zeta); None where there is none."""
