@@ -83,7 +83,8 @@ def claim(folder: Path, *, shared: bool = False) -> IO[bytes]:
     OSError
         Another server holds it.
     """
-    handle = os.open(folder / "lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK, 0o600)
+    careful = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
+    handle = os.open(folder / "lock", os.O_RDWR | os.O_CREAT | careful, 0o600)
     file = os.fdopen(handle, "r+b")
     try:
         import fcntl

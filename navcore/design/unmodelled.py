@@ -4,7 +4,7 @@ import numpy as np
 
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
-from navcore.sensors.base import ErrorPart
+from navcore.sensors.base import ErrorPart, modelled_drift
 
 
 def unmodelled_warnings(scenario: Scenario, steady: bool = False) -> tuple[str, ...]:
@@ -27,12 +27,11 @@ def unmodelled_warnings(scenario: Scenario, steady: bool = False) -> tuple[str, 
         parts += [("imu", part) for part in scenario.imu.all_parts()]
     else:
         warnings.append("imu.file: a recorded IMU has no stochastic model and counts as free of error")
-    drifts: set[str] = set()
     for block, part in parts:
-        second_drift = part.markov[0] > 0.0 and part.sensor in drifts
+        first = modelled_drift(other for _, other in parts if other.sensor == part.sensor)
+        second_drift = part.markov[0] > 0.0 and part is not first
         counts = block == "imu" and np.any(part.lsb)
         if second_drift or counts or (steady and part.has_shape and part.source != "log_tide"):
             fields = ", ".join(f"{block}.{field}" for field in part.fields)
             warnings.append(Text("{fields}: {label} is not in the budget", fields=fields, label=part.label))
-        drifts |= {part.sensor} if part.markov[0] > 0.0 else set()
     return tuple(warnings)

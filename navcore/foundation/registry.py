@@ -25,6 +25,12 @@ class Entry(Parameters):
     source: ClassVar[str] = ""
 
 
+def loaded(place: str) -> Any:
+    """Import what stands at ``"package.module:Name"``."""
+    module, _, name = place.partition(":")
+    return getattr(import_module(module), name)
+
+
 _Entry = TypeVar("_Entry", bound=Parameters)
 
 
@@ -52,8 +58,7 @@ def registry(base: type[_Entry], discriminator: str, *places: str) -> dict[str, 
     """
     entries: dict[str, type[_Entry]] = {}
     for place in places:
-        module, _, name = place.partition(":")
-        entry = getattr(import_module(module), name)
+        entry = loaded(place)
         if not (isinstance(entry, type) and issubclass(entry, base)):
             raise TypeError(f"{place} is no {base.__name__}")
         info = entry.model_fields[discriminator]

@@ -1,10 +1,14 @@
 """What the terms of a sensor's error have in common, and what the models hand to the mechanizations."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from importlib import import_module
 from typing import Any
 
 import numpy as np
+
+from navcore.foundation.registry import loaded
+
+NO_DRIFT = (0.0, 3600.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +41,7 @@ class ErrorPart:
     constant: Any = 0.0
     deviation: Any = 0.0
     white: float = 0.0
-    markov: tuple[float, float] = (0.0, 3600.0)
+    markov: tuple[float, float] = NO_DRIFT
     lsb: Any = 0.0
 
     @property
@@ -59,8 +63,12 @@ class ErrorPart:
 
 def load_terms(*places: str) -> tuple[Any, ...]:
     """Load the classes of terms from ``"package.module:Class"``."""
-    parted = [place.partition(":") for place in places]
-    return tuple(getattr(import_module(module), name) for module, _, name in parted)
+    return tuple(map(loaded, places))
+
+
+def modelled_drift(parts: Iterable[ErrorPart]) -> ErrorPart | None:
+    """Return the drift of a sensor that the stochastic model holds: the first one; None without any."""
+    return next((part for part in parts if part.markov[0] > 0.0), None)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from pydantic import Field, create_model
 
 from navcore.foundation.parameters import FileName, Parameters, quantity
 from navcore.foundation.units import HOUR
+from navcore.sensors.base import NO_DRIFT, modelled_drift
 from navcore.sensors.log_errors import TERMS
 from navcore.sensors.log_errors.base import LogPart
 
@@ -107,8 +108,9 @@ class Reference(_Errors):
 
     @property
     def markov(self) -> tuple[float, float]:
-        """Standard deviation (m/s) and correlation time (s) of the Gauss-Markov process."""
-        return max(part.markov for part in self.all_parts())
+        """Standard deviation (m/s) and correlation time (s) of the drift that the stochastic model holds."""
+        drift = modelled_drift(self.all_parts())
+        return NO_DRIFT if drift is None else drift.markov
 
     @property
     def deviation(self) -> np.ndarray:

@@ -99,9 +99,11 @@ class _Log:
         if samples > 1.0 and noise >= 0.5 * lsb:
             noise, lsb = math.hypot(noise, lsb / math.sqrt(12.0)), 0.0
         own = sum((part.constant for part in self.parts), np.zeros((1, 2)))
-        for sigma, tau_s in (part.markov for part in self.parts if part.markov[0] > 0.0):
-            unit = unit_noise(seed, "log.drift", count, 2)
-            own = own + sigma * gauss_markov(unit, math.exp(-interval_s / tau_s))
+        for part in self.parts:
+            sigma, tau_s = part.markov
+            if sigma > 0.0:
+                unit = unit_noise(seed, part.source.replace("_", "."), count, 2)
+                own = own + sigma * gauss_markov(unit, math.exp(-interval_s / tau_s))
         if noise > 0.0:
             unit = unit_noise(seed, "log.noise", count, 2)
             own = own + np.multiply(unit, noise / math.sqrt(samples), dtype=float)

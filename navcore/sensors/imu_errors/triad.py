@@ -5,6 +5,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from navcore.sensors.base import NO_DRIFT, modelled_drift
 from navcore.sensors.imu_errors.base import Clock, Part
 from navcore.sensors.imu_kernels import add_quantisation
 
@@ -49,8 +50,9 @@ class Triad:
 
     @property
     def markov(self) -> tuple[float, float]:
-        """Standard deviation and correlation time (s) of the Gauss-Markov process: of one, as a rule."""
-        return max(part.markov for part in self._all)
+        """Standard deviation and correlation time (s) of the drift that the stochastic model holds."""
+        drift = modelled_drift(self._all)
+        return NO_DRIFT if drift is None else drift.markov
 
     @property
     def deviation(self) -> np.ndarray:
