@@ -59,6 +59,7 @@ def budget(
     ship = Ship(scenario)
     if steady:
         return steady_budget(scenario, ship.model)
+    left_out = _warnings(scenario)
     untold = any(column.source not in TOLD for column in ship.columns)
     done = [0.0] * (len(scenario.method) + 1)
 
@@ -73,7 +74,7 @@ def budget(
         own = least.result() if method.damping == "kalman" and not untold else None
         if own is not None:
             note = "its own covariance, which is the floor: it is told of every error of this scenario"
-            result = _of_series(method, "covariance", own, (note, *_warnings(scenario)))
+            result = _of_series(method, "covariance", own, (note, *left_out))
         elif reason:
             result = _from_seeds(scenario, method, reason, seeds, lambda f: report(index, f), cancelled)
         else:
@@ -81,7 +82,7 @@ def budget(
             series = Series(variances.t_s, variances.variance, variances.total)
             growth = instability(level(law_form(method, scenario.omega_s), ship.model, scenario.omega_s))
             warnings = (Text("{growth}: the errors grow without bound", growth=growth),) if growth else ()
-            result = _of_series(method, "covariance", series, (*warnings, *_warnings(scenario)))
+            result = _of_series(method, "covariance", series, (*warnings, *left_out))
         report(index, 1.0)
         return result
 

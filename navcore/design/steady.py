@@ -21,17 +21,21 @@ _MARGINAL = 1e-9
 
 def steady_budget(scenario: Scenario, model: StochasticModel) -> Budget:
     """Steady state of one level channel at rest; ``model`` may differ from that of the scenario."""
-    least = steady_floor(model, scenario.omega_s)
+    least, unmodelled = steady_floor(model, scenario.omega_s), unmodelled_warnings(scenario, steady=True)
     return Budget(
         steady=True,
         floor=Entry(Figures(least.tilt_rad, least.velocity_mps)),
         floor_reason=least.reason,
         floor_series=None,
-        methods=tuple(_steady_method(scenario, method, model, least) for method in scenario.method),
+        methods=tuple(
+            _steady_method(scenario, method, model, least, unmodelled) for method in scenario.method
+        ),
     )
 
 
-def _steady_method(scenario: Scenario, method: Method, model: StochasticModel, floor: Floor) -> MethodBudget:
+def _steady_method(
+    scenario: Scenario, method: Method, model: StochasticModel, floor: Floor, unmodelled: tuple[str, ...]
+) -> MethodBudget:
     if method.damping == "averaging":
         warning = "averaging combines several navigations: it has no steady state of one channel"
         return MethodBudget(method.name, "none", Entry(Figures()), {}, warnings=(warning,))
@@ -42,7 +46,7 @@ def _steady_method(scenario: Scenario, method: Method, model: StochasticModel, f
     if model.tide.any():
         amplitude = float(np.sqrt(np.mean(model.tide**2)))
         parts["log_tide"] = line_part(channel, amplitude, 2.0 * math.pi / model.tide_period_s)
-    warnings = [*unmodelled_warnings(scenario, steady=True)]
+    warnings = [*unmodelled]
     if method.damping != "free" and method.policy.id not in ("constant", "schedule"):
         warnings.append(
             Text('policy "{id}" looks at the data: shown is the loop while it is damped', id=method.policy.id)

@@ -28,8 +28,8 @@ def unmodelled_warnings(scenario: Scenario, steady: bool = False) -> tuple[str, 
     else:
         warnings.append("imu.file: a recorded IMU has no stochastic model and counts as free of error")
     for block, part in parts:
-        first = modelled_drift(other for _, other in parts if other.sensor == part.sensor)
-        second_drift = part.markov[0] > 0.0 and part is not first
+        own = (other for _, other in parts if other.sensor == part.sensor)
+        second_drift = part.markov[0] > 0.0 and part is not modelled_drift(own)
         counts = block == "imu" and np.any(part.lsb)
         if second_drift or counts or (steady and part.has_shape and part.source != "log_tide"):
             fields = ", ".join(f"{block}.{field}" for field in part.fields)
