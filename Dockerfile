@@ -15,10 +15,10 @@
 FROM python:3.11-slim-bookworm@sha256:0bee7276f83efd4a1ee05bbbf4281d95ed28e079220a9457f25a93e3f1e3c31b AS builder
 WORKDIR /src
 
-COPY requirements.lock requirements-build.lock ./
+COPY requirements/run.lock requirements/build.lock requirements/
 RUN python -m venv --without-pip /opt/schuler \
- && python -m pip --python /opt/schuler/bin/python install --require-hashes --only-binary :all: -r requirements.lock
-RUN python -m pip install --require-hashes --only-binary :all: -r requirements-build.lock
+ && python -m pip --python /opt/schuler/bin/python install --require-hashes --only-binary :all: -r requirements/run.lock
+RUN python -m pip install --require-hashes --only-binary :all: -r requirements/build.lock
 
 COPY pyproject.toml README.md LICENSE ./
 COPY app/ app/

@@ -53,34 +53,34 @@ run: setup
 	@$(BIN)/schuler serve --open
 
 test: setup $(STAMPS)/test
-	@$(BIN)/python -m tests.stages
+	@$(BIN)/python -m tools.stages
 
 nightly: setup $(STAMPS)/test
-	@SCHULER_NIGHTLY=yes $(BIN)/python -m tests.stages
+	@SCHULER_NIGHTLY=yes $(BIN)/python -m tools.stages
 
 check: $(STAMPS)/test
-	@$(BIN)/python -m tests.stages lint
+	@$(BIN)/python -m tools.stages lint
 
 # BEFORE=folder: a checkout of an earlier commit, measured beside this one.
 paint: setup $(STAMPS)/test
-	@$(BIN)/python -m tests.browser.last_paint
-	@$(BIN)/python -m tests.browser.hand $(if $(BEFORE),--before $(BEFORE))
+	@$(BIN)/python -m tools.paint.last_paint
+	@$(BIN)/python -m tools.paint.hand $(if $(BEFORE),--before $(BEFORE))
 
 # CLIENTS=30 BROWSERS=3 MINUTES=30: so many visitors, so many of them browsers, for so long.
 soak: setup $(STAMPS)/test
-	@$(BIN)/python -m tests.attack.soak --clients $(or $(CLIENTS),30) --browsers $(or $(BROWSERS),3) \
+	@$(BIN)/python -m tools.serving.soak --clients $(or $(CLIENTS),30) --browsers $(or $(BROWSERS),3) \
 	  --minutes $(or $(MINUTES),30) --json build/soak.json
 
-# The tests that tests/attack/serving.toml names, and what the last `make soak` has left in build/soak.json.
+# The tests that tools/serving/rows.toml names, and what the last `make soak` has left in build/soak.json.
 serving: setup $(STAMPS)/test
-	@$(BIN)/python -m tests.attack.serving
+	@$(BIN)/python -m tools.serving.table
 
 tour: setup $(STAMPS)/test
-	@$(BIN)/python -m tests.browser.tour
+	@$(BIN)/python -m tools.tour
 
 # SAMPLE=60 SEED=1: so many changes a room, drawn by this seed. RESULTS=folder: goes on from what is kept there.
 mutation: setup $(STAMPS)/test
-	@$(BIN)/python -m tests.mutation --sample $(or $(SAMPLE),60) --seed $(or $(SEED),1) \
+	@$(BIN)/python -m tools.mutation --sample $(or $(SAMPLE),60) --seed $(or $(SEED),1) \
 	  --folder $(or $(RESULTS),build/mutation)
 
 # Each point of the page in each of three windows in both languages: six runs; make test has one of them for each.
@@ -88,29 +88,29 @@ windows: setup $(STAMPS)/test
 	@SCHULER_NIGHTLY=yes $(BIN)/python -m pytest -q -n2 --dist=worksteal tests/browser/windows
 
 unit: setup $(STAMPS)/test
-	@$(BIN)/python -m tests.stages unit
+	@$(BIN)/python -m tools.stages unit
 
 docs: setup $(STAMPS)/docs
 	@$(BIN)/python -m docs.site
 
 accuracy: setup $(STAMPS)/test
-	@$(BIN)/python -m tests.acceptance.accuracy
+	@$(BIN)/python -m tools.accuracy
 
 covariance: setup $(STAMPS)/test
-	@$(BIN)/python -m tests.acceptance.covariance $(SEEDS)
+	@$(BIN)/python -m tools.covariance $(SEEDS)
 
 tuning: setup $(STAMPS)/test
-	@$(BIN)/python -m tests.acceptance.tuning
+	@$(BIN)/python -m tools.tuning
 
 design: setup
-	@$(BIN)/python -m tests.design_table
+	@$(BIN)/python -m tools.design_table
 
 consistency: setup
-	@$(BIN)/python -m tests.filter_consistency --seeds $(or $(SEEDS),500)
+	@$(BIN)/python -m tools.filter_consistency --seeds $(or $(SEEDS),500)
 
 # YARDSTICK=FILE: a Python file whose quick(samples, repeats) gives the ns a sample of a reference.
 benchmarks: setup $(STAMPS)/benchmarks
-	@SCHULER_YARDSTICK='$(YARDSTICK)' $(BIN)/python -m benchmarks
+	@SCHULER_YARDSTICK='$(YARDSTICK)' $(BIN)/python -m tools.benchmarks
 
 format: $(STAMPS)/test
 	@$(BIN)/ruff check --fix --select I .
@@ -136,9 +136,9 @@ $(STAMPS)/python:
 	"$$python" -m venv $$clear .venv
 	@mkdir -p $(STAMPS) && pwd -P > $@
 
-$(STAMPS)/packages: requirements.lock requirements-build.lock $(STAMPS)/python
+$(STAMPS)/packages: requirements/run.lock requirements/build.lock $(STAMPS)/python
 	@echo '== installing the locked packages'; start=`date +%s`; \
-	$(PIP) $(LOCKED) -r requirements.lock -r requirements-build.lock && \
+	$(PIP) $(LOCKED) -r requirements/run.lock -r requirements/build.lock && \
 	echo "== installed in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@
 
 # The version is in navcore/foundation/version.py, the command in pyproject.toml.
@@ -150,26 +150,26 @@ $(STAMPS)/kernels: $(STAMPS)/project $(KERNEL_SOURCES)
 	$(BIN)/python -m navcore.warm && \
 	echo "== compiled in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@
 
-$(STAMPS)/test: requirements-test.lock $(STAMPS)/project
+$(STAMPS)/test: requirements/test.lock $(STAMPS)/project
 	@echo '== installing the locked packages of the tests'; start=`date +%s`; \
-	$(PIP) $(LOCKED) -r requirements-test.lock && \
+	$(PIP) $(LOCKED) -r requirements/test.lock && \
 	echo "== installed in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@
 
-$(STAMPS)/docs: requirements-docs.lock $(STAMPS)/project
+$(STAMPS)/docs: requirements/docs.lock $(STAMPS)/project
 	@echo '== installing the locked packages of the site'
-	@$(PIP) $(LOCKED) -r requirements-docs.lock && touch $@
+	@$(PIP) $(LOCKED) -r requirements/docs.lock && touch $@
 
-$(STAMPS)/supply: requirements-supply.lock $(STAMPS)/project
-	@$(PIP) $(LOCKED) -r requirements-supply.lock && touch $@
+$(STAMPS)/supply: requirements/supply.lock $(STAMPS)/project
+	@$(PIP) $(LOCKED) -r requirements/supply.lock && touch $@
 
-# What it needs itself is in requirements.lock.
-$(STAMPS)/benchmarks: requirements-benchmarks.lock $(STAMPS)/project
-	@$(PIP) $(LOCKED) --no-deps -r requirements-benchmarks.lock && touch $@
+# What it needs itself is in requirements/run.lock.
+$(STAMPS)/benchmarks: requirements/benchmarks.lock $(STAMPS)/project
+	@$(PIP) $(LOCKED) --no-deps -r requirements/benchmarks.lock && touch $@
 
 # ---------------------------------------------------------------- upkeep
 
 papers: setup $(STAMPS)/test
-	@$(BIN)/python -m tests.papers
+	@$(BIN)/python -m tools.papers
 
 cards: $(STAMPS)/project
 	@$(BIN)/python -m app.views.start.cards
@@ -180,14 +180,14 @@ guide: $(STAMPS)/project
 	@$(BIN)/python -m navcore.analysis.network_table
 
 sbom: $(STAMPS)/supply
-	@$(BIN)/python -m tests.supply sbom
+	@$(BIN)/python -m tools.supply sbom
 
 # Exit code 1: something is known to be vulnerable; 3: the service cannot be reached, nothing was looked up.
 audit: $(STAMPS)/supply
-	@$(BIN)/python -m tests.supply audit
+	@$(BIN)/python -m tools.supply audit
 
 languages: setup $(STAMPS)/test
-	@$(BIN)/python -m tests.translating
+	@$(BIN)/python -m tools.translating
 
 # One resolution for every platform and Python, with hashes and without any address.
 UV_COMPILE = $(BIN)/python -m uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
@@ -195,18 +195,18 @@ UV_COMPILE = $(BIN)/python -m uv pip compile --quiet --universal --python-versio
 
 lock: $(STAMPS)/python
 	@$(PIP) install 'uv>=0.9'
-	@$(UV_COMPILE) pyproject.toml --output-file requirements.lock
-	@$(UV_COMPILE) --group build --constraints requirements.lock --output-file requirements-build.lock
-	@$(UV_COMPILE) --group test --constraints requirements.lock --constraints requirements-build.lock \
-	  --output-file requirements-test.lock
-	@$(UV_COMPILE) --group docs --constraints requirements.lock --constraints requirements-test.lock \
-	  --output-file requirements-docs.lock
-	@$(UV_COMPILE) --group supply --constraints requirements.lock --constraints requirements-test.lock \
-	  --output-file requirements-supply.lock
+	@$(UV_COMPILE) pyproject.toml --output-file requirements/run.lock
+	@$(UV_COMPILE) --group build --constraints requirements/run.lock --output-file requirements/build.lock
+	@$(UV_COMPILE) --group test --constraints requirements/run.lock --constraints requirements/build.lock \
+	  --output-file requirements/test.lock
+	@$(UV_COMPILE) --group docs --constraints requirements/run.lock --constraints requirements/test.lock \
+	  --output-file requirements/docs.lock
+	@$(UV_COMPILE) --group supply --constraints requirements/run.lock --constraints requirements/test.lock \
+	  --output-file requirements/supply.lock
 	@$(BIN)/python -c 'import tomllib; \
 	  print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["benchmarks"], sep="\n")' \
-	  | $(UV_COMPILE) --no-deps - --output-file requirements-benchmarks.lock
+	  | $(UV_COMPILE) --no-deps - --output-file requirements/benchmarks.lock
 
 clean:
 	rm -rf .venv build dist test-output .hypothesis .pytest_cache .ruff_cache
-	find app benchmarks navcore tests -name __pycache__ -type d -prune -exec rm -rf {} +
+	find app navcore tests tools -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -15,8 +15,8 @@ from hypothesis import settings
 from hypothesis.internal.conjecture import providers
 
 from navcore.foundation.kernel_cache import cache_folder
-from tests.chromium import FLAGS, find_chromium
-from tests.compile_time import Uncounted
+from tools.chromium import FLAGS, find_chromium
+from tools.compile_time import Uncounted
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page

@@ -5,7 +5,7 @@ import pytest
 
 from navcore.engine.run import Run
 from navcore.scenario.file import load
-from tests.papers.deng import (
+from tools.papers.deng import (
     DAMPED,
     PRINTED,
     SLOW,
@@ -17,8 +17,8 @@ from tests.papers.deng import (
     schuler_swing,
     tilt,
 )
-from tests.papers.deng_alignment import tilt_difference
-from tests.papers.runs import Runs
+from tools.papers.deng_alignment import tilt_difference
+from tools.papers.runs import Runs
 
 
 class CoarseRuns(Runs):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.acceptance.covariance import MOTIONS, ratios
+from tools.covariance import MOTIONS, ratios
 
 SEEDS = 200
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from navcore.scenario.file import load
-from tests.papers import liu_switching
-from tests.papers.liu_switching import (
+from tools.papers import liu_switching
+from tools.papers.liu_switching import (
     BEST,
     BRIDGE,
     HARD,
@@ -20,7 +20,7 @@ from tests.papers.liu_switching import (
     ratio,
     turns,
 )
-from tests.papers.runs import Runs
+from tools.papers.runs import Runs
 
 
 @pytest.fixture(scope="module")

@@ -13,13 +13,13 @@ import pytest
 from navcore.foundation.units import HOUR, KNOT
 from navcore.motion.base import VE, VN
 from navcore.scenario.file import load
-from tests.papers import zha, zha_drive
-from tests.papers.liu_fig_7 import FIGURE_7
-from tests.papers.liu_switching import fig_7, overshoot, switched
-from tests.papers.markdown import check
-from tests.papers.runs import Runs, method
-from tests.papers.sun_ship import ANGLES, EQ_8_GYROS, METHODS, SHIP, SMALL_ERRORS, measured, over_conventional
-from tests.papers.sun_vehicle import VEHICLE
+from tools.papers import zha, zha_drive
+from tools.papers.liu_fig_7 import FIGURE_7
+from tools.papers.liu_switching import fig_7, overshoot, switched
+from tools.papers.markdown import check
+from tools.papers.runs import Runs, method
+from tools.papers.sun_ship import ANGLES, EQ_8_GYROS, METHODS, SHIP, SMALL_ERRORS, measured, over_conventional
+from tools.papers.sun_vehicle import VEHICLE
 
 
 @pytest.fixture(scope="module")

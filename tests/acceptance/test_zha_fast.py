@@ -12,7 +12,7 @@ from navcore.foundation.units import DEG_PER_HOUR
 from navcore.mechanization.recorder import PHI_E
 from navcore.networks import parse_network
 from navcore.scenario.file import load
-from tests.papers.measure import last_above
+from tools.papers.measure import last_above
 
 DRIFT = 0.01 * DEG_PER_HOUR
 

@@ -23,8 +23,8 @@ from app.session.session import Session
 from app.views import VIEWS
 from tests.attack.conftest import eventually
 from tests.browser.conftest import Another, Served
-from tests.browser.measuring import served as served_apart
 from tests.browser.test_page_state import wait_for_value
+from tools.paint.measuring import served as served_apart
 
 XI = "network.xi"
 

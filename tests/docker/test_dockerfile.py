@@ -92,8 +92,7 @@ def test_dockerignore_lets_only_the_program_through(repo_root: Path, tmp_path: P
     copy_context(repo_root, tmp_path / "context", (repo_root / ".dockerignore").read_text("utf-8"))
     names = {path.name for path in (tmp_path / "context").iterdir()}
     assert names == {
-        *("app", "assets", "navcore", "LICENSE", "README.md", "pyproject.toml"),
-        *("requirements.lock", "requirements-build.lock"),
+        *("app", "assets", "navcore", "requirements", "LICENSE", "README.md", "pyproject.toml"),
     }
     assert not list(tmp_path.rglob("__pycache__"))
 

@@ -49,7 +49,7 @@ def test_the_wheel_works_in_a_clean_environment(
     command(f"python{version}", "-m", "venv", tmp_path / "clean", cwd=tmp_path)
     python = tmp_path / "clean" / "bin" / "python"
     pip = python, "-m", "pip", "install", "--quiet"
-    command(*pip, "--require-hashes", "-r", repo_root / "requirements.lock", cwd=tmp_path)
+    command(*pip, "--require-hashes", "-r", repo_root / "requirements/run.lock", cwd=tmp_path)
     command(*pip, "--no-deps", wheel, cwd=tmp_path)
     command(python, "-m", "pip", "check", cwd=tmp_path)
     (site,) = (tmp_path / "clean" / "lib").glob("python*/site-packages")

@@ -1,4 +1,4 @@
-"""``python -m benchmarks``: both do the same work; how fast they are is not tested."""
+"""``python -m tools.benchmarks``: both do the same work; how fast they are is not tested."""
 
 import importlib.util
 import json
@@ -7,10 +7,10 @@ import sys
 import numpy as np
 import pytest
 
-import benchmarks.__main__ as command
+import tools.benchmarks.__main__ as command
 from app.bench.strapdown import StaticRecord
-from benchmarks.python_ins import PythonIns
 from navcore.networks.undamped import UndampedNetwork
+from tools.benchmarks.python_ins import PythonIns
 
 RATIOS = {
     "kernel_to_free": 9.0,

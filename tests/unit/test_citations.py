@@ -9,7 +9,7 @@ import pytest
 from tests import theory
 
 ROOT = Path(__file__).resolve().parents[2]
-FOLDERS = ("navcore", "app", "assets", "docs", "tests", "benchmarks", "examples")
+FOLDERS = ("navcore", "app", "assets", "docs", "tests", "tools", "examples")
 PAGES = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "Makefile")
 # Between "theory.md" and its section: spaces, a line's end with the next one's indent and comment sign.
 _GAP = r"[\s#*\"']*"

@@ -13,7 +13,7 @@ from navcore.engine.results import timeseries
 from navcore.engine.simulation import simulate
 from navcore.mechanization.recorder import NAMES, PHI_E, POSITION
 from navcore.scenario.model import Scenario
-from tests.filter_consistency import SHIP, final_error
+from tools.filter_consistency import SHIP, final_error
 
 _SHORT = SHIP["run"] | {"duration_h": 1.0}
 _METHODS = [

@@ -18,7 +18,7 @@ from navcore.foundation.units import ARCSEC
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from tests.acceptance.test_design_values import SET_A, set_a
-from tests.acceptance.tuning import CASES, Case, best_of_grid
+from tools.tuning import CASES, Case, best_of_grid
 
 SIGMA, XI = "method.0.network.sigma", "method.0.network.xi"
 NIGHTLY = pytest.mark.nightly

@@ -20,7 +20,7 @@ from navcore.mechanization.strapdown.attitude import quaternion_of
 from navcore.mechanization.strapdown.run import turned_by
 from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import stochastic_model
-from tests.filter_consistency import consistency
+from tools.filter_consistency import consistency
 
 SET_A = {
     "gyro_arw_dpsh": 0.003, "gyro_instability_dph": 0.003, "gyro_tau_s": 3600.0,

@@ -9,9 +9,9 @@ from babel.messages.mofile import write_mo
 
 from app.languages.wording import NAMES, Wording, read_texts, wording, words_of
 from app.views import load
-from tests.translating.__main__ import LANGUAGES, missing, po_path, read, script, script_path
-from tests.translating.extract import texts
-from tests.translating.python import Text, is_prose, texts_in
+from tools.translating.__main__ import LANGUAGES, missing, po_path, read, script, script_path
+from tools.translating.extract import texts
+from tools.translating.python import Text, is_prose, texts_in
 
 ROOT = Path(__file__).parents[2]
 VALUE, ELEMENT = re.compile(r"\{\d+\}"), re.compile(r"</?[a-z]+>")

@@ -7,7 +7,7 @@ import pytest
 from app.editing import form
 from navcore.foundation.notation import symbol, unit_sign
 from navcore.networks import NETWORKS
-from tests.translating.extract import texts
+from tools.translating.extract import texts
 
 pytestmark = pytest.mark.contract
 

@@ -12,11 +12,11 @@ import pytest
 
 from navcore.foundation.notation import in_symbols
 from navcore.scenario.file import presets
-from tests.papers.claim import Claim, Exhibit, Paper, about, at_least, at_most, number, order_of
-from tests.papers.markdown import Contradiction, check, exhibit_text, summary
-from tests.papers.measure import interval, last_above
-from tests.papers.runs import Runs, method, scenario_of
-from tests.papers.write import papers, write_report
+from tools.papers.claim import Claim, Exhibit, Paper, about, at_least, at_most, number, order_of
+from tools.papers.markdown import Contradiction, check, exhibit_text, summary
+from tools.papers.measure import interval, last_above
+from tools.papers.runs import Runs, method, scenario_of
+from tools.papers.write import papers, write_report
 
 OWN = {"sikuliaq-like", "sikuliaq-recorded"}
 """Presets that are of no paper."""
@@ -160,7 +160,7 @@ def test_the_same_code_writes_the_same_files(tmp_path: Path):
     written = []
     for seed in ("1", "2"):
         out = tmp_path / seed
-        command = [sys.executable, "-m", "tests.papers", "--out", str(out), "--only", "sun-table"]
+        command = [sys.executable, "-m", "tools.papers", "--out", str(out), "--only", "sun-table"]
         done = subprocess.run(
             command, capture_output=True, text=True, env=os.environ | {"PYTHONHASHSEED": seed}
         )

@@ -21,15 +21,15 @@ import navcore
 from navcore.foundation.assets import asset_path, assets_folder
 
 LOCKS = (
-    "requirements.lock",
-    "requirements-build.lock",
-    "requirements-test.lock",
-    "requirements-docs.lock",
-    "requirements-supply.lock",
-    "requirements-benchmarks.lock",
+    "requirements/run.lock",
+    "requirements/build.lock",
+    "requirements/test.lock",
+    "requirements/docs.lock",
+    "requirements/supply.lock",
+    "requirements/benchmarks.lock",
 )
 TOP_LEVEL = {
-    *("app", "assets", "benchmarks", "deploy", "docs", "examples", "navcore", "tests", ".ci"),
+    *("app", "assets", "deploy", "docs", "examples", "navcore", "requirements", "tests", "tools", ".ci"),
     *(
         "CHANGELOG.md",
         "CONTRIBUTING.md",
@@ -39,7 +39,6 @@ TOP_LEVEL = {
         "Makefile",
         "README.md",
         "pyproject.toml",
-        *LOCKS,
     ),
     *(".dockerignore", ".gitattributes", ".gitignore"),
 }
@@ -145,7 +144,7 @@ def test_imports_are_told_apart():
 def test_modules_are_short(repo_root: Path):
     lengths = {
         str(path.relative_to(repo_root)): len(path.read_text("utf-8").splitlines())
-        for path in modules(repo_root, "app", "benchmarks", "navcore", "tests")
+        for path in modules(repo_root, "app", "navcore", "tests", "tools")
     }
     assert {name: length for name, length in lengths.items() if length >= LONGEST_MODULE} == {}
 
@@ -263,9 +262,9 @@ def test_what_is_imported_is_asked_for(repo_root: Path):
     extra = project["project"]["optional-dependencies"]["cluster"]
     runtime = {Requirement(text).name for text in (*project["project"]["dependencies"], *extra)}
     testing = runtime | {Requirement(text).name for text in project["dependency-groups"]["test"]}
-    known = {*sys.stdlib_module_names, "app", "benchmarks", "docs", "navcore", "tests"}
+    known = {*sys.stdlib_module_names, "app", "docs", "navcore", "tests", "tools"}
     providers = packages_distributions()
-    for packages, asked in ((("app", "benchmarks", "navcore", "examples"), runtime), (("tests",), testing)):
+    for packages, asked in ((("app", "navcore", "examples"), runtime), (("tests", "tools"), testing)):
         for path in modules(repo_root, *packages):
             for name in set(imported(ast.parse(path.read_text("utf-8")))) - known:
                 assert asked & {canonicalize_name(found) for found in providers.get(name, (name,))}, (

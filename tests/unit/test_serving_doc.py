@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.attack.serving import PAGE, RECORD, Entry, entries, recorded, table, with_table
+from tools.serving.table import PAGE, RECORD, Entry, entries, recorded, table, with_table
 
 OF_THE_SPECIFICATION = 23
 """Rows of the specification of a server for a group; some are two or three of ours."""
@@ -33,7 +33,7 @@ def keys_of_the_soak(path: Path) -> re.Pattern[str]:
 def test_every_row_has_its_test_or_line(repo_root: Path) -> None:
     rows = entries()
     assert len(rows) > OF_THE_SPECIFICATION
-    keys = keys_of_the_soak(repo_root / "tests" / "attack" / "soak.py")
+    keys = keys_of_the_soak(repo_root / "tools" / "serving" / "soak.py")
     assert keys.fullmatch("lecture_p95") and keys.fullmatch("drag_cpu") and not keys.fullmatch("drag")
     for row in rows:
         assert bool(row.test) != bool(row.soak), row.what
@@ -45,7 +45,7 @@ def test_every_row_has_its_test_or_line(repo_root: Path) -> None:
 
 def test_the_page_holds_the_table_of_the_record() -> None:
     page, record = PAGE.read_text("utf-8"), json.loads(RECORD.read_text("utf-8"))
-    assert with_table(page, table(entries(), record)) == page, "python -m tests.attack.serving --table"
+    assert with_table(page, table(entries(), record)) == page, "python -m tools.serving.table --table"
     assert {row.test for row in entries() if row.test} == set(record["tests"]), "make serving"
 
 

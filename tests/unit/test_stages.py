@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from navcore.foundation.stage_cache import _size
-from tests import stages
-from tests.stages import BESIDE, CHECKS, CODE, STAGES, Count, closing_line, read_counts, run_beside
+from tools import stages
+from tools.stages import BESIDE, CHECKS, CODE, STAGES, Count, closing_line, read_counts, run_beside
 
 
 @pytest.mark.parametrize(
@@ -63,8 +63,9 @@ def test_stages_side_by_side_run_their_files_and_fail_where_these_are_gone(
 @pytest.fixture
 def bare_checkout(repo_root: Path, tmp_path: Path) -> Path:
     """What `make setup` needs before it looks at any code."""
-    for name in ("Makefile", "pyproject.toml", *repo_root.glob("requirements*.lock")):
+    for name in ("Makefile", "pyproject.toml"):
         shutil.copy(repo_root / name, tmp_path)
+    shutil.copytree(repo_root / "requirements", tmp_path / "requirements")
     (tmp_path / "navcore" / "foundation").mkdir(parents=True)
     shutil.copy(repo_root / "navcore" / "foundation" / "version.py", tmp_path / "navcore" / "foundation")
     return tmp_path

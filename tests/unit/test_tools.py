@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from tests import chromium
 from tests.browser.driver import SIZES
 from tests.browser.windows.conftest import LOCALES, RUNS
-from tests.mutation.equivalent import is_equivalent, listed
-from tests.mutation.mutants import changed, mutants_of
-from tests.mutation.results import ROOT, sample
-from tests.supply import UNREACHABLE, VULNERABLE, judged
+from tools import chromium
+from tools.mutation.equivalent import is_equivalent, listed
+from tools.mutation.mutants import changed, mutants_of
+from tools.mutation.results import ROOT, sample
+from tools.supply import UNREACHABLE, VULNERABLE, judged
 
 # ---------------------------------------------------------------- where a Chromium is looked for
 

@@ -1,0 +1,183 @@
+"""The parts of the report as data: a claim, a table, an exhibit (one figure or table of a paper), a paper."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from tools.papers.estimate import Estimate
+from tools.papers.runs import Runs
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_SMALLEST = 1e-6
+"""What is smaller is rounding in most places, and not the same on every processor."""
+
+Verdict = Literal["agrees", "differs", "undecided"]
+"""Agrees: our number, or its whole confidence interval, lies in the range. Differs: none of it does.
+Undecided: the interval reaches across an end of the range."""
+Kind = Literal["predicted", "fitted", "direction only", "own"]
+"""Predicted: a number from the paper's settings alone. Fitted: a number that a setting of ours was fitted to.
+Direction only: the paper states a relation, or its setting is too incomplete for more than one.
+Own: the claim is ours."""
+KINDS: tuple[Kind, ...] = ("predicted", "fitted", "direction only", "own")
+Span = tuple[float, float]
+
+
+def about(value: float, tolerance: float) -> Span:
+    """From ``value`` less to ``value`` plus a relative tolerance."""
+    reach = abs(value) * tolerance
+    return value - reach, value + reach
+
+
+def at_least(value: float) -> Span:
+    """``value`` or more."""
+    return value, math.inf
+
+
+def at_most(value: float) -> Span:
+    """``value`` or less, of either sign."""
+    return -math.inf, value
+
+
+def order_of(value: float, factor: float = 3.0) -> Span:
+    """Same order of magnitude: between ``value / factor`` and ``value * factor``, > 0."""
+    return value / factor, value * factor
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One statement of a paper and how it is checked.
+
+    Attributes
+    ----------
+    says : str
+        What the paper says, in words.
+    printed : str
+        Its number or relation as the paper gives it.
+    agreed : tuple of float
+        Range of our number within which the two agree; printed in the report.
+    ours : callable
+        Our number from the runs, in ``unit``; an array holds one number for each seed, and the verdict then
+        goes by the 95 % confidence interval of their mean. Another statistic of the seeds is an `Estimate`.
+    unit : str
+        Unit of both numbers.
+    kind : {"predicted", "fitted", "direction only", "own"}
+        What the number is worth as evidence.
+    strapdown : bool
+        Whether the number is computed in the full strapdown as well; both must agree.
+    why : str
+        Why it differs. Empty when it agrees: the report fails when this and the numbers contradict. May
+        stand when the verdict is "undecided".
+    note : str
+        What should be known even when it agrees.
+    facts : mapping of str to callable
+        Numbers that ``why`` and ``note`` name in braces.
+    digits : int
+        Significant digits of our number; 0: it is a count, and printed whole.
+    """
+
+    says: str
+    printed: str
+    agreed: Span
+    ours: Callable[[Runs], float | np.ndarray | Estimate]
+    unit: str = ""
+    kind: Kind = "direction only"
+    strapdown: bool = False
+    why: str = ""
+    note: str = ""
+    facts: Mapping[str, Callable[[Runs], float]] = field(default_factory=dict)
+    digits: int = 3
+
+    def verdict(self, *found: Estimate) -> Verdict:
+        """Agreement of all estimates with the range."""
+        positions = [one.position(*self.agreed) for one in found]
+        if min(positions) < 0:
+            return "differs"
+        return "agrees" if min(positions) > 0 else "undecided"
+
+    @property
+    def allowed(self) -> str:
+        """The range that counts as agreement, as text."""
+        low, high = (number(value, self.digits) for value in self.agreed)
+        if math.isinf(self.agreed[0]):
+            return f"<= {high}"
+        return f">= {low}" if math.isinf(self.agreed[1]) else f"{low} to {high}"
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table side by side with a paper's: head and rows of text."""
+
+    caption: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class Exhibit:
+    """One figure or table of a paper.
+
+    Attributes
+    ----------
+    name : str
+        Anchor, and name of the picture's file.
+    title : str
+        "Figure 4: ...".
+    presets : tuple of str
+        Presets that show it; the runs behind the claims start from these.
+    setting : str
+        What is run, and what the paper leaves open and how it was filled in.
+    claims : tuple of Claim
+        The paper's statements.
+    tables : tuple of callable
+        Tables to print below.
+    draw : callable, optional
+        Draws the picture on a matplotlib figure.
+    height : float
+        Height of the picture, inches.
+    """
+
+    name: str
+    title: str
+    presets: tuple[str, ...]
+    setting: str
+    claims: tuple[Claim, ...] = ()
+    tables: tuple[Callable[[Runs], Table], ...] = ()
+    draw: Callable[[Runs, Figure], None] | None = field(default=None, repr=False)
+    height: float = 3.2
+
+
+@dataclass(frozen=True)
+class Paper:
+    """A paper: short name, full reference, its exhibits."""
+
+    name: str
+    reference: str
+    exhibits: tuple[Exhibit, ...]
+
+
+def number(value: float, digits: int = 3) -> str:
+    """Text of a number with a fixed count of significant digits; no exponent within 1e-4 .. 1e6.
+
+    With 0 digits it is a count: rounded to a whole number.
+    """
+    if not math.isfinite(value):
+        return "-" if math.isnan(value) else "infinite"
+    if digits == 0:
+        return f"{value:.0f}"
+    if 0.0 < abs(value) < _SMALLEST:
+        return "< 1e-6"
+    text = f"{value:.{digits - 1}e}"
+    mantissa, exponent = text.split("e")
+    power = int(exponent)
+    if float(mantissa) == 0.0:
+        return "0"
+    if -4 <= power < 6:
+        return f"{float(text):.{max(digits - 1 - power, 0)}f}"
+    return f"{mantissa}e{power}"

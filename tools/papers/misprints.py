@@ -1,0 +1,73 @@
+"""Section of the printed errors that change a result, printed and corrected (`app.misprints`)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from app.misprints import MISPRINTS, Comparison, Misprint
+from tools.papers.claim import Exhibit, Paper, Table, number
+from tools.papers.picture import panel
+from tools.papers.runs import Runs
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_STYLES = {"printed": ("#D55E00", "--"), "corrected": ("#0072B2", "-")}
+
+
+def comparison(runs: Runs, item: Misprint) -> Comparison:
+    """Both forms of a misprint, computed once."""
+    return runs.keep(("misprint", item.id), item.compute)
+
+
+def _number(value: float | None) -> str:
+    return "none" if value is None else number(value)
+
+
+def _table(runs: Runs) -> Table:
+    rows = []
+    for item in MISPRINTS.values():
+        for i, shown in enumerate(comparison(runs, item).numbers):
+            where = f"{item.paper}, {item.where}" if i == 0 else ""
+            texts = (item.printed, item.right) if i == 0 else ("", "")
+            name = f"{shown.name}, {shown.unit}" if shown.unit else shown.name
+            rows.append((where, *texts, name, _number(shown.printed), _number(shown.corrected)))
+    rows = [tuple(text.replace("|", "\\|") for text in row) for row in rows]
+    head = ("where", "printed", "right", "number", "as printed", "corrected")
+    return Table("", head, tuple(rows))
+
+
+def _draw(runs: Runs, figure: Figure) -> None:
+    items = list(MISPRINTS.values())
+    axes = figure.subplots(-(-len(items) // 2), 2, squeeze=False).flat
+    for axis, item in zip(axes, items, strict=False):
+        found = comparison(runs, item)
+        for one in found.curves:
+            color, dash = _STYLES[one.form]
+            axis.plot(found.x, one.y, color=color, linestyle=dash, label=one.label)
+        window = found.y_window
+        if window is not None:
+            axis.set_ylim(*window)
+        axis.set_xscale("log" if found.x_axis.log else "linear")
+        axis.set_yscale("log" if found.y_axis.log else "linear")
+        x, y = (f"{a.label}, {a.unit}" if a.unit else a.label for a in (found.x_axis, found.y_axis))
+        panel(axis, f"{item.paper}, {item.where}", x, y)
+    for axis in list(axes)[len(items) :]:
+        axis.set_axis_off()
+
+
+PAPER = Paper(
+    "Misprints",
+    "What the papers print wrongly where it changes a result; both forms computed by the same code.",
+    (
+        Exhibit(
+            name="misprints",
+            title="As printed and corrected",
+            presets=(),
+            setting="Dashed: as printed.",
+            tables=(_table,),
+            draw=_draw,
+            height=2.3 * -(-len(MISPRINTS) // 2),
+        ),
+    ),
+)
