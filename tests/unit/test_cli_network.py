@@ -1,76 +1,21 @@
-"""``schuler network``: the numbers of theory.md 9.1, 9.2 and 3.3 from the command line."""
+"""``schuler network``: the report of a network from the command line, as JSON and for people."""
 
 import json
 import math
 
-import numpy as np
 import pytest
 
 from app.cli import main
-
-OMEGA_S = math.sqrt(9.80665 / 6378137.0)
-KEYS = [
-    "id",
-    "num",
-    "den",
-    "zeros",
-    "poles",
-    "gain",
-    "h0",
-    "closed_loop_poles",
-    "stable",
-    "damping_ratio",
-    "natural_frequency_rad_s",
-    "settling_s",
-    "lat_deg",
-    "earth_mode_growth_per_s",
-    "h_slope_s",
-    "whole_system_stable",
-    "warnings",
-]
+from navcore.analysis.report import network_report
+from navcore.networks import parse_network
 
 
-def network(text: str, capsys: pytest.CaptureFixture[str]) -> dict:
+@pytest.mark.parametrize("text", ['id = "classic3"', 'id = "pole2", variant = "as_printed", xi = 0.08'])
+def test_the_document_is_the_report_of_the_network(text, capsys):
     assert main(["network", text, "--json"]) == 0
     captured = capsys.readouterr()
     assert captured.err == ""
-    return json.loads(captured.out)
-
-
-@pytest.mark.parametrize(
-    ("text", "poles", "damping"),
-    [
-        ('id = "classic2"', [-0.982 - 1.003j, -0.982 + 1.003j, -2.674, -9.879], 0.699),
-        (
-            'id = "classic3"',
-            [-1.3253, -0.5946 + 1.3823j, -0.5946 - 1.3823j, -7.618 + 1.290j, -7.618 - 1.290j],
-            0.395,
-        ),
-    ],
-)
-def test_closed_loops_of_9_1(text, poles, damping, capsys):
-    report = network(text, capsys)
-    assert list(report) == KEYS
-    found = np.array([complex(*pole) for pole in report["closed_loop_poles"]]) / OMEGA_S
-    for pole in poles:
-        assert np.min(np.abs(found - pole)) < 1e-3
-    assert report["damping_ratio"] == pytest.approx(damping, abs=1e-3)
-    assert report["stable"] is True
-
-
-def test_compass_of_9_2(capsys):
-    report = network('id = "compass", sigma = 0.0088, xi = 0.7', capsys)
-    np.testing.assert_allclose(report["num"], [203.520, 0.904534], rtol=2e-6)
-    np.testing.assert_allclose(report["den"], [1.0, 0.0264], rtol=1e-12)
-    assert report["damping_ratio"] == pytest.approx(0.7, rel=1e-9)
-    assert report["h0"] == pytest.approx(0.904534 / 0.0264, rel=1e-5)
-
-
-def test_pole2_as_printed_is_reported_unstable(capsys):
-    report = network('id = "pole2", variant = "as_printed", xi = 0.08', capsys)
-    assert report["stable"] is False
-    assert report["settling_s"] is None
-    assert any("unstable" in warning for warning in report["warnings"])
+    assert json.loads(captured.out) == network_report(parse_network(text), 45.0)
 
 
 def test_pole2_with_complex_poles_is_refused_with_the_reason(capsys):

@@ -191,7 +191,7 @@ def test_a_diverging_method_is_written_marked_and_exit_3(tmp_path, capsys):
     document = json.loads(captured.out)
     states = {m["name"]: m["status"] for m in document["methods"]}
     assert (code, states["free"], states["unstable"]) == (3, "ok", "diverged")
-    assert "unstable" in captured.err
+    assert "unstable: diverged: the error left the range of the linear model" in captured.err
     assert json.loads((tmp_path / "o" / "metrics.json").read_text("utf-8")) == document
     rows = pyarrow.parquet.read_table(tmp_path / "o" / "timeseries.parquet").to_pylist()
     last = {name: max(row["t_s"] for row in rows if row["method"] == name) for name in states}

@@ -1,12 +1,10 @@
 """The command with fidelity strapdown: presets, files, faults, stopping."""
 
-import csv
 import json
 
 import pytest
 
 from app.cli import main
-from navcore.mechanization.strapdown.records import NAVIGATION
 
 STRAPDOWN = ["--set", "run.fidelity=strapdown", "--set", "run.duration_h=0.05"]
 
@@ -23,14 +21,6 @@ def test_people_read_what_was_run(capsys):
     assert main(["run", "zha-fast", *STRAPDOWN]) == 0
     out = capsys.readouterr().out
     assert "strapdown, 0.05 h" in out and "every 100 steps of the mechanization at 100 Hz" in out
-
-
-def test_csv_has_the_columns_of_the_contract(tmp_path, capsys):
-    assert main(["run", "zha-fast", *STRAPDOWN, "--out", str(tmp_path / "o"), "--format", "csv"]) == 0
-    with (tmp_path / "o" / "timeseries.csv").open(newline="") as stream:
-        header, *rows = csv.reader(stream)
-    assert header[-11:] == list(NAVIGATION) and header[9:11] == ["damped", "xi"]
-    assert len(rows) == 3 * 19 and all(len(row) == len(header) for row in rows)
 
 
 @pytest.mark.parametrize(

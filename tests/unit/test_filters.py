@@ -5,8 +5,6 @@ from math import comb
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from navcore.foundation.errors import InputError
 from navcore.networks import NETWORKS, parse_network
@@ -83,14 +81,6 @@ def test_response_is_the_continuous_one_up_to_three_schuler_frequencies(
     assert error < 1e-6 * max(1.0, 1.03 * steepest)
 
 
-@pytest.mark.parametrize("step_s", STEPS)
-def test_exact_at_the_schuler_frequency(step_s: float) -> None:
-    for block in BLOCKS:
-        network = network_of(block)
-        found = complex(discretise(network, step_s).response(OMEGA_S))
-        assert found == pytest.approx(complex(network.response(OMEGA_S)), rel=1e-12)
-
-
 def run(discrete: DiscreteNetwork, x: np.ndarray, u: np.ndarray) -> np.ndarray:
     y = np.empty(len(u))
     for k, value in enumerate(u):
@@ -149,23 +139,6 @@ def test_an_unstable_pole_on_the_bilinear_singularity_is_refused() -> None:
     with pytest.raises(InputError, match="unstable pole at 2 rad/s"):
         discretise(network, step_s)
     assert discretise(network, 0.9 * step_s).order == 1
-
-
-@given(
-    zeta=st.floats(0.01, 5.0),
-    r=st.floats(1.05, 5.0),
-    zeta2=st.floats(0.05, 5.0),
-    step_s=st.floats(0.005, 1.0),
-)
-@settings(max_examples=60)
-def test_any_unity2_is_discretised_well(zeta: float, r: float, zeta2: float, step_s: float) -> None:
-    network = network_of({"id": "unity2", "zeta": zeta, "r": r, "zeta2": zeta2})
-    discrete = discretise(network, step_s)
-    roots = np.linalg.eigvals(discrete.dA)
-    assert np.all(2.0 * roots.real + np.abs(roots) ** 2 < 0.0)
-    omega = OMEGA_S * np.logspace(-2, 2, 30)
-    expected = network.response(warped(omega, step_s))
-    assert np.max(np.abs(discrete.response(omega) / expected - 1.0)) < 1e-10
 
 
 # Why the direct form is never run: its coefficients, rounded to a double, are those of another network.

@@ -1,10 +1,10 @@
-"""simulate(): identical inputs for all methods, cancel, divergence, rows, statistics, plot curves."""
+"""simulate() of the linear model: statistics, plot curves, outages, the body log, the law in force."""
 
 import numpy as np
 import pytest
 
 from navcore.engine.simulation import simulate
-from navcore.mechanization.recorder import NAMES, output_steps
+from navcore.mechanization.recorder import NAMES
 from navcore.scenario.model import Scenario
 
 COMPASS = {"damping": "external", "network": {"id": "compass"}}
@@ -17,28 +17,6 @@ NOISY = {
 
 def _run(**changes):
     return simulate(Scenario.parse({**NOISY, **changes}))
-
-
-def test_order_and_company_of_methods_change_nothing():
-    alone = _run(method=[{"name": "c", **COMPASS}])
-    first = _run(method=[{"name": "c", **COMPASS}, {"name": "f"}])
-    last = _run(method=[{"name": "f"}, {"name": "c", **COMPASS}])
-    assert np.array_equal(alone.methods[0].rows, first.methods[0].rows)
-    assert np.array_equal(first.methods[0].rows, last.methods[1].rows)
-    assert np.array_equal(first.methods[1].rows, last.methods[0].rows)
-    assert not np.array_equal(first.methods[0].rows, first.methods[1].rows)
-
-
-def test_another_seed_gives_another_run():
-    other = _run(run={"duration_h": 2.0, "seed": 6}, method=[COMPASS])
-    assert not np.array_equal(_run(method=[COMPASS]).methods[0].rows, other.methods[0].rows)
-
-
-def test_rows_hold_start_every_output_step_and_the_end():
-    run = _run(run={"duration_h": 0.0141, "output_step_s": 20.0})
-    assert run.t_s.tolist() == [0.0, 20.0, 40.0, 50.0]
-    assert run.methods[0].rows.shape == (4, 10)
-    assert output_steps(7, 1.0, 0.1).tolist() == list(range(8))
 
 
 def test_statistics_are_those_of_every_step():
@@ -63,35 +41,6 @@ def test_plot_curves_keep_every_extreme_in_order():
     assert np.array_equal(plot.values.min(axis=0), rows[:, :8].min(axis=0))
     smooth = np.interp(plot.t_s, run.t_s, rows[:, 7])
     assert np.abs(plot.values[:, 7] - smooth).max() < 0.02 * rows[:, 7].max()
-
-
-def test_cancel_keeps_what_was_computed_and_marks_it():
-    calls = []
-
-    def cancelled() -> bool:
-        calls.append(1)
-        return len(calls) >= 2
-
-    scenario = Scenario.parse({"run": {"duration_h": 100.0}, "initial_error": {"velocity_mps": [0.1, 0]}})
-    run = simulate(scenario, cancelled=cancelled)
-    method = run.methods[0]
-    assert run.status == method.status == "stopped"
-    assert "stopped by the user at" in method.warnings[-1]
-    assert 0 < len(method.t_s) < len(run.t_s) and np.all(np.isfinite(method.rows))
-
-
-def test_a_diverging_method_does_not_stop_the_others():
-    unstable = {"damping": "external", "network": {"id": "compass", "k1": 0.001, "k2": 1.0, "k3": 0.5}}
-    run = _run(run={"duration_h": 24.0}, method=[unstable, {"name": "free"}])
-    assert [m.status for m in run.methods] == ["diverged", "ok"]
-    assert "left the range of the linear model" in run.methods[0].reason
-    assert len(run.methods[1].t_s) == len(run.t_s) > len(run.methods[0].t_s)
-
-
-def test_progress_rises_to_one():
-    seen: list[float] = []
-    simulate(Scenario.parse({"run": {"duration_h": 50.0}}), progress=seen.append)
-    assert seen[-1] == 1.0 and seen == sorted(seen) and len(seen) > 2
 
 
 def test_an_outage_leaves_the_loop_undamped_until_the_log_returns():

@@ -1,4 +1,4 @@
-"""simulate() of fidelity strapdown: identical inputs, cancel, divergence, columns, alignment, law series."""
+"""simulate(): identical inputs, rows, cancel, divergence; of strapdown: columns, alignment, law series."""
 
 from typing import Any
 
@@ -6,12 +6,11 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 
-from navcore.engine.measures import metrics
 from navcore.engine.results import timeseries, write_results
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.units import DEG
-from navcore.mechanization.recorder import NAMES
+from navcore.mechanization.recorder import NAMES, output_steps
 from navcore.mechanization.strapdown.records import NAVIGATION
 from navcore.motion.base import HEADING, LAT, VE
 from navcore.scenario.model import Scenario
@@ -35,34 +34,33 @@ def run_of(hours: float = 0.2, **changes: Any) -> Run:
     return simulate(scenario(hours, **changes))
 
 
-def test_order_and_company_of_methods_change_nothing():
-    alone = run_of(method=[{"name": "c", **COMPASS}])
-    first = run_of(method=[{"name": "c", **COMPASS}, {"name": "f"}])
-    last = run_of(method=[{"name": "f"}, {"name": "c", **COMPASS}])
+@pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
+def test_order_and_company_of_methods_change_nothing(fidelity):
+    fine, free = {"name": "c", **COMPASS}, {"name": "f"}
+    alone, first, last = (
+        run_of(run={"fidelity": fidelity}, method=methods) for methods in ([fine], [fine, free], [free, fine])
+    )
     assert np.array_equal(alone.methods[0].rows, first.methods[0].rows)
     assert np.array_equal(first.methods[0].rows, last.methods[1].rows)
     assert np.array_equal(first.methods[1].rows, last.methods[0].rows)
     assert not np.array_equal(first.methods[0].rows, first.methods[1].rows)
 
 
-def test_two_equal_methods_see_the_same_samples():
-    run = run_of(method=[{"name": "a", **COMPASS}, {"name": "b", **COMPASS}])
-    assert np.array_equal(run.methods[0].rows, run.methods[1].rows)
-    assert np.abs(run.methods[0].rows[:, :5]).max() > 0.0
+@pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
+def test_another_seed_gives_another_run(fidelity):
+    one, other = (run_of(run={"fidelity": fidelity, "seed": seed}, method=[COMPASS]) for seed in (5, 6))
+    assert not np.array_equal(one.methods[0].rows, other.methods[0].rows)
 
 
-def test_another_seed_gives_another_run():
-    other = run_of(run={"seed": 6}, method=[COMPASS])
-    assert not np.array_equal(run_of(method=[COMPASS]).methods[0].rows, other.methods[0].rows)
-
-
-def test_rows_hold_start_every_output_step_and_the_end():
-    run = run_of(0.0141, run={"output_step_s": 20.0})
+@pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
+def test_rows_hold_start_every_output_step_and_the_end(fidelity):
+    run = run_of(0.0141, run={"fidelity": fidelity, "output_step_s": 20.0})
     assert run.t_s.tolist() == [0.0, 20.0, 40.0, 50.0]
     method = run.methods[0]
-    assert method.rows.shape == (4, 10) and method.navigation is not None
-    assert method.navigation.shape == (4, len(NAVIGATION)) and method.law_series.shape == (4, 4)
-    assert run.truth.shape == (4, 15)
+    assert (method.rows.shape, method.law_series.shape, run.truth.shape) == ((4, 10), (4, 4), (4, 15))
+    navigation = None if method.navigation is None else method.navigation.shape
+    assert navigation == ((4, len(NAVIGATION)) if fidelity == "strapdown" else None)
+    assert output_steps(7, 1.0, 0.1).tolist() == list(range(8))
 
 
 def test_statistics_are_those_of_the_recorded_states():
@@ -70,11 +68,6 @@ def test_statistics_are_those_of_the_recorded_states():
     for i, name in enumerate(NAMES):
         assert method.errors[name]["rms"] == pytest.approx(np.sqrt(np.mean(method.rows[:, i] ** 2)), rel=1e-9)
         assert method.errors[name]["final"] == method.rows[-1, i]
-
-
-def test_the_metrics_say_which_states_they_cover():
-    run = run_of(0.01, run={"rate_hz": 200.0})
-    assert metrics(run)["computed_on"] == "states every 1 s (every 200 steps of the mechanization at 200 Hz)"
 
 
 @pytest.mark.parametrize("stop_at", [1, 3])
@@ -95,10 +88,11 @@ def test_a_cancel_acts_at_the_next_chunk_and_keeps_what_was_computed(stop_at):
         assert method.navigation is not None and len(method.navigation) == len(method.t_s)
 
 
-def test_progress_rises_to_one():
+@pytest.mark.parametrize(("fidelity", "hours", "calls"), [("error_model", 50.0, 3), ("strapdown", 0.5, 30)])
+def test_progress_rises_to_one(fidelity, hours, calls):
     seen: list[float] = []
-    simulate(scenario(0.5), progress=seen.append)
-    assert seen[-1] == 1.0 and seen == sorted(seen) and len(seen) == 30
+    simulate(scenario(hours, run={"fidelity": fidelity}), progress=seen.append)
+    assert seen[-1] == 1.0 and seen == sorted(seen) and len(seen) >= calls
 
 
 def test_a_diverging_method_says_why_and_where_and_the_others_finish(tmp_path):
@@ -129,12 +123,6 @@ def test_the_files_carry_the_navigation_solution(tmp_path):
     )
     np.testing.assert_allclose(first["heading_rad"], run.truth[:, HEADING], atol=1e-3)
     assert np.all(first["dvu_mps"] == 0.0) and np.all(first["height_m"] == 0.0)
-
-
-def test_a_linear_run_has_no_navigation_columns():
-    run = simulate(Scenario.parse({"run": {"duration_h": 0.1}}))
-    assert run.methods[0].navigation is None
-    assert "lat_rad" not in timeseries(run).column_names
 
 
 @pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
