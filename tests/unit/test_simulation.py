@@ -54,22 +54,6 @@ def test_an_outage_leaves_the_loop_undamped_until_the_log_returns():
     assert run.methods[0].rows[2000, 9] == 0.0 and run.methods[0].rows[100, 9] == 0.7
 
 
-def test_a_heading_error_turns_a_body_log():
-    """frame = "body": dV_r = phi_U x V, which velocity feedback follows."""
-    scenario = {
-        "run": {"duration_h": 0.5, "output_step_s": 1.0},
-        "motion": {"kind": "legs", "leg": [{"duration_s": 1800.0, "speed_mps": 10.0, "heading_deg": 0.0}]},
-        "initial_error": {"attitude_arcmin": [0, 0, 10]},
-        "method": [COMPASS],
-    }
-    enu = simulate(Scenario.parse({**scenario, "reference": {"kind": "log"}})).methods[0].rows
-    body = (
-        simulate(Scenario.parse({**scenario, "reference": {"kind": "log", "frame": "body"}})).methods[0].rows
-    )
-    expected = np.mean(body[900:, 2]) * 10.0
-    assert np.mean(body[900:, 3] - enu[900:, 3]) == pytest.approx(expected, rel=0.05)
-
-
 def test_internal_damping_does_not_take_a_constant_speed_for_an_acceleration():
     scenario = {
         "run": {"duration_h": 2.0, "fidelity": "channel"},

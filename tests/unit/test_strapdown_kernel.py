@@ -1,12 +1,9 @@
 """The compiled strapdown kernel against its slow twin, sample by sample, and its bookkeeping."""
 
-import math
-
 import numpy as np
 import pytest
 
 from navcore.foundation.earth import WGS84, attitude_matrix
-from navcore.foundation.units import DEG
 from navcore.law.policy.constant import Constant
 from navcore.law.switching.hard import Hard
 from navcore.mechanization.strapdown import Settings, start_from, start_run
@@ -136,28 +133,6 @@ def test_a_run_ends_at_its_last_sample_whatever_it_is_given():
     run.advance(increments[:40])
     assert run.advance(increments[40:])
     assert (run.position, run.code) == (100, at.COMPLETE)
-
-
-def test_navigation_rows_hold_the_solution():
-    run = navigate(DRIVE, 50.0, 900.0)
-    last = dict(zip(at.NAVIGATION, run.navigation[-1], strict=True))
-    assert last["ve_mps"] == pytest.approx(8.0 * math.sin(30 * DEG), abs=1e-6)
-    assert last["heading_rad"] == pytest.approx(30 * DEG, abs=1e-9)
-    assert last["lat_rad"] > SITE.lat
-
-
-def test_divergence_is_reported_and_stops():
-    run = navigate(DRIVE, 50.0, 600.0, errors=np.array([0, 0, 0, 0, 1.5, 0, 0]))
-    assert run.code == at.DIVERGED and run.diverged and "tilt" in run.reason
-
-
-def test_altimeter_holds_the_height_where_a_free_vertical_channel_runs_away():
-    biased = Imu(accel_bias_ug=(0.0, 0.0, 200.0))
-    run = navigate(DENG_SWING, 50.0, 3600.0, biased, vertical="altimeter")
-    height_error = run.navigation[:, at.NAVIGATION.index("dheight_m")]
-    # dh'' = 2e-3 m/s^2 would give 12.7 km in an hour; the loop leaves nothing of a constant bias.
-    assert 0.5 < np.abs(height_error).max() < 20.0
-    assert abs(height_error[-1]) < 0.05
 
 
 def test_as_printed_lacks_the_transport_rate_of_the_reference():

@@ -141,15 +141,6 @@ def test_the_law_series_tells_wish_state_xi_and_measure(fidelity):
     assert np.array_equal(wanted, (measure <= 0.5).astype(float))
 
 
-@pytest.mark.parametrize("vertical", ["locked", "altimeter"])
-def test_the_vertical_channel_is_held_or_damped(vertical):
-    run = run_of(0.5, run={"vertical": vertical}, imu={"accel_bias_ug": [0.0, 0.0, 500.0]})
-    navigation = run.methods[0].navigation
-    assert navigation is not None
-    up_error = np.abs(navigation[:, -2]).max()
-    assert up_error == 0.0 if vertical == "locked" else 0.01 < up_error < 1.0
-
-
 def test_compensation_makes_the_difference_it_should():
     """Coning at 2 Hz: without compensation the level attitude drifts."""
     cone = [{"amplitude_deg": 1.0, "frequency_hz": 2.0, "phase_deg": phase} for phase in (0.0, 90.0)]

@@ -34,7 +34,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ),
         (
             "test_network_*", "test_pages", "test_placing", "test_any_network", "test_figures_poles",
-            "test_figures_frequency", "test_liu_networks",
+            "test_figures_frequency", "test_liu_networks", "test_theory",
         ),
     ),
 }  # fmt: skip
