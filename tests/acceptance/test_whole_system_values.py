@@ -37,7 +37,7 @@ def test_the_table_of_physics_10(text, slope, days):
     assert h.h_slope == pytest.approx(slope, rel=1e-3)
     assert h.h0 == pytest.approx(1.0, abs=1e-3)
     for lat, printed in zip(LATITUDES, days, strict=True):
-        found = whole_system(h, "external", lat * DEG).e_folding_s / DAY
+        found = whole_system(h, lat * DEG).e_folding_s / DAY
         assert found == pytest.approx(printed, rel=0.03), (text, lat)
 
 
@@ -45,7 +45,7 @@ def test_pole2_exact_of_physics_10():
     """H(0) = 0.648; printed to one decimal."""
     h = network('id = "pole2", xi = 0.5')
     for lat, printed in ((32.0, 2.0), (45.0, 1.6), (60.0, 1.3)):
-        assert whole_system(h, "external", lat * DEG).e_folding_s / DAY == pytest.approx(printed, abs=0.055)
+        assert whole_system(h, lat * DEG).e_folding_s / DAY == pytest.approx(printed, abs=0.055)
 
 
 @pytest.mark.parametrize(("text", "slope", "days"), TABLE)
@@ -53,7 +53,7 @@ def test_pole2_exact_of_physics_10():
 def test_the_approximate_formula_is_as_good_as_theory_10_says(text, slope, days, lat):
     """4 % for slopes up to 1000 s; the steep last row is 5.2 % off at 75 deg."""
     h = network(text)
-    exact = whole_system(h, "external", lat * DEG).earth_growth
+    exact = whole_system(h, lat * DEG).earth_growth
     allowed = 0.04 if abs(slope) < 1000.0 else 0.053
     assert approximate_growth(h.h_slope, lat * DEG) == pytest.approx(exact, rel=allowed)
 
