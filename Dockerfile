@@ -10,7 +10,7 @@
 # The base is an image index for all platforms, with Python 3.11.16. Its digest comes from the record that Docker keeps
 # of its official images (docker-library/repo-info, 25 August 2026). To renew it, write what this prints into both stages:
 #   docker buildx imagetools inspect python:3.11-slim-bookworm
-# tests/docker carries these steps out without a Docker engine.
+# tests/extension/test_image.py reads this file, and builds the image where a Docker engine answers.
 
 FROM python:3.11-slim-bookworm@sha256:0bee7276f83efd4a1ee05bbbf4281d95ed28e079220a9457f25a93e3f1e3c31b AS builder
 WORKDIR /src

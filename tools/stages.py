@@ -47,19 +47,18 @@ STAGES = {
     "unit, acceptance, doctests": [
         *CODE,
         "README.md",
-        *(f"--ignore=tests/{own}" for own in ("attack", "browser", "docker", "extension")),
+        *(f"--ignore=tests/{own}" for own in ("attack", "browser", "extension")),
         # A file stays in one process, so that what its tests share is made once; the longest come first.
         *("-n2", "--dist=loadfile", "--no-loadscope-reorder"),
         "-mnot browser and not attack",
     ],
-    "container": ["tests/docker"],
     "extension": ["tests/extension"],
     "attack": ["tests/attack"],
     # All tests of a process share a page; a process that has no tests left takes half of the other's.
     "browser": ["tests/browser", "-n2", "--dist=worksteal"],
 }
 
-BESIDE = (("container", "basedpyright"), ("extension", "attack"))
+BESIDE = (("basedpyright", "attack"), ("extension",))
 """Lanes that run side by side; each keeps at most one core busy, the stages of a lane one after the other."""
 
 

@@ -84,24 +84,6 @@ class Comparison:
     numbers: tuple[Number, ...]
     words: str
 
-    @property
-    def y_window(self) -> tuple[float, float] | None:
-        """Part of the y axis on which both forms can be judged; None: all of it.
-
-        A form that diverges would press the other one flat: the window is three times the corrected curves'
-        own span, as far as the printed ones reach.
-        """
-        if self.y_axis.log:
-            return None
-        right = np.concatenate([curve.y for curve in self.curves if curve.form == "corrected"])
-        every = np.concatenate([curve.y for curve in self.curves])
-        low, high = float(np.nanmin(right)), float(np.nanmax(right))
-        if high <= low:
-            return None
-        reach = high - low
-        window = max(float(np.nanmin(every)), low - reach), min(float(np.nanmax(every)), high + reach)
-        return window if np.nanmin(every) < window[0] or np.nanmax(every) > window[1] else None
-
 
 @dataclass(frozen=True)
 class Misprint:

@@ -231,21 +231,6 @@ def growth_over_latitude(network: LinearNetwork, lats: np.ndarray, earth: Earth 
     return np.array(rates).reshape(lats.shape)
 
 
-def approximate_growth(h_slope: float, lat: float) -> float:
-    """Growth of the 24 h mode for H(0) = 1, Omega^2 (1 + sin^2 L) H'(0)/2, 1/s (theory.md 10).
-
-    The first order in H'(0): within 4 % of the eigenvalue for |H'(0)| up to 1000 s, 5.2 % off at 2100 s.
-
-    Parameters
-    ----------
-    h_slope : float
-        H'(0), s.
-    lat : float
-        rad.
-    """
-    return 0.5 * EARTH_RATE**2 * (1.0 + math.sin(lat) ** 2) * h_slope
-
-
 def duration(seconds: float) -> str:
     """A time constant in the unit that suits it, to two or three digits: "3.1 days", "53 min"."""
     seconds = abs(seconds)

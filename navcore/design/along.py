@@ -30,7 +30,6 @@ from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
 
 QUANTITIES = ("phi_e_rad", "phi_n_rad", "phi_u_rad", "dve_mps", "dvn_mps", "dlat_m", "dlon_m")
 _STATES = np.array([4, 5, 6, 0, 1, 2, 3])
-_DAMPED, _UNDAMPED = True, False
 
 
 @dataclass(frozen=True, eq=False)

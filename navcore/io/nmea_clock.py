@@ -10,7 +10,7 @@ from pathlib import Path
 
 from navcore.io.nmea_lines import Tally
 from navcore.io.nmea_sentences import Reading
-from navcore.io.stamps import LONGEST_STAMP, Stamp, StampReader
+from navcore.io.stamps import LONGEST_STAMP, Stamp, StampReader, midnight
 
 _DAY = 86400.0
 _QUARTER_S = 900.0
@@ -126,11 +126,9 @@ def _moment(key: str, fields: str) -> float | None:
                 return None
             date = parts[date_place]
             day, month, year = int(date[:2]), int(date[2:4]), int(date[4:6])
-            year += 1900 if year >= 80 else 2000
         else:
             day, month, year = (int(part) for part in parts[date_place : date_place + 3])
-        midnight = datetime(year, month, day, tzinfo=UTC).timestamp()
-        return midnight + int(time[:2]) * 3600.0 + int(time[2:4]) * 60.0 + float(time[4:])
+        return midnight(year, month, day) + int(time[:2]) * 3600.0 + int(time[2:4]) * 60.0 + float(time[4:])
     except (ValueError, IndexError):
         return None
 

@@ -7,11 +7,10 @@ A decoder returns a `Reading` or raises ValueError when the fields make no sense
 import math
 import re
 from collections.abc import Callable
-from datetime import UTC, datetime
-from functools import lru_cache
 from typing import NamedTuple
 
 from navcore.foundation.units import DEG, KNOT
+from navcore.io.stamps import midnight
 
 _KMPH = 1.0 / 3.6
 _FASTEST = 1000.0
@@ -124,15 +123,10 @@ def _time_of_day(field: str) -> float:
 
 
 def _day(field: str) -> float:
-    """UTC midnight of ``ddmmyy``, s since 1970; the century as C's library has it."""
-    if len(field) != 6:
+    """UTC midnight of ``ddmmyy``, s since 1970."""
+    if len(field) != 6 or not field[4:].isdigit():
         raise ValueError(f"{field} is no date")
-    return _midnight(field[:2], field[2:4], ("19" if field[4:] >= "69" else "20") + field[4:])
-
-
-@lru_cache(maxsize=64)
-def _midnight(day: str, month: str, year: str) -> float:
-    return datetime(int(year), int(month), int(day), tzinfo=UTC).timestamp()
+    return midnight(int(field[4:]), int(field[2:4]), int(field[:2]))
 
 
 def _angle(field: str, side: str, positive: str, negative: str, most: float) -> float:
@@ -192,7 +186,9 @@ def _gns(fields: list[str]) -> Reading:
 
 
 def _zda(fields: list[str]) -> Reading:
-    return Reading(time_of_day=_time_of_day(fields[0]), day=_midnight(*fields[1:4]))
+    return Reading(
+        time_of_day=_time_of_day(fields[0]), day=midnight(int(fields[3]), int(fields[2]), int(fields[1]))
+    )
 
 
 def _hdg(fields: list[str]) -> Reading:

@@ -51,15 +51,14 @@ class Stamp:
 
 
 def _calendar(found: re.Match[str], day_first: bool) -> Stamp:
-    year = int(found["y"])
-    return Stamp(_midnight(_whole_year(year), int(found["mo"]), int(found["d"])) + _clock_s(found))
+    return Stamp(midnight(int(found["y"]), int(found["mo"]), int(found["d"])) + _clock_s(found))
 
 
 def _ordinal(found: re.Match[str], day_first: bool) -> Stamp:
-    day, year = int(found["n"]), _whole_year(int(found["y"]))
+    day = int(found["n"])
     if not 1 <= day <= 366:
         raise ValueError(f"{day} is no day of the year")
-    return Stamp(_midnight(year, 1, 1) + (day - 1) * _DAY + _clock_s(found))
+    return Stamp(midnight(int(found["y"]), 1, 1) + (day - 1) * _DAY + _clock_s(found))
 
 
 def _either_order(found: re.Match[str], day_first: bool) -> Stamp:
@@ -68,16 +67,14 @@ def _either_order(found: re.Match[str], day_first: bool) -> Stamp:
     if first > 12 or second > 12:
         by_day = first > 12
     month, day = (second, first) if by_day else (first, second)
-    return Stamp(_midnight(_whole_year(int(found["y"])), month, day) + _clock_s(found))
+    return Stamp(midnight(int(found["y"]), month, day) + _clock_s(found))
 
 
 def _named(found: re.Match[str], day_first: bool) -> Stamp:
     name = found["name"].lower()
     if name not in _MONTHS:
         raise ValueError(f"{name} is no month")
-    return Stamp(
-        _midnight(_whole_year(int(found["y"])), _MONTHS.index(name) + 1, int(found["d"])) + _clock_s(found)
-    )
+    return Stamp(midnight(int(found["y"]), _MONTHS.index(name) + 1, int(found["d"])) + _clock_s(found))
 
 
 def _unix(found: re.Match[str], day_first: bool) -> Stamp:
@@ -120,13 +117,17 @@ _FORMS: tuple[tuple[re.Pattern[str], Reader], ...] = (
 )
 
 
-def _whole_year(year: int) -> int:
-    return year if year > 99 else year + (1900 if year >= 80 else 2000)
-
-
 @lru_cache(maxsize=64)
-def _midnight(year: int, month: int, day: int) -> float:
-    return datetime(year, month, day, tzinfo=UTC).timestamp()
+def midnight(year: int, month: int, day: int) -> float:
+    """UTC midnight, s since 1970; a year below 100 lies in 1969 to 2068, as POSIX reads two digits.
+
+    Raises
+    ------
+    ValueError
+        There is no such day.
+    """
+    century = 2000 if 0 <= year < 69 else 1900 if 69 <= year < 100 else 0
+    return datetime(century + year, month, day, tzinfo=UTC).timestamp()
 
 
 def _clock_s(found: re.Match[str]) -> float:

@@ -183,15 +183,6 @@ def oscillation_at(t, mean, amplitude, frequency, phase):
     return mean + amplitude * s, _TWO_PI * frequency * amplitude * c
 
 
-@inlined
-def swing_state_at(t, axes):
-    """Pitch, roll, heading (rad) and their rates (rad/s) at time t; ``axes`` as from `SwingMotion.packed`."""
-    pitch, pitch_rate = oscillation_at(t, axes[0, 0], axes[0, 1], axes[0, 2], axes[0, 3])
-    roll, roll_rate = oscillation_at(t, axes[1, 0], axes[1, 1], axes[1, 2], axes[1, 3])
-    heading, heading_rate = oscillation_at(t, axes[2, 0], axes[2, 1], axes[2, 2], axes[2, 3])
-    return pitch, roll, heading, pitch_rate, roll_rate, heading_rate
-
-
 @kernel
 def _fill(rest, axes, step, out):
     """Write the swing at every time; ``rest`` gives the place.

@@ -104,11 +104,6 @@ class LinearNetwork:
         return (n1 - n0 / d0 * d1) / d0 / self.omega_s
 
     @property
-    def h_infinity(self) -> float:
-        """Gain H(inf) at high frequency."""
-        return self.gain if len(self.num) == len(self.den) else 0.0
-
-    @property
     def loop_num_p(self) -> FloatArray:
         """Numerator over ``den_p`` of H + p G: the loop is p^2 + H + p G, with G = 0 but for two outputs."""
         if self.feedback_p is None:

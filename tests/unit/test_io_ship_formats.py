@@ -1,7 +1,7 @@
 """Logs as research vessels write them: the time and whatever else stands beside a sentence."""
 
 from collections.abc import Callable
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -58,6 +58,24 @@ def test_the_time_beside_a_sentence_is_read(tmp_path: Path, name: str) -> None:
         assert series.time_s == pytest.approx([T0 + t for t in times], abs=2e-3)
     assert recording.heading.values == pytest.approx(np.full((6, 1), 30.0 * DEG))
     assert recording.warnings == ()
+
+
+@pytest.mark.parametrize(("digits", "year"), [("68", 2068), ("69", 1969), ("79", 1979), ("80", 1980)])
+def test_a_year_of_two_digits_is_the_same_in_sentences_and_stamps(
+    tmp_path: Path, digits: str, year: int
+) -> None:
+    """The sentence's own date, the date that it gives to times of day beside others, and a stamp's date."""
+    times = [f"10:06:3{second}" for second in range(5)]
+    plain = [f"GPRMC,{t.replace(':', '')},A,4800.0,N,12300.0,W,8.0,45.0,2603{digits},," for t in times]
+    lines = {
+        "own": [sentence(body) for body in plain],
+        "beside": [f"{t} {sentence(body)}" for t in times for body in ("HEHDT,30.00,T", plain[0])],
+        "stamp": [f"26-03-{digits} {t} {sentence('HEHDT,30.00,T')}" for t in times],
+    }
+    found = {name: read_recording(write(tmp_path / f"{name}.txt", text)) for name, text in lines.items()}
+    begin = datetime(year, 3, 26, 10, 6, 30, tzinfo=UTC).timestamp()
+    for series in (found["own"].position, found["beside"].heading, found["stamp"].heading):
+        assert series.time_s[0] == begin
 
 
 def test_a_stamp_may_stand_behind_the_sentence(tmp_path: Path) -> None:

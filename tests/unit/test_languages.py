@@ -78,7 +78,7 @@ def test_every_text_with_values_is_recognised(language: str, catalogue: dict[str
 
 
 def test_one_term_has_one_word(catalogue: dict[str, str]) -> None:
-    table = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("| English | Chinese |")[2]
+    table = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8").partition("| English | Chinese |")[2]
     terms = dict(re.findall(r"^\| ([^|]+?) \| ([^|]+?) \|$", table.partition("\n\n")[0], re.MULTILINE))
     assert len(terms) > 40
     for english, chinese in terms.items():

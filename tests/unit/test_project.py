@@ -256,20 +256,31 @@ def test_locks_satisfy_what_the_project_asks_for(repo_root: Path, platform: tupl
                 )
 
 
-def test_what_is_imported_is_asked_for(repo_root: Path):
-    """Nothing is used that only came along with another package."""
+RUN_BY_NAME = {"axe-playwright-python", "basedpyright", "pytest-timeout", "pytest-xdist", "ruff"}
+"""Required by the tests and imported nowhere: programs, plugins of pytest, a script for the page."""
+
+
+def test_imports_and_requirements_are_the_same_packages(repo_root: Path):
+    """Nothing is used that only came along with another package, and nothing is required in vain."""
     project = tomllib.loads((repo_root / "pyproject.toml").read_text("utf-8"))
     extra = project["project"]["optional-dependencies"]["cluster"]
-    runtime = {Requirement(text).name for text in (*project["project"]["dependencies"], *extra)}
-    testing = runtime | {Requirement(text).name for text in project["dependency-groups"]["test"]}
+    required = {Requirement(text).name for text in project["project"]["dependencies"]}
+    runtime = required | {Requirement(text).name for text in extra}
+    testing = {Requirement(text).name for text in project["dependency-groups"]["test"]}
     known = {*sys.stdlib_module_names, "app", "docs", "navcore", "tests", "tools"}
     providers = packages_distributions()
-    for packages, asked in ((("app", "navcore", "examples"), runtime), (("tests", "tools"), testing)):
+    used: set[str] = set()
+    for packages, asked in (
+        (("app", "navcore", "examples"), runtime),
+        (("tests", "tools"), runtime | testing),
+    ):
         for path in modules(repo_root, *packages):
             for name in set(imported(ast.parse(path.read_text("utf-8")))) - known:
-                assert asked & {canonicalize_name(found) for found in providers.get(name, (name,))}, (
-                    f"{path.relative_to(repo_root)} imports {name}"
-                )
+                owners = {canonicalize_name(found) for found in providers.get(name, (name,))}
+                assert asked & owners, f"{path.relative_to(repo_root)} imports {name}"
+                used |= owners
+        assert required <= used, "required and imported nowhere"
+    assert testing - used == RUN_BY_NAME
 
 
 def test_locks_agree_with_each_other(repo_root: Path):

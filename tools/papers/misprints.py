@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from app.misprints import MISPRINTS, Comparison, Misprint
 from tools.papers.claim import Exhibit, Paper, Table, number
 from tools.papers.picture import panel
@@ -37,6 +39,22 @@ def _table(runs: Runs) -> Table:
     return Table("", head, tuple(rows))
 
 
+def window(both: Comparison) -> tuple[float, float] | None:
+    """Part of the y axis on which both forms can be judged; None: all of it.
+
+    A form that diverges would press the other one flat: the window is three times the corrected curves' own
+    span, as far as the printed ones reach.
+    """
+    right = np.concatenate([curve.y for curve in both.curves if curve.form == "corrected"])
+    every = np.concatenate([curve.y for curve in both.curves])
+    low, high = float(np.nanmin(right)), float(np.nanmax(right))
+    if both.y_axis.log or low == high:
+        return None
+    least, most = float(np.nanmin(every)), float(np.nanmax(every))
+    ends = max(least, 2.0 * low - high), min(most, 2.0 * high - low)
+    return None if ends == (least, most) else ends
+
+
 def _draw(runs: Runs, figure: Figure) -> None:
     items = list(MISPRINTS.values())
     axes = figure.subplots(-(-len(items) // 2), 2, squeeze=False).flat
@@ -45,9 +63,9 @@ def _draw(runs: Runs, figure: Figure) -> None:
         for one in found.curves:
             color, dash = _STYLES[one.form]
             axis.plot(found.x, one.y, color=color, linestyle=dash, label=one.label)
-        window = found.y_window
-        if window is not None:
-            axis.set_ylim(*window)
+        ends = window(found)
+        if ends is not None:
+            axis.set_ylim(*ends)
         axis.set_xscale("log" if found.x_axis.log else "linear")
         axis.set_yscale("log" if found.y_axis.log else "linear")
         x, y = (f"{a.label}, {a.unit}" if a.unit else a.label for a in (found.x_axis, found.y_axis))
