@@ -50,7 +50,7 @@ class LawRun:
         heading: float = 0.0,
     ) -> np.ndarray:
         """One call: c_E, c_N, a_E, a_N."""
-        self.s["difference"], self.s["valid"] = (d_e, d_n), valid
+        self.s["difference"], self.s["valid"] = (d_e, d_n, 0.0), valid
         return np.array(call_law(self.law, Sensed(*v_c, heading)))
 
     def value(self, path: str) -> float:

@@ -10,7 +10,8 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from navcore.foundation.errors import InputError
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 
 SKIPPED = ("file", "axes", "speed")
 """Fields that only mean something with a recorded file."""

@@ -14,7 +14,8 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.markdown import markdown_table
 from navcore.networks import NETWORKS
 from navcore.scenario.file import load, presets
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "design.md"
 MARK = "<!-- the table below is written by `make design` -->"

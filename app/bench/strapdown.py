@@ -13,6 +13,7 @@ from navcore.foundation.earth import WGS84
 from navcore.foundation.units import DEG
 from navcore.law.law import Law, prepare_law
 from navcore.law.policy.constant import Constant
+from navcore.law.records import LawKind
 from navcore.law.switching.hard import Hard
 from navcore.mechanization.strapdown import Settings, VelocityReference, start_from, start_run
 from navcore.mechanization.strapdown.batch import BatchNoise, BatchRun
@@ -67,7 +68,7 @@ class StaticRecord:
         log = VelocityReference(times, still, valid, body_frame=False, hold_s=5.0)
         return Settings(RATE_HZ, self.samples, law_every, self.second, 1.0), log
 
-    def run(self, damping: str, network: NetworkParameters, law_every: int) -> Timed:
+    def run(self, damping: LawKind, network: NetworkParameters, law_every: int) -> Timed:
         """Time one method, always damped, over the whole length."""
         settings, log = self._started(law_every)
 
@@ -92,7 +93,7 @@ class StaticRecord:
         return once
 
 
-def _law(damping: str, network: NetworkParameters, law_every: int) -> Law:
+def _law(damping: LawKind, network: NetworkParameters, law_every: int) -> Law:
     transfer = network.transfer(WGS84.schuler_frequency(SITE.lat))
     return prepare_law(damping, network, transfer, Constant(), Hard(), law_every / RATE_HZ)
 

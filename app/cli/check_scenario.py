@@ -10,7 +10,8 @@ from navcore.engine.drivers.common import network_of, stability_of
 from navcore.engine.environment import Environment, environment
 from navcore.foundation.errors import InputError
 from navcore.scenario.file import load, scenario_hash
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 from navcore.sensors.base import ReferenceErrors
 
 if TYPE_CHECKING:
@@ -109,17 +110,5 @@ def _text(scenario: Scenario) -> list[str]:
         f"latitude {site.lat_deg:g}°, seed {run.seed}",
         f"  motion {scenario.motion.kind}, reference {scenario.reference.kind}",
     ]
-    for m in scenario.method:
-        if m.damping == "free":
-            lines.append(f"  method {m.name}: free")
-        elif m.damping == "kalman":
-            lines.append(f"  method {m.name}: Kalman filter on the difference to the log")
-        elif m.undamped:
-            copies = f"{m.averaging.variant}, {'with' if m.averaging.earth else 'without'} the 24 h line"
-            lines.append(f"  method {m.name}: averaging, {copies}")
-        else:
-            lines.append(
-                f"  method {m.name}: {m.damping}, network {m.network.id}, policy {m.policy.id}, "
-                f"switching {m.switching.id}"
-            )
+    lines += [f"  method {m.name}: {m.kind.description(m)}" for m in scenario.method]
     return lines

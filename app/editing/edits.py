@@ -3,16 +3,20 @@
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any
+
+from pydantic import ValidationError
 
 from app.editing.form import Path
-from navcore.averaging.parameters import Variant
+from navcore.damping import KINDS
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.motion import MOTIONS
 from navcore.motion.static import AttitudeMotion
+from navcore.scenario.bounds import MAX_METHODS
 from navcore.scenario.file import blocks_to_toml, parse_toml
-from navcore.scenario.model import MAX_METHODS, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 
 _STRAPDOWN_ONLY: dict[str, tuple[str, ...]] = {
     "run": ("vertical", "compensation"),
@@ -206,17 +210,15 @@ def _forget_made_name(scenario: Scenario, data: Any, index: int) -> None:
     """Let a name that was made from the network be made anew."""
     method = scenario.method[index]
     others = [m["name"] for i, m in enumerate(data["method"]) if i != index]
-    made = {method.model_copy(update={"name": ""}).label(), method.network.id, "free", "kalman"}
-    made |= {Text("averaging ({variant})", variant=variant) for variant in get_args(Variant)}
+    made = {kind.label(method) for kind in KINDS.values()} | {method.network.id}
     if _unnumbered(method.name) not in made:
         return
     block = data["method"][index]
-    names: dict[str, str] = {
-        "free": "free",
-        "averaging": Text("averaging ({variant})", variant=block["averaging"]["variant"]),
-    }
-    names["kalman"] = "kalman"
-    block["name"] = free_name(names.get(block["damping"], str(block["network"]["id"])), others)
+    try:
+        changed = Method.model_validate(block | {"name": ""})
+    except ValidationError:
+        return  # the scenario is refused
+    block["name"] = free_name(changed.network.id if changed.kind.uses_network else changed.label(), others)
 
 
 def free_name(name: str, taken: list[str]) -> str:

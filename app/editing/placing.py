@@ -12,7 +12,8 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.networks.base import NetworkParameters
 from navcore.networks.pair import MainPair
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 
 COMMAND = "place"
 _FARTHEST = 1e6

@@ -47,6 +47,6 @@ def times_the_floor(scenario: Scenario) -> list[str]:
     texts = []
     for method, given in zip(steady.methods, scenario.method, strict=True):
         times = [number(value, 3) for value in steady.times_floor(method).values() if value is not None]
-        ratios = "the floor itself" if given.damping == "kalman" else ", ".join(times)
+        ratios = "the floor itself" if given.kind.covering == "filter" else ", ".join(times)
         texts.append(ratios or "no steady state")
     return texts

@@ -15,7 +15,6 @@ from navcore.engine.run import MethodRun
 from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG_PER_HOUR, MICRO_G
 from navcore.networks.base import LinearNetwork
-from navcore.networks.undamped import UndampedNetwork
 
 
 @dataclass(frozen=True)
@@ -122,11 +121,6 @@ def earth_mode_text(growth: float) -> str:
     )
 
 
-@lru_cache(maxsize=8)
-def _undamped(omega_s: float) -> LinearNetwork:
-    return UndampedNetwork().transfer(omega_s)
-
-
 @dataclass(frozen=True)
 class Loop:
     """A network as the key of a cache: those with the same coefficients are equal.
@@ -156,29 +150,28 @@ def loop_of(method: MethodRun) -> Loop:
 
 def effective_network(method: MethodRun) -> LinearNetwork:
     """H(s) that acts in this method: 1 when it runs free."""
-    return _undamped(method.network.omega_s) if method.method.undamped else method.network
+    return method.method.kind.acting(method.network)
 
 
 def closed_loop_poles(method: MethodRun) -> np.ndarray:
     """Closed-loop poles of what acts, rad/s."""
-    network = effective_network(method)
-    if network is method.network:
-        return method.loop.poles
-    return np.array([-1j, 1j]) * network.omega_s
+    if method.method.undamped:
+        return np.array([-1j, 1j]) * method.network.omega_s
+    return method.loop.poles
 
 
 def realisation(method: MethodRun) -> str:
     """How the network is carried out; internal damping always uses the network form."""
-    return effective_network(method).realisation if method.method.damping == "external" else "network"
+    return effective_network(method).realisation
 
 
 def reacts(method: MethodRun, source: Source) -> bool:
     """Whether an error source enters this method at all: no log without external damping, and so on."""
-    damping = method.method.damping
+    kind = method.method.kind
     if source == "dv_r":
-        return damping == "external"
+        return kind.referenced
     if source == "acceleration":
-        return damping == "internal" or realisation(method) == "as_printed"
+        return kind.self_referenced or realisation(method) == "as_printed"
     return True
 
 

@@ -20,7 +20,6 @@ from navcore.analysis.whole_system import (
     feedback_gains,
     free_matrix,
     inputs_of_law,
-    network_that_acts,
 )
 from navcore.foundation.earth import SPHERE, Earth
 from navcore.foundation.errors import InputError
@@ -64,7 +63,6 @@ class HeldLog:
 @lru_cache(maxsize=256)
 def held_log(
     network: LinearNetwork,
-    damping: str,
     log_period_s: float,
     law_step_s: float,
     lat: float,
@@ -75,11 +73,10 @@ def held_log(
     Parameters
     ----------
     network : LinearNetwork
-        H(s).
-    damping : {"free", "internal", "external", "averaging", "kalman"}
-        Internal damping has no log: its own velocity is read at each call of the law.
+        H(s) as it acts.
     log_period_s : float
-        Time between two epochs of the log, s; a log faster than the law is read once a call.
+        Time between two epochs of what the law reads, s: of the log, or of its own calls where it reads the
+        computed velocity (internal damping). A log faster than the law is read once a call.
     law_step_s : float
         Time between two calls of the law, s.
     lat : float
@@ -87,20 +84,18 @@ def held_log(
     earth : Earth
         WGS-84 or the sphere.
     """
-    network = network_that_acts(network, damping)
-    period = log_period_s if damping == "external" else law_step_s
-    calls = max(1, round(period / law_step_s))
-    growth = _growth(network, damping, law_step_s, calls, lat, earth)
+    calls = max(1, round(log_period_s / law_step_s))
+    growth = _growth(network, law_step_s, calls, lat, earth)
     stable = not growth > _STANDS * network.omega_s
     up_to, warnings = None, ()
     if not stable and np.max(closed_loop_poles(network).real) <= _STANDS:
-        up_to = _stable_up_to(network, damping, law_step_s, calls, lat, earth)
+        up_to = _stable_up_to(network, law_step_s, calls, lat, earth)
         warnings = (_warning(growth, calls * law_step_s, law_step_s, calls, up_to),)
     return HeldLog(calls * law_step_s, law_step_s, stable, growth, up_to, warnings)
 
 
 def period_map(
-    network: LinearNetwork, damping: str, law_step_s: float, calls: int, lat: float, earth: Earth = SPHERE
+    network: LinearNetwork, law_step_s: float, calls: int, lat: float, earth: Earth = SPHERE
 ) -> np.ndarray:
     """Map of the state over one period of the log, i.e. ``calls`` calls of the law.
 
@@ -112,7 +107,7 @@ def period_map(
     InputError
         The network cannot run at this step.
     """
-    dA, B, C, D, E, k1 = _sampled_law(network, damping, law_step_s)
+    dA, B, C, D, E, k1 = _sampled_law(network, law_step_s)
     n, omega_s = len(B), network.omega_s
     plant, forced = _held_plant(lat, omega_s, law_step_s, earth)
     held = STATES + 2 * n
@@ -133,10 +128,10 @@ def period_map(
 
 
 def _sampled_law(
-    network: LinearNetwork, damping: str, step_s: float
+    network: LinearNetwork, step_s: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, np.ndarray, float]:
     """dA, B, C, D, E, k1 of z += dA z + B d, c = C z + D d, a = omega_s (E z + k1 d), for d = V_r - V_c."""
-    if network.feedback_p is None and damping == "external" and network.realisation != "network":
+    if network.feedback_p is None and network.realisation != "network":
         k1, k2, k3 = feedback_gains(network)
         tau = network.omega_s * step_s
         return np.zeros((1, 1)), np.array([-k3 * tau]), np.ones(1), -k2 - 0.5 * k3 * tau, np.zeros(1), k1
@@ -154,12 +149,10 @@ def _held_plant(lat: float, omega_s: float, step_s: float, earth: Earth) -> tupl
     return moved[:STATES, :STATES], moved[:STATES, STATES:]
 
 
-def _growth(
-    network: LinearNetwork, damping: str, step_s: float, calls: int, lat: float, earth: Earth
-) -> float:
+def _growth(network: LinearNetwork, step_s: float, calls: int, lat: float, earth: Earth) -> float:
     """Growth of the fastest growing mode that is not a slow one, 1/s."""
     try:
-        factors = np.linalg.eigvals(period_map(network, damping, step_s, calls, lat, earth))
+        factors = np.linalg.eigvals(period_map(network, step_s, calls, lat, earth))
     except InputError:  # the run itself says why this network cannot run at this step
         return math.nan
     rates = np.log(factors[np.abs(factors) > 1e-300].astype(complex)) / (calls * step_s)
@@ -167,14 +160,12 @@ def _growth(
     return float(np.max(fast.real)) if len(fast) else math.nan
 
 
-def _stable_up_to(
-    network: LinearNetwork, damping: str, step_s: float, calls: int, lat: float, earth: Earth
-) -> float:
+def _stable_up_to(network: LinearNetwork, step_s: float, calls: int, lat: float, earth: Earth) -> float:
     """Longest stable log period, or law step when the log is as fast as the law, s; 0: none."""
     limit = _STANDS * network.omega_s
 
     def grows(n: int, step: float) -> bool:
-        return _growth(network, damping, step, n, lat, earth) > limit
+        return _growth(network, step, n, lat, earth) > limit
 
     if calls > 1 and not grows(1, step_s):
         low, high = 1, calls

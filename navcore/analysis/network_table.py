@@ -75,7 +75,7 @@ def _row(name: str, parameters: str) -> list[str]:
     cells = [f"`{name}`", shown, f"{network.h0:.4g}", f"{network.h_slope:+.1f}"]
     cells.append(f"{analyse(network).damping_ratio:.3f}")
     for lat in LATITUDES:
-        whole = whole_system(network, "external", lat * DEG)
+        whole = whole_system(network, lat * DEG)
         growth = whole.earth_growth
         if growth == 0.0:
             cells.append("stands")

@@ -47,10 +47,10 @@ def network_report(
     _check(lat_deg, log_period_s, law_step_s)
     network = parameters.transfer(SPHERE.schuler_frequency(0.0))
     loop = analyse(network)
-    whole = whole_system(network, "external", lat_deg * DEG)
+    whole = whole_system(network, lat_deg * DEG)
     warnings = [*network.warnings, *loop.warnings, *whole.warnings]
     if log_period_s is not None:
-        warnings += held_log(network, "external", log_period_s, law_step_s, lat_deg * DEG).warnings
+        warnings += held_log(network, log_period_s, law_step_s, lat_deg * DEG).warnings
     return {
         "id": network.id,
         "num": [float(c) for c in network.num],

@@ -16,7 +16,7 @@ from navcore.analysis.loop import closed_loop_poles
 from navcore.foundation.earth import EARTH_RATE, SPHERE, Earth
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
-from navcore.networks.base import ComplexArray, LinearNetwork, linear_network
+from navcore.networks.base import ComplexArray, LinearNetwork
 from navcore.networks.roots import sorted_roots
 from navcore.networks.state_space import state_space, state_spaces
 
@@ -108,29 +108,13 @@ class LawForm:
     k1: float
 
 
-def network_that_acts(network: LinearNetwork, damping: str) -> LinearNetwork:
-    """The network, or H = 1 where none acts: free, the copies of an averaging method, a Kalman filter."""
-    if damping in ("internal", "external"):
-        return network
-    return linear_network("none", network.omega_s, [1.0], [1.0])
-
-
-def law_form(network: LinearNetwork, damping: str) -> LawForm:
-    """State-space form of a method's damping law.
-
-    Parameters
-    ----------
-    network : LinearNetwork
-        H(s).
-    damping : {"free", "internal", "external", "averaging", "kalman"}
-        See `network_that_acts`.
-    """
-    network = network_that_acts(network, damping)
+def law_form(network: LinearNetwork) -> LawForm:
+    """State-space form of the damping law of a network as it acts (`navcore.damping.base.Damping.acting`)."""
     poles = network.poles / network.omega_s
     if network.feedback_p is not None:
         system, second = state_spaces([network.num_p, network.feedback_p], poles)
         return LawForm(system.A, system.B, system.C, system.D - 1.0, -second.C, second.D)
-    if damping == "external" and network.realisation != "network":
+    if network.realisation != "network":
         k1, k2, k3 = feedback_gains(network)
         return LawForm(np.zeros((1, 1)), np.array([k3]), np.ones(1), k2, np.zeros(1), k1)
     system = state_space(network.num_p, poles)
@@ -192,10 +176,10 @@ def _stiffness(lat: float, omega_s: float, earth: Earth, height: float) -> tuple
 
 
 def system_matrix(
-    network: LinearNetwork, damping: str, lat: float, earth: Earth = SPHERE, height: float = 0.0
+    network: LinearNetwork, lat: float, earth: Earth = SPHERE, height: float = 0.0
 ) -> np.ndarray:
     """System matrix with the law's states of the east, then the north channel, shape (6 + 2 n, 6 + 2 n)."""
-    law = law_form(network, damping)
+    law = law_form(network)
     n = len(law.B)
     act = inputs_of_law(lat, network.omega_s, earth, height)
     f = np.zeros((STATES + 2 * n, STATES + 2 * n))
@@ -210,16 +194,14 @@ def system_matrix(
 
 @lru_cache(maxsize=256)
 def whole_system(
-    network: LinearNetwork, damping: str, lat: float, earth: Earth = SPHERE, height: float = 0.0
+    network: LinearNetwork, lat: float, earth: Earth = SPHERE, height: float = 0.0
 ) -> WholeSystem:
     """Analyse the whole system at rest.
 
     Parameters
     ----------
     network : LinearNetwork
-        H(s); its realisation counts under external damping only.
-    damping : {"free", "internal", "external", "averaging", "kalman"}
-        Internal and external damping by the network form have the same eigenvalues.
+        H(s) as it acts (`navcore.damping.base.Damping.acting`).
     lat : float
         rad.
     earth : Earth
@@ -227,8 +209,7 @@ def whole_system(
     height : float
         m.
     """
-    network = network_that_acts(network, damping)
-    values = np.linalg.eigvals(system_matrix(network, damping, lat, earth, height)).astype(np.complex128)
+    values = np.linalg.eigvals(system_matrix(network, lat, earth, height)).astype(np.complex128)
     modes = tuple(_named(values, network, lat))
     growth = max(mode.growth for mode in modes if mode.name == EARTH_MODE)
     tolerance = _STANDS * network.omega_s
@@ -243,12 +224,10 @@ def whole_system(
     )
 
 
-def growth_over_latitude(
-    network: LinearNetwork, damping: str, lats: np.ndarray, earth: Earth = SPHERE
-) -> np.ndarray:
+def growth_over_latitude(network: LinearNetwork, lats: np.ndarray, earth: Earth = SPHERE) -> np.ndarray:
     """Growth rate of the 24 h mode at each latitude (rad), 1/s, shape of ``lats``."""
     lats = np.asarray(lats, dtype=float)
-    rates = [whole_system(network, damping, float(lat), earth).earth_growth for lat in lats.reshape(-1)]
+    rates = [whole_system(network, float(lat), earth).earth_growth for lat in lats.reshape(-1)]
     return np.array(rates).reshape(lats.shape)
 
 

@@ -20,6 +20,15 @@ RECORD_STEP_S = 1.0
 """Interval of the record's increments (theory.md section 5), s."""
 FASTEST_START_MPS = 0.01
 """A vehicle faster than this at t = 0 did not stand before."""
+MUST_STAND = "half-period averaging forecasts from an alignment at rest: the motion must start from rest"
+
+
+def under_way(true_row: np.ndarray, because: str) -> Fault | None:
+    """Fault of a vehicle that moves at t = 0; None where it stands."""
+    speed = float(np.linalg.norm(true_row[VE : VU + 1]))
+    if speed <= FASTEST_START_MPS:
+        return None
+    return Fault("", "motion", Text("{speed:.3g} m/s at t = 0", speed=speed), because)
 
 
 def standing_row(true_row: np.ndarray) -> np.ndarray:
@@ -30,16 +39,8 @@ def standing_row(true_row: np.ndarray) -> np.ndarray:
     InputError
         The vehicle moves at t = 0: what lies before cannot be forecast from a record at rest.
     """
-    speed = float(np.linalg.norm(true_row[VE : VU + 1]))
-    if speed > FASTEST_START_MPS:
-        raise InputError(
-            Fault(
-                "",
-                "motion",
-                Text("{speed:.3g} m/s at t = 0", speed=speed),
-                "half-period averaging forecasts from an alignment at rest: the motion must start from rest",
-            )
-        )
+    if fault := under_way(true_row, MUST_STAND):
+        raise InputError(fault)
     row = np.zeros(COLUMNS)
     kept = [LAT, LON, HEIGHT, PITCH, ROLL, HEADING]
     row[kept] = true_row[kept]

@@ -24,7 +24,8 @@ from navcore.design.maps import (
 )
 from navcore.design.noise import AXES, INPUTS_OF, interval_noise
 from navcore.design.scheduled import law_stages
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
 
 QUANTITIES = ("phi_e_rad", "phi_n_rad", "phi_u_rad", "dve_mps", "dvn_mps", "dlat_m", "dlon_m")
@@ -67,7 +68,7 @@ def along(
     scenario : Scenario
         Complete and checked.
     method : Method
-        Of damping ``free``, ``internal`` or ``external``, with a law that is known in advance.
+        Of a kind of damping whose loop has a covariance, with a law that is known in advance.
     course : Course
         Of `navcore.design.course.course`.
     model : StochasticModel
@@ -148,7 +149,7 @@ def _tables(loops: list[LoopModel], stage: np.ndarray, model: StochasticModel, c
     Phi, decay = np.zeros((g, n, n)), np.zeros((g, INPUTS))
     B, G = np.zeros((2, g, n, INPUTS))
     Q = np.zeros((g, len(RANDOM_SOURCES), n + AXES, n + AXES))
-    needs_log = loop.form.damping == "external"
+    needs_log = loop.form.uses_log
     served = course.served | (not needs_log)
     mean = mean_coefficients(course)
     alike = np.column_stack([course.length, served, stage])
@@ -229,7 +230,7 @@ def _known(
     for j, column in enumerate(columns):
         W[:, :, j] = column.drive
         X[:ERRORS, j] = column.start
-    if loop.form.damping == "internal":
+    if loop.form.self_referenced:
         _rest(loop, X, W[0])
     drive = tables.B[course.kind] @ W
     out = np.empty((k + 1, len(_STATES), count))

@@ -10,9 +10,11 @@ from typing import Literal
 
 import numpy as np
 
+from navcore.damping.base import Covering
 from navcore.design.seeds import no_covariance
 from navcore.design.ship import Ship
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 
 Kind = Literal["covariance", "filter", "none"]
 
@@ -82,22 +84,36 @@ def covariance_bands(
     for method in scenario.method:
         if cancelled is not None and cancelled():
             return None
-        bands.append(_band(ship, method))
+        bands.append(_BANDS[method.kind.covering](ship, method))
         if progress is not None:
             progress(len(bands) / len(scenario.method))
     return Bands(ship.course.t_s, tuple(bands))
 
 
-def _band(ship: Ship, method: Method) -> Band:
-    if method.damping == "kalman":
-        own = ship.floor_series
-        if own is None:
-            return Band("none", reason="the filter is told of no random error, or has no log")
-        kind, variance = "filter", own.total
-    elif reason := no_covariance(ship.scenario, method):
+def _of_loop(ship: Ship, method: Method) -> Band:
+    if reason := no_covariance(ship.scenario, method):
         return Band("none", reason=reason)
-    else:
-        kind, variance = "covariance", ship.along(method).total
+    variance = ship.along(method).total
     if not np.all(np.isfinite(variance)):
         return Band("none", reason="the loop is unstable: its variance overflows")
-    return Band(kind, np.sqrt(np.maximum(variance, 0.0)))
+    return Band("covariance", _deviation(variance))
+
+
+def _of_filter(ship: Ship, method: Method) -> Band:
+    del method
+    own = ship.floor_series
+    if own is None:
+        return Band("none", reason="the filter is told of no random error, or has no log")
+    return Band("filter", _deviation(own.total))
+
+
+def _deviation(variance: np.ndarray) -> np.ndarray:
+    return np.sqrt(np.maximum(variance, 0.0))
+
+
+_BANDS: dict[Covering, Callable[[Ship, Method], Band]] = {
+    "covariance": _of_loop,
+    "seeds": _of_loop,  # which says why there is none
+    "filter": _of_filter,
+}
+"""Band of a method, by where its budget comes from."""

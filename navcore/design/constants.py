@@ -12,7 +12,8 @@ import numpy as np
 
 from navcore.design.course import Course, log_axes
 from navcore.design.maps import ACCEL, ERRORS, GYRO, INPUTS, LAW, RATE, LoopModel
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 from navcore.scenario.start import aligned_errors, independent_errors
 from navcore.scenario.stochastic import StochasticModel
 from navcore.sensors.imu import imu_errors
@@ -68,10 +69,10 @@ def shared_columns(scenario: Scenario, course: Course, model: StochasticModel) -
 
 def own_columns(method: Method, course: Course, loop: LoopModel) -> Iterator[Column]:
     """Responses of one method: its own log events, and what its law makes of the ship's manoeuvres."""
-    if method.event and method.damping == "external":
+    if method.event and loop.form.uses_log:
         t = np.arange(course.edges[-1] + 1) * course.step_s
         yield _column("log_events", LAW, course.means(t, event_velocity(method.event, t)))
-    if loop.form.damping == "internal":
+    if loop.form.self_referenced:
         yield _column("motion", LAW, -course.velocity)
     elif loop.form.as_printed:
         yield _column("motion", RATE, -course.velocity)

@@ -1,16 +1,13 @@
 """A method's law as linear equations: what its network makes of the difference V_r - V_c, in one channel."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
-from navcore.law.combination import network_in_force, realisation_of
+from navcore.law.combination import realisation_of
 from navcore.networks.base import NetworkParameters
 from navcore.networks.state_space import state_spaces
-from navcore.scenario.model import Method
-
-Damping = Literal["free", "internal", "external"]
+from navcore.scenario.method import Method
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,8 +19,10 @@ class LawForm:
 
     Attributes
     ----------
-    damping : {"free", "internal", "external"}
-        u is 0, minus the computed velocity, or V_r - V_c.
+    acts : bool
+        Whether u counts: minus the computed velocity, or V_r - V_c.
+    uses_log : bool
+        Whether u holds the reference velocity V_r.
     A : ndarray, shape (n, n)
     B, C, E : ndarray, shape (n,)
     D, F : float
@@ -31,7 +30,8 @@ class LawForm:
         The transport rate is formed from c alone, without the reference's own (Deng 4).
     """
 
-    damping: Damping
+    acts: bool
+    uses_log: bool
     A: np.ndarray
     B: np.ndarray
     C: np.ndarray
@@ -45,6 +45,11 @@ class LawForm:
         """States of the network in one channel."""
         return len(self.B)
 
+    @property
+    def self_referenced(self) -> bool:
+        """Whether u is minus the computed velocity, so that the ship's manoeuvres enter."""
+        return self.acts and not self.uses_log
+
 
 def law_form(method: Method, omega_s: float) -> LawForm:
     """Form in which a method runs at a site, without its policy and switching.
@@ -52,22 +57,20 @@ def law_form(method: Method, omega_s: float) -> LawForm:
     Parameters
     ----------
     method : Method
-        Of damping ``free``, ``internal`` or ``external``.
+        Of a kind of damping whose loop has a covariance.
     omega_s : float
         Schuler frequency of the site, rad/s.
     """
-    damping: Damping = (
-        "internal" if method.damping == "internal" else "external" if method.damping == "external" else "free"
-    )
-    parameters = network_in_force(damping, method.network, method.policy)
-    realisation = realisation_of(damping, parameters)
-    if damping == "free":
+    kind = method.kind
+    if not kind.uses_network:
         empty = np.zeros(0)
-        return LawForm("free", np.zeros((0, 0)), empty, empty, 0.0, empty, 0.0)
+        return LawForm(False, False, np.zeros((0, 0)), empty, empty, 0.0, empty, 0.0)
+    parameters = kind.network(method)
+    realisation = realisation_of(kind.law, parameters)
     gains = parameters.feedback_gains(omega_s)
     if realisation != "network" and gains is not None:
         return feedback_form(gains, omega_s, realisation == "as_printed")
-    return _network_form(damping, parameters, omega_s)
+    return _network_form(kind.referenced, parameters, omega_s)
 
 
 def feedback_form(gains: tuple[float, float, float], omega_s: float, as_printed: bool = False) -> LawForm:
@@ -85,13 +88,13 @@ def feedback_form(gains: tuple[float, float, float], omega_s: float, as_printed:
     k1, k2, k3 = gains
     one = np.ones(1)
     return LawForm(
-        "external", np.zeros((1, 1)), -k3 / omega_s * one, one, -k2, np.zeros(1), k1 / omega_s, as_printed
+        True, True, np.zeros((1, 1)), -k3 / omega_s * one, one, -k2, np.zeros(1), k1 / omega_s, as_printed
     )
 
 
-def _network_form(damping: Damping, parameters: NetworkParameters, omega_s: float) -> LawForm:
+def _network_form(uses_log: bool, parameters: NetworkParameters, omega_s: float) -> LawForm:
     network = parameters.transfer(omega_s)
     nums = [network.num_p] if network.feedback_p is None else [network.num_p, network.feedback_p]
     h, *others = state_spaces(nums, network.poles / omega_s)
     E, F = (others[0].C, others[0].D) if others else (np.zeros(len(h.B)), 0.0)
-    return LawForm(damping, h.A, h.B, -h.C, 1.0 - h.D, E, F)
+    return LawForm(True, uses_log, h.A, h.B, -h.C, 1.0 - h.D, E, F)

@@ -87,7 +87,7 @@ def level(form: LawForm, model: StochasticModel, omega_s: float) -> Level:
     n = form.order
     size = n + 5
     net, gyro, accel, log = slice(2, n + 2), n + 2, n + 3, n + 4
-    A, own, reference = np.zeros((size, size)), _own_input(form), 1.0 if form.damping == "external" else 0.0
+    A, own, reference = np.zeros((size, size)), -float(form.acts), float(form.uses_log)
     A[DV, PHI], A[PHI, DV] = 1.0, -1.0
     # u = own dV + reference d with d the log's error; c = C xi + D u, less dV + u where as_printed
     A[PHI, net], A[DV, net], A[net, net] = -form.C, form.E, form.A
@@ -116,10 +116,6 @@ def level(form: LawForm, model: StochasticModel, omega_s: float) -> Level:
         A[i, i] = -1.0 / (drift.tau_s * omega_s)
         drives[source] = _unit(size, i) * unit * math.sqrt(drift.drive / omega_s)
     return Level(A, drives, constants, omega_s)
-
-
-def _own_input(form: LawForm) -> float:
-    return 0.0 if form.damping == "free" else -1.0
 
 
 def _unit(size: int, i: int) -> np.ndarray:

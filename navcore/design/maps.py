@@ -222,7 +222,7 @@ def call_map(loop: LoopModel, half: np.ndarray, damped: bool, fresh: bool) -> Ma
     decay = loop.decay.copy()
     if not fresh:
         decay[LAW] = 1.0
-    if damped and loop.form.damping != "free":
+    if damped and loop.form.acts:
         _put_law(loop, law, half, integral, fresh, Phi, B)
     return Map(Phi, B, B.copy(), decay)
 
@@ -248,7 +248,7 @@ def _put_law(
     Phi[:, :ERRORS, 0:2] -= printed * rate
     own = np.zeros((g, 2, ERRORS))
     own[:, 0, 0] = own[:, 1, 1] = -1.0
-    if loop.body_frame and loop.form.damping == "external":
+    if loop.body_frame and loop.form.uses_log:
         own[:, 0, 6], own[:, 1, 6] = named(half)["v_n"], -named(half)["v_e"]
     held = slice(ERRORS + 2 * n, ERRORS + 2 * n + 2)
     for channel in (0, 1):

@@ -18,9 +18,9 @@ from navcore.design.ship import Ship
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG, HOUR, MINUTE
-from navcore.law.combination import network_in_force, realisation_of
+from navcore.law.combination import realisation_of
 from navcore.networks.base import LinearNetwork
-from navcore.scenario.model import Method
+from navcore.scenario.method import Method
 
 TUNING_INTERVALS = 360
 """Of a run during a search: coarser than the budget, which is made once."""
@@ -58,9 +58,7 @@ class Setting:
     @cached_property
     def network(self) -> LinearNetwork:
         """H(s) as the method's policy runs it."""
-        damping = "free" if self.method.undamped else self.method.damping
-        running = network_in_force(damping, self.method.network, self.method.policy)
-        return running.transfer(self.ship.scenario.omega_s)
+        return self.method.kind.network(self.method).transfer(self.ship.scenario.omega_s)
 
     @cached_property
     def loop(self) -> Loop:
@@ -72,7 +70,7 @@ class Setting:
         """Both channels with heading and latitude at the site."""
         scenario = self.ship.scenario
         place = scenario.site.lat_deg * DEG, scenario.earth, scenario.site.height_m
-        return whole_system(self.network, self.method.damping, *place)
+        return whole_system(self.method.kind.acting(self.network), *place)
 
     @cached_property
     def figures(self) -> Figures:
@@ -101,12 +99,11 @@ class Setting:
     @cached_property
     def log_step(self) -> tuple[float, float]:
         """Largest velocity error (m/s) and tilt (rad) after a step of the log's error by 1 m/s."""
-        if self.method.damping != "external" or not self.loop.stable:
+        if not self.method.kind.referenced or not self.loop.stable:
             return (0.0, 0.0) if self.loop.stable else (math.inf, math.inf)
         slowest = self.loop.settling_s or _STEP_PERIODS * 2.0 * math.pi / self.network.omega_s
         time_s = np.linspace(0.0, min(2.0 * slowest, 200.0 * HOUR), _STEP_POINTS)
-        parameters = network_in_force(self.method.damping, self.method.network, self.method.policy)
-        form = realisation_of(self.method.damping, parameters)
+        form = realisation_of(self.method.kind.law, self.method.kind.network(self.method))
         velocity = time_response(self.network, "dv_r", "dv", time_s, realisation=form)
         tilt = time_response(self.network, "dv_r", "phi", time_s, realisation=form)
         return float(np.max(np.abs(velocity))), float(np.max(np.abs(tilt)))

@@ -22,7 +22,8 @@ from navcore.design.vary import read_varied
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.networks import NETWORKS
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 
 LEFT_OUT = ("none", "custom")
 """Networks without parameters of a design of their own."""

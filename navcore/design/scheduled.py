@@ -5,7 +5,7 @@ import numpy as np
 from navcore.design.course import Course
 from navcore.design.form import LawForm, feedback_form, law_form
 from navcore.law.policy.schedule import Schedule
-from navcore.scenario.model import Method
+from navcore.scenario.method import Method
 
 _STAIRS = 12
 """Constant sets of gains that stand for the passage from one set to the other."""

@@ -8,7 +8,8 @@ from navcore.design.along import QUANTITIES
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 
 SEEDS = 24
 
@@ -23,19 +24,16 @@ def no_covariance(scenario: Scenario, method: Method) -> str:
     method : Method
         One of its methods.
     """
-    if method.damping == "averaging":
-        return "averaging combines several navigations"
-    if method.damping == "kalman":
-        return "the Kalman filter corrects by its own gains"
-    if method.damping == "free":
-        return ""
+    kind = method.kind
+    if kind.no_covariance or not kind.uses_network:
+        return kind.no_covariance
     if method.policy.id not in ("constant", "schedule"):
         return Text('policy "{id}" looks at the data', id=method.policy.id)
     if method.policy.id == "schedule" and method.network.model_dump().get("realisation") != "feedback":
         return 'policy "schedule" is followed in advance only with network.realisation = "feedback"'
     if method.policy.id == "schedule" and scenario.reference.outage:
         return 'policy "schedule" begins anew after each outage of the log'
-    outages = bool(scenario.reference.outage) and method.damping == "external"
+    outages = bool(scenario.reference.outage) and kind.referenced
     if method.switching.id == "hard" or (method.switching.id == "keep" and not outages):
         return ""
     return Text('switching "{id}" acts on what was measured before', id=method.switching.id)

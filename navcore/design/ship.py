@@ -10,7 +10,8 @@ from navcore.design.figures import Figures, Series, mean_figures
 from navcore.design.filter import filter_variance
 from navcore.design.floor import steady_floor
 from navcore.design.scheduled import scheduled_times
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import StochasticModel, stochastic_model
 
 

@@ -15,7 +15,9 @@ from navcore.design.along import QUANTITIES
 from navcore.design.seeds import no_covariance
 from navcore.design.ship import Ship
 from navcore.engine.simulation import simulate
-from navcore.scenario.model import InitialError, Method, Scenario
+from navcore.scenario.initial_error import InitialError
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import Reference
 

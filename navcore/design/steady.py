@@ -1,9 +1,11 @@
 """The steady error budget: one level channel at rest, every method by source (theory.md 15, 16)."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
+from navcore.damping.base import Covering
 from navcore.design.figures import Entry, Figures
 from navcore.design.floor import Floor, steady_floor
 from navcore.design.form import law_form
@@ -12,7 +14,8 @@ from navcore.design.result import Budget, MethodBudget
 from navcore.design.unmodelled import unmodelled_warnings
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
 
 _MARGINAL = 1e-9
@@ -28,26 +31,23 @@ def steady_budget(scenario: Scenario, model: StochasticModel) -> Budget:
         floor_reason=least.reason,
         floor_series=None,
         methods=tuple(
-            _steady_method(scenario, method, model, least, unmodelled) for method in scenario.method
+            _STEADY[method.kind.covering](scenario, method, model, least, unmodelled)
+            for method in scenario.method
         ),
     )
 
 
-def _steady_method(
+def _steady_loop(
     scenario: Scenario, method: Method, model: StochasticModel, floor: Floor, unmodelled: tuple[str, ...]
 ) -> MethodBudget:
-    if method.damping == "averaging":
-        warning = "averaging combines several navigations: it has no steady state of one channel"
-        return MethodBudget(method.name, "none", Entry(Figures()), {}, warnings=(warning,))
-    if method.damping == "kalman":
-        return _steady_filter(method, model, floor)
+    """Steady state of the channel that the method's network closes."""
     channel = level(law_form(method, scenario.omega_s), model, scenario.omega_s)
     parts = steady_parts(channel)
     if model.tide.any():
         amplitude = float(np.sqrt(np.mean(model.tide**2)))
         parts["log_tide"] = line_part(channel, amplitude, 2.0 * math.pi / model.tide_period_s)
     warnings = [*unmodelled]
-    if method.damping != "free" and method.policy.id not in ("constant", "schedule"):
+    if method.kind.uses_network and method.policy.id not in ("constant", "schedule"):
         warnings.append(
             Text('policy "{id}" looks at the data: shown is the loop while it is damped', id=method.policy.id)
         )
@@ -80,8 +80,19 @@ def _steady_method(
     return MethodBudget(method.name, "steady", Entry(total), sources, constants, tuple(warnings))
 
 
-def _steady_filter(method: Method, model: StochasticModel, floor: Floor) -> MethodBudget:
+def _no_steady_state(
+    scenario: Scenario, method: Method, model: StochasticModel, floor: Floor, unmodelled: tuple[str, ...]
+) -> MethodBudget:
+    del scenario, model, floor, unmodelled
+    warning = Text("{reason}: it has no steady state of one channel", reason=method.kind.no_covariance)
+    return MethodBudget(method.name, "none", Entry(Figures()), {}, warnings=(warning,))
+
+
+def _steady_filter(
+    scenario: Scenario, method: Method, model: StochasticModel, floor: Floor, unmodelled: tuple[str, ...]
+) -> MethodBudget:
     """Steady state of the Kalman filter: the floor itself."""
+    del scenario, unmodelled
     if floor.tilt_rad is None:
         return MethodBudget(method.name, "none", Entry(Figures()), {}, warnings=(floor.reason,))
     sources = {name: Entry(Figures(*floor.sources.get(name, (0.0, 0.0)))) for name in RANDOM_SOURCES}
@@ -90,6 +101,12 @@ def _steady_filter(method: Method, model: StochasticModel, floor: Floor) -> Meth
         warnings.append("the filter is not told of the tide, which is not in these figures")
     total = Entry(Figures(floor.tilt_rad, floor.velocity_mps))
     return MethodBudget(method.name, "steady", total, sources, warnings=tuple(warnings))
+
+
+_STEADY: dict[
+    Covering, Callable[[Scenario, Method, StochasticModel, Floor, tuple[str, ...]], MethodBudget]
+] = {"covariance": _steady_loop, "seeds": _no_steady_state, "filter": _steady_filter}
+"""Steady state of a method, by where its budget comes from."""
 
 
 def instability(channel: Level) -> str:

@@ -27,7 +27,11 @@ from navcore.engine.simulation import Cancelled, Progress, simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.units import HOUR, KNOT
 from navcore.law.policy.adaptive import HIGHEST, LOWEST, SUN_TABLE
-from navcore.scenario.model import MAX_METHODS, Alignment, InitialError, Method, Scenario
+from navcore.scenario.blocks import Alignment
+from navcore.scenario.bounds import MAX_METHODS
+from navcore.scenario.initial_error import InitialError
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import Reference
 

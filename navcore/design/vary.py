@@ -14,7 +14,8 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.parameters import bounds_of, extra_of
 from navcore.foundation.text import Text
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 
 _WIDEST = 1e6
 """Ratio of the ends of an allowed range that is searched as a whole; else the slider's range is."""

@@ -7,7 +7,7 @@ from navcore.foundation.errors import InputError
 from navcore.law.policy.schedule import Schedule
 from navcore.networks.base import LinearNetwork, NetworkParameters
 from navcore.networks.compass import CompassNetwork
-from navcore.scenario.model import Method
+from navcore.scenario.method import Method
 
 _GRID = 65
 """Coefficients at which the poles are computed; between them the damping is interpolated."""

@@ -8,6 +8,7 @@ right to about a factor of two for runs that are large enough to matter.
 import os
 from dataclasses import dataclass
 
+from navcore.damping.base import Carrying
 from navcore.foundation.units import HOUR
 from navcore.scenario.model import Scenario
 
@@ -24,20 +25,21 @@ _SMALLEST_S = 0.005
 
 @dataclass(frozen=True)
 class _Cost:
-    """Cost of one step (linear error model) or of one recorded interval (strapdown)."""
+    """Cost of one step (linear error model) or of one recorded interval (strapdown).
+
+    That of a method depends on how it is carried out.
+    """
 
     base: float
     noise: float
     moving: float
-    method: float
-    averaging: float
-    kalman: float = 0.0
+    method: dict[Carrying, float]
 
 
-_LINEAR_BYTES = _Cost(base=60.0, noise=75.0, moving=650.0, method=0.0, averaging=180.0)
-_STRAPDOWN_BYTES = _Cost(base=60.0, noise=0.0, moving=140.0, method=0.0, averaging=60.0)
-_LINEAR_S = _Cost(base=0.15e-6, noise=0.2e-6, moving=1.2e-6, method=0.16e-6, averaging=0.5e-6, kalman=5e-6)
-_STRAPDOWN_S = _Cost(base=30e-9, noise=5e-9, moving=10e-9, method=40e-9, averaging=160e-9, kalman=50e-9)
+_LINEAR_BYTES = _Cost(60.0, 75.0, 650.0, {"law": 0.0, "copies": 180.0, "filter": 0.0})
+_STRAPDOWN_BYTES = _Cost(60.0, 0.0, 140.0, {"law": 0.0, "copies": 60.0, "filter": 0.0})
+_LINEAR_S = _Cost(0.15e-6, 0.2e-6, 1.2e-6, {"law": 0.16e-6, "copies": 0.66e-6, "filter": 5.16e-6})
+_STRAPDOWN_S = _Cost(30e-9, 5e-9, 10e-9, {"law": 40e-9, "copies": 200e-9, "filter": 90e-9})
 """Of one IMU sample."""
 _ROW_S = 0.3e-6
 _WORKERS = 2
@@ -60,7 +62,7 @@ def estimated_bytes(scenario: Scenario) -> float:
     cost = _STRAPDOWN_BYTES if scenario.strapdown else _LINEAR_BYTES
     methods, moving = len(scenario.method), _moving(scenario)
     per_step = cost.base + cost.noise * _noisy(scenario) + cost.moving * moving
-    per_step += cost.averaging * min(_averaging(scenario), _WORKERS)
+    per_step += sum(sorted(_methods(cost, scenario))[-_WORKERS:])
     per_row = _ROW_BYTES + (_NAVIGATION_ROW_BYTES if scenario.strapdown else 0.0)
     arrays = scenario.steps * per_step + _rows(scenario) * (methods * per_row + _TRUE_ROW_BYTES * moving)
     return _FIXED_BYTES + methods * _METHOD_BYTES + arrays + _FILE_FACTOR * _file_bytes(scenario)
@@ -79,14 +81,13 @@ def estimated_seconds(scenario: Scenario) -> float:
     float
         Seconds; what recorded files take to read (once, then cached) is not included.
     """
-    methods, averaging, moving = len(scenario.method), _averaging(scenario), _moving(scenario)
+    methods, moving = len(scenario.method), _moving(scenario)
     cost = _STRAPDOWN_S if scenario.strapdown else _LINEAR_S
     steps = scenario.sampling.samples if scenario.strapdown else scenario.steps
     if scenario.alignment.kind == "compass":
         steps += scenario.alignment.duration_s * scenario.run.rate_hz
     per_step = cost.base + cost.noise * _noisy(scenario) + cost.moving * moving
-    filters = sum(method.damping == "kalman" for method in scenario.method)
-    per_step += cost.method * methods + cost.averaging * averaging + cost.kalman * filters
+    per_step += sum(_methods(cost, scenario))
     return _SMALLEST_S + steps * per_step + _rows(scenario) * methods * _ROW_S
 
 
@@ -98,8 +99,8 @@ def _noisy(scenario: Scenario) -> bool:
     return any(part.white > 0.0 or part.markov[0] > 0.0 for part in scenario.imu.all_parts())
 
 
-def _averaging(scenario: Scenario) -> int:
-    return sum(method.damping == "averaging" for method in scenario.method)
+def _methods(cost: _Cost, scenario: Scenario) -> list[float]:
+    return [cost.method[method.kind.carrying] for method in scenario.method]
 
 
 def _rows(scenario: Scenario) -> float:

@@ -8,7 +8,7 @@ from typing import Any
 from navcore.analysis.report import whole_system_report
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.version import __version__
-from navcore.scenario.model import SCHEMA
+from navcore.scenario.fields import SCHEMA
 
 
 def metrics(run: Run) -> dict[str, Any]:

@@ -13,7 +13,8 @@ from navcore.foundation.drawing import drawn
 from navcore.foundation.text import Text
 from navcore.mechanization.recorder import Recorder
 from navcore.networks.base import LinearNetwork
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 from navcore.scenario.sampling import Sampling
 
 _DAMPED, _XI = 1, 2

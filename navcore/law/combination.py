@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from navcore.foundation.errors import Fault
 from navcore.foundation.text import Text
 from navcore.law.policy.base import PolicyParameters
+from navcore.law.records import CODES, EXTERNAL, FREE, LawKind
 from navcore.law.switching.base import SwitchingParameters
 from navcore.networks.base import NetworkParameters
 from navcore.networks.undamped import UndampedNetwork
@@ -13,18 +14,20 @@ LONGEST_HISTORY = 100_000
 """Law calls that a policy or switching method may look back."""
 
 
-def network_in_force(damping: str, network: NetworkParameters, policy: PolicyParameters) -> NetworkParameters:
+def network_in_force(
+    damping: LawKind, network: NetworkParameters, policy: PolicyParameters
+) -> NetworkParameters:
     """Network that runs: `adaptive` may bring its own, `schedule` ends at its last gains, free has none."""
-    return UndampedNetwork() if damping == "free" else policy.network_in_force(network)
+    return UndampedNetwork() if CODES[damping] == FREE else policy.network_in_force(network)
 
 
-def realisation_of(damping: str, parameters: NetworkParameters) -> str:
+def realisation_of(damping: LawKind, parameters: NetworkParameters) -> str:
     """Realisation in force: internal damping always uses the network form (theory.md 3)."""
-    return parameters.external_form if damping == "external" else "network"
+    return parameters.external_form if CODES[damping] == EXTERNAL else "network"
 
 
 def combination_faults(
-    damping: str,
+    damping: LawKind,
     network: NetworkParameters,
     policy: PolicyParameters,
     switching: SwitchingParameters,
@@ -41,12 +44,14 @@ def combination_faults(
     law_step_s : float
         Time between two calls of the law, s.
     """
-    if damping == "free":
+    if CODES[damping] == FREE:
         return
     running = policy.network_in_force(network)
-    found = [*running.damping_faults(damping)]
-    found += policy.network_faults(network)
-    found += switching.network_faults(damping, running, realisation_of(damping, running), policy)
+    found = [*policy.network_faults(network)]
+    if switching.needs_log and CODES[damping] != EXTERNAL:
+        found.append(Fault("", "switching.id", switching.id, switching.needs_log))
+    else:
+        found += switching.network_faults(running, realisation_of(damping, running), policy)
     for name, part in (("policy", policy), ("switching", switching)):
         rows = part.ring_rows(law_step_s)
         if rows > LONGEST_HISTORY:
@@ -63,15 +68,13 @@ def combination_faults(
 
 
 def combination_warnings(
-    damping: str, network: NetworkParameters, policy: PolicyParameters, switching: SwitchingParameters
+    network: NetworkParameters, policy: PolicyParameters, switching: SwitchingParameters
 ) -> tuple[str, ...]:
     """What the user should know about policy and switching method with this network.
 
     Parameters
     ----------
-    damping, network, policy, switching
+    network, policy, switching
         As configured, free of `combination_faults`.
     """
-    if damping == "free":
-        return ()
     return (*policy.warnings(network), *switching.warnings(policy.network_in_force(network)))

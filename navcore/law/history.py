@@ -3,7 +3,7 @@
 import math
 
 from navcore.foundation.compiled import inlined, kernel
-from navcore.law.records import MAX_STATES, E, N
+from navcore.law.records import CHANNELS, MAX_STATES, E, N
 
 USE_NOTHING, USE_HEADING, USE_ACCELERATION = 0, 1, 2
 """What a policy wants remembered besides the differences."""
@@ -85,7 +85,7 @@ def remember(law, u_e, u_n, sensed):
     row = ring[head]
     row.difference[E], row.difference[N] = s.difference[E], s.difference[N]
     row.input[E], row.input[N] = u_e, u_n
-    for channel in range(2):
+    for channel in range(CHANNELS):
         for i in range(MAX_STATES):
             row.x[channel, i] = s.x[channel, i]
     row.auxiliary = 0.0

@@ -20,16 +20,16 @@ from navcore.law.policy import POLICIES, PolicyParameters
 from navcore.law.policy.base import LOW_MARGIN
 from navcore.law.records import (
     AS_PRINTED,
-    EXTERNAL,
+    CODES,
     FEEDBACK,
     FREE,
     HISTORY,
-    INTERNAL,
     MAX_STATES,
     NETWORK,
     PARAMETERS,
     STATE,
     Law,
+    LawKind,
 )
 from navcore.law.step import law_step
 from navcore.law.switching import SWITCHINGS, SwitchingParameters
@@ -56,14 +56,13 @@ LAW_HISTORY = record_type(
 )
 """One row of a law's history."""
 
-_DAMPING_CODES = {"free": FREE, "internal": INTERNAL, "external": EXTERNAL}
 _REALISATION_CODES = {"network": NETWORK, "feedback": FEEDBACK, "as_printed": AS_PRINTED}
 _OFFSET_FADES_S = 100.0
 """Time constant with which the correction passes to that of a re-tuned network."""
 
 
 def prepare_law(
-    damping: str,
+    damping: LawKind,
     parameters: NetworkParameters,
     network: LinearNetwork,
     policy: PolicyParameters,
@@ -100,7 +99,7 @@ def prepare_law(
     xi = analyse(network).damping_ratio if coefficient is None else coefficient
     p = new_record(
         LAW_PARAMETERS,
-        damping=_DAMPING_CODES[damping],
+        damping=CODES[damping],
         realisation=_REALISATION_CODES[realisation_of(damping, parameters)],
         omega_s=omega_s,
         nominal_xi=xi,

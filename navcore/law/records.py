@@ -4,7 +4,7 @@
 The network itself is part of the *state*: `adaptive`, `schedule`, `ramp` and `step` re-tune it while it runs.
 """
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -12,11 +12,15 @@ from navcore.foundation.records import COUNT, FLAG, REAL, record_type
 
 MAX_STATES = 4
 """States of a network in one channel (navcore.networks.base.MAX_ORDER)."""
-E, N = 0, 1
-"""Channels: the first index of every pair."""
+E, N, U = 0, 1, 2
+"""Channels, the first index of what each of them has: two level ones, and room for the azimuth."""
+CHANNELS = 3
 
+LawKind = Literal["free", "internal", "external"]
+"""What the networks are fed with: nothing, minus the computed velocity, or the difference V_r - V_c."""
 FREE, INTERNAL, EXTERNAL = 0, 1, 2
-"""Kinds of damping."""
+CODES: dict[LawKind, int] = {"free": FREE, "internal": INTERNAL, "external": EXTERNAL}
+"""Codes of `LawKind` in the compiled law."""
 NETWORK, FEEDBACK, AS_PRINTED = 0, 1, 2
 """Realisations of a network."""
 NOTHING, CLEAR, REST, RESTORE, MASKED = 0, 1, 2, 3, 4
@@ -32,7 +36,8 @@ TUNING = record_type(
 PARAMETERS = {
     "damping": COUNT,  # FREE, INTERNAL, EXTERNAL
     "realisation": COUNT,  # NETWORK, FEEDBACK, AS_PRINTED
-    "order": COUNT,  # states a channel
+    "order": COUNT,  # states of a level channel
+    "azimuth_order": COUNT,  # states of the azimuth channel; 0: no network acts there
     "policy": COUNT,  # place of the policy in its registry
     "switching": COUNT,  # place of the switching method in its registry
     "plain": FLAG,  # policy and switching need nothing but the present difference
@@ -83,19 +88,20 @@ STATE = {
     "engaged": FLAG,  # the loop was damped before
     "clock": REAL,  # s since the first call
     "switch_time": REAL,  # s, last engagement
-    "difference": (REAL, (2,)),  # V_r - V_c held from the last log epoch, m/s
+    "difference": (REAL, (CHANNELS,)),  # V_r - V_c held from the last log epoch, m/s
     "valid": FLAG,  # the held difference may be used
     "fresh": COUNT,  # calls in a row with a valid difference
     "epoch": COUNT,  # index of the log epoch in force
-    "correction": (REAL, (2,)),  # velocity correction c applied last, m/s
-    "output": (REAL, (2,)),  # taken off the computed velocity where it is given out, m/s
-    "offset": (REAL, (2,)),  # what re-tuning would have made the correction jump by, fading, m/s
+    "correction": (REAL, (CHANNELS,)),  # velocity correction c applied last, m/s
+    "output": (REAL, (CHANNELS,)),  # taken off the computed velocity where it is given out, m/s
+    "offset": (REAL, (CHANNELS,)),  # what re-tuning would have made the correction jump by, fading, m/s
     "feedback_gain": REAL,  # velocity feedback of gains that change, 1/s; feedback_k1 is 0 then
     "action": COUNT,  # NOTHING, CLEAR, ...: what the switching method asks for in this call
     "to_xi": REAL,  # what it wants the network re-tuned to; 0: as it is
-    "network": DISCRETE_NETWORK,
+    "network": DISCRETE_NETWORK,  # of both level channels
+    "azimuth": DISCRETE_NETWORK,  # of the azimuth channel
     "retuned": RETUNED_NETWORK,
-    "x": (REAL, (2, MAX_STATES)),  # network states
+    "x": (REAL, (CHANNELS, MAX_STATES)),  # network states
     "ring_head": COUNT,  # newest row of the history
     "ring_fill": COUNT,  # rows written, at most all
     "last_velocity": (REAL, (2,)),  # V_c at the last call, m/s
@@ -105,9 +111,9 @@ STATE = {
 """Fields of the state, which changes during a run."""
 
 HISTORY = {
-    "difference": (REAL, (2,)),  # V_r - V_c, m/s
-    "input": (REAL, (2,)),  # the network's input, m/s
-    "x": (REAL, (2, MAX_STATES)),  # network states before the call
+    "difference": (REAL, (CHANNELS,)),  # V_r - V_c, m/s
+    "input": (REAL, (CHANNELS,)),  # the network's input, m/s
+    "x": (REAL, (CHANNELS, MAX_STATES)),  # network states before the call
     "auxiliary": REAL,  # heading without wraps (rad), or acceleration (m/s^2)
     "damped": FLAG,
 }

@@ -7,7 +7,7 @@ physical ones (rad/s, as low as 1e-12) are exact multiples of them.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -299,16 +299,10 @@ class NetworkParameters(Entry):
         del omega_s
         return None
 
-    def damping_faults(self, damping: str) -> Iterator[Fault]:
-        """Say why the network cannot stand under this damping; fields relative to the method.
-
-        Parameters
-        ----------
-        damping : {"internal", "external"}
-            Kind of damping.
-        """
-        del damping
-        return iter(())
+    @property
+    def requires_reference(self) -> bool:
+        """Whether the network as realised has no form without a reference velocity."""
+        return False
 
     def least_coefficient(self) -> float:
         """Return the damping coefficient above which the loop is stable; 0 where all are."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any, ClassVar, Literal
@@ -10,7 +9,6 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from pydantic import PrivateAttr
 
-from navcore.foundation.errors import Fault
 from navcore.foundation.parameters import choice, quantity
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
@@ -191,14 +189,10 @@ class OptimalNetwork(NetworkParameters):
         """The realisation that was chosen."""
         return self.realisation
 
-    def damping_faults(self, damping: str) -> Iterator[Fault]:
-        """Velocity feedback needs the reference: without it there is nothing to pull the velocity onto."""
-        if self.realisation == "feedback" and damping != "external":
-            allowed = Text(
-                'must be "network" with damping = "{damping}": velocity feedback needs a reference',
-                damping=damping,
-            )
-            yield Fault("", "network.realisation", self.realisation, allowed)
+    @property
+    def requires_reference(self) -> bool:
+        """Whether the second output is used, which needs a reference to pull the velocity onto."""
+        return self.realisation == "feedback"
 
     def _check(self, network: LinearNetwork, law: Compensator) -> None:
         """Refuse what cannot run: an unstable network or loop, or one too wide for double precision."""

@@ -13,7 +13,8 @@ from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.scenario.bounds import LARGEST_BYTES, require_bounded, require_readable
-from navcore.scenario.model import SCHEMA, Scenario
+from navcore.scenario.fields import SCHEMA
+from navcore.scenario.model import Scenario
 
 _FILE_FIELDS = (("motion", "file"), ("reference", "file"), ("imu", "file"))
 

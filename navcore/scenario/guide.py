@@ -10,7 +10,8 @@ from typing import Any, Literal, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-from navcore.averaging import AlignmentMotion, Averaging
+from navcore.averaging import AlignmentMotion
+from navcore.damping import KINDS
 from navcore.foundation.markdown import markdown_table
 from navcore.foundation.parameters import Parameters, allowed_range, element_of, extra_of
 from navcore.foundation.registry import blocks_of
@@ -18,7 +19,10 @@ from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
 from navcore.motion import MOTIONS
 from navcore.networks import NETWORKS
-from navcore.scenario.model import Alignment, InitialError, Method, RunSettings, Scenario, SiteSettings, View
+from navcore.scenario.blocks import Alignment, RunSettings, SiteSettings, View
+from navcore.scenario.initial_error import InitialError
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.log_errors.events import LogEvent
 from navcore.sensors.reference import Outage, Reference
@@ -61,7 +65,9 @@ def _sections() -> Iterator[tuple[str, type[Parameters], str]]:
     yield "[[reference.event]]", LogEvent, "also `event` of a method"
     yield "[[reference.outage]]", Outage, ""
     yield "[[method]]", Method, ""
-    yield "averaging = { ... }", Averaging, ""
+    for name, kind in KINDS.items():
+        if kind.settings is not None:
+            yield f"{name} = {{ ... }}", kind.settings, ""
     for name, model in NETWORKS.items():
         yield f'network = {{ id = "{name}" }}', model, f"{model.title}. Source: {model.source}."
     for name, model in POLICIES.items():

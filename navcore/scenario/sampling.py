@@ -1,19 +1,14 @@
 """Rates of a strapdown run: of the IMU, of the damping law and of the recorded states."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from navcore.foundation.errors import Fault
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.motion.base import MotionParameters
-
-if TYPE_CHECKING:
-    from navcore.scenario.model import RunSettings
-    from navcore.sensors.reference import Reference
+from navcore.scenario.blocks import RunSettings
+from navcore.sensors.reference import Reference
 
 SAMPLES_A_PERIOD = 16.0
 """IMU samples in the shortest period of the motion: coning is quadratic in the motion and takes twice the 8

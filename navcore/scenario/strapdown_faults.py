@@ -1,19 +1,14 @@
 """Faults of the fields that concern a strapdown run only."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from navcore.alignment.loop import check_latitude
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.motion import MOTIONS
+from navcore.scenario.fields import ScenarioFields
 from navcore.scenario.sampling import rate_faults
-
-if TYPE_CHECKING:
-    from navcore.scenario.model import Scenario
 
 MAX_SAMPLES = 100_000_000
 """Most IMU samples in a run: eleven days at 100 Hz, about 20 s of computing."""
@@ -25,7 +20,7 @@ _FASTEST_LOOP = 0.1
 """Largest decay rate of the compass loop (1/s), as a part of the IMU's rate (Hz)."""
 
 
-def strapdown_faults(scenario: Scenario) -> Iterator[Fault]:
+def strapdown_faults(scenario: ScenarioFields) -> Iterator[Fault]:
     """Yield the faults of rates, lengths, alignment and recorded IMU.
 
     Under another fidelity these fields are faults themselves when they are set.
@@ -41,7 +36,7 @@ def strapdown_faults(scenario: Scenario) -> Iterator[Fault]:
         yield from _alignment_faults(scenario)
 
 
-def _out_of_place(scenario: Scenario) -> Iterator[Fault]:
+def _out_of_place(scenario: ScenarioFields) -> Iterator[Fault]:
     run, fidelity = scenario.run, scenario.run.fidelity
     needs = Text('needs run.fidelity = "strapdown", which is "{fidelity}"', fidelity=fidelity)
     if scenario.alignment.kind != "none":
@@ -54,7 +49,7 @@ def _out_of_place(scenario: Scenario) -> Iterator[Fault]:
         yield Fault("", "run.compensation", run.compensation, needs)
 
 
-def _recorded_faults(scenario: Scenario) -> Iterator[Fault]:
+def _recorded_faults(scenario: ScenarioFields) -> Iterator[Fault]:
     imu, motion = scenario.imu, scenario.motion
     if imu.file is not None and not motion.carries_recorded_imu:
         able = " or ".join(f'"{kind}"' for kind, model in MOTIONS.items() if model.carries_recorded_imu)
@@ -65,7 +60,7 @@ def _recorded_faults(scenario: Scenario) -> Iterator[Fault]:
         yield Fault("", "imu.begin_s", imu.begin_s, "needs a recorded IMU: imu.file")
 
 
-def _length_faults(scenario: Scenario) -> Iterator[Fault]:
+def _length_faults(scenario: ScenarioFields) -> Iterator[Fault]:
     run, log = scenario.run, scenario.reference
     rates = scenario.sampling
     recorded = scenario.imu.file is not None
@@ -95,7 +90,7 @@ def _length_faults(scenario: Scenario) -> Iterator[Fault]:
         )
 
 
-def _alignment_faults(scenario: Scenario) -> Iterator[Fault]:
+def _alignment_faults(scenario: ScenarioFields) -> Iterator[Fault]:
     alignment, rate = scenario.alignment, scenario.run.rate_hz
     try:
         check_latitude(scenario.site.lat_deg * DEG)

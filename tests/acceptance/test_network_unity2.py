@@ -57,7 +57,7 @@ def test_below_omega_s_the_24_h_mode_decays() -> None:
     assert network.h_slope == pytest.approx(-2829.0, rel=1e-3)
     assert loop.damping_ratio == pytest.approx(0.29, abs=0.005)
     assert any("worse damped (0.288)" in text for text in network.warnings)
-    whole = whole_system(network, "external", 45.0 * DEG)
+    whole = whole_system(network, 45.0 * DEG)
     assert whole.e_folding_s / 86400.0 == pytest.approx(-0.99, abs=0.01)
 
 

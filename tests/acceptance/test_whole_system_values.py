@@ -27,7 +27,7 @@ def test_pole2_exact_of_physics_10():
     """H(0) = 0.648; printed to one decimal."""
     h = network('id = "pole2", xi = 0.5')
     for lat, printed in ((32.0, 2.0), (45.0, 1.6), (60.0, 1.3)):
-        assert whole_system(h, "external", lat * DEG).e_folding_s / DAY == pytest.approx(printed, abs=0.055)
+        assert whole_system(h, lat * DEG).e_folding_s / DAY == pytest.approx(printed, abs=0.055)
 
 
 def measured(scenario: dict, skip_h: float) -> list[tuple[complex, MethodRun]]:

@@ -13,7 +13,9 @@ from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
 from navcore.motion import MOTIONS
 from navcore.networks import NETWORKS
-from navcore.scenario.model import InitialError, Method, RunSettings, SiteSettings
+from navcore.scenario.blocks import RunSettings, SiteSettings
+from navcore.scenario.initial_error import InitialError
+from navcore.scenario.method import Method
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import Reference
 

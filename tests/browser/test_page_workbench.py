@@ -177,7 +177,9 @@ def test_modes_growth_and_the_line_under_the_network_are_the_engines(whole: Benc
     traces, scenario = {trace["name"]: trace for trace in whole.plotly()}, run.scenario
     for method in run.methods[1:]:
         name = method.method.name
-        rates = growth_over_latitude(method.network, method.method.damping, LATITUDES * DEG, scenario.earth)
+        rates = growth_over_latitude(
+            method.method.kind.acting(method.network), LATITUDES * DEG, scenario.earth
+        )
         assert traces[f"{name} growth"]["y"] == pytest.approx((rates * 86400.0).tolist(), rel=1e-6, abs=1e-9)
         (here,) = traces[f"{name} at the site"]["y"]
         assert here == pytest.approx(method.whole.earth_growth * 86400.0, rel=1e-6)

@@ -16,7 +16,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-RECIPES = ("network", "policy", "switching method", "motion", "sensor error", "tab", "import format")
+RECIPES = (
+    "network",
+    "kind of damping",
+    "policy",
+    "switching method",
+    "motion",
+    "sensor error",
+    "tab",
+    "import format",
+)
 _BLOCK = re.compile(r"<!-- (file|line): (\S+) -->\n+```\w+\n(.*?)```\n", re.DOTALL)
 RUN = """
 import json
@@ -35,6 +44,10 @@ eight = {
     "imu": {"gyro_bias_dph": [0.01, 0.01, 0.01]},
     "method": [{"name": "free"}, lead | {"name": "damped"}, lead | {"name": "inside", "damping": "internal"}],
 }
+quay = {
+    "imu": {"gyro_bias_dph": [0.01, 0.01, 0.01]},
+    "method": [{"name": kind, "damping": kind, "network": {"id": "lead"}} for kind in ("moored", "internal")],
+}
 trend = {"imu": {"gyro_trend_dph": 0.24}, "method": [{"name": "free"}]}
 runs = {}
 for fidelity in ("error_model", "strapdown"):
@@ -43,13 +56,23 @@ for fidelity in ("error_model", "strapdown"):
     moved = simulate(Scenario.parse({"run": run | {"rate_hz": 100.0}, "reference": log} | eight))
     hours = run | {"duration_h": 2.0, "output_step_s": 60.0, "step_s": 1.0}
     grown = Scenario.parse({"run": hours} | trend)
+    still = Scenario.parse({"run": hours} | quay)
     runs[fidelity] = {
+        "moored": [method.rows.tolist() for method in simulate(still).methods],
+        "moored budget": [method.total.rms.tilt_rad for method in budget(still).methods],
         "trend": [simulate(grown).methods[0].errors[name]["rms"] for name in ("phi_e_rad", "phi_n_rad")],
         "source": budget(grown).methods[0].sources["gyro_trend"].rms.tilt_rad,
         "steady": budget(grown, steady=True).methods[0].warnings,
         "law": [method.law_series.tolist() for method in decided.methods],
         "tilt": [[m.errors[name]["rms"] for name in ("phi_e_rad", "phi_n_rad")] for m in moved.methods],
     }
+from navcore.foundation.errors import InputError
+try:
+    Scenario.parse(eight | {"method": quay["method"]})
+except InputError as error:
+    assert "needs a vehicle that stands at the start" in str(error)
+else:
+    raise AssertionError("moored under way")
 print(json.dumps(runs))
 """
 _LEFT_OUT = shutil.ignore_patterns(".git", ".venv", "__pycache__", "build", ".*_cache")
@@ -127,6 +150,9 @@ def test_the_examples_run_in_both_fidelities(program: Path) -> None:
             assert measure == turn and wanted == float(turn % 2 == 0), fidelity
             assert damped == float(turn % 2 == 0 and second >= 15), fidelity
         assert [row[1] for row in hard] == [float(k // 90 % 2 == 0) for k in range(len(hard))], fidelity
+        assert (
+            run["moored"][0] == run["moored"][1] and run["moored budget"][0] == run["moored budget"][1] > 0.0
+        )
         assert run["source"] == pytest.approx(np.sqrt(np.mean(np.square(run["trend"]))), rel=1e-3), fidelity
         assert run["steady"] == ["imu.gyro_trend_dph: gyro trend is not in the budget"]
     assert np.array(runs["error_model"]["tilt"]).min() > 0.0

@@ -140,7 +140,7 @@ def test_flaws_of_a_choice_are_told_with_the_result():
     assert any("negative between 0.95 and 2.77 kn" in text for text in warnings)
     assert any("below ζ = 0.104 the printed form is unstable" in text for text in warnings)
     exact, bumpless = parse_network({"id": "pole2"}), Bumpless()
-    told = combination_warnings("external", exact, Constant(), bumpless)
+    told = combination_warnings(exact, Constant(), bumpless)
     assert told == ("bumpless: H(0) differs from 1, so a change of the log acts for good",)
 
 

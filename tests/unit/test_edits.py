@@ -13,8 +13,10 @@ from app.shell.reset import opened_value
 from navcore.foundation.errors import InputError
 from navcore.networks import NETWORKS
 from navcore.networks.compass import gains_from_sigma_xi
+from navcore.scenario.blocks import RunSettings
 from navcore.scenario.file import load
-from navcore.scenario.model import Method, RunSettings, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 
 NETWORK = ("method", 1, "network")
 HEADING = ("motion", "heading_deg")

@@ -182,9 +182,7 @@ class TestWholeSystem:
         run = run_of(method=THREE)
         lat_deg = run.scenario.site.lat_deg
         text = loop_text(run.methods[1], lat_deg)
-        growth = whole_system(
-            run.methods[1].network, "external", lat_deg * DEG, run.scenario.earth
-        ).earth_growth
+        growth = whole_system(run.methods[1].network, lat_deg * DEG, run.scenario.earth).earth_growth
         assert np.isclose(run.methods[1].whole.earth_growth, growth)
         assert text.startswith("One channel: least damping ratio 0.699, settles to 2 % in 53")
         assert f"Whole system: 24 h mode {earth_mode_text(growth)}" in text

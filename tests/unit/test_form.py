@@ -17,7 +17,8 @@ from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
 from navcore.motion import MOTIONS
 from navcore.networks import NETWORKS
-from navcore.scenario.model import InitialError, RunSettings, SiteSettings
+from navcore.scenario.blocks import RunSettings, SiteSettings
+from navcore.scenario.initial_error import InitialError
 from navcore.sensors.imu import Imu
 from navcore.sensors.log_errors.events import LogEvent
 from navcore.sensors.reference import Outage, Reference

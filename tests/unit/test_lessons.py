@@ -43,7 +43,10 @@ from navcore.law.switching import SWITCHINGS
 from navcore.motion import MOTIONS
 from navcore.motion.swing import Oscillation
 from navcore.networks import NETWORKS
-from navcore.scenario.model import Alignment, InitialError, Method, RunSettings, Scenario, SiteSettings
+from navcore.scenario.blocks import Alignment, RunSettings, SiteSettings
+from navcore.scenario.initial_error import InitialError
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import Reference
 from tests.answers import names_in, right_answer

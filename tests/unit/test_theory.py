@@ -159,9 +159,7 @@ def test_growth_of_the_24_h_mode(name: str):
     for lat_deg, told in zip((0, 32, 45, 60, 75), days, strict=True):
         growth = earth_mode_growth(network, lat_deg * DEG)
         assert 1.0 / growth / 86400.0 == pytest.approx(told, abs=0.006)
-        assert whole_system(network, "external", lat_deg * DEG).earth_growth == pytest.approx(
-            growth, rel=1e-6
-        )
+        assert whole_system(network, lat_deg * DEG).earth_growth == pytest.approx(growth, rel=1e-6)
         by_formula = 0.5 * EARTH_RATE**2 * (1 + np.sin(lat_deg * DEG) ** 2) * h_slope
         assert by_formula == pytest.approx(growth, rel=0.04 if abs(h_slope) < 1000 else 0.053)
 

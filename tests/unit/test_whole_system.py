@@ -16,6 +16,7 @@ from navcore.analysis.whole_system import (
     system_matrix,
     whole_system,
 )
+from navcore.damping import KINDS
 from navcore.foundation.earth import EARTH_RATE, SEMI_MAJOR_AXIS, SPHERE, WGS84
 from navcore.foundation.units import DEG
 from navcore.mechanization.error_model import system_matrix as error_model_matrix
@@ -38,13 +39,13 @@ def test_the_free_system_is_that_of_the_error_model(lat_deg):
     six = np.delete(np.delete(seven, 3, axis=0), 3, axis=1)
     unit = np.array([SPHERE.gravity(lat) / OMEGA_S] * 2 + [1.0] * 4)
     normalised = six * unit / unit[:, None] / OMEGA_S
-    np.testing.assert_allclose(system_matrix(network('id = "none"'), "free", lat), normalised, atol=1e-15)
+    np.testing.assert_allclose(system_matrix(network('id = "none"'), lat), normalised, atol=1e-15)
 
 
 @pytest.mark.parametrize("lat_deg", [-75.0, 32.06, 60.0])
 def test_the_free_modes_have_the_known_frequencies(lat_deg):
     """+-j Omega and +-j(omega_s' -+ Omega sin L) (theory.md 2)."""
-    whole = whole_system(network('id = "none"'), "free", lat_deg * DEG)
+    whole = whole_system(network('id = "none"'), lat_deg * DEG)
     wz = abs(EARTH_RATE * math.sin(lat_deg * DEG))
     split = math.hypot(OMEGA_S, wz)
     found = [mode.eigenvalue.imag for mode in whole.modes]
@@ -57,7 +58,7 @@ def test_the_free_modes_have_the_known_frequencies(lat_deg):
 @pytest.mark.parametrize("name", NETWORKS)
 @pytest.mark.parametrize("damping", ["external", "internal"])
 def test_every_network_has_its_modes_named(name, damping):
-    whole = whole_system(network(f'id = "{name}"'), damping, 45.0 * DEG)
+    whole = whole_system(KINDS[damping].acting(network(f'id = "{name}"')), 45.0 * DEG)
     assert whole.modes[0].name == EARTH_MODE
     # one pair, or two real eigenvalues
     assert len(whole.named(EARTH_MODE)) in (1, 2)
@@ -69,15 +70,18 @@ def test_every_network_has_its_modes_named(name, damping):
 
 def test_internal_and_external_damping_have_the_same_eigenvalues():
     h = network('id = "classic3"')
-    external, internal = (whole_system(h, d, 0.7, WGS84) for d in ("external", "internal"))
+    external, internal = (whole_system(KINDS[d].acting(h), 0.7, WGS84) for d in ("external", "internal"))
     assert external.modes == internal.modes
 
 
 def test_feedback_counts_under_external_damping_only():
     h = network('id = "compass", sigma = 0.0015')
-    assert whole_system(h, "external", 0.7).earth_growth == 0.0
-    assert whole_system(h, "internal", 0.7).earth_growth > 0.0
-    assert whole_system(h, "averaging", 0.7).modes == whole_system(network('id = "none"'), "free", 0.7).modes
+    assert whole_system(h, 0.7).earth_growth == 0.0
+    assert whole_system(KINDS["internal"].acting(h), 0.7).earth_growth > 0.0
+    assert (
+        whole_system(KINDS["averaging"].acting(h), 0.7).modes
+        == whole_system(network('id = "none"'), 0.7).modes
+    )
 
 
 def test_the_gains_are_read_back_from_the_network():
@@ -95,7 +99,7 @@ def test_the_gains_are_read_back_from_the_network():
 def test_north_and_south_are_the_same():
     h = network('id = "classic2"')
     lats = np.array([-75.0, -45.0, 0.0, 45.0, 75.0]) * DEG
-    rates = growth_over_latitude(h, "external", lats)
+    rates = growth_over_latitude(h, lats)
     np.testing.assert_allclose(rates, rates[::-1], rtol=1e-9)
     assert np.all(np.diff(rates[2:]) > 0.0)
 
@@ -112,7 +116,7 @@ def test_the_slope_is_the_derivative_of_h(name):
 
 def test_a_pole_at_zero_has_no_slope():
     h = network('id = "custom", zeros = [-1], poles = [0]')
-    assert math.isnan(whole_system(h, "external", 0.7).h_slope)
+    assert math.isnan(whole_system(h, 0.7).h_slope)
 
 
 @pytest.mark.parametrize(
@@ -134,9 +138,9 @@ def test_stiffness_falls_with_height_by_gravity_and_radius() -> None:
 
 
 def test_only_the_24_h_mode_is_explained_by_the_slope() -> None:
-    grows = whole_system(network('id = "classic2"'), "external", 0.8)
+    grows = whole_system(network('id = "classic2"'), 0.8)
     assert "H'(0) = +" in grows.warnings[0]
-    unstable = whole_system(network('id = "pole2", xi = 0.05, variant = "as_printed"'), "external", 0.8)
+    unstable = whole_system(network('id = "pole2", xi = 0.05, variant = "as_printed"'), 0.8)
     others = [text for text in unstable.warnings if "24 h mode" not in text]
     assert others and all("H'(0)" not in text for text in others)
 
@@ -151,7 +155,7 @@ def test_values_join_the_targets_that_are_closest_for_their_size() -> None:
 
 def test_the_main_mode_is_the_pair_that_swings_beside_a_slow_real_pole() -> None:
     """Of the optimal network's poles, -0.93 +- 1.06j swing; -0.10 only fades."""
-    whole = whole_system(network('id = "optimal"'), "external", 45.0 * DEG)
+    whole = whole_system(network('id = "optimal"'), 45.0 * DEG)
     found = [mode.eigenvalue / OMEGA_S for mode in whole.modes if mode.name == SCHULER_MODE]
     assert len(found) == 2
     assert np.array(found) == pytest.approx([-0.926 + 1.062j] * 2, abs=0.12)

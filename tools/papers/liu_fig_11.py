@@ -82,7 +82,7 @@ def whole(runs: Runs, name: str) -> WholeSystem:
     settings = method(run, name).method
     scenario = run.scenario
     transfer = settings.network.transfer(scenario.omega_s)
-    return whole_system(transfer, settings.damping, scenario.site.lat_deg * DEG, scenario.earth)
+    return whole_system(settings.kind.acting(transfer), scenario.site.lat_deg * DEG, scenario.earth)
 
 
 def _e_folding_days(runs: Runs, name: str) -> float:

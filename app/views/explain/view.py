@@ -16,6 +16,7 @@ from app.bridge.controls import control_with
 from app.editing.form import FieldSpec, Path
 from app.shell.view import Frame, Tab, View
 from app.views.learn.lessons import formula_html
+from navcore.damping import KINDS
 from navcore.foundation.assets import asset_path
 from navcore.foundation.parameters import Parameters, extra_of
 from navcore.law.policy import POLICIES
@@ -75,7 +76,7 @@ def key_of(path: Path, scenario: Scenario) -> str:
         kind = scenario.motion.kind if block == "motion" and last != "kind" else ""
         return ".".join([block, kind, *names[1:]] if kind else names)
     part = names[1]
-    if last == "id" or part == "averaging":
+    if last == "id" or part in KINDS:
         return f"{part}.{last}"
     return ".".join([part, getattr(scenario.method[int(path[1])], part).id, *names[2:]])
 

@@ -148,10 +148,8 @@ _OF_RUN: dict[str, Callable[[Run], Named]] = {
 
 
 def _loop(what: str, number: int, run: Run) -> Named:
-    from app.plots.effective import effective_network
-
     method = run.methods[number]
-    free, loop = effective_network(method) is not method.network, method.loop
+    free, loop = method.method.undamped, method.loop
     if what == "period" and free:
         return _minutes(run.scenario.omega_s)
     if what == "period":

@@ -17,7 +17,7 @@ from app.views.method.tuned import table_html
 from navcore.design.sun_settings import TuningSettings
 from navcore.foundation.errors import InputError
 from navcore.foundation.faults import faults_from
-from navcore.scenario.model import Method
+from navcore.scenario.method import Method
 
 FIND, STOP, USE = "Find the table for this scenario", "Stop the search", "Use this table"
 _TITLE = "Table by Sun's double loop"

@@ -22,7 +22,8 @@ from navcore.foundation.text import Text
 from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
 from navcore.networks import NETWORKS
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 
 ADD, COPY, REMOVE = "add", "copy", "remove"
 COPY_TEXT, PASTE_TEXT = "copy as TOML", "paste TOML"
@@ -85,7 +86,7 @@ class MethodView(View):
         clipboard.on_click(if_user(lambda: ask(COPY_METHOD if clipboard.value == COPY_TEXT else PASTE)))
         places = {
             "method": 2.0,
-            "averaging": 10.0,
+            "settings": 10.0,
             "network": 20.0,
             "parameters": 30.0,
             "policy": 70.0,
@@ -150,16 +151,18 @@ class MethodView(View):
         method, path = scenario.method[index], ("method", index)
         values = _values(scenario, index)
         self.sections["method"].show(form.fields(Method, path), values, moved)
-        averaged = method.damping == "averaging"
-        networked = method.damping not in ("averaging", "kalman")
+        blocks = method.kind.blocks
         network = form.fields(type(method.network), (*path, "network"))
-        self.sections["network"].show([_catalogue("network", path)] if networked else [], values, moved)
-        self.sections["parameters"].show(network if networked else [], values, moved)
+        self.sections["network"].show(
+            [_catalogue("network", path)] if "network" in blocks else [], values, moved
+        )
+        self.sections["parameters"].show(network if "network" in blocks else [], values, moved)
         for part in ("policy", "switching"):
             specs = [_catalogue(part, path), *form.fields(type(getattr(method, part)), (*path, part))]
-            self.sections[part].show(specs if networked else [], _values_at(scenario, specs), moved)
-        block = form.fields(type(method.averaging), (*path, "averaging")) if averaged else []
-        self.sections["averaging"].show(block, _values_at(scenario, block), moved)
+            self.sections[part].show(specs if part in blocks else [], _values_at(scenario, specs), moved)
+        own = method.kind.settings if method.damping in blocks else None
+        block = form.fields(own, (*path, method.damping)) if own else []
+        self.sections["settings"].show(block, _values_at(scenario, block), moved)
         last_gain = self.sections["parameters"].controls.get((*path, "network", "k3"))
         if last_gain is not None:
             known = (*path, "network", "sigma") in values

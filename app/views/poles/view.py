@@ -18,7 +18,7 @@ from app.views.poles.whole import whole_system_figure
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
-from navcore.scenario.model import Method
+from navcore.scenario.method import Method
 
 LOCUS = "locus"
 DECAYS = "H'(0) ≤ 0"

@@ -42,8 +42,8 @@ def whole_system_figure(run: Run, aspect: float = 0.46, *, width_px: float = 940
     data: list[dict[str, Any]] = []
     rates = []
     for index, method in enumerate(run.methods):
-        damping, latitudes = method.method.damping, LATITUDES * DEG
-        growth = growth_over_latitude(method.network, damping, latitudes, run.scenario.earth)
+        acting = method.method.kind.acting(method.network)
+        growth = growth_over_latitude(acting, LATITUDES * DEG, run.scenario.earth)
         rates.append(_DAY * growth)
         data += _marks(method, index)
         data += _growth(run, method, index, rates[-1])

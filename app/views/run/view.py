@@ -7,7 +7,9 @@ from app.shell.view import FieldsView, Tab
 from navcore.foundation.registry import blocks_of
 from navcore.foundation.text import Text
 from navcore.motion import MOTIONS
-from navcore.scenario.model import Alignment, InitialError, RunSettings, Scenario, SiteSettings
+from navcore.scenario.blocks import Alignment, RunSettings, SiteSettings
+from navcore.scenario.initial_error import InitialError
+from navcore.scenario.model import Scenario
 
 _RATE, _STRAPDOWN_ONLY = "rate_hz", ("vertical", "compensation")
 _STRAPDOWN_TOLD = (
@@ -63,7 +65,7 @@ def _strapdown_only(scenario: Scenario) -> list[FieldSpec]:
     path: Path = ("alignment",)
     more = form.fields(Alignment, path, "alignment")
     record = [spec for spec in more if spec.path[-1] == "duration_s"]
-    averaged = any(method.damping == "averaging" for method in scenario.method)
+    averaged = any(method.kind.carrying == "copies" for method in scenario.method)
     if not scenario.strapdown:
         return record if averaged else []
     settings = [spec for spec in form.fields(RunSettings, ("run",)) if spec.path[-1] in _STRAPDOWN_ONLY]

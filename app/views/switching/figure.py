@@ -56,7 +56,7 @@ def switched_methods(run: Run) -> tuple[Switched, ...]:
     return tuple(
         Switched(i, method, method.method.policy.measure, method.method.policy.limits())
         for i, method in enumerate(run.methods)
-        if method.method.damping in ("internal", "external") and method.method.policy.id != "constant"
+        if not method.method.undamped and method.method.policy.id != "constant"
     )
 
 

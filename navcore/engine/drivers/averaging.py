@@ -11,7 +11,8 @@ from navcore.averaging.plan import Plan, prepare_averaging
 from navcore.engine.drivers.common import law_of, network_of
 from navcore.engine.environment import Environment
 from navcore.law.law import Law
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 
 if TYPE_CHECKING:
     from navcore.averaging.strapdown import AveragedStrapdown
@@ -74,7 +75,7 @@ def averaged_strapdown(
 def _plan(scenario: Scenario, method: Method, true_row: np.ndarray) -> Plan:
     alignment = scenario.alignment
     return prepare_averaging(
-        method.averaging,
+        method.settings,
         true_row,
         scenario.omega_s,
         scenario.earth,

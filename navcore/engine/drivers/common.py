@@ -11,12 +11,12 @@ from navcore.analysis.whole_system import WholeSystem, whole_system
 from navcore.engine.run import MethodRun, Status, plot_series, statistics
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
-from navcore.law.combination import combination_warnings, network_in_force
-from navcore.law.law import Law, prepare_law, realisation_of
+from navcore.law.law import Law, prepare_law
 from navcore.mechanization.recorder import DAMPED_COLUMN, LAW_COLUMNS, XI_COLUMN, Recorder
 from navcore.motion.base import COLUMNS
 from navcore.networks.base import LinearNetwork
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.log_errors.events import event_velocity
 
@@ -27,14 +27,12 @@ STOPPED = "stopped by the user"
 
 def network_of(scenario: Scenario, method: Method) -> LinearNetwork:
     """Return H(s) of a method at the site, as its policy runs it; 1 when it is free."""
-    damping = "free" if method.undamped else method.damping
-    return network_in_force(damping, method.network, method.policy).transfer(scenario.omega_s)
+    return method.kind.network(method).transfer(scenario.omega_s)
 
 
 def law_of(method: Method, network: LinearNetwork, law_step_s: float) -> Law:
     """Damping law of a method, asked every ``law_step_s`` seconds."""
-    damping = "free" if method.undamped else method.damping
-    return prepare_law(damping, method.network, network, method.policy, method.switching, law_step_s)
+    return prepare_law(method.kind.law, method.network, network, method.policy, method.switching, law_step_s)
 
 
 def seen_by(method: Method, reference: ReferenceErrors) -> ReferenceErrors:
@@ -89,14 +87,16 @@ def stability_of(
     network : LinearNetwork
         H(s) to be judged.
     """
-    loop, lat = analyse(network), scenario.site.lat_deg * DEG
-    whole = whole_system(network, method.damping, lat, scenario.earth, scenario.site.height_m)
-    if method.damping == "kalman":  # the loop of its gains is another one at every step
+    kind, lat = method.kind, scenario.site.lat_deg * DEG
+    acting = kind.acting(network)
+    loop, whole = analyse(network), whole_system(acting, lat, scenario.earth, scenario.site.height_m)
+    if kind.no_loop:
         return Stability(loop, whole, ())
     warnings = loop.warnings if scenario.run.fidelity == "channel" else (*loop.warnings, *whole.warnings)
-    if not method.undamped:
-        period_s = float(np.median(np.diff(log.time_s))) if len(log.time_s) > 1 else law_step_s
-        sampled = held_log(network, method.damping, period_s, law_step_s, lat, scenario.earth)
+    if kind.uses_network:
+        epochs = kind.referenced and len(log.time_s) > 1
+        period_s = float(np.median(np.diff(log.time_s))) if epochs else law_step_s
+        sampled = held_log(acting, period_s, law_step_s, lat, scenario.earth)
         warnings = (*warnings, *sampled.warnings)
     return Stability(loop, whole, warnings)
 
@@ -192,13 +192,5 @@ def method_run(
 def _warnings(
     method: Method, network: LinearNetwork, further: tuple[str, ...], reason: str
 ) -> tuple[str, ...]:
-    found = list(dict.fromkeys((*network.warnings, *further)))
-    if method.undamped and method.network.id != "none":
-        found.append(Text('damping = "{damping}": the network is not used', damping=method.damping))
-    if method.damping == "kalman" and (method.policy.id != "constant" or method.switching.id != "hard"):
-        found.append('damping = "kalman": policy and switching are not used')
-    if method.damping == "internal" and realisation_of("external", method.network) != "network":
-        found.append("internal damping uses the network form; the feedback realisation needs a reference")
-    if not method.undamped:
-        found += combination_warnings(method.damping, method.network, method.policy, method.switching)
+    found = [*dict.fromkeys((*network.warnings, *further)), *method.kind.notices(method)]
     return (*found, reason) if reason else tuple(found)

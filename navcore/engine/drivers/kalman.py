@@ -15,7 +15,8 @@ from navcore.mechanization.kalman.filter import ACCEL, GYRO, LOG, FilterModel, F
 from navcore.mechanization.recorder import make_recorder
 from navcore.mechanization.trajectory import coefficients
 from navcore.motion.base import HEADING, PITCH, ROLL, Truth
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 from navcore.scenario.start import ERRORS, aligned_errors, independent_errors
 from navcore.scenario.stochastic import Drift, StochasticModel, stochastic_model
 
@@ -143,13 +144,13 @@ def filtered_strapdown(
     return filtered_run(free, log, model, state), notices
 
 
-def own_sigma(state: FilterState, truth: np.ndarray, earth: Earth) -> np.ndarray:
-    """Standard deviations that a filter gives itself at the output rows.
+def own_sigma(run: object, truth: np.ndarray, earth: Earth) -> np.ndarray | None:
+    """Standard deviations that a filter gives itself at the output rows; None of a run without a filter.
 
     Parameters
     ----------
-    state : FilterState
-        Of a run that is over; rows that it did not reach are zero.
+    run : object
+        A run that is over; rows that it did not reach are zero.
     truth : ndarray, shape (rows, 15)
         True motion at the output rows.
     earth : Earth
@@ -160,6 +161,9 @@ def own_sigma(state: FilterState, truth: np.ndarray, earth: Earth) -> np.ndarray
     ndarray, shape (rows, 7)
         In the order of `navcore.mechanization.recorder.NAMES`: rad, m/s, m.
     """
+    state: FilterState | None = getattr(run, "filter", None)
+    if state is None:
+        return None
     half = coefficients(Truth(1.0, np.ascontiguousarray(truth)), earth, True).half
     metres = np.column_stack([half["m"], half["n_cos"]])
     return np.hstack([state.sigma[:, [4, 5, 6, 0, 1]], state.sigma[:, 2:4] * metres])

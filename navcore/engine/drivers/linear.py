@@ -1,12 +1,15 @@
 """A scenario of fidelity `channel` or `error_model`: two methods at a time on the linear error model."""
 
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 import numpy as np
 
 from navcore.averaging.error_model import AveragedErrorModel
+from navcore.damping.base import Carrying
+from navcore.engine.drivers.averaging import averaged_linear
 from navcore.engine.drivers.common import (
     STOPPED,
     Cancelled,
@@ -18,13 +21,15 @@ from navcore.engine.drivers.common import (
     stability_of,
     truth_at,
 )
+from navcore.engine.drivers.kalman import filtered_linear, own_sigma
 from navcore.engine.environment import Environment, environment
 from navcore.engine.run import MethodRun, Run, Status
 from navcore.mechanization.error_model import ErrorModelRun
 from navcore.mechanization.kalman.error_model import FilteredErrorModel
 from navcore.mechanization.recorder import make_recorder, output_steps
 from navcore.scenario.file import scenario_hash
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 
 CHUNK = 50_000
 """Steps between two looks at the cancel flag, some 10 ms."""
@@ -124,51 +129,49 @@ def _run_method(
     cancelled: Cancelled | None,
 ) -> MethodRun:
     step_s = scenario.run.step_s
-    network = network_of(scenario, method)
-    judge = partial(stability_of, scenario, method, step_s, env.reference)
-    if method.damping == "averaging":
-        from navcore.engine.drivers.averaging import averaged_linear
+    run, notices = _STARTS[method.kind.carrying](scenario, method, env, state)
+    status, reason = _carry_out(run, report, cancelled)
+    report(1.0)
+    return method_run(
+        method,
+        network_of(scenario, method),
+        partial(stability_of, scenario, method, step_s, env.reference),
+        run.recorder,
+        step_s,
+        status,
+        reason,
+        run.position * step_s,
+        notices=notices,
+        sigma=own_sigma(run, truth_at(env.truth_half.values, 2 * run.recorder.row_steps), scenario.earth),
+    )
 
-        run, notices = averaged_linear(scenario, method, env, state)
-        status, reason = _carry_out(run, report, cancelled)
-        report(1.0)
-        reached_s = run.position * step_s
-        return method_run(
-            method, network, judge, run.recorder, step_s, status, reason, reached_s, notices=notices
-        )
-    if method.damping == "kalman":
-        from navcore.engine.drivers.kalman import filtered_linear, own_sigma
 
-        run, notices = filtered_linear(scenario, method, env, state)
-        status, reason = _carry_out(run, report, cancelled)
-        report(1.0)
-        reached_s = run.position * step_s
-        truth = truth_at(env.truth_half.values, 2 * run.recorder.row_steps)
-        sigma = own_sigma(run.filter, truth, scenario.earth)
-        return method_run(
-            method, network, judge, run.recorder, step_s, status, reason, reached_s, None, notices, sigma
-        )
-    recorder = make_recorder(env.steps, step_s, scenario.run.output_step_s)
+def _damped(
+    scenario: Scenario, method: Method, env: Environment, state: np.ndarray
+) -> tuple[ErrorModelRun, tuple[str, ...]]:
+    """Run of one navigation with the damping law."""
+    step_s = scenario.run.step_s
     run = ErrorModelRun(
         step_s=step_s,
         steps=env.steps,
         coefficients=env.coefficients,
         sensors=env.sensors,
         reference=seen_by(method, env.reference),
-        law=law_of(method, network, step_s),
+        law=law_of(method, network_of(scenario, method), step_s),
         x=state.copy(),
-        recorder=recorder,
+        recorder=make_recorder(env.steps, step_s, scenario.run.output_step_s),
     )
-    status, reason = _carry_out(run, report, cancelled)
-    report(1.0)
-    return method_run(method, network, judge, recorder, step_s, status, reason, run.position * step_s)
+    return run, ()
 
 
-def _carry_out(
-    run: ErrorModelRun | AveragedErrorModel | FilteredErrorModel,
-    report: Progress,
-    cancelled: Cancelled | None,
-) -> tuple[Status, str]:
+_Started = ErrorModelRun | AveragedErrorModel | FilteredErrorModel
+_STARTS: dict[
+    Carrying, Callable[[Scenario, Method, Environment, np.ndarray], tuple[_Started, tuple[str, ...]]]
+] = {"law": _damped, "copies": averaged_linear, "filter": filtered_linear}
+"""How a method starts, and what the user should know, by the way it is carried out."""
+
+
+def _carry_out(run: _Started, report: Progress, cancelled: Cancelled | None) -> tuple[Status, str]:
     """Advance to the end; how it ended and why."""
     while not run.advance(CHUNK):
         report(run.position / max(run.steps, 1))

@@ -8,6 +8,7 @@ from typing import cast
 import numpy as np
 
 from navcore.averaging.strapdown import AveragedStrapdown
+from navcore.damping.base import Carrying
 from navcore.engine.drivers.averaging import averaged_strapdown
 from navcore.engine.drivers.common import (
     STOPPED,
@@ -20,13 +21,15 @@ from navcore.engine.drivers.common import (
     stability_of,
     truth_at,
 )
+from navcore.engine.drivers.kalman import filtered_strapdown, own_sigma
 from navcore.engine.run import MethodRun, Run, Status
 from navcore.engine.strapdown_environment import StrapdownEnvironment, strapdown_environment
 from navcore.mechanization.recorder import output_steps
 from navcore.mechanization.strapdown import Settings, StrapdownRun, start_run, velocity_reference
 from navcore.mechanization.strapdown.drive import drive
 from navcore.scenario.file import scenario_hash
-from navcore.scenario.model import Method, Scenario
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
 from navcore.scenario.sampling import Sampling
 
 
@@ -64,7 +67,8 @@ def run_methods(
     take_sums : callable, optional
         Given the sums of the IMU's errors over each block of a chunk, shape (blocks, 6), rad and m/s, ENU.
     """
-    started = [_start(scenario, method, env) for method in scenario.method]
+    settings = settings_of(scenario, env.sampling)
+    started = [_STARTS[method.kind.carrying](scenario, method, env, settings) for method in scenario.method]
     # An averaging run is advanced like one of its copies.
     runs = cast("list[StrapdownRun]", [run for run, _ in started])
 
@@ -98,28 +102,28 @@ def settings_of(scenario: Scenario, rates: Sampling) -> Settings:
     )  # fmt: skip
 
 
-def _start(
-    scenario: Scenario, method: Method, env: StrapdownEnvironment
-) -> tuple[StrapdownRun | AveragedStrapdown, tuple[str, ...]]:
-    """Run of a method, and what to tell the user about it."""
-    rates, settings = env.sampling, settings_of(scenario, env.sampling)
-    if method.damping == "averaging":
-        return averaged_strapdown(scenario, method, env, settings)
-    if method.damping == "kalman":
-        from navcore.engine.drivers.kalman import filtered_strapdown
-
-        return filtered_strapdown(scenario, method, env, settings)
-    law = law_of(method, network_of(scenario, method), rates.law_step_s)
+def _damped(
+    scenario: Scenario, method: Method, env: StrapdownEnvironment, settings: Settings
+) -> tuple[StrapdownRun, tuple[str, ...]]:
+    """Run of one navigation with the damping law."""
+    law = law_of(method, network_of(scenario, method), env.sampling.law_step_s)
     log = velocity_reference(seen_by(method, env.reference), env.truth)
     run = start_run(env.start, settings, scenario.earth, law, env.truth.values, log, env.imu.before())
     return run, ()
+
+
+_Started = StrapdownRun | AveragedStrapdown
+_STARTS: dict[
+    Carrying, Callable[[Scenario, Method, StrapdownEnvironment, Settings], tuple[_Started, tuple[str, ...]]]
+] = {"law": _damped, "copies": averaged_strapdown, "filter": filtered_strapdown}
+"""How a method starts, and what the user should know, by the way it is carried out."""
 
 
 def _finish(
     scenario: Scenario,
     env: StrapdownEnvironment,
     method: Method,
-    run: StrapdownRun | AveragedStrapdown,
+    run: _Started,
     notices: tuple[str, ...],
 ) -> MethodRun:
     status: Status = "ok"
@@ -139,22 +143,5 @@ def _finish(
         run.position / run.settings.rate_hz,
         run.navigation,
         notices,
-        _sigma(scenario, env, method, run),
+        own_sigma(run, truth_at(env.truth.values, run.recorder.row_steps), scenario.earth),
     )
-
-
-def _sigma(
-    scenario: Scenario,
-    env: StrapdownEnvironment,
-    method: Method,
-    run: StrapdownRun | AveragedStrapdown,
-) -> np.ndarray | None:
-    """Standard deviations that a Kalman filter gives itself; None for any other method."""
-    if method.damping != "kalman":
-        return None
-    from navcore.engine.drivers.kalman import own_sigma
-    from navcore.mechanization.kalman.strapdown import FilteredStrapdown
-
-    filtered = cast(FilteredStrapdown, run)
-    truth = truth_at(env.truth.values, filtered.recorder.row_steps)
-    return own_sigma(filtered.filter, truth, scenario.earth)

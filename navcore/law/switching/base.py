@@ -40,6 +40,8 @@ class SwitchingParameters(Parameters):
         The method moves the damping coefficient of a network that can be re-tuned.
     freezes : bool
         While undamped the last correction stays.
+    needs_log : str
+        Why the method works against a log only; empty where it needs none.
     """
 
     numbers: ClassVar[np.dtype] = record_type()
@@ -52,6 +54,7 @@ class SwitchingParameters(Parameters):
     keeps_time: ClassVar[bool] = False
     tunes: ClassVar[bool] = False
     freezes: ClassVar[bool] = False
+    needs_log: ClassVar[str] = ""
     id: Any  # a Literal in each subclass
 
     def packed(self, law_step_s: float, omega_s: float) -> dict[str, Any]:
@@ -67,14 +70,12 @@ class SwitchingParameters(Parameters):
         return ()
 
     def network_faults(
-        self, damping: str, network: NetworkParameters, realisation: str, policy: PolicyParameters
+        self, network: NetworkParameters, realisation: str, policy: PolicyParameters
     ) -> Iterator[Fault]:
         """Say what does not go together; fields relative to the method.
 
         Parameters
         ----------
-        damping : {"internal", "external"}
-            Kind of damping.
         network : NetworkParameters
             In force.
         realisation : str

@@ -212,6 +212,7 @@ class Bridge(SwitchingParameters):
     and takes up the log again when its old level has come back, or its new one has stayed for 15 min.
     """
 
+    needs_log: ClassVar[str] = 'estimates the error of a log: needs damping = "external"'
     numbers: ClassVar[np.dtype] = record_type(
         cos=REAL,  # of omega_s T
         sin=REAL,
@@ -307,12 +308,10 @@ class Bridge(SwitchingParameters):
         return calls(self.memory_s, law_step_s) + 1
 
     def network_faults(
-        self, damping: str, network: NetworkParameters, realisation: str, policy: PolicyParameters
+        self, network: NetworkParameters, realisation: str, policy: PolicyParameters
     ) -> Iterator[Fault]:
-        """Refuse what has no log, gains that begin anew, and feedback, which the filter knows nothing of."""
-        if damping != "external":
-            yield self._refused('estimates the error of a log: needs damping = "external"')
-        elif policy.follow is not None:
+        """Refuse gains that begin anew, and feedback, which the filter knows nothing of."""
+        if policy.follow is not None:
             yield self._begins_anew(policy)
         elif realisation != "network":
             yield self._refused(

@@ -128,7 +128,7 @@ class Bumpless(SwitchingParameters):
         return ()
 
     def network_faults(
-        self, damping: str, network: NetworkParameters, realisation: str, policy: PolicyParameters
+        self, network: NetworkParameters, realisation: str, policy: PolicyParameters
     ) -> Iterator[Fault]:
         """Refuse gains that begin anew, and a realisation that never comes to rest."""
         if policy.follow is not None:

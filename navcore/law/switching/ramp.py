@@ -77,10 +77,10 @@ class Ramp(SwitchingParameters):
         return {"duration": self.duration_s - 1.0, "as_printed": self.form == "as_printed"}
 
     def network_faults(
-        self, damping: str, network: NetworkParameters, realisation: str, policy: PolicyParameters
+        self, network: NetworkParameters, realisation: str, policy: PolicyParameters
     ) -> Iterator[Fault]:
         """Refuse also a printed form whose loop is unstable at the small coefficients of the ramp."""
-        found = list(super().network_faults(damping, network, realisation, policy))
+        found = list(super().network_faults(network, realisation, policy))
         if not found and network.least_coefficient() > 0.0:
             allowed = Text(
                 "passes damping ratios below {least_coefficient:.3g}, at which the loop of",

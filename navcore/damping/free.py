@@ -1,0 +1,12 @@
+"""No damping: every error swings for ever."""
+
+from typing import ClassVar
+
+from navcore.damping.base import Damping
+
+
+class Free(Damping):
+    """The navigation runs undamped (theory.md 2)."""
+
+    id: ClassVar[str] = "free"
+    help: ClassVar[str] = "none"

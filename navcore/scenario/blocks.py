@@ -1,0 +1,172 @@
+"""Blocks of a scenario that belong to no other room: run, site, alignment, view."""
+
+from collections.abc import Iterator
+from typing import Literal
+
+from pydantic import Field
+
+from navcore.alignment.loop import CompassLoop
+from navcore.averaging import AlignmentMotion
+from navcore.foundation.errors import Fault
+from navcore.foundation.parameters import Parameters, choice, quantity
+from navcore.foundation.text import Text
+from navcore.foundation.units import DEG
+from navcore.motion.base import Site
+
+
+class RunSettings(Parameters):
+    """Block ``run``: fidelity, duration, steps, seed, Earth."""
+
+    fidelity: Literal["channel", "error_model", "strapdown"] = choice(
+        "error_model",
+        help="channel: two decoupled level channels; error_model: the full linear model; strapdown: the full "
+        "nonlinear mechanization on simulated or recorded IMU samples.",
+    )
+    duration_h: float = quantity(
+        10.0,
+        unit="h",
+        gt=0.0,
+        le=8760.0,
+        slider=(0.5, 72.0),
+        log=True,
+        label="duration",
+        help="Length of the run. At most 3,000,000 steps (833 h at 1 s, 8333 h at 10 s; in strapdown, "
+        "recorded states): truth, sensor errors and log are kept for every step, up to 0.5 kB a step. At "
+        "most 12 methods run side by side.",
+    )
+    step_s: float = quantity(
+        1.0,
+        unit="s",
+        ge=0.005,
+        le=10.0,
+        label="step",
+        help="Integration step; the law runs at the same step. strapdown: interval of the recorded states, "
+        "and of the law unless a log is faster (rounded to whole samples).",
+    )
+    rate_hz: float = quantity(
+        100.0,
+        unit="Hz",
+        ge=10.0,
+        le=1000.0,
+        label="IMU rate",
+        help="IMU rate of a strapdown run; a recorded IMU has its own.",
+    )
+    vertical: Literal["locked", "altimeter"] = choice(
+        "locked",
+        help="Vertical channel of a strapdown run. locked: height held, no vertical velocity (a ship); "
+        "altimeter: damped by an altimeter without error (third order, 100 s).",
+    )
+    compensation: bool = Field(
+        default=True,
+        strict=True,
+        description="Coning and sculling compensation of a strapdown run.",
+        json_schema_extra={"label": "coning and sculling compensation"},
+    )
+    output_step_s: float = quantity(
+        10.0, unit="s", gt=0.0, le=86400.0, label="output step", help="Interval of the output rows."
+    )
+    seed: int = Field(
+        default=1, strict=True, ge=0, le=2**31 - 1, description="Seed of every random number of the run."
+    )
+    earth: Literal["wgs84", "sphere"] = choice(
+        "wgs84", help="Earth model; the sphere is for textbook formulas."
+    )
+
+
+class SiteSettings(Parameters):
+    """Block ``site``: where the motion starts."""
+
+    lat_deg: float = quantity(
+        32.06,
+        unit="deg",
+        ge=-89.0,
+        le=89.0,
+        slider=(-80.0, 80.0),
+        label="latitude",
+        help="Geodetic latitude.",
+    )
+    lon_deg: float = quantity(118.8, unit="deg", ge=-180.0, le=180.0, label="longitude", help="Longitude.")
+    height_m: float = quantity(
+        0.0, unit="m", ge=-500.0, le=20000.0, label="height", help="Height above the ellipsoid."
+    )
+
+    def site(self) -> Site:
+        """Start position in SI."""
+        return Site(self.lat_deg * DEG, self.lon_deg * DEG, self.height_m)
+
+
+class Alignment(Parameters):
+    """Block ``alignment``: how navigation gets its first attitude (strapdown).
+
+    ``compass`` (theory.md 6.1): the compass loop with V_r = 0, first its level channels, then the azimuth,
+    on a vehicle that does not travel; ``initial_error`` is what it starts from. With a recorded IMU a coarse
+    alignment by the turning gravity vector comes first. The sensors of the alignment are those of the
+    navigation (same biases), so that its result is correlated with their errors.
+    """
+
+    kind: Literal["none", "compass"] = choice(
+        "none",
+        help="none: navigation starts from initial_error at t = 0. compass: initial_error holds at the start "
+        "of an alignment before t = 0 (strapdown only; |latitude| <= 85°).",
+    )
+    duration_s: float = quantity(
+        600.0, unit="s", ge=10.0, le=86400.0, help="Length of the alignment, before t = 0."
+    )
+    level_s: float = quantity(
+        120.0, unit="s", gt=0.0, le=86400.0, help="Length of its first part, level channels only."
+    )
+    level_sigma: float = quantity(
+        0.03,
+        unit="1/s",
+        gt=0.0,
+        le=10.0,
+        label="level decay rate σ",
+        help="Decay rate of the level loops in the first part.",
+    )
+    sigma: float = quantity(
+        0.02,
+        unit="1/s",
+        gt=0.0,
+        le=10.0,
+        label="decay rate σ",
+        help="Decay rate of level and azimuth loops in the second part.",
+    )
+    xi: float = quantity(0.707, gt=0.0, le=5.0, label="damping ratio ζ", help="Damping ratio of the loops.")
+    motion: tuple[AlignmentMotion, ...] = Field(
+        default=(),
+        max_length=100,
+        description="Small motions of the base in the record from which half-period averaging forecasts.",
+    )
+
+    def loop(self) -> CompassLoop:
+        """Design of the compass loop."""
+        return CompassLoop(self.level_s, self.level_sigma, self.sigma, self.xi)
+
+    def faults(self) -> Iterator[Fault]:
+        """Yield the faults of motions that do not lie within the alignment."""
+        for i, motion in enumerate(self.motion):
+            if motion.t_s < -self.duration_s:
+                yield Fault(
+                    "",
+                    f"alignment.motion.{i}.t_s",
+                    motion.t_s,
+                    Text(
+                        "must be >= {duration_s:g} (s): the alignment begins there",
+                        duration_s=-self.duration_s,
+                    ),
+                )
+            elif motion.t_s + motion.duration_s > 0.0:
+                yield Fault(
+                    "",
+                    f"alignment.motion.{i}.duration_s",
+                    motion.duration_s,
+                    Text("must be <= {t_s:g} (s): navigation starts at 0", t_s=-motion.t_s),
+                )
+
+
+class View(Parameters):
+    """Block ``view``: where the dashboard opens."""
+
+    focus: Literal["errors", "bode", "step"] = choice(
+        "errors", help="Which panel the dashboard brings to the front."
+    )

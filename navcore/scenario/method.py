@@ -1,0 +1,73 @@
+"""Block ``[[method]]``: a way of damping."""
+
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import Field, create_model
+
+from navcore.damping import KINDS
+from navcore.damping.base import Damping
+from navcore.foundation.parameters import Parameters
+from navcore.law.policy import Policy
+from navcore.law.policy.constant import Constant
+from navcore.law.switching import Switching
+from navcore.law.switching.hard import Hard
+from navcore.networks import Network
+from navcore.networks.undamped import UndampedNetwork
+from navcore.sensors.log_errors.events import LogEvent
+
+if TYPE_CHECKING:
+    KindName = str
+else:
+    KindName = Literal[tuple(KINDS)]
+
+
+class _Named(Parameters):
+    name: str = Field(
+        default="", max_length=60, description="Name on plots and in files; made from the network when empty."
+    )
+    damping: KindName = Field(
+        default=next(iter(KINDS)),
+        description="; ".join(f"{kind.id}: {kind.help}" for kind in KINDS.values()) + ".",
+    )
+
+
+if TYPE_CHECKING:
+    _Settled = _Named
+else:
+    _Settled = create_model(
+        "_Settled",
+        __base__=_Named,
+        **{kind.id: (kind.settings, kind.settings()) for kind in KINDS.values() if kind.settings},
+    )
+
+
+class Method(_Settled):
+    """One ``[[method]]``: a way of damping, run on the same truth, IMU and log as the others."""
+
+    network: Network = Field(default_factory=UndampedNetwork)
+    policy: Policy = Field(default_factory=Constant)
+    switching: Switching = Field(default_factory=Hard)
+    event: tuple[LogEvent, ...] = Field(
+        default=(),
+        max_length=50,
+        description="Log events that only this method sees: several cases in one scenario.",
+    )
+
+    @property
+    def kind(self) -> Damping:
+        """Kind of damping."""
+        return KINDS[self.damping]
+
+    @property
+    def settings(self) -> Any:
+        """Parameters of the kind's own; None where it has none."""
+        return getattr(self, self.damping, None)
+
+    @property
+    def undamped(self) -> bool:
+        """Whether the network does not act."""
+        return not self.kind.uses_network
+
+    def label(self) -> str:
+        """Name, or one made from the damping and network."""
+        return self.name or self.kind.label(self)

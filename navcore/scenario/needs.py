@@ -1,0 +1,48 @@
+"""What a kind of damping may need of the rest of a scenario: how each condition is checked."""
+
+from collections.abc import Callable, Iterator
+
+from navcore.averaging.record import under_way
+from navcore.foundation.errors import Fault, InputError
+from navcore.scenario.fields import ScenarioFields
+
+
+def need_faults(scenario: ScenarioFields) -> Iterator[Fault]:
+    """Yield the conditions of the methods' kinds of damping that are not met, each once."""
+    faults = (
+        fault
+        for i, method in enumerate(scenario.method)
+        for need in method.kind.needs
+        for fault in _UNMET[need.of](scenario, Fault("", f"method.{i}.damping", method.damping, need.because))
+    )
+    yield from dict.fromkeys(faults)
+
+
+def _unless(met: Callable[[ScenarioFields], bool]) -> Callable[[ScenarioFields, Fault], Iterator[Fault]]:
+    def check(scenario: ScenarioFields, fault: Fault) -> Iterator[Fault]:
+        if not met(scenario):
+            yield fault
+
+    return check
+
+
+def _under_way(scenario: ScenarioFields, fault: Fault) -> Iterator[Fault]:
+    """Yield the fault of a vehicle under way at t = 0 (that of a recorded track shows when it is run)."""
+    if scenario.motion.recorded:
+        return
+    try:
+        row = scenario.motion.truth(1, 1.0, scenario.site.site(), scenario.earth).values[0]
+    except InputError:
+        return  # a fault of the motion itself
+    if found := under_way(row, fault.allowed):
+        yield found
+
+
+_UNMET = {
+    "reference": _unless(lambda scenario: scenario.reference.kind != "none"),
+    "log": _unless(lambda scenario: scenario.reference.kind == "log"),
+    "coupled channels": _unless(lambda scenario: scenario.run.fidelity != "channel"),
+    "simulated IMU": _unless(lambda scenario: scenario.imu.file is None),
+    "standing start": _under_way,
+}
+"""How the conditions of `navcore.damping.base.Need` are checked."""
