@@ -17,7 +17,6 @@ from navcore.mechanization.trajectory import coefficients
 from navcore.motion.base import MotionParameters, Site
 from navcore.motion.static import StaticMotion
 from navcore.networks.undamped import UndampedNetwork
-from navcore.sensors.base import SensorErrors
 from navcore.sensors.imu import Imu, imu_errors
 
 SITE = Site(45.7796 * DEG, 126.6773 * DEG, 0.0)
@@ -30,11 +29,6 @@ def free_law(step_s: float = 1.0) -> Law:
     """Law of a method without damping."""
     network = UndampedNetwork()
     return prepare_law("free", network, network.transfer(1.24e-3), Constant(), Hard(), step_s)
-
-
-def no_sensor_errors() -> SensorErrors:
-    """Perfect sensors."""
-    return SensorErrors(np.zeros((1, 3)), np.zeros((1, 3)))
 
 
 def truth_row(motion: MotionParameters | None = None, earth: Earth = SPHERE) -> np.ndarray:

@@ -80,11 +80,3 @@ def page(browser: Browser) -> Iterator[Page]:
     context = browser.new_context(viewport={"width": 1366, "height": 768})
     yield context.new_page()
     context.close()
-
-
-@pytest.fixture(scope="session")
-def session_page(browser: Browser) -> Iterator[Page]:
-    """Page kept over the whole session, for tests that only look or that put back what they change."""
-    context = browser.new_context(viewport={"width": 1920, "height": 1080})
-    yield context.new_page()
-    context.close()

@@ -50,13 +50,6 @@ def test_figure_3_slopes(scenario, networks):
     assert decibels_a_decade(networks["complementary"], 1e-3 * omega_s) == pytest.approx(40.0, abs=0.5)
 
 
-def test_equation_6_with_its_powers_mended(scenario, networks):
-    p = 1j * np.logspace(-3.0, 3.0, 121)
-    liu_6 = 1.4 * p**2 / (p**6 + 3.4 * p**5 + 6.8 * p**4 + 8.2 * p**3 + 6.8 * p**2 + 3.4 * p + 1.0)
-    found = gain(networks["complementary"], np.abs(p) * scenario.omega_s)
-    np.testing.assert_allclose(found * scenario.omega_s, np.abs(liu_6), rtol=1e-9)  # R phi / dV_r is in s
-
-
 def test_figure_5_the_damping_coefficient_changes_no_slope(scenario):
     omega = np.logspace(-6.0, 0.0, 601)
     peaks, corners = [], []

@@ -49,8 +49,6 @@ def test_peaks_of_the_independent_implementation(run):
 
 
 def test_overshoot_is_proportional_to_the_change(run):
-    per_change = [overshoot(m, DV_E) / c for m, c in zip(run.methods, CHANGE_MPS, strict=False)]
-    np.testing.assert_allclose(per_change, 0.727, rtol=2e-3)
     tilt = [overshoot(m, PHI_N) / c for m, c in zip(run.methods, CHANGE_MPS, strict=False)]
     np.testing.assert_allclose(tilt, tilt[0], rtol=5e-3)
 

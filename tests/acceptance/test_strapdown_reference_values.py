@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from navcore.foundation.units import DEG
-from navcore.mechanization.recorder import DV_E, DV_N, MAX_ABS, PHI_E, PHI_N, PHI_U
+from navcore.mechanization.recorder import DV_E, DV_N, MAX_ABS, PHI_E, PHI_N
 from navcore.motion.static import StaticMotion
 from navcore.networks.compass import CompassNetwork
 from navcore.sensors.imu import Imu
-from tests.strapdown import DENG_SWING, navigate, reference
+from tests.strapdown import navigate, reference
 
 VE_COLUMN = 3
 
@@ -47,18 +47,3 @@ def test_perfect_sensors_at_rest_leave_no_velocity(attitude):
     motion = StaticMotion(pitch_deg=pitch, roll_deg=roll, heading_deg=heading)
     stats = navigate(motion, 200.0, 3 * 3600.0).recorder.stats
     assert stats[[DV_E, DV_N], MAX_ABS].max() <= 1e-9
-
-
-def test_swing_error_falls_with_the_third_power_of_the_rate():
-    rates = np.array([50.0, 100.0, 200.0])
-    worst = np.array([navigate(DENG_SWING, rate, 1800.0).recorder.stats[:, MAX_ABS] for rate in rates])
-    for quantity in (PHI_E, PHI_N, PHI_U, DV_E, DV_N):
-        slope = -np.polyfit(np.log(rates), np.log(worst[:, quantity]), 1)[0]
-        assert slope == pytest.approx(3.0, abs=0.2)
-
-
-def test_without_compensation_the_swing_shows():
-    """The switch does something: the uncompensated run is worse by orders of magnitude."""
-    plain = navigate(DENG_SWING, 200.0, 600.0, compensation=False).recorder.stats[:, MAX_ABS]
-    fine = navigate(DENG_SWING, 200.0, 600.0).recorder.stats[:, MAX_ABS]
-    assert plain[DV_E] > 100.0 * fine[DV_E]

@@ -20,10 +20,9 @@ from tests.random_models import raw_blocks
 pytestmark = pytest.mark.contract
 
 OMEGA_S = SPHERE.schuler_frequency(0.0)
-any_block = st.one_of(*(raw_blocks(model) for model in NETWORKS.values()))
 
 
-def made(block: dict[str, Any]) -> tuple[NetworkParameters, LinearNetwork] | None:
+def made_of(block: dict[str, Any]) -> tuple[NetworkParameters, LinearNetwork] | None:
     """Parameters and H(s), or None when refused; then every fault must name a field of the block."""
     try:
         parameters = parse_network(block)
@@ -39,13 +38,13 @@ def type_of(block: dict[str, Any]) -> type[NetworkParameters]:
     return NETWORKS[block["id"]]
 
 
-@given(block=any_block)
+networks = st.one_of(*(raw_blocks(model) for model in NETWORKS.values())).map(made_of).filter(bool)
+
+
+@given(made=networks)
 @settings(max_examples=400)
-def test_printed_and_parsed_again_it_is_the_same(block):
-    found = made(block)
-    assume(found is not None)
-    assert found is not None
-    parameters, network = found
+def test_printed_and_parsed_again_it_is_the_same(made):
+    parameters, network = made
     fields = parameters.model_dump(mode="json", exclude_none=True)
     assert parse_network(fields) == parameters
     text = ", ".join(f"{name} = {json.dumps(value)}" for name, value in fields.items())
@@ -55,13 +54,10 @@ def test_printed_and_parsed_again_it_is_the_same(block):
     np.testing.assert_array_equal(again.transfer(OMEGA_S).den, network.den)
 
 
-@given(block=any_block)
+@given(made=networks)
 @settings(max_examples=400)
-def test_stable_means_no_pole_on_the_right(block):
-    found = made(block)
-    assume(found is not None)
-    assert found is not None
-    network = found[1]
+def test_stable_means_no_pole_on_the_right(made):
+    parameters, network = made
     loop = analyse(network)
     assert len(loop.poles) == network.order + 2
     # the polynomial is that of the poles, whichever way they were found
@@ -84,13 +80,10 @@ def test_stable_means_no_pole_on_the_right(block):
     assert (loop.damping_ratio > 0.0) or not loop.stable or "undamped" in loop.warnings
 
 
-@given(block=any_block)
+@given(made=networks)
 @settings(max_examples=150)
-def test_after_settling_the_tilt_stays_below_two_percent(block):
-    found = made(block)
-    assume(found is not None)
-    assert found is not None
-    network = found[1]
+def test_after_settling_the_tilt_stays_below_two_percent(made):
+    parameters, network = made
     loop = analyse(network)
     assume(loop.settling_s is not None and loop.settling_s > 0.0)
     assert loop.settling_s is not None
@@ -100,13 +93,10 @@ def test_after_settling_the_tilt_stays_below_two_percent(block):
     assert np.abs(initial_tilt_response(network, just_before))[0] == pytest.approx(0.02, rel=0.02)
 
 
-@given(block=any_block, step_s=st.sampled_from([10.0, 1.0, 0.1, 0.005]))
+@given(made=networks, step_s=st.sampled_from([10.0, 1.0, 0.1, 0.005]))
 @settings(max_examples=300)
-def test_discrete_form_is_stable_when_the_network_is_and_has_its_response(block, step_s):
-    found = made(block)
-    assume(found is not None)
-    assert found is not None
-    network = found[1]
+def test_discrete_form_is_stable_when_the_network_is_and_has_its_response(made, step_s):
+    parameters, network = made
     try:
         discrete = discretise(network, step_s)
     except InputError:
@@ -125,13 +115,11 @@ def test_discrete_form_is_stable_when_the_network_is_and_has_its_response(block,
         assert np.all(2.0 * multipliers.real + np.abs(multipliers) ** 2 < 0.0)
 
 
-@given(block=any_block)
+@given(made=networks)
 @settings(max_examples=200)
-def test_the_report_is_json(block):
-    found = made(block)
-    assume(found is not None)
-    assert found is not None
-    document = json.loads(json.dumps(network_report(found[0]), allow_nan=False))
-    assert document["id"] == block["id"]
+def test_the_report_is_json(made):
+    parameters, network = made
+    document = json.loads(json.dumps(network_report(parameters), allow_nan=False))
+    assert document["id"] == parameters.id
     assert document["stable"] in (True, False)
     assert len(document["closed_loop_poles"]) == len(document["poles"]) + 2

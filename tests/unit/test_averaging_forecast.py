@@ -107,16 +107,12 @@ def test_counts_lose_nothing():
     np.testing.assert_allclose(steps, np.rint(steps), atol=1e-9)
 
 
-def test_a_base_that_swings_all_along_is_refused():
-    swinging = record()
-    swinging[:, 0] += 0.01 * np.sin(0.3 * np.arange(600.0))
-    with pytest.raises(InputError, match="stands still for 0 s"):
-        forecast_from(swinging)
-
-
-def test_too_few_seconds_at_rest_are_refused():
-    with pytest.raises(InputError, match="stands still for 8 s"):
-        forecast_from(record(seconds=8.0))
+@pytest.mark.parametrize(("seconds", "swing", "still"), [(600.0, 0.01, 0), (8.0, 0.0, 8)])
+def test_too_few_seconds_at_rest_are_refused(seconds, swing, still):
+    increments = record(seconds=seconds)
+    increments[:, 0] += swing * np.sin(0.3 * np.arange(seconds))
+    with pytest.raises(InputError, match=f"stands still for {still} s"):
+        forecast_from(increments)
 
 
 def test_a_vehicle_under_way_is_refused():

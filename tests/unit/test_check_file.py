@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from navcore.checks.file import Checker, FileReport, check_file
@@ -93,33 +93,31 @@ _BODY = st.builds(
 )
 
 
-@given(
-    st.lists(
-        st.one_of(_BODY.map(sentence), _BODY.map(lambda b: stamped(0, b)), st.text(max_size=30)), max_size=8
-    )
-)
-def test_no_log_however_odd_raises(tmp_path_factory, lines):
-    path = tmp_path_factory.mktemp("odd") / "log.txt"
-    path.write_text("\n".join(lines), encoding="utf-8", errors="replace")
-    report = check_file(path)
-    assert report.ok or report.faults
-    json.dumps(report.as_dict(), allow_nan=False)
-
-
-@given(st.binary(max_size=400))
-def test_no_bytes_raise(tmp_path_factory, content):
-    path = tmp_path_factory.mktemp("bytes") / "file"
-    path.write_bytes(content)
-    report = check_file(path)
-    assert report.ok or report.faults
-
-
 _CELL = st.text(st.sampled_from('0123456789.-,;"enaT:Z\n'), max_size=6)
 
 
-@given(st.sampled_from(["utc", "t_s"]), st.lists(st.lists(_CELL, min_size=2, max_size=3), max_size=6))
-def test_no_table_however_odd_raises(tmp_path_factory, clock, rows):
-    path = tmp_path_factory.mktemp("table") / "t.csv"
-    path.write_text("\n".join([f"{clock},heading_deg", *(",".join(row) for row in rows)]))
+_LINES = st.one_of(_BODY.map(sentence), _BODY.map(lambda body: stamped(0, body)), st.text(max_size=30))
+_LOG = st.lists(_LINES, max_size=8).map(lambda lines: "\n".join(lines).encode(errors="replace"))
+_ROWS = st.lists(st.lists(_CELL, min_size=2, max_size=3).map(",".join), max_size=6)
+_TABLE = st.builds(
+    lambda clock, rows: "\n".join([f"{clock},heading_deg", *rows]).encode(),
+    st.sampled_from(["utc", "t_s"]),
+    _ROWS,
+)
+
+
+@given(
+    st.one_of(
+        st.tuples(st.just("log.txt"), _LOG),
+        st.tuples(st.just("t.csv"), _TABLE),
+        st.tuples(st.just("file"), st.binary(max_size=400)),
+    )
+)
+@settings(max_examples=300)
+def test_no_file_however_odd_raises(tmp_path_factory, file):
+    name, content = file
+    path = tmp_path_factory.mktemp("odd") / name
+    path.write_bytes(content)
     report = check_file(path)
     assert report.ok or report.faults
+    json.dumps(report.as_dict(), allow_nan=False)

@@ -125,17 +125,6 @@ def test_kernel_equals_twin_sample_by_sample(earth, damping, parameters, limit, 
         assert np.abs(free - twin).max() > done, "the law must have done something"
 
 
-def test_eigenvalues_at_rest_are_earth_and_split_schuler_lines():
-    radius, gravity = 6378137.0, 9.80665
-    f = system_matrix(LAT0, radius, gravity, EARTH_RATE)[np.ix_([0, 1, 2, 4, 5, 6], [0, 1, 2, 4, 5, 6])]
-    wz = EARTH_RATE * math.sin(LAT0)
-    schuler = math.sqrt(gravity / radius + wz * wz)
-    expected = np.array([EARTH_RATE, schuler - wz, schuler + wz])
-    found = np.linalg.eigvals(f)
-    assert np.sort(found.imag[found.imag > 0]) == pytest.approx(expected, rel=1e-9)
-    assert np.abs(found.real).max() < 1e-9 * schuler
-
-
 def test_kernel_moves_like_its_system_matrix():
     """Free motion at rest is expm(F t): the matrix whose eigenvalues are asserted is the kernel's."""
     from scipy.linalg import expm
@@ -174,71 +163,3 @@ def test_channel_compass_follows_the_loops_tilt_response(sigma, xi):
         t = np.arange(steps + 1) * step_s
         expected = initial_tilt_response(parameters.transfer(omega_s), t)
         assert np.abs(phi - expected).max() < 1e-3
-
-
-def test_feedback_pulls_the_velocity_onto_the_log_and_the_network_form_does_not():
-    """Standing dV_r: feedback gives dV -> dV_r; a network with H(0) = 1 rejects it (theory.md 3.1)."""
-    steps = 40000
-    truth = np.zeros((1, COLUMNS))
-    omega_s = SPHERE.schuler_frequency(0.0)
-    quiet = (
-        np.zeros((steps, 3)),
-        np.zeros((steps, 3)),
-        np.full((steps + 1, 2), 0.5),
-        np.ones(steps + 1, bool),
-    )
-    inputs = (*quiet, np.zeros(7))
-    feedback = _compiled(
-        truth, _law("external", CompassNetwork(), omega_s, None, 1.0), SPHERE, 1.0, inputs, False
-    )
-    network = _compiled(
-        truth,
-        _law("external", ComplementaryNetwork(zeta=0.5), omega_s, None, 1.0),
-        SPHERE,
-        1.0,
-        inputs,
-        False,
-    )
-    assert feedback[-1, :2] == pytest.approx([0.5, 0.5], rel=1e-6)
-    assert np.abs(network[-1, :2]).max() < 1e-4
-
-
-def test_as_printed_lacks_the_transport_rate_of_the_reference():
-    """Deng 4 on a moving vehicle: the platform misses V/R, and the loop turns that into a tilt."""
-    steps = 3000
-    truth = _moving_truth(steps, 1.0)
-    truth[:, VE], truth[:, VN], truth[:, AE], truth[:, AN] = 10.0, 0.0, 0.0, 0.0
-    omega_s = SPHERE.schuler_frequency(LAT0)
-    quiet = (np.zeros((steps, 3)), np.zeros((steps, 3)), np.zeros((steps + 1, 2)), np.ones(steps + 1, bool))
-    inputs = (*quiet, np.zeros(7))
-    tilt = {
-        realisation: np.abs(
-            _compiled(
-                truth,
-                _law("external", CompassNetwork(realisation=realisation), omega_s, None, 1.0),
-                SPHERE,
-                1.0,
-                inputs,
-            )[:, 5]
-        ).max()
-        for realisation in ("feedback", "as_printed")
-    }
-    assert tilt["feedback"] < 1e-9
-    assert tilt["as_printed"] > 1e-5
-
-
-def test_diverging_model_stops_and_says_so():
-    steps = 40000
-    truth = np.zeros((1, COLUMNS))
-    quiet = (np.zeros((steps, 3)), np.zeros((steps, 3)), np.zeros((steps + 1, 2)), np.ones(steps + 1, bool))
-    parameters = CompassNetwork(k1=0.001, k2=1.0, k3=0.5, realisation="network")
-    law = _law("external", parameters, SPHERE.schuler_frequency(0.0), None, 1.0)
-    run = ErrorModelRun(
-        1.0, steps, coefficients(Truth(0.5, truth), SPHERE, False), SensorErrors(quiet[0], quiet[1]),
-        ReferenceErrors(np.arange(steps + 1.0), quiet[2], quiet[3], False, 5.0), law,
-        np.array([0, 0, 0, 0, 1e-4, 0, 0.0]), make_recorder(steps, 1.0, 10.0),
-    )  # fmt: skip
-    while not run.advance(5000):
-        pass
-    assert run.diverged and 0 < run.position < steps
-    assert np.all(np.isfinite(run.recorder.stats))

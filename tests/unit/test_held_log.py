@@ -54,16 +54,14 @@ def test_the_limit_found_divides_stable_from_unstable(text):
     assert not held_log(h, limit + 1.0, 1.0, 0.8).stable
 
 
-def test_the_24_h_mode_is_not_blamed_on_the_hold():
-    found = held_log(network('id = "classic2"'), 1.0, 1.0, 0.8)
-    assert found.stable
-    assert found.warnings == ()
-
-
-def test_a_loop_unstable_in_continuous_time_is_not_blamed_on_the_hold():
-    found = held_log(network('id = "pole2", variant = "as_printed", xi = 0.05'), 1.0, 1.0, 0.8)
-    assert not found.stable
-    assert found.warnings == ()
+@pytest.mark.parametrize(
+    ("text", "stable"),
+    [('id = "classic2"', True), ('id = "pole2", variant = "as_printed", xi = 0.05', False)],
+)
+def test_what_continuous_time_does_is_not_blamed_on_the_hold(text, stable):
+    """The 24 h mode of classic2 grows, the loop of the printed pole2 is unstable."""
+    found = held_log(network(text), 1.0, 1.0, 0.8)
+    assert (found.stable, found.warnings) == (stable, ())
 
 
 def test_internal_damping_has_no_log():

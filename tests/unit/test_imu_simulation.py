@@ -8,8 +8,6 @@ import pytest
 from navcore.foundation.compiled import kernel
 from navcore.foundation.earth import WGS84, attitude_matrix
 from navcore.foundation.units import ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
-from navcore.motion.base import Truth
-from navcore.motion.inertial import inertial_signals
 from navcore.motion.static import StaticMotion
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
@@ -24,40 +22,6 @@ RATE = 100.0
 def _increments(motion, imu, seconds, seed=1, rate=RATE):
     sim = ImuSimulation(motion, SITE, WGS84, imu, rate, int(seconds * rate), seed)
     return np.concatenate([chunk.copy() for chunk, _ in sim.chunks()])
-
-
-@pytest.mark.parametrize(
-    "motion", [StaticMotion(pitch_deg=3, roll_deg=-4, heading_deg=200), DENG_SWING, DRIVE]
-)
-def test_increments_are_the_integral_of_the_signals(motion):
-    """Against five-point Gauss-Legendre quadrature of the signals of another module."""
-    seconds, per = 5, int(RATE)
-    nodes, weights = np.polynomial.legendre.leggauss(5)
-    sim = ImuSimulation(motion, SITE, WGS84, Imu(), RATE, seconds * per, 1)
-    got = _increments(motion, Imu(), seconds)
-    for k in (0, 1, 37, 63, 64, 65, 250, 499):
-        fine = 2000
-        rows = sim.truth_rows((k + 1) * fine + 1, 1.0 / RATE / fine)
-        rows = rows if len(rows) == 1 else rows[k * fine :]
-        signals = inertial_signals(Truth(1.0, rows), WGS84)
-        if len(signals) == 1:
-            wanted = signals[0] / RATE
-        else:
-            at = np.rint((nodes + 1.0) / 2.0 * fine).astype(int)
-            exact = (at - fine / 2) / (fine / 2)
-            # moments of the rounded nodes are matched by solving for the weights
-            fitted = np.linalg.solve(np.vander(exact, 5, increasing=True).T, [2.0, 0, 2 / 3, 0, 2 / 5])
-            wanted = (fitted @ signals[at]) / 2.0 / RATE
-        np.testing.assert_allclose(got[k], wanted, rtol=0, atol=1e-11)
-    assert weights.sum() == pytest.approx(2.0)
-
-
-def test_the_interval_before_the_start_is_the_backward_continuation():
-    sim = ImuSimulation(DENG_SWING, SITE, WGS84, Imu(), RATE, 500, 1)
-    got = _increments(DENG_SWING, Imu(), 5)
-    extrapolated = 3.0 * got[0] - 3.0 * got[1] + got[2]
-    np.testing.assert_allclose(sim.before(), extrapolated, atol=1e-7)
-    assert np.abs(sim.before() - got[0]).max() > 1e-6
 
 
 def test_noise_has_the_stated_size_and_is_white_and_normal():
@@ -142,17 +106,6 @@ def test_gauss_markov_drift_is_held_by_the_second_and_stationary():
     np.testing.assert_allclose(error[:10, 0], error[0, 0], rtol=1e-12)
     assert drift.std() == pytest.approx(0.5, rel=0.1)
     assert (drift[1:] * drift[:-1]).mean() / drift.var() == pytest.approx(math.exp(-1 / 20), abs=0.02)
-
-
-def test_sums_are_the_errors_in_the_navigation_frame():
-    imu = Imu(gyro_bias_dph=(1.0, 0.0, 0.0), accel_bias_ug=(0.0, 100.0, 0.0))
-    motion = StaticMotion(heading_deg=90.0)
-    sim = ImuSimulation(motion, SITE, WGS84, imu, RATE, 1000, 1)
-    sums = np.concatenate([s.copy() for _, s in sim.chunks(with_sums=True)])
-    # Heading east: body right is south, forward is east.
-    np.testing.assert_allclose(sums[:, 1], -DEG_PER_HOUR, rtol=1e-9)
-    np.testing.assert_allclose(sums[:, 3], 100.0 * MICRO_G, rtol=1e-9)
-    assert sums.shape == (10, 6)
 
 
 def test_sums_turn_all_three_axes():

@@ -55,21 +55,19 @@ def test_vbw_flags_make_a_reading_invalid_and_zero(tmp_path, flags, valid):
     assert recording.sources[0].invalid == (flags != "AA")
 
 
-def test_vhw_gives_forward_speed_and_heading(tmp_path):
-    path = write(tmp_path / "log.txt", [stamped(0, "VWVHW,123.0,T,100.0,M,5.0,N,9.3,K")])
-    recording = read_recording(path)
-    assert recording.water.values == pytest.approx(np.array([[0.0, 5.0 * KNOT]]))
-    assert recording.heading.values == pytest.approx(np.array([[123.0 * DEG]]))
-
-
-def test_vtg_gives_east_and_north(tmp_path):
-    path = write(tmp_path / "log.txt", [stamped(0, "GPVTG,090.0,T,,M,10.0,N,18.5,K,A")])
-    assert read_recording(path).velocity.values == pytest.approx(np.array([[10.0 * KNOT, 0.0]]), abs=1e-12)
-
-
-def test_vtg_at_rest_may_lack_a_course(tmp_path):
-    path = write(tmp_path / "log.txt", [stamped(0, "GPVTG,,T,,M,0.0,N,0.0,K,A")])
-    assert np.all(read_recording(path).velocity.values == 0.0)
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        ("VWVHW,123.0,T,100.0,M,5.0,N,9.3,K", {"water": (0.0, 5.0 * KNOT), "heading": (123.0 * DEG,)}),
+        ("GPVTG,090.0,T,,M,10.0,N,18.5,K,A", {"velocity": (10.0 * KNOT, 0.0)}),
+        ("GPVTG,,T,,M,0.0,N,0.0,K,A", {"velocity": (0.0, 0.0)}),
+    ],
+    ids=["VHW", "VTG", "at rest without a course"],
+)
+def test_speeds_and_headings_are_in_si(tmp_path, body, expected):
+    recording = read_recording(write(tmp_path / "log.txt", [stamped(0, body)]))
+    found = {name: tuple(getattr(recording, name).values[0]) for name in expected}
+    assert found == {name: pytest.approx(values, abs=1e-12) for name, values in expected.items()}
 
 
 def test_rmc_uses_its_own_utc_and_the_stamps_only_for_the_day(tmp_path):
@@ -156,29 +154,33 @@ def test_a_missing_checksum_is_accepted_and_said(tmp_path):
     assert recording.warnings
 
 
-def test_too_many_wrong_checksums_refuse_the_file(tmp_path):
-    lines = [
-        line.replace("VDVBW,", "VDVBW,0") if k % 3 == 0 else line for k, line in enumerate(vbw_lines(30))
-    ]
-    assert "10 of 30 sentences have a wrong checksum" in refusal(write(tmp_path / "log.txt", lines))
-
-
-def test_one_used_kind_with_too_many_wrong_checksums_refuses_the_file(tmp_path):
-    lines = [stamped(k, "HEHDT,10.0,T") for k in range(100)]
-    lines += [line.replace("VDVBW,", "VDVBW,0") for line in vbw_lines(10)]
-    assert "VDVBW 10/10" in refusal(write(tmp_path / "log.txt", lines))
-
-
-def test_time_running_backwards_is_refused_with_its_line(tmp_path):
-    lines = vbw_lines(10)
-    assert "log.txt, line 2: time runs backwards by 1.0 s (VDVBW)" in refusal(
-        write(tmp_path / "log.txt", lines[::-1])
-    )
-
-
-def test_slow_backward_steps_add_up(tmp_path):
-    lines = [stamped(10.0 - 0.1 * k, "HEHDT,10.0,T") for k in range(5)]
-    assert "line 4: time runs backwards by 0.3 s" in refusal(write(tmp_path / "log.txt", lines))
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (
+            [
+                line.replace("VDVBW,", "VDVBW,0" if k % 3 == 0 else "VDVBW,")
+                for k, line in enumerate(vbw_lines(30))
+            ],
+            "10 of 30 sentences have a wrong checksum",
+        ),
+        (
+            [
+                *(stamped(k, "HEHDT,10.0,T") for k in range(100)),
+                *(line.replace("VDVBW,", "VDVBW,0") for line in vbw_lines(10)),
+            ],
+            "VDVBW 10/10",
+        ),
+        (vbw_lines(10)[::-1], "log.txt, line 2: time runs backwards by 1.0 s (VDVBW)"),
+        (
+            [stamped(10.0 - 0.1 * k, "HEHDT,10.0,T") for k in range(5)],
+            "line 4: time runs backwards by 0.3 s",
+        ),
+    ],
+    ids=["wrong checksums", "of one kind that is used", "backwards", "backwards in small steps"],
+)
+def test_a_damaged_log_is_refused_with_the_reason(tmp_path, lines, said):
+    assert said in refusal(write(tmp_path / "log.txt", lines))
 
 
 def test_jitter_between_interleaved_kinds_is_no_fault(tmp_path):

@@ -1,13 +1,21 @@
-"""Stability, damping and settling of the closed loop."""
+"""Stability, damping and settling of the closed loop; root loci."""
+
+import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from navcore.analysis import analyse, initial_tilt_response
+from navcore.analysis.locus import root_locus
 from navcore.analysis.loop import closed_loop_polynomial
+from navcore.analysis.settling import LEVEL, last_exceedance
 from navcore.networks import NETWORKS, LinearNetwork, parse_network
+from navcore.networks.compass import CompassNetwork
+from navcore.networks.pole2 import Pole2Network
+from navcore.networks.state_space import StateSpace
+from navcore.networks.unity2 import Unity2Network
 
 OMEGA_S = float(np.sqrt(9.80665 / 6378137.0))
 
@@ -17,18 +25,8 @@ def loop_of(text: str):
 
 
 def test_free_loop_counts_as_stable_and_undamped() -> None:
-    loop = loop_of('id = "none"')
-    assert loop.stable
-    assert loop.damping_ratio == 0.0
-    assert loop.natural_frequency == pytest.approx(OMEGA_S, rel=1e-15)
-    assert loop.settling_s is None
-    assert loop.warnings == ("undamped",)
-    for rate in (
-        1e-4,
-        0.003,
-        0.01,
-        0.7,
-    ):  # H = 1 again, but with a pole whose rounding the loop must not show
+    """H = 1, but with a pole whose rounding the loop must not show; `none` is in test_network_report."""
+    for rate in (1e-4, 0.003, 0.01, 0.7):
         loop = loop_of(f'id = "custom", zeros = [-{rate}], poles = [-{rate}]')
         assert loop.stable
         assert loop.damping_ratio == 0.0
@@ -123,27 +121,6 @@ def test_poles_known_by_design_are_those_of_the_polynomial(block: dict[str, obje
     assert analyse(network).stable
 
 
-@given(zeta=st.floats(0.005, 1.5), r=st.floats(1.05, 5.0))
-@settings(max_examples=25)
-def test_settling_agrees_with_a_dense_search(zeta: float, r: float) -> None:
-    network = parse_network({"id": "unity2", "zeta": zeta, "r": r}).transfer(OMEGA_S)
-    loop = analyse(network)
-    assert loop.settling_s is not None
-    slowest = float(np.min(-loop.poles.real))
-    grid = np.linspace(0.0, 10.0 / slowest, 60_001)
-    over = np.flatnonzero(np.abs(initial_tilt_response(network, grid)) > 0.02)
-    assert grid[over[-1]] - 1e-6 / OMEGA_S <= loop.settling_s <= grid[over[-1] + 1] + 1e-6 / OMEGA_S
-
-
-def test_at_the_settling_time_the_response_is_two_percent() -> None:
-    for name in ("classic2", "classic3", "compass", "complementary", "pole2", "unity2"):
-        network = parse_network({"id": name}).transfer(OMEGA_S)
-        settling = analyse(network).settling_s
-        assert settling is not None
-        value = initial_tilt_response(network, np.array([settling]))
-        assert abs(value[0]) == pytest.approx(0.02, rel=1e-6)
-
-
 def unity2(zeta: float) -> LinearNetwork:
     return parse_network({"id": "unity2", "zeta": zeta}).transfer(OMEGA_S)
 
@@ -173,18 +150,63 @@ def test_a_last_peak_just_above_the_level_is_not_missed(number: int) -> None:
     assert after < time - 0.5 / OMEGA_S
 
 
-def test_stiff_network_settles_by_its_slow_mode() -> None:
-    network = parse_network('id = "custom", zeros = [-0.0012, -90.0], poles = [-0.008, -100.0]').transfer(
-        OMEGA_S
-    )
-    loop = analyse(network)
-    slowest = float(np.min(-loop.poles.real))
-    assert loop.settling_s is not None
-    assert 1.0 / slowest < loop.settling_s < 8.0 / slowest
-
-
 @pytest.mark.parametrize("name", NETWORKS)
 def test_other_schuler_frequencies_work_alike(name: str) -> None:
     for omega_s in (1.23e-3, 1.25e-3):
         loop = analyse(parse_network({"id": name}).transfer(omega_s))
         assert loop.stable
+
+
+# ---------------------------------------------------------------- settling of a known response
+
+
+def settled(rate: float, gain: float) -> float | None:
+    """Last crossing of gain e^(-rate tau)."""
+    system = StateSpace(np.array([[-rate]]), np.array([1.0]), np.array([gain]), 0.0)
+    return last_exceedance(system, np.array([-rate], dtype=complex))
+
+
+@pytest.mark.parametrize("gain", [0.5, 1.0, 1e3, 1e5, 1e9])
+def test_a_large_transient_is_followed_beyond_the_first_horizon(gain: float) -> None:
+    assert settled(0.1, gain) == pytest.approx(10.0 * math.log(gain / LEVEL), rel=1e-6)
+
+
+@pytest.mark.parametrize("rate", [50.0, 500.0])
+def test_a_fast_response_settles_soon(rate: float) -> None:
+    assert settled(rate, 1.0) == pytest.approx(math.log(1.0 / LEVEL) / rate, rel=1e-6)
+
+
+def test_what_never_exceeds_the_level_is_settled_at_once() -> None:
+    assert settled(0.1, 0.9 * LEVEL) == 0.0
+
+
+# ---------------------------------------------------------------- root locus
+
+
+LOCUS_OMEGA_S = 1.24e-3
+
+
+def test_compass_poles_move_along_a_ray_with_sigma():
+    sigma = np.geomspace(1e-3, 0.1, 30)
+    locus = root_locus(CompassNetwork(sigma=0.01, xi=0.6), "sigma", sigma, LOCUS_OMEGA_S)
+    np.testing.assert_array_equal(locus.values, sigma)
+    real = np.abs(locus.poles.imag).max(axis=0).argmin()
+    np.testing.assert_allclose(locus.poles[:, real], -sigma, rtol=1e-9)
+    for branch in np.delete(np.arange(3), real):
+        np.testing.assert_allclose(-locus.poles[:, branch].real / np.abs(locus.poles[:, branch]), 0.6)
+
+
+def test_branches_do_not_jump():
+    locus = root_locus(Unity2Network(), "zeta", np.linspace(0.05, 0.9, 200), LOCUS_OMEGA_S)
+    steps = np.abs(np.diff(locus.poles, axis=0))
+    assert steps.max() < 0.1 * np.abs(locus.poles).max()
+
+
+def test_refused_values_are_left_out():
+    locus = root_locus(Pole2Network(), "n1", np.linspace(5.0, 20.0, 31), LOCUS_OMEGA_S)
+    assert 5.0 not in locus.values
+    assert locus.values[0] > 5.0
+    assert locus.values[-1] == 20.0
+    assert locus.poles.shape == (len(locus.values), 4)
+    nothing = root_locus(Pole2Network(), "n1", np.array([-1.0]), LOCUS_OMEGA_S)
+    assert nothing.poles.shape == (0, 0)

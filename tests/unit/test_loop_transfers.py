@@ -168,13 +168,8 @@ def test_margins_of_two_outputs_are_those_of_the_loop_broken_at_the_velocity() -
     assert abs(np.angle(-at)) == pytest.approx(abs(found.phase_rad), rel=1e-6)
 
 
-def test_feedback_has_the_tilt_of_the_network_form_but_pulls_the_velocity_onto_the_reference() -> None:
+def test_feedback_pulls_the_velocity_onto_the_reference() -> None:
     network = parse_network('id = "compass"').transfer(OMEGA_S)
-    for source in ("eps", "nabla", "dv_r", "initial_tilt"):
-        np.testing.assert_allclose(
-            frequency_response(network, source, "phi", OMEGA, realisation="feedback"),
-            frequency_response(network, source, "phi", OMEGA, realisation="network"),
-        )
     assert steady_state(network, realisation="feedback")["dv_r"]["dv"] == pytest.approx(1.0)
     rejecting = parse_network('id = "complementary"').transfer(OMEGA_S)
     assert steady_state(rejecting)["dv_r"]["dv"] == pytest.approx(0.0, abs=1e-12)
@@ -189,13 +184,6 @@ def test_polynomials_in_s_belong_to_the_frequency_response(source: Source, outpu
         assert den[0] == 1.0
         found = np.polyval(num, 1j * OMEGA) / np.polyval(den, 1j * OMEGA)
         np.testing.assert_allclose(found, frequency_response(network, source, output, OMEGA), rtol=1e-6)
-
-
-def test_complementary_falls_at_80_db_per_decade_without_a_floor() -> None:
-    network = parse_network('id = "complementary"').transfer(OMEGA_S)
-    high = np.abs(frequency_response(network, "dv_r", "phi", OMEGA_S * np.array([1e3, 1e6])))
-    assert high[0] / high[1] == pytest.approx(1e12, rel=1e-4)
-    assert frequency_response(network, "dv_r", "phi", 0.0) == 0.0
 
 
 def test_steady_states_of_a_schuler_tuned_loop() -> None:
@@ -317,50 +305,3 @@ def test_python_control_in_seconds_and_normalised_agree() -> None:
     normalised = to_control(network, "dv_r", "phi", normalised=True)
     for w in OMEGA:
         assert complex(seconds(1j * w)) == pytest.approx(complex(normalised(1j * w / OMEGA_S)), rel=1e-9)
-
-
-def test_margins_are_at_the_edge_of_stability() -> None:
-    for name in ("classic2", "classic3", "compass", "complementary", "unity2"):
-        network = parse_network({"id": name}).transfer(OMEGA_S)
-        found = margins(network)
-        assert found is not None
-        assert found.phase_rad is not None and found.phase_rad > 0.1
-        assert found.crossover_rad_s is not None and found.delay_s is not None
-        at = network.response(found.crossover_rad_s) * OMEGA_S**2 / (1j * found.crossover_rad_s) ** 2
-        assert abs(at) == pytest.approx(1.0, rel=1e-6)
-        assert abs(np.angle(-at)) == pytest.approx(found.phase_rad, rel=1e-6)
-        assert found.delay_s == pytest.approx(np.angle(-at) / found.crossover_rad_s, rel=1e-6)
-
-
-def test_the_smallest_delay_margin_of_several_crossovers_counts() -> None:
-    """A light resonance lifts |L| through 1 again above the first crossover."""
-    w = 3.0 * OMEGA_S
-    classic = parse_network('id = "classic2"').transfer(OMEGA_S)
-    num = np.polymul(classic.num, [1.0, 2 * 0.3 * w, w**2])
-    den = np.polymul(classic.den, [1.0, 2 * 0.1 * w, w**2])
-    network = parse_network({"id": "custom", "num": num.tolist(), "den": den.tolist()}).transfer(OMEGA_S)
-    omega = OMEGA_S * np.logspace(-1, 2, 400_001)
-    loop = network.response(omega) * OMEGA_S**2 / (1j * omega) ** 2
-    crossings = np.flatnonzero(np.diff(np.sign(np.abs(loop) - 1.0)))
-    assert len(crossings) == 3
-    delays = np.mod(np.angle(-loop[crossings]), 2.0 * np.pi) / omega[crossings]
-    found = margins(network)
-    assert found is not None
-    assert found.delay_s == pytest.approx(np.min(delays), rel=1e-3)
-    assert found.phase_rad == pytest.approx(np.min(np.abs(np.angle(-loop[crossings]))), rel=1e-3)
-
-
-def test_a_gain_limit_is_where_the_loop_turns_unstable() -> None:
-    network = parse_network('id = "complementary"').transfer(OMEGA_S)
-    found = margins(network)
-    assert found is not None and found.gain_down is not None
-    for factor, stable in ((1.01, True), (0.99, False)):
-        gain = factor * found.gain_down
-        block = {"id": "custom", "num": (gain * network.num).tolist(), "den": network.den.tolist()}
-        assert analyse(parse_network(block).transfer(OMEGA_S)).stable is stable
-
-
-def test_margins_mean_nothing_for_undamped_and_unstable_loops() -> None:
-    assert margins(parse_network('id = "none"').transfer(OMEGA_S)) is None
-    unstable = parse_network('id = "pole2", xi = 0.08, variant = "as_printed"').transfer(OMEGA_S)
-    assert margins(unstable) is None

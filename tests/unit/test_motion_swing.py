@@ -52,27 +52,12 @@ def test_deng_swing_follows_its_formula_for_a_day() -> None:
         assert np.all(np.abs(values[:, rate] - np.radians(amplitude) * w * np.cos(angle)) <= 1e-10)
 
 
-def test_rates_are_derivatives() -> None:
-    h = 1e-3
-    values = SwingMotion(**DENG).truth(20_001, h, SITE, WGS84).values
-    for column, rate in ((PITCH, PITCH_RATE), (ROLL, ROLL_RATE), (HEADING, HEADING_RATE)):
-        numeric = (values[2:, column] - values[:-2, column]) / (2.0 * h)
-        assert np.abs(numeric - values[1:-1, rate]).max() < 1e-6
-        assert np.abs(values[:, rate]).max() > 0.05
-
-
 def test_the_place_does_not_move() -> None:
     values = SwingMotion(**DENG).truth(101, 0.5, SITE, WGS84).values
     for column, value in ((LAT, SITE.lat), (LON, SITE.lon), (HEIGHT, SITE.height)):
         assert (values[:, column] == value).all()
     assert not values[:, VE : AU + 1].any()
     assert AE == VE + 3
-
-
-def test_a_finer_grid_gives_the_same_motion() -> None:
-    motion = SwingMotion(**DENG)
-    coarse, fine = motion.truth(2001, 0.5, SITE, WGS84), motion.truth(10_001, 0.1, SITE, WGS84)
-    assert np.abs(coarse.values - fine.values[::5]).max() < 1e-12
 
 
 def test_nothing_swinging_is_one_row_with_its_phase() -> None:

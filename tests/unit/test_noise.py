@@ -80,21 +80,6 @@ def test_threads_see_the_same_numbers() -> None:
         assert np.array_equal(numbers, drawn[i % 3])
 
 
-def test_gauss_markov_is_stationary_from_the_start() -> None:
-    unit = unit_noise(11, "gyro.instability", 300, 4000)
-    process = gauss_markov(unit, math.exp(-1.0 / 50.0)).astype(float)
-    # 4000 independent processes: the standard deviation of a standard deviation is 1/sqrt(8000).
-    assert np.abs(process.std(axis=1) - 1.0).max() < 4.5 / math.sqrt(8000.0)
-    assert np.array_equal(process[0], unit[0])
-
-
-@pytest.mark.parametrize("lag", [10, 50, 100, 200])
-def test_gauss_markov_autocorrelation_falls_exponentially(lag: int) -> None:
-    process = gauss_markov(unit_noise(12, "gyro.instability", 300, 4000), math.exp(-1.0 / 50.0)).astype(float)
-    measured = np.mean(process[60] * process[60 + lag])
-    assert measured == pytest.approx(math.exp(-lag / 50.0), abs=4.5 / math.sqrt(4000.0))
-
-
 def test_gauss_markov_against_its_recursion() -> None:
     unit = unit_noise(13, "x", 50, 2)
     decay = 0.9

@@ -150,12 +150,6 @@ def test_errors_add_up_and_each_keeps_its_own_random_numbers():
     assert not np.allclose(errors(seed=2, **noise).error, errors(**noise).error)
 
 
-def test_the_same_seed_gives_the_same_log():
-    assert np.array_equal(
-        errors(noise_mps=0.1, drift_mps=0.1).error, errors(noise_mps=0.1, drift_mps=0.1).error
-    )
-
-
 def test_a_constant_event_stays_after_its_end():
     event = LogEvent(t_h=0.1, duration_s=100.0, accel_mps2=(0.01, -0.02))
     t = np.array([0.0, 360.0, 400.0, 460.0, 5000.0])

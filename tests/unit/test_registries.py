@@ -22,7 +22,6 @@ from navcore.motion import MOTIONS, MotionParameters, StaticMotion
 from navcore.motion.base import AE, HEADING, HEADING_RATE, HEIGHT, LAT, LON, PITCH, ROLL, VE, VN, VU, Truth
 from navcore.motion.kinematics import KINDS, Kinematics
 from navcore.networks import NETWORKS, NetworkParameters
-from navcore.networks.discrete import discretise
 from navcore.scenario.file import parse_toml, to_toml
 from navcore.scenario.guide import guide
 from navcore.scenario.model import Scenario
@@ -137,15 +136,6 @@ def test_it_runs_in_both_fidelities(part: str, name: str, fidelity: str, tmp_pat
     (method,) = simulate(scenario_of(part, name, tmp_path, fidelity)).methods
     assert method.status == "ok"
     assert np.isfinite(method.rows).all()
-
-
-@each_network
-def test_a_network_has_one_discrete_form_with_the_same_response(name: str) -> None:
-    network = NETWORKS[name].model_validate({"id": name}).transfer(OMEGA_S)
-    assert network.id == name
-    discrete = discretise(network, 1.0)
-    np.testing.assert_allclose(discrete.response(OMEGA_S), network.response(OMEGA_S), rtol=1e-9)
-    assert analyse(network).poles.size >= 2
 
 
 @each_network

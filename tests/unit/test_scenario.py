@@ -1,12 +1,15 @@
 """The scenario: defaults, faults by name, overrides, one hash for one scenario, TOML out and in."""
 
 import tomllib
+from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, assume, given, settings
 
 from navcore.foundation.errors import InputError
 from navcore.scenario.file import apply_overrides, load, parse_toml, presets, scenario_hash, to_toml
 from navcore.scenario.model import Scenario
+from tests.random_models import raw_scenarios
 
 CONTRACT_EXAMPLE = """
 schema = 1
@@ -181,3 +184,35 @@ def test_a_broken_file_is_one_clear_line(tmp_path, content, said):
 def test_an_unknown_preset_is_answered_with_the_nearest():
     with pytest.raises(InputError, match="neither a preset nor a file"):
         load("liu-overshot")
+
+
+# ---------------------------------------------------------------- any scenario
+
+
+_CHECKS = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]
+
+
+def parsed(data: dict[str, Any]) -> Scenario | None:
+    """The scenario, or None when it is refused; then every fault must be one telling line."""
+    try:
+        return Scenario.parse(data)
+    except InputError as error:
+        assert error.faults
+        for fault in error.faults:
+            assert fault.allowed, fault
+            assert fault.field, fault
+            assert "\n" not in str(fault)
+        return None
+
+
+@given(data=raw_scenarios())
+@settings(max_examples=150, suppress_health_check=_CHECKS)
+def test_written_and_read_again_it_is_the_same(data):
+    scenario = parsed(data)
+    assume(scenario is not None)
+    assert scenario is not None
+    again = Scenario.parse(parse_toml(to_toml(scenario), "text"))
+    assert again == scenario
+    assert again.canonical() == scenario.canonical()
+    assert scenario_hash(again) == scenario_hash(scenario)
+    assert to_toml(again) == to_toml(scenario)

@@ -1,18 +1,23 @@
-"""The compiled strapdown kernel against its slow twin, sample by sample, and its bookkeeping."""
-
-import math
+"""The strapdown kernel against its slow twin; its loop for the law at every sample."""
 
 import numpy as np
 import pytest
 
+from navcore.damping import KINDS
 from navcore.foundation.earth import WGS84, attitude_matrix
-from navcore.foundation.units import DEG
+from navcore.law.law import prepare_law
+from navcore.law.policy.base import PolicyParameters
 from navcore.law.policy.constant import Constant
+from navcore.law.policy.threshold import Threshold
 from navcore.law.switching.hard import Hard
-from navcore.mechanization.strapdown import Settings, start_from, start_run
+from navcore.mechanization.recorder import XI_COLUMN
+from navcore.mechanization.strapdown import Settings, StrapdownRun, start_from, start_run
 from navcore.mechanization.strapdown import records as at
 from navcore.mechanization.strapdown.attitude import angles_of, misalignment, quaternion_of
-from navcore.mechanization.strapdown.run import turned_by
+from navcore.mechanization.strapdown.run import VelocityReference, turned_by
+from navcore.mechanization.strapdown.samples import is_steady
+from navcore.motion.base import MotionParameters
+from navcore.networks import parse_network
 from navcore.networks.base import NetworkParameters
 from navcore.networks.classic import Classic2Network
 from navcore.networks.compass import CompassNetwork
@@ -138,28 +143,6 @@ def test_a_run_ends_at_its_last_sample_whatever_it_is_given():
     assert (run.position, run.code) == (100, at.COMPLETE)
 
 
-def test_navigation_rows_hold_the_solution():
-    run = navigate(DRIVE, 50.0, 900.0)
-    last = dict(zip(at.NAVIGATION, run.navigation[-1], strict=True))
-    assert last["ve_mps"] == pytest.approx(8.0 * math.sin(30 * DEG), abs=1e-6)
-    assert last["heading_rad"] == pytest.approx(30 * DEG, abs=1e-9)
-    assert last["lat_rad"] > SITE.lat
-
-
-def test_divergence_is_reported_and_stops():
-    run = navigate(DRIVE, 50.0, 600.0, errors=np.array([0, 0, 0, 0, 1.5, 0, 0]))
-    assert run.code == at.DIVERGED and run.diverged and "tilt" in run.reason
-
-
-def test_altimeter_holds_the_height_where_a_free_vertical_channel_runs_away():
-    biased = Imu(accel_bias_ug=(0.0, 0.0, 200.0))
-    run = navigate(DENG_SWING, 50.0, 3600.0, biased, vertical="altimeter")
-    height_error = run.navigation[:, at.NAVIGATION.index("dheight_m")]
-    # dh'' = 2e-3 m/s^2 would give 12.7 km in an hour; the loop leaves nothing of a constant bias.
-    assert 0.5 < np.abs(height_error).max() < 20.0
-    assert abs(height_error[-1]) < 0.05
-
-
 def test_as_printed_lacks_the_transport_rate_of_the_reference():
     """Deng 4: a moving vehicle tilts the platform of the printed form (theory.md 8)."""
 
@@ -181,3 +164,100 @@ def test_lengths_that_do_not_fit_are_refused():
         start_run(start_from(truth[0]), Settings(50.0, 120, 50, 50, 1.0), WGS84, free, truth)
     with pytest.raises(ValueError, match="rows of truth"):
         start_run(start_from(truth[0]), Settings(50.0, 150, 50, 50, 1.0), WGS84, free, truth)
+
+
+# ---------------------------------------------------------------- the loop for the law at every sample
+
+
+SECONDS = 12
+NETWORKS = {
+    "one state": 'id = "compass", sigma = 0.05',
+    "as printed": 'id = "compass", sigma = 0.05, realisation = "as_printed"',
+    "two states": 'id = "classic2"',
+    "three states": 'id = "classic3"',
+    "four states": 'id = "complementary"',
+    "two outputs": 'id = "optimal", realisation = "feedback", q = 1.0',
+}
+
+
+def _log(step_s: float, body: bool) -> VelocityReference:
+    """Noisy log with an outage, which the fast loop must leave and take up again."""
+    count = int(SECONDS / step_s) + 1
+    velocity = 0.3 * np.random.default_rng(1).normal(size=(count, 2))
+    valid = np.ones(count, bool)
+    valid[count // 3 : count // 2] = False
+    return VelocityReference(np.arange(count) * step_s, velocity, valid, body, 2.0)
+
+
+def _run(
+    motion: MotionParameters,
+    damping: str,
+    network: NetworkParameters,
+    policy: PolicyParameters,
+    log: VelocityReference,
+    piece: int = 10_000,
+) -> StrapdownRun:
+    samples = int(RATE * SECONDS)
+    sim = ImuSimulation(motion, SITE, WGS84, NOISY, RATE, samples, 3)
+    transfer = network.transfer(WGS84.schuler_frequency(SITE.lat))
+    law = prepare_law(damping, network, transfer, policy, Hard(), 1.0 / RATE)
+    truth = sim.truth_rows(SECONDS + 1, 1.0)
+    run = start_run(
+        start_from(truth[0], START_ERRORS), Settings(RATE, samples, 1, int(RATE), 1.0), WGS84, law, truth,
+        log, sim.before(),
+    )  # fmt: skip
+    for chunk, _ in sim.chunks():
+        for first in range(0, len(chunk), piece):
+            run.advance(chunk[first : first + piece])
+    assert run.code == at.COMPLETE
+    return run
+
+
+def _assert_equal(run: StrapdownRun, other: StrapdownRun) -> None:
+    assert run.x == other.x
+    np.testing.assert_array_equal(
+        run.recorder.rows[:, : XI_COLUMN + 1], other.recorder.rows[:, : XI_COLUMN + 1]
+    )
+
+
+@pytest.mark.parametrize("name", NETWORKS)
+@pytest.mark.parametrize("damping", ["external", "internal"])
+def test_equals_the_general_loop(name: str, damping: str):
+    network = parse_network(NETWORKS[name])
+    if network.requires_reference and not KINDS[damping].uses_log:
+        assert (name, damping) == ("two outputs", "internal")
+        return
+    # Epochs between the recorded states, which the general loop serves.
+    log = _log(0.3, body=False)
+    run = _run(DENG_SWING, damping, network, Constant(), log)
+    # A threshold that nothing reaches is the same law, and the general loop serves it.
+    _assert_equal(run, _run(DENG_SWING, damping, network, Threshold(limit_mps=1000.0), log))
+    damped = run.recorder.rows[:, 8].mean()
+    assert damped == 1.0 if damping == "internal" else 0.5 < damped < 1.0
+
+
+@pytest.mark.parametrize(("step_s", "body"), [(0.02, False), (0.013, True), (1.0, True)])
+def test_equals_the_general_loop_with_any_log(step_s: float, body: bool):
+    network, log = parse_network(NETWORKS["two states"]), _log(step_s, body)
+    run = _run(DRIVE, "external", network, Constant(), log, piece=77)
+    _assert_equal(run, _run(DRIVE, "external", network, Threshold(limit_mps=1000.0), log))
+
+
+def test_a_free_run_equals_one_whose_network_has_nothing_to_do():
+    """H = 1 corrects nothing."""
+    one, log = parse_network('id = "none"'), _log(1.0, body=False)
+    free = _run(DENG_SWING, "free", one, Constant(), log)
+    other = _run(DENG_SWING, "internal", one, Threshold(), log)
+    for name in ("d_lat", "d_lon", "height", "v", "q", "carry", "before", "m", "m_lat"):
+        np.testing.assert_array_equal(free.x[name], other.x[name])
+
+
+def test_only_the_steady_state_is_run_in_one_loop():
+    network = parse_network(NETWORKS["two states"])
+    transfer = network.transfer(WGS84.schuler_frequency(SITE.lat))
+    for policy, steady in ((Constant(), True), (Threshold(), False)):
+        run = _run(DENG_SWING, "internal", network, policy, _log(1.0, body=False))
+        assert bool(is_steady(run.law)) is steady
+    fresh = prepare_law("internal", network, transfer, Constant(), Hard(), 0.02)
+    assert not is_steady(fresh)
+    assert fresh.p["steady"] and not fresh.s["damped"]

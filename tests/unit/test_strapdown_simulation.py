@@ -1,4 +1,4 @@
-"""simulate() of fidelity strapdown: identical inputs, cancel, divergence, columns, alignment, law series."""
+"""simulate(): identical inputs, rows, cancel, divergence; of strapdown: columns, alignment, law series."""
 
 from typing import Any
 
@@ -6,12 +6,11 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 
-from navcore.engine.measures import metrics
 from navcore.engine.results import timeseries, write_results
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.units import DEG
-from navcore.mechanization.recorder import NAMES
+from navcore.mechanization.recorder import NAMES, output_steps
 from navcore.mechanization.strapdown.records import NAVIGATION
 from navcore.motion.base import HEADING, LAT, VE
 from navcore.scenario.model import Scenario
@@ -35,34 +34,33 @@ def run_of(hours: float = 0.2, **changes: Any) -> Run:
     return simulate(scenario(hours, **changes))
 
 
-def test_order_and_company_of_methods_change_nothing():
-    alone = run_of(method=[{"name": "c", **COMPASS}])
-    first = run_of(method=[{"name": "c", **COMPASS}, {"name": "f"}])
-    last = run_of(method=[{"name": "f"}, {"name": "c", **COMPASS}])
+@pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
+def test_order_and_company_of_methods_change_nothing(fidelity):
+    fine, free = {"name": "c", **COMPASS}, {"name": "f"}
+    alone, first, last = (
+        run_of(run={"fidelity": fidelity}, method=methods) for methods in ([fine], [fine, free], [free, fine])
+    )
     assert np.array_equal(alone.methods[0].rows, first.methods[0].rows)
     assert np.array_equal(first.methods[0].rows, last.methods[1].rows)
     assert np.array_equal(first.methods[1].rows, last.methods[0].rows)
     assert not np.array_equal(first.methods[0].rows, first.methods[1].rows)
 
 
-def test_two_equal_methods_see_the_same_samples():
-    run = run_of(method=[{"name": "a", **COMPASS}, {"name": "b", **COMPASS}])
-    assert np.array_equal(run.methods[0].rows, run.methods[1].rows)
-    assert np.abs(run.methods[0].rows[:, :5]).max() > 0.0
+@pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
+def test_another_seed_gives_another_run(fidelity):
+    one, other = (run_of(run={"fidelity": fidelity, "seed": seed}, method=[COMPASS]) for seed in (5, 6))
+    assert not np.array_equal(one.methods[0].rows, other.methods[0].rows)
 
 
-def test_another_seed_gives_another_run():
-    other = run_of(run={"seed": 6}, method=[COMPASS])
-    assert not np.array_equal(run_of(method=[COMPASS]).methods[0].rows, other.methods[0].rows)
-
-
-def test_rows_hold_start_every_output_step_and_the_end():
-    run = run_of(0.0141, run={"output_step_s": 20.0})
+@pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
+def test_rows_hold_start_every_output_step_and_the_end(fidelity):
+    run = run_of(0.0141, run={"fidelity": fidelity, "output_step_s": 20.0})
     assert run.t_s.tolist() == [0.0, 20.0, 40.0, 50.0]
     method = run.methods[0]
-    assert method.rows.shape == (4, 10) and method.navigation is not None
-    assert method.navigation.shape == (4, len(NAVIGATION)) and method.law_series.shape == (4, 4)
-    assert run.truth.shape == (4, 15)
+    assert (method.rows.shape, method.law_series.shape, run.truth.shape) == ((4, 10), (4, 4), (4, 15))
+    navigation = None if method.navigation is None else method.navigation.shape
+    assert navigation == ((4, len(NAVIGATION)) if fidelity == "strapdown" else None)
+    assert output_steps(7, 1.0, 0.1).tolist() == list(range(8))
 
 
 def test_statistics_are_those_of_the_recorded_states():
@@ -70,11 +68,6 @@ def test_statistics_are_those_of_the_recorded_states():
     for i, name in enumerate(NAMES):
         assert method.errors[name]["rms"] == pytest.approx(np.sqrt(np.mean(method.rows[:, i] ** 2)), rel=1e-9)
         assert method.errors[name]["final"] == method.rows[-1, i]
-
-
-def test_the_metrics_say_which_states_they_cover():
-    run = run_of(0.01, run={"rate_hz": 200.0})
-    assert metrics(run)["computed_on"] == "states every 1 s (every 200 steps of the mechanization at 200 Hz)"
 
 
 @pytest.mark.parametrize("stop_at", [1, 3])
@@ -95,10 +88,11 @@ def test_a_cancel_acts_at_the_next_chunk_and_keeps_what_was_computed(stop_at):
         assert method.navigation is not None and len(method.navigation) == len(method.t_s)
 
 
-def test_progress_rises_to_one():
+@pytest.mark.parametrize(("fidelity", "hours", "calls"), [("error_model", 50.0, 3), ("strapdown", 0.5, 30)])
+def test_progress_rises_to_one(fidelity, hours, calls):
     seen: list[float] = []
-    simulate(scenario(0.5), progress=seen.append)
-    assert seen[-1] == 1.0 and seen == sorted(seen) and len(seen) == 30
+    simulate(scenario(hours, run={"fidelity": fidelity}), progress=seen.append)
+    assert seen[-1] == 1.0 and seen == sorted(seen) and len(seen) >= calls
 
 
 def test_a_diverging_method_says_why_and_where_and_the_others_finish(tmp_path):
@@ -131,12 +125,6 @@ def test_the_files_carry_the_navigation_solution(tmp_path):
     assert np.all(first["dvu_mps"] == 0.0) and np.all(first["height_m"] == 0.0)
 
 
-def test_a_linear_run_has_no_navigation_columns():
-    run = simulate(Scenario.parse({"run": {"duration_h": 0.1}}))
-    assert run.methods[0].navigation is None
-    assert "lat_rad" not in timeseries(run).column_names
-
-
 @pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
 def test_the_law_series_tells_wish_state_xi_and_measure(fidelity):
     """A log that steps by 2 m/s at 600 s: `threshold` (0.5 m/s) lets go."""
@@ -151,15 +139,6 @@ def test_the_law_series_tells_wish_state_xi_and_measure(fidelity):
     assert wanted[590] == damped[590] == 1.0 and wanted[700] == damped[700] == 0.0
     assert measure[590] < 0.5 < measure[700]
     assert np.array_equal(wanted, (measure <= 0.5).astype(float))
-
-
-@pytest.mark.parametrize("vertical", ["locked", "altimeter"])
-def test_the_vertical_channel_is_held_or_damped(vertical):
-    run = run_of(0.5, run={"vertical": vertical}, imu={"accel_bias_ug": [0.0, 0.0, 500.0]})
-    navigation = run.methods[0].navigation
-    assert navigation is not None
-    up_error = np.abs(navigation[:, -2]).max()
-    assert up_error == 0.0 if vertical == "locked" else 0.01 < up_error < 1.0
 
 
 def test_compensation_makes_the_difference_it_should():
@@ -211,3 +190,88 @@ def test_an_alignment_at_sea_leaves_what_one_at_rest_would():
         run = run_of(0.02, imu=imu, reference={}, motion=motion, alignment={"kind": "compass"})
         start[name] = run.methods[0].rows[0, :3]
     np.testing.assert_allclose(start["sea"], start["rest"], rtol=0.05, atol=0.002 * DEG)
+
+
+# ---------------------------------------------------------------- the linear model
+
+
+NOISY_RUN = {
+    "run": {"duration_h": 2.0, "seed": 5},
+    "imu": {"gyro_bias_dph": [0.01, 0.02, 0.0], "gyro_arw_dpsh": 0.01, "accel_vrw_ugpshz": 20.0},
+    "reference": {"kind": "log", "noise_mps": 0.2, "bias_mps": [0.1, -0.2]},
+}
+
+
+def _run(**changes):
+    return simulate(Scenario.parse({**NOISY_RUN, **changes}))
+
+
+def test_statistics_are_those_of_every_step():
+    """With a row each step the metrics must be recomputable from the rows."""
+    run = _run(run={"duration_h": 1.2, "output_step_s": 1.0}, method=[COMPASS])
+    method = run.methods[0]
+    for i, name in enumerate(NAMES):
+        column = method.rows[:, i]
+        found = method.errors[name]
+        assert found["mean"] == pytest.approx(column.mean(), rel=1e-9, abs=1e-15)
+        assert found["std"] == pytest.approx(column.std(), rel=1e-6, abs=1e-12)
+        assert found["rms"] == pytest.approx(np.sqrt(np.mean(column**2)), rel=1e-9)
+        assert found["max_abs"] == np.abs(column).max()
+        assert found["final"] == column[-1]
+
+
+def test_plot_curves_keep_every_extreme_in_order():
+    run = _run(run={"duration_h": 4.0, "output_step_s": 1.0}, method=[COMPASS])
+    plot, rows = run.methods[0].plot, run.methods[0].rows
+    assert len(plot.t_s) <= 2000 and np.all(np.diff(plot.t_s) > 0)
+    assert np.array_equal(plot.values.max(axis=0), rows[:, :8].max(axis=0))
+    assert np.array_equal(plot.values.min(axis=0), rows[:, :8].min(axis=0))
+    smooth = np.interp(plot.t_s, run.t_s, rows[:, 7])
+    assert np.abs(plot.values[:, 7] - smooth).max() < 0.02 * rows[:, 7].max()
+
+
+def test_an_outage_leaves_the_loop_undamped_until_the_log_returns():
+    run = _run(
+        run={"duration_h": 1.0, "output_step_s": 1.0},
+        reference={"kind": "log", "outage": [{"t_h": 0.5, "duration_s": 600.0}]},
+        method=[COMPASS],
+    )
+    damped = run.methods[0].rows[:, 8]
+    assert damped[:1800].all() and not damped[1800:2400].any() and damped[2401:].all()
+    assert run.methods[0].rows[2000, 9] == 0.0 and run.methods[0].rows[100, 9] == 0.7
+
+
+def test_internal_damping_does_not_take_a_constant_speed_for_an_acceleration():
+    scenario = {
+        "run": {"duration_h": 2.0, "fidelity": "channel"},
+        "method": [{"damping": "internal", "network": {"id": "complementary"}}],
+    }
+    legs = [{"duration_s": 3600.0, "speed_mps": 10.0}, {"duration_s": 3600.0, "speed_mps": 5.0}]
+    steady = simulate(Scenario.parse({**scenario, "motion": {"kind": "legs", "leg": legs[:1]}}))
+    manoeuvre = simulate(Scenario.parse({**scenario, "motion": {"kind": "legs", "leg": legs}}))
+    assert steady.methods[0].errors["phi_e_rad"]["max_abs"] < 1e-12
+    assert manoeuvre.methods[0].errors["phi_e_rad"]["max_abs"] > 1e-5
+
+
+def test_the_law_in_force_is_told_and_the_loop_is_that_of_its_mean():
+    """`adaptive` re-tunes its network: the figures of the loop are those of the mean coefficient in force."""
+    given = {
+        "run": {"duration_h": 2.0},
+        "reference": {"kind": "log", "outage": [{"t_h": 1.0, "duration_s": 1800.0}]},
+        "initial_error": {"velocity_mps": [0.5, 0.0]},
+        "method": [
+            {"name": "adaptive", "damping": "external", "policy": {"id": "adaptive"}},
+            {"name": "constant", "damping": "external", "network": {"id": "classic2"}},
+            {"name": "free"},
+        ],
+    }
+    adaptive, constant, free = simulate(Scenario.parse(given)).methods
+    for method in (adaptive, constant):
+        assert method.law_in_force.damped_share == pytest.approx(0.75, abs=0.01)
+    law = adaptive.law_in_force
+    assert law.xi_min is not None and law.xi_mean is not None and law.xi_max is not None
+    assert law.xi_min < law.xi_mean < law.xi_max
+    # the exact damping of unity2 is the coefficient itself
+    assert adaptive.loop.damping_ratio == pytest.approx(law.xi_mean, rel=1e-9)
+    assert constant.law_in_force.xi_min == constant.law_in_force.xi_max
+    assert (free.law_in_force.damped_share, free.law_in_force.xi_mean) == (0.0, None)

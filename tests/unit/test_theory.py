@@ -10,7 +10,8 @@ from scipy.linalg import block_diag
 from scipy.signal import tf2ss
 
 from navcore.analysis import analyse, frequency_response
-from navcore.foundation.earth import EARTH_RATE, SPHERE, WGS84
+from navcore.analysis.whole_system import whole_system
+from navcore.foundation.earth import EARTH_RATE, SPHERE
 from navcore.foundation.units import DEG
 from navcore.mechanization.error_model import system_matrix
 from navcore.networks import parse_network
@@ -68,34 +69,12 @@ def test_every_formula_becomes_mathml():
         assert "\\" not in convert(formula), formula
 
 
-# ------------------------------------------------------------ 1 and 2: Earth, natural periods
-
-
-def test_normal_gravity_and_radii_are_the_printed_formulas():
-    lat = 32.06 * DEG
-    x = 1.0 - 6.6943799901413e-3 * np.sin(lat) ** 2
-    assert WGS84.gravity(lat) == pytest.approx(
-        9.7803253359 * (1.0 + 1.93185265241e-3 * np.sin(lat) ** 2) / np.sqrt(x), rel=1e-14
-    )
-    assert WGS84.radii(lat) == pytest.approx((RADIUS * (1 - 6.6943799901413e-3) / x**1.5, RADIUS / x**0.5))
-
-
-def test_eigenvalues_at_rest_are_the_split_lines():
-    lat = 45.7796 * DEG
-    matrix = np.delete(np.delete(system_matrix(lat, RADIUS, GRAVITY, EARTH_RATE), 3, 0), 3, 1)
-    wz = EARTH_RATE * np.sin(lat)
-    split = np.hypot(OMEGA_S, wz)
-    scale = np.diag([1.0, 1.0, RADIUS, RADIUS, RADIUS, RADIUS])
-    found = np.sort(np.abs(np.linalg.eigvals(scale @ matrix @ np.linalg.inv(scale)).imag))[::2]
-    np.testing.assert_allclose(found, [EARTH_RATE, split - wz, split + wz], rtol=1e-9)
-
-
 # ------------------------------------------------------------ 3: networks
 
 
 @pytest.mark.parametrize("zeta", [0.3, 1.3])
 @pytest.mark.parametrize("eta", [0.5, 0.8])
-def test_complementary_polynomials_as_printed_and_their_identity(zeta: float, eta: float):
+def test_complementary_polynomials_as_printed(zeta: float, eta: float):
     numerator = [1, 1 + 2 * eta + 4 * zeta * eta, 2 + 2 * zeta + 2 * eta + 4 * zeta * eta]
     numerator += [1 + 2 * eta + 2 * zeta, 1]
     denominator = [1, 1 + 2 * eta + 2 * zeta, 2 + 2 * zeta + 2 * eta + 4 * zeta * eta]
@@ -103,20 +82,6 @@ def test_complementary_polynomials_as_printed_and_their_identity(zeta: float, et
     network = network_of(f"complementary, zeta {zeta}, eta {eta}")
     np.testing.assert_allclose(network.num_p, numerator, rtol=1e-13)
     np.testing.assert_allclose(network.den_p, denominator, rtol=1e-13)
-    loop = np.polyadd(np.polymul([1, 0, 0], denominator), numerator)
-    factors = np.polymul(np.polymul([1, 1, 1], [1, 2 * eta, 1]), [1, 2 * zeta, 1])
-    np.testing.assert_allclose(loop, factors, rtol=1e-13)
-
-
-def test_slow_unity2_has_the_printed_slope_and_damping():
-    """Eq. 30 and 32 with zeta 0.5, r 0.8, beta 0.3 omega_s^2, in units of omega_s."""
-    zeta, r, beta = 0.5, 0.8, 0.3
-    alpha = (1 - r**2) * (1 - beta) / (2 * zeta * r)
-    c4 = np.polymul([1, 2 * zeta * r, r**2], [1, alpha, beta])
-    den, num = [1, c4[1], c4[2] - 1], [1, c4[3], c4[4]]
-    assert num[-1] == pytest.approx(den[-1])
-    assert (num[1] - den[1]) / den[2] / OMEGA_S == pytest.approx(-2829, abs=1)
-    assert alpha / (2 * np.sqrt(beta)) == pytest.approx(0.29, abs=5e-3)
 
 
 def test_discrete_form_is_equation_34():
@@ -152,7 +117,7 @@ def test_closed_loops_of_section_9_1():
                 float(real) + 1j * sign * float(imaginary or 0) for sign in ((1, -1) if imaginary else (0,))
             ]
         found = np.roots(np.polyadd(np.polymul([1, 0, 0], network.den_p), network.num_p))
-        np.testing.assert_allclose(np.sort_complex(found), np.sort_complex(np.array(told)), atol=2e-3)
+        np.testing.assert_allclose(np.sort_complex(found), np.sort_complex(np.array(told)), atol=7e-4)
         assert analyse(network).damping_ratio == pytest.approx(float(damping), abs=6e-4)
 
 
@@ -190,11 +155,13 @@ def test_growth_of_the_24_h_mode(name: str):
     n, d = network.num_p, network.den_p
     h_slope = (n[-2] - n[-1] / d[-1] * d[-2]) / d[-1] / OMEGA_S
     assert h_slope == pytest.approx(slope[0], abs=0.1)
+    assert network.h_slope == pytest.approx(h_slope, rel=1e-9)
     for lat_deg, told in zip((0, 32, 45, 60, 75), days, strict=True):
         growth = earth_mode_growth(network, lat_deg * DEG)
         assert 1.0 / growth / 86400.0 == pytest.approx(told, abs=0.006)
+        assert whole_system(network, lat_deg * DEG).earth_growth == pytest.approx(growth, rel=1e-6)
         by_formula = 0.5 * EARTH_RATE**2 * (1 + np.sin(lat_deg * DEG) ** 2) * h_slope
-        assert by_formula == pytest.approx(growth, rel=0.06)
+        assert by_formula == pytest.approx(growth, rel=0.04 if abs(h_slope) < 1000 else 0.053)
 
 
 # ------------------------------------------------------------ 20: the budget's reference values

@@ -10,12 +10,12 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     ),
     "mechanization": (
         (
-            "test_error_model", "test_strapdown_kernel", "test_strapdown_every_sample", "test_kalman_method",
+            "test_error_model", "test_strapdown_kernel", "test_kalman_method",
             "test_signs_and_sizes",
         ),
         (
             "test_scenario_guide", "test_strapdown_*", "test_control_twin", "test_control_strapdown",
-            "test_averaging_*", "test_alignment", "test_results", "test_simulation", "test_zhao_values",
+            "test_averaging_*", "test_alignment", "test_results", "test_zhao_values",
             "test_presets_golden",
         ),
     ),
@@ -34,7 +34,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ),
         (
             "test_network_*", "test_pages", "test_placing", "test_any_network", "test_figures_poles",
-            "test_figures_frequency", "test_liu_networks",
+            "test_figures_frequency", "test_liu_networks", "test_theory",
         ),
     ),
 }  # fmt: skip
