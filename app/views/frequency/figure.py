@@ -41,7 +41,10 @@ _NEAR = 0.02
 _BOLD_PX = 7.8
 """Mean width of a letter in a title."""
 _LONGEST_SILENCE = 22
-_LEAST_COLUMN_PX, _SMALL_COLUMN_PX = 240.0, 200.0
+_LEAST_COLUMN_PX, _SMALL_COLUMN_PX, _SMALLEST_COLUMN_PX = 240.0, 200.0, 160.0
+_OMEGA_TITLES = ("frequency ω (rad/s) and period", "ω (rad/s)")
+_LETTER_PX, _BESIDE_PX = 6.0, 32.0
+"""Mean width of a letter of an axis title, and how much wider than its column it may be."""
 _REFERENCE = style.lines("", 0) | {
     "legendgroup": "reference",
     "line": {"color": style.INK, "width": style.LINE_WIDTH, "dash": "dash", "simplify": False},
@@ -240,9 +243,10 @@ def _layout(
 
 
 def _omega_axis(anchor: str, domain: list[float], column_px: float) -> dict[str, Any]:
-    decades = range(-5, 0) if column_px >= _LEAST_COLUMN_PX else (-5, -3, -1)
+    steps = {_LEAST_COLUMN_PX: range(-5, 0), _SMALLEST_COLUMN_PX: (-5, -3, -1), 0.0: (-4, -2)}
+    decades = next(decades for least_px, decades in steps.items() if column_px >= least_px)
     return style.axis(
-        "frequency ω (rad/s) and period",
+        style.fitting(_OMEGA_TITLES, column_px + _BESIDE_PX, _LETTER_PX),
         type="log",
         domain=domain,
         anchor=anchor,
