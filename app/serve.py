@@ -35,6 +35,7 @@ _SCRIPTS = (
     "paths",
     "drawn",
     "marks",
+    "room",
     "alone",
     "page",
     "commands",

@@ -8,8 +8,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from navcore.analysis import frequency_response, network_step_response, time_response
-from navcore.analysis.transfers import RADIUS, Output, Source
+from navcore.analysis import network_step_response, time_response
+from navcore.analysis.frequencies import curve_frequencies, undamped
+from navcore.analysis.transfers import RADIUS, Output, Source, normalised_transfer
 from navcore.analysis.whole_system import duration
 from navcore.engine.run import MethodRun
 from navcore.foundation.text import Text
@@ -106,6 +107,10 @@ VIEWS: dict[str, TransferView] = {
 TRANSFERS: dict[str, str] = {key: f"{view.title} {view.note}".rstrip() for key, view in VIEWS.items()}
 """Transfers that the Bode plot can show: id -> label."""
 OPEN_LOOP = "open loop"
+OMEGA_MIN, OMEGA_MAX = 5e-6, 0.2
+"""Range of the curves over frequency, rad/s: periods from 14 days to 31 s."""
+_EVEN = np.geomspace(OMEGA_MIN, OMEGA_MAX, 240)
+_NEAR = 0.02
 SHOWN: dict[str, str] = TRANSFERS | {OPEN_LOOP: "open loop: Nyquist plot and margins"}
 """All that the chooser of the frequency side offers: id -> label."""
 
@@ -140,9 +145,38 @@ class Loop:
     network: LinearNetwork = field(compare=False)
 
 
+@dataclass(frozen=True, eq=False)
+class FrequencyCurve:
+    """A frequency response at the frequencies that show it.
+
+    Attributes
+    ----------
+    omega : ndarray, shape (n,)
+        rad/s, ascending.
+    value : ndarray of complex, shape (n,)
+        SI.
+    poles : ndarray of complex
+        Of the response, rad/s.
+    """
+
+    omega: np.ndarray
+    value: np.ndarray
+    poles: np.ndarray
+
+    @property
+    def finite(self) -> np.ndarray:
+        """Where no undamped resonance is near: what sets the scale of a plot, shape (n,)."""
+        resonances = np.abs(self.poles[undamped(self.poles)])
+        return np.all(np.abs(self.omega - resonances[:, None]) > _NEAR * resonances[:, None], axis=0)
+
+
 def loop_of(method: MethodRun) -> Loop:
     """Network that acts in a method, as the key of a cache."""
-    network = effective_network(method)
+    return loop_key(effective_network(method))
+
+
+def loop_key(network: LinearNetwork) -> Loop:
+    """Make the key of a network."""
     feedback = b"" if network.feedback_p is None else network.feedback_p.tobytes()
     coefficients = network.num_p.tobytes(), network.den_p.tobytes(), feedback
     return Loop(coefficients, network.omega_s, network)
@@ -175,11 +209,11 @@ def reacts(method: MethodRun, source: Source) -> bool:
     return True
 
 
-def frequency(method: MethodRun, source: Source, output: Output, omega: np.ndarray) -> np.ndarray | None:
-    """Frequency response of a method at ``omega`` (rad/s), SI; None when the source does not enter it."""
+def transfer_curve(method: MethodRun, source: Source, output: Output) -> FrequencyCurve | None:
+    """Frequency response of a method, with points at its resonances; None if the source does not enter."""
     if not reacts(method, source):
         return None
-    return _at_frequencies(loop_of(method), realisation(method), source, output, omega.tobytes())
+    return curve_of_loop(loop_of(method), realisation(method), source, output)
 
 
 def response(
@@ -203,9 +237,21 @@ def time_grid(span_s: float, count: int) -> np.ndarray:
 
 
 # A slider of one method leaves the loops of the others as they were: half of the time of a figure.
+@lru_cache(maxsize=64)
+def network_curve(loop: Loop) -> FrequencyCurve:
+    """Frequency response of H itself, with points at its zeros and poles."""
+    network = loop.network
+    omega = _frozen(curve_frequencies(_EVEN, (network.zeros, network.poles)))
+    return FrequencyCurve(omega, _frozen(network.response(omega)), network.poles)
+
+
 @lru_cache(maxsize=256)
-def _at_frequencies(loop: Loop, form: str, source: Source, output: Output, omega: bytes) -> np.ndarray:
-    return _frozen(frequency_response(loop.network, source, output, np.frombuffer(omega), realisation=form))
+def curve_of_loop(loop: Loop, form: str, source: Source, output: Output) -> FrequencyCurve:
+    """Return a transfer of a loop in a realisation, with points at its zeros and poles."""
+    t = normalised_transfer(loop.network, source, output, realisation=form)
+    poles = t.poles * t.omega_s
+    omega = _frozen(curve_frequencies(_EVEN, (np.roots(t.num) * t.omega_s, poles)))
+    return FrequencyCurve(omega, _frozen(t.response(omega)), poles)
 
 
 @lru_cache(maxsize=256)

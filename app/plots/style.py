@@ -5,7 +5,6 @@ curves, the 3D scene and the table. They are Okabe and Ito's colour-blind-safe s
 then Tol's muted set.
 """
 
-import math
 from collections.abc import Sequence
 from html import escape
 from typing import Any
@@ -230,14 +229,13 @@ def legend_px(name: str) -> float:
 
 
 def legend_rows(names: Sequence[str], width_px: float) -> int:
-    """Rows that a horizontal plotly legend of these names needs.
-
-    What does not fit in one row, plotly sets in columns of equal width.
-    """
-    needs = list(map(legend_px, names))
-    if not needs or sum(needs) <= width_px:
-        return 1
-    return math.ceil(len(names) / max(1, int(width_px // max(needs))))
+    """Rows that a horizontal plotly legend of these names needs: one name follows the other."""
+    rows, used = 1, 0.0
+    for need in map(legend_px, names):
+        if used and used + need > width_px:
+            rows, used = rows + 1, 0.0
+        used += need
+    return rows
 
 
 def column(inner_px: float) -> float:
@@ -245,9 +243,9 @@ def column(inner_px: float) -> float:
     return min(0.44, 0.5 - _BETWEEN_PX / max(inner_px, 4.0 * _BETWEEN_PX))
 
 
-def fitting(titles: Sequence[str], room_px: float) -> str:
-    """Return the first of some panel titles, the longest first, that has room; else the last."""
-    fits = (title for title in titles if len(title) * _BOLD_PX <= room_px)
+def fitting(titles: Sequence[str], room_px: float, letter_px: float = _BOLD_PX) -> str:
+    """Return the first of some titles, the longest first, that has room; else the last."""
+    fits = (title for title in titles if len(title) * letter_px <= room_px)
     return next(fits, titles[-1])
 
 

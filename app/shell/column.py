@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from html import escape
 from typing import TYPE_CHECKING, Any
 
@@ -85,6 +85,14 @@ class Column:
     def wanted(self, front: Set[str]) -> set[str]:
         """Titles of the pictures among the tabs in front; all of them where none is."""
         return (self._pictured.keys() & front) or set(self._pictured)
+
+    def take_rooms(self, rooms: Mapping[str, int]) -> None:
+        """Make the pictures in front anew whose plots are far from as high as they were made: title -> px."""
+        self.mark_stale(
+            title
+            for title, px in rooms.items()
+            if px and title in self._pictured and self._faults.call(self._pictured[title].take_room, px)
+        )
 
     def stale(self, front: Set[str]) -> set[str]:
         """Titles of the pictures in front that are out of date; ``front`` is empty while it is unknown."""

@@ -10,7 +10,7 @@ SMALLEST_ALONE = (240, 160)
 WIDE_FROM_PX = 1600
 """From this width on the plots stand in two panels above each other; below, in one column of tabs."""
 
-# Measured in the page (tests/browser/test_page_layout.py holds them against it).
+# First estimates: the page then lets its plots fill what its texts leave (static/room.js).
 _COLUMN_PADDING_PX = 12
 """Between the edges of a column and its plots, both sides together."""
 _CHROME_PX = {True: 53, False: 58}
@@ -30,8 +30,10 @@ CHOOSER_PX = 36
 """A chooser above a plot."""
 TOOLS = '<div class="sb-tools"></div>'
 """HTML that lets the controls of a tab stand in one row (static/page.css)."""
-Window = tuple[int, int, bool, bool]
-"""Width and height, CSS pixels; whether one view fills it; whether a finger is the pointer."""
+Window = tuple[int, int, bool, bool, float]
+"""Width and height, CSS pixels; whether one view fills it; whether a finger is the pointer; width of letters
+(`Layout.letter`).
+"""
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,8 @@ class Layout:
         A finger is the pointer.
     alone : bool
         One view fills the window.
+    letter : float
+        Width of a text in the page's font over its width in Arial, for which the figures count their letters.
     wide : bool
         Two panels above each other; else one.
     left_px, right_px : int
@@ -67,14 +71,26 @@ class Layout:
     scale: float = 1.0
     touch: bool = False
     alone: bool = False
+    letter: float = 1.0
+
+    @property
+    def text_px(self) -> float:
+        """Width of a plot as its texts would see it in Arial: for figures that count letters."""
+        return self.plot_px / self.letter
 
     def aspect(self, taken_px: int = 0) -> float:
-        """Height / width of a plot that fills the panel, ``taken_px`` being used by something else."""
-        return max(self.room_px - taken_px, 160) / self.plot_px
+        """Height / `text_px` of a plot that fills the panel, ``taken_px`` being used by something else."""
+        return max(self.room_px - taken_px, 160) / self.text_px
 
 
 def layout_for(
-    width: int, height: int, alone: bool = False, touch: bool = False, *, presentation: bool = False
+    width: int,
+    height: int,
+    alone: bool = False,
+    touch: bool = False,
+    letter: float = 1.0,
+    *,
+    presentation: bool = False,
 ) -> Layout:
     """Arrange the page for a window of this size (CSS pixels); ``alone``: one view fills it, in normal size.
 
@@ -90,18 +106,18 @@ def layout_for(
     if alone:
         size = width, height
         room = max(height - _MARGIN_PX, 120)
-        return Layout(False, 320, width, width - _COLUMN_PADDING_PX, room, size, alone=True)
+        return Layout(False, 320, width, width - _COLUMN_PADDING_PX, room, size, alone=True, letter=letter)
     if presentation:
-        return _presented(width, height)
+        return replace(_presented(width, height), letter=letter)
     if touch:
-        mouse = layout_for(width, height)
+        mouse = layout_for(width, height, letter=letter)
         return replace(mouse, room_px=max(mouse.room_px - _TOUCH_PX, 200), touch=True)
     wide = width >= WIDE_FROM_PX
     left = 360 if width >= 1500 else 340 if width >= 1300 else 320
     right = width // 2 if wide else max(360, min(round(0.5 * width), width - left - 260))
     room = (height // 2 if wide else height) - _CHROME_PX[wide] - _MARGIN_PX - _LOOK_PX
     view = max(width - left - right, 120), height
-    return Layout(wide, left, right, right - _COLUMN_PADDING_PX, max(room, 200), view)
+    return Layout(wide, left, right, right - _COLUMN_PADDING_PX, max(room, 200), view, letter=letter)
 
 
 def _presented(width: int, height: int) -> Layout:
@@ -114,29 +130,32 @@ def _presented(width: int, height: int) -> Layout:
     return Layout(False, left, right, right - _COLUMN_PADDING_PX, max(room, 200), view, scale)
 
 
-def read_state(text: str) -> tuple[Window | None, tuple[str, ...]]:
-    """Window size, whether one view fills it, whether a finger is the pointer, and front tabs.
+def read_state(text: str) -> tuple[Window | None, dict[str, int]]:
+    """Return the window and the tabs in front, as the page reports them; (None, {}) for any other text.
 
-    Returns (None, ()) for anything else than what the page reports.
+    A tab has the height of its plot where that is far from the one that the server took; else 0.
 
     Examples
     --------
     >>> read_state("1920x1080|Frequency|Errors")
-    ((1920, 1080, False, False), ('Frequency', 'Errors'))
+    ((1920, 1080, False, False, 1.0), {'Frequency': 0, 'Errors': 0})
     >>> read_state("480x320 alone|Method|Poles")
-    ((480, 320, True, False), ('Method', 'Poles'))
-    >>> read_state("1180x820 touch|Errors")
-    ((1180, 820, False, True), ('Errors',))
+    ((480, 320, True, False, 1.0), {'Method': 0, 'Poles': 0})
+    >>> read_state("1180x820 touch 1.14|Poles~310")
+    ((1180, 820, False, True, 1.14), {'Poles': 310})
     >>> read_state("hello")
-    (None, ())
+    (None, {})
     """
     size, *tabs = text.strip().split("|")
-    found = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})( alone)?( touch)?", size)
+    found = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})( alone)?( touch)?(?: ([0-9][.][0-9]{2}))?", size)
     if found is None:
-        return None, ()
+        return None, {}
     smallest = SMALLEST_ALONE if found[3] else SMALLEST
     width, height = (
         min(max(int(number), low), high)
         for number, low, high in zip(found.groups()[:2], smallest, LARGEST, strict=True)
     )
-    return (width, height, found[3] is not None, found[4] is not None), tuple(tabs[:20])
+    named = (tab.partition("~") for tab in tabs[:20])
+    rooms = {title: int(px) if re.fullmatch("[0-9]{1,4}", px) else 0 for title, _, px in named}
+    letter = min(max(float(found[5] or 1.0), 0.5), 2.0)
+    return (width, height, found[3] is not None, found[4] is not None, letter), rooms

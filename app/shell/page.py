@@ -57,7 +57,7 @@ class Page:
         self.client, self.session, self.gui = client, session, client.gui
         self._closed = self._built = self._tells = False
         self._say_again_s = 0.0
-        self._window: Window = (0, 0, False, False)
+        self._window: Window = (0, 0, False, False, 1.0)
         self._shown_result = session.verifier.result
         self._selected = session.selected
         self._front: frozenset[str] = frozenset()
@@ -84,7 +84,7 @@ class Page:
             # No word from the script: the view covers the window as long as nothing is docked, but its size
             # counts device pixels.
             camera = self.client.camera
-            self._window = (max(camera.image_width, 1280), max(camera.image_height, 720), False, False)
+            self._window = (max(camera.image_width, 1280), max(camera.image_height, 720), False, False, 1.0)
         with session.lock, self.client.atomic():
             self._layout = self.wanted_layout()
             gui.main_panel.dock_left()
@@ -352,14 +352,15 @@ class Page:
 
     # ------------------------------------------------------------ size and tabs
 
-    def _on_window(self, window: Window, front: frozenset[str], told: str) -> None:
-        self._window = window
+    def _on_window(self, window: Window, rooms: dict[str, int], told: str) -> None:
+        self._window, front = window, frozenset(rooms)
         if front:
             fresh, self._front = front - self._front, front
             self.session.tell_front(self, fresh)
         if self._built:
             self._heard.content = f'<div id="sb-heard" hidden data-state="{escape(told)}"></div>'
             self._arrange()
+            self.column.take_rooms(rooms)
             self._show_stale()
             self.column.tell_front(self._front)
 

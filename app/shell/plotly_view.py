@@ -25,10 +25,11 @@ class PlotlyView(PictureView[PlotlyFigure]):
         super().__init__(frame)
         self._tab: Tab | None = None
         self._plot: Any = None
+        self._room_px = 0
 
     def build(self, tab: Tab) -> None:
         """Make the tools; the plot is made with its first figure."""
-        self._tab, self._plot = tab, None
+        self._tab, self._plot, self._room_px = tab, None, 0
         with tab:
             self.build_tools()
 
@@ -49,21 +50,36 @@ class PlotlyView(PictureView[PlotlyFigure]):
 
     @property
     def aspect(self) -> float:
-        """Height over width of the plot."""
+        """Height of the plot over `width_px`."""
         layout = self.frame.layout()
+        if self._room_px:
+            return self._room_px / layout.scale / layout.text_px
         # of a view alone the choosers are hidden (static/page.css)
         return layout.aspect(max(self.above_px - CHOOSER_PX, 0) if layout.alone else self.above_px)
 
+    def take_room(self, px: int) -> bool:
+        """Let the next picture be as high as the page shows the plot."""
+        far = abs(px - self._room_px) > 0.03 * px
+        if far:
+            self._room_px = px
+        return far
+
+    @property
+    def _on_screen(self) -> float:
+        """Height over width of the plot as it is seen."""
+        return self.aspect / self.frame.layout().letter
+
     @property
     def width_px(self) -> float:
-        """Width of the plot."""
-        return float(self.frame.layout().plot_px)
+        """Width of the plot for its texts."""
+        return self.frame.layout().text_px
 
     def picture(self, found: Shown) -> PlotlyFigure:
-        """Make the figure; it carries the run's number and the tab's title."""
+        """Make the figure; it carries its proportions, the run's number and the tab's title."""
         figure = self.figure(together(found.run, found.pins), found)
         restyled(figure, found.run, found.pins)
-        figure["layout"]["meta"] = figure["layout"]["meta"] | {"run": found.number, "view": self.title}
+        carried = {"aspect": self._on_screen, "run": found.number, "view": self.title}
+        figure["layout"]["meta"] = figure["layout"]["meta"] | carried
         return enlarged(figure, self.frame.layout().scale)
 
     def show(self, picture: PlotlyFigure) -> None:
@@ -73,7 +89,7 @@ class PlotlyView(PictureView[PlotlyFigure]):
         elif self._tab is not None:
             plot: Any = picture
             with self._tab:
-                self._plot = self.frame.gui.add_plotly(plot, aspect=self.aspect)
+                self._plot = self.frame.gui.add_plotly(plot, aspect=self._on_screen)
 
     def figures(self, found: Shown, plot: str) -> Figures:
         """Make the figure to be saved."""

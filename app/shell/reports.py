@@ -35,7 +35,7 @@ class Reports:
     gui : viser.GuiApi
         Of the page.
     on_window : callable
-        ``on_window(window, front, told)``: its window, the tabs in front by title, and the report itself.
+        ``on_window(window, front, told)``, as `read_state` gives the first two; and the report itself.
     on_painted : callable
         ``on_painted(picture, moving=...)``: it has painted this picture, and whether a slider moves.
 
@@ -48,7 +48,7 @@ class Reports:
     def __init__(
         self,
         gui: viser.GuiApi,
-        on_window: Callable[[Window, frozenset[str], str], None],
+        on_window: Callable[[Window, dict[str, int], str], None],
         on_painted: Callable[..., None],
     ) -> None:
         self._on_window, self._on_painted = on_window, on_painted
@@ -67,7 +67,7 @@ class Reports:
         told = self._window.value.strip()
         window, front = read_state(told)
         if window is not None:
-            self._on_window(window, frozenset(front), told)
+            self._on_window(window, front, told)
             self._came.set()
 
     def _take_painted(self) -> None:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from app.bridge.controls import in_single, show_numbers
 from app.plots.plotly_data import enlarged_time_plot
-from app.plots.style import legend_px
 from app.plots.uplot import UplotFigure
 from app.shell.layout import CHOOSER_PX, Layout
 from app.shell.view import Tab
@@ -15,10 +14,8 @@ from app.shell.view import Tab
 if TYPE_CHECKING:
     import viser
 
-_LEGEND_ROW_PX = {False: 23, True: 40}
-"""Of a legend for a mouse, and for a finger."""
-_LEGEND_MARGIN_PX = 7
-_LEGEND_INDENT_PX = 90
+_LEGEND_PX = {False: 30, True: 47}
+"""Height of a legend of one row for a mouse, and for a finger."""
 
 
 class Stack:
@@ -52,18 +49,10 @@ class Stack:
             self._held[figure.key] = config, self._gui.add_uplot(**arguments, order=10 + order)
 
 
-def room_px(layout: Layout, names: list[str]) -> int:
-    """Height for plots below a chooser, which a view alone does not have, and a legend of these names."""
-    rows = _rows(names, layout.plot_px - _LEGEND_INDENT_PX)
+def room_px(layout: Layout) -> int:
+    """Height for plots below a chooser, which a view alone does not have, and a legend of one row.
+
+    The page lets them fill what the texts leave (static/room.js).
+    """
     chooser = 0 if layout.alone else CHOOSER_PX
-    return layout.room_px - chooser - _LEGEND_MARGIN_PX - rows * _LEGEND_ROW_PX[layout.touch]
-
-
-def _rows(names: list[str], width_px: float) -> int:
-    """Rows of a legend whose names follow each other."""
-    rows, used = 1, 0.0
-    for need in map(legend_px, names):
-        if used and used + need > width_px:
-            rows, used = rows + 1, 0.0
-        used += need
-    return rows
+    return layout.room_px - chooser - _LEGEND_PX[layout.touch]

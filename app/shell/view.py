@@ -203,6 +203,11 @@ class PictureView(View, Generic[P]):
         """Whether the picture depends on which method the controls edit."""
         return False
 
+    def take_room(self, px: int) -> bool:
+        """Note how high the page shows the plot; return whether its picture is to be made anew."""
+        del px
+        return False
+
     def picture(self, found: Shown) -> P:
         """Make the picture; changes nothing, and is called without the session's lock."""
         raise NotImplementedError
@@ -257,7 +262,8 @@ def page_styles(kinds: Sequence[type[View]], state_id: str, command_id: str) -> 
         "".join(path.read_text(encoding="utf-8") for path in paths) for paths in (of_shell, of_views)
     )
     first = first.replace("PAGE_STATE", state_id).replace("PAGE_COMMAND", command_id)
-    return first + table.CSS + last + style.UPLOT_CSS
+    font = f":root {{ --sb-font: {style.FONT_FAMILY}; }}\n"
+    return font + first + table.CSS + last + style.UPLOT_CSS
 
 
 def if_user(act: Callable[[], None]) -> Callable[[Any], None]:

@@ -65,6 +65,14 @@ class Transfer:
         """Monic denominator in p, descending powers."""
         return np.atleast_1d(np.real(np.poly(self.poles)))
 
+    def response(self, omega: np.ndarray | float) -> np.ndarray:
+        """Return the complex response at ``omega`` (rad/s), same shape."""
+        p = 1j * np.asarray(omega, dtype=float) / self.omega_s
+        value = self.scale * np.polyval(self.num, p)
+        for pole in self.poles:
+            value = value / (p - pole)
+        return value
+
 
 def normalised_transfer(
     network: LinearNetwork,
@@ -228,12 +236,7 @@ def frequency_response(
     **options: Unpack[TransferOptions],
 ) -> np.ndarray:
     """Complex response at ``omega`` (rad/s), same shape; ``options`` as for `transfer`."""
-    t = normalised_transfer(network, source, output, **options)
-    p = 1j * np.asarray(omega, dtype=float) / t.omega_s
-    value = t.scale * np.polyval(t.num, p)
-    for pole in t.poles:
-        value = value / (p - pole)
-    return value
+    return normalised_transfer(network, source, output, **options).response(omega)
 
 
 def time_response(

@@ -10,7 +10,7 @@ from app.jobs.designer import FrontsTask
 from app.plots.plotly_data import values_of
 from app.session.requirements import Requirements
 from app.views.frequency.curves import optimal_reference
-from app.views.frequency.figure import bode, omega_grid
+from app.views.frequency.figure import bode
 from app.views.tune.change import with_network
 from app.views.tune.finder import read_place
 from app.views.tune.fronts import fronts_figure, nearest
@@ -108,8 +108,8 @@ def test_the_optimal_network_is_a_dashed_reference_or_it_is_said_why_not(ship: S
     assert reference.network is not None and "optimal for these sensors" in reference.label
     traces = [t for t in bode(run, reference=reference)["data"] if t["legendgroup"] == "reference"]
     assert {trace["yaxis"] for trace in traces} == {"y", "y2", "y3", "y4"}
-    h = reference.network.response(omega_grid(ship.omega_s))
-    drawn = np.array(values_of(traces[0]["y"]), dtype=float)
+    omega, drawn = (np.array(values_of(traces[0][axis]), dtype=float) for axis in "xy")
+    h = reference.network.response(omega)
     np.testing.assert_allclose(drawn, 20.0 * np.log10(np.abs(h)), atol=1e-4)
     figures = OptimalNetwork().with_sensors(ship.figures())
     np.testing.assert_allclose(reference.network.num, figures.transfer(ship.omega_s).num)

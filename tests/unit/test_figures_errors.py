@@ -226,7 +226,7 @@ def test_the_curves_of_a_verified_run_stay_what_they_were(verified: Verification
     run = simulate(load("sikuliaq-like", ["run.duration_h=0.3"]))
     before = error_curves(Shown(run, 1, Display()))
     after = error_curves(Shown(run, 1, Display(), verified=Verified(verified, old=False)))
-    assert after.names == before.names
+    assert after.legend == before.legend
     for key, plot in before.plots.items():
         np.testing.assert_array_equal(plot.data, after.plots[key].data)
 

@@ -2,18 +2,21 @@
 
 import math
 import re
+from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
 
 from app.plots import style
-from app.plots.effective import TRANSFERS, VIEWS
+from app.plots.effective import OMEGA_MAX, OMEGA_MIN, TRANSFERS, VIEWS
 from app.views.frequency.curves import law_step_s, measured_gain
-from app.views.frequency.figure import OMEGA_MAX, OMEGA_MIN, bode, natural_frequencies, omega_grid
-from app.views.frequency.nyquist import margin_words, margins_of, nyquist
-from navcore.analysis import frequency_response
+from app.views.frequency.figure import bode, natural_frequencies
+from app.views.frequency.nyquist import HIGH, LOW, margin_words, margins_of, nyquist
+from navcore.analysis import RADIUS, frequency_response
 from navcore.foundation.earth import EARTH_RATE
-from navcore.foundation.units import ARCSEC
+from navcore.foundation.units import ARCSEC, DEG_PER_HOUR
 from navcore.networks.discrete import discretise
 from tests.unit.figures_runs import (
     INTERNAL,
@@ -33,7 +36,7 @@ class TestBode:
     def test_shows_the_networks_response(self) -> None:
         run = static_run()
         omega, level = of_trace(bode(run), "classic2")
-        np.testing.assert_allclose(omega, omega_grid(run.scenario.omega_s), rtol=1e-6)
+        assert (omega[0], omega[-1]) == (OMEGA_MIN, OMEGA_MAX) and len(omega) > 250
         np.testing.assert_allclose(
             level, 20.0 * np.log10(np.abs(run.methods[1].network.response(omega))), atol=1e-4
         )
@@ -182,3 +185,91 @@ class TestDots:
         assert [measured_gain(method, 1.0) is None for method in run.methods] == [True, False, True]
         with_dots, without = ({t["name"] for t in bode(run, discrete=dots)["data"]} for dots in (True, False))
         assert without == {"free", "classic2", "compass"} and with_dots - without == {"classic2 measured"}
+
+
+def random_networks(seed: int) -> list[dict[str, Any]]:
+    """Networks and loops with resonances and notches of damping ratios from 0.001 to 1."""
+    rng = np.random.default_rng(seed)
+    small = partial(_between, rng, 1e-3, 1.0)
+
+    def pairs(count: int) -> list[list[float]]:
+        roots = [(_between(rng, 2e-4, 2e-2), small()) for _ in range(count)]
+        return [[-w * d, way * w * math.sqrt(1.0 - d * d)] for w, d in roots for way in (1.0, -1.0)]
+
+    networks = [
+        {"id": "unity2", "zeta": small(), "r": _between(rng, 1.01, 2.0)},
+        {"id": "compass", "sigma": _between(rng, 3e-4, 2e-2), "xi": _between(rng, 0.01, 1.0)},
+        {"id": "complementary", "zeta": small()},
+        {"id": "custom", "zeros": pairs(1), "poles": pairs(1)},
+        {"id": "custom", "zeros": pairs(2), "poles": pairs(2)},
+    ]
+    return [{"name": f"{i}", "damping": "external", "network": n} for i, n in enumerate(networks)]
+
+
+def _between(rng: np.random.Generator, low: float, high: float) -> float:
+    return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+def extremes(size: Callable[[np.ndarray], np.ndarray], span: tuple[float, float]) -> tuple[float, float]:
+    """Largest and smallest value by a dense search over a span of rad/s, refined twice."""
+    ends = []
+    for place_of in (np.argmax, np.argmin):
+        omega, value = np.geomspace(*span, 200_001), math.nan
+        for _ in range(3):
+            values = size(omega)
+            place = int(place_of(values))
+            value = float(values[place])
+            omega = np.linspace(omega[max(place - 1, 0)], omega[min(place + 1, len(omega) - 1)], 2001)
+        ends.append(value)
+    return ends[0], ends[1]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_narrow_peaks_and_notches_reach_their_true_value(seed: int) -> None:
+    """H, s/(s^2 + w^2 H) times (1 - H)/R or 1 (theory.md 3), and 1 + L, from the polynomials of H."""
+    run = run_of(run={"duration_h": 0.02}, method=random_networks(seed))
+    of_log, of_gyro, plane, w = bode(run), bode(run, "phi/eps"), nyquist(run), run.scenario.omega_s
+    for method in run.methods:
+        name, num, den = method.method.name, method.network.num, method.network.den
+        poles = np.roots(np.polyadd(np.append(den, [0.0, 0.0]), w * w * num))
+        if np.min(np.abs(poles.real) / np.abs(poles)) < 1e-3:
+            continue  # by chance: a curve is cut off where its peak is as good as infinite
+
+        def h(omega: np.ndarray, num: np.ndarray = num, den: np.ndarray = den) -> np.ndarray:
+            return np.polyval(num, 1j * omega) / np.polyval(den, 1j * omega)
+
+        def loop(omega: np.ndarray, h: Callable[[np.ndarray], np.ndarray] = h) -> np.ndarray:
+            return w * w * h(omega) - omega * omega
+
+        level = 10.0 ** (of_trace(of_log, name)[1] / 20.0)
+        re_l, im_l = of_trace(plane, name, "y3")
+        drawn = [
+            (level, lambda omega, h=h: np.abs(h(omega))),
+            (
+                of_trace(of_log, name, "y3")[1] * ARCSEC,
+                lambda omega, h=h, loop=loop: np.abs((1.0 - h(omega)) * omega / RADIUS / loop(omega)),
+            ),
+            (
+                of_trace(of_gyro, name, "y3")[1] * ARCSEC / (0.01 * DEG_PER_HOUR),
+                lambda omega, loop=loop: np.abs(omega / loop(omega)),
+            ),
+            (
+                np.abs(1.0 + re_l + 1j * im_l),
+                lambda omega, loop=loop: np.abs(loop(omega)) / omega**2,
+            ),
+        ]
+        for (size, exact), span in zip(
+            drawn, [*[(OMEGA_MIN, OMEGA_MAX)] * 3, (LOW * w, HIGH * w)], strict=True
+        ):
+            assert (size.max(), size.min()) == pytest.approx(extremes(exact, span), rel=5e-3), name
+
+
+def test_a_curve_keeps_its_number_of_points_when_a_slider_moves() -> None:
+    """Else the page lays the figure out anew (`static/redraw.js`)."""
+    counts = set()
+    for zeta in (0.001, 0.3, 1.0, 1.7):
+        run = run_of(
+            run={"duration_h": 0.02}, method=[{**THREE[1], "network": {"id": "unity2", "zeta": zeta}}]
+        )
+        counts.add(tuple(len(of_trace(bode(run), "classic2", axis)[0]) for axis in ("y", "y3")))
+    assert len(counts) == 1

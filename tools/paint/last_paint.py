@@ -20,9 +20,8 @@ from plotly.subplots import make_subplots
 from app.bench.dashboard import median_and_p95
 from app.bench.process import free_port
 from app.editing import edits
-from app.plots.effective import effective_network, frequency
+from app.plots.effective import loop_of, network_curve, transfer_curve
 from app.serve import open_dashboard
-from app.views.frequency.figure import omega_grid
 from navcore.engine.run import MethodRun, Run
 from navcore.engine.simulation import simulate
 from navcore.mechanization.recorder import NAMES
@@ -89,12 +88,12 @@ def _errors(methods: Sequence[MethodRun], name: str) -> go.Figure:
 
 def _bode(run: Run, methods: Sequence[MethodRun]) -> go.Figure:
     figure: Any = make_subplots(rows=2, cols=2)
-    omega = omega_grid(run.scenario.omega_s)
     for method in methods:
-        shown = (effective_network(method).response(omega), frequency(method, "dv_r", "phi", omega))
-        for col, value in enumerate(shown, start=1):
-            if value is None:
+        shown = (network_curve(loop_of(method)), transfer_curve(method, "dv_r", "phi"))
+        for col, response in enumerate(shown, start=1):
+            if response is None:
                 continue
+            omega, value = response.omega, response.value
             curves = (20.0 * np.log10(np.abs(value)), np.degrees(np.unwrap(np.angle(value))))
             for row, curve in enumerate(curves, start=1):
                 figure.add_trace(go.Scatter(x=omega, y=curve, name=method.method.name), row=row, col=col)

@@ -25,7 +25,7 @@
   }
 
   function heard(tabs) {
-    const [size, ...front] = (document.getElementById("sb-heard")?.dataset.state ?? "").split("|");
+    const [size, ...front] = (document.getElementById("sb-heard")?.dataset.state ?? "").replace(/~\d+/g, "").split("|");
     return size.startsWith(`${innerWidth}x${innerHeight}`) && tabs.every((tab) => front.includes(english(tab)));
   }
 

@@ -1,16 +1,37 @@
 // Tells the server what viser does not: the size of the window and which tabs are in front. It is written into the
 // control labelled "page state", which the page's style hides; the server reads it as "1920x1080|Frequency|Errors", or as
-// "480x320 alone|..." where one view fills the window (alone.js), "1180x820 touch|..." where a finger is the pointer.
+// "480x320 alone|..." where one view fills the window (alone.js), "1180x820 touch|..." where a finger is the pointer,
+// "1920x1080 1.14|..." where a text is wider than in Arial, for which the server counts letters. A plot
+// that is far from as high as the server took it has its height: "...|Poles~310" (room.js).
 // And brings the tab to the front in which a newly chosen scenario opens: viser's server cannot.
 (() => {
   const LABEL = "page state";
+  const SAMPLE = "The quick brown fox jumps over the lazy dog 0123456789";
+  const IN_ARIAL = 25.627; // width of the sample over its size
   let waiting = 0;
+  let letter = "";
+
+  // Width of a text in the page's font over its width in Arial, once the page has its style. It is measured in the
+  // page: a least size of type, which some browsers have, counts too.
+  function measure() {
+    const known = getComputedStyle(document.documentElement).getPropertyValue("--sb-font") !== "";
+    if (letter !== "" || !known) return letter;
+    const sample = Object.assign(document.createElement("span"), { textContent: SAMPLE, ariaHidden: "true" });
+    sample.style.cssText = "position:absolute;visibility:hidden;white-space:pre;font:13px var(--sb-font)";
+    document.body.append(sample);
+    const width = (sample.getBoundingClientRect().width / (13 * IN_ARIAL)).toFixed(2);
+    sample.remove();
+    letter = width === "1.00" ? " " : ` ${width}`;
+    return letter;
+  }
 
   function state() {
-    const front = [...document.querySelectorAll('[role="tab"][aria-selected="true"]')].map((tab) => window.schuler.english(tab.textContent));
+    const rooms = window.schuler.rooms?.() ?? {};
+    const tabs = [...document.querySelectorAll('[role="tab"][aria-selected="true"]')].map((tab) => window.schuler.english(tab.textContent));
+    const front = tabs.map((title) => (rooms[title] ? `${title}~${rooms[title]}` : title));
     const alone = window.schuler.alone ? " alone" : "";
     const touch = matchMedia("(pointer: coarse)").matches ? " touch" : "";
-    return [`${innerWidth}x${innerHeight}${alone}${touch}`, ...front].join("|");
+    return [`${innerWidth}x${innerHeight}${alone}${touch}${measure().trimEnd()}`, ...front].join("|");
   }
 
   window.schuler.state = state;
@@ -45,6 +66,7 @@
 
   window.schuler.changed(openTab);
   addEventListener("resize", () => soon(150));
+  addEventListener("filled-plots", () => soon());
   addEventListener("click", () => soon(), true);
   addEventListener("keyup", (event) => event.target instanceof Element && event.target.closest('[role="tab"]') && soon());
   setInterval(() => window.schuler.busy() || report(), 1000);

@@ -8,6 +8,8 @@
   const held = new WeakMap(); // ranges of the axes by name, of a figure whose axes are to stay
   const given = new WeakMap(); // what a held figure was given last
   const homes = new WeakMap(); // ranges with which axes came
+  const last = new WeakMap(); // what a figure was drawn from last
+  const heights = new WeakMap(); // of a figure that fills its panel, px
 
   const SCALE = ["range", "dtick", "tickvals", "ticktext"]; // what an axis has of its own numbers
   const isAxis = (name) => /^[xy]axis\d*$/.test(name);
@@ -139,11 +141,11 @@
   }
 
   function draw(figure, data, wanted, config) {
-    let layout = wanted;
+    last.set(figure, [data, wanted, config]);
+    let layout = { ...wanted, height: heights.get(figure) ?? wanted.height };
     const ranges = held.get(figure);
     if (ranges !== undefined) {
       given.set(figure, [data, wanted, config]);
-      layout = { ...wanted };
       for (const [name, range] of Object.entries(ranges)) layout[name] = { ...wanted[name], range: [...range] };
     }
     const now = remember(data, layout);
@@ -154,6 +156,12 @@
   }
 
   Object.assign(window.schuler, {
+    // Draw a figure in this height from now on (room.js), in the place of the server's, which `heightOf` tells.
+    heightOf: (figure) => last.get(figure)?.[1].height,
+    setHeight(figure, height) {
+      heights.set(figure, height);
+      draw(figure, ...last.get(figure));
+    },
     // The axes of a figure stay while a handle in it is dragged: else the place under the pointer would be another one.
     holdAxes(figure) {
       const names = Object.keys(figure._fullLayout ?? {}).filter(isAxis);

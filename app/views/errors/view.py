@@ -1,7 +1,7 @@
 """Tab "Errors": the error curves of a run, in small plots of all quantities or larger ones of a few."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from html import escape
 from itertools import accumulate
 
@@ -66,21 +66,6 @@ def legend_html(
     )
 
 
-def legend_names(
-    run: Run,
-    overlay: Overlay | None = None,
-    pins: Sequence[Pinned] = (),
-    envelope: Envelope | None = None,
-) -> list[str]:
-    """Texts of `legend_html`, from which its height follows."""
-    names = [method.method.name for method in run.methods]
-    if overlay is not None:
-        names.append("full strapdown of an earlier scenario")
-    names += [pin.label for pin in pinned_methods(pins)]
-    # with the longest words: the plots keep their height while the band is an old one
-    return names if envelope is None else [*names, replace(envelope, old=True).label]
-
-
 def css_dash(dash: Dash, color: str) -> str:
     """Style of a short bar that shows a dash pattern."""
     ends = [0, *accumulate(dash)]
@@ -122,15 +107,12 @@ class ErrorCurves:
         Key -> plot over time, in the order in which they are shown.
     legend : str
         HTML of their legend.
-    names : list of str
-        Texts in it.
     two_abreast : bool
         The plots stand in two columns.
     """
 
     plots: dict[str, UplotFigure]
     legend: str
-    names: list[str]
     two_abreast: bool = False
 
 
@@ -177,7 +159,7 @@ class ErrorsView(PictureView[ErrorCurves]):
     def show(self, picture: ErrorCurves) -> None:
         """Show the plots that are chosen, below their legend."""
         layout, plots = self.frame.layout(), list(picture.plots.values())
-        room = room_px(layout, picture.names)
+        room = room_px(layout)
         abreast = 2 if picture.two_abreast else 1
         heights = [each for each in stack_heights(room, len(plots) // abreast) for _ in range(abreast)]
         self._legend.content = (_TWO if picture.two_abreast else "") + picture.legend
@@ -216,21 +198,19 @@ def error_curves(
         envelope=found.envelope,
         limits=error_limits(found.display.requirements, found.run),
     )
-    described = found.run, None, found.pins, found.envelope
-    chosen = {key: plots[key] for key in keys}
-    return ErrorCurves(chosen, legend_html(*described, found.display), legend_names(*described), two_abreast)
+    legend = legend_html(found.run, None, found.pins, found.envelope, found.display)
+    return ErrorCurves({key: plots[key] for key in keys}, legend, two_abreast)
 
 
 def _verified_curves(verified: Verified | None, display: Display) -> ErrorCurves:
     """Both models on the verification's noise, beside their difference; without a verification no plot."""
     if verified is None:
-        return ErrorCurves({}, notices.note([NOT_VERIFIED], "info"), [NOT_VERIFIED])
+        return ErrorCurves({}, notices.note([NOT_VERIFIED], "info"))
     verification = verified.verification
-    described = verification.linear, Overlay(verification.strapdown, verified.old)
+    overlay = Overlay(verification.strapdown, verified.old)
     return ErrorCurves(
         verification_plots(verification, old=verified.old, display=display),
-        notices.note([OWN_NOISE], "info") + legend_html(*described, display=display),
-        [OWN_NOISE, *legend_names(*described)],
+        notices.note([OWN_NOISE], "info") + legend_html(verification.linear, overlay, display=display),
         two_abreast=True,
     )
 

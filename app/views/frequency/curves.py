@@ -116,7 +116,7 @@ def phase(value: np.ndarray) -> np.ndarray:
 
 def pair(
     common: dict[str, Any],
-    x: dict[str, str],
+    omega: np.ndarray | None,
     curves: tuple[np.ndarray, np.ndarray] | None,
     xaxis: str,
     yaxes: tuple[str, str],
@@ -128,8 +128,8 @@ def pair(
     ----------
     common : dict
         What both traces share: name, group, line.
-    x : dict
-        Packed frequencies, rad/s.
+    omega : ndarray or None
+        Frequencies, rad/s.
     curves : (ndarray, ndarray) or None
         Magnitude in the axis's unit, and phase in deg.
     xaxis : str
@@ -140,7 +140,7 @@ def pair(
         How the magnitude is told.
     """
     ys = (NOTHING, NOTHING) if curves is None else tuple(packed(curve) for curve in curves)
-    both = common | {"x": NOTHING if curves is None else x, "xaxis": xaxis}
+    both = common | {"x": NOTHING if omega is None else packed(omega), "xaxis": xaxis}
     return [
         both | {"y": y, "yaxis": yaxis, "hovertemplate": text, "showlegend": yaxis == "y"}
         for y, yaxis, text in zip(ys, yaxes, (hover, "%{y:.1f}°"), strict=True)

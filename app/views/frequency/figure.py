@@ -1,16 +1,27 @@
 """Bode plots: the network H on the left, a transfer of the closed loop on the right, all methods in each."""
 
 import math
-from functools import lru_cache, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from app.plots import style
+from app.plots.effective import (
+    OMEGA_MAX,
+    OMEGA_MIN,
+    VIEWS,
+    FrequencyCurve,
+    TransferView,
+    curve_of_loop,
+    loop_key,
+    loop_of,
+    network_curve,
+    transfer_curve,
+)
 from app.plots.effective import OPEN_LOOP as OPEN_LOOP
 from app.plots.effective import SHOWN as SHOWN
 from app.plots.effective import TRANSFERS as TRANSFERS
-from app.plots.effective import VIEWS, TransferView, effective_network, frequency
 from app.plots.plotly_data import PlotlyFigure, figure, packed
 from app.plots.units import duration
 from app.views.frequency.curves import (
@@ -25,43 +36,25 @@ from app.views.frequency.curves import (
     phase_axis,
 )
 from app.views.frequency.nyquist import nyquist
-from navcore.analysis import frequency_response
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 
-OMEGA_MIN, OMEGA_MAX = 5e-6, 0.2
-"""Range of the frequency axis, rad/s: periods from 14 days to 31 s."""
 HANDLE_PANEL = ("xaxis2", "yaxis3")
 """Axes of the magnitude of the closed loop's transfer, where the handle of its pair stands."""
-_PLAIN_POINTS = 240
-_CLUSTER = np.logspace(-3.5, -0.5, 24)
-_NEAR = 0.02
 _BOLD_PX = 7.8
 """Mean width of a letter in a title."""
 _LONGEST_SILENCE = 22
-_LEAST_COLUMN_PX, _SMALL_COLUMN_PX = 240.0, 200.0
+_LEAST_COLUMN_PX, _SMALL_COLUMN_PX, _SMALLEST_COLUMN_PX = 240.0, 200.0, 160.0
+_OMEGA_TITLES = ("frequency ω (rad/s) and period", "ω (rad/s)")
+_LETTER_PX, _BESIDE_PX = 6.0, 32.0
+"""Mean width of a letter of an axis title, and how much wider than its column it may be."""
 _REFERENCE = style.lines("", 0) | {
     "legendgroup": "reference",
     "line": {"color": style.INK, "width": style.LINE_WIDTH, "dash": "dash", "simplify": False},
 }
 _MUTED_FONT = {"size": style.FONT_SIZE, "color": style.MUTED}
-
-
-@lru_cache(maxsize=8)
-def omega_grid(omega_s: float) -> np.ndarray:
-    """Frequencies of the plots, rad/s: even in the logarithm, denser towards the Schuler frequency."""
-    plain = np.geomspace(OMEGA_MIN, OMEGA_MAX, _PLAIN_POINTS)
-    near = np.concatenate([omega_s * (1.0 - _CLUSTER), omega_s * (1.0 + _CLUSTER)])
-    grid = np.unique(np.concatenate([plain, near]))
-    grid.setflags(write=False)
-    return grid
-
-
-@lru_cache(maxsize=8)
-def _packed_grid(omega_s: float) -> dict[str, str]:
-    return packed(omega_grid(omega_s))
 
 
 def natural_frequencies(run: Run) -> dict[str, float]:
@@ -125,51 +118,48 @@ def bode(
         A network that is drawn dashed beside those of the methods, as if it damped with the log.
     """
     view = VIEWS[transfer_id]
-    omega_s = run.scenario.omega_s
-    omega, x = omega_grid(omega_s), _packed_grid(omega_s)
     transfer_hover = "%{y:.2f} dB" if _in_decibel(view) else "%{y:.4g} " + view.unit
     data: list[dict[str, Any]] = []
     drawn: dict[str, list[np.ndarray]] = {"y": [], "y2": [], "y3": [], "y4": []}
-    lines: list[tuple[dict[str, Any], np.ndarray | None, np.ndarray | None]] = [
+    lines: list[tuple[dict[str, Any], FrequencyCurve | None, FrequencyCurve | None]] = [
         (
             style.lines(method.method.name, index),
-            effective_network(method).response(omega),
-            frequency(method, view.source, view.output, omega),
+            network_curve(loop_of(method)),
+            transfer_curve(method, view.source, view.output),
         )
         for index, method in enumerate(run.methods)
     ]
     names = [method.method.name for method in run.methods]
     silent = [name for name, (_, _, value) in zip(names, lines, strict=True) if value is None]
     if reference is not None:
-        lines.append((_REFERENCE | {"name": reference.label}, *_of_reference(reference, view, omega)))
+        lines.append((_REFERENCE | {"name": reference.label}, *_of_reference(reference, view)))
         names.append(reference.label)
     for line, h, value in lines:
         columns = (
             ("x", ("y", "y2"), "%{y:.2f} dB", h, decibel),
             ("x2", ("y3", "y4"), transfer_hover, value, partial(_magnitude, view=view)),
         )
-        for xaxis, yaxes, hover, response, size in columns:
-            curves = None if response is None else (size(response), phase(response))
-            data += pair(line, x, curves, xaxis, yaxes, hover)
-            if curves is not None:  # a resonance may leave its axis
-                drawn[yaxes[0]].append(curves[0][np.abs(omega / omega_s - 1.0) > _NEAR])
+        for xaxis, yaxes, hover, curve, size in columns:
+            curves = None if curve is None else (size(curve.value), phase(curve.value))
+            data += pair(line, None if curve is None else curve.omega, curves, xaxis, yaxes, hover)
+            if curve is not None and curves is not None:  # an undamped resonance leaves its axis
+                drawn[yaxes[0]].append(curves[0][curve.finite])
                 drawn[yaxes[1]].append(curves[1])
     if discrete:
         data += [dots for i, method in enumerate(run.methods) for dots in _discrete_dots(run, method, i)]
     return figure(data, _layout(run, view, drawn, silent, names, aspect, width_px))
 
 
-_Responses = tuple[np.ndarray | None, np.ndarray | None]
-
-
-def _of_reference(reference: Reference, view: TransferView, omega: np.ndarray) -> _Responses:
+def _of_reference(
+    reference: Reference, view: TransferView
+) -> tuple[FrequencyCurve | None, FrequencyCurve | None]:
     """H and the transfer under external damping; none of them where there is no network."""
-    network = reference.network
-    if network is None:
+    if reference.network is None:
         return None, None
+    loop = loop_key(reference.network)
     enters = view.source != "acceleration"
-    value = frequency_response(network, view.source, view.output, omega) if enters else None
-    return network.response(omega), value
+    form = reference.network.realisation
+    return network_curve(loop), curve_of_loop(loop, form, view.source, view.output) if enters else None
 
 
 def _magnitude(value: np.ndarray, view: TransferView) -> np.ndarray:
@@ -182,8 +172,8 @@ def _discrete_dots(run: Run, method: MethodRun, index: int) -> list[dict[str, An
     if measured is None:
         return []
     omega, gain = measured
-    grid = omega_grid(run.scenario.omega_s)
-    beside = np.interp(np.log(omega), np.log(grid), phase(effective_network(method).response(grid)))
+    h = network_curve(loop_of(method))
+    beside = np.interp(np.log(omega), np.log(h.omega), phase(h.value))
     angle = beside + np.rad2deg(np.angle(gain * np.exp(-1j * np.deg2rad(beside))))
     ring = {"color": style.method_color(index), "width": 2}
     dots = style.marks(Text("{name} measured", name=method.method.name), index, "circle", 8, ring)
@@ -240,9 +230,10 @@ def _layout(
 
 
 def _omega_axis(anchor: str, domain: list[float], column_px: float) -> dict[str, Any]:
-    decades = range(-5, 0) if column_px >= _LEAST_COLUMN_PX else (-5, -3, -1)
+    steps = {_LEAST_COLUMN_PX: range(-5, 0), _SMALLEST_COLUMN_PX: (-5, -3, -1), 0.0: (-4, -2)}
+    decades = next(decades for least_px, decades in steps.items() if column_px >= least_px)
     return style.axis(
-        "frequency ω (rad/s) and period",
+        style.fitting(_OMEGA_TITLES, column_px + _BESIDE_PX, _LETTER_PX),
         type="log",
         domain=domain,
         anchor=anchor,

@@ -7,17 +7,18 @@ from typing import Any
 import numpy as np
 
 from app.plots import style
-from app.plots.effective import Loop, effective_network, loop_of
+from app.plots.effective import Loop, loop_of
 from app.plots.plotly_data import PlotlyFigure, figure, packed
 from app.plots.units import duration, number
+from navcore.analysis.frequencies import curve_frequencies
+from navcore.analysis.loop import closed_loop_poles
 from navcore.analysis.margins import Margins, margins
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
 
 LOW, HIGH = 0.02, 500.0
 """Range of the frequency axis, units of omega_s."""
-_GRID = np.geomspace(LOW, HIGH, 500)
-_GRID.setflags(write=False)
+_EVEN = np.geomspace(LOW, HIGH, 500)
 _COLUMN = 0.44
 _RIGHT_EDGE = 0.3
 _UNIT_CIRCLE = 0.72
@@ -36,10 +37,17 @@ def margins_of(method: MethodRun) -> Margins | None:
     return _margins(loop_of(method))
 
 
-def open_loop(method: MethodRun, ratio: np.ndarray) -> np.ndarray:
-    """L = omega_s^2 H/s^2 at s = j ratio omega_s, (H + p G)/p^2 for a network with two outputs."""
-    network = effective_network(method)
-    return -network.loop_response(ratio * network.omega_s) / ratio**2
+@lru_cache(maxsize=64)
+def open_loop(loop: Loop) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies x = omega/omega_s and L = omega_s^2 H/s^2 at s = j x omega_s; (H + p G)/p^2 of two outputs.
+
+    Among the frequencies are the extremes of |L| and of |1 + L|, the distance from -1.
+    """
+    network = loop.network
+    poles = np.concatenate([network.poles / network.omega_s, [0.0, 0.0]])
+    of_loop, of_distance = np.roots(network.loop_num_p), closed_loop_poles(network)
+    ratio = curve_frequencies(_EVEN, (of_loop, poles), (of_distance, poles))
+    return ratio, -network.loop_response(ratio * network.omega_s) / ratio**2
 
 
 def nyquist(run: Run, aspect: float = 0.46, *, width_px: float = 940.0) -> PlotlyFigure:
@@ -62,17 +70,16 @@ def nyquist(run: Run, aspect: float = 0.46, *, width_px: float = 940.0) -> Plotl
     layout = style.framed(names, aspect, width_px, {"l": 68, "r": 16, "t": 34, "b": 66}, hovermode="closest")
     column_px = (width_px - 84.0) * _COLUMN
     height_px = max(aspect * width_px - layout["margin"]["t"] - layout["margin"]["b"], 100.0)
-    x = packed(_GRID)
     data: list[dict[str, Any]] = []
     words: list[str] = []
     highest: list[float] = []
     for index, method in enumerate(run.methods):
-        value = open_loop(method, _GRID)
+        ratio, value = open_loop(loop_of(method))
         level = 20.0 * np.log10(np.maximum(np.abs(value), 1e-12))
         margin = margins_of(method)
         words.append(margin_words(method, margin))
         highest.append(float(np.max(level)))
-        data += _curves(method, index, x, level, value)
+        data += _curves(method, index, packed(ratio), level, value)
         data += _marks(method, index, margin, words[-1])
     layout |= _axes(run, min(*highest, 60.0), column_px, height_px)
     return figure(data, layout | {"shapes": _shapes(), "annotations": _notes(run, words, column_px)})

@@ -229,7 +229,7 @@ class MetricsView(PictureView[tuple[str, str]]):
             baseline = replace(baseline, run=window.of(baseline.run))
         each_px = method_px(metrics_rows(run, now.display), _LETTER_PX[layout.wide], _PADDING_PX[layout.wide])
         each_px += 0 if baseline is None else _DELTA_PX[layout.wide]
-        most = max(int((layout.plot_px - _ROW_NAME_PX - _MARGINS_PX) / each_px), 1)
+        most = max(int((layout.text_px - _ROW_NAME_PX - _MARGINS_PX) / each_px), 1)
         beside = None if verified is None else verified.verification
         old = verified is not None and verified.old
         note = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")

@@ -11,7 +11,7 @@ from app.shell.view import Frame, Tab, View, if_user
 from app.views.misprints.figure import SHOWN, Shown, comparison_plot, words_html
 
 _WORDS_PX = {True: 96, False: 186}
-"""Room for the words and numbers above the plot, in a wide window and in a narrow one."""
+"""Height of the words and numbers above the plot, in a wide window and in a narrow one: a first estimate."""
 _BETWEEN_PX = 8
 _MISPRINT, _SWITCH = "misprint", "form shown"
 _TITLES = {f"{m.paper}, {m.where}: {m.consequence}": id for id, m in MISPRINTS.items()}
@@ -63,18 +63,17 @@ class MisprintsView(View):
     def _draw(self, id: str, form: Shown) -> None:
         layout, comparison = self.frame.layout(), _computed(id)
         words = _WORDS_PX[layout.wide]
-        self._words.content = (
-            f'<div style="height:{words}px;overflow-y:auto">{words_html(MISPRINTS[id], comparison)}</div>'
-        )
+        html = words_html(MISPRINTS[id], comparison)
+        self._words.content = f'<div style="max-height:26vh;overflow-y:auto">{html}</div>'
         aspect = layout.aspect(2 * CHOOSER_PX + words + _BETWEEN_PX)
-        figure = comparison_plot(comparison, form, aspect, width_px=float(layout.plot_px))
+        figure = comparison_plot(comparison, form, aspect, width_px=layout.text_px)
         figure["layout"]["meta"] |= {"misprint": id, "shown": form}
         plot: Any = enlarged(figure, layout.scale)
         if self._plot is not None:
             self._plot.figure = plot
             return
         with self._tab:
-            self._plot = self.frame.gui.add_plotly(plot, aspect=aspect, order=3)
+            self._plot = self.frame.gui.add_plotly(plot, aspect=aspect / layout.letter, order=3)
 
 
 VIEW = MisprintsView

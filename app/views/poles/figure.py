@@ -41,8 +41,8 @@ _UNSTABLE_PX = 58.0
 """Width of the word."""
 _INSIDE = 0.955
 """Part of a panel's width within which the labels of the rays lie."""
-_RAY_PX = 27.0
-"""Least distance of two labels of rays at one height."""
+_RAY_PX = 27.0, 18.0
+"""Room of the label of a ray, across and up."""
 _KEYS = {"closed-loop pole": ("x-thin", 2.6), "zero of H": ("circle-open", 2.0)}
 """Legend entries that say what the two marks mean."""
 _TITLES = {
@@ -193,7 +193,7 @@ def _about_pole(root: complex, omega_s: float) -> str:
 def _axes(suffix: str, re: Interval, im: Interval, domain: list[float]) -> dict[str, Any]:
     # "domain": else plotly widens the range for a size in which it draws once, and never takes that back
     common = {"constrain": "domain", "showgrid": False}
-    across = {"domain": domain, "anchor": f"y{suffix}", "range": list(re)}
+    across = {"domain": domain, "anchor": f"y{suffix}", "range": list(re), "tickangle": 0}
     up = {"anchor": f"x{suffix}", "range": list(im), "scaleanchor": f"x{suffix}"}
     return {
         f"xaxis{suffix}": style.axis("Re s / ω<sub>s</sub>", **common, **across),
@@ -232,10 +232,10 @@ def _panel_labels(suffix: str, re: Interval, im: Interval, width_px: float) -> l
             font=font | {"color": style.DANGER},
         )
     ]
-    last = math.inf, math.nan
+    last, unit_px = (math.inf, math.inf), width_px / (re[1] - re[0])
     for ratio in DAMPING[::2]:
         x, y = _ray_end(ratio, re, im)
-        if last[0] - x < _RAY_PX / width_px * (re[1] - re[0]) and y == last[1]:
+        if all(abs(a - b) * unit_px < room for a, b, room in zip(last, (x, y), _RAY_PX, strict=True)):
             continue
         last = x, y
         content = f"ζ = {ratio:.1f}" if ratio == DAMPING[-1] else f"{ratio:.1f}"

@@ -36,7 +36,7 @@
           <button type="button" data-shows="pendulum" title="Schuler pendulum: tilt of every method's platform">pendulum</button>
           <button type="button" data-shows="readout" title="true and computed attitude and speed">readout</button>
         </div>
-        <div class="sb-pendulum" data-is="pendulum"></div><div class="sb-readout" data-is="readout"></div>
+        <div class="sb-meters"><div class="sb-pendulum" data-is="pendulum"></div><div class="sb-readout" data-is="readout"></div></div>
       </div>
       <div class="sb-foot"><div class="sb-key"><p data-is="caption"></p>
         <div class="sb-entries" data-is="key" role="group" aria-label="tracks and their position errors"></div></div>

@@ -199,7 +199,9 @@ def bar_html(
 _FIT = "as needed"
 # What stands over the view (playback.css, playback.js), px.
 _PENDULUM_PX, _READOUT_PX, _LOW_PX, _TALL_PX = 195, 285, 560, 900
-_BAR_PX, _MARGIN_PX, _CAPTION_PX, _KEY_ROW_PX, _KEY_ROWS = 88, 8, 22, 22, 5
+_BAR_PX, _BAR_TEXT_PX = {False: 88, True: 122}, 305
+"""Height of the bar in two rows and in three, and width of the view from which two hold it."""
+_MARGIN_PX, _CAPTION_PX, _CAPTION_TEXT_PX, _KEY_ROW_PX, _KEY_ROWS = 8, 22, 400, 22, 5
 _SMALL_PX = 480
 _MAP_SHARE, _LABEL_PX = 0.8, 62
 """Part of the view's width that the map's southern edge takes; width of a longitude with some room."""
@@ -267,7 +269,7 @@ class SceneView(View):
         self.playback.follow(float(run.t_s[-1]) if len(run.t_s) else 0.0)
         state, selected = self.playback.state, self.session.selected
         display, layout = found.display, self.frame.layout()
-        beside = max(2, int(_MAP_SHARE * layout.view_px[0] / _LABEL_PX))
+        beside = max(2, int(_MAP_SHARE * layout.view_px[0] / (_LABEL_PX * layout.letter)))
         drawn = track(run, display.exaggeration, found.pins, display.state_of, beside)
         self._scene.enlarge(layout.scale)
         self._scene.draw(drawn, state.time_s, selected)
@@ -288,10 +290,12 @@ class SceneView(View):
         layout = self.frame.layout()
         width, height = layout.view_px
         above = 0 if height < _LOW_PX else _PENDULUM_PX if height < _TALL_PX else _READOUT_PX
-        bar = _MARGIN_PX if layout.alone else _BAR_PX
+        text_px = width / layout.letter
+        bar = _MARGIN_PX if layout.alone else _BAR_PX[text_px < _BAR_TEXT_PX]
+        caption = _CAPTION_PX * math.ceil(_CAPTION_TEXT_PX / text_px)
         methods = 0 if self._run is None else len(self._run.methods)
         abreast = 1 if width < _SMALL_PX else 2
-        below = bar + _CAPTION_PX + _KEY_ROW_PX * min(-(-methods // abreast), _KEY_ROWS)
+        below = bar + caption + _KEY_ROW_PX * min(-(-methods // abreast), _KEY_ROWS)
         return Window(width, height, above, below)
 
     def _show(self, state: PlayState) -> None:

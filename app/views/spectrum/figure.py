@@ -15,8 +15,8 @@ from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
 from navcore.mechanization.recorder import NAMES
 
-_PADDING = 4
-"""The window's lobes are drawn by so many points each."""
+_PADDING = 6
+"""Points by which each lobe of the window is drawn: a sine between two shows 99.5 % of its amplitude."""
 _MOST_POINTS = 1200
 _DECADES = 7.0
 _LEAST_ROWS = 16

@@ -13,6 +13,7 @@ import numpy as np
 from app.plots import style
 from app.plots.units import duration, rounded, settling
 from navcore.analysis import analyse, time_response
+from navcore.analysis.frequencies import curve_frequencies
 from navcore.engine.run import Run
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import InputError
@@ -63,9 +64,10 @@ def _card(id: str, omega_s: float) -> NetworkCard:
         network = kind.model_validate({"id": id}).transfer(omega_s)
     except (InputError, ValueError, NotImplementedError) as error:
         return NetworkCard(id, title, "", Text("Needs parameters of its own: {error}.", error=error))
-    power = np.linspace(_FIRST, _LAST, 120)
-    gain_db = 20.0 * np.log10(np.abs(network.response(omega_s * 10.0**power)))
-    return NetworkCard(id, title, _svg(power, gain_db), _trade(network, gain_db))
+    even = omega_s * np.logspace(_FIRST, _LAST, 120)
+    omega = curve_frequencies(even, (network.zeros, network.poles))
+    gain_db = 20.0 * np.log10(np.abs(network.response(omega)))
+    return NetworkCard(id, title, _svg(np.log10(omega / omega_s), gain_db), _trade(network, gain_db))
 
 
 def _trade(network: LinearNetwork, gain_db: np.ndarray) -> str:

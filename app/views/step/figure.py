@@ -24,6 +24,8 @@ _SPANS_MIN = (5, 10, 20, 30, 45, 60, 90, 120, 180, 240, 360)
 _LONGEST_MIN = 360.0
 _UNDAMPED_MIN = 180.0
 _SETTLED = 0.02
+_TICK_PX = 28.0
+"""Least distance of two ticks of time."""
 _NO_UNIT = Unit("", 1.0)
 
 Curves = list[np.ndarray | None]
@@ -203,7 +205,7 @@ def _layout(
     margin = {"l": 68, "r": 18, "t": 30, "b": 46}
     layout = style.framed(names, aspect, width_px, margin, hovermode="x unified", annotations=[])
     # room between the rows for tick labels, axis title and the title of the lower plot
-    gap = 68.0 / max(aspect * width_px - 30 - layout["margin"]["b"], 150.0)
+    gap = 72.0 / max(aspect * width_px - 30 - layout["margin"]["b"], 150.0)
     share = style.column(width_px - 86)
     domains = [(x, y) for y in ([0.5 + 0.5 * gap, 1.0], [0.0, 0.5 - 0.5 * gap])
                for x in ([0.0, share], [1.0 - share, 1.0])]  # fmt: skip
@@ -214,7 +216,8 @@ def _layout(
             domain=column,
             anchor=f"y{suffix}",
             range=[0.0, span_min],
-            dtick=_tick(span_min),
+            tickangle=0,
+            dtick=_tick(span_min, share * (width_px - 86)),
             unifiedhovertitle={"text": "%{x:.1f} min"},
         )
         layout[f"yaxis{suffix}"] = style.axis(
@@ -234,8 +237,9 @@ def _layout(
     return layout | {"shapes": [style.across(0.0) | settled | look]}
 
 
-def _tick(span_min: float) -> float:
-    return next(s for s in (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0) if span_min <= 6.5 * s)
+def _tick(span_min: float, room_px: float) -> float:
+    most = max(min(6.5, room_px / _TICK_PX), 1.5)
+    return next(s for s in (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 120.0, 240.0) if span_min <= most * s)
 
 
 def _forbidden(limits: StepLimits, span_s: float, unit: Unit, cause: _Disturbance) -> list[dict[str, Any]]:

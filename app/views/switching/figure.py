@@ -228,19 +228,14 @@ def _on_axis(rows: np.ndarray, count: int) -> np.ndarray:
 def switching_legend(run: Run) -> str:
     """Names of the methods that switch, their thresholds, and what the dashes mean."""
     items = "".join(
-        f'<span style="display:inline-flex;align-items:center;gap:6px;white-space:nowrap">'
-        f'<span style="width:18px;{bar}"></span>{escape(name)}</span>'
+        f'<span style="display:inline-flex;align-items:center;gap:6px">'
+        f'<span style="flex:none;width:18px;{bar}"></span>{escape(name)}</span>'
         for name, bar in _legend(run)
     )
     return (
         f'<div style="display:flex;flex-wrap:wrap;gap:2px 18px;padding:2px 8px 2px {Y_SIZE + LABEL_SIZE}px;'
         f'font-size:{style.FONT_SIZE}px;color:{style.INK}">{items}</div>'
     )
-
-
-def legend_names(run: Run) -> list[str]:
-    """Texts of `switching_legend`, from which its height follows."""
-    return [name for name, _ in _legend(run)]
 
 
 def _legend(run: Run) -> list[tuple[str, str]]:

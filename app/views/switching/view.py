@@ -8,7 +8,7 @@ from app.session.shown import Shown
 from app.shell.stack import Stack, room_px
 from app.shell.view import Figures, Frame, PictureView, Tab, if_user
 from app.views.errors.view import error_curves
-from app.views.switching.figure import legend_names, switched_methods, switching_legend, switching_plots
+from app.views.switching.figure import switched_methods, switching_legend, switching_plots
 from navcore.engine.run import Run
 
 _FIRST_ABOVE = "dve"
@@ -78,7 +78,7 @@ class SwitchingView(PictureView[Switching]):
         figures = [picture.errors[titles[self._above.value]], *picture.plots]
         self._legend.content = switching_legend(picture.run)
         layout = self.frame.layout()
-        heights = stack_heights(room_px(layout, legend_names(picture.run)), len(figures), _LEAST_PX)
+        heights = stack_heights(room_px(layout), len(figures), _LEAST_PX)
         self._stack.show(figures, heights, labelled=1, scale=layout.scale)
 
     def figures(self, found: Shown, plot: str) -> Figures:

@@ -1,0 +1,87 @@
+// Gives room by what the page's texts take, in whatever font and size. The plots of a panel fill what the rest of it
+// leaves: the server's heights are a first estimate (app/shell/layout.py). And the tabs of a panel stand in as few rows as
+// they can, their type as large as those rows allow (page.css).
+(() => {
+  const SPARE_PX = 6; // so much may stay empty before the plots are drawn anew
+  const FAR = 0.06; // off the height that the server took: then it is told, and makes the figure anew
+  const LEAST_PX = { plotly: 160, chart: 84 };
+  const VIEWPORT = ".mantine-ScrollArea-viewport";
+  const TABS = [[13.6, 0.6], [13.6, 0.4], [13, 0.4], [12, 0.4], [12, 0.25], [11, 0.3], [11, 0.17]]; // type (px), padding (em)
+  const waiting = new Set();
+  let titles = "";
+
+  // Leans on viser's handles of its charts, as cursor.js does.
+  const charts = () => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({ chart }) => chart);
+
+  function fill(viewport) {
+    const frame = viewport.getBoundingClientRect();
+    const seen = (plot) => viewport.contains(plot) && plot.getClientRects().length > 0;
+    const figures = [...viewport.querySelectorAll(".js-plotly-plot")].filter((plot) => plot._fullLayout && seen(plot));
+    const drawn = charts().filter((chart) => seen(chart.root));
+    const boxes = [...figures, ...drawn.map((chart) => chart.root)].map((plot) => plot.getBoundingClientRect());
+    if (frame.height === 0 || boxes.length === 0) return;
+    const content = viewport.firstElementChild.getBoundingClientRect();
+    const spare = Math.floor(frame.height) - Math.ceil(content.height);
+    if (spare >= 0 && spare < SPARE_PX) return;
+    const each = Math.floor(spare / new Set(boxes.map(({ top }) => Math.round(top))).size);
+    for (const figure of figures) {
+      const { height } = figure._fullLayout;
+      const wanted = Math.max(Math.floor(height + each), LEAST_PX.plotly);
+      if (wanted !== height) window.schuler.setHeight(figure, wanted);
+    }
+    for (const chart of drawn) {
+      const { width, height } = chart;
+      const wanted = Math.max(height + each, LEAST_PX.chart);
+      if (wanted !== height) chart.setSize({ width, height: wanted });
+    }
+    dispatchEvent(new Event("filled-plots")); // page.js reports them
+  }
+
+  // Heights of the figures in view that are far from what the server took, by the titles of their tabs.
+  window.schuler.rooms = () => {
+    const rooms = {};
+    for (const figure of document.querySelectorAll(".js-plotly-plot")) {
+      const { height, meta } = figure._fullLayout ?? {};
+      const far = Math.abs(height / window.schuler.heightOf(figure) - 1) > FAR;
+      if (far && meta?.view && figure.getClientRects().length > 0) rooms[meta.view] = height;
+    }
+    return rooms;
+  };
+
+  function fit(strip) {
+    if (strip.getClientRects().length === 0) return;
+    const rows = ([type, padding]) => {
+      strip.style.setProperty("--sb-type", `${type}px`);
+      strip.style.setProperty("--sb-padding", `${padding}em`);
+      return new Set([...strip.children].map((tab) => tab.offsetTop)).size;
+    };
+    const fewest = rows(TABS.at(-1));
+    TABS.find((tabs) => rows(tabs) === fewest);
+  }
+
+  // In the next frame: what changes a size while sizes are told would be told of in vain.
+  const sizes = new ResizeObserver((changes) => {
+    if (waiting.size === 0) {
+      requestAnimationFrame(() => {
+        const elements = [...waiting].filter((element) => element.isConnected);
+        waiting.clear();
+        for (const element of elements) (element.matches(VIEWPORT) ? fill : fit)(element);
+      });
+    }
+    for (const { target } of changes) waiting.add(target.closest(`${VIEWPORT}, [data-dock-strip]`) ?? target);
+  });
+
+  // What is observed already stays so.
+  window.schuler.changed(() => {
+    const strips = [...document.querySelectorAll("[data-dock-strip]")];
+    const now = strips.map((strip) => strip.textContent).join("|");
+    if (now !== titles) {
+      titles = now;
+      strips.forEach(fit);
+    }
+    for (const viewport of document.querySelectorAll(`[data-dock-column] ${VIEWPORT}`)) {
+      for (const element of [viewport, viewport.firstElementChild]) sizes.observe(element);
+    }
+    strips.forEach((strip) => sizes.observe(strip));
+  });
+})();
