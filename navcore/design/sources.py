@@ -11,10 +11,10 @@ from typing import TypeVar
 
 import numpy as np
 
-from navcore.design.along import QUANTITIES
 from navcore.design.seeds import no_covariance
 from navcore.design.ship import Ship
 from navcore.engine.simulation import simulate
+from navcore.quantities import COMPONENTS
 from navcore.scenario.model import InitialError, Method, Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import Reference
@@ -31,7 +31,7 @@ def contributions(
     progress: Callable[[float], None] = lambda fraction: None,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> dict[str, np.ndarray]:
-    """Mean squares over the run of a method's errors, by source; shape (7,), for `QUANTITIES`, squared.
+    """Mean squares over the run of a method's errors, by source; shape (7,), for `COMPONENTS`, squared.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def _run_apart(
         errors = simulate(only(alone, source), cancelled=cancelled).methods[0].errors
         if cancelled():  # what was under way may have been stopped half-way
             break
-        squares[source] = np.array([errors[name]["rms"] ** 2 for name in QUANTITIES])
+        squares[source] = np.array([errors[name]["rms"] ** 2 for name in COMPONENTS])
         progress(done / len(sources))
     return squares
 

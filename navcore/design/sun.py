@@ -27,6 +27,7 @@ from navcore.engine.simulation import Cancelled, Progress, simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.units import HOUR, KNOT
 from navcore.law.policy.adaptive import HIGHEST, LOWEST, SUN_TABLE
+from navcore.quantities import VELOCITY, components
 from navcore.scenario.model import MAX_METHODS, Alignment, InitialError, Method, Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import Reference
@@ -200,7 +201,7 @@ def _costs(problem: Scenario, methods: tuple[Method, ...], cancelled: Cancelled 
         return None
     costs = []
     for result in run.methods:
-        squares = result.errors["dve_mps"]["rms"] ** 2 + result.errors["dvn_mps"]["rms"] ** 2
+        squares = sum(result.errors[name]["rms"] ** 2 for name in components(VELOCITY))
         # an unstable loop may still have the least J before it has grown
         usable = result.status == "ok" and result.loop.stable
         costs.append(problem.run.duration_h * HOUR * squares if usable else np.inf)

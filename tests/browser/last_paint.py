@@ -20,7 +20,7 @@ from plotly.subplots import make_subplots
 from app.bench.dashboard import median_and_p95
 from app.bench.process import free_port
 from app.editing import edits
-from app.plots.effective import effective_network, frequency
+from app.plots.effective import frequency
 from app.serve import open_dashboard
 from app.views.frequency.figure import omega_grid
 from navcore.engine.run import MethodRun, Run
@@ -91,7 +91,7 @@ def _bode(run: Run, methods: Sequence[MethodRun]) -> go.Figure:
     figure: Any = make_subplots(rows=2, cols=2)
     omega = omega_grid(run.scenario.omega_s)
     for method in methods:
-        shown = (effective_network(method).response(omega), frequency(method, "dv_r", "phi", omega))
+        shown = (method.network.response(omega), frequency(method, "dv_r", "phi", omega))
         for col, value in enumerate(shown, start=1):
             if value is None:
                 continue

@@ -10,7 +10,7 @@ from app.plots import style
 from app.plots.effective import OPEN_LOOP as OPEN_LOOP
 from app.plots.effective import SHOWN as SHOWN
 from app.plots.effective import TRANSFERS as TRANSFERS
-from app.plots.effective import VIEWS, TransferView, effective_network, frequency
+from app.plots.effective import VIEWS, TransferView, frequency
 from app.plots.plotly_data import PlotlyFigure, figure, packed
 from app.plots.units import duration
 from app.views.frequency.curves import (
@@ -133,7 +133,7 @@ def bode(
     lines: list[tuple[dict[str, Any], np.ndarray | None, np.ndarray | None]] = [
         (
             style.lines(method.method.name, index),
-            effective_network(method).response(omega),
+            method.network.response(omega),
             frequency(method, view.source, view.output, omega),
         )
         for index, method in enumerate(run.methods)
@@ -183,7 +183,7 @@ def _discrete_dots(run: Run, method: MethodRun, index: int) -> list[dict[str, An
         return []
     omega, gain = measured
     grid = omega_grid(run.scenario.omega_s)
-    beside = np.interp(np.log(omega), np.log(grid), phase(effective_network(method).response(grid)))
+    beside = np.interp(np.log(omega), np.log(grid), phase(method.network.response(grid)))
     angle = beside + np.rad2deg(np.angle(gain * np.exp(-1j * np.deg2rad(beside))))
     ring = {"color": style.method_color(index), "width": 2}
     dots = style.marks(Text("{name} measured", name=method.method.name), index, "circle", 8, ring)

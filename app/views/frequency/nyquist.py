@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from app.plots import style
-from app.plots.effective import Loop, effective_network, loop_of
 from app.plots.plotly_data import PlotlyFigure, figure, packed
 from app.plots.units import duration, number
 from navcore.analysis.margins import Margins, margins
@@ -24,21 +23,17 @@ _UNIT_CIRCLE = 0.72
 """Half height of the Nyquist panel is the unit circle over this."""
 _PAPER = "rgba(255,255,255,0.85)"
 _LETTER_PX, _LINE_PX, _MOST_LINES = 6.6, 18, 8
-
-
-@lru_cache(maxsize=64)
-def _margins(loop: Loop) -> Margins | None:
-    return margins(loop.network)
+_margins = lru_cache(maxsize=64)(margins)
 
 
 def margins_of(method: MethodRun) -> Margins | None:
     """Margins of what acts in a method; None where they mean nothing (undamped or unstable)."""
-    return _margins(loop_of(method))
+    return _margins(method.network)
 
 
 def open_loop(method: MethodRun, ratio: np.ndarray) -> np.ndarray:
     """L = omega_s^2 H/s^2 at s = j ratio omega_s, (H + p G)/p^2 for a network with two outputs."""
-    network = effective_network(method)
+    network = method.network
     return -network.loop_response(ratio * network.omega_s) / ratio**2
 
 

@@ -158,7 +158,7 @@ def own_sigma(state: FilterState, truth: np.ndarray, earth: Earth) -> np.ndarray
     Returns
     -------
     ndarray, shape (rows, 7)
-        In the order of `navcore.mechanization.recorder.NAMES`: rad, m/s, m.
+        In the order of `navcore.quantities.NAMES`: rad, m/s, m.
     """
     half = coefficients(Truth(1.0, np.ascontiguousarray(truth)), earth, True).half
     metres = np.column_stack([half["m"], half["n_cos"]])
