@@ -159,7 +159,7 @@ def own_sigma(run: object, truth: np.ndarray, earth: Earth) -> np.ndarray | None
     Returns
     -------
     ndarray, shape (rows, 7)
-        In the order of `navcore.mechanization.recorder.NAMES`: rad, m/s, m.
+        In the order of `navcore.quantities.NAMES`: rad, m/s, m.
     """
     state: FilterState | None = getattr(run, "filter", None)
     if state is None:
