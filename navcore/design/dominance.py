@@ -18,7 +18,7 @@ from navcore.design.sources import contributions
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.stage_cache import file_state, kept
-from navcore.motion.base import LAT
+from navcore.motion.truth import LAT
 from navcore.quantities import COMPONENTS, HEADING, NAMES, POSITION, TILT, Kind, components
 from navcore.scenario.model import Scenario
 

@@ -139,7 +139,7 @@ class Run:
     t_s : ndarray, shape (m,)
         Times of all output rows, s.
     truth : ndarray, shape (m, 15)
-        True motion at the output rows, columns of `navcore.motion.base`.
+        True motion at the output rows, columns of `navcore.motion.truth`.
     warnings : tuple of str
         About the scenario as a whole (recorded data, say).
     elapsed_s : float

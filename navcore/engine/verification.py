@@ -20,7 +20,7 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG, HOUR
 from navcore.mechanization.recorder import DAMPED_COLUMN
-from navcore.motion.base import LAT
+from navcore.motion.truth import LAT
 from navcore.quantities import ERRORS, HEADING, NAMES, TILT, RecordedError, components
 from navcore.scenario.model import Scenario
 from navcore.sensors.base import ReferenceErrors, SensorErrors

@@ -19,6 +19,7 @@ from navcore.foundation.drawing import drawn
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.registry import Entry
 from navcore.foundation.text import Text
+from navcore.networks.pair import MainPair, Placement
 from navcore.networks.roots import fixed, leading, sorted_roots
 from navcore.networks.transfer_function import transfer_function
 
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from control import TransferFunction
 
     from navcore.networks.lqg import SensorFigures
-    from navcore.networks.pair import MainPair, Placement
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -234,7 +234,9 @@ class NetworkParameters(Entry):
         """
         return self.model_copy(update={self.damping_field: coefficient})
 
-    def with_pair(self, damping_ratio: float, frequency: float, omega_s: float) -> Placement | None:
+    def with_pair(
+        self, damping_ratio: float, frequency: float, omega_s: float
+    ) -> Placement[NetworkParameters] | None:
         """Return parameters whose main closed-loop pair lies where it is wanted; None where none can.
 
         Parameters

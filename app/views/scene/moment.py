@@ -35,7 +35,7 @@ from navcore.foundation.notation import with_unit
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.mechanization.recorder import DV_E, DV_N, PHI_E, PHI_N, PHI_U, POSITION, QUANTITIES
-from navcore.motion.base import HEADING, PITCH, ROLL, VE, VN
+from navcore.motion.truth import HEADING, PITCH, ROLL, VE, VN
 from navcore.quantities import TILT, components
 
 WIDTH, HEIGHT = 296, 134
