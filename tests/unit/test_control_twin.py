@@ -13,7 +13,7 @@ from navcore.law.switching import SWITCHINGS
 from navcore.mechanization.error_model import ErrorModelRun
 from navcore.mechanization.recorder import make_recorder
 from navcore.mechanization.trajectory import coefficients
-from navcore.motion.base import AE, AN, COLUMNS, HEADING, LAT, VE, VN, Truth
+from navcore.motion.truth import AE, AN, COLUMNS, HEADING, LAT, VE, VN, Truth
 from navcore.networks import parse_network
 from navcore.sensors.base import ReferenceErrors, SensorErrors
 from tests.error_model_twin import run_twin

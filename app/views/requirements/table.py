@@ -8,9 +8,8 @@ from app.plots import style
 from app.plots.pinned import Pinned, pinned_methods, together
 from app.plots.table import cell, row, table
 from app.plots.units import number, rounded
-from app.session.requirements import Requirements, Verdict, sign_of, verdicts
+from app.session.requirements import ROWS, Requirements, Verdict, sign_of, verdicts
 from navcore.engine.run import Run
-from navcore.foundation.parameters import extra_of
 from navcore.foundation.text import Text
 
 _DIGITS = 4
@@ -55,9 +54,8 @@ def requirements_html(
 
 
 def _row(verdict: Verdict, shown: Sequence[int], *, asked: bool) -> str:
-    info = Requirements.model_fields[verdict.name]
-    extra = extra_of(info)
-    unit = f' <span class="sb-muted">({escape(extra["unit"])})</span>' if extra["unit"] else ""
+    quantity = ROWS[verdict.name]
+    unit = f' <span class="sb-muted">({escape(quantity.shown)})</span>' if quantity.shown else ""
     limit = (
         "no limit" if verdict.limit is None else f"{sign_of(verdict.name)} {number(verdict.limit, _DIGITS)}"
     )
@@ -71,8 +69,8 @@ def _row(verdict: Verdict, shown: Sequence[int], *, asked: bool) -> str:
         )
         for value, ok in ((verdict.measured[i], verdict.passed[i]) for i in shown)
     )
-    named = cell(f"{escape(extra['label'])}{unit}")
-    return row([named, cell(limit, "sb-n"), *cells], title=info.description or "")
+    named = cell(f"{escape(quantity.label)}{unit}")
+    return row([named, cell(limit, "sb-n"), *cells], title=quantity.help)
 
 
 def _number(value: float) -> str:

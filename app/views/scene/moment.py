@@ -35,7 +35,8 @@ from navcore.foundation.notation import with_unit
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.mechanization.recorder import DV_E, DV_N, PHI_E, PHI_N, PHI_U, POSITION, QUANTITIES
-from navcore.motion.base import HEADING, PITCH, ROLL, VE, VN
+from navcore.motion.truth import HEADING, PITCH, ROLL, VE, VN
+from navcore.quantities import TILT, components
 
 WIDTH, HEIGHT = 296, 134
 _WIDEST = 30.0 * DEG
@@ -111,7 +112,7 @@ def plane_ends(plane: tuple[float, float]) -> tuple[str, str]:
 
 
 def _peak(method: MethodRun) -> float:
-    return max(method.errors[name]["max_abs"] for name in ("phi_e_rad", "phi_n_rad"))
+    return max(method.errors[name]["max_abs"] for name in components(TILT))
 
 
 def _bob(index: int, method: MethodRun, t_s: float, period: float) -> Bob:
@@ -225,7 +226,7 @@ class MethodMoment:
     pose : Pose
         As computed.
     errors : ndarray, shape (8,)
-        The quantities of `navcore.mechanization.recorder.NAMES`, SI.
+        The quantities of `navcore.quantities.NAMES`, SI.
     ended : bool
         The method did not come this far: its last values are shown.
     """

@@ -13,7 +13,7 @@ from app.views.errors.figure import error_plots
 from app.views.frequency.figure import natural_frequencies
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
-from navcore.mechanization.recorder import NAMES
+from navcore.quantities import NAMES
 
 _PADDING = 6
 """Points by which each lobe of the window is drawn: a sine between two shows 99.5 % of its amplitude."""
@@ -97,7 +97,7 @@ def amplitude_spectrum(method: MethodRun, column: int) -> tuple[np.ndarray, np.n
     method : MethodRun
         Result, with evenly spaced output rows.
     column : int
-        Place in `navcore.mechanization.recorder.NAMES`.
+        Place in `navcore.quantities.NAMES`.
 
     Returns
     -------

@@ -8,37 +8,21 @@ from typing import TYPE_CHECKING
 
 from app.plots.table import cell, row, table
 from app.plots.units import number
+from app.session.requirements import SIGNS
 from navcore.design.measures import read_requirement
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text
-from navcore.foundation.units import ARCMIN, ARCSEC, MINUTE
+from navcore.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from app.jobs.designer import TuningTask
     from navcore.design.tune import Tuned
 
-OBJECTIVES = {
-    "tilt_rms": ("tilt RMS, steady", "arcsec", ARCSEC),
-    "velocity_rms": ("velocity RMS, steady", "m/s", 1.0),
-    "position_rms": ("position RMS, run", "m", 1.0),
-    "heading_rms": ("heading RMS, run", "arcmin", ARCMIN),
-    "settling_s": ("settling time", "min", MINUTE),
-}
-"""What a method can be tuned for: label, unit, and the unit's size in SI."""
-
-
-_REQUIREMENTS = {
-    "settling_s": ("settling", "min", MINUTE),
-    "damping_ratio": ("damping ratio", "", 1.0),
-    "h0_deviation": ("|H(0) - 1|", "", 1.0),
-    "log_tilt": ("tilt after log step", "arcsec", ARCSEC),
-    "position_rms": ("position RMS", "m", 1.0),
-}
-
 
 def proposal_html(task: TuningTask, tuned: Tuned) -> str:
     """Table of the present and the proposed setting, the objective, and sentences about the optimum."""
-    label, unit, size = OBJECTIVES[task.objective]
+    quantity = QUANTITIES[task.objective]
+    label, size = quantity.names.get(tuned.judged, quantity.label), quantity.size
     rows = []
     data = task.scenario.canonical()
     for field, value in tuned.best.items():
@@ -53,7 +37,7 @@ def proposal_html(task: TuningTask, tuned: Tuned) -> str:
             )
         )
     objective = [
-        f"{label} ({unit})",
+        f"{label} ({quantity.shown})",
         "none" if tuned.before is None else number(tuned.before / size, 4),
         number(tuned.objective / size, 4),
         "" if tuned.floor is None else Text("floor {floor}", floor=number(tuned.floor / size, 4)),
@@ -68,7 +52,7 @@ def proposal_html(task: TuningTask, tuned: Tuned) -> str:
 
 def sentences_about(task: TuningTask, tuned: Tuned) -> list[str]:
     """Write sentences about the optimum."""
-    _, unit, size = OBJECTIVES[task.objective]
+    unit, size = QUANTITIES[task.objective].shown, QUANTITIES[task.objective].size
     sentences = []
     if tuned.stopped:
         sentences.append("The search was stopped: this is the best setting it had seen.")
@@ -107,10 +91,15 @@ def requirement_words(text: str) -> str:
     >>> requirement_words("settling_s<=3600")
     'settling ≤ 60 min'
     """
-    limit = read_requirement(text)
-    label, unit, size = _REQUIREMENTS.get(limit.name, (limit.name, "", 1.0))
-    sign = "≤" if limit.sense == "<=" else "≥"
-    return f"{label} {sign} {number(limit.limit / size, 4)} {unit}".rstrip()
+    requirement = read_requirement(text)
+    return limit_words(requirement.name, requirement.limit)
+
+
+def limit_words(key: str, limit: float) -> str:
+    """Limit (SI) of a quantity as the tab Requirements has it."""
+    quantity = QUANTITIES[key]
+    value = number(limit / quantity.size, 4)
+    return f"{quantity.label} {SIGNS[quantity.sense]} {value} {quantity.shown}".rstrip()
 
 
 def _value(data: object, field: str) -> float | None:
