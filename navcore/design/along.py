@@ -29,7 +29,6 @@ from navcore.scenario.model import Method, Scenario
 from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
 
 _STATES = np.array([4, 5, 6, 0, 1, 2, 3])
-_DAMPED, _UNDAMPED = True, False
 
 
 @dataclass(frozen=True, eq=False)

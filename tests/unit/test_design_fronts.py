@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.editing.edits import with_network
 from app.jobs.designer import FrontsTask
 from app.plots.plotly_data import values_of
 from app.session.requirements import Requirements
 from app.views.frequency.curves import optimal_reference
 from app.views.frequency.figure import bode, omega_grid
-from app.views.tune.change import with_network
 from app.views.tune.finder import read_place
 from app.views.tune.fronts import fronts_figure, nearest
 from app.views.tune.setting import requirements_told

@@ -7,10 +7,7 @@ from typing import Any
 import numpy as np
 
 from app.plots import style
-from app.plots.effective import OPEN_LOOP as OPEN_LOOP
-from app.plots.effective import SHOWN as SHOWN
-from app.plots.effective import TRANSFERS as TRANSFERS
-from app.plots.effective import VIEWS, TransferView, frequency
+from app.plots.effective import OPEN_LOOP, VIEWS, TransferView, frequency
 from app.plots.plotly_data import PlotlyFigure, figure, packed
 from app.plots.units import duration
 from app.views.frequency.curves import (
@@ -89,7 +86,7 @@ def frequency_view(
     run : Run
         Result.
     shown : str
-        Key of `SHOWN`.
+        Key of `app.plots.effective.SHOWN`.
     aspect, width_px, discrete, reference
         See `bode`.
     """
@@ -114,7 +111,7 @@ def bode(
     run : Run
         Result; only its networks are used.
     transfer_id : str
-        Key of `TRANSFERS`.
+        Key of `app.plots.effective.TRANSFERS`.
     discrete : bool
         Measure the filters that run, and draw what they do as dots on H.
     aspect : float
