@@ -23,8 +23,8 @@ from navcore.law.policy.constant import Constant
 from navcore.law.switching.hard import Hard
 from navcore.mechanization.strapdown import Settings, start_from
 from navcore.mechanization.strapdown.batch import BatchRun
-from navcore.motion.base import Site
 from navcore.motion.static import StaticMotion
+from navcore.motion.truth import Site
 from navcore.networks.undamped import UndampedNetwork
 from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu

@@ -14,8 +14,9 @@ from navcore.law.law import Law, prepare_law
 from navcore.law.policy.constant import Constant
 from navcore.law.switching.hard import Hard
 from navcore.mechanization.trajectory import coefficients
-from navcore.motion.base import MotionParameters, Site
+from navcore.motion.base import MotionParameters
 from navcore.motion.static import StaticMotion
+from navcore.motion.truth import Site
 from navcore.networks.undamped import UndampedNetwork
 from navcore.sensors.imu import Imu, imu_errors
 

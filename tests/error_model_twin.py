@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from navcore.foundation.earth import EARTH_RATE, Earth
-from navcore.motion.base import AE, AN, AU, HEADING, HEIGHT, LAT, VE, VN, VU
+from navcore.motion.truth import AE, AN, AU, HEADING, HEIGHT, LAT, VE, VN, VU
 from tests.law_twin import TwinLaw
 
 Vector = np.ndarray

@@ -11,9 +11,10 @@ from navcore.law.policy.constant import Constant
 from navcore.law.switching.hard import Hard
 from navcore.mechanization.strapdown import Settings, StrapdownRun, start_from, start_run
 from navcore.mechanization.strapdown.run import VelocityReference
-from navcore.motion.base import MotionParameters, Site
+from navcore.motion.base import MotionParameters
 from navcore.motion.legs import Leg, LegsMotion
 from navcore.motion.swing import Oscillation, SwingMotion
+from navcore.motion.truth import Site
 from navcore.networks.base import NetworkParameters
 from navcore.networks.undamped import UndampedNetwork
 from navcore.sensors.imu import Imu

@@ -19,8 +19,9 @@ from navcore.foundation.units import ARCSEC, DEG, DEG_PER_HOUR, MICRO_G
 from navcore.mechanization.recorder import DV_E, DV_N, MAX_ABS, PHI_E, PHI_N
 from navcore.mechanization.strapdown.attitude import misalignment, quaternion_of
 from navcore.mechanization.strapdown.run import turned_by
-from navcore.motion.base import HEADING, PITCH, ROLL, MotionParameters
+from navcore.motion.base import MotionParameters
 from navcore.motion.static import StaticMotion
+from navcore.motion.truth import HEADING, PITCH, ROLL
 from navcore.networks.compass import CompassNetwork
 from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu

@@ -17,7 +17,7 @@ from navcore.engine.environment import environment
 from navcore.engine.strapdown_environment import strapdown_environment
 from navcore.mechanization.error_model import STATES
 from navcore.mechanization.recorder import D_LAT, D_LON, DV_E, DV_N, PHI_E, PHI_N, PHI_U
-from navcore.motion.base import HEIGHT, LAT
+from navcore.motion.truth import HEIGHT, LAT
 from navcore.scenario.model import Scenario
 
 SHIP: dict[str, Any] = {

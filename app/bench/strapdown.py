@@ -17,9 +17,9 @@ from navcore.law.records import LawKind
 from navcore.law.switching.hard import Hard
 from navcore.mechanization.strapdown import Settings, VelocityReference, start_from, start_run
 from navcore.mechanization.strapdown.batch import BatchNoise, BatchRun
-from navcore.motion.base import Site
 from navcore.motion.static import StaticMotion
 from navcore.motion.swing import Oscillation, SwingMotion
+from navcore.motion.truth import Site
 from navcore.networks.base import NetworkParameters
 from navcore.networks.compass import CompassNetwork
 from navcore.networks.complementary import ComplementaryNetwork

@@ -6,7 +6,7 @@ from navcore.design.measures import in_display_unit
 from navcore.design.pareto import Pareto
 from navcore.design.result import Budget
 from navcore.design.tune import Tuned
-from navcore.foundation.units import ARCMIN, ARCSEC
+from navcore.quantities import TILT, VELOCITY, Kind, budgeted
 
 
 def budget_text(budget: Budget) -> list[str]:
@@ -32,8 +32,8 @@ def budget_text(budget: Budget) -> list[str]:
         ]
         lines += ["", *columns(rows)]
         lines += [
-            f"  {name}: grows to {_over(entry.growth.tilt_rad, ARCSEC)} arcsec, "
-            f"{number(entry.growth.velocity_mps)} m/s in one hour, with the square root of time"
+            f"  {name}: grows to {_cell(entry.growth, TILT)} {TILT.unit}, "
+            f"{_cell(entry.growth, VELOCITY)} {VELOCITY.unit} in one hour, with the square root of time"
             for name, entry in method.sources.items()
             if entry.growth is not None
         ]
@@ -56,22 +56,20 @@ def _floor(budget: Budget) -> list[str]:
 
 
 def _head(budget: Budget, name: str) -> list[str]:
-    return [name, "tilt", "velocity", *([] if budget.steady else ["heading", "position"])]
+    return [name, *(kind.name for kind in budgeted(budget.steady))]
 
 
 def _units(budget: Budget) -> list[str]:
-    return ["", "arcsec", "m/s", *([] if budget.steady else ["arcmin", "m"])]
+    return ["", *(kind.unit for kind in budgeted(budget.steady))]
 
 
 def _cells(budget: Budget, figures: Figures) -> list[str]:
-    cells = [_over(figures.tilt_rad, ARCSEC), number(figures.velocity_mps)]
-    return (
-        cells if budget.steady else [*cells, _over(figures.heading_rad, ARCMIN), number(figures.position_m)]
-    )
+    return [_cell(figures, kind) for kind in budgeted(budget.steady)]
 
 
-def _over(angle: float | None, unit: float) -> str:
-    return number(None if angle is None else angle / unit)
+def _cell(figures: Figures, kind: Kind) -> str:
+    value = getattr(figures, kind.figure)
+    return number(None if value is None else value / kind.size)
 
 
 def tune_text(objective: str, tuned: Tuned) -> list[str]:

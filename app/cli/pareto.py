@@ -6,6 +6,9 @@ from typing import Annotated
 from tyro.conf import Positional, UseAppendAction, arg
 
 from app.cli.terminal import emit_result, say
+from navcore.quantities import WEIGHED
+
+_OBJECTIVE = f"One of the two objectives, of {', '.join(WEIGHED)}."
 
 
 @dataclass(frozen=True)
@@ -33,8 +36,8 @@ class ParetoCommand:
     """
 
     scenario: Annotated[Positional[str], arg(metavar="SCENARIO")]
-    x: Annotated[str, arg(metavar="NAME")] = "tilt_rms"
-    y: Annotated[str, arg(metavar="NAME")] = "velocity_rms"
+    x: Annotated[str, arg(metavar="NAME", help=_OBJECTIVE)] = "tilt_rms"
+    y: Annotated[str, arg(metavar="NAME", help=_OBJECTIVE)] = "velocity_rms"
     method: Annotated[int, arg(metavar="N")] = 0
     network: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="ID")] = ()
     along: bool = False

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Self
 
 from app.cli.stop import stop_on_signal
 from app.cli.terminal import on_terminal
+from navcore.foundation.compiled import COMPILATION
 from navcore.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -38,6 +39,12 @@ def working(
             raise error if source is None else error.located(source) from None
 
 
+def compiling() -> str:
+    """Say which kernel is being compiled, and for how long; empty when there is none."""
+    name, seconds = COMPILATION.under_way()
+    return f"compiling {name}, {seconds:.0f} s" if name else ""
+
+
 class Bar:
     """Progress of one run; shown (and its library imported) only after half a second.
 
@@ -52,6 +59,7 @@ class Bar:
     def __init__(self, title: str, show: bool) -> None:
         self._title = title
         self._fraction = 0.0
+        self._compiled = COMPILATION.count, COMPILATION.seconds
         self._shown: tuple[Progress, TaskID] | None = None
         self._lock = threading.Lock()
         self._timer = threading.Timer(_APPEARS_AFTER_S, self._appear) if show else None
@@ -69,8 +77,15 @@ class Bar:
             self._timer.cancel()
         with self._lock:
             self._timer = None
-            if self._shown is not None:
-                self._shown[0].stop()
+            if self._shown is None:
+                return
+            progress = self._shown[0]
+            progress.stop()
+        compiled = COMPILATION.count - self._compiled[0]
+        if compiled:
+            seconds = COMPILATION.seconds - self._compiled[1]
+            kernels = "kernel" if compiled == 1 else "kernels"
+            progress.console.print(f"compiled {compiled} {kernels} in {seconds:.0f} s; kept for later runs")
 
     def advance(self, fraction: float) -> None:
         """Tell the fraction done, 0..1; from any thread."""
@@ -81,13 +96,26 @@ class Bar:
 
     def _appear(self) -> None:
         from rich.console import Console
-        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+        from rich.progress import (
+            BarColumn,
+            Progress,
+            ProgressColumn,
+            TextColumn,
+            TimeElapsedColumn,
+            TimeRemainingColumn,
+        )
+        from rich.text import Text
+
+        class _Compiling(ProgressColumn):
+            def render(self, task: object) -> Text:
+                return Text(compiling())
 
         with self._lock:
             if self._timer is None:
                 return
             progress = Progress(
                 TextColumn("{task.description}", markup=False),
+                _Compiling(),
                 BarColumn(),
                 TextColumn("{task.percentage:>3.0f} %", markup=False),
                 TimeElapsedColumn(),

@@ -7,19 +7,12 @@ from typing import TYPE_CHECKING
 
 from app.cli.table import columns, number
 from navcore.analysis.whole_system import duration
-from navcore.foundation.units import ARCMIN, ARCSEC
+from navcore.quantities import ERRORS, POSITION, components
 
 if TYPE_CHECKING:
     from navcore.engine.run import LawInForce, MethodRun, Run
 
-_SHOWN = (
-    ("phi_e_rad", "φE", "arcsec", ARCSEC),
-    ("phi_n_rad", "φN", "arcsec", ARCSEC),
-    ("phi_u_rad", "φU", "arcmin", ARCMIN),
-    ("dve_mps", "δVE", "m/s", 1.0),
-    ("dvn_mps", "δVN", "m/s", 1.0),
-    ("position_m", "position", "m", 1.0),
-)
+_SHOWN = tuple(error for error in ERRORS if error.name not in components(POSITION))
 _STATISTICS = (("rms", "RMS"), ("max_abs", "largest"), ("final", "at the end"))
 _LOOP_HEAD = (
     ["loop", "damping", "H(0)", "settling", "24 h mode", "damped", "ζ in", "status"],
@@ -41,8 +34,11 @@ def run_text(run: Run) -> list[str]:
         *columns([*_LOOP_HEAD, *(_loop_row(method) for method in run.methods)]),
     ]
     for key, title in _STATISTICS:
-        rows = [[title, *(s[1] for s in _SHOWN)], ["", *(s[2] for s in _SHOWN)]]
-        rows += [[m.method.name, *(number(m.errors[s[0]][key] / s[3]) for s in _SHOWN)] for m in run.methods]
+        rows = [[title, *(e.symbol for e in _SHOWN)], ["", *(e.kind.unit for e in _SHOWN)]]
+        rows += [
+            [m.method.name, *(number(m.errors[e.name][key] / e.kind.size) for e in _SHOWN)]
+            for m in run.methods
+        ]
         lines += ["", *columns(rows)]
     warnings = [f"warning: {text}" for text in run.warnings]
     warnings += [f"warning: {m.method.name}: {text}" for m in run.methods for text in m.warnings]

@@ -7,22 +7,19 @@ from typing import Annotated
 from tyro.conf import Positional, UseAppendAction, arg
 
 from app.cli.terminal import emit_result, say
+from navcore.quantities import OBJECTIVES, TUNED
 
 
 @dataclass(frozen=True)
 class TuneCommand:
     """Find the parameters of a method that make an objective least while requirements are kept.
 
-    Objectives: tilt_rms, velocity_rms, heading_rms, position_rms, settling_s, overshoot, log_tilt,
-    h0_deviation, h_slope_s, earth_mode_growth_per_s, or a sum, tilt_rms + 0.5*velocity_rms. Requirements:
-    the same, and damping_ratio.
-
     Attributes
     ----------
     scenario : str
         Name of a preset, or a TOML file.
     objective : str
-        What to make small.
+        What to make small: a quantity, or a sum, tilt_rms + 0.5*velocity_rms.
     vary : tuple of str
         A number of a method, e.g. method.1.network.sigma, or with a range method.1.network.sigma=1e-4:0.1.
     require : tuple of str
@@ -42,9 +39,21 @@ class TuneCommand:
     """
 
     scenario: Annotated[Positional[str], arg(metavar="SCENARIO")]
-    objective: Annotated[str, arg(metavar="NAME")]
+    objective: Annotated[
+        str,
+        arg(
+            metavar="NAME",
+            help=f"What to make small: {', '.join(OBJECTIVES)}, or a sum, tilt_rms + 0.5*velocity_rms.",
+        ),
+    ]
     vary: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="FIELD[=LOW:HIGH]")] = ()
-    require: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="NAME<=VALUE")] = ()
+    require: Annotated[
+        UseAppendAction[tuple[str, ...]],
+        arg(
+            metavar="NAME<=VALUE",
+            help=f"A limit, e.g. settling_s<=3600 or tilt_rms<=5arcsec, of one of {', '.join(TUNED)}.",
+        ),
+    ] = ()
     worst_of: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="SCENARIO")] = ()
     along: bool = False
     set: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="KEY=VALUE")] = ()

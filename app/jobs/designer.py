@@ -28,7 +28,7 @@ class TuningTask:
     scenario : Scenario
         As it stands.
     objective : str
-        A name of `navcore.design.measures.MEASURES`.
+        One of `navcore.quantities.OBJECTIVES`.
     vary : tuple of str
         Fields, ``method.1.network.sigma``.
     require : tuple of str
@@ -68,7 +68,7 @@ class FrontsTask:
     method : int
         The method whose network is replaced by each of the catalogue.
     objectives : (str, str)
-        Names of `navcore.design.measures.MEASURES`: what is on the axes.
+        Of `navcore.quantities.OBJECTIVES`: what is on the axes.
     networks : tuple of str or None
         Ids; None: all of the catalogue that have a design of their own.
     """

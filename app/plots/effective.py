@@ -1,7 +1,4 @@
-"""The loop that a method really closes, its transfers that can be plotted, and its 24 h mode in words.
-
-``free`` ignores its network, ``internal`` has no velocity feedback.
-"""
+"""Transfers of a method's loop that can be plotted, and its 24 h mode in words."""
 
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -172,7 +169,7 @@ class FrequencyCurve:
 
 def loop_of(method: MethodRun) -> Loop:
     """Network that acts in a method, as the key of a cache."""
-    return loop_key(effective_network(method))
+    return loop_key(method.network)
 
 
 def loop_key(network: LinearNetwork) -> Loop:
@@ -182,21 +179,9 @@ def loop_key(network: LinearNetwork) -> Loop:
     return Loop(coefficients, network.omega_s, network)
 
 
-def effective_network(method: MethodRun) -> LinearNetwork:
-    """H(s) that acts in this method: 1 when it runs free."""
-    return method.method.kind.acting(method.network)
-
-
-def closed_loop_poles(method: MethodRun) -> np.ndarray:
-    """Closed-loop poles of what acts, rad/s."""
-    if method.method.undamped:
-        return np.array([-1j, 1j]) * method.network.omega_s
-    return method.loop.poles
-
-
 def realisation(method: MethodRun) -> str:
     """How the network is carried out; internal damping always uses the network form."""
-    return effective_network(method).realisation
+    return method.method.kind.acting(method.network).realisation
 
 
 def reacts(method: MethodRun, source: Source) -> bool:
@@ -222,12 +207,12 @@ def response(
     """Time response of a method to a unit source (SI) on `time_grid`; None where it does not enter."""
     if not reacts(method, source):
         return None
-    return _over_time(loop_of(method), realisation(method), source, output, span_s, count)
+    return _over_time(method.network, realisation(method), source, output, span_s, count)
 
 
 def network_step(method: MethodRun, span_s: float, count: int) -> np.ndarray:
     """Step response of H itself on `time_grid`."""
-    return _network_step(loop_of(method), span_s, count)
+    return _network_step(method.network, span_s, count)
 
 
 @lru_cache(maxsize=32)
@@ -256,14 +241,14 @@ def curve_of_loop(loop: Loop, form: str, source: Source, output: Output) -> Freq
 
 @lru_cache(maxsize=256)
 def _over_time(
-    loop: Loop, form: str, source: Source, output: Output, span_s: float, count: int
+    network: LinearNetwork, form: str, source: Source, output: Output, span_s: float, count: int
 ) -> np.ndarray:
-    return _frozen(time_response(loop.network, source, output, time_grid(span_s, count), realisation=form))
+    return _frozen(time_response(network, source, output, time_grid(span_s, count), realisation=form))
 
 
 @lru_cache(maxsize=256)
-def _network_step(loop: Loop, span_s: float, count: int) -> np.ndarray:
-    return _frozen(network_step_response(loop.network, time_grid(span_s, count)))
+def _network_step(network: LinearNetwork, span_s: float, count: int) -> np.ndarray:
+    return _frozen(network_step_response(network, time_grid(span_s, count)))
 
 
 def _frozen(values: np.ndarray) -> np.ndarray:

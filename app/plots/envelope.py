@@ -32,7 +32,7 @@ class Envelope:
     t_s : ndarray, shape (m,)
         Times, s.
     low, high : tuple of ndarray, each shape (m, 8), or None
-        For every method the edges of the quantities of `navcore.mechanization.recorder.NAMES`, SI; None for a
+        For every method the edges of the quantities of `navcore.quantities.NAMES`, SI; None for a
         method without a band.
     words : str
         What the band is.

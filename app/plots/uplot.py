@@ -84,7 +84,7 @@ class UplotFigure:
     key : str
         Names the plot among those shown.
     quantity : str
-        What is drawn: a name in `navcore.mechanization.recorder.NAMES`, say.
+        What is drawn: a name in `navcore.quantities.NAMES`, say.
     title : str
         What is shown, in words.
     symbol : str

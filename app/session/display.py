@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
+from app.plots.effective import SHOWN
 from app.plots.envelope import BandKind
 from app.plots.legend import State, after
 from app.session.requirements import Requirements
+from navcore.quantities import ERRORS, STATISTICS
 
 FIRST_TRANSFER = "phi/dv_r"
-FrontAxis = Literal["tilt_rms", "velocity_rms", "settling_s", "log_tilt", "overshoot"]
+OBJECTIVES = ("tilt_rms", "velocity_rms", "position_rms", "heading_rms", "settling_s")
+"""Quantities for which the page tunes a method."""
+AXES = ("tilt_rms", "velocity_rms", "settling_s", "log_tilt", "overshoot")
+"""Quantities on the axes of the Pareto fronts."""
 
 
-def _known_transfer(id: str) -> str:
-    from app.plots.effective import SHOWN
+def _one_of(names: Collection[str]) -> AfterValidator:
+    def check(id: str) -> str:
+        if id not in names:
+            raise ValueError(f"must be one of {', '.join(names)}")
+        return id
 
-    if id not in SHOWN:
-        raise ValueError(f"must be one of {', '.join(SHOWN)}")
-    return id
+    return AfterValidator(check)
 
 
 class Display(BaseModel):
@@ -48,7 +55,7 @@ class Display(BaseModel):
     envelope : str
         Bands behind the error curves: one standard deviation by covariance, over 20 seeds, or none.
     spectrum : str
-        Quantity whose spectrum is shown: a key of `app.views.errors.figure.error_plots`.
+        Error whose spectrum is shown: a key of `navcore.quantities.ERRORS`.
     baseline : int or None
         Pin with which numbers are compared; None: the first one.
     legend : tuple of (str, str)
@@ -71,16 +78,16 @@ class Display(BaseModel):
     budget : str
         The error budget shown: of the steady state of one level channel, or of the whole run.
     objective : str
-        What a method is tuned for: a name of `navcore.design.measures.MEASURES`.
+        What a method is tuned for: one of `OBJECTIVES`.
     search : str
         What the tab "Tune" looks for: the best setting of one method, or the Pareto fronts of all networks.
     front_x, front_y : str
-        Objectives on the axes of the Pareto fronts: names of `navcore.design.measures.MEASURES`.
+        Objectives on the axes of the Pareto fronts: of `AXES`.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    transfer: Annotated[str, AfterValidator(_known_transfer)] = FIRST_TRANSFER
+    transfer: Annotated[str, _one_of(SHOWN)] = FIRST_TRANSFER
     discrete: bool = False
     optimal: bool = False
     poles: Literal["channel", "whole"] = "channel"
@@ -93,13 +100,13 @@ class Display(BaseModel):
     time: Literal["auto", "min", "h"] = "auto"
     scale: Literal["linear", "log"] = "linear"
     envelope: BandKind = "none"
-    spectrum: Literal["phi_e", "phi_n", "phi_u", "dve", "dvn", "dlat", "dlon", "position"] = "dve"
+    spectrum: Annotated[str, _one_of([error.key for error in ERRORS])] = "dve"
     baseline: Annotated[int | None, Field(ge=1)] = None
     legend: Annotated[
         tuple[tuple[Annotated[str, Field(max_length=300)], State], ...], Field(max_length=60)
     ] = ()
     pins_by: Annotated[str, Field(pattern=r"^-?[a-z]{1,20}$")] = "pinned"
-    delta: Literal["rms", "max_abs", "final"] = "rms"
+    delta: Annotated[str, _one_of(STATISTICS)] = "rms"
     window: Literal["whole", "settled", "hours"] = "whole"
     window_from_h: Annotated[float, Field(ge=0.0, le=1e5)] = 0.0
     window_to_h: Annotated[float | None, Field(ge=0.0, le=1e5)] = None
@@ -107,11 +114,10 @@ class Display(BaseModel):
     theme: Literal["light", "dark"] = "light"
     size: Literal["normal", "presentation"] = "normal"
     budget: Literal["steady", "run"] = "steady"
-    objective: Literal["tilt_rms", "velocity_rms", "position_rms", "heading_rms", "settling_s"] = "tilt_rms"
-
+    objective: Annotated[str, _one_of(OBJECTIVES)] = "tilt_rms"
     search: Literal["setting", "fronts"] = "setting"
-    front_x: FrontAxis = "tilt_rms"
-    front_y: FrontAxis = "velocity_rms"
+    front_x: Annotated[str, _one_of(AXES)] = "tilt_rms"
+    front_y: Annotated[str, _one_of(AXES)] = "velocity_rms"
 
     @property
     def enlarged(self) -> bool:

@@ -14,12 +14,11 @@ from app.plots.envelope import Envelope
 from app.session.display import Display
 from app.session.history import differences
 from app.session.pins import LONGEST_NAME, Pin
-from app.session.requirements import loop_of
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
-from navcore.mechanization.recorder import NAMES
+from navcore.quantities import NAMES
 from navcore.scenario.model import Scenario
 
 if TYPE_CHECKING:
@@ -236,7 +235,7 @@ def window_of(run: Run, display: Display) -> Window:
     begins, end = 0.0, float(run.t_s[-1])
     why = ""
     if display.window == "settled":
-        settling = [s for method in run.methods if (s := loop_of(method).settling_s) is not None]
+        settling = [s for method in run.methods if (s := method.loop.settling_s) is not None]
         if not settling:
             return Window(run, told="No method settles: the errors are of the whole run.", possible=False)
         begins, why = max(settling), " (the slowest damped method has settled)"

@@ -15,7 +15,7 @@ from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
-from navcore.motion.base import LAT, LON
+from navcore.motion.truth import LAT, LON
 from navcore.scenario.model import Scenario
 
 if TYPE_CHECKING:

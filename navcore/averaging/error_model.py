@@ -21,7 +21,7 @@ from navcore.law.law import Law
 from navcore.mechanization.error_model import STATES, ErrorModelRun
 from navcore.mechanization.recorder import Recorder, make_recorder
 from navcore.mechanization.trajectory import Coefficients, coefficients
-from navcore.motion.base import HEADING, PITCH, ROLL, Truth
+from navcore.motion.truth import HEADING, PITCH, ROLL, Truth
 from navcore.sensors.base import ReferenceErrors, SensorErrors
 
 FORECAST_STEP_S = 5.0

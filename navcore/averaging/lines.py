@@ -12,7 +12,7 @@ import numpy as np
 from navcore.averaging.copies import coupled_lines
 from navcore.foundation.earth import EARTH_RATE, Earth
 from navcore.mechanization.trajectory import coefficients
-from navcore.motion.base import Truth
+from navcore.motion.truth import Truth
 
 LINES = ("schuler_plus_foucault", "schuler_minus_foucault", "earth")
 _RCOND = 1e-6
@@ -49,7 +49,7 @@ def line_phases(time_s: np.ndarray, truth: np.ndarray, earth: Earth) -> np.ndarr
     time_s : ndarray, shape (m,)
         Times, s.
     truth : ndarray, shape (m, 15) or (1, 15)
-        True states, columns of `navcore.motion.base`.
+        True states, columns of `navcore.motion.truth`.
     earth : Earth
         WGS-84 or the sphere.
 

@@ -12,7 +12,7 @@ from navcore.averaging.record import RECORD_STEP_S, alignment_record, standing_r
 from navcore.foundation.earth import Earth
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG_PER_HOUR, HOUR
-from navcore.motion.base import HEIGHT, LAT
+from navcore.motion.truth import HEIGHT, LAT
 from navcore.sensors.imu import Imu
 
 

@@ -10,8 +10,8 @@ from navcore.foundation.earth import Earth, attitude_matrix
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
-from navcore.motion.base import AE, AU, COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL, VE, VU, Truth
 from navcore.motion.inertial import inertial_signals
+from navcore.motion.truth import AE, AU, COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL, VE, VU, Truth
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_errors.base import Clock
 from navcore.sensors.imu_errors.triad import Triad

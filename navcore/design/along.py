@@ -24,11 +24,11 @@ from navcore.design.maps import (
 )
 from navcore.design.noise import AXES, INPUTS_OF, interval_noise
 from navcore.design.scheduled import law_stages
+from navcore.quantities import COMPONENTS
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
 
-QUANTITIES = ("phi_e_rad", "phi_n_rad", "phi_u_rad", "dve_mps", "dvn_mps", "dlat_m", "dlon_m")
 _STATES = np.array([4, 5, 6, 0, 1, 2, 3])
 
 
@@ -41,7 +41,7 @@ class Along:
     t_s : ndarray, shape (k + 1,)
         Times, s.
     variance : dict of ndarray, shape (k + 1, 7)
-        Of each source that does anything, for `QUANTITIES`, in their units squared.
+        Of each source that does anything, for `COMPONENTS`, in their units squared.
     """
 
     t_s: np.ndarray
@@ -51,7 +51,7 @@ class Along:
     def total(self) -> np.ndarray:
         """Variance of all sources together, shape (k + 1, 7)."""
         with np.errstate(over="ignore", invalid="ignore"):
-            return sum(self.variance.values(), np.zeros((len(self.t_s), len(QUANTITIES))))
+            return sum(self.variance.values(), np.zeros((len(self.t_s), len(COMPONENTS))))
 
 
 def along(
@@ -85,7 +85,7 @@ def along(
         tables = _tables(loops, stage, model, course)
         random = _random(loop, model, course, tables)
         known = _known(loop, course, tables, (*shared, *own_columns(method, course, loop)))
-        scale = np.ones((len(course.edges), len(QUANTITIES)))
+        scale = np.ones((len(course.edges), len(COMPONENTS)))
         scale[:, 5:] = course.metres**2
         variance = {source: random[:, k] * scale for k, source in enumerate(RANDOM_SOURCES)}
         variance |= {source: values * scale for source, values in known.items()}

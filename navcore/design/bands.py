@@ -28,7 +28,7 @@ class Band:
     kind : {"covariance", "filter", "none"}
         Covariance of all sources together, a Kalman filter's own covariance, or no band.
     sigma : ndarray, shape (m, 7), or None
-        For `navcore.design.along.QUANTITIES`, in rad, m/s and m; None without a band.
+        For `navcore.quantities.COMPONENTS`, in rad, m/s and m; None without a band.
     reason : str
         Why there is no band; empty when there is one.
     """

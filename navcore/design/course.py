@@ -12,7 +12,7 @@ import numpy as np
 
 from navcore.engine.environment import coefficients_of, truth_of
 from navcore.mechanization.trajectory import COLUMNS, named, table_of
-from navcore.motion.base import HEADING, PITCH, ROLL, VE, VN, Truth
+from navcore.motion.truth import HEADING, PITCH, ROLL, VE, VN, Truth
 from navcore.scenario.model import Scenario
 from navcore.sensors.reference import in_service
 from navcore.sensors.simulated_log import hold_time

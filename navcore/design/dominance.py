@@ -13,22 +13,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from navcore.averaging.lines import line_phases
-from navcore.design.along import QUANTITIES
 from navcore.design.ship import Ship
 from navcore.design.sources import contributions
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.stage_cache import file_state, kept
-from navcore.mechanization.recorder import NAMES
-from navcore.motion.base import LAT
+from navcore.motion.truth import LAT
+from navcore.quantities import COMPONENTS, HEADING, NAMES, POSITION, TILT, Kind, components
 from navcore.scenario.model import Scenario
 
-POSITION, TILT, HEADING = "position error", "tilt", "heading error"
-_QUANTITIES = {
-    POSITION: ("dlat_m", "dlon_m"),
-    TILT: ("phi_e_rad", "phi_n_rad"),
-    HEADING: ("phi_u_rad",),
-}
 CONSTANT, DRIFT, SCHULER, EARTH, OTHER = "constant", "drift", "schuler", "earth", "other"
 _MOST_ROWS = 1500
 _RESOLVED = 0.75 * math.tau
@@ -67,7 +60,7 @@ class Cause:
 
     Attributes
     ----------
-    quantity : str
+    quantity : Kind
         `POSITION`, `TILT` or `HEADING`.
     source : str
         The dominating source; empty when the sources cannot be told apart.
@@ -77,7 +70,7 @@ class Cause:
         How the error moves.
     """
 
-    quantity: str
+    quantity: Kind
     source: str
     share: float
     swing: Swing
@@ -175,17 +168,18 @@ def _causes(run: Run, method: MethodRun, squares: dict[str, np.ndarray]) -> tupl
     if len(method.t_s) < 3:
         return ()
     causes = []
-    for quantity, names in _QUANTITIES.items():
-        if quantity == HEADING and run.scenario.run.fidelity == "channel":
+    for kind in (POSITION, TILT, HEADING):
+        names = components(kind)
+        if kind is HEADING and run.scenario.run.fidelity == "channel":
             continue
         moved = _swing_once(run, method, names)
         if moved is None:
             continue
-        places = [QUANTITIES.index(name) for name in names]
+        places = [COMPONENTS.index(name) for name in names]
         sizes = {source: float(np.sum(values[places])) for source, values in squares.items()}
         total, source = sum(sizes.values()), max(sizes, key=sizes.__getitem__, default="")
         share = sizes[source] / total if total > 0.0 else 0.0
-        causes.append(Cause(quantity, source if share else "", share, moved))
+        causes.append(Cause(kind, source if share else "", share, moved))
     return tuple(causes)
 
 
@@ -207,7 +201,7 @@ def swing(run: Run, method: MethodRun, names: tuple[str, ...]) -> Swing | None:
     method : MethodRun
         One of its methods.
     names : tuple of str
-        Of `navcore.mechanization.recorder.NAMES`; their mean squares are added.
+        Of `navcore.quantities.NAMES`; their mean squares are added.
     """
     chosen = np.arange(0, len(method.t_s), -(-len(method.t_s) // _MOST_ROWS))
     curves = method.rows[chosen][:, [NAMES.index(name) for name in names]]

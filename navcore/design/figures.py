@@ -1,11 +1,13 @@
 """Standard deviations of a budget: one source or all, in the steady state or along a run."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+
+from navcore.quantities import budgeted
 
 
 @dataclass(frozen=True)
@@ -27,10 +29,7 @@ class Figures:
 
     def as_dict(self, along_run: bool) -> dict[str, float | None]:
         """Return the figures that this kind of budget has."""
-        document = {"tilt_rad": self.tilt_rad, "velocity_mps": self.velocity_mps}
-        if along_run:
-            document |= {"heading_rad": self.heading_rad, "position_m": self.position_m}
-        return {name: _finite(value) for name, value in document.items()}
+        return {kind.figure: _finite(getattr(self, kind.figure)) for kind in budgeted(not along_run)}
 
 
 @dataclass(frozen=True)
@@ -61,6 +60,14 @@ class Entry:
         return document
 
 
+def total_of(entries: Iterable[Entry]) -> Figures:
+    """Independent sources of a steady state together; None for a figure that one of them lacks."""
+    figures = [entry.rms for entry in entries]
+    columns = [[getattr(one, kind.figure) for one in figures] for kind in budgeted(steady=True)]
+    sums = (None if None in values else math.sqrt(sum(x * x for x in values)) for values in columns)
+    return Figures(*sums)
+
+
 @dataclass(frozen=True, eq=False)
 class Series:
     """Variances along the run, for bands under the error curves.
@@ -69,7 +76,7 @@ class Series:
     ----------
     t_s : ndarray, shape (m,)
     sources : dict of ndarray, shape (m, 7)
-        For `navcore.design.along.QUANTITIES`, in their units squared; empty where the method has none.
+        For `navcore.quantities.COMPONENTS`, in their units squared; empty where the method has none.
     total : ndarray, shape (m, 7)
     """
 
@@ -84,7 +91,7 @@ def entry_of(t_s: np.ndarray, variance: np.ndarray) -> Entry:
 
 
 def mean_figures(t_s: np.ndarray, variance: np.ndarray) -> Figures:
-    """Root mean squares over a run of variances for `navcore.design.along.QUANTITIES`, shape (m, 7)."""
+    """Root mean squares over a run of variances for `navcore.quantities.COMPONENTS`, shape (m, 7)."""
     span = t_s[-1] - t_s[0]
     with np.errstate(over="ignore", invalid="ignore"):  # of an unstable loop
         mean = np.trapezoid(variance, t_s, axis=0) / span if span > 0.0 else variance[-1]

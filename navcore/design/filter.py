@@ -16,10 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from navcore.analysis.transfers import RADIUS
-from navcore.design.along import QUANTITIES
 from navcore.design.course import Course, log_axes
 from navcore.design.maps import ERRORS, calls_joined, error_step
 from navcore.mechanization.trajectory import named
+from navcore.quantities import COMPONENTS
 from navcore.scenario.model import Scenario
 from navcore.scenario.start import aligned_errors, independent_errors
 from navcore.scenario.stochastic import StochasticModel
@@ -75,7 +75,7 @@ def filter_variance(scenario: Scenario, course: Course, model: StochasticModel) 
     Returns
     -------
     ndarray, shape (k + 1, 7)
-        For `navcore.design.along.QUANTITIES`, squared.
+        For `navcore.quantities.COMPONENTS`, squared.
     """
     sensors = _Sensors(scenario, course, model)
     pairs, places = _pairs(course)
@@ -88,7 +88,7 @@ def filter_variance(scenario: Scenario, course: Course, model: StochasticModel) 
         interval = _interval(sensors, half[of], turns[of], calls, works)
         whole.A[of], whole.C[of], whole.J[of] = interval.A, interval.C, interval.J
     P = sensors.start
-    out = np.empty((len(course.edges), len(QUANTITIES)))
+    out = np.empty((len(course.edges), len(COMPONENTS)))
     unit = sensors.units[_STATES]
     out[0] = P[_STATES, _STATES] * unit**2
     for i, place in enumerate(places.tolist()):

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from navcore.analysis.transfers import RADIUS
+from navcore.design.figures import Entry, Figures
 from navcore.design.form import LawForm
 from navcore.foundation.units import HOUR
 from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
@@ -19,25 +20,6 @@ _MARGINAL = 1e-9
 """Real part over omega_s above which a mode has no decay to speak of."""
 _UNSEEN = 1e-12
 """Share of a mode in a source or an output below which it takes no part in it."""
-
-
-@dataclass(frozen=True)
-class Part:
-    """Deviation that one source leaves in a channel.
-
-    Attributes
-    ----------
-    tilt_rad, velocity_mps : float or None
-        Standard deviations in the steady state; None where there is none.
-    tilt_growth, velocity_growth : float or None
-        Where there is none: standard deviation after one hour, rad and m/s, which grows with the square root
-        of time; None where it grows exponentially.
-    """
-
-    tilt_rad: float | None
-    velocity_mps: float | None
-    tilt_growth: float | None = None
-    velocity_growth: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +106,7 @@ def _unit(size: int, i: int) -> np.ndarray:
     return column
 
 
-def steady_parts(channel: Level) -> dict[str, Part]:
+def steady_parts(channel: Level) -> dict[str, Entry]:
     """Standard deviations that each random source leaves in the steady state (theory.md 15).
 
     The adjoint equation A^T X + X A + c c^T = 0 gives the variance of one output for every source at once,
@@ -154,18 +136,18 @@ def steady_parts(channel: Level) -> dict[str, Part]:
         variance = size * np.sum(columns * (X @ columns), axis=0)
         deviations[output] = np.sqrt(np.maximum(variance, 0.0))
     return {
-        source: Part(float(deviations[PHI][k]) * channel.tilt_unit, float(deviations[DV][k]))
+        source: Entry(Figures(float(deviations[PHI][k]) * channel.tilt_unit, float(deviations[DV][k])))
         for k, source in enumerate(RANDOM_SOURCES)
     }
 
 
-def _growing(channel: Level, column: np.ndarray) -> Part:
+def _growing(channel: Level, column: np.ndarray) -> Entry:
     """Steady deviation where the source meets only modes that decay, else how it grows."""
     values, right = np.linalg.eig(channel.A)
     try:
         shares = np.linalg.solve(right, column.astype(complex))
     except np.linalg.LinAlgError:
-        return Part(None, None)
+        return Entry(Figures())
     deviations: list[float | None] = []
     for output in (PHI, DV):
         residues = right[output] * shares
@@ -180,7 +162,8 @@ def _growing(channel: Level, column: np.ndarray) -> Part:
         else:  # white noise into a mode without decay: variance |residue|^2 a unit of tau
             rate = float(np.sum(np.abs(residues[marginal]) ** 2))
             deviations += [None, unit * math.sqrt(rate * channel.omega_s * HOUR)]
-    return Part(deviations[0], deviations[2], deviations[1], deviations[3])
+    growth = Figures(deviations[1], deviations[3])
+    return Entry(Figures(deviations[0], deviations[2]), growth=None if growth == Figures() else growth)
 
 
 def _decaying(values: np.ndarray, residues: np.ndarray) -> float:
@@ -191,7 +174,7 @@ def _decaying(values: np.ndarray, residues: np.ndarray) -> float:
     return math.sqrt(max(float(np.sum(pairs).real), 0.0))
 
 
-def line_part(channel: Level, amplitude: float, omega: float) -> Part:
+def line_part(channel: Level, amplitude: float, omega: float) -> Entry:
     """Standard deviation that a sine of the log's error leaves: amplitude |T(j omega)| / sqrt(2).
 
     Parameters
@@ -207,12 +190,12 @@ def line_part(channel: Level, amplitude: float, omega: float) -> Part:
     try:
         x = np.linalg.solve(system, channel.constants["log"].astype(complex))
     except np.linalg.LinAlgError:
-        return Part(None, None)
+        return Entry(Figures())
     root = amplitude / math.sqrt(2.0)
-    return Part(root * abs(x[PHI]) * channel.tilt_unit, root * abs(x[DV]))
+    return Entry(Figures(root * abs(x[PHI]) * channel.tilt_unit, root * abs(x[DV])))
 
 
-def constant_part(channel: Level, source: str, size: float) -> Part:
+def constant_part(channel: Level, source: str, size: float) -> Entry:
     """Compute what a constant error leaves in the steady state of a stable loop.
 
     Parameters
@@ -225,6 +208,6 @@ def constant_part(channel: Level, source: str, size: float) -> Part:
         Its standard deviation, SI.
     """
     if channel.growth_per_s() >= -_MARGINAL * channel.omega_s:
-        return Part(None, None)
+        return Entry(Figures())
     x = np.linalg.solve(channel.A, -channel.constants[source]) * size
-    return Part(abs(float(x[PHI])) * channel.tilt_unit, abs(float(x[DV])))
+    return Entry(Figures(abs(float(x[PHI])) * channel.tilt_unit, abs(float(x[DV]))))

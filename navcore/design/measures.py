@@ -1,44 +1,31 @@
-"""What a method can be tuned for, or be required to keep: one number a name."""
+"""Objectives and requirements of a search, and how it measures a setting against them."""
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
-from navcore.analysis import Loop, analyse, time_response
+from navcore.analysis import Loop, analyse
+from navcore.analysis.judged import JudgedLoop, loop_value
 from navcore.analysis.whole_system import WholeSystem, whole_system
-from navcore.design.figures import Figures, mean_figures
+from navcore.design.figures import Figures, mean_figures, total_of
 from navcore.design.form import law_form
 from navcore.design.level import level, steady_parts
-from navcore.design.seeds import no_covariance, seed_variance
+from navcore.design.seeds import alone, no_covariance, seed_variance
 from navcore.design.ship import Ship
+from navcore.engine.drivers.common import network_of
+from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.foundation.units import ARCMIN, ARCSEC, DEG, HOUR, MINUTE
-from navcore.law.combination import realisation_of
+from navcore.foundation.units import DEG, UNITS
 from navcore.networks.base import LinearNetwork
+from navcore.quantities import OBJECTIVES, QUANTITIES, TUNED
 from navcore.scenario.method import Method
 
 TUNING_INTERVALS = 360
 """Of a run during a search: coarser than the budget, which is made once."""
 TUNING_SEEDS = 4
-_STEP_POINTS = 800
-_STEP_PERIODS = 6.0
-UNITS = {
-    "rad": 1.0,
-    "deg": DEG,
-    "arcmin": ARCMIN,
-    "arcsec": ARCSEC,
-    "s": 1.0,
-    "min": MINUTE,
-    "h": HOUR,
-    "m/s": 1.0,
-    "m": 1.0,
-    "km": 1000.0,
-}
 
 
 class Setting:
@@ -57,8 +44,10 @@ class Setting:
 
     @cached_property
     def network(self) -> LinearNetwork:
-        """H(s) as the method's policy runs it."""
-        return self.method.kind.network(self.method).transfer(self.ship.scenario.omega_s)
+        """H(s) in force; where the policy re-tunes it, at the mean coefficient of a run."""
+        if self.method.policy.tunes and not self.method.undamped:
+            return simulate(alone(self.ship.scenario, self.method)).methods[0].network
+        return network_of(self.ship.scenario, self.method)
 
     @cached_property
     def loop(self) -> Loop:
@@ -74,92 +63,44 @@ class Setting:
 
     @cached_property
     def figures(self) -> Figures:
-        """Root mean squares of the errors; infinite where there is none."""
-        ship = self.ship
+        """Root mean squares of the errors; None, infinite or NaN where there is none."""
+        ship, omega_s = self.ship, self.ship.scenario.omega_s
         if not ship.along_run:
-            parts = steady_parts(
-                level(law_form(self.method, ship.scenario.omega_s), ship.model, ship.scenario.omega_s)
-            )
-            return Figures(
-                _root_sum([part.tilt_rad for part in parts.values()]),
-                _root_sum([part.velocity_mps for part in parts.values()]),
-            )
+            return total_of(steady_parts(level(law_form(self.method, omega_s), ship.model, omega_s)).values())
         if not self.loop.stable:
-            return Figures(math.inf, math.inf, math.inf, math.inf)
+            return Figures()
         if no_covariance(ship.scenario, self.method):
             try:
-                t_s, variance = seed_variance(ship.scenario, self.method, TUNING_SEEDS)
+                return mean_figures(*seed_variance(ship.scenario, self.method, TUNING_SEEDS))
             except InputError:
-                return Figures(math.inf, math.inf, math.inf, math.inf)
-            return mean_figures(t_s, variance)
+                return Figures()
         variances = ship.along(self.method)
-        total = np.where(np.isfinite(variances.total), variances.total, np.inf)
-        return mean_figures(variances.t_s, total)
-
-    @cached_property
-    def log_step(self) -> tuple[float, float]:
-        """Largest velocity error (m/s) and tilt (rad) after a step of the log's error by 1 m/s."""
-        if not self.method.kind.referenced or not self.loop.stable:
-            return (0.0, 0.0) if self.loop.stable else (math.inf, math.inf)
-        slowest = self.loop.settling_s or _STEP_PERIODS * 2.0 * math.pi / self.network.omega_s
-        time_s = np.linspace(0.0, min(2.0 * slowest, 200.0 * HOUR), _STEP_POINTS)
-        form = realisation_of(self.method.kind.law, self.method.kind.network(self.method))
-        velocity = time_response(self.network, "dv_r", "dv", time_s, realisation=form)
-        tilt = time_response(self.network, "dv_r", "phi", time_s, realisation=form)
-        return float(np.max(np.abs(velocity))), float(np.max(np.abs(tilt)))
+        return mean_figures(variances.t_s, variances.total)
 
 
-def _root_sum(values: list[float | None]) -> float:
-    return math.sqrt(sum(math.inf if value is None else value * value for value in values))
+def measure(setting: Setting, key: str) -> float:
+    """Value of a quantity of a setting, SI; infinite where there is none.
+
+    Parameters
+    ----------
+    setting : Setting
+        Errors are judged in the steady state or of the ensemble of runs, as its ship says.
+    key : str
+        One of `navcore.quantities.TUNED`.
+    """
+    kind = QUANTITIES[key].kind
+    if kind is None:
+        uses_log = setting.method.kind.referenced
+        return loop_value(key, JudgedLoop(setting.network, setting.loop, uses_log, lambda: setting.whole))
+    value = getattr(setting.figures, kind.figure)
+    return math.inf if value is None or math.isnan(value) else value
 
 
-def _settling(setting: Setting) -> float:
-    return math.inf if setting.loop.settling_s is None else setting.loop.settling_s
+def over_run(keys: Iterable[str]) -> bool:
+    """Whether one of some quantities has no steady state, so that all are judged over the run."""
+    return any([*QUANTITIES[key].names] == ["ensemble"] for key in keys)
 
 
-def _rms(name: str) -> Callable[[Setting], float]:
-    def measure(setting: Setting) -> float:
-        value = getattr(setting.figures, name)
-        return math.inf if value is None or math.isnan(value) else value
-
-    return measure
-
-
-MEASURES: dict[str, tuple[Callable[[Setting], float], str, str]] = {
-    "tilt_rms": (_rms("tilt_rad"), "rad", "root mean square of the tilt of one channel"),
-    "velocity_rms": (_rms("velocity_mps"), "m/s", "root mean square of the velocity error of one channel"),
-    "heading_rms": (_rms("heading_rad"), "rad", "root mean square of the heading error over the run"),
-    "position_rms": (_rms("position_m"), "m", "root mean square of the position error over the run"),
-    "settling_s": (_settling, "s", "last time at which the answer to an initial tilt exceeds 2 %"),
-    "overshoot": (lambda s: s.log_step[0], "m/s", "largest velocity error after a log step of 1 m/s"),
-    "log_tilt": (lambda s: s.log_step[1], "rad", "largest tilt after a log step of 1 m/s"),
-    "damping_ratio": (lambda s: s.loop.damping_ratio, "", "smallest damping ratio of the closed loop"),
-    "h0_deviation": (lambda s: abs(s.network.h0 - 1.0), "", "distance of H(0) from 1"),
-    "h_slope_s": (
-        lambda s: s.network.h_slope,
-        "s",
-        "H'(0): negative damps the 24 h mode of a network with H(0) = 1",
-    ),
-    "earth_mode_growth_per_s": (
-        lambda s: s.whole.earth_growth,
-        "1/s",
-        "growth of the 24 h mode of the whole system at the site; negative when it decays",
-    ),
-}
-"""How a number is measured, its unit and what it is."""
-_TYPICAL = {"h_slope_s": 100.0}
-"""Sizes of measures whose limit is 0 as a rule, SI."""
-ALONG_ONLY = ("heading_rms", "position_rms")
-NO_OBJECTIVES = ("damping_ratio",)
-"""Measures of which more is better: to be required, not to be made small."""
-OBJECTIVES = tuple(name for name in MEASURES if name not in NO_OBJECTIVES)
-FLOORED = {
-    "tilt_rms": "tilt_rad",
-    "velocity_rms": "velocity_mps",
-    "heading_rms": "heading_rad",
-    "position_rms": "position_m",
-}
-"""Measures that have a floor, and which figure of it."""
 _TERM = re.compile(r"(?:(?P<weight>[0-9.]+(?:e[+-]?[0-9]+)?)\s*\*\s*)?(?P<name>[a-z][a-z0-9_]*)\Z")
 _REQUIREMENT = re.compile(
     r"\s*(?P<name>[a-z][a-z0-9_]*)\s*(?P<sense><=|>=)\s*(?P<value>[-+0-9.eE]+?)\s*(?P<unit>[a-z/]*)\s*\Z"
@@ -189,12 +130,12 @@ class Objective:
     def value(self, setting: Setting, before: dict[str, float]) -> float:
         """Value of a setting; ``before`` are the measures of the setting that the search began with."""
         if len(self.terms) == 1:
-            return MEASURES[self.terms[0][0]][0](setting)
+            return measure(setting, self.terms[0][0])
         total = 0.0
         for name, weight in self.terms:
             unit = before.get(name, 1.0)
             unit = unit if math.isfinite(unit) and unit > 0.0 else 1.0
-            total += weight * MEASURES[name][0](setting) / unit
+            total += weight * measure(setting, name) / unit
         return total
 
 
@@ -219,7 +160,7 @@ class Requirement:
 
     def excess(self, setting: Setting) -> float:
         """By how much it is missed, relative to the limit; 0 when it is met."""
-        value = MEASURES[self.name][0](setting)
+        value = measure(setting, self.name)
         miss = value - self.limit if self.sense == "<=" else self.limit - value
         if math.isnan(miss):
             return math.inf
@@ -227,21 +168,22 @@ class Requirement:
 
     def active(self, setting: Setting) -> bool:
         """Whether a setting stands at the limit, to 1 %."""
-        value = MEASURES[self.name][0](setting)
+        value = measure(setting, self.name)
         return abs(value - self.limit) <= 0.01 * self._scale
 
     @property
     def _scale(self) -> float:
         """Size that a miss is divided by: the limit; where that may be 0, at least a typical value."""
-        return max(abs(self.limit), _TYPICAL.get(self.name, 1e-12))
+        return max(abs(self.limit), QUANTITIES[self.name].typical)
 
 
 def in_display_unit(name: str, value: float | None) -> tuple[float | None, str]:
     """Value of a measure in the unit in which it is shown, and that unit; of a sum it has none."""
-    unit = MEASURES[name][1] if name in MEASURES else ""
-    if unit == "rad":
-        return None if value is None else value / ARCSEC, "arcsec"
-    return value, unit
+    quantity = QUANTITIES.get(name)
+    if quantity is None:
+        return value, ""
+    shown = quantity.shown if quantity.unit == "rad" else quantity.unit
+    return None if value is None else value / UNITS[shown], shown
 
 
 def in_words(name: str, value: float) -> str:
@@ -263,13 +205,13 @@ def read_objective(text: str) -> Objective:
     terms = []
     for part in text.split("+"):
         match = _TERM.match(part.strip())
-        if match is None or match["name"] not in MEASURES:
+        if match is None or match["name"] not in TUNED:
             allowed = Text(
                 "must be one of {objectives}, or a sum such as tilt_rms + 0.5*velocity_rms",
                 objectives=", ".join(OBJECTIVES),
             )
             raise InputError(Fault("", "--objective", text, allowed))
-        if match["name"] in NO_OBJECTIVES:
+        if match["name"] not in OBJECTIVES:
             allowed = Text(
                 "is better when larger: ask for it as a requirement, {name}>=0.5", name=match["name"]
             )
@@ -293,14 +235,14 @@ def read_requirement(text: str) -> Requirement:
         Not of this form, or a name or unit is not known.
     """
     match = _REQUIREMENT.match(text)
-    if match is None or match["name"] not in MEASURES:
+    if match is None or match["name"] not in TUNED:
         allowed = Text(
             "must have the form NAME<=VALUE or NAME>=VALUE with NAME one of {measures}",
-            measures=", ".join(MEASURES),
+            measures=", ".join(TUNED),
         )
         raise InputError(Fault("", "--require", text, allowed))
     unit = match["unit"]
-    own = MEASURES[match["name"]][1]
+    own = QUANTITIES[match["name"]].unit
     same = {"rad": ("rad", "deg", "arcmin", "arcsec"), "s": ("s", "min", "h"), "m": ("m", "km")}.get(
         own, (own,)
     )

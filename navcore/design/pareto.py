@@ -8,27 +8,24 @@ from typing import Any
 import numpy as np
 
 from navcore.design.measures import (
-    ALONG_ONLY,
-    FLOORED,
-    MEASURES,
-    OBJECTIVES,
     TUNING_INTERVALS,
     Setting,
     Ship,
+    measure,
+    over_run,
     read_objective,
 )
 from navcore.design.search import MISSED, Effort, Search
-from navcore.design.vary import read_varied
+from navcore.design.vary import network_not_in_force, read_varied
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.networks import NETWORKS
+from navcore.quantities import QUANTITIES, WEIGHED
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 
 LEFT_OUT = ("none", "custom")
 """Networks without parameters of a design of their own."""
-_SIGNED = ("h_slope_s", "earth_mode_growth_per_s")
-"""Measures that may be negative, of which there is no ratio."""
 _LEAST = 1e-12
 """Value that stands for 0 where ratios are compared."""
 _WEIGHTS = np.linspace(0.0, 1.0, 7)
@@ -132,7 +129,7 @@ def pareto(
     scenario : Scenario
         With the method.
     objectives : (str, str)
-        Two names of `navcore.design.measures.MEASURES`.
+        Two of `navcore.quantities.WEIGHED`.
     method : int
         Index of the method; its damping, policy and switching stay.
     networks : sequence of str, optional
@@ -145,17 +142,18 @@ def pareto(
     Raises
     ------
     InputError
-        An objective or method is not known, or the method is not damped.
+        An objective or method is not known, or its network is not in force: it is not damped, or its policy
+        sets parameters of the network.
     """
     ids = _checked(objectives, networks)
     if not 0 <= method < len(scenario.method):
         raise InputError(
             Fault("", "method", method, Text("must be 0 to {method}", method=len(scenario.method) - 1))
         )
-    if scenario.method[method].undamped:
-        reason = Text('damping = "{damping}" uses no network', damping=scenario.method[method].damping)
-        raise InputError(Fault("", f"method.{method}.damping", None, reason))
-    along = along or any(name in ALONG_ONLY for name in objectives)
+    reason = network_not_in_force(scenario.method[method])
+    if reason:
+        raise InputError(Fault("", f"method.{method}", None, Text("has no fronts: {reason}", reason=reason)))
+    along = along or over_run(objectives)
     ship = Ship(scenario, along, TUNING_INTERVALS)
     if ship.model.silent and not along:
         reason = "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
@@ -177,7 +175,8 @@ def pareto(
         if stopped:
             break
     least = ship.floor()
-    floors = [getattr(least, FLOORED[name]) if name in FLOORED else None for name in objectives]
+    kinds = [QUANTITIES[name].kind for name in objectives]
+    floors = [None if kind is None else getattr(least, kind.figure) for kind in kinds]
     return Pareto(
         objectives=objectives,
         fronts={name: points for name, points in fronts.items() if points},
@@ -192,23 +191,25 @@ def measured(
 ) -> tuple[float, float] | None:
     """Both objectives of a method as it is, SI; None where they are not finite and above 0.
 
+    None, too, for a method whose network is not in force: no front is of it.
+
     Parameters
     ----------
     scenario, objectives, method, along
         As of `pareto`.
     """
-    along = along or any(name in ALONG_ONLY for name in objectives)
-    return _both(Setting(Ship(scenario, along, TUNING_INTERVALS), scenario.method[method]), objectives)
+    if network_not_in_force(scenario.method[method]):
+        return None
+    ship = Ship(scenario, along or over_run(objectives), TUNING_INTERVALS)
+    return _both(Setting(ship, scenario.method[method]), objectives)
 
 
 def _checked(objectives: tuple[str, str], networks: Sequence[str] | None) -> list[str]:
     """Ids of the networks to search; raises InputError for a word that is not known."""
-    known = [name for name in OBJECTIVES if name not in _SIGNED]
     for name in objectives:
-        if name not in known:
-            raise InputError(
-                Fault("", "objectives", name, Text("must be one of {known}", known=", ".join(known)))
-            )
+        if name not in WEIGHED:
+            allowed = Text("must be one of {known}", known=", ".join(WEIGHED))
+            raise InputError(Fault("", "objectives", name, allowed))
     if objectives[0] == objectives[1]:
         raise InputError(Fault("", "objectives", objectives[1], "must be two different ones"))
     ids = [name for name in NETWORKS if name not in LEFT_OUT]
@@ -219,13 +220,17 @@ def _checked(objectives: tuple[str, str], networks: Sequence[str] | None) -> lis
 
 
 def _earth_growth(ship: Ship, method: Method, network: dict[str, Any]) -> float:
-    changed = method.model_dump(mode="json", by_alias=True, exclude_none=True) | {"network": network}
-    return Setting(ship, Method.model_validate(changed)).whole.earth_growth
+    return Setting(ship, _with_network(method, network)).whole.earth_growth
+
+
+def _with_network(method: Method, network: dict[str, Any]) -> Method:
+    dumped = method.model_dump(mode="json", by_alias=True, exclude_none=True)
+    return Method.model_validate(dumped | {"network": network})
 
 
 def _both(setting: Setting, names: tuple[str, str]) -> tuple[float, float] | None:
     try:
-        first, second = (float(MEASURES[name][0](setting)) for name in names)
+        first, second = (measure(setting, name) for name in names)
     except (InputError, np.linalg.LinAlgError):
         return None
     return (first, second) if all(math.isfinite(v) and v >= 0.0 for v in (first, second)) else None
@@ -242,10 +247,7 @@ def _front(
 ) -> tuple[list[tuple[tuple[float, float], dict[str, Any]]], bool]:
     """Every setting of a network that a few weighted searches saw, and whether they were stopped."""
     method = scenario.method[index]
-    block = {"network": {"id": network}}
-    with_network = Method.model_validate(
-        method.model_dump(mode="json", by_alias=True, exclude_none=True) | block
-    )
+    with_network = _with_network(method, {"id": network})
     figures = scenario.figures()
     with_network = with_network.model_copy(update={"network": with_network.network.with_sensors(figures)})
     methods = tuple(with_network if i == index else m for i, m in enumerate(scenario.method))

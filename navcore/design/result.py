@@ -7,6 +7,7 @@ from typing import Any, Literal
 from navcore.design.figures import Entry, Series
 from navcore.design.floor import FLOOR_OF_ZERO
 from navcore.foundation.drawing import drawn
+from navcore.quantities import budgeted
 
 Shown = Literal["steady", "covariance", "seeds", "none"]
 
@@ -113,9 +114,8 @@ class Budget:
 
     def times_floor(self, method: MethodBudget) -> dict[str, float | None]:
         """Each figure of a method over that of the floor; None where one of them is missing or zero."""
-        names = ("tilt_rad", "velocity_mps") + (() if self.steady else ("heading_rad", "position_m"))
         ratios = {}
-        for name in names:
-            own, least = getattr(method.total.rms, name), getattr(self.floor.rms, name)
-            ratios[name.rsplit("_", 1)[0]] = own / least if own is not None and least else None
+        for kind in budgeted(self.steady):
+            own, least = getattr(method.total.rms, kind.figure), getattr(self.floor.rms, kind.figure)
+            ratios[kind.name] = own / least if own is not None and least else None
         return ratios

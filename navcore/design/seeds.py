@@ -4,10 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from navcore.design.along import QUANTITIES
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.quantities import COMPONENTS
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 
@@ -39,6 +39,14 @@ def no_covariance(scenario: Scenario, method: Method) -> str:
     return Text('switching "{id}" acts on what was measured before', id=method.switching.id)
 
 
+def alone(scenario: Scenario, method: Method, later: int = 0) -> Scenario:
+    """Return a scenario with one method on the linear error model; its seed is ``later`` seeds later."""
+    fidelity = "error_model" if scenario.strapdown else scenario.run.fidelity
+    settings = scenario.run.model_copy(update={"seed": scenario.run.seed + later, "fidelity": fidelity})
+    update = {"run": settings, "method": (method,), "alignment": type(scenario.alignment)()}
+    return scenario.model_copy(update=update)
+
+
 def seed_variance(
     scenario: Scenario,
     method: Method,
@@ -67,7 +75,7 @@ def seed_variance(
     -------
     t_s : ndarray, shape (m,)
     variance : ndarray, shape (m, 7)
-        For `navcore.design.along.QUANTITIES`.
+        For `navcore.quantities.COMPONENTS`.
 
     Raises
     ------
@@ -79,20 +87,7 @@ def seed_variance(
     for k in range(seeds):
         if k and cancelled is not None and cancelled():
             break
-        run_settings = scenario.run.model_copy(
-            update={
-                "seed": scenario.run.seed + k,
-                "fidelity": "error_model" if scenario.strapdown else scenario.run.fidelity,
-            }
-        )
-        alone = scenario.model_copy(
-            update={
-                "run": run_settings,
-                "method": (method,),
-                "alignment": type(scenario.alignment)(),
-            }
-        )
-        result = simulate(alone).methods[0]
+        result = simulate(alone(scenario, method, k)).methods[0]
         if result.status == "diverged":
             raise InputError(
                 Fault(
@@ -102,7 +97,7 @@ def seed_variance(
                     Text("has no budget: it diverges ({reason})", reason=result.reason),
                 )
             )
-        squares = result.rows[:, : len(QUANTITIES)] ** 2
+        squares = result.rows[:, : len(COMPONENTS)] ** 2
         total, t_s, count = squares if total is None else total + squares, result.t_s, count + 1
         if progress is not None:
             progress((k + 1) / seeds)

@@ -11,10 +11,10 @@ from typing import TypeVar
 
 import numpy as np
 
-from navcore.design.along import QUANTITIES
 from navcore.design.seeds import no_covariance
 from navcore.design.ship import Ship
 from navcore.engine.simulation import simulate
+from navcore.quantities import COMPONENTS
 from navcore.scenario.initial_error import InitialError
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
@@ -33,7 +33,7 @@ def contributions(
     progress: Callable[[float], None] = lambda fraction: None,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> dict[str, np.ndarray]:
-    """Mean squares over the run of a method's errors, by source; shape (7,), for `QUANTITIES`, squared.
+    """Mean squares over the run of a method's errors, by source; shape (7,), for `COMPONENTS`, squared.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def _run_apart(
         errors = simulate(only(alone, source), cancelled=cancelled).methods[0].errors
         if cancelled():  # what was under way may have been stopped half-way
             break
-        squares[source] = np.array([errors[name]["rms"] ** 2 for name in QUANTITIES])
+        squares[source] = np.array([errors[name]["rms"] ** 2 for name in COMPONENTS])
         progress(done / len(sources))
     return squares
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from navcore.damping.base import Covering
-from navcore.design.figures import Entry, Figures
+from navcore.design.figures import Entry, Figures, total_of
 from navcore.design.floor import Floor, steady_floor
 from navcore.design.form import law_form
 from navcore.design.level import Level, constant_part, level, line_part, steady_parts
@@ -51,7 +51,7 @@ def _steady_loop(
         warnings.append(
             Text('policy "{id}" looks at the data: shown is the loop while it is damped', id=method.policy.id)
         )
-    missing = [name for name, part in parts.items() if part.tilt_rad is None or part.velocity_mps is None]
+    missing = [name for name, part in parts.items() if None in (part.rms.tilt_rad, part.rms.velocity_mps)]
     unstable = instability(channel)
     if missing and unstable:
         warnings.append(Text("{unstable}: no source has a steady state", unstable=unstable))
@@ -59,25 +59,12 @@ def _steady_loop(
         warnings.append(
             Text("no steady state: {missing} drive a mode without decay", missing=", ".join(missing))
         )
-    sources = {
-        name: Entry(
-            Figures(part.tilt_rad, part.velocity_mps),
-            growth=None
-            if part.tilt_growth is None and part.velocity_growth is None
-            else Figures(part.tilt_growth, part.velocity_growth),
-        )
-        for name, part in parts.items()
-    }
-    total = Figures(
-        _root_sum([part.tilt_rad for part in parts.values()]),
-        _root_sum([part.velocity_mps for part in parts.values()]),
-    )
     sizes = {"gyro_bias": model.gyro_bias[:2], "accel_bias": model.accel_bias[:2], "log_bias": model.log_bias}
     constants = {}
     for name, values in sizes.items():
-        part = constant_part(channel, name.split("_")[0], float(np.sqrt(np.mean(values**2))))
-        constants[name] = Entry(Figures(part.tilt_rad, part.velocity_mps))
-    return MethodBudget(method.name, "steady", Entry(total), sources, constants, tuple(warnings))
+        constants[name] = constant_part(channel, name.split("_")[0], float(np.sqrt(np.mean(values**2))))
+    total = Entry(total_of(parts.values()))
+    return MethodBudget(method.name, "steady", total, parts, constants, tuple(warnings))
 
 
 def _no_steady_state(
@@ -115,8 +102,3 @@ def instability(channel: Level) -> str:
     if growth <= _MARGINAL * channel.omega_s:
         return ""
     return Text("the loop is unstable (e-folding {growth:.3g} days)", growth=1.0 / growth / (24.0 * HOUR))
-
-
-def _root_sum(values: list[float | None]) -> float | None:
-    known = [value for value in values if value is not None]
-    return math.sqrt(sum(value * value for value in known)) if len(known) == len(values) else None

@@ -27,6 +27,7 @@ from navcore.engine.simulation import Cancelled, Progress, simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.units import HOUR, KNOT
 from navcore.law.policy.adaptive import HIGHEST, LOWEST, SUN_TABLE
+from navcore.quantities import VELOCITY, components
 from navcore.scenario.blocks import Alignment
 from navcore.scenario.bounds import MAX_METHODS
 from navcore.scenario.initial_error import InitialError
@@ -204,7 +205,7 @@ def _costs(problem: Scenario, methods: tuple[Method, ...], cancelled: Cancelled 
         return None
     costs = []
     for result in run.methods:
-        squares = result.errors["dve_mps"]["rms"] ** 2 + result.errors["dvn_mps"]["rms"] ** 2
+        squares = sum(result.errors[name]["rms"] ** 2 for name in components(VELOCITY))
         # an unstable loop may still have the least J before it has grown
         usable = result.status == "ok" and result.loop.stable
         costs.append(problem.run.duration_h * HOUR * squares if usable else np.inf)

@@ -15,7 +15,6 @@ from navcore.networks.unity2 import Unity2Network
 
 MAX_RUNS_A_COEFFICIENT = 65
 _Difference = Annotated[float, bounded(unit="kn", ge=0.0, le=100.0)]
-_COEFFICIENT_FIELDS = ("zeta", "xi")
 
 
 class TuningSettings(Parameters):
@@ -77,7 +76,7 @@ class TuningSettings(Parameters):
         if self.largest < self.smallest:
             allowed = f"must be >= {self.smallest:g}, the smallest"
             raise InputError(Fault("", "largest", self.largest, allowed))
-        if self.network.damping_coefficient() is None or not coefficient_field(self.network):
+        if not self.network.damping_field:
             raise InputError(Fault("", "network.id", self.network.id, "must have a damping ratio xi or zeta"))
         return self
 
@@ -100,9 +99,4 @@ class TuningSettings(Parameters):
             The network does not exist for this coefficient.
         """
         fields = self.network.model_dump(exclude_none=True)
-        return parse_network({**fields, coefficient_field(self.network): float(value)}, "network")
-
-
-def coefficient_field(network: NetworkParameters) -> str:
-    """Name of the field that sets a network's damping; empty where it has none."""
-    return next((name for name in _COEFFICIENT_FIELDS if getattr(network, name, None) is not None), "")
+        return parse_network({**fields, self.network.damping_field: float(value)}, "network")

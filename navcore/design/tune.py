@@ -8,15 +8,14 @@ from typing import Any
 import numpy as np
 
 from navcore.design.measures import (
-    ALONG_ONLY,
-    FLOORED,
-    MEASURES,
     TUNING_INTERVALS,
     Objective,
     Requirement,
     Setting,
     Ship,
     in_words,
+    measure,
+    over_run,
     read_objective,
     read_requirement,
 )
@@ -25,6 +24,7 @@ from navcore.design.unmodelled import unmodelled_warnings
 from navcore.design.vary import Varied, present, read_varied
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.quantities import QUANTITIES, Judged
 from navcore.scenario.model import Scenario
 
 _FLAT = 1.05
@@ -59,6 +59,8 @@ class Tuned:
     warnings : tuple of str
         What the objective does not see of the best setting: a mode of the whole system that grows, a
         recording that counts as free of error.
+    judged : {"steady", "ensemble"}
+        What root mean squares are of.
     scenario : Scenario
         With the best setting in place.
     """
@@ -73,6 +75,7 @@ class Tuned:
     flat: dict[str, tuple[float, float]]
     stopped: bool
     warnings: tuple[str, ...]
+    judged: Judged
     scenario: Scenario = field(repr=False)
 
     def as_dict(self) -> dict[str, Any]:
@@ -109,7 +112,7 @@ def tune(
     scenario : Scenario
         With the method.
     objective : str
-        A name of `navcore.design.measures.MEASURES`, or a weighted sum, ``tilt_rms + 0.5*velocity_rms``,
+        One of `navcore.quantities.OBJECTIVES`, or a weighted sum, ``tilt_rms + 0.5*velocity_rms``,
         whose terms count relative to their values before.
     vary : sequence of str
         Fields, ``method.1.network.sigma`` or with a range ``method.1.network.sigma=1e-4:0.1``.
@@ -117,7 +120,7 @@ def tune(
         Limits, ``settling_s<=3600``.
     along : bool
         Root mean squares over the scenario's run; else in the steady state at rest. Heading and position,
-        which have no steady state, are always over the run.
+        and a method whose policy re-tunes its network, have no steady state and are always over the run.
     worst_of : sequence of Scenario
         Further scenarios in whose same method the parameters are put too: the worst of all counts.
     progress, cancelled : callable, optional
@@ -126,7 +129,8 @@ def tune(
     Raises
     ------
     InputError
-        A field must not vary, a range or requirement is wrong, or no setting meets all requirements.
+        A field must not vary or is set by the policy, a range or requirement is wrong, or no setting meets
+        all requirements.
 
     Examples
     --------
@@ -134,13 +138,14 @@ def tune(
     >>> found = tune(load("sikuliaq-like"), "tilt_rms", ["method.1.network.xi=0.1:5"]) # doctest: +SKIP
     """
     wanted, limits = read_objective(objective), [read_requirement(text) for text in require]
-    along = along or any(name in ALONG_ONLY for name in (*wanted.names, *(one.name for one in limits)))
     varied = read_varied(scenario, vary)
+    judged = scenario.method[varied[0].method]
+    along = along or over_run((*wanted.names, *(one.name for one in limits))) or judged.policy.tunes
     ships = [Ship(one, along, TUNING_INTERVALS) for one in (scenario, *worst_of)]
     _check(ships, varied, wanted)
     search = Search(ships, varied, wanted, limits, progress, cancelled)
     start, before = _begin(search)
-    if before == 0.0 and set(wanted.names) <= set(FLOORED):
+    if before == 0.0 and all(QUANTITIES[name].kind for name in wanted.names):
         reason = "is 0 as it is: the scenario has no error that a setting could make smaller"
         raise InputError(Fault("", "--objective", wanted.text, reason))
     effort = ALONG if along else STEADY
@@ -166,8 +171,8 @@ def _check(ships: Sequence[Ship], varied: Sequence[Varied], objective: Objective
                 raise InputError(
                     Fault("", "--worst-of", Text("scenario {number}", number=number), reason)
                 ) from None
-    names = set(objective.names) & set(FLOORED)
-    if names and not ships[0].along_run and ships[0].model.silent:
+    noisy = any(QUANTITIES[name].kind for name in objective.names)
+    if noisy and not ships[0].along_run and ships[0].model.silent:
         reason = "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
         raise InputError(Fault("", "--objective", objective.text, reason))
 
@@ -185,7 +190,7 @@ def _begin(search: Search) -> tuple[np.ndarray | None, float | None]:
     try:
         settings = [Setting(ship, ship.scenario.method[search.varied[0].method]) for ship in search.ships]
         search.reference = {
-            name: max(MEASURES[name][0](setting) for setting in settings) for name in search.objective.names
+            name: max(measure(setting, name) for setting in settings) for name in search.objective.names
         }
         before = search.value(settings)
     except (InputError, np.linalg.LinAlgError):
@@ -213,10 +218,10 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
         holding = [one for one in active if cost[one.text] < objective - _GAIN * abs(objective)]
         active = holding or active
         cost = {one.text: cost[one.text] for one in active}
-    name = search.objective.names[0]
+    kind = QUANTITIES[search.objective.names[0]].kind
     floor = None
-    if len(search.objective.terms) == 1 and name in FLOORED:
-        floors = [getattr(ship.floor(), FLOORED[name]) for ship in search.ships]
+    if len(search.objective.terms) == 1 and kind is not None:
+        floors = [getattr(ship.floor(), kind.figure) for ship in search.ships]
         floor = max((value for value in floors if value is not None), default=None)
     scenario = search.ships[0].scenario
     index = search.varied[0].method
@@ -234,6 +239,7 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
         flat=flat,
         stopped=stopped,
         warnings=tuple(dict.fromkeys(text for setting in settings for text in _unseen(setting))),
+        judged="ensemble" if search.ships[0].along_run else "steady",
         scenario=scenario.model_copy(update={"method": methods}),
     )
 
@@ -299,11 +305,10 @@ def _nothing_meets(search: Search, effort: Effort, start: np.ndarray | None) -> 
 def _reach(search: Search, one: Requirement, effort: Effort, start: np.ndarray | None) -> float:
     """Least value of a measure alone, or the largest where a requirement asks for at least something."""
     sign = 1.0 if one.sense == "<=" else -1.0
-    measure = MEASURES[one.name][0]
 
     class _Alone(Search):
         def value(self, settings: Sequence[Setting]) -> float:
-            return max(sign * measure(setting) for setting in settings)
+            return max(sign * measure(setting, one.name) for setting in settings)
 
     alone = _Alone(search.ships, search.varied, search.objective, ())
     alone.run(effort, start)

@@ -12,6 +12,7 @@ from pydantic.fields import FieldInfo
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
+from navcore.foundation.notation import symbol
 from navcore.foundation.parameters import bounds_of, extra_of
 from navcore.foundation.text import Text
 from navcore.scenario.method import Method
@@ -110,6 +111,25 @@ def read_varied(scenario: Scenario, texts: Sequence[str]) -> tuple[Varied, ...]:
     return tuple(found)
 
 
+def network_not_in_force(method: Method, field: str = "") -> str:
+    """Why a parameter of a method does not act, or (without ``field``) its network; empty where it does.
+
+    Parameters
+    ----------
+    method : Method
+        As configured.
+    field : str
+        Relative to the method, such as ``network.zeta``.
+    """
+    if method.undamped:
+        return Text('damping = "{damping}" uses no network', damping=method.damping)
+    fields = method.policy.sets(method.network)
+    if not (field in fields if field else fields):
+        return ""
+    names = dict.fromkeys(symbol(name.rsplit(".", 1)[-1]) for name in ([field] if field else fields))
+    return Text('policy "{id}" sets {names} while it runs', id=method.policy.id, names=", ".join(names))
+
+
 def tunable_fields(scenario: Scenario, index: int) -> tuple[str, ...]:
     """Numeric fields of a method's network that a search may move without being told a range.
 
@@ -118,14 +138,12 @@ def tunable_fields(scenario: Scenario, index: int) -> tuple[str, ...]:
     scenario : Scenario
         With the method.
     index : int
-        Of the method; one that uses no network has no such field.
+        Of the method. A field that does not act (`network_not_in_force`) is left out.
     """
-    method = scenario.method[index]
-    if method.undamped:
-        return ()
-    given = method.network.model_fields_set
+    network = scenario.method[index].network
+    given = network.model_fields_set
     fields = []
-    for name, info in type(method.network).model_fields.items():
+    for name, info in type(network).model_fields.items():
         field = f"method.{index}.network.{name}"
         # A field without a default of its own is an alternative to others: it varies only where it is given.
         if not _is_number(info) or (info.default is None and name not in given):
@@ -157,8 +175,9 @@ def _read_one(scenario: Scenario, text: str) -> Varied:
             )
         )
     model: Any = scenario.method[index]
-    if model.undamped:
-        raise refuse(Text('must not vary: damping = "{damping}" uses no network', damping=model.damping))
+    reason = network_not_in_force(model, ".".join(names[2:]))
+    if reason:
+        raise refuse(Text("must not vary: {reason}", reason=reason))
     for name in names[2:-1]:
         model = getattr(model, name, None) if isinstance(model, BaseModel) else None
     fields = type(model).model_fields if isinstance(model, BaseModel) else {}

@@ -8,7 +8,7 @@ from navcore.alignment.fine import fine_alignment
 from navcore.foundation.compiled import plain
 from navcore.mechanization.strapdown import Start, start_from
 from navcore.mechanization.strapdown.attitude import misalignment, quaternion_of
-from navcore.motion.base import HEADING, HEIGHT, LAT, LON, PITCH, ROLL, VE, VN, Site
+from navcore.motion.truth import HEADING, HEIGHT, LAT, LON, PITCH, ROLL, VE, VN, Site
 from navcore.scenario.model import Scenario
 from navcore.sensors.imu_simulation import ImuSimulation
 

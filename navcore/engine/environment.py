@@ -12,7 +12,7 @@ from navcore.foundation.stage_cache import file_state, kept
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.mechanization.trajectory import Coefficients, coefficients
-from navcore.motion.base import LAT, Truth
+from navcore.motion.truth import LAT, Truth
 from navcore.scenario.model import Scenario
 from navcore.sensors.base import ReferenceErrors, SensorErrors
 from navcore.sensors.imu import imu_errors

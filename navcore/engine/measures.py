@@ -1,13 +1,15 @@
-"""The numbers of a run as one document that JSON can hold (interface.md)."""
+"""The numbers of a run: one quantity by its key, or all as a document that JSON can hold (interface.md)."""
 
 import math
 import platform
 from dataclasses import asdict
 from typing import Any
 
+from navcore.analysis.judged import JudgedLoop, loop_value
 from navcore.analysis.report import whole_system_report
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.version import __version__
+from navcore.quantities import QUANTITIES
 from navcore.scenario.fields import SCHEMA
 
 
@@ -44,6 +46,25 @@ def metrics(run: Run) -> dict[str, Any]:
         "warnings": list(run.warnings),
         "methods": [_method(method) for method in run.methods],
     }
+
+
+def measure(run: MethodRun, key: str) -> float:
+    """Value of a quantity of a method's run, SI; infinite where there is none or the run did not end well.
+
+    Parameters
+    ----------
+    run : MethodRun
+        Its loop is the one in force, its errors those of the run or of a part of it.
+    key : str
+        A row of `navcore.quantities.QUANTITIES` that is judged of a loop or of a run.
+    """
+    quantity = QUANTITIES[key]
+    if quantity.kind is None:
+        uses_log = run.method.kind.referenced
+        return loop_value(key, JudgedLoop(run.network, run.loop, uses_log, lambda: run.whole))
+    values = [run.errors[name][quantity.statistic] for name in quantity.errors]
+    value = max(values) if quantity.axes == "larger_axis" else math.hypot(*values)
+    return value if run.status == "ok" and math.isfinite(value) else math.inf
 
 
 def versions() -> dict[str, str]:

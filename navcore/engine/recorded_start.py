@@ -19,7 +19,7 @@ from navcore.foundation.units import DEG, HOUR
 from navcore.mechanization.strapdown import Start, start_from
 from navcore.mechanization.strapdown.attitude import angles_of
 from navcore.mechanization.strapdown.run import turned_by
-from navcore.motion.base import HEADING, HEIGHT, LAT, PITCH, ROLL, Site, Truth
+from navcore.motion.truth import HEADING, HEIGHT, LAT, PITCH, ROLL, Site, Truth
 from navcore.scenario.model import Scenario
 from navcore.scenario.sampling import Sampling, sampling
 from navcore.sensors.imu import Imu

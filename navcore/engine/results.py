@@ -13,6 +13,7 @@ from navcore.engine.measures import metrics
 from navcore.engine.run import Run
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.quantities import COMPONENTS
 from navcore.scenario.file import to_toml
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ def timeseries(run: Run) -> pyarrow.Table:
     import numpy as np
     import pyarrow as pa
 
-    from navcore.mechanization.recorder import DAMPED_COLUMN, NAMES, POSITION, XI_COLUMN
+    from navcore.mechanization.recorder import DAMPED_COLUMN, XI_COLUMN
 
     def joined(column: int) -> np.ndarray:
         return np.concatenate([m.rows[:, column] for m in run.methods])
@@ -109,7 +110,7 @@ def timeseries(run: Run) -> pyarrow.Table:
         "method": pa.array(np.repeat(np.array(names, dtype=object), counts), pa.string()),
         "t_s": np.concatenate([m.t_s for m in run.methods]),
     }
-    columns |= {name: joined(index) for index, name in enumerate(NAMES[:POSITION])}
+    columns |= {name: joined(index) for index, name in enumerate(COMPONENTS)}
     columns |= {"damped": joined(DAMPED_COLUMN).astype(np.int8), "xi": joined(XI_COLUMN)}
     navigation = [m.navigation for m in run.methods if m.navigation is not None]
     if navigation:
@@ -119,11 +120,11 @@ def timeseries(run: Run) -> pyarrow.Table:
         columns |= {name: solution[:, index] for index, name in enumerate(NAVIGATION)}
     if any(m.sigma is not None for m in run.methods):
         filtered = np.repeat([m.sigma is not None for m in run.methods], counts)
-        empty = [np.zeros((len(m.t_s), POSITION)) if m.sigma is None else m.sigma for m in run.methods]
+        empty = [np.zeros((len(m.t_s), len(COMPONENTS))) if m.sigma is None else m.sigma for m in run.methods]
         sigma = np.concatenate(empty)
         columns |= {
             f"sigma_{name}": pa.array(sigma[:, index], mask=~filtered)
-            for index, name in enumerate(NAMES[:POSITION])
+            for index, name in enumerate(COMPONENTS)
         }
     return pa.table(columns)
 

@@ -30,7 +30,7 @@ class PlotSeries:
     t_s : ndarray, shape (m,)
         Common time axis, s; two points a bin when steps were gathered into bins.
     values : ndarray, shape (m, 8)
-        The quantities of `navcore.mechanization.recorder.NAMES`, rad, m/s, m.
+        The quantities of `navcore.quantities.NAMES`, rad, m/s, m.
     """
 
     t_s: np.ndarray
@@ -78,7 +78,7 @@ class MethodRun:
     t_s : ndarray, shape (m,)
         Times of the output rows that were reached, s.
     rows : ndarray, shape (m, 10)
-        Eight quantities (`recorder.NAMES`), damped (0/1), xi.
+        Eight quantities (`navcore.quantities.NAMES`), damped (0/1), xi.
     errors : dict
         Statistics on the mechanization's own steps: quantity -> mean, std, rms, max_abs, final.
     plot : PlotSeries
@@ -90,7 +90,7 @@ class MethodRun:
         `navcore.mechanization.strapdown.records.NAVIGATION`.
     sigma : ndarray, shape (m, 7), or None
         Standard deviations that a Kalman filter gives its own errors at the output rows, for the first seven
-        of `recorder.NAMES`; None for every other method.
+        of `navcore.quantities.NAMES`; None for every other method.
     """
 
     method: Method
@@ -139,7 +139,7 @@ class Run:
     t_s : ndarray, shape (m,)
         Times of all output rows, s.
     truth : ndarray, shape (m, 15)
-        True motion at the output rows, columns of `navcore.motion.base`.
+        True motion at the output rows, columns of `navcore.motion.truth`.
     warnings : tuple of str
         About the scenario as a whole (recorded data, say).
     elapsed_s : float

@@ -13,7 +13,7 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.stage_cache import file_state, kept
 from navcore.foundation.text import Text
 from navcore.mechanization.strapdown import Start, start_from
-from navcore.motion.base import VE, VN, Truth
+from navcore.motion.truth import VE, VN, Truth
 from navcore.scenario.model import Scenario
 from navcore.scenario.sampling import Sampling
 from navcore.sensors.base import ReferenceErrors

@@ -18,9 +18,10 @@ from navcore.engine.environment import Environment, environment
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.foundation.units import ARCMIN, ARCSEC, DEG, HOUR
-from navcore.mechanization.recorder import DAMPED_COLUMN, NAMES, PHI_E, PHI_N, PHI_U
-from navcore.motion.base import LAT
+from navcore.foundation.units import ARCSEC, DEG, HOUR
+from navcore.mechanization.recorder import DAMPED_COLUMN
+from navcore.motion.truth import LAT
+from navcore.quantities import ERRORS, HEADING, NAMES, TILT, RecordedError, components
 from navcore.scenario.model import Scenario
 from navcore.sensors.base import ReferenceErrors, SensorErrors
 
@@ -36,18 +37,8 @@ OF_PEAK = 0.05
 """Part of a curve's peak from which a difference is told."""
 _STRAPDOWN_SHARE = 0.95
 """Of the time that a verification takes."""
-_SMALLEST = {"rad": 0.1 * ARCSEC, "mps": 1e-3, "m": 1.0}
+_SMALLEST = {"angle": 0.1 * ARCSEC, "speed": 1e-3, "length": 1.0}
 """Differences below are nobody's concern, however small the peak."""
-_SHOWN = {
-    "phi_e_rad": ("φE", "arcsec", ARCSEC),
-    "phi_n_rad": ("φN", "arcsec", ARCSEC),
-    "phi_u_rad": ("φU", "arcmin", ARCMIN),
-    "dve_mps": ("δVE", "m/s", 1.0),
-    "dvn_mps": ("δVN", "m/s", 1.0),
-    "dlat_m": ("δL", "m", 1.0),
-    "dlon_m": ("δλ", "m", 1.0),
-    "position_m": ("the position", "m", 1.0),
-}
 
 
 @dataclass(frozen=True)
@@ -77,7 +68,7 @@ class Verification:
     linear : Run
         The error model fed with the same noise, methods in the same order, on the same output times.
     differences : tuple of dict
-        For each method: quantity (`navcore.mechanization.recorder.NAMES`) -> `Difference`. Empty for a method
+        For each method: quantity (`navcore.quantities.NAMES`) -> `Difference`. Empty for a method
         of which one of the runs has no two rows.
     statements : tuple of str
         Plain words: why the linear model is not to be trusted here (tilt, latitude, duration, a method that
@@ -263,7 +254,7 @@ def _about_method(full: MethodRun, simple: MethodRun, differences: dict[str, Dif
     for run, which in ((full, "the strapdown run"), (simple, "the linear model")):
         if run.status == "diverged":
             yield Text("{which} diverged: {reason}.", which=which, reason=run.reason)
-    tilt = max(full.errors[NAMES[i]]["max_abs"] for i in (PHI_E, PHI_N)) / DEG
+    tilt = max(full.errors[name]["max_abs"] for name in components(TILT)) / DEG
     if tilt > TILT_DEG:
         yield (
             Text(
@@ -273,7 +264,7 @@ def _about_method(full: MethodRun, simple: MethodRun, differences: dict[str, Dif
                 tilt_deg=TILT_DEG,
             )
         )
-    heading = full.errors[NAMES[PHI_U]]["max_abs"] / DEG
+    heading = max(full.errors[name]["max_abs"] for name in components(HEADING)) / DEG
     if heading > HEADING_DEG:
         yield (
             Text(
@@ -298,8 +289,7 @@ def _about_method(full: MethodRun, simple: MethodRun, differences: dict[str, Dif
         )
     worst = _worst(differences)
     if worst is not None:
-        name, difference = worst
-        label, unit, size = _SHOWN[name]
+        error, difference = worst
         share = (
             ""
             if difference.of_peak is None
@@ -307,19 +297,20 @@ def _about_method(full: MethodRun, simple: MethodRun, differences: dict[str, Dif
         )
         yield Text(
             "{label} differs by up to {peak:.3g} {unit}{share}.",
-            label=label,
-            peak=difference.peak / size,
-            unit=unit,
+            label=error.label,
+            peak=difference.peak / error.kind.size,
+            unit=error.kind.unit,
             share=share,
         )
 
 
-def _worst(differences: dict[str, Difference]) -> tuple[str, Difference] | None:
-    """Quantity that differs most relative to its peak, if by more than `OF_PEAK` and by what can be seen."""
+def _worst(differences: dict[str, Difference]) -> tuple[RecordedError, Difference] | None:
+    """Error that differs most relative to its peak, if by more than `OF_PEAK` and by what can be seen."""
     shares = {
-        name: difference.of_peak if difference.of_peak is not None else math.inf
-        for name, difference in differences.items()
-        if difference.peak > _SMALLEST[name.rsplit("_", 1)[1]]
+        error: difference.of_peak if difference.of_peak is not None else math.inf
+        for error in ERRORS
+        if (difference := differences.get(error.name)) is not None
+        and difference.peak > _SMALLEST[error.kind.dimension]
     }
-    name = max(shares, key=lambda key: shares[key], default=None)
-    return None if name is None or shares[name] <= OF_PEAK else (name, differences[name])
+    error = max(shares, key=shares.__getitem__, default=None)
+    return None if error is None or shares[error] <= OF_PEAK else (error, differences[error.name])

@@ -3,11 +3,12 @@
 ``python -m navcore.warm`` compiles every kernel once.
 """
 
+import time
 from collections.abc import Callable
 from typing import Any, TypeVar
 
 import numba
-from numba.core import config
+from numba.core import config, event
 
 from navcore.foundation.kernel_cache import KernelLocator, cache_folder
 
@@ -17,6 +18,45 @@ config.CACHE_DIR = str(cache_folder())  # pyright: ignore[reportAttributeAccessI
 config.CACHE_LOCATOR_CLASSES = (  # pyright: ignore[reportAttributeAccessIssue]
     f"{KernelLocator.__module__}.{KernelLocator.__qualname__},UserProvidedCacheLocator"
 )
+
+
+class Compilation(event.Listener):
+    """What numba compiles in this process; what it loads from the cache does not count.
+
+    Attributes
+    ----------
+    count : int
+        Kernels that have been compiled, with all that was compiled on the way to each.
+    seconds : float
+        Time that this has taken, s.
+    """
+
+    def __init__(self) -> None:
+        self.count, self.seconds = 0, 0.0
+        self._names: list[str] = []
+        self._began = 0.0
+
+    def on_start(self, event: event.Event) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """Note the function; functions that it calls are compiled within its own compilation."""
+        function = event.data["dispatcher"].py_func  # pyright: ignore[reportOptionalSubscript]
+        if not self._names:
+            self._began = time.perf_counter()
+        self._names.append(f"{function.__module__}.{function.__qualname__}")
+
+    def on_end(self, event: event.Event) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """Note the time of a compilation that is over."""
+        self._names.pop()
+        if not self._names:
+            self.count, self.seconds = self.count + 1, self.seconds + time.perf_counter() - self._began
+
+    def under_way(self) -> tuple[str, float]:
+        """Return the kernel that is being compiled and for how long, s; an empty name when there is none."""
+        names = self._names[:1]
+        return (names[0], time.perf_counter() - self._began) if names else ("", 0.0)
+
+
+COMPILATION = Compilation()
+event.register("numba:compile", COMPILATION)
 
 
 def kernel(function: _F) -> _F:

@@ -16,3 +16,21 @@ STANDARD_GRAVITY = 9.80665
 MICRO_G = 1e-6 * STANDARD_GRAVITY
 """Accelerometer bias unit, m/s^2; also velocity random walk ug/sqrt(Hz) -> (m/s^2)/sqrt(Hz)."""
 PPM = 1e-6
+UNITS = {
+    "rad": 1.0,
+    "deg": DEG,
+    "arcmin": ARCMIN,
+    "arcsec": ARCSEC,
+    "s": 1.0,
+    "min": MINUTE,
+    "h": HOUR,
+    "m/s": 1.0,
+    "kn": KNOT,
+    "m": 1.0,
+    "km": 1000.0,
+    "nmi": NAUTICAL_MILE,
+    "1/s": 1.0,
+    "%": 0.01,
+    "": 1.0,
+}
+"""Sizes of units by name, SI."""

@@ -11,11 +11,11 @@ import numpy as np
 
 from navcore.foundation.compiled import inlined
 from navcore.foundation.records import COUNT, new_record, record_type
+from navcore.quantities import NAMES as NAMES
 
-# Recorded quantities, in this order everywhere.
+# Columns of the errors `NAMES`, in this order everywhere.
 PHI_E, PHI_N, PHI_U, DV_E, DV_N, D_LAT, D_LON, POSITION = range(8)
 QUANTITIES = 8
-NAMES = ("phi_e_rad", "phi_n_rad", "phi_u_rad", "dve_mps", "dvn_mps", "dlat_m", "dlon_m", "position_m")
 DAMPED_COLUMN, XI_COLUMN, WANTED_COLUMN, MEASURE_COLUMN = 8, 9, 10, 11
 ROW_COLUMNS = 12
 LAW_COLUMNS = (WANTED_COLUMN, DAMPED_COLUMN, XI_COLUMN, MEASURE_COLUMN)

@@ -8,7 +8,7 @@ import numpy as np
 from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.earth import EARTH_RATE, Earth, meridian_radius, normal_gravity, prime_vertical_radius
 from navcore.foundation.records import REAL, record_type
-from navcore.motion.base import AE, AN, AU, HEADING, HEIGHT, LAT, VE, VN, VU, Truth
+from navcore.motion.truth import AE, AN, AU, HEADING, HEIGHT, LAT, VE, VN, VU, Truth
 
 HALF_STEP = record_type(
     w_e=REAL, w_n=REAL, w_u=REAL,  # omega_in, rad/s

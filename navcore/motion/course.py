@@ -17,7 +17,7 @@ from navcore.foundation.earth import SEMI_MAJOR_AXIS, Earth, meridian_radius, pr
 from navcore.foundation.text import Text
 from navcore.foundation.trigonometry import sincos, sincos_cycles
 from navcore.foundation.units import DEG
-from navcore.motion.base import (
+from navcore.motion.truth import (
     AE,
     AN,
     AU,
@@ -325,7 +325,7 @@ def sample_course(
     Returns
     -------
     ndarray, shape (count, 15)
-        Columns of `navcore.motion.base`; heading and longitude are not wrapped.
+        Columns of `navcore.motion.truth`; heading and longitude are not wrapped.
     """
     out = np.empty((count, COLUMNS))
     _sample(course.legs, course.nodes, float(step_s), float(pitch), float(roll), float(height), out)

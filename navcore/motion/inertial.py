@@ -9,7 +9,7 @@ import numpy as np
 from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.earth import EARTH_RATE, Earth, meridian_radius, normal_gravity, prime_vertical_radius
 from navcore.foundation.trigonometry import sincos
-from navcore.motion.base import (
+from navcore.motion.truth import (
     AE,
     AN,
     AU,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from navcore.foundation.compiled import inlined
-from navcore.motion.base import COLUMNS
+from navcore.motion.truth import COLUMNS
 
 REST, SWING, COURSE, PROFILE, WAVES, PIECES = range(6)
 """How compiled loops are told a motion. PIECES, polynomials of time, serves any motion."""
@@ -15,7 +15,7 @@ KINDS = (REST, SWING, COURSE, PROFILE, WAVES, PIECES)
 
 WIDTH = 72
 """Width of a row of the buffer that a motion is filled into, quantity by quantity: quantity j (a column of
-`navcore.motion.base`) lies from j * WIDTH on. Known when compiling, or LLVM would not vectorise."""
+`navcore.motion.truth`) lies from j * WIDTH on. Known when compiling, or LLVM would not vectorise."""
 
 FREQUENCY, PHASE = 2, 3
 """Columns of every table of oscillations: Hz, cycles at t = 0."""

@@ -14,7 +14,6 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import Parameters, quantity
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, KNOT
-from navcore.motion.base import Site, Truth
 from navcore.motion.course import (
     COURSE_CHANGE,
     COURSE_TIME,
@@ -30,6 +29,7 @@ from navcore.motion.course import (
 )
 from navcore.motion.kinematics import COURSE, Kinematics
 from navcore.motion.static import AttitudeMotion
+from navcore.motion.truth import Site, Truth
 
 DEFAULT_ACCELERATION = 0.1
 """Mean acceleration of a change of speed when none is given, m/s^2."""

@@ -8,7 +8,9 @@ import numpy as np
 from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.earth import SEMI_MAJOR_AXIS
 from navcore.foundation.trigonometry import sincos
-from navcore.motion.base import (
+from navcore.motion.course import leg_at
+from navcore.motion.kinematics import WIDTH, write_rows
+from navcore.motion.truth import (
     AE,
     AN,
     AU,
@@ -26,8 +28,6 @@ from navcore.motion.base import (
     VN,
     VU,
 )
-from navcore.motion.course import leg_at
-from navcore.motion.kinematics import WIDTH, write_rows
 
 # Columns of a piece: its start, then four coefficients, constant term first, of each quantity (rad).
 START = 0

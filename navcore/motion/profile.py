@@ -16,23 +16,6 @@ from navcore.foundation.parameters import Parameters, bounded, choice, quantity
 from navcore.foundation.text import Text
 from navcore.foundation.trigonometry import sincos
 from navcore.foundation.units import DEG, KNOT
-from navcore.motion.base import (
-    AE,
-    AN,
-    COLUMNS,
-    HEADING,
-    HEADING_RATE,
-    LAT,
-    LON,
-    PITCH,
-    PITCH_RATE,
-    ROLL,
-    ROLL_RATE,
-    VE,
-    VN,
-    Site,
-    Truth,
-)
 from navcore.motion.course import (
     COURSE,
     COURSE_CHANGE,
@@ -55,6 +38,23 @@ from navcore.motion.course import (
 from navcore.motion.kinematics import PROFILE, WIDTH, Kinematics, write_rows
 from navcore.motion.legs import FASTEST, SLOWEST
 from navcore.motion.static import AttitudeMotion
+from navcore.motion.truth import (
+    AE,
+    AN,
+    COLUMNS,
+    HEADING,
+    HEADING_RATE,
+    LAT,
+    LON,
+    PITCH,
+    PITCH_RATE,
+    ROLL,
+    ROLL_RATE,
+    VE,
+    VN,
+    Site,
+    Truth,
+)
 
 _SHAPES = {"raised_cosine": RAISED_COSINE, "half_sine": HALF_SINE, "triangle": TRIANGLE}
 _Component = Annotated[float, bounded(unit="m/s", ge=-FASTEST, le=FASTEST)]

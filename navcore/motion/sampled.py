@@ -18,7 +18,7 @@ from navcore.foundation.earth import Earth
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
-from navcore.motion.base import COLUMNS, MotionParameters, Site, Truth
+from navcore.motion.base import MotionParameters
 from navcore.motion.kinematics import PIECES, Kinematics
 from navcore.motion.pieces import (
     PIECE_HEADING,
@@ -31,6 +31,7 @@ from navcore.motion.pieces import (
     shared_pieces,
 )
 from navcore.motion.static import rest_at
+from navcore.motion.truth import COLUMNS, Site, Truth
 
 SAMPLES_A_PERIOD = 40.0
 LONGEST_SAMPLE_S = 10.0

@@ -8,8 +8,9 @@ import numpy as np
 from navcore.foundation.earth import Earth
 from navcore.foundation.parameters import quantity
 from navcore.foundation.units import DEG
-from navcore.motion.base import COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL, MotionParameters, Site, Truth
+from navcore.motion.base import MotionParameters
 from navcore.motion.kinematics import REST, Kinematics
+from navcore.motion.truth import COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL, Site, Truth
 
 
 class AttitudeMotion(MotionParameters):

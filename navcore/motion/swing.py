@@ -16,9 +16,10 @@ from navcore.foundation.parameters import Parameters, quantity
 from navcore.foundation.text import Text
 from navcore.foundation.trigonometry import sincos_cycles
 from navcore.foundation.units import DEG
-from navcore.motion.base import COLUMNS, HEADING, PITCH, PITCH_RATE, ROLL, MotionParameters, Site, Truth
+from navcore.motion.base import MotionParameters
 from navcore.motion.kinematics import SWING, Kinematics
 from navcore.motion.static import AttitudeMotion
+from navcore.motion.truth import COLUMNS, HEADING, PITCH, PITCH_RATE, ROLL, Site, Truth
 
 STEEPEST_PITCH_DEG = 89.0
 """Beyond, roll and heading rates lose their meaning."""

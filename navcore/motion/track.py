@@ -17,7 +17,7 @@ from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.io.recording import Window, file_keys, load, require_cover, shared_window
 from navcore.io.series import LONGEST_REACH_S, Recording, Series, utc_text
-from navcore.motion.base import COLUMNS, HEIGHT, MotionParameters, Site, Streams, Truth
+from navcore.motion.base import MotionParameters, Streams
 from navcore.motion.kinematics import PIECES, Kinematics
 from navcore.motion.pieces import (
     PIECE_HEADING,
@@ -30,6 +30,7 @@ from navcore.motion.pieces import (
     shared_pieces,
 )
 from navcore.motion.static import rest_at
+from navcore.motion.truth import COLUMNS, HEIGHT, Site, Truth
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly

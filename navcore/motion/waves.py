@@ -16,7 +16,13 @@ from navcore.foundation.parameters import choice, quantity
 from navcore.foundation.text import Text
 from navcore.foundation.trigonometry import sincos_cycles
 from navcore.foundation.units import DEG
-from navcore.motion.base import (
+from navcore.motion.base import MotionParameters
+from navcore.motion.course import PoleReached, lay_course, node_at, position_at
+from navcore.motion.kinematics import FREQUENCY, PHASE, WAVES, WIDTH, Kinematics, write_rows
+from navcore.motion.sea import Answer, fully_developed_peak_period, make_seaway, ship_motion
+from navcore.motion.static import AttitudeMotion
+from navcore.motion.swing import SAMPLES_A_PERIOD, STEEPEST_PITCH_DEG
+from navcore.motion.truth import (
     AU,
     COLUMNS,
     HEADING,
@@ -31,15 +37,9 @@ from navcore.motion.base import (
     VE,
     VN,
     VU,
-    MotionParameters,
     Site,
     Truth,
 )
-from navcore.motion.course import PoleReached, lay_course, node_at, position_at
-from navcore.motion.kinematics import FREQUENCY, PHASE, WAVES, WIDTH, Kinematics, write_rows
-from navcore.motion.sea import Answer, fully_developed_peak_period, make_seaway, ship_motion
-from navcore.motion.static import AttitudeMotion
-from navcore.motion.swing import SAMPLES_A_PERIOD, STEEPEST_PITCH_DEG
 
 # Columns of a component beside FREQUENCY and PHASE: angular frequency and its square, then real and imaginary
 # parts of the answers in pitch, roll, heading and height.

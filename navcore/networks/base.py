@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -18,6 +19,7 @@ from navcore.foundation.drawing import drawn
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.registry import Entry
 from navcore.foundation.text import Text
+from navcore.networks.pair import MainPair, Placement
 from navcore.networks.roots import fixed, leading, sorted_roots
 from navcore.networks.transfer_function import transfer_function
 
@@ -25,7 +27,6 @@ if TYPE_CHECKING:
     from control import TransferFunction
 
     from navcore.networks.lqg import SensorFigures
-    from navcore.networks.pair import MainPair, Placement
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -78,6 +79,19 @@ class LinearNetwork:
     realisation: str = "network"
     feedback_p: FloatArray | None = field(default=None, repr=False)
     closed_loop_p: ComplexArray | None = field(default=None, repr=False)
+
+    @cached_property
+    def _key(self) -> tuple[Any, ...]:
+        feedback = b"" if self.feedback_p is None else self.feedback_p.tobytes()
+        return self.num_p.tobytes(), self.den_p.tobytes(), feedback, self.omega_s, self.realisation
+
+    def __eq__(self, other: object) -> bool:
+        """Whether another network has the same coefficients: a cache can have it as its key."""
+        return isinstance(other, LinearNetwork) and self._key == other._key
+
+    def __hash__(self) -> int:
+        """Hash of the coefficients."""
+        return hash(self._key)
 
     @property
     def order(self) -> int:
@@ -194,39 +208,35 @@ class NetworkParameters(Entry):
         """
         return drawn("network_figure", self, name, lat_deg, **options)
 
+    @property
+    def damping_field(self) -> str:
+        """Name of the field that sets the damping, xi or zeta; empty where none is given."""
+        return next((name for name in ("xi", "zeta") if getattr(self, name, None) is not None), "")
+
     def damping_coefficient(self) -> float | None:
-        """Return the parameter that sets the damping (xi or zeta); None where there is none."""
-        return None
+        """Return the parameter that sets the damping (xi or zeta); None where none is given."""
+        return getattr(self, self.damping_field) if self.damping_field else None
 
     def tuning(self, omega_s: float) -> list[float] | None:
-        """Return code and parameters for `navcore.networks.retuning`; None where a run cannot re-tune it.
+        """Return code and parameters for `navcore.networks.retuning` (``omega_s`` in rad/s).
 
-        Parameters
-        ----------
-        omega_s : float
-            Schuler frequency, rad/s.
+        None where a run cannot re-tune the network.
         """
         return None
 
     def with_damping(self, coefficient: float) -> NetworkParameters:
-        """Return the same network with another damping coefficient.
+        """Return a network that has a `damping_field` with another damping coefficient.
 
         Parameters
         ----------
         coefficient : float
             xi or zeta; not checked against the range of the field.
-
-        Raises
-        ------
-        ValueError
-            The network has no such parameter.
         """
-        for name in ("xi", "zeta"):
-            if name in type(self).model_fields:
-                return self.model_copy(update={name: coefficient})
-        raise ValueError(f"{self.id} has no damping coefficient")
+        return self.model_copy(update={self.damping_field: coefficient})
 
-    def with_pair(self, damping_ratio: float, frequency: float, omega_s: float) -> Placement | None:
+    def with_pair(
+        self, damping_ratio: float, frequency: float, omega_s: float
+    ) -> Placement[NetworkParameters] | None:
         """Return parameters whose main closed-loop pair lies where it is wanted; None where none can.
 
         Parameters
@@ -272,14 +282,9 @@ class NetworkParameters(Entry):
         return type(self).model_validate(self.model_dump(exclude_none=True) | {field: value})
 
     def values(self, omega_s: float) -> dict[str, Any]:
-        """Return the values of all parameters, those included that follow from the given ones.
+        """Return the values of all parameters (``omega_s`` in rad/s), those that follow from others included.
 
         A parameter without a value (sigma and xi of gains that no (sigma, xi) gives) is missing.
-
-        Parameters
-        ----------
-        omega_s : float
-            Schuler frequency, rad/s.
         """
         names = type(self).model_fields
         given = {name: value for name in names if (value := getattr(self, name)) is not None}

@@ -147,10 +147,6 @@ class CompassNetwork(NetworkParameters):
             realisation=self.realisation,
         )
 
-    def damping_coefficient(self) -> float | None:
-        """Return xi; None when the gains are given."""
-        return self.xi
-
     def with_pair(self, damping_ratio: float, frequency: float, omega_s: float) -> Placement:
         """Return the compass loop with this pair: xi and sigma = xi |p|."""
         data = {"realisation": self.realisation, "sigma": damping_ratio * frequency, "xi": damping_ratio}

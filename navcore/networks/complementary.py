@@ -43,10 +43,6 @@ class ComplementaryNetwork(NetworkParameters):
         closed_loop = [*pair(0.5, 1.0), *pair(eta, 1.0), *pair(zeta, 1.0)]
         return linear_network("complementary", omega_s, num, den, closed_loop_p=closed_loop)
 
-    def damping_coefficient(self) -> float:
-        """Return zeta."""
-        return self.zeta
-
     def with_pair(self, damping_ratio: float, frequency: float, omega_s: float) -> Placement:
         """Return the network with zeta = this damping ratio."""
         return placement_at_omega_s(self, {"zeta": damping_ratio}, damping_ratio, frequency, omega_s)

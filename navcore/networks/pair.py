@@ -2,14 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from pydantic import ValidationError
 
 from navcore.foundation.errors import InputError
 from navcore.foundation.faults import faults_from
-from navcore.foundation.parameters import bounds_of
-from navcore.networks.base import NetworkParameters
+from navcore.foundation.parameters import Parameters, bounds_of
 
 LEAST_DAMPING, LARGEST_DAMPING = 0.01, 1.0
 """Damping ratios that a pair can be placed at: above 1 there is no pair."""
@@ -18,6 +17,8 @@ _ROUNDING = 1e-12
 """A product that is to stay within a range is kept so far inside it."""
 Range = tuple[float, float]
 """Lowest and highest value."""
+Network = TypeVar("Network", bound=Parameters)
+"""Class of a network's parameters (`navcore.networks.base.NetworkParameters`)."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ class MainPair:
         return ", ".join(parts)
 
 
-def dampings(network: type[NetworkParameters], field: str) -> Range:
+def dampings(network: type[Parameters], field: str) -> Range:
     """Range of damping ratios that a field can give a pair."""
     low, high = bounds_of(network.model_fields[field])
     return max(low, LEAST_DAMPING), min(high, LARGEST_DAMPING)
@@ -94,12 +95,12 @@ def _within(value: float, ends: Range) -> float:
 
 
 @dataclass(frozen=True)
-class Placement:
+class Placement(Generic[Network]):
     """Parameters for a wanted pair.
 
     Attributes
     ----------
-    parameters : NetworkParameters
+    parameters : Network
         The network with that pair, as near as its structure allows.
     damping_ratio, frequency : float
         What the pair then is; frequency in rad/s.
@@ -107,15 +108,15 @@ class Placement:
         What could not be met; empty when all was.
     """
 
-    parameters: NetworkParameters
+    parameters: Network
     damping_ratio: float
     frequency: float
     note: str = ""
 
 
 def placement(
-    network: type[NetworkParameters], data: dict[str, Any], damping_ratio: float, frequency: float, note: str
-) -> Placement:
+    network: type[Network], data: dict[str, Any], damping_ratio: float, frequency: float, note: str
+) -> Placement[Network]:
     """Check the parameters found for a pair.
 
     Parameters
@@ -144,17 +145,17 @@ def same_frequency(one: float, other: float) -> bool:
 
 
 def placement_at_omega_s(
-    parameters: NetworkParameters,
+    parameters: Network,
     changes: dict[str, Any],
     damping_ratio: float,
     wanted: float,
     omega_s: float,
-) -> Placement:
+) -> Placement[Network]:
     """Check the parameters of a network whose pair always lies at omega_s; another frequency is noted.
 
     Parameters
     ----------
-    parameters : NetworkParameters
+    parameters : Network
         The network as it is.
     changes : dict
         Fields that give the damping ratio.

@@ -95,10 +95,6 @@ class Pole2Network(NetworkParameters):
             "pole2", omega_s, num, [1.0, a, b], poles_p=[-w1, -w2], closed_loop_p=closed_loop
         )
 
-    def damping_coefficient(self) -> float:
-        """Return xi."""
-        return self.xi
-
     def with_pair(self, damping_ratio: float, frequency: float, omega_s: float) -> Placement | None:
         """Return the exact network with this damping ratio; None as printed, where the pair moves."""
         if self.variant != "exact":

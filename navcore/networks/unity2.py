@@ -143,10 +143,6 @@ class Unity2Network(NetworkParameters):
         """Return zeta, r and the damping of the second pair."""
         return ("zeta", "r", "zeta2")
 
-    def damping_coefficient(self) -> float:
-        """Return zeta."""
-        return self.zeta
-
     def with_pair(self, damping_ratio: float, frequency: float, omega_s: float) -> Placement:
         """Return the network with this damping ratio, and r within its range."""
         least, largest = bounds_of(type(self).model_fields["r"])

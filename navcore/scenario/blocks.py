@@ -11,7 +11,7 @@ from navcore.foundation.errors import Fault
 from navcore.foundation.parameters import Parameters, choice, quantity
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
-from navcore.motion.base import Site
+from navcore.motion.truth import Site
 
 
 class RunSettings(Parameters):

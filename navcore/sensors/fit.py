@@ -13,8 +13,8 @@ import numpy as np
 from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.motion.base import Site, Truth
 from navcore.motion.track import TrackMotion
+from navcore.motion.truth import Site, Truth
 from navcore.sensors.recorded import log_recording, log_series, recorded_window
 from navcore.sensors.reference import Reference
 from navcore.sensors.true_state import horizontal_state, to_ship

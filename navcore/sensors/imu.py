@@ -10,7 +10,7 @@ from pydantic import Field, create_model
 
 from navcore.foundation.earth import Earth
 from navcore.foundation.parameters import FileName, choice, quantity
-from navcore.motion.base import Truth
+from navcore.motion.truth import Truth
 from navcore.sensors.base import SensorErrors
 from navcore.sensors.imu_errors import TERMS
 from navcore.sensors.imu_errors.base import Clock, Part

@@ -8,8 +8,8 @@ import numpy as np
 
 from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.trigonometry import sincos
-from navcore.motion.base import HEADING, PITCH, ROLL
 from navcore.motion.inertial import inertial_row
+from navcore.motion.truth import HEADING, PITCH, ROLL
 
 _CHUNK = 128
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from navcore.motion.base import Truth
+from navcore.motion.truth import Truth
 from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.recorded import recorded_errors
 from navcore.sensors.reference import Reference

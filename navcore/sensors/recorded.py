@@ -10,7 +10,8 @@ from navcore.foundation.text import Text
 from navcore.io.plausible import speed_warnings
 from navcore.io.recording import Window, load, require_cover, shared_window
 from navcore.io.series import Recording, Series
-from navcore.motion.base import MotionParameters, Truth
+from navcore.motion.base import MotionParameters
+from navcore.motion.truth import Truth
 from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.log_errors.events import event_velocity
 from navcore.sensors.reference import Reference, in_service

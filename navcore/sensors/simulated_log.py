@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from navcore.motion.base import Truth
+from navcore.motion.truth import Truth
 from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.log_errors.base import LogPart
 from navcore.sensors.noise import gauss_markov, unit_noise

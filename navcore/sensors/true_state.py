@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from navcore.motion.base import AE, AN, HEADING, HEADING_RATE, VE, VN, Truth
+from navcore.motion.truth import AE, AN, HEADING, HEADING_RATE, VE, VN, Truth
 
 
 def horizontal_state(truth: Truth, time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from navcore.foundation.units import HOUR, KNOT
-from navcore.motion.base import VE, VN
+from navcore.motion.truth import VE, VN
 from navcore.scenario.file import load
 from tools.papers import zha, zha_drive
 from tools.papers.liu_fig_7 import FIGURE_7

@@ -13,8 +13,8 @@ from navcore.foundation.earth import EARTH_RATE, WGS84
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG, MICRO_G
 from navcore.mechanization.recorder import NAMES
 from navcore.mechanization.trajectory import coefficients
-from navcore.motion.base import AE, AN, AU, COLUMNS, HEIGHT, LAT, VE, VN, VU, Truth
 from navcore.motion.inertial import inertial_signals
+from navcore.motion.truth import AE, AN, AU, COLUMNS, HEIGHT, LAT, VE, VN, VU, Truth
 from navcore.scenario.model import Scenario
 from navcore.sensors.log import reference_errors
 from navcore.sensors.reference import Reference

@@ -11,8 +11,8 @@ from navcore.engine.simulation import simulate
 from navcore.foundation.earth import WGS84
 from navcore.foundation.units import DEG, HOUR, KNOT
 from navcore.io.recording import load, shared_window
-from navcore.motion.base import HEADING, VE, VN, Site
 from navcore.motion.track import TrackMotion
+from navcore.motion.truth import HEADING, VE, VN, Site
 from navcore.scenario.file import read_toml
 from navcore.scenario.model import Scenario
 from navcore.sensors.fit import fit_delay, fit_log_error, log_along_track

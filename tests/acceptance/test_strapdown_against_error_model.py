@@ -9,9 +9,9 @@ from navcore.mechanization.error_model import ErrorModelRun
 from navcore.mechanization.recorder import DV_E, PHI_U, make_recorder
 from navcore.mechanization.strapdown import Settings, start_from, start_run, velocity_reference
 from navcore.mechanization.trajectory import coefficients
-from navcore.motion.base import Truth
 from navcore.motion.legs import Leg, LegsMotion
 from navcore.motion.static import StaticMotion
+from navcore.motion.truth import Truth
 from navcore.networks.classic import Classic2Network
 from navcore.networks.compass import CompassNetwork
 from navcore.networks.undamped import UndampedNetwork

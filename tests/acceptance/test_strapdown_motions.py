@@ -23,9 +23,10 @@ import pytest
 
 from navcore.foundation.earth import EARTH_RATE
 from navcore.mechanization.recorder import DV_E, DV_N, MAX_ABS, PHI_E, PHI_N, PHI_U, POSITION
-from navcore.motion.base import HEIGHT, MotionParameters
+from navcore.motion.base import MotionParameters
 from navcore.motion.legs import Leg, LegsMotion
 from navcore.motion.profile import ProfileMotion
+from navcore.motion.truth import HEIGHT
 from tests.motions import MANOEUVRES, SEA, ZHAO, circle_track
 from tests.strapdown import DENG_SWING, DRIVE, SITE, WGS84, navigate
 

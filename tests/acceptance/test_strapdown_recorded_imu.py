@@ -4,7 +4,7 @@ import pytest
 
 from navcore.engine.simulation import simulate
 from navcore.foundation.units import DEG
-from navcore.motion.base import HEADING, LAT, LON, Site
+from navcore.motion.truth import HEADING, LAT, LON, Site
 from navcore.scenario.model import Scenario
 from tests.recordings import imu
 

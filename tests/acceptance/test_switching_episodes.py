@@ -14,7 +14,7 @@ from navcore.law.switching import SWITCHINGS
 from navcore.mechanization.error_model import ErrorModelRun
 from navcore.mechanization.recorder import DV_N, make_recorder
 from navcore.mechanization.trajectory import coefficients
-from navcore.motion.base import COLUMNS, Truth
+from navcore.motion.truth import COLUMNS, Truth
 from navcore.networks.complementary import ComplementaryNetwork
 from navcore.scenario.model import Scenario
 from navcore.sensors.base import ReferenceErrors, SensorErrors

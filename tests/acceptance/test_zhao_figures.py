@@ -14,7 +14,7 @@ from navcore.engine.simulation import simulate
 from navcore.foundation.units import ARCSEC, DEG
 from navcore.mechanization.recorder import D_LON, NAMES, POSITION
 from navcore.mechanization.strapdown.records import NAVIGATION
-from navcore.motion.base import HEADING, VE, VN
+from navcore.motion.truth import HEADING, VE, VN
 from navcore.scenario.file import load
 
 LEVEL = pytest.mark.parametrize("quantity", ["phi_e_rad", "phi_n_rad", "dve_mps", "dvn_mps"])

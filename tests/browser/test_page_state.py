@@ -253,7 +253,7 @@ def test_a_reload_keeps_the_work_and_another_visitor_has_none_of_it(
     assert (other.digest, other.value(SIGMA)) == (fresh.digest, 0.0123)
     other.page.wait_for_selector("#sb-theme[data-theme=dark]", state="attached")
     other.tab("Requirements")
-    limit = other.page.get_by_text("overshoot ≤ (%)", exact=True).locator("xpath=ancestor::div[2]")
+    limit = other.page.get_by_text("tilt overshoot ≤ (%)", exact=True).locator("xpath=ancestor::div[2]")
     assert limit.locator("input").input_value() == "36"
     # a change in one window is seen in the other
     fresh.settle()

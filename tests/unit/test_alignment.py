@@ -15,8 +15,8 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, DEG_PER_HOUR, MICRO_G
 from navcore.mechanization.strapdown.attitude import misalignment, quaternion_of
 from navcore.mechanization.strapdown.run import turned_by
-from navcore.motion.base import HEADING, PITCH, ROLL
 from navcore.motion.static import StaticMotion
+from navcore.motion.truth import HEADING, PITCH, ROLL
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
 from tests.strapdown import DENG_SWING, SITE

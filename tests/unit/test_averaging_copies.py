@@ -13,7 +13,7 @@ from navcore.foundation.earth import EARTH_RATE, SPHERE, WGS84
 from navcore.foundation.units import DEG
 from navcore.mechanization.error_model import system_matrix
 from navcore.mechanization.recorder import D_LAT, D_LON, DV_E, PHI_U, POSITION, ROW_COLUMNS
-from navcore.motion.base import VE
+from navcore.motion.truth import VE
 from tests.averaging import SITE, truth_row
 
 LAT = 45.78 * DEG

@@ -11,8 +11,8 @@ from navcore.averaging.record import alignment_record, standing_row, standing_si
 from navcore.foundation.earth import EARTH_RATE, WGS84
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, DEG_PER_HOUR, MICRO_G
-from navcore.motion.base import VE
 from navcore.motion.static import StaticMotion
+from navcore.motion.truth import VE
 from navcore.sensors.imu import Imu
 from navcore.sensors.noise import unit_noise
 from tests.averaging import SITE, made, truth_row

@@ -4,12 +4,15 @@ import csv
 import errno
 import json
 import signal
+from typing import Any
 
+import numba
 import pyarrow.parquet
 import pytest
+from numba.core import event
 
 from app.cli import main
-from app.cli.progress import Bar
+from app.cli.progress import Bar, compiling
 from navcore.engine.measures import metrics
 from navcore.engine.simulation import simulate
 from navcore.scenario.file import load
@@ -249,6 +252,29 @@ def test_the_bar_shows_titles_as_they_are_and_follows_the_run():
         assert task.completed == 0.25
         bar.advance(0.5)
         assert (task.completed, task.description) == (0.5, "[red]title[/red] [x")
+
+
+def test_the_bar_says_what_is_compiled_and_how_long_it_took(capsys):
+    """A slow kernel held the bar at 0 % for 22 s, and nothing was said."""
+    said = []
+
+    class Watch(event.Listener):
+        def on_start(self, event):
+            column: Any = bar._shown[0].columns[1]
+            said.append(str(column.render(bar._shown[0].tasks[0])))
+
+        def on_end(self, event):
+            pass
+
+    with Bar("title", show=True) as bar, event.install_listener("numba:compile", Watch()):
+        bar._appear()
+        assert compiling() == ""
+        numba.njit(lambda x: x + 1.0)(2.0)
+    assert [text.rpartition(", ")[0] for text in said] == [f"compiling {__name__}.{_LAMBDA}"]
+    assert "compiled 1 kernel" in capsys.readouterr().err
+
+
+_LAMBDA = "test_the_bar_says_what_is_compiled_and_how_long_it_took.<locals>.<lambda>"
 
 
 def test_no_bar_appears_after_the_run():

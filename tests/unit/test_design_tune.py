@@ -8,11 +8,15 @@ import numpy as np
 import pytest
 
 from app.cli import main
+from app.editing import form
+from app.views.method.view import described
+from app.views.tune.setting import left_out_html
 from navcore.design.budget import budget
 from navcore.design.measures import Setting, Ship, read_objective, read_requirement
-from navcore.design.pareto import pareto
+from navcore.design.pareto import measured, pareto
 from navcore.design.tune import tune
-from navcore.design.vary import read_varied
+from navcore.design.vary import read_varied, tunable_fields
+from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
 from navcore.scenario.file import load
@@ -176,6 +180,54 @@ def test_a_field_that_must_not_vary_is_named(vary: str, told: str) -> None:
     with pytest.raises(InputError, match=told) as caught:
         read_varied(set_a({"id": "compass"}), [vary])
     assert vary.split("=")[0] in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("preset", "method", "fields", "acting"),
+    [
+        ("sun-ship", 2, ("network.zeta",), ("r", "zeta2", "alpha")),
+        ("zha-drive", 2, ("network.k2", "network.sigma"), ("realisation",)),
+        ("own network", 2, ("policy.network.zeta", "network.zeta", "network.r"), ()),
+    ],
+)
+def test_a_parameter_that_the_policy_sets_is_refused_with_that_reason(
+    preset: str, method: int, fields: tuple[str, ...], acting: tuple[str, ...]
+) -> None:
+    """On the command line, in the page's offer and its sliders; no front replaces such a network."""
+    own = 'method.2.policy={id="adaptive", network={id="unity2", zeta=0.5}}'
+    scenario = load("sun-ship", [own]) if preset == "own network" else load(preset)
+    policy = scenario.method[method].policy.id
+    for field in fields:
+        with pytest.raises(
+            InputError, match=f'must not vary: policy "{policy}" sets .+ while it runs'
+        ) as caught:
+            read_varied(scenario, [f"method.{method}.{field}=0.1:1"])
+        assert f"method.{method}.{field}" in str(caught.value)
+    assert tunable_fields(scenario, method) == (("method.2.network.r",) if "r" in acting else ())
+    with pytest.raises(InputError, match=f'has no fronts: policy "{policy}" sets'):
+        pareto(scenario, method=method)
+    assert measured(scenario, ("tilt_rms", "velocity_rms"), method) is None
+    assert f"Not to be varied: policy &quot;{policy}&quot; sets" in left_out_html(scenario.method[method])
+    assert left_out_html(scenario.method[1]) == ""
+    for spec in form.fields(type(scenario.method[method].network), ("method", method, "network")):
+        told = described(spec, scenario.method[method]).hint
+        assert told.startswith("This value does not act: policy") is (spec.path[-1] not in acting)
+        assert told.endswith(spec.hint)
+
+
+def test_what_is_tuned_is_what_runs() -> None:
+    """The adaptive policy sets zeta: its value changes no run; the loop that is judged is the run's own."""
+    short = ["run.duration_h=2"]
+    first, second = (
+        simulate(load("sun-ship", [*short, f"method.2.network.zeta={zeta}"])).methods[2]
+        for zeta in (0.5, 5.0)
+    )
+    assert np.array_equal(first.rows, second.rows)
+    found = tune(load("sun-ship", short), "settling_s", ["method.2.network.r=1.1:2"])
+    assert found.judged == "ensemble"
+    assert found.before is not None and found.before == first.loop.settling_s
+    assert found.objective == simulate(found.scenario).methods[2].loop.settling_s
+    assert found.objective < 0.9 * found.before
 
 
 def test_a_free_method_and_silent_sensors_cannot_be_tuned() -> None:

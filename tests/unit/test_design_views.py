@@ -8,13 +8,14 @@ import pytest
 from app.jobs.designer import Budgeter, Designer, TuningTask
 from app.plots.budgets import steady_budget
 from app.session.requirements import Requirements
-from app.views.design.figure import NOTHING, QUANTITIES, budget_figure, parts
+from app.views.design.figure import NOTHING, budget_figure, parts
 from app.views.tune.proposal import proposal_html, sentences_about
 from app.views.tune.setting import requirements_as_text
 from navcore.design.budget import budget
 from navcore.design.measures import read_requirement
 from navcore.design.tune import tune
 from navcore.design.vary import tunable_fields
+from navcore.foundation.units import ARCSEC
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 
@@ -57,7 +58,13 @@ def test_every_quantity_has_its_bars_its_unit_and_the_floor(ship):
     found = budget(ship)
     made = budget_figure(found, 0.5)
     layout = made["layout"]
-    for k, (key, title, unit_name, unit) in enumerate(QUANTITIES):
+    shown = (
+        ("tilt_rad", "Tilt", "arcsec", ARCSEC),
+        ("velocity_mps", "Velocity", "m/s", 1.0),
+        ("heading_rad", "Heading", "arcmin", 60.0 * ARCSEC),
+        ("position_m", "Position", "m", 1.0),
+    )
+    for k, (key, title, unit_name, unit) in enumerate(shown):
         suffix = "" if k == 0 else str(k + 1)
         assert layout[f"xaxis{suffix}"]["title"]["text"] == unit_name
         assert f"<b>{title}</b>" in [note["text"] for note in layout["annotations"]]

@@ -14,18 +14,7 @@ from navcore.law.switching.hard import Hard
 from navcore.mechanization.error_model import ErrorModelRun, system_matrix
 from navcore.mechanization.recorder import make_recorder
 from navcore.mechanization.trajectory import coefficients
-from navcore.motion.base import (
-    AE,
-    AN,
-    COLUMNS,
-    HEADING,
-    HEIGHT,
-    LAT,
-    VE,
-    VN,
-    VU,
-    Truth,
-)  # fmt: skip
+from navcore.motion.truth import AE, AN, COLUMNS, HEADING, HEIGHT, LAT, VE, VN, VU, Truth  # fmt: skip
 from navcore.networks.base import NetworkParameters
 from navcore.networks.classic import Classic2Network
 from navcore.networks.compass import CompassNetwork

@@ -13,13 +13,13 @@ import pytest
 
 from app.misprints import MISPRINTS
 from app.plots import style
-from app.plots.effective import TRANSFERS
+from app.plots.effective import OPEN_LOOP, TRANSFERS
 from app.plots.pinned import restyled, together
 from app.plots.plotly_data import PlotlyFigure, values_of
 from app.plots.saved import time_figure
 from app.session.display import Display
-from app.views.errors.figure import QUANTITIES, error_plots
-from app.views.frequency.figure import OPEN_LOOP, frequency_view
+from app.views.errors.figure import TITLES, error_plots
+from app.views.frequency.figure import frequency_view
 from app.views.metrics.table import metrics_html
 from app.views.misprints.figure import SHOWN, comparison_plot
 from app.views.poles.figure import poles
@@ -45,7 +45,7 @@ from tests.unit.figures_runs import (
 Make = Callable[[Run], PlotlyFigure]
 TRANSFER = {key: partial(frequency_view, shown=key, discrete=True) for key in (*TRANSFERS, OPEN_LOOP)}
 LOOPS: dict[str, Make] = {**TRANSFER, "poles": poles, "whole": whole_system_figure, "step": step}
-SPECTRA: dict[str, Make] = {key: partial(spectrum, key=key) for key in QUANTITIES}
+SPECTRA: dict[str, Make] = {key: partial(spectrum, key=key) for key in TITLES}
 OVER_TIME: dict[str, Make] = {
     scale: lambda run, scale=scale: time_figure(list(error_plots(run, display=Display(scale=scale)).values()))
     for scale in ("linear", "log")

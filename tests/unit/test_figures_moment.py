@@ -15,7 +15,7 @@ from app.views.scene.playback import MOST_AHEAD, SLOW_S, SPEEDS, TICK_S, Playbac
 from navcore.engine.simulation import simulate
 from navcore.foundation.units import ARCMIN, DEG
 from navcore.mechanization.recorder import PHI_E, PHI_N, PHI_U
-from navcore.motion.base import HEADING, VE, VN
+from navcore.motion.truth import HEADING, VE, VN
 from tests.unit.figures_runs import diverging, moving_run, run_of, static_run
 
 

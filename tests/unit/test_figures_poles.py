@@ -10,9 +10,9 @@ import pytest
 from app.plots.effective import earth_mode_text
 from app.views.method.view import loop_text
 from app.views.poles.figure import poles
-from app.views.poles.grid import Allowed, locus_fields, locus_of, settling_lines
+from app.views.poles.grid import locus_fields, locus_of, settling_lines
 from app.views.poles.whole import LATITUDES, whole_system_figure
-from app.views.step.figure import StepLimits, step
+from app.views.step.figure import step
 from navcore.analysis import initial_tilt_response
 from navcore.analysis.whole_system import EARTH_MODE, NETWORK_MODE, SCHULER_MODE, whole_system
 from navcore.foundation.units import ARCSEC, DEG
@@ -95,7 +95,7 @@ class TestPoles:
     @pytest.mark.parametrize("suffix", ["", "2"])
     def test_the_region_that_a_limit_rules_out_has_the_limit_as_its_only_edge(self, suffix: str) -> None:
         run = static_run()
-        layout = poles(run, allowed=Allowed(damping_ratio=0.5, rate=1e-3))["layout"]
+        layout = poles(run, limits={"damping_ratio": 0.5, "settling_s": math.log(50.0) / 1e-3})["layout"]
         mine = [shape for shape in layout["shapes"] if shape["xref"] == f"x{suffix}"]
         damping, settling = (
             next(s for s in mine if s.get("name") == name) for name in ("damping", "settling")
@@ -213,7 +213,7 @@ class TestStep:
 
     def test_without_a_log_the_gyro_step_fills_the_lower_half(self) -> None:
         figure = step(
-            run_of(method=[{"name": "free"}], reference={"kind": "none"}), limits=StepLimits(log_tilt=1e-4)
+            run_of(method=[{"name": "free"}], reference={"kind": "none"}), limits={"log_tilt": 1e-4}
         )
         assert any("gyro step" in text for text in texts_of(figure))
         # two R eps at the far turn of the undamped swing: 2 x 6378137 m x 0.01 deg/h
@@ -224,7 +224,7 @@ class TestStep:
         )
 
     def test_regions_are_the_limits(self) -> None:
-        limits = StepLimits(settling_s=3600.0, overshoot=0.4, log_tilt=20.0 * ARCSEC)
+        limits = {"settling_s": 3600.0, "tilt_overshoot": 0.4, "log_tilt": 20.0 * ARCSEC}
         shapes = [s for s in step(static_run(), limits=limits)["layout"]["shapes"] if s.get("name")]
         # the panel is in arcmin: without the limit the tilts of these methods reach several
         boxes = [(s["name"], s["xref"], s["x0"], s["y0"] if s["y0"] > -1e5 else s["y1"]) for s in shapes]

@@ -21,7 +21,7 @@ from app.views.scene.view import CAMERAS, FOLLOW, SIDE, Cameras, Window
 from navcore.foundation.earth import WGS84, attitude_matrix
 from navcore.foundation.units import ARCSEC, DEG
 from navcore.mechanization.recorder import D_LAT, D_LON
-from navcore.motion.base import LAT, LON
+from navcore.motion.truth import LAT, LON
 from tests.unit.figures_runs import diverging, moving_run, run_of, static_run
 
 

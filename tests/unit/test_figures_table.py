@@ -139,10 +139,10 @@ def test_loop_figures() -> None:
     loops = [method.loop for method in static_run().methods]
     rows = loop_rows(static_run())
     assert rows["damping ratio"] == ["0", rounded(loops[1].damping_ratio), "0.700"]
-    assert rows["settles to 2 %"] == ["never", *(settling(loop.settling_s) for loop in loops[1:])]
-    assert rows["settles to 2 %"][2].endswith(" min") and rows["H(0)"][:2] == ["1", "1"]
+    assert rows["settling"] == ["never", *(settling(loop.settling_s) for loop in loops[1:])]
+    assert rows["settling"][2].endswith(" min") and rows["H(0)"][:2] == ["1", "1"]
     ended = loop_rows(diverging(run_of(method=[THREE[1], UNSTABLE]), 1, rows=200))
-    assert (ended["run"], ended["settles to 2 %"][1], rows.get("run")) == (
+    assert (ended["run"], ended["settling"][1], rows.get("run")) == (
         ["ok", "diverged"],
         "unstable",
         None,
@@ -154,7 +154,7 @@ def test_the_best_of_each_row_is_marked_and_points_stand_below_each_other() -> N
     rows = {row.label: row for row in metrics_rows(run)}
     peaks = [method.errors["phi_e_rad"]["max_abs"] for method in run.methods]
     assert [marks[1] for marks in rows["tilt φE"].best] == [peak == min(peaks) for peak in peaks]
-    assert not rows["settles to 2 %"].best[0][0]
+    assert not rows["settling"].best[0][0]
     alone = metrics_rows(run_of(method=[THREE[1]]))
     assert not any(mark for row in alone for marks in row.best for mark in marks)
     shown = re.sub(r"</?span[^>]*>", "", metrics_html(run))

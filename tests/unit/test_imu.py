@@ -9,8 +9,9 @@ import pytest
 from navcore.foundation.earth import EARTH_RATE, WGS84, attitude_matrix
 from navcore.foundation.units import ARCSEC, DEG, DEG_PER_HOUR, DEG_PER_SQRT_HOUR, MICRO_G
 from navcore.motion import LegsMotion, StaticMotion, SwingMotion
-from navcore.motion.base import HEADING, PITCH, ROLL, MotionParameters, Site
+from navcore.motion.base import MotionParameters
 from navcore.motion.inertial import inertial_signals
+from navcore.motion.truth import HEADING, PITCH, ROLL, Site
 from navcore.sensors.base import SensorErrors
 from navcore.sensors.imu import Imu, imu_errors
 from navcore.sensors.imu_errors.base import Clock

@@ -7,9 +7,9 @@ import pytest
 
 from navcore.foundation.earth import WGS84
 from navcore.motion import MOTIONS, LegsMotion
-from navcore.motion.base import Truth
 from navcore.motion.inertial import inertial_signals
 from navcore.motion.kinematics import Kinematics
+from navcore.motion.truth import Truth
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
 from navcore.sensors.imu_simulation import simulation as module

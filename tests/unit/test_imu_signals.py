@@ -8,8 +8,9 @@ import pytest
 from navcore.foundation.earth import EARTH_RATE, SPHERE, WGS84, Earth, attitude_matrix
 from navcore.foundation.units import DEG
 from navcore.motion import LegsMotion, StaticMotion, SwingMotion
-from navcore.motion.base import AE, HEADING, LAT, LON, PITCH, ROLL, VE, VU, MotionParameters, Site
+from navcore.motion.base import MotionParameters
 from navcore.motion.inertial import inertial_signals
+from navcore.motion.truth import AE, HEADING, LAT, LON, PITCH, ROLL, VE, VU, Site
 
 SITE = Site(60.0 * DEG, 20.0 * DEG, 100.0)
 STEP = 0.01

@@ -8,9 +8,9 @@ import pytest
 
 from navcore.foundation.earth import SPHERE, WGS84, Earth
 from navcore.foundation.units import DEG
-from navcore.motion.base import AE, AN, HEADING, HEADING_RATE, LAT, LON, VE, VN, Site
 from navcore.motion.course import lay_course
 from navcore.motion.legs import LegsMotion
+from navcore.motion.truth import AE, AN, HEADING, HEADING_RATE, LAT, LON, VE, VN, Site
 
 DAY = 86400.0
 SITE = Site(57.0 * DEG, 3.0 * DEG, 25.0)

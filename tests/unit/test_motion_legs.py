@@ -9,8 +9,8 @@ import pytest
 from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, KNOT
-from navcore.motion.base import AE, AN, HEADING, HEADING_RATE, LAT, PITCH, ROLL, VE, VN, Site
 from navcore.motion.legs import LegsMotion
+from navcore.motion.truth import AE, AN, HEADING, HEADING_RATE, LAT, PITCH, ROLL, VE, VN, Site
 
 SITE = Site(math.radians(40.0), math.radians(-70.0), 0.0)
 

@@ -12,7 +12,7 @@ from navcore.foundation.earth import SPHERE, WGS84
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, KNOT
 from navcore.motion import ProfileMotion
-from navcore.motion.base import (
+from navcore.motion.truth import (
     AE,
     AN,
     HEADING,

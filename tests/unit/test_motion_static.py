@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from navcore.foundation.earth import WGS84
 from navcore.motion import MOTIONS, Motion, ProfileMotion, StaticMotion, WavesMotion
-from navcore.motion.base import HEADING, HEADING_RATE, HEIGHT, LAT, LON, PITCH, ROLL, VE, Site
+from navcore.motion.truth import HEADING, HEADING_RATE, HEIGHT, LAT, LON, PITCH, ROLL, VE, Site
 
 SITE = Site(math.radians(32.06), math.radians(118.8), 12.0)
 

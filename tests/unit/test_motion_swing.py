@@ -8,7 +8,8 @@ import pytest
 
 from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import InputError
-from navcore.motion.base import (
+from navcore.motion.swing import SwingMotion
+from navcore.motion.truth import (
     AE,
     AU,
     HEADING,
@@ -23,7 +24,6 @@ from navcore.motion.base import (
     VE,
     Site,
 )
-from navcore.motion.swing import SwingMotion
 
 SITE = Site(math.radians(45.78), math.radians(126.7), 3.0)
 DENG: dict[str, Any] = {

@@ -11,7 +11,8 @@ from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG
 from navcore.motion import LegsMotion, WavesMotion
-from navcore.motion.base import (
+from navcore.motion.sea import Answer, Seaway, energy_below, make_seaway
+from navcore.motion.truth import (
     AE,
     AU,
     HEADING,
@@ -27,7 +28,6 @@ from navcore.motion.base import (
     VU,
     Site,
 )
-from navcore.motion.sea import Answer, Seaway, energy_below, make_seaway
 from tests.motions import SEA
 
 SITE = Site(32.06 * DEG, 118.8 * DEG, 7.0)

@@ -9,8 +9,8 @@ from navcore.engine.simulation import simulate
 from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC, DEG
-from navcore.motion.base import HEADING, Site
 from navcore.motion.static import StaticMotion
+from navcore.motion.truth import HEADING, Site
 from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation

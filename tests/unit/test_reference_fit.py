@@ -7,7 +7,7 @@ import pytest
 
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG
-from navcore.motion.base import AE, AN, COLUMNS, HEADING, VE, VN, Truth
+from navcore.motion.truth import AE, AN, COLUMNS, HEADING, VE, VN, Truth
 from navcore.sensors.fit import LogAlongTrack, _autocovariance, fit_delay, fit_log_error
 from navcore.sensors.log import reference_errors
 from navcore.sensors.reference import Reference

@@ -7,7 +7,7 @@ import pytest
 from pydantic import ValidationError
 
 from navcore.foundation.units import DEG, HOUR, KNOT
-from navcore.motion.base import AE, AN, COLUMNS, HEADING, HEADING_RATE, VE, VN, Truth
+from navcore.motion.truth import AE, AN, COLUMNS, HEADING, HEADING_RATE, VE, VN, Truth
 from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.log import reference_errors
 from navcore.sensors.log_errors.events import LogEvent, event_velocity

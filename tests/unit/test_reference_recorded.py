@@ -8,9 +8,9 @@ import pytest
 from navcore.foundation.earth import SPHERE
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, KNOT
-from navcore.motion.base import HEADING, Site, Truth
 from navcore.motion.static import StaticMotion
 from navcore.motion.track import TrackMotion
+from navcore.motion.truth import HEADING, Site, Truth
 from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.log import reference_errors
 from navcore.sensors.log_errors.events import LogEvent

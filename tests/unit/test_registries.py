@@ -19,8 +19,8 @@ from navcore.foundation.registry import blocks_of, registry
 from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
 from navcore.motion import MOTIONS, MotionParameters, StaticMotion
-from navcore.motion.base import AE, HEADING, HEADING_RATE, HEIGHT, LAT, LON, PITCH, ROLL, VE, VN, VU, Truth
 from navcore.motion.kinematics import KINDS, Kinematics
+from navcore.motion.truth import AE, HEADING, HEADING_RATE, HEIGHT, LAT, LON, PITCH, ROLL, VE, VN, VU, Truth
 from navcore.networks import NETWORKS, NetworkParameters
 from navcore.scenario.file import parse_toml, to_toml
 from navcore.scenario.guide import guide

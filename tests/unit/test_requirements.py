@@ -13,25 +13,22 @@ from pydantic import ValidationError
 
 from app.session.display import Display
 from app.session.requirements import (
-    MEASURES,
+    ROWS,
     Requirements,
     error_limits,
-    fastest_rate,
     label_of,
     read_limit,
     verdicts,
 )
 from app.session.shown import window_of
-from app.views.poles.figure import allowed_poles
 from app.views.requirements.table import requirements_html
 from app.views.requirements.view import RequirementsView
-from app.views.step.figure import step_limits
 from app.views.tune.setting import requirements_as_text
 from navcore.design.measures import read_requirement
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
-from navcore.mechanization.recorder import NAMES
+from navcore.quantities import NAMES
 from tests.unit.figures_runs import INTERNAL, THREE, UNSTABLE, diverging, run_of, static_run
 
 
@@ -40,8 +37,8 @@ def measured(name: str, run: Run | None = None) -> tuple[float, ...]:
 
 
 def test_every_limit_is_measured_and_labelled_once() -> None:
-    assert list(MEASURES) == list(Requirements.model_fields)
-    assert len({label_of(name) for name in MEASURES}) == len(MEASURES)
+    assert list(ROWS) == list(Requirements.model_fields)
+    assert len({label_of(name) for name in ROWS}) == len({row.key for row in ROWS.values()}) == len(ROWS)
 
 
 def test_settling_and_damping_are_the_loops_and_a_free_method_has_none() -> None:
@@ -130,16 +127,16 @@ def test_what_may_be_typed(name: str, text: str, limit: float | None) -> None:
 def test_what_is_drawn_is_in_si() -> None:
     asked = Requirements(settling_min=60.0, overshoot_percent=40.0, log_tilt_arcsec=20.0,
                          tilt_max_arcsec=30.0, position_rms_m=500.0, damping_ratio=0.4)  # fmt: skip
-    rate, limits, run = fastest_rate(asked), step_limits(asked), static_run()
-    assert rate is not None and math.exp(-rate * 3600.0) == pytest.approx(0.02)
-    assert allowed_poles(asked).damping_ratio == 0.4
-    assert (limits.settling_s, limits.overshoot) == (3600.0, 0.4)
-    assert limits.log_tilt == pytest.approx(20.0 * ARCSEC)
+    assert asked.limits == pytest.approx(
+        {"settling_s": 3600.0, "tilt_overshoot": 0.4, "log_tilt": 20.0 * ARCSEC, "damping_ratio": 0.4}
+        | {"tilt_max_arcsec": 30.0 * ARCSEC, "position_rms_m": 500.0}
+    )
+    run = static_run()
     drawn = {"phi_e": 30 * ARCSEC, "phi_n": 30 * ARCSEC, "position": 500.0}
     assert error_limits(asked, run) == pytest.approx(drawn)
     # one far above the curves would press them flat
     for nothing in (Requirements(), Requirements(position_rms_m=1e8)):
-        assert error_limits(nothing, run) == {} and fastest_rate(nothing) is None
+        assert error_limits(nothing, run) == {}
 
 
 def test_table_says_in_words_who_meets_what() -> None:

@@ -12,7 +12,7 @@ from navcore.engine.simulation import simulate
 from navcore.foundation.units import DEG
 from navcore.mechanization.recorder import NAMES, output_steps
 from navcore.mechanization.strapdown.records import NAVIGATION
-from navcore.motion.base import HEADING, LAT, VE
+from navcore.motion.truth import HEADING, LAT, VE
 from navcore.scenario.model import Scenario
 
 COMPASS = {"damping": "external", "network": {"id": "compass", "sigma": 0.0088, "xi": 0.7}}

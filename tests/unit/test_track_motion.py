@@ -9,7 +9,8 @@ import pytest
 from navcore.foundation.earth import SPHERE, WGS84, Earth
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, KNOT
-from navcore.motion.base import (
+from navcore.motion.track import TrackMotion
+from navcore.motion.truth import (
     AE,
     AN,
     AU,
@@ -27,7 +28,6 @@ from navcore.motion.base import (
     Site,
     Truth,
 )
-from navcore.motion.track import TrackMotion
 from tests.nmea import ship_files, stamped, write
 
 NOWHERE = Site(0.0, 0.0, 0.0)

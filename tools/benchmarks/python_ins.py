@@ -18,7 +18,7 @@ import numpy as np
 from app.bench.rounds import Timed, seconds_of
 from app.bench.strapdown import RATE_HZ, SITE, StaticRecord
 from navcore.foundation.units import DEG
-from navcore.motion.base import LAT, LON
+from navcore.motion.truth import LAT, LON
 
 STILL_MPS = 1e-5
 """Velocity that neither may exceed at the end: the work was done, and done right."""

@@ -10,7 +10,7 @@ import numpy as np
 from navcore.foundation.units import ARCSEC, DEG, HOUR
 from navcore.mechanization.recorder import D_LAT, D_LON, DV_E, DV_N, PHI_E, PHI_N
 from navcore.mechanization.strapdown.records import NAVIGATION
-from navcore.motion.base import LAT, LON
+from navcore.motion.truth import LAT, LON
 from tools.papers.claim import Claim, Exhibit, Paper, Table, at_least, at_most, number, order_of
 from tools.papers.deng_alignment import ALIGNMENT
 from tools.papers.measure import attitude_error, hours, mean_and_interval, rms

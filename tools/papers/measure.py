@@ -7,7 +7,7 @@ import numpy as np
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.units import HOUR
 from navcore.mechanization.recorder import PHI_E, PHI_N, PHI_U
-from navcore.motion.base import HEADING, PITCH
+from navcore.motion.truth import HEADING, PITCH
 from tools.papers.claim import number
 from tools.papers.estimate import interval
 

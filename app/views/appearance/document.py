@@ -279,7 +279,7 @@ def _metrics(session: Session) -> str:
 
 def _requirements(session: Session) -> str:
     display = session.now.display
-    if not display.requirements.any:
+    if not display.requirements.limits:
         return _section("Requirements", "<p>No requirement is set.</p>")
     run = window_of(session.now.run, display).run
     tables = _tables(

@@ -7,21 +7,26 @@ from html import escape
 
 from app.plots import style
 from app.plots.table import cell, row, table
-from app.plots.units import rounded, settling
+from app.plots.units import rounded
 from app.session.pins import Pin
-from app.session.requirements import MEASURES, Requirements, verdicts
+from app.session.requirements import Requirements, verdicts
 from app.session.shown import Window, edited
+from app.views.requirements.table import overall
+from navcore.engine.measures import measure
 from navcore.engine.run import Run
-from navcore.foundation.text import Text
-from navcore.foundation.units import MINUTE
+from navcore.quantities import QUANTITIES
 
+MEASURED = {
+    "settling": QUANTITIES["settling_s"],
+    "velocity": QUANTITIES["velocity_rms_mps"],
+    "tilt": QUANTITIES["tilt_max_arcsec"],
+    "position": QUANTITIES["position_max_m"],
+}
+"""Columns with a quantity."""
 COLUMNS: dict[str, str] = {
     "pinned": "run",
     "method": "method",
-    "settling": "settles to 2 %",
-    "velocity": "velocity RMS (m/s)",
-    "tilt": "largest tilt (arcsec)",
-    "position": "largest position error (m)",
+    **{name: f"{quantity.label} ({quantity.shown})" for name, quantity in MEASURED.items()},
     "verdict": "requirements",
 }
 """Columns by which the table can be sorted, and their headings."""
@@ -92,12 +97,7 @@ def lines_of(
 
 def _line(pin: Pin | None, color: str, run: Run, place: int, requirements: Requirements) -> Line:
     method = run.methods[place]
-    numbers = {
-        "settling": MEASURES["settling_min"](method),
-        "velocity": MEASURES["velocity_rms_mps"](method),
-        "tilt": MEASURES["tilt_max_arcsec"](method),
-        "position": method.errors["position_m"]["max_abs"],
-    }
+    numbers = {name: measure(method, one.key) / one.size for name, one in MEASURED.items()}
     limits = [verdict for verdict in verdicts(run, requirements) if verdict.limit is not None]
     if limits:
         numbers["verdict"] = float(sum(not verdict.passed[place] for verdict in limits))
@@ -161,16 +161,8 @@ def _row(line: Line, best: dict[str, float], baseline: int | None) -> str:
 
 def _cell(line: Line, name: str, best: dict[str, float]) -> str:
     if name == "verdict":
-        return cell(_verdict(line), "sb-n")
+        return cell(overall(round(line.numbers.get("verdict", 0.0)), line.asked), "sb-n")
     value = line.numbers[name]
-    text = settling(value * MINUTE) if name == "settling" else rounded(value)
+    text = "never" if name == "settling" and math.isinf(value) else rounded(value)
     mark = {"look": "sb-best", "title": style.BEST} if best.get(name) == value else {}
     return cell(cell(text, tag="span", **mark), "sb-n")
-
-
-def _verdict(line: Line) -> str:
-    if not line.asked:
-        return cell("nothing asked", "sb-muted", tag="span")
-    missed = round(line.numbers["verdict"])
-    text = Text("✗ misses {missed} of {asked}", missed=missed, asked=line.asked) if missed else "✓ meets all"
-    return cell(text, "sb-missed" if missed else "sb-met", tag="span")

@@ -14,13 +14,14 @@ from app.shell.view import Frame, PictureView, Tab, if_user
 from app.views.compare.table import COLUMNS, lines_of, pins_html
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
+from navcore.quantities import STATISTICS
 
 PIN, FLIP = "Pin this run", "Flip to the baseline"
 CHOSEN, NAME, NOTE, COLOR, SHOWN = "pin", "pin name", "pin note", "pin colour", "pin shown"
 BASELINE, DELTA = "compare with", "Δ of"
 BACK, REMOVE = "Go back to this pin", "Remove this pin"
 _FIRST = "the first pin"
-_STATISTICS = {"rms": "rms", "max": "max_abs", "final": "final"}
+_STATISTICS = {word: statistic for statistic, word in STATISTICS.items()}
 _EMPTY = (
     "Nothing is pinned yet. Pin the present run (key P), then move a slider: every plot keeps the pinned run "
     "as thin dashed curves, the table shows the difference, and B flips between the two."

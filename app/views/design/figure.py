@@ -10,7 +10,7 @@ from app.plots.plotly_data import PlotlyFigure, figure
 from app.plots.units import number
 from navcore.design.budget import Budget, MethodBudget
 from navcore.foundation.text import Text
-from navcore.foundation.units import ARCMIN, ARCSEC
+from navcore.quantities import Kind, budgeted
 
 SOURCES = {
     "gyro_white": ("gyro white noise", "#1F5A91"),
@@ -33,12 +33,6 @@ log, grey the start. Other sources are shown by their own name."""
 _OTHER = "#C9A227"
 _LEAST_SHARE = 0.005
 """A source with a smaller part of every bar is left out of the legend and joins the last one."""
-QUANTITIES = (
-    ("tilt_rad", "Tilt", "arcsec", ARCSEC),
-    ("velocity_mps", "Velocity", "m/s", 1.0),
-    ("heading_rad", "Heading", "arcmin", ARCMIN),
-    ("position_m", "Position", "m", 1.0),
-)
 _LETTER_PX, _LONGEST = 7.0, 18
 """Width of a letter of a method's name, and how many of them are shown."""
 _NOTE_LETTER_PX = 6.0
@@ -78,21 +72,21 @@ def budget_figure(
     note : str
         What else the title says, e.g. that a newer budget is being computed.
     """
-    shown = QUANTITIES[:2] if budget.steady else QUANTITIES
-    names = _names(budget, [key for key, *_ in shown])
+    shown = budgeted(budget.steady)
+    names = _names(budget, [kind.figure for kind in shown])
     if not names:
         return _without_bars(budget, aspect)
     grid = _grid(budget, len(shown), names, aspect, width_px)
     data: list[dict[str, Any]] = []
     layout = _layout(budget, shown, grid, aspect, width_px, note)
-    for k, (key, _, _, unit) in enumerate(shown):
+    for k, kind in enumerate(shown):
         suffix = "" if k == 0 else str(k + 1)
         for name in names:
-            data.append(_bars(budget.methods, key, unit, name, suffix, legend=k == 0))
-        layout["annotations"] += _ends(budget, key, unit, suffix, grid)
-        floor = getattr(budget.floor.rms, key)
+            data.append(_bars(budget.methods, kind, name, suffix, legend=k == 0))
+        layout["annotations"] += _ends(budget, kind, suffix, grid)
+        floor = getattr(budget.floor.rms, kind.figure)
         if floor is not None:
-            layout["shapes"].append(_floor_line(floor / unit, suffix))
+            layout["shapes"].append(_floor_line(floor / kind.size, suffix))
     return figure(data, layout)
 
 
@@ -179,9 +173,9 @@ def parts(method: MethodBudget, key: str) -> dict[str, float]:
 
 
 def _bars(
-    methods: Sequence[MethodBudget], key: str, unit: float, name: str, suffix: str, *, legend: bool
+    methods: Sequence[MethodBudget], kind: Kind, name: str, suffix: str, *, legend: bool
 ) -> dict[str, Any]:
-    lengths = [parts(method, key).get(name, 0.0) / unit for method in methods]
+    lengths = [parts(method, kind.figure).get(name, 0.0) / kind.size for method in methods]
     color = SOURCES[name][1] if name in SOURCES else _OTHER
     return {
         "type": "bar",
@@ -198,24 +192,24 @@ def _bars(
     }
 
 
-def _ends(budget: Budget, key: str, unit: float, suffix: str, grid: _Grid) -> list[dict[str, Any]]:
+def _ends(budget: Budget, kind: Kind, suffix: str, grid: _Grid) -> list[dict[str, Any]]:
     """Text at the end of each bar: its length and how many times the floor that is."""
     texts = []
     for i, method in enumerate(budget.methods):
-        total = getattr(method.total.rms, key)
-        times = budget.times_floor(method).get(key.rsplit("_", 1)[0])
+        total = getattr(method.total.rms, kind.figure)
+        times = budget.times_floor(method)[kind.name]
         if total is None:
             text = "no steady state" if method.shown == "steady" else "not in this budget"
         elif times is None:
-            text = _short(total / unit)
+            text = _short(total / kind.size)
         else:
-            value, over = _short(total / unit), _short(times)
+            value, over = _short(total / kind.size), _short(times)
             text = (
                 Text("{value} = {over} × floor", value=value, over=over) if grid.long else f"{value}, {over}×"
             )
         texts.append(
             style.text(
-                (total or 0.0) / unit,
+                (total or 0.0) / kind.size,
                 i,
                 text,
                 xref=f"x{suffix}",
@@ -251,7 +245,7 @@ def _floor_line(value: float, suffix: str) -> dict[str, Any]:
 
 def _layout(
     budget: Budget,
-    shown: Sequence[tuple[str, str, str, float]],
+    shown: Sequence[Kind],
     grid: _Grid,
     aspect: float,
     width_px: float,
@@ -280,16 +274,16 @@ def _layout(
     inner_w = width_px - grid.left - _RIGHT_PX
     inner_h = max(aspect * width_px - _TOP_PX - grid.bottom, 1.0)
     methods = [style.plain(_cut(method.name)) for method in budget.methods]
-    for k, (key, title, unit_name, unit) in enumerate(shown):
+    for k, kind in enumerate(shown):
         suffix = "" if k == 0 else str(k + 1)
         column, row = k % grid.columns, k // grid.columns
         left = column * (grid.wide + _GAP_PX) / inner_w
         top = 1.0 - row * (grid.high + _TICKS_PX + _NOTE_PX) / inner_h
-        values = [getattr(method.total.rms, key) for method in budget.methods]
-        values.append(getattr(budget.floor.rms, key))
-        peak = max((v / unit for v in values if v is not None and math.isfinite(v)), default=0.0)
+        values = [getattr(method.total.rms, kind.figure) for method in budget.methods]
+        values.append(getattr(budget.floor.rms, kind.figure))
+        peak = max((v / kind.size for v in values if v is not None and math.isfinite(v)), default=0.0)
         layout[f"xaxis{suffix}"] = style.axis(
-            unit_name,
+            kind.unit,
             domain=[left, left + grid.wide / inner_w],
             anchor=f"y{suffix}",
             range=[0.0, grid.headroom * peak if peak > 0.0 else 1.0],
@@ -305,7 +299,7 @@ def _layout(
             range=[len(methods) - 0.4, -0.6],
             showgrid=False,
         )
-        layout["annotations"].append(style.panel_title(title, suffix))
+        layout["annotations"].append(style.panel_title(kind.title, suffix))
     layout["annotations"].append(
         style.text(
             1.0,

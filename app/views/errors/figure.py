@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -25,17 +24,7 @@ from app.session.display import Display
 from navcore.engine.run import MethodRun, PlotSeries, Run
 from navcore.engine.verification import Verification
 from navcore.foundation.text import Text
-from navcore.mechanization.recorder import (
-    D_LAT,
-    D_LON,
-    DV_E,
-    DV_N,
-    NAMES,
-    PHI_E,
-    PHI_N,
-    PHI_U,
-    POSITION,
-)
+from navcore.quantities import ERRORS, NAMES, Kind
 
 _CUT = 3.0
 """A diverged method is drawn up to this many times the largest value of the others."""
@@ -45,13 +34,12 @@ _DASH: Dash = (7, 5)
 _FAINT = "66"
 """Opacity of curves that belong to an earlier scenario, as colours carry it."""
 
-_FAMILIES: dict[str, tuple[str, Callable[[float], Unit]]] = {
-    "tilt": ("angle", angle_unit),
-    "heading": ("angle", angle_unit),
-    "speed": ("speed", speed_unit),
-    "length": ("length", length_unit),
+_SUITABLE: dict[str, Callable[[float], Unit]] = {
+    "angle": angle_unit,
+    "speed": speed_unit,
+    "length": length_unit,
 }
-"""Field of the display that names a family's unit, and what suits a peak where that leaves it open."""
+"""Unit that suits a peak where the display leaves that of a dimension open."""
 _UNSEEN = "rgba(0,0,0,0)"
 _LIMIT_DASH: Dash = (12, 5)
 _FEWEST_DECADES, _MOST_DECADES = 3, 8
@@ -59,26 +47,7 @@ _BAND = "2E"
 """Opacity of an envelope, as colours carry it."""
 
 
-class _Quantity(NamedTuple):
-    """Column of the recorder, symbol on the axis, title, and the family that shares one unit."""
-
-    column: int
-    symbol: str
-    title: str
-    family: str
-
-
-_QUANTITIES = {
-    "phi_e": _Quantity(PHI_E, "φE", "Tilt about east φE", "tilt"),
-    "phi_n": _Quantity(PHI_N, "φN", "Tilt about north φN", "tilt"),
-    "phi_u": _Quantity(PHI_U, "φU", "Heading error φU", "heading"),
-    "dve": _Quantity(DV_E, "δVE", "Velocity error east δVE", "speed"),
-    "dvn": _Quantity(DV_N, "δVN", "Velocity error north δVN", "speed"),
-    "dlat": _Quantity(D_LAT, "δLat", "Latitude error", "length"),
-    "dlon": _Quantity(D_LON, "δLon", "Longitude error", "length"),
-    "position": _Quantity(POSITION, "position", "Position error", "length"),
-}
-QUANTITIES = {key: quantity.title for key, quantity in _QUANTITIES.items()}
+TITLES = {error.key: error.title for error in ERRORS}
 """Titles of the plots of `error_plots` by key."""
 
 GROUPS: dict[str, tuple[str, ...]] = {
@@ -134,7 +103,7 @@ def error_plots(
     envelope: Envelope | None = None,
     limits: Mapping[str, float] | None = None,
 ) -> dict[str, UplotFigure]:
-    """Error curves of all methods: phi_e, phi_n, phi_u, dve, dvn, dlat, dlon, position.
+    """Error curves of all methods, by the keys of `navcore.quantities.ERRORS`.
 
     Quantities of one family (the tilts, the velocities, the positions) share one unit, so that plots above
     each other compare at a glance; one that is far smaller than its family has a unit of its own.
@@ -162,26 +131,25 @@ def error_plots(
     scaled = [line.method for line in lines if counts(line.curve.state)] or [line.method for line in lines]
     deciding = [method for method in scaled if method.status != "diverged"]
     cut = len(deciding) < len(scaled)
-    peaks = {key: _peak(deciding or scaled, quantity.column) for key, quantity in _QUANTITIES.items()}
+    peaks = {error.key: _peak(deciding or scaled, error.name) for error in ERRORS}
     units = _units(peaks, display)
     plots: dict[str, UplotFigure] = {}
-    for key, quantity in _QUANTITIES.items():
+    for column, error in enumerate(ERRORS):
+        key = error.key
         unit, most = units[key], _CUT * peaks[key] if cut else math.inf
         plot = UplotFigure(
             key=key,
-            quantity=NAMES[quantity.column],
-            title=quantity.title,
-            symbol=quantity.symbol,
+            quantity=error.name,
+            title=error.title,
+            symbol=error.symbol,
             unit=unit,
             time_unit=unit_of_time,
             time=time,
-            curves=tuple(
-                replace(line.curve, values=_drawn(line, quantity.column, unit, most)) for line in lines
-            ),
+            curves=tuple(replace(line.curve, values=_drawn(line, column, unit, most)) for line in lines),
             floor=0.0 if key == "position" else None,
         )
         if envelope is not None and len(envelope.t_s):
-            plot = _with_band(plot, envelope, quantity.column, time_s, len(run.methods))
+            plot = _with_band(plot, envelope, column, time_s, len(run.methods))
         if limits and key in limits:
             plot = _with_limit(plot, limits[key])
         plots[key] = _logarithmic(plot) if display.scale == "log" else plot
@@ -269,28 +237,25 @@ def _time_axis(run: Run) -> np.ndarray:
     return time_s
 
 
-def _peak(methods: list[MethodRun], column: int) -> float:
-    return max((m.errors[NAMES[column]]["max_abs"] for m in methods), default=0.0)
+def _peak(methods: list[MethodRun], name: str) -> float:
+    return max((m.errors[name]["max_abs"] for m in methods), default=0.0)
 
 
 def _units(peaks: dict[str, float], display: Display) -> dict[str, Unit]:
-    """Unit of each quantity: the wanted one, its family's, or its own where that would leave it no digits."""
-    families: dict[str, float] = {}
-    for key, quantity in _QUANTITIES.items():
-        families[quantity.family] = max(families.get(quantity.family, 0.0), peaks[key])
+    """Unit of each error: the wanted one, its kind's, or its own where that would leave it no digits."""
     units: dict[str, Unit] = {}
-    for key, quantity in _QUANTITIES.items():
-        shared = quantity_unit(key, families[quantity.family], display)
-        legible = peaks[key] == 0.0 or peaks[key] >= _FEWEST_UNITS * shared.si
-        chosen = getattr(display, _FAMILIES[quantity.family][0]) != AUTO
-        units[key] = shared if legible and not chosen else quantity_unit(key, peaks[key], display)
+    for error in ERRORS:
+        kind, peak = error.kind, peaks[error.key]
+        shared = kind_unit(kind, max(peaks[one.key] for one in ERRORS if one.kind is kind), display)
+        legible = peak == 0.0 or peak >= _FEWEST_UNITS * shared.si
+        chosen = getattr(display, kind.dimension) != AUTO
+        units[error.key] = shared if legible and not chosen else kind_unit(kind, peak, display)
     return units
 
 
-def quantity_unit(key: str, peak: float, display: Display) -> Unit:
-    """Unit of one quantity alone: the wanted one, else what suits its peak (SI)."""
-    field, suitable = _FAMILIES[_QUANTITIES[key].family]
-    return wanted_unit(getattr(display, field), peak, suitable)
+def kind_unit(kind: Kind, peak: float, display: Display) -> Unit:
+    """Unit of one error alone: the wanted one, else what suits its peak (SI)."""
+    return wanted_unit(getattr(display, kind.dimension), peak, _SUITABLE[kind.dimension])
 
 
 def _drawn(line: _Line, column: int, unit: Unit, most: float) -> np.ndarray:
@@ -366,7 +331,7 @@ def _difference(verification: Verification, key: str, beside: UplotFigure, displ
     for values, (full, simple) in zip(differences, pairs, strict=True):
         rows = min(len(full.t_s), len(simple.t_s), len(time_s))
         values[:rows] = full.rows[:rows, column] - simple.rows[:rows, column]
-    unit = quantity_unit(key, float(np.nanmax(np.abs(differences), initial=0.0)), display)
+    unit = kind_unit(ERRORS[column].kind, float(np.nanmax(np.abs(differences), initial=0.0)), display)
     names = [method.method.name for method in verification.strapdown.methods]
     return UplotFigure(
         key=f"difference_{key}",

@@ -19,8 +19,8 @@ from app.shell.stack import Stack, room_px
 from app.shell.view import Figures, Frame, PictureView, Tab, if_user
 from app.views.errors.figure import (
     GROUPS,
-    QUANTITIES,
     STRAPDOWN,
+    TITLES,
     VERIFIED,
     Overlay,
     error_plots,
@@ -89,9 +89,9 @@ OWN_NOISE = (
 _OVERVIEW_KEYS = ("phi_e", "dve", "phi_n", "dvn", "phi_u", "position")
 """Two abreast: attitude left, velocity and position right."""
 _TWO = '<div class="sb-two"></div>'
-_KEYS: dict[str, str] = {Text("Errors: {title}", title=title): key for key, title in QUANTITIES.items()}
+_KEYS: dict[str, str] = {Text("Errors: {title}", title=title): key for key, title in TITLES.items()}
 _VERIFIED_KEYS = {
-    f"{VERIFICATION}: {QUANTITIES[key]}{part}": f"{which}_{key}"
+    f"{VERIFICATION}: {TITLES[key]}{part}": f"{which}_{key}"
     for key in VERIFIED
     for which, part in (("both", ""), ("difference", ", difference"))
 }
@@ -187,9 +187,7 @@ class ErrorsView(PictureView[ErrorCurves]):
         return pictures
 
 
-def error_curves(
-    found: Shown, keys: Sequence[str] = tuple(QUANTITIES), two_abreast: bool = False
-) -> ErrorCurves:
+def error_curves(found: Shown, keys: Sequence[str] = tuple(TITLES), two_abreast: bool = False) -> ErrorCurves:
     """Error curves of what is shown, with pins, envelope and limits."""
     plots = error_plots(
         found.run,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from app.plots import style
-from app.plots.effective import Loop, effective_network, loop_of, realisation
+from app.plots.effective import realisation
 from app.plots.plotly_data import packed
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.errors import InputError
@@ -35,23 +35,23 @@ def measured_gain(method: MethodRun, step_s: float) -> tuple[np.ndarray, Complex
     None runs in a free method, nor for gains that act as velocity feedback; a filter that does not come to
     rest cannot be measured.
     """
-    network = effective_network(method)
+    network = method.network
     gains = realisation(method) != "network" and network.feedback_p is None
     if network.order == 0 or gains:
         return None
-    return _measure(loop_of(method), step_s)
+    return _measure(method.network, step_s)
 
 
 # A slider of one method leaves the filters of the others as they were.
 @lru_cache(maxsize=32)
-def _measure(loop: Loop, step_s: float) -> tuple[np.ndarray, ComplexArray] | None:
+def _measure(network: LinearNetwork, step_s: float) -> tuple[np.ndarray, ComplexArray] | None:
     from navcore.analysis.measured import measured_response
     from navcore.foundation.errors import InputError
     from navcore.networks.discrete import discretise
 
     omega = np.geomspace(LOWEST, min(HIGHEST, _OF_NYQUIST * math.pi / step_s), _COUNT)
     try:
-        gain = measured_response(discretise(loop.network, step_s), omega)
+        gain = measured_response(discretise(network, step_s), omega)
     except InputError:
         return None
     return None if gain is None else (omega, gain)

@@ -25,16 +25,12 @@ _UNIT_CIRCLE = 0.72
 """Half height of the Nyquist panel is the unit circle over this."""
 _PAPER = "rgba(255,255,255,0.85)"
 _LETTER_PX, _LINE_PX, _MOST_LINES = 6.6, 18, 8
-
-
-@lru_cache(maxsize=64)
-def _margins(loop: Loop) -> Margins | None:
-    return margins(loop.network)
+_margins = lru_cache(maxsize=64)(margins)
 
 
 def margins_of(method: MethodRun) -> Margins | None:
     """Margins of what acts in a method; None where they mean nothing (undamped or unstable)."""
-    return _margins(loop_of(method))
+    return _margins(method.network)
 
 
 @lru_cache(maxsize=64)

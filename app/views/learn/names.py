@@ -14,7 +14,8 @@ number, and nothing in a lesson is evaluated as code. ``N`` stands for the numbe
 ``loop.N.damping``, ``loop.N.h0``   its damping ratio; H(0)
 ``loop.N.settling``                 to 2 % of an initial tilt (min)
 ``whole.N.days``, ``.slope``         e-folding time of the 24 h mode (days), growing or not; H'(0) (s)
-``error.N.Q.S``                     statistics of a quantity: Q of `QUANTITIES`, S of `STATISTICS`
+``error.N.Q.S``                     statistics of an error: Q a key of `navcore.quantities.ERRORS`, S of
+                                    `STATISTICS`
 ``curve.N.Q.period``                twice the mean distance of its zero crossings (min)
 ``floor.tilt``, ``.velocity``       least steady error that any damping can reach (arcsec, m/s)
 ``budget.N.tilt``, ``.velocity``    steady error of one level channel at rest (arcsec, m/s)
@@ -30,23 +31,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from navcore.engine.measures import measure
 from navcore.engine.run import Run
 from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.errors import InputError
 from navcore.foundation.notation import with_unit
 from navcore.foundation.parameters import extra_of
 from navcore.foundation.units import ARCSEC, DEG, HOUR
-from navcore.mechanization.recorder import NAMES
+from navcore.quantities import ERRORS, TILT, VELOCITY, Kind
 
-QUANTITIES: dict[str, tuple[int, float, str]] = {
-    "phi_e": (0, ARCSEC, '"'),
-    "phi_n": (1, ARCSEC, '"'),
-    "phi_u": (2, ARCSEC, '"'),
-    "dve": (3, 1.0, "m/s"),
-    "dvn": (4, 1.0, "m/s"),
-    "position": (7, 1.0, "m"),
-}
-"""Name -> column of `navcore.mechanization.recorder.NAMES`, its unit in SI, and the unit's name."""
+_COLUMNS = {error.key: column for column, error in enumerate(ERRORS)}
 STATISTICS = {"max": "max_abs", "rms": "rms", "mean": "mean", "final": "final", "end": "final"}
 """Name -> statistic of a run; ``end`` is the magnitude of ``final``."""
 _MIN, _DAY = 60.0, 86400.0
@@ -125,11 +119,15 @@ def _foucault(run: Run, turns: float) -> Named:
 def _floor(run: Run, what: str) -> Named:
     from app.plots.budgets import steady_budget
 
-    field, unit, unit_name = _BUDGETED[what]
-    return Named(getattr(steady_budget(run.scenario).floor.rms, field) / unit, unit_name)
+    return _in_unit(getattr(steady_budget(run.scenario).floor.rms, _BUDGETED[what].figure), _BUDGETED[what])
 
 
-_BUDGETED = {"tilt": ("tilt_rad", ARCSEC, '"'), "velocity": ("velocity_mps", 1.0, "m/s")}
+def _in_unit(value: float, kind: Kind) -> Named:
+    """Error (SI) of a kind; angles in arcseconds."""
+    return Named(value / ARCSEC, '"') if kind.dimension == "angle" else Named(value, kind.unit)
+
+
+_BUDGETED = {kind.name: kind for kind in (TILT, VELOCITY)}
 _OF_RUN: dict[str, Callable[[Run], Named]] = {
     "schuler.period": lambda run: _minutes(run.scenario.omega_s),
     "schuler.half": lambda run: _minutes(run.scenario.omega_s, 0.5),
@@ -149,18 +147,15 @@ _OF_RUN: dict[str, Callable[[Run], Named]] = {
 
 def _loop(what: str, number: int, run: Run) -> Named:
     method = run.methods[number]
-    free, loop = method.method.undamped, method.loop
-    if what == "period" and free:
-        return _minutes(run.scenario.omega_s)
     if what == "period":
-        poles = loop.poles[np.abs(loop.poles.imag) > 1e-9]
+        if method.method.undamped:
+            return _minutes(run.scenario.omega_s)
+        poles = method.loop.poles[np.abs(method.loop.poles.imag) > 1e-9]
         least = min(poles, key=lambda pole: -pole.real / abs(pole), default=0.0)
         return Named(2.0 * math.pi / abs(float(least.imag)) / _MIN if least else math.inf, "min")
     if what == "settling":
-        settled = None if free else loop.settling_s
-        return Named(math.inf if settled is None else settled / _MIN, "min")
-    damping, h0 = (0.0, 1.0) if free else (loop.damping_ratio, loop.h0)
-    return Named(float({"damping": damping, "h0": h0}[what]), "")
+        return Named(measure(method, "settling_s") / _MIN, "min")
+    return Named(measure(method, {"damping": "damping_ratio", "h0": "h0"}[what]), "")
 
 
 def _whole(what: str, number: int, run: Run) -> Named:
@@ -170,18 +165,18 @@ def _whole(what: str, number: int, run: Run) -> Named:
 
 
 def _error(what: str, number: int, run: Run) -> Named:
-    quantity, statistic = what.split(".")
-    column, unit, unit_name = QUANTITIES[quantity]
-    value = run.methods[number].errors[NAMES[column]][STATISTICS[statistic]] / unit
-    return Named(abs(value) if statistic == "end" else value, unit_name)
+    key, statistic = what.split(".")
+    error = ERRORS[_COLUMNS[key]]
+    value = run.methods[number].errors[error.name][STATISTICS[statistic]]
+    return _in_unit(abs(value) if statistic == "end" else value, error.kind)
 
 
 def _curve(what: str, number: int, run: Run) -> Named:
-    quantity, period = what.split(".")
+    key, period = what.split(".")
     if period != "period":
         raise KeyError(what)
     plot = run.methods[number].plot
-    values = plot.values[:, QUANTITIES[quantity][0]]
+    values = plot.values[:, _COLUMNS[key]]
     signs = np.sign(values)
     # A start at exactly zero is no crossing.
     at = np.flatnonzero(signs[1:] * signs[:-1] < 0)
@@ -198,8 +193,7 @@ def _budget(what: str, number: int, run: Run) -> Named:
     budget = steady_budget(run.scenario)
     method = budget.methods[number]
     if what in _BUDGETED:
-        field, unit, unit_name = _BUDGETED[what]
-        return Named(getattr(method.total.rms, field) / unit, unit_name)
+        return _in_unit(getattr(method.total.rms, _BUDGETED[what].figure), _BUDGETED[what])
     if what.endswith("_times"):
         return Named(float(budget.times_floor(method)[what.removesuffix("_times")] or math.inf), "")
     own, total = method.sources[what].rms.tilt_rad, method.total.rms.tilt_rad

@@ -1,6 +1,7 @@
 """Tab "Method": which method the controls edit, its network, policy and switching."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from html import escape
 from typing import Any
 
@@ -17,6 +18,7 @@ from app.shell.palette import COPY_METHOD, PASTE
 from app.shell.searching import show_html
 from app.shell.view import Frame, Tab, View, if_user
 from app.views.method.tuning import TuningPanel
+from navcore.design.vary import network_not_in_force
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
 from navcore.law.policy import POLICIES
@@ -152,7 +154,7 @@ class MethodView(View):
         values = _values(scenario, index)
         self.sections["method"].show(form.fields(Method, path), values, moved)
         blocks = method.kind.blocks
-        network = form.fields(type(method.network), (*path, "network"))
+        network = [described(spec, method) for spec in form.fields(type(method.network), (*path, "network"))]
         self.sections["network"].show(
             [_catalogue("network", path)] if "network" in blocks else [], values, moved
         )
@@ -187,6 +189,13 @@ class MethodView(View):
         show_html(self._warnings, network)
         show_html(self._loop, loop)
         show_html(self._unused, unused)
+
+
+def described(spec: FieldSpec, method: Method) -> FieldSpec:
+    """Description of a network's parameter; where the policy sets it, that says so first."""
+    reason = "" if method.undamped else network_not_in_force(method, f"network.{spec.path[-1]}")
+    hint = Text("This value does not act: {reason}. {hint}", reason=reason, hint=spec.hint)
+    return replace(spec, hint=hint) if reason else spec
 
 
 def _catalogue(part: str, path: Path) -> FieldSpec:

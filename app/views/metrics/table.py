@@ -14,42 +14,26 @@ from app.plots.effective import earth_mode_text
 from app.plots.pinned import Pinned, difference_text
 from app.plots.table import cell, row, table
 from app.plots.units import (
-    ARCMINUTES,
-    ARCSECONDS,
     AUTO,
-    METRES,
-    METRES_PER_SECOND,
     NAMED,
-    NAUTICAL_MILES,
     Unit,
     number,
     rounded,
     settling,
 )
 from app.session.display import Display
+from navcore.engine.measures import measure
 from navcore.engine.run import LawInForce, Run
 from navcore.foundation.text import Text
+from navcore.quantities import ERRORS, QUANTITIES, STATISTICS, RecordedError
 
 if TYPE_CHECKING:
     from navcore.engine.verification import Difference, Verification
 
-STATISTICS = ("rms", "max_abs", "final")
-_HEADINGS = {"rms": "rms", "max_abs": "max", "final": "final"}
-_OF_THE_DIFFERENCE = {"rms": "Δ rms", "max_abs": "Δ max", "final": "Δ final"}
 
-# Label, quantity, and the display's field for its unit. The units are fixed: numbers of two runs can be
-# compared at a glance.
-_QUANTITIES: tuple[tuple[str, str, Unit, str], ...] = (
-    ("tilt φE", "phi_e_rad", ARCSECONDS, "angle"),
-    ("tilt φN", "phi_n_rad", ARCSECONDS, "angle"),
-    ("heading φU", "phi_u_rad", ARCMINUTES, "angle"),
-    ("velocity δVE", "dve_mps", METRES_PER_SECOND, "speed"),
-    ("velocity δVN", "dvn_mps", METRES_PER_SECOND, "speed"),
-    ("latitude", "dlat_m", METRES, "length"),
-    ("longitude", "dlon_m", METRES, "length"),
-    ("position", "position_m", METRES, "length"),
-    ("position", "position_m", NAUTICAL_MILES, "length"),
-)
+_OF_THE_DIFFERENCE = {"rms": "Δ rms", "max_abs": "Δ max", "final": "Δ final"}
+# The units are fixed: numbers of two runs can be compared at a glance.
+_UNITS = (*((error, NAMED[error.kind.unit]) for error in ERRORS), (ERRORS[-1], NAMED["nmi"]))
 
 
 @dataclass(frozen=True)
@@ -93,16 +77,16 @@ def metrics_rows(run: Run, display: Display | None = None, baseline: Pinned | No
     before = None if baseline is None else baseline.run
     # lengths in one unit have one line each
     quantities = dict.fromkeys(
-        (label, name, unit if getattr(display, field) == AUTO else NAMED[getattr(display, field)])
-        for label, name, unit, field in _QUANTITIES
+        (error, unit if (chosen := getattr(display, error.kind.dimension)) == AUTO else NAMED[chosen])
+        for error, unit in _UNITS
     )
     rows = _loop_rows(run)
     if before is not None:
         rows = [replace(row, deltas=("",) * len(run.methods)) for row in rows]
-    for label, name, unit in quantities:
-        row = _error_row(run, label, name, unit)
+    for error, unit in quantities:
+        row = _error_row(run, error, unit)
         if before is not None:
-            row = replace(row, deltas=_delta_texts(run, before, name, display.delta, unit))
+            row = replace(row, deltas=_delta_texts(run, before, error.name, display.delta, unit))
         rows.append(row)
     return tuple(rows)
 
@@ -120,8 +104,12 @@ def _delta_texts(run: Run, baseline: Run, name: str, statistic: str, unit: Unit)
 def difference_rows(verification: Verification) -> tuple[Row, ...]:
     """Lines with the largest difference between full strapdown and linear model, and its part of the peak."""
     return tuple(
-        Row(label, unit.name, tuple((_difference(d.get(name), unit),) for d in verification.differences))
-        for label, name, unit, _ in _QUANTITIES[:-1]
+        Row(
+            error.label,
+            unit.name,
+            tuple((_difference(d.get(error.name), unit),) for d in verification.differences),
+        )
+        for error, unit in _UNITS[:-1]
     )
 
 
@@ -135,10 +123,10 @@ def _difference(difference: Difference | None, unit: Unit) -> str:
 def verdict(verification: Verification) -> str:
     """Say in one line how far the linear model is from the full strapdown."""
     worst = [
-        (difference.of_peak, label, method.method.name)
+        (difference.of_peak, error.label, method.method.name)
         for method, differences in zip(verification.linear.methods, verification.differences, strict=True)
-        for label, name, _, _ in _QUANTITIES[:-1]
-        if (difference := differences.get(name)) is not None and difference.of_peak is not None
+        for error in ERRORS
+        if (difference := differences.get(error.name)) is not None and difference.of_peak is not None
     ]
     if not worst:
         return "The two models could not be compared."
@@ -152,16 +140,16 @@ def verdict(verification: Verification) -> str:
 
 
 def _loop_rows(run: Run) -> list[Row]:
-    settles = tuple((settling(m.loop.settling_s) if m.loop.stable else "unstable",) for m in run.methods)
-    times = [m.loop.settling_s if m.loop.stable else None for m in run.methods]
-    best = _best([[math.inf if time is None else time] for time in times])
-    rows = [
-        Row("damping ratio", "", tuple((rounded(m.loop.damping_ratio),) for m in run.methods)),
-        Row("settles to 2 %", "", settles, best=best),
-        # How far it is from 1 is what counts: three digits would hide it.
-        Row("H(0)", "", tuple((number(m.loop.h0),) for m in run.methods)),
-    ]
-    return rows if run.status == "ok" else [Row("run", "", tuple((m.status,) for m in run.methods)), *rows]
+    rows = [Row("run", "", tuple((m.status,) for m in run.methods))] if run.status != "ok" else []
+    # How far H(0) is from 1 is what counts: three digits would hide it.
+    for key, text in (("damping_ratio", rounded), ("settling_s", settling), ("h0", number)):
+        values = [measure(method, key) for method in run.methods]
+        texts = [text(value) for value in values]
+        if key == "settling_s":
+            texts = [t if m.loop.stable else "unstable" for m, t in zip(run.methods, texts, strict=True)]
+        best = _best([[value] for value in values]) if key == "settling_s" else ()
+        rows.append(Row(QUANTITIES[key].label, "", tuple((text,) for text in texts), best=best))
+    return rows
 
 
 def _best(sizes: Sequence[Sequence[float]]) -> tuple[tuple[bool, ...], ...]:
@@ -202,13 +190,11 @@ def _coefficient(law: LawInForce) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _error_row(run: Run, label: str, name: str, unit: Unit) -> Row:
-    cells = tuple(
-        tuple(rounded(method.errors[name][statistic] / unit.si) for statistic in STATISTICS)
-        for method in run.methods
-    )
-    sizes = [[abs(method.errors[name][statistic]) for statistic in STATISTICS] for method in run.methods]
-    return Row(label, unit.name, cells, best=_best(sizes))
+def _error_row(run: Run, error: RecordedError, unit: Unit) -> Row:
+    values = [[method.errors[error.name][statistic] for statistic in STATISTICS] for method in run.methods]
+    cells = tuple(tuple(rounded(value / unit.si) for value in row) for row in values)
+    sizes = [[abs(value) for value in row] for row in values]
+    return Row(error.label, unit.name, cells, best=_best(sizes))
 
 
 def metrics_html(
@@ -239,7 +225,7 @@ def metrics_html(
     """
     places = range(len(run.methods)) if methods is None else methods
     compares = baseline is not None and baseline.run is not None
-    headings = list(_HEADINGS.values())
+    headings = list(STATISTICS.values())
     if compares:
         headings.append(_OF_THE_DIFFERENCE[(display or Display()).delta])
     columns = len(headings)

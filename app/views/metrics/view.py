@@ -17,9 +17,9 @@ from app.shell import notices
 from app.shell.control import Widget
 from app.shell.view import PictureView, Tab, if_user
 from app.views.metrics.table import method_px, metrics_html, metrics_rows, system_html, verdict
-from navcore.design.dominance import HEADING, POSITION, TILT
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
+from navcore.quantities import HEADING, POSITION, TILT, Kind
 
 if TYPE_CHECKING:
     from app.jobs.why import Explainer
@@ -69,8 +69,8 @@ def _box(lines: str, state: str, short: str, *, folded: bool) -> str:
     return f"<details {which}><summary><b>Why</b> {status}{escape(short)}</summary>{lines}</details>"
 
 
-def _words(causes: tuple[Cause, ...], result: Why, *quantities: str) -> str:
-    return "; ".join(cause_text(cause, result) for cause in causes if cause.quantity in quantities)
+def _words(causes: tuple[Cause, ...], result: Why, *kinds: Kind) -> str:
+    return "; ".join(cause_text(cause, result) for cause in causes if cause.quantity in kinds)
 
 
 def _told(causes: tuple[Cause, ...], result: Why) -> str:
@@ -94,11 +94,11 @@ def cause_text(cause: Cause, result: Why) -> str:
     """
     period = _period(cause, result)
     if not cause.source:
-        return f"{cause.quantity} {period}"
+        return f"{cause.quantity.label} {period}"
     if cause.share > 0.995:
         return Text(
             "{quantity} all from {source}, {period}",
-            quantity=cause.quantity,
+            quantity=cause.quantity.label,
             source=cause.source,
             period=period,
         )
@@ -106,14 +106,14 @@ def cause_text(cause: Cause, result: Why) -> str:
     if cause.share >= 0.5:
         return Text(
             "{quantity} mostly ({percent} %) from {source}, {period}",
-            quantity=cause.quantity,
+            quantity=cause.quantity.label,
             percent=percent,
             source=cause.source,
             period=period,
         )
     return Text(
         "{quantity} most of all ({percent} %) from {source}, {period}",
-        quantity=cause.quantity,
+        quantity=cause.quantity.label,
         percent=percent,
         source=cause.source,
         period=period,

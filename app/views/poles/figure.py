@@ -1,22 +1,19 @@
 """Poles and zeros of the closed Schuler loop in units of omega_s: all poles left, the slow ones right."""
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from app.editing.placing import COMMAND
 from app.plots import style
-from app.plots.effective import closed_loop_poles, effective_network
 from app.plots.plotly_data import PlotlyFigure, figure, packed
 from app.plots.units import duration
-from app.session.requirements import Requirements, fastest_rate
 from app.views.poles.grid import (
-    ANYWHERE,
     DAMPING,
     NO_LOCUS,
     PAPER,
-    Allowed,
     Interval,
     damping_lines,
     forbidden,
@@ -59,7 +56,7 @@ def poles(
     width_px: float = 940.0,
     selected: int = 0,
     locus: str = NO_LOCUS,
-    allowed: Allowed = ANYWHERE,
+    limits: Mapping[str, float] | None = None,
 ) -> PlotlyFigure:
     """Closed-loop poles (x) and zeros of H (o) of every method, in units of omega_s.
 
@@ -79,8 +76,8 @@ def poles(
         Method whose locus is drawn.
     locus : str
         Parameter of its network over which the locus is drawn.
-    allowed : Allowed
-        What the requirements ask of the poles.
+    limits : mapping of str to float, optional
+        `app.session.requirements.Requirements.limits`: what they rule out is shaded.
     """
     names = [*(method.method.name for method in run.methods), *_KEYS]
     layout = style.framed(names, aspect, width_px, {"l": 58, "r": 16, "t": 32, "b": 48}, hovermode="closest")
@@ -89,7 +86,7 @@ def poles(
     share = style.column(inner_px)
     panel_px = share * inner_px
     shape = panel_px / max(aspect * width_px - margin["t"] - margin["b"], 1.0)
-    marks = [(_scaled(m, closed_loop_poles(m)), _scaled(m, effective_network(m).zeros)) for m in run.methods]
+    marks = [(_scaled(m, m.loop.poles), _scaled(m, m.network.zeros)) for m in run.methods]
     full = _half_height(np.concatenate([roots for roots, _ in marks]), shape)
     note, omega_s = locus_note(run, selected, locus), run.scenario.omega_s
     panels = (("", full, [0.0, share]), ("2", ZOOM, [1.0 - share, 1.0]))
@@ -113,7 +110,7 @@ def poles(
         notes += settling_labels(suffix, re, omega_s, panel_px)
         shapes += _boundary(suffix)
         shapes += settling_shapes(suffix, re, omega_s, panel_px)
-        shapes += forbidden(suffix, re, im, allowed, omega_s)
+        shapes += forbidden(suffix, re, im, limits or {}, omega_s)
     notes += _far_zeros([zeros for _, zeros in marks], _panel(full, shape)[0][0])
     data += [style.key(name, symbol, width) for name, (symbol, width) in _KEYS.items()]
     layout["meta"] |= {"pick": _PICK}
@@ -282,8 +279,3 @@ def _far_zeros(zeros: list[np.ndarray], left: float) -> list[dict[str, Any]]:
         )
         for row, (index, value) in enumerate(beyond)
     ]
-
-
-def allowed_poles(requirements: Requirements) -> Allowed:
-    """Where the requirements let poles lie."""
-    return Allowed(requirements.damping_ratio, fastest_rate(requirements))

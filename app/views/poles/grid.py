@@ -1,7 +1,7 @@
 """What lies under the pole map: rays, settling lines, regions without poles, and the root locus."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any
 
@@ -12,6 +12,7 @@ from app.plots import style
 from app.plots.plotly_data import packed
 from app.plots.units import number
 from navcore.analysis.locus import Locus, root_locus
+from navcore.analysis.settling import LEVEL
 from navcore.engine.run import Run
 from navcore.foundation.notation import symbol, unit_sign
 from navcore.foundation.parameters import extra_of
@@ -147,25 +148,6 @@ FORBIDDEN = "rgba(180,35,24,0.09)"
 Interval = tuple[float, float]
 
 
-@dataclass(frozen=True)
-class Allowed:
-    """Where poles may lie; drawn by shading the rest.
-
-    Attributes
-    ----------
-    damping_ratio : float or None
-        Least one.
-    rate : float or None
-        Least decay rate, 1/s.
-    """
-
-    damping_ratio: float | None = None
-    rate: float | None = None
-
-
-ANYWHERE = Allowed()
-
-
 def damping_lines(suffix: str, re: Interval, im: Interval) -> dict[str, Any]:
     """Rays of equal damping ratio and arcs of equal natural frequency in one panel, as one trace."""
     x, y = _ray_points(re, im)
@@ -261,7 +243,7 @@ def settling_labels(suffix: str, re: Interval, omega_s: float, width_px: float) 
 
 
 def forbidden(
-    suffix: str, re: Interval, im: Interval, allowed: Allowed, omega_s: float
+    suffix: str, re: Interval, im: Interval, limits: Mapping[str, float], omega_s: float
 ) -> list[dict[str, Any]]:
     """Shade where the requirements do not let poles lie: too little damped, or too slow."""
     axes: dict[str, Any] = {"xref": f"x{suffix}", "yref": f"y{suffix}", "layer": "below"}
@@ -270,13 +252,14 @@ def forbidden(
     # Far beyond whatever a zoom can show: only the limit itself is an edge.
     far = _BEYOND * math.hypot(re[0], im[1])
     shapes: list[dict[str, Any]] = []
-    if allowed.damping_ratio is not None:
-        x, y = -allowed.damping_ratio * far, math.sqrt(1.0 - allowed.damping_ratio**2) * far
+    if "damping_ratio" in limits:
+        ratio = limits["damping_ratio"]
+        x, y = -ratio * far, math.sqrt(1.0 - ratio**2) * far
         path = f"M {x} {y} L 0 0 L {x} {-y} L {far} {-y} L {far} {y} Z"
         shapes.append(fill | {"name": "damping", "path": path})
         shapes += [edge | {"x0": 0.0, "y0": 0.0, "x1": x, "y1": side} for side in (y, -y)]
-    if allowed.rate is not None:
-        at = -allowed.rate / omega_s
+    if limits.get("settling_s"):
+        at = math.log(LEVEL) / limits["settling_s"] / omega_s
         path = f"M {at} {-far} L {at} {far} L {far} {far} L {far} {-far} Z"
         shapes.append(fill | {"name": "settling", "path": path})
         shapes.append(edge | {"x0": at, "y0": -far, "x1": at, "y1": far})

@@ -12,7 +12,7 @@ from app.shell.layout import CHOOSER_PX, TOOLS
 from app.shell.pair_handle import PairHandle
 from app.shell.plotly_view import PlotlyView
 from app.shell.view import Frame, if_user
-from app.views.poles.figure import PANELS, allowed_poles, poles
+from app.views.poles.figure import PANELS, poles
 from app.views.poles.grid import NO_LOCUS, locus_fields
 from app.views.poles.whole import whole_system_figure
 from navcore.engine.run import Run
@@ -148,7 +148,7 @@ class PolesView(PlotlyView):
             width_px=self.width_px,
             selected=found.selected,
             locus=found.display.locus,
-            allowed=allowed_poles(found.display.requirements),
+            limits=found.display.requirements.limits,
         )
         plot["layout"]["meta"] |= self._handle.meta(found)
         return plot

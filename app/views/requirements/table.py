@@ -8,9 +8,8 @@ from app.plots import style
 from app.plots.pinned import Pinned, pinned_methods, together
 from app.plots.table import cell, row, table
 from app.plots.units import number, rounded
-from app.session.requirements import Requirements, Verdict, sign_of, verdicts
+from app.session.requirements import ROWS, SIGNS, Requirements, Verdict, verdicts
 from navcore.engine.run import Run
-from navcore.foundation.parameters import extra_of
 from navcore.foundation.text import Text
 
 _DIGITS = 4
@@ -55,11 +54,10 @@ def requirements_html(
 
 
 def _row(verdict: Verdict, shown: Sequence[int], *, asked: bool) -> str:
-    info = Requirements.model_fields[verdict.name]
-    extra = extra_of(info)
-    unit = f' <span class="sb-muted">({escape(extra["unit"])})</span>' if extra["unit"] else ""
+    quantity = ROWS[verdict.name]
+    unit = f' <span class="sb-muted">({escape(quantity.shown)})</span>' if quantity.shown else ""
     limit = (
-        "no limit" if verdict.limit is None else f"{sign_of(verdict.name)} {number(verdict.limit, _DIGITS)}"
+        "no limit" if verdict.limit is None else f"{SIGNS[quantity.sense]} {number(verdict.limit, _DIGITS)}"
     )
     cells = (
         cell(
@@ -71,8 +69,8 @@ def _row(verdict: Verdict, shown: Sequence[int], *, asked: bool) -> str:
         )
         for value, ok in ((verdict.measured[i], verdict.passed[i]) for i in shown)
     )
-    named = cell(f"{escape(extra['label'])}{unit}")
-    return row([named, cell(limit, "sb-n"), *cells], title=info.description or "")
+    named = cell(f"{escape(quantity.label)}{unit}")
+    return row([named, cell(limit, "sb-n"), *cells], title=quantity.help)
 
 
 def _number(value: float) -> str:
@@ -96,14 +94,17 @@ def _mark(verdict: Verdict, passed: bool) -> str:
 
 def _overall(judged: tuple[Verdict, ...], index: int) -> str:
     asked = [verdict for verdict in judged if verdict.limit is not None]
+    return overall(sum(not verdict.passed[index] for verdict in asked), len(asked))
+
+
+def overall(missed: int, asked: int) -> str:
+    """Badge that says how many of the limits a method misses."""
     if not asked:
         return cell("nothing asked", "sb-muted", tag="span")
-    missed = sum(not verdict.passed[index] for verdict in asked)
     if missed:
-        return _badge(Text("✗ misses {missed} of {asked}", missed=missed, asked=len(asked)), False)
+        return _badge(Text("✗ misses {missed} of {asked}", missed=missed, asked=asked), False)
     return _badge(
-        Text("✓ meets {asked}", asked="it" if len(asked) == 1 else Text("all {asked}", asked=len(asked))),
-        True,
+        Text("✓ meets {asked}", asked="it" if asked == 1 else Text("all {asked}", asked=asked)), True
     )
 
 

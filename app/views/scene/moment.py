@@ -17,7 +17,6 @@ import numpy as np
 from app.plots import style
 from app.plots.units import (
     AUTO,
-    KNOTS,
     NAMED,
     Unit,
     angle_unit,
@@ -35,7 +34,8 @@ from navcore.foundation.notation import with_unit
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.mechanization.recorder import DV_E, DV_N, PHI_E, PHI_N, PHI_U, POSITION, QUANTITIES
-from navcore.motion.base import HEADING, PITCH, ROLL, VE, VN
+from navcore.motion.truth import HEADING, PITCH, ROLL, VE, VN
+from navcore.quantities import TILT, components
 
 WIDTH, HEIGHT = 296, 134
 _WIDEST = 30.0 * DEG
@@ -111,7 +111,7 @@ def plane_ends(plane: tuple[float, float]) -> tuple[str, str]:
 
 
 def _peak(method: MethodRun) -> float:
-    return max(method.errors[name]["max_abs"] for name in ("phi_e_rad", "phi_n_rad"))
+    return max(method.errors[name]["max_abs"] for name in components(TILT))
 
 
 def _bob(index: int, method: MethodRun, t_s: float, period: float) -> Bob:
@@ -225,7 +225,7 @@ class MethodMoment:
     pose : Pose
         As computed.
     errors : ndarray, shape (8,)
-        The quantities of `navcore.mechanization.recorder.NAMES`, SI.
+        The quantities of `navcore.quantities.NAMES`, SI.
     ended : bool
         The method did not come this far: its last values are shown.
     """
@@ -311,7 +311,7 @@ def readout_html(now: Moment, selected: int, display: Display = _AS_IT_FITS) -> 
         (name, _degrees(a), _degrees(b), _signed(off, wanted_unit(display.angle, abs(off), angle_unit)))
         for name, a, b, off in attitude
     ]
-    way = KNOTS if display.speed == AUTO else NAMED[display.speed]
+    way = NAMED["kn" if display.speed == AUTO else display.speed]
     a, b = (f"{pose.speed / way.si:.2f} {way.name}" for pose in (true, computed))
     faster, off = computed.speed - true.speed, float(method.errors[POSITION])
     rows.append(("speed", a, b, _signed(faster, wanted_unit(display.speed, abs(faster), speed_unit))))

@@ -25,7 +25,7 @@ from app.views.scene.graticule import (
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
 from navcore.mechanization.recorder import D_LAT, D_LON
-from navcore.motion.base import HEADING, HEIGHT, LAT, LON, PITCH, ROLL
+from navcore.motion.truth import HEADING, HEIGHT, LAT, LON, PITCH, ROLL
 
 MAX_POINTS = 1000
 """Points of a track: at this density the ship moves smoothly along 24 h."""

@@ -6,12 +6,12 @@ from app.plots.plotly_data import PlotlyFigure
 from app.session.shown import Shown
 from app.shell.plotly_view import PlotlyView
 from app.shell.view import if_user
-from app.views.errors.figure import QUANTITIES
+from app.views.errors.figure import TITLES
 from app.views.spectrum.figure import spectrum
 from navcore.engine.run import Run
 
 SPECTRUM_OF = "spectrum of"
-_KEYS = {title: key for key, title in QUANTITIES.items()}
+_KEYS = {title: key for key, title in TITLES.items()}
 
 
 class SpectrumView(PlotlyView):
@@ -25,14 +25,14 @@ class SpectrumView(PlotlyView):
     def build_tools(self) -> None:
         """Make the chooser."""
         self._chooser: Any = self.frame.gui.add_dropdown(
-            SPECTRUM_OF, tuple(_KEYS), initial_value=QUANTITIES[self.session.display.spectrum],
+            SPECTRUM_OF, tuple(_KEYS), initial_value=TITLES[self.session.display.spectrum],
             hint="Amplitude over period: a sine shows as a peak of its amplitude.",
         )  # fmt: skip
         self._chooser.on_update(if_user(lambda: self.frame.show(spectrum=_KEYS[self._chooser.value])))
 
     def follow_display(self) -> None:
         """Show the display's quantity."""
-        self._chooser.value = QUANTITIES[self.session.display.spectrum]
+        self._chooser.value = TITLES[self.session.display.spectrum]
 
     def figure(self, both: Run, found: Shown) -> PlotlyFigure:
         """Spectra."""

@@ -12,8 +12,9 @@ import numpy as np
 
 from app.plots import style
 from app.plots.units import duration, rounded, settling
-from navcore.analysis import analyse, time_response
+from navcore.analysis import analyse
 from navcore.analysis.frequencies import curve_frequencies
+from navcore.analysis.judged import JudgedLoop, loop_value
 from navcore.engine.run import Run
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import InputError
@@ -28,7 +29,6 @@ _WIDE, _HIGH = 150, 62
 _LOW_DB, _HIGH_DB = -12.0, 18.0
 _FIRST, _LAST = -2.0, 2.0
 """Powers of ten of the frequency over omega_s at the ends."""
-_STEP_H = 12.0
 
 
 @dataclass(frozen=True)
@@ -72,8 +72,7 @@ def _card(id: str, omega_s: float) -> NetworkCard:
 
 def _trade(network: LinearNetwork, gain_db: np.ndarray) -> str:
     loop = analyse(network)
-    times = np.linspace(0.0, _STEP_H * 3600.0, 800)
-    tilt = float(np.max(np.abs(time_response(network, "dv_r", "phi", times)))) / ARCSEC
+    tilt = loop_value("log_tilt", JudgedLoop(network, loop, True)) / ARCSEC
     if loop.settling_s is None:
         return "Does not damp: an oscillation goes on for ever. The log has no influence on the tilt."
     peak = float(np.max(gain_db))

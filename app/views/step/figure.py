@@ -1,29 +1,27 @@
 """Step responses of the loop and of the network, by the linear theory of one level channel."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from app.plots import style
-from app.plots.effective import effective_network, network_step, reacts, response, time_grid
+from app.plots.effective import network_step, reacts, response, time_grid
 from app.plots.plotly_data import PlotlyFigure, figure, packed
 from app.plots.units import Unit, angle_unit, speed_unit
-from app.session.requirements import Requirements
 from app.views.poles.grid import FORBIDDEN
+from navcore.analysis.settling import LEVEL
 from navcore.analysis.transfers import Output, Source
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
-from navcore.foundation.units import ARCSEC, DEG_PER_HOUR, MINUTE
+from navcore.foundation.units import DEG_PER_HOUR, MINUTE
 
 POINTS = 400
 _SPANS_MIN = (5, 10, 20, 30, 45, 60, 90, 120, 180, 240, 360)
 _LONGEST_MIN = 360.0
 _UNDAMPED_MIN = 180.0
-_SETTLED = 0.02
 _TICK_PX = 28.0
 """Least distance of two ticks of time."""
 _NO_UNIT = Unit("", 1.0)
@@ -60,30 +58,8 @@ class _Panel(NamedTuple):
     y_title: str
 
 
-@dataclass(frozen=True)
-class StepLimits:
-    """Limits that the requirements set to the responses; drawn by shading the rest.
-
-    Attributes
-    ----------
-    settling_s : float or None
-        After it the tilt stays within 2 %.
-    overshoot : float or None
-        Largest swing of the tilt to the other side, part of the initial tilt.
-    log_tilt : float or None
-        Largest tilt after a log step of 1 m/s, rad.
-    """
-
-    settling_s: float | None = None
-    overshoot: float | None = None
-    log_tilt: float | None = None
-
-
-NO_LIMITS = StepLimits()
-
-
 def step(
-    run: Run, aspect: float = 0.46, *, width_px: float = 940.0, limits: StepLimits = NO_LIMITS
+    run: Run, aspect: float = 0.46, *, width_px: float = 940.0, limits: Mapping[str, float] | None = None
 ) -> PlotlyFigure:
     """Responses of every method: tilt to an initial tilt, H itself, velocity error and tilt to a log step.
 
@@ -97,8 +73,8 @@ def step(
         Height / width of the figure.
     width_px : float
         Expected width on screen, for room for the legend.
-    limits : StepLimits
-        Of the requirements.
+    limits : mapping of str to float, optional
+        `app.session.requirements.Requirements.limits`: what they rule out is shaded.
     """
     loop_s, network_s = _loop_span(run), _network_span(run)
     cause = _LOG if any(reacts(m, "dv_r") for m in run.methods) else _GYRO
@@ -123,7 +99,7 @@ def step(
     data = [_trace(method, i, panel) for panel in panels for i, method in enumerate(run.methods)]
     data += [_settled_mark(method, i, tilt[i], loop_s) for i, method in enumerate(run.methods)]
     layout = _layout(run, panels, stable, aspect, width_px)
-    layout["shapes"] += _forbidden(limits, loop_s, angle, cause)
+    layout["shapes"] += _forbidden(limits or {}, loop_s, angle, cause)
     return figure(data, layout)
 
 
@@ -141,7 +117,7 @@ def _network_span(run: Run) -> float:
     """Time shown for H alone, s: six time constants of its slowest pole."""
     slowest = math.inf
     for method in run.methods:
-        rates = -np.real(effective_network(method).poles)
+        rates = -np.real(method.network.poles)
         slowest = min([slowest, *(float(rate) for rate in rates if rate > 0.0)])
     return _round_up(6.0 / slowest / MINUTE if math.isfinite(slowest) else 30.0) * MINUTE
 
@@ -232,7 +208,7 @@ def _layout(
         )
         title = style.fitting(panel.titles, share * (width_px - 86))
         layout["annotations"].append(style.panel_title(title, suffix))
-    settled = {"type": "rect", "y0": -_SETTLED, "y1": _SETTLED}  # in which a response counts as settled
+    settled = {"type": "rect", "y0": -LEVEL, "y1": LEVEL}  # in which a response counts as settled
     look = {"line": {"width": 0}, "fillcolor": "rgba(154,169,184,0.3)"}
     return layout | {"shapes": [style.across(0.0) | settled | look]}
 
@@ -242,17 +218,19 @@ def _tick(span_min: float, room_px: float) -> float:
     return next(s for s in (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 120.0, 240.0) if span_min <= most * s)
 
 
-def _forbidden(limits: StepLimits, span_s: float, unit: Unit, cause: _Disturbance) -> list[dict[str, Any]]:
+def _forbidden(
+    limits: Mapping[str, float], span_s: float, unit: Unit, cause: _Disturbance
+) -> list[dict[str, Any]]:
     """Shade what the requirements rule out: beyond any height that a plot shows."""
     far, span_min = 1e6, span_s / MINUTE
     boxes: list[tuple[str, str, float, float, float]] = []
-    if limits.overshoot is not None:
-        boxes.append(("overshoot", "", 0.0, -far, -limits.overshoot))
-    if limits.settling_s is not None and limits.settling_s < span_s:
-        at = limits.settling_s / MINUTE
-        boxes += [("settling", "", at, _SETTLED, far), ("settling", "", at, -far, -_SETTLED)]
-    if limits.log_tilt is not None and cause is _LOG:
-        size = limits.log_tilt / unit.si
+    if "tilt_overshoot" in limits:
+        boxes.append(("overshoot", "", 0.0, -far, -limits["tilt_overshoot"]))
+    if limits.get("settling_s", span_s) < span_s:
+        at = limits["settling_s"] / MINUTE
+        boxes += [("settling", "", at, LEVEL, far), ("settling", "", at, -far, -LEVEL)]
+    if "log_tilt" in limits and cause is _LOG:
+        size = limits["log_tilt"] / unit.si
         boxes += [("log tilt", "4", 0.0, size, far), ("log tilt", "4", 0.0, -far, -size)]
     return [
         {
@@ -270,14 +248,3 @@ def _forbidden(limits: StepLimits, span_s: float, unit: Unit, cause: _Disturbanc
         }
         for name, suffix, start, low, high in boxes
     ]
-
-
-def step_limits(requirements: Requirements) -> StepLimits:
-    """Limits that the requirements set to the responses in the tab "Step", SI."""
-    settling, overshoot = requirements.settling_min, requirements.overshoot_percent
-    tilt = requirements.log_tilt_arcsec
-    return StepLimits(
-        settling_s=None if settling is None else settling * MINUTE,
-        overshoot=None if overshoot is None else overshoot / 100.0,
-        log_tilt=None if tilt is None else tilt * ARCSEC,
-    )

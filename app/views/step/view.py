@@ -3,7 +3,7 @@
 from app.plots.plotly_data import PlotlyFigure
 from app.session.shown import Shown
 from app.shell.plotly_view import PlotlyView
-from app.views.step.figure import step, step_limits
+from app.views.step.figure import step
 from navcore.engine.run import Run
 
 
@@ -21,7 +21,7 @@ class StepView(PlotlyView):
 
     def figure(self, both: Run, found: Shown) -> PlotlyFigure:
         """Step responses."""
-        limits = step_limits(found.display.requirements)
+        limits = found.display.requirements.limits
         return step(both, self.aspect, width_px=self.width_px, limits=limits)
 
 

@@ -4,14 +4,16 @@ import math
 from typing import Any
 
 from app.jobs.designer import FrontsTask
+from app.session.display import AXES
 from app.shell import notices
 from app.shell.searching import SearchControls, reveal, show_html
 from app.shell.view import Frame, if_user
 from app.views.tune.change import change_network
-from app.views.tune.fronts import AXES, COMMAND, nearest, setting_text
+from app.views.tune.fronts import COMMAND, nearest, setting_text
 from navcore.design.pareto import Pareto
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.quantities import QUANTITIES
 
 ACROSS, UP = "across", "up"
 FIND, STOP = "Find the fronts", "Stop finding"
@@ -35,7 +37,7 @@ class FrontsPanel:
 
     def build(self) -> None:
         """Make the controls."""
-        gui, words = self.frame.gui, {label: name for name, (label, *_) in AXES.items()}
+        gui, words = self.frame.gui, {QUANTITIES[name].label: name for name in AXES}
         self._axes: dict[str, Any] = {
             "front_x": gui.add_dropdown(ACROSS, tuple(words), hint="Objective on the horizontal axis."),
             "front_y": gui.add_dropdown(UP, tuple(words), hint="Objective on the vertical axis."),
@@ -78,7 +80,7 @@ class FrontsPanel:
         """Show how far the search is; nothing while something else is chosen."""
         self._controls.follow(chosen)
         for field, box in self._axes.items():
-            label = AXES[getattr(self.session.display, field)][0]
+            label = QUANTITIES[getattr(self.session.display, field)].label
             if box.value != label:
                 box.value = label
         html = notices.note(self._fronts.words, "warning")
@@ -91,7 +93,8 @@ class FrontsPanel:
         """Find the fronts of the selected method."""
         session = self.session
         if self.objectives[0] == self.objectives[1]:
-            lines = [Text("{axes} is on both axes: choose two objectives.", axes=AXES[self.objectives[0]][0])]
+            axes = QUANTITIES[self.objectives[0]].label
+            lines = [Text("{axes} is on both axes: choose two objectives.", axes=axes)]
             notices.tell(self.frame.client, "Nothing to weigh", lines)
             return
         with session.lock:

@@ -11,20 +11,10 @@ from navcore.design.pareto import Pareto, Point
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text
-from navcore.foundation.units import ARCSEC, MINUTE
+from navcore.quantities import QUANTITIES
 
 COMMAND = "front-point"
 """Command with which a click asks for a point: ``front-point x y``, in the units of the axes."""
-AXES = {
-    "tilt_rms": ("tilt RMS", "tilt RMS in the steady state", "arcsec", ARCSEC),
-    "velocity_rms": ("velocity RMS", "velocity RMS in the steady state", "m/s", 1.0),
-    "settling_s": ("settling time", "settling time", "min", MINUTE),
-    "log_tilt": ("tilt after log step", "largest tilt after a 1 m/s step of the log", "arcsec", ARCSEC),
-    "overshoot": (
-        "velocity after log step", "largest velocity error after a 1 m/s step of the log", "m/s", 1.0,
-    ),
-}  # fmt: skip
-"""Objectives that can be on an axis: name, title of the axis, unit, and the unit's size in SI."""
 _SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "pentagon", "hexagon", "triangle-down")
 _NEAR = 0.05
 """A click takes the nearest point within this part of both axes."""
@@ -71,7 +61,7 @@ def fronts_figure(
     found : Pareto or None
         Fronts; None before a search.
     objectives : (str, str)
-        On the axes: keys of `AXES`.
+        On the axes: keys of `navcore.quantities.QUANTITIES`.
     present : (float, float) or None
         Both objectives of the present design, SI.
     method : str
@@ -81,18 +71,19 @@ def fronts_figure(
     note : str
         What is to be heeded, above the plot.
     """
-    (_, across, x_unit, x_size), (_, up, y_unit, y_size) = (AXES[name] for name in objectives)
+    across, up = (QUANTITIES[name] for name in objectives)
+    sizes = across.size, up.size
     if present is not None and not all(map(_on_axis, present)):
         note, present = note or _OFF, None
     fronts = {} if found is None else found.fronts
     data = [
-        _front(name, points, k, (x_size, y_size))
+        _front(name, points, k, sizes)
         for k, (name, points) in enumerate(fronts.items(), start=_NETWORK_COLORS)
     ]
     now = style.plain(Text("now: {method}", method=method))
     if present is not None:
-        data.append(_present(now, present, (x_size, y_size)))
-    ranges = _ranges(found, present, (x_size, y_size))
+        data.append(_present(now, present, sizes))
+    ranges = _ranges(found, present, sizes)
     names = [*fronts, *([now] if present is not None else [])]
     legend_px = _LEGEND_ROW_PX * style.legend_rows(names, width_px - _LEFT_PX - _RIGHT_PX)
     layout = style.layout(
@@ -101,15 +92,15 @@ def fronts_figure(
         margin={"l": _LEFT_PX, "r": _RIGHT_PX, "t": _TOP_PX, "b": _TICKS_PX + legend_px},
         legend=style.legend(traceorder="normal"),
         showlegend=True,
-        xaxis=_axis(f"{across} ({x_unit})", ranges[0]),
-        yaxis=_axis(f"{up} ({y_unit})", ranges[1]),
+        xaxis=_axis(f"{across.label} ({across.shown})", ranges[0]),
+        yaxis=_axis(f"{up.label} ({up.shown})", ranges[1]),
         annotations=[_above(note)] if note else [],
         shapes=[],
     )
     if found is None:
         layout["annotations"].append(_middle(_EMPTY))
     else:
-        _add_floor(layout, found, ranges, (x_size, y_size))
+        _add_floor(layout, found, ranges, sizes)
         _add_key(layout, found)
     return figure(data, layout)
 
@@ -122,7 +113,7 @@ def nearest(found: Pareto, x: float, y: float) -> tuple[str, Point]:
     InputError
         There is no point near it.
     """
-    sizes = (AXES[found.objectives[0]][3], AXES[found.objectives[1]][3])
+    sizes = QUANTITIES[found.objectives[0]].size, QUANTITIES[found.objectives[1]].size
     spans = [
         math.log10(high / low) if high > low else 1.0 for low, high in _ranges(found, found.present, sizes)
     ]

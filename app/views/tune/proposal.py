@@ -2,58 +2,43 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
 from app.plots.table import cell, row, table
 from app.plots.units import number
+from app.session.requirements import SIGNS
 from navcore.design.measures import read_requirement
+from navcore.design.vary import present, read_varied
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text
-from navcore.foundation.units import ARCMIN, ARCSEC, MINUTE
+from navcore.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from app.jobs.designer import TuningTask
     from navcore.design.tune import Tuned
 
-OBJECTIVES = {
-    "tilt_rms": ("tilt RMS, steady", "arcsec", ARCSEC),
-    "velocity_rms": ("velocity RMS, steady", "m/s", 1.0),
-    "position_rms": ("position RMS, run", "m", 1.0),
-    "heading_rms": ("heading RMS, run", "arcmin", ARCMIN),
-    "settling_s": ("settling time", "min", MINUTE),
-}
-"""What a method can be tuned for: label, unit, and the unit's size in SI."""
-
-
-_REQUIREMENTS = {
-    "settling_s": ("settling", "min", MINUTE),
-    "damping_ratio": ("damping ratio", "", 1.0),
-    "h0_deviation": ("|H(0) - 1|", "", 1.0),
-    "log_tilt": ("tilt after log step", "arcsec", ARCSEC),
-    "position_rms": ("position RMS", "m", 1.0),
-}
-
 
 def proposal_html(task: TuningTask, tuned: Tuned) -> str:
     """Table of the present and the proposed setting, the objective, and sentences about the optimum."""
-    label, unit, size = OBJECTIVES[task.objective]
+    quantity = QUANTITIES[task.objective]
+    label, size = quantity.names.get(tuned.judged, quantity.label), quantity.size
     rows = []
-    data = task.scenario.canonical()
-    for field, value in tuned.best.items():
+    now = present(task.scenario, read_varied(task.scenario, task.vary)).tolist()
+    for (field, value), before in zip(tuned.best.items(), now, strict=True):
         low, high = tuned.flat.get(field, (value, value))
-        now = _value(data, field)
         rows.append(
             (
                 symbol(field.rsplit(".", 1)[-1]),
-                "default" if now is None else number(now, 4),
+                "default" if math.isnan(before) else number(before, 4),
                 number(value, 4),
                 f"{number(low, 3)} to {number(high, 3)}",
             )
         )
     objective = [
-        f"{label} ({unit})",
+        f"{label} ({quantity.shown})",
         "none" if tuned.before is None else number(tuned.before / size, 4),
         number(tuned.objective / size, 4),
         "" if tuned.floor is None else Text("floor {floor}", floor=number(tuned.floor / size, 4)),
@@ -68,7 +53,7 @@ def proposal_html(task: TuningTask, tuned: Tuned) -> str:
 
 def sentences_about(task: TuningTask, tuned: Tuned) -> list[str]:
     """Write sentences about the optimum."""
-    _, unit, size = OBJECTIVES[task.objective]
+    unit, size = QUANTITIES[task.objective].shown, QUANTITIES[task.objective].size
     sentences = []
     if tuned.stopped:
         sentences.append("The search was stopped: this is the best setting it had seen.")
@@ -107,19 +92,15 @@ def requirement_words(text: str) -> str:
     >>> requirement_words("settling_s<=3600")
     'settling ≤ 60 min'
     """
-    limit = read_requirement(text)
-    label, unit, size = _REQUIREMENTS.get(limit.name, (limit.name, "", 1.0))
-    sign = "≤" if limit.sense == "<=" else "≥"
-    return f"{label} {sign} {number(limit.limit / size, 4)} {unit}".rstrip()
+    requirement = read_requirement(text)
+    return limit_words(requirement.name, requirement.limit)
 
 
-def _value(data: object, field: str) -> float | None:
-    for part in field.split("."):
-        if isinstance(data, list):
-            data = data[int(part)]
-        elif isinstance(data, dict):
-            data = data.get(part)
-    return float(data) if isinstance(data, int | float) else None
+def limit_words(key: str, limit: float) -> str:
+    """Limit (SI) of a quantity as the tab Requirements has it."""
+    quantity = QUANTITIES[key]
+    value = number(limit / quantity.size, 4)
+    return f"{quantity.label} {SIGNS[quantity.sense]} {value} {quantity.shown}".rstrip()
 
 
 def _row(cells: Sequence[str], tag: str = "td") -> str:

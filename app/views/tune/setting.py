@@ -3,29 +3,22 @@
 from typing import Any
 
 from app.jobs.designer import TuningTask
-from app.session.requirements import Requirements, label_of
+from app.session.display import OBJECTIVES
+from app.session.requirements import Requirements
 from app.shell import notices
 from app.shell.searching import SearchControls, reveal, show_html
 from app.shell.view import Frame, if_user
 from app.views.tune.change import change_network
-from app.views.tune.proposal import OBJECTIVES, proposal_html
-from navcore.design.vary import tunable_fields
+from app.views.tune.proposal import limit_words, proposal_html, requirement_words
+from navcore.design.vary import network_not_in_force, tunable_fields
 from navcore.foundation.text import Text
-from navcore.foundation.units import ARCSEC, MINUTE
+from navcore.quantities import QUANTITIES, searched
+from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 
 OBJECTIVE, VARY, TUNE, STOP = "tune for", "what may vary", "Tune", "Stop tuning"
 ACCEPT, DISCARD = "Accept the proposal", "Discard"
 ALL = "all parameters"
-_MEASURED = {
-    "settling_min": ("settling_s<=", MINUTE),
-    "damping_ratio": ("damping_ratio>=", 1.0),
-    "h0_deviation": ("h0_deviation<=", 1.0),
-    "h_slope_s": ("h_slope_s<=", 1.0),
-    "log_tilt_arcsec": ("log_tilt<=", ARCSEC),
-    "position_rms_m": ("position_rms<=", 1.0),
-}
-"""Requirements that a search can measure, as `navcore.design.measures.read_requirement` reads them."""
 
 
 class SettingPanel:
@@ -47,7 +40,7 @@ class SettingPanel:
         gui = self.frame.gui
         self._fields = {}
         self._objective: Any = gui.add_dropdown(
-            OBJECTIVE, tuple(label for label, _, _ in OBJECTIVES.values()), hint="What is to be least."
+            OBJECTIVE, tuple(QUANTITIES[name].label for name in OBJECTIVES), hint="What is to be least."
         )
         self._vary: Any = gui.add_dropdown(
             VARY, (ALL,), hint="Fields of the selected method that the search may move."
@@ -58,7 +51,7 @@ class SettingPanel:
         self._found = gui.add_html("", visible=False)
         self._accept = gui.add_button(ACCEPT, visible=False, hint="One step of undo takes it back.")
         self._discard = gui.add_button(DISCARD, color="gray", visible=False)
-        words = {label: name for name, (label, _, _) in OBJECTIVES.items()}
+        words = {QUANTITIES[name].label: name for name in OBJECTIVES}
         self._objective.on_update(if_user(lambda: self.frame.show(objective=words[self._objective.value])))
         self._accept.on_click(if_user(self._take))
         self._discard.on_click(if_user(self._designer.discard))
@@ -67,7 +60,7 @@ class SettingPanel:
         """Show how far the search is, or its proposal; nothing while something else is ``chosen``."""
         designer, scenario = self._designer, self.session.scenario
         self._offer(scenario)
-        label = OBJECTIVES[self.session.display.objective][0]
+        label = QUANTITIES[self.session.display.objective].label
         if self._objective.value != label:
             self._objective.value = label
         running, result, task = self._controls.follow(chosen), designer.result, designer.asked
@@ -77,8 +70,9 @@ class SettingPanel:
             if task.scenario != scenario:
                 html += notices.note(["The scenario has changed since this proposal was made."], "warning")
             html += proposal_html(task, result)
-        limits = notices.small(requirements_told(self.session.display.requirements))
-        show_html(self._told, f'<div class="sb-wide">{limits}</div>' if chosen else "")
+        said = notices.small(requirements_told(self.session.display.requirements))
+        said += left_out_html(scenario.method[self.session.selected])
+        show_html(self._told, f'<div class="sb-wide">{said}</div>' if chosen else "")
         show_html(self._found, f'<div class="sb-wide">{html}</div>' if chosen and html else "")
         reveal(
             (self._objective, chosen),
@@ -103,7 +97,8 @@ class SettingPanel:
             scenario, display = session.scenario, session.display
             fields = self._fields.get(self._vary.value, ())
         if not fields:
-            lines = ["The network of this method has no parameter to vary."]
+            reason = network_not_in_force(scenario.method[session.selected])
+            lines = [reason or "The network of this method has no parameter to vary."]
             notices.tell(self.frame.client, "Nothing to tune", lines)
             return
         self._designer.begin(
@@ -121,20 +116,28 @@ class SettingPanel:
             self._designer.discard()
 
 
+def left_out_html(method: Method) -> str:
+    """Note on the parameters of a method that a search cannot vary, HTML; empty where there are none."""
+    reason = network_not_in_force(method)
+    return notices.note([Text("Not to be varied: {reason}.", reason=reason)] if reason else [], "info")
+
+
 def requirements_as_text(requirements: Requirements) -> tuple[str, ...]:
-    """Limits of the tab Requirements as `navcore.design.measures.read_requirement` reads them, SI."""
+    """Limits of the tab Requirements as `navcore.design.measures.read_requirement` reads them, SI.
+
+    A limit of one run is kept as that of the ensemble, where there is one.
+    """
     return tuple(
-        f"{name}{limit * unit:.12g}"
-        for field, (name, unit) in _MEASURED.items()
-        if (limit := getattr(requirements, field)) is not None
+        f"{row.key}{row.sense}{limit:.12g}"
+        for key, limit in requirements.limits.items()
+        if (row := searched(key)) is not None
     )
 
 
 def requirements_told(requirements: Requirements) -> str:
-    """Which limits of the tab Requirements a search keeps, and which it cannot."""
-    given = [name for name in type(requirements).model_fields if getattr(requirements, name) is not None]
-    kept = [_limit(requirements, name) for name in given if name in _MEASURED]
-    other = [_limit(requirements, name) for name in given if name not in _MEASURED]
+    """Which limits a search keeps, and which of the tab Requirements it cannot."""
+    kept = [requirement_words(text) for text in requirements_as_text(requirements)]
+    other = [limit_words(key, limit) for key, limit in requirements.limits.items() if searched(key) is None]
     text = (
         Text("Requirements that are kept: {kept}.", kept=", ".join(kept))
         if kept
@@ -145,8 +148,3 @@ def requirements_told(requirements: Requirements) -> str:
         if other
         else text
     )
-
-
-def _limit(requirements: Requirements, name: str) -> str:
-    label, _, unit = label_of(name).partition(" (")
-    return f"{label} {getattr(requirements, name):g} {unit.rstrip(')')}".rstrip()

@@ -87,11 +87,10 @@ class TuneView(PlotlyView):
         """Pareto fronts, with the present design."""
         del both
         scenario, index, objectives = found.run.scenario, self._finder.method, self._finder.objectives
-        damped = index < len(scenario.method) and not scenario.method[index].undamped
         return fronts_figure(
             self._finder.found,
             objectives,
-            measured(scenario, objectives, index) if damped else None,
+            measured(scenario, objectives, index) if index < len(scenario.method) else None,
             scenario.method[min(index, len(scenario.method) - 1)].name,
             self.aspect,
             width_px=self.width_px,

@@ -13,7 +13,7 @@ from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.law.law import Law, prepare_law
 from navcore.mechanization.recorder import DAMPED_COLUMN, LAW_COLUMNS, XI_COLUMN, Recorder
-from navcore.motion.base import COLUMNS
+from navcore.motion.truth import COLUMNS
 from navcore.networks.base import LinearNetwork
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario

@@ -14,7 +14,7 @@ from navcore.mechanization.kalman.error_model import FilteredErrorModel
 from navcore.mechanization.kalman.filter import ACCEL, GYRO, LOG, FilterModel, FilterState, filter_state
 from navcore.mechanization.recorder import make_recorder
 from navcore.mechanization.trajectory import coefficients
-from navcore.motion.base import HEADING, PITCH, ROLL, Truth
+from navcore.motion.truth import HEADING, PITCH, ROLL, Truth
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.start import ERRORS, aligned_errors, independent_errors
@@ -159,7 +159,7 @@ def own_sigma(run: object, truth: np.ndarray, earth: Earth) -> np.ndarray | None
     Returns
     -------
     ndarray, shape (rows, 7)
-        In the order of `navcore.mechanization.recorder.NAMES`: rad, m/s, m.
+        In the order of `navcore.quantities.NAMES`: rad, m/s, m.
     """
     state: FilterState | None = getattr(run, "filter", None)
     if state is None:

@@ -197,6 +197,14 @@ class Adaptive(PolicyParameters):
             "slope": _filled(slopes / KNOT),
         }
 
+    def sets(self, network: NetworkParameters) -> tuple[str, ...]:
+        """The damping ratio of the network that is re-tuned; all of the method's where that is another."""
+        field = self.network_in_force(network).damping_field
+        if self.network is None:
+            return (f"network.{field}",)
+        unused = (f"network.{name}" for name in type(network).model_fields if name != "id")
+        return (f"policy.network.{field}", *unused)
+
     def network_in_force(self, network: NetworkParameters) -> NetworkParameters:
         """The policy's own network, else the method's, else `unity2`."""
         if self.network is not None:

@@ -120,6 +120,21 @@ class PolicyParameters(Parameters):
         """Say where the decision would leave every stable loop; asked when there are no other faults."""
         return iter(())
 
+    def sets(self, network: NetworkParameters) -> tuple[str, ...]:
+        """Fields of a method whose values the policy replaces while it runs.
+
+        Parameters
+        ----------
+        network : NetworkParameters
+            As configured.
+
+        Returns
+        -------
+        tuple of str
+            Relative to the method, such as ``"network.zeta"``.
+        """
+        return ()
+
     def network_in_force(self, network: NetworkParameters) -> NetworkParameters:
         """Network that runs when the method is configured with ``network``."""
         return network

@@ -129,6 +129,10 @@ class Schedule(_From):
             )
             yield Fault("", "policy.id", self.id, allowed)
 
+    def sets(self, network: NetworkParameters) -> tuple[str, ...]:
+        """All gains of the network."""
+        return tuple(f"network.{name}" for group in type(network).alternatives for name in group)
+
     def network_in_force(self, network: NetworkParameters) -> NetworkParameters:
         """`compass` with the gains that stay."""
         k1, k2, k3 = self.to

@@ -29,7 +29,7 @@ from navcore.mechanization.kalman.filter import (
 )
 from navcore.mechanization.recorder import Errors, Recorder, flush, record
 from navcore.mechanization.trajectory import Coefficients
-from navcore.motion.base import HEADING, PITCH, ROLL
+from navcore.motion.truth import HEADING, PITCH, ROLL
 from navcore.sensors.base import ReferenceErrors, SensorErrors
 
 

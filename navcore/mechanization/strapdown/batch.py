@@ -35,7 +35,7 @@ from navcore.mechanization.strapdown.step import (
     increment_at,
     strapdown_step,
 )
-from navcore.motion.base import HEADING, LAT, LON, PITCH, ROLL, VE, VN
+from navcore.motion.truth import HEADING, LAT, LON, PITCH, ROLL, VE, VN
 from navcore.sensors.imu_simulation.normal import fill_normals, stream_key
 from navcore.sensors.imu_simulation.work import HALF_NORMALS, NORMAL, WORK, W
 

@@ -21,8 +21,8 @@ from navcore.mechanization.strapdown.records import (
 )
 from navcore.mechanization.strapdown.samples import is_steady, run_held, run_steady
 from navcore.mechanization.strapdown.step import earth_terms
-from navcore.motion.base import HEADING, LAT, LON, PITCH, ROLL, VE, VN, VU
-from navcore.motion.base import HEIGHT as TRUE_HEIGHT
+from navcore.motion.truth import HEADING, LAT, LON, PITCH, ROLL, VE, VN, VU
+from navcore.motion.truth import HEIGHT as TRUE_HEIGHT
 
 TILT_LIMIT = 1.0
 """Beyond this misalignment (rad) the run has diverged."""

@@ -16,7 +16,7 @@ from navcore.mechanization.strapdown.attitude import quaternion_of
 from navcore.mechanization.strapdown.kernel import Pace, advance_kernel
 from navcore.mechanization.strapdown.log import VelocityReference
 from navcore.mechanization.strapdown.step import THIRD_ORDER, TWO_SAMPLE
-from navcore.motion.base import HEADING, HEIGHT, LAT, LON, PITCH, ROLL, VE, VN, VU
+from navcore.motion.truth import HEADING, HEIGHT, LAT, LON, PITCH, ROLL, VE, VN, VU
 from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.true_state import horizontal_state, to_ship
 
@@ -32,7 +32,7 @@ def no_reference() -> VelocityReference:
 
 
 def velocity_reference(errors: ReferenceErrors, truth) -> VelocityReference:
-    """Reference velocity from its errors and the truth (`navcore.motion.base.Truth` on any grid)."""
+    """Reference velocity from its errors and the truth (`navcore.motion.truth.Truth` on any grid)."""
     if len(errors.time_s) == 0:
         return no_reference()
     velocity, heading = horizontal_state(truth, errors.time_s)

@@ -3,10 +3,10 @@
 import numpy as np
 
 from navcore.foundation.compiled import kernel
-from navcore.motion.base import HEIGHT, LAT
 from navcore.motion.kinematics import COURSE, PIECES, PROFILE, REST, SWING, WAVES, WIDTH
 from navcore.motion.pieces import fill_pieces
 from navcore.motion.profile import fill_profile
+from navcore.motion.truth import HEIGHT, LAT
 from navcore.motion.waves import fill_waves
 from navcore.sensors.imu_simulation.corrupt import SUMS, add_sums, fill_errors, write_measured
 from navcore.sensors.imu_simulation.kinematics import fill_course, fill_rest, fill_swing

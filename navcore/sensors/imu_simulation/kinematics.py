@@ -2,7 +2,8 @@
 
 from navcore.foundation.compiled import inlined
 from navcore.foundation.trigonometry import sincos_cycles
-from navcore.motion.base import (
+from navcore.motion.course import course_state_at, leg_at, node_at
+from navcore.motion.truth import (
     AE,
     AN,
     COLUMNS,
@@ -17,7 +18,6 @@ from navcore.motion.base import (
     VE,
     VN,
 )
-from navcore.motion.course import course_state_at, leg_at, node_at
 from navcore.sensors.imu_simulation.work import W
 
 _TWO_PI = 6.283185307179586

@@ -10,7 +10,7 @@ import math
 from navcore.foundation.compiled import inlined
 from navcore.foundation.earth import EARTH_RATE, meridian_radius, normal_gravity, prime_vertical_radius
 from navcore.foundation.trigonometry import sincos
-from navcore.motion.base import (
+from navcore.motion.truth import (
     AE,
     AN,
     AU,

@@ -7,8 +7,9 @@ import numpy as np
 
 from navcore.foundation.earth import Earth
 from navcore.foundation.errors import InputError
-from navcore.motion.base import MotionParameters, Site
+from navcore.motion.base import MotionParameters
 from navcore.motion.kinematics import Kinematics
+from navcore.motion.truth import Site
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_errors.base import Clock
 from navcore.sensors.imu_simulation.blocks import simulate_blocks

@@ -4,7 +4,7 @@ Only so does LLVM see that the rows do not overlap and vectorises loops over twe
 dimensions or with row views it did not (twice the time). A tile is small enough for the first-level cache.
 """
 
-from navcore.motion.base import COLUMNS
+from navcore.motion.truth import COLUMNS
 
 TILE = 64
 """Samples of a tile."""
@@ -13,7 +13,7 @@ HALO = 3
 W = 72
 """Width of a row: TILE + HALO, rounded up to a cache line."""
 
-# Rows: first the 15 quantities of `navcore.motion.base`, then these.
+# Rows: first the 15 quantities of `navcore.motion.truth`, then these.
 NAV = COLUMNS  # 6: rate of the navigation frame, specific force in it
 TRIG = NAV + 6  # 6: sine and cosine of pitch, roll, heading
 C = TRIG + 6  # 9: C_b^n row by row

@@ -1,0 +1,95 @@
+"""Quantities of a closed loop: one function for each row of `navcore.quantities` that is judged of a loop."""
+
+import math
+from collections.abc import Callable
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from navcore.analysis.loop import Loop
+from navcore.analysis.transfers import Output, Source, time_response
+from navcore.analysis.whole_system import WholeSystem
+from navcore.foundation.units import HOUR
+from navcore.networks.base import LinearNetwork
+
+_POINTS = 800
+_SETTLINGS, _LONGEST_S = 2.0, 200.0 * HOUR
+_PERIODS = 6.0
+"""Schuler periods over which the response of a loop that never settles is searched."""
+
+
+class JudgedLoop(NamedTuple):
+    """A loop in force.
+
+    Attributes
+    ----------
+    network : LinearNetwork
+        H(s) in force at the site.
+    loop : Loop
+        Closed loop of one level channel.
+    uses_log : bool
+        The log drives the loop.
+    whole : callable or None
+        Returns both channels with heading and latitude at the site; None where nothing of them is asked.
+    """
+
+    network: LinearNetwork
+    loop: Loop
+    uses_log: bool
+    whole: Callable[[], WholeSystem] | None = None
+
+
+def loop_value(key: str, judged: JudgedLoop) -> float:
+    """Value of a quantity of a loop, SI; infinite where there is none.
+
+    Parameters
+    ----------
+    key : str
+        A row of `navcore.quantities.QUANTITIES` that is judged of a loop.
+    judged : JudgedLoop
+        The loop in force.
+    """
+    value = _VALUES[key](judged)
+    return math.inf if value is None or math.isnan(value) else float(value)
+
+
+def _extremes(judged: JudgedLoop, source: Source, output: Output) -> tuple[float, float]:
+    if not judged.loop.stable:
+        return -math.inf, math.inf
+    return _searched(judged.network, judged.loop.settling_s, source, output)
+
+
+@lru_cache(maxsize=256)
+def _searched(
+    network: LinearNetwork, settling_s: float | None, source: Source, output: Output
+) -> tuple[float, float]:
+    """Least and largest value of a response (SI), each looked at again more finely next to its sample."""
+    span_s = _SETTLINGS * settling_s if settling_s else _PERIODS * 2.0 * math.pi / network.omega_s
+    time_s = np.linspace(0.0, min(span_s, _LONGEST_S), _POINTS)
+    sampled = time_response(network, source, output, time_s)
+
+    def near(at: int) -> np.ndarray:
+        ends = time_s[max(at - 1, 0)], time_s[min(at + 1, _POINTS - 1)]
+        return time_response(network, source, output, np.linspace(*ends, _POINTS))
+
+    return float(np.min(near(int(np.argmin(sampled))))), float(np.max(near(int(np.argmax(sampled)))))
+
+
+def _after_log_step(judged: JudgedLoop, output: Output) -> float:
+    """Largest magnitude after a step of the log's error by 1 m/s."""
+    low, high = _extremes(judged, "dv_r", output)
+    return 0.0 if judged.loop.stable and not judged.uses_log else max(-low, high)
+
+
+_VALUES: dict[str, Callable[[JudgedLoop], float | None]] = {
+    "settling_s": lambda judged: judged.loop.settling_s,
+    "overshoot": lambda judged: _after_log_step(judged, "dv"),
+    "log_tilt": lambda judged: _after_log_step(judged, "phi"),
+    "tilt_overshoot": lambda judged: max(0.0, -_extremes(judged, "initial_tilt", "phi")[0]),
+    "damping_ratio": lambda judged: judged.loop.damping_ratio,
+    "h0": lambda judged: judged.network.h0,
+    "h0_deviation": lambda judged: abs(judged.network.h0 - 1.0),
+    "h_slope_s": lambda judged: judged.network.h_slope,
+    "earth_mode_growth_per_s": lambda judged: judged.whole().earth_growth if judged.whole else None,
+}

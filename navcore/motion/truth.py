@@ -1,0 +1,46 @@
+"""The vehicle's true state on a uniform time grid: its columns, and where it starts."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# Columns of Truth.values.
+LAT, LON, HEIGHT, VE, VN, VU, AE, AN, AU, PITCH, ROLL, HEADING, PITCH_RATE, ROLL_RATE, HEADING_RATE = range(
+    15
+)
+COLUMNS = 15
+
+
+@dataclass(frozen=True)
+class Site:
+    """Where the motion starts: latitude and longitude in rad, height in m."""
+
+    lat: float
+    lon: float
+    height: float
+
+
+@dataclass(frozen=True)
+class Truth:
+    """True trajectory and attitude at t = k * step_s.
+
+    Attributes
+    ----------
+    step_s : float
+        Grid step, s.
+    values : ndarray, shape (n, 15), or (1, 15) when nothing changes
+        Columns: latitude, longitude (rad), height (m), velocity E, N, U (m/s), its time derivative (m/s^2),
+        pitch, roll, heading (rad, heading not wrapped) and their rates (rad/s).
+    """
+
+    step_s: float
+    values: np.ndarray
+
+    @property
+    def constant(self) -> bool:
+        """True when one row stands for all times."""
+        return self.values.shape[0] == 1
+
+    def column(self, index: int) -> np.ndarray:
+        """One column as a view, shape (n,) or (1,)."""
+        return self.values[:, index]

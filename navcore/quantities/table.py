@@ -1,0 +1,250 @@
+"""The table of quantities: name, unit, definition, of what each is judged, and how.
+
+A row says *of what* a quantity is judged. *How* is one function of each room that judges:
+`navcore.analysis.judged.loop_value` of a loop, `navcore.engine.measures.measure` of a run, and
+`navcore.design.measures.measure` of an ensemble or of the steady state.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from navcore.foundation.units import UNITS
+from navcore.quantities.errors import HEADING, NAMES, POSITION, TILT, VELOCITY, Kind, components
+
+Judged = Literal["loop", "run", "ensemble", "steady"]
+"""The loop in force, the run of one seed, all runs that the sensors' statistics give, or the steady state."""
+
+
+@dataclass(frozen=True, eq=False)
+class Quantity:
+    """One number by which a method is judged; it is computed in SI.
+
+    Attributes
+    ----------
+    key : str
+        Name on the command line and in files.
+    names : dict of str to str
+        Of what it can be judged ("loop", "run", "ensemble", "steady"), and its name on the page then.
+    unit, shown : str
+        SI unit, and the unit in which it is shown, a key of `navcore.foundation.units.UNITS`.
+    help : str
+        Definition.
+    kind : Kind or None
+        Kind of the errors that it summarises; None for a quantity of a loop.
+    statistic : {"rms", "max_abs"} or ""
+        Statistic of these errors.
+    axes : {"per_axis", "larger_axis", "vector"} or ""
+        How two axes make one number: root mean square of both, the larger one, or the length of the vector.
+    sense : {"<=", ">="} or ""
+        Sense of a limit. Only what is better when smaller is an objective; "" for what has no better side.
+    signed : bool
+        It may be negative, so that two values have no ratio.
+    typical : float
+        Size (SI) that a miss is compared with where the limit is smaller.
+    """
+
+    key: str
+    names: Mapping[Judged, str]
+    unit: str
+    shown: str
+    help: str
+    kind: Kind | None = None
+    statistic: Literal["", "rms", "max_abs"] = ""
+    axes: Literal["", "per_axis", "larger_axis", "vector"] = ""
+    sense: Literal["", "<=", ">="] = "<="
+    signed: bool = False
+    typical: float = 1e-12
+
+    @property
+    def label(self) -> str:
+        """Name as the page judges it if nothing else is said: the first of `names`."""
+        return next(iter(self.names.values()))
+
+    @property
+    def size(self) -> float:
+        """SI value of the unit in which it is shown."""
+        return UNITS[self.shown]
+
+    @property
+    def errors(self) -> tuple[str, ...]:
+        """Names of the recorded errors that it summarises."""
+        if self.kind is None:
+            return ()
+        return NAMES[-1:] if self.kind is POSITION else components(self.kind)
+
+
+_ROWS = (
+    Quantity(
+        "tilt_rms",
+        {
+            "steady": "steady tilt RMS per axis",
+            "ensemble": "ensemble tilt RMS per axis",
+        },
+        "rad",
+        "arcsec",
+        "Root mean square of the tilt of one channel; over a run, of both.",
+        kind=TILT,
+        statistic="rms",
+        axes="per_axis",
+    ),
+    Quantity(
+        "velocity_rms",
+        {
+            "steady": "steady velocity RMS per axis",
+            "ensemble": "ensemble velocity RMS per axis",
+        },
+        "m/s",
+        "m/s",
+        "Root mean square of the velocity error of one channel; over a run, of both.",
+        kind=VELOCITY,
+        statistic="rms",
+        axes="per_axis",
+    ),
+    Quantity(
+        "heading_rms",
+        {"ensemble": "ensemble heading RMS"},
+        "rad",
+        "arcmin",
+        "Root mean square of the heading error over the run.",
+        kind=HEADING,
+        statistic="rms",
+    ),
+    Quantity(
+        "position_rms",
+        {"ensemble": "ensemble position RMS"},
+        "m",
+        "m",
+        "Root mean square of the horizontal position error over the run.",
+        kind=POSITION,
+        statistic="rms",
+        axes="vector",
+    ),
+    Quantity(
+        "settling_s",
+        {"loop": "settling"},
+        "s",
+        "min",
+        "Last time at which the tilt after an initial tilt exceeds 2 % of it.",
+    ),
+    Quantity(
+        "overshoot",
+        {"loop": "velocity after log step"},
+        "m/s",
+        "m/s",
+        "Largest velocity error after a step of the log's error by 1 m/s; 0 for a method without log.",
+    ),
+    Quantity(
+        "log_tilt",
+        {"loop": "tilt after log step"},
+        "rad",
+        "arcsec",
+        "Largest tilt after a step of the log's error by 1 m/s; 0 for a method without log.",
+    ),
+    Quantity(
+        "tilt_overshoot",
+        {"loop": "tilt overshoot"},
+        "",
+        "%",
+        "Largest swing to the other side of the tilt after an initial tilt, as a part of that tilt.",
+    ),
+    Quantity(
+        "damping_ratio",
+        {"loop": "damping ratio"},
+        "",
+        "",
+        "Smallest damping ratio -Re/|p| of the closed-loop poles.",
+        sense=">=",
+    ),
+    Quantity(
+        "h0",
+        {"loop": "H(0)"},
+        "",
+        "",
+        "Gain of the network for constant errors.",
+        sense="",
+        signed=True,
+    ),
+    Quantity(
+        "h0_deviation",
+        {"loop": "|H(0) - 1|"},
+        "",
+        "",
+        "How far the network's gain for constant errors is from 1: beyond it the loop is not Schuler-tuned.",
+    ),
+    Quantity(
+        "h_slope_s",
+        {"loop": "H'(0)"},
+        "s",
+        "s",
+        "Slope of the network at s = 0. With H(0) = 1 and a slope of 0 or less the 24 h mode of the whole "
+        "system does not grow; a negative slope damps it. The placement in the tab Poles keeps to it.",
+        signed=True,
+        typical=100.0,
+    ),
+    Quantity(
+        "earth_mode_growth_per_s",
+        {"loop": "growth of the 24 h mode"},
+        "1/s",
+        "1/s",
+        "Growth of the 24 h mode of the whole system at the site; negative when it decays.",
+        signed=True,
+    ),
+    Quantity(
+        "tilt_max_arcsec",
+        {"run": "largest tilt of this run"},
+        "rad",
+        "arcsec",
+        "Largest of the two tilts in this run, over what the tab Metrics measures.",
+        kind=TILT,
+        statistic="max_abs",
+        axes="larger_axis",
+    ),
+    Quantity(
+        "velocity_rms_mps",
+        {"run": "velocity RMS of this run"},
+        "m/s",
+        "m/s",
+        "RMS of the horizontal velocity error of this run, over what the tab Metrics measures.",
+        kind=VELOCITY,
+        statistic="rms",
+        axes="vector",
+    ),
+    Quantity(
+        "position_rms_m",
+        {"run": "position RMS of this run"},
+        "m",
+        "m",
+        "RMS of the horizontal position error of this run, over what the tab Metrics measures.",
+        kind=POSITION,
+        statistic="rms",
+        axes="vector",
+    ),
+    Quantity(
+        "position_max_m",
+        {"run": "largest position error of this run"},
+        "m",
+        "m",
+        "Largest horizontal position error of this run, over what the tab Metrics measures.",
+        kind=POSITION,
+        statistic="max_abs",
+        axes="vector",
+    ),
+)
+QUANTITIES = {row.key: row for row in _ROWS}
+"""All rows by key."""
+TUNED = tuple(row.key for row in _ROWS if row.sense and "run" not in row.names)
+"""Quantities that a search can measure, and so keep a limit of."""
+OBJECTIVES = tuple(key for key in TUNED if QUANTITIES[key].sense == "<=")
+"""Quantities that a search can make small."""
+WEIGHED = tuple(key for key in OBJECTIVES if not QUANTITIES[key].signed)
+"""Objectives of which there are ratios: a Pareto front can have them on its axes."""
+
+
+def searched(key: str) -> Quantity | None:
+    """Return the row that a search measures for a limit: that of the ensemble in the place of one run's."""
+    own, rows = QUANTITIES[key], [QUANTITIES[name] for name in TUNED]
+    how = own.kind, own.statistic, own.axes
+    return next(
+        (row for row in rows if row is own or (own.kind and how == (row.kind, row.statistic, row.axes))), None
+    )
