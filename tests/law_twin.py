@@ -16,7 +16,7 @@ from navcore.law.switching.base import SwitchingParameters
 from navcore.networks.base import NetworkParameters
 from navcore.networks.compass import CompassNetwork
 from navcore.networks.unity2 import Unity2Network
-from tests.law_twin_forms import Form, bilinear, companion, controller, damping_ratio
+from tests.law_twin_forms import Form, adaptive, bilinear, companion, controller, damping_ratio
 
 Vector = np.ndarray
 
@@ -223,18 +223,8 @@ class TwinLaw:
         share = 1.0 if self.fresh == 1 else 1.0 - math.exp(-self.step_s / self.policy.lowpass_s)
         self.low = self.low + share * (difference - self.low)
         self.measure = float(np.linalg.norm(self.low))
-        self.target = max(self._law(self.measure / KNOT), self.least)
+        self.target = max(adaptive(self.policy, self.measure / KNOT), self.least)
         return True
-
-    def _law(self, knots: float) -> float:
-        from scipy.interpolate import PchipInterpolator
-
-        if self.policy.law == "quadratic":
-            xi = 0.3076 * knots**2 - 1.1452 * knots + 0.8101
-        else:
-            x, y = np.array(sorted(self.policy.table)).T
-            xi = float(PchipInterpolator(x, y)(np.clip(knots, x[0], x[-1])))
-        return min(max(xi, 0.04), 0.99)
 
     def _follow_schedule(self, u: Vector) -> None:
         share = min((self.now - self.engaged_at) / self.policy.duration_s, 1.0)

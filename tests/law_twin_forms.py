@@ -1,8 +1,10 @@
-"""Discrete forms of a network for `tests.law_twin`, from matrices and polynomials as in a textbook."""
+"""Discrete forms of a network and Sun's damping coefficient for `tests.law_twin`, as in a textbook."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from navcore.networks.base import LinearNetwork, NetworkParameters
 
@@ -74,3 +76,13 @@ def controller(parameters: NetworkParameters, omega_s: float, a: float) -> Form:
         A * scale[None, :] / scale[:, None], np.eye(n)[-1] / scale,
         (network.den_p - network.num_p)[:0:-1] * scale, 0.0, a,
     )  # fmt: skip
+
+
+def adaptive(policy: Any, knots: float) -> float:
+    """Coefficient of the policy `adaptive` for a difference: the printed curve, or the table's."""
+    if policy.law == "quadratic":
+        xi = 0.3076 * knots**2 - 1.1452 * knots + 0.8101
+    else:
+        x, y = np.array(sorted(policy.table)).T
+        xi = float(PchipInterpolator(x, y)(np.clip(knots, x[0], x[-1])))
+    return min(max(xi, 0.04), 0.99)

@@ -81,8 +81,7 @@ class Page:
         if self._tells:
             self._pace.expect_answers()
         else:
-            # No word from the script: the view covers the window as long as nothing is docked, but its size
-            # counts device pixels.
+            # No word from the script: the view, in device pixels, covers the window while nothing is docked.
             camera = self.client.camera
             self._window = (max(camera.image_width, 1280), max(camera.image_height, 720), False, False, 1.0)
         with session.lock, self.client.atomic():

@@ -262,8 +262,8 @@ def page_styles(kinds: Sequence[type[View]], state_id: str, command_id: str) -> 
         "".join(path.read_text(encoding="utf-8") for path in paths) for paths in (of_shell, of_views)
     )
     first = first.replace("PAGE_STATE", state_id).replace("PAGE_COMMAND", command_id)
-    font = f":root {{ --sb-font: {style.FONT_FAMILY}; }}\n"
-    return font + first + table.CSS + last + style.UPLOT_CSS
+    first = first.replace("PAGE_FONT", style.FONT_FAMILY)
+    return first + table.CSS + last + style.UPLOT_CSS
 
 
 def if_user(act: Callable[[], None]) -> Callable[[Any], None]:
