@@ -93,11 +93,11 @@ def _block(discrete: DiscreteNetwork) -> tuple[np.ndarray, np.ndarray, np.ndarra
 
 def _fitted(inputs: ComplexArray, outputs: np.ndarray) -> ComplexArray:
     """Gain of each column by least squares on sine, cosine and a constant."""
-    found = np.empty(outputs.shape[1], dtype=np.complex128)
+    gains = np.empty(outputs.shape[1], dtype=np.complex128)
     for k in range(outputs.shape[1]):
         sine, cosine = inputs[:, k].imag, inputs[:, k].real
         table = np.stack([sine, cosine, np.ones(len(sine))], axis=1)
         normal, right = table.T @ table, table.T @ outputs[:, k]
         a, b, _ = np.linalg.solve(normal, right)
-        found[k] = complex(a, b)
-    return found
+        gains[k] = complex(a, b)
+    return gains

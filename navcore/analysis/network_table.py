@@ -71,8 +71,8 @@ def page() -> str:
 def _row(name: str, parameters: str) -> list[str]:
     text = f'id = "{name}"' + (f", {parameters}" if parameters else "")
     network = parse_network(text).transfer(SPHERE.schuler_frequency(0.0))
-    shown = f"`{parameters}`" if parameters else ""
-    cells = [f"`{name}`", shown, f"{network.h0:.4g}", f"{network.h_slope:+.1f}"]
+    cell = f"`{parameters}`" if parameters else ""
+    cells = [f"`{name}`", cell, f"{network.h0:.4g}", f"{network.h_slope:+.1f}"]
     cells.append(f"{analyse(network).damping_ratio:.3f}")
     for lat in LATITUDES:
         whole = whole_system(network, lat * DEG)

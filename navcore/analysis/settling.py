@@ -45,9 +45,9 @@ def last_exceedance(system: StateSpace, poles: ComplexArray) -> float | None:
         return None
     end = (_MARGIN - math.log(LEVEL)) / float(np.min(-poles.real))
     for _ in range(4):
-        found = _Search(system, poles, end).run()
-        if found < 0.999 * end:
-            return found
+        crossing = _Search(system, poles, end).run()
+        if crossing < 0.999 * end:
+            return crossing
         end *= 16.0  # a large transient hid behind the margin
     return None
 
@@ -77,9 +77,9 @@ class _Search:
         for octave, (level, grid) in enumerate(self.grids):
             lower = self.end / 2.0**level if octave < self.octaves else 0.0
             state = start + self.ladder.minus_identity(level) @ start if lower > 0.0 else start
-            found = self._last(state, level + grid, grid, 0)
-            if found is not None:
-                return lower + found
+            crossing = self._last(state, level + grid, grid, 0)
+            if crossing is not None:
+                return lower + crossing
         return 0.0
 
     def _last(self, state: np.ndarray, level: int, grid: int, depth: int) -> float | None:
@@ -109,7 +109,7 @@ class _Search:
         close[: max(0, last)] = False  # maxima at sample last + 1 and later
         for k in (np.flatnonzero(close) + 1)[::-1]:
             for cell in (k, k - 1):
-                found = self._last(states[cell], level + _ZOOM, _ZOOM, 1)
-                if found is not None:
-                    return cell * self.end / 2.0**level + found
+                crossing = self._last(states[cell], level + _ZOOM, _ZOOM, 1)
+                if crossing is not None:
+                    return cell * self.end / 2.0**level + crossing
         return None

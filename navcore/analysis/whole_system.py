@@ -248,8 +248,8 @@ def _named(values: ComplexArray, network: LinearNetwork, lat: float) -> list[Mod
     target_of = _nearest(values, targets)
     modes: list[Mode] = []
     for name in (EARTH_MODE, SCHULER_MODE, NETWORK_MODE):
-        found = [v for v, i in zip(values, target_of, strict=True) if v.imag >= 0.0 and names[i] == name]
-        modes += [Mode(name, complex(root)) for root in sorted_roots(np.array(found)) * network.omega_s]
+        roots = [v for v, i in zip(values, target_of, strict=True) if v.imag >= 0.0 and names[i] == name]
+        modes += [Mode(name, complex(root)) for root in sorted_roots(np.array(roots)) * network.omega_s]
     return modes
 
 

@@ -84,8 +84,8 @@ def line_amplitudes(time_s: np.ndarray, curves: np.ndarray, phases: np.ndarray) 
     span = max(float(time_s[-1] - time_s[0]), 1e-9)
     ramp = (time_s - time_s[0]) / span
     design = np.column_stack([np.ones(len(time_s)), ramp, np.cos(phases), np.sin(phases)])
-    found, *_ = np.linalg.lstsq(design, curves, rcond=_RCOND)
+    solution, *_ = np.linalg.lstsq(design, curves, rcond=_RCOND)
     count = len(LINES)
-    amplitude = np.hypot(found[2 : 2 + count], found[2 + count :]).T
-    left = curves - design @ found
-    return LineAmplitudes(amplitude, found[0], found[1] / span, np.sqrt(np.mean(left**2, axis=0)))
+    amplitude = np.hypot(solution[2 : 2 + count], solution[2 + count :]).T
+    left = curves - design @ solution
+    return LineAmplitudes(amplitude, solution[0], solution[1] / span, np.sqrt(np.mean(left**2, axis=0)))

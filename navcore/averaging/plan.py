@@ -88,9 +88,9 @@ def prepare_averaging(
 
 def _notices(chosen: Copies, forecast: Forecast, imu: Imu, seconds: int) -> tuple[str, ...]:
     still = sum(last - first for first, last in forecast.segments) * RECORD_STEP_S
-    found = []
+    messages = []
     if still < seconds * RECORD_STEP_S:
-        found.append(
+        messages.append(
             Text(
                 "the base moved during the alignment: {seconds:g} s of {seconds_2:g} s were "
                 "left out of the forecast",
@@ -100,7 +100,7 @@ def _notices(chosen: Copies, forecast: Forecast, imu: Imu, seconds: int) -> tupl
         )
     noise = imu.gyro().white / np.sqrt(still)
     if noise > 0.0:
-        found.append(
+        messages.append(
             Text(
                 "the forecast of {ahead_s:.1f} h rests on {still:g} s of alignment: the "
                 "gyros' random walk leaves {noise:.2g} °/h (1 σ) in it",
@@ -109,4 +109,4 @@ def _notices(chosen: Copies, forecast: Forecast, imu: Imu, seconds: int) -> tupl
                 noise=noise / DEG_PER_HOUR,
             )
         )
-    return tuple(found)
+    return tuple(messages)

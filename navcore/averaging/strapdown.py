@@ -50,15 +50,15 @@ def starts_ahead(
     law : callable
         Makes the law of a free method for an interval in seconds.
     """
-    found: list[Start] = [start] * len(ahead_s)
+    starts: list[Start] = [start] * len(ahead_s)
     signals, now = np.concatenate([forecast.gyro, forecast.accel]), 0.0
     for i in np.argsort(ahead_s):
         wait = ahead_s[i] - now
         samples = math.ceil(wait * FORECAST_RATE_HZ)
         if samples > 0:
             start = _run_ahead(start, wait, samples, signals, standing, earth, law(wait / samples))
-        now, found[i] = ahead_s[i], start
-    return found
+        now, starts[i] = ahead_s[i], start
+    return starts
 
 
 def _run_ahead(

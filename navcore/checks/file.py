@@ -108,11 +108,11 @@ def check_file(path: str | os.PathLike[str], others: Sequence[Checker] = ()) -> 
         for the content of a file.
     """
     try:
-        found = require_file(path)
-        with found.open("rb") as stream:
+        existing = require_file(path)
+        with existing.open("rb") as stream:
             head = stream.read(_SNIFFED_BYTES)
-        checker = next((c for c in others if c.recognises(found, head)), None)
-        return checker.check(found) if checker is not None else check_log(found)
+        checker = next((c for c in others if c.recognises(existing, head)), None)
+        return checker.check(existing) if checker is not None else check_log(existing)
     except InputError as error:
         return FileReport(str(path), "", faults=error.faults)
 
@@ -263,11 +263,11 @@ def _extent(key: str, extent: list[float]) -> str:
 
 
 def _warnings(source: SourceReport, recording: Recording) -> tuple[str, ...]:
-    found = [*source.warnings, *speed_warnings(recording)]
+    existing = [*source.warnings, *speed_warnings(recording)]
     for name, series in recording.quantities().items():
         gaps, longest = series.gaps()
         if gaps:
-            found.append(
+            existing.append(
                 Text(
                     "{names}: {gaps} gaps, the longest {longest:.1f} s",
                     names=_NAMES[name],
@@ -276,5 +276,5 @@ def _warnings(source: SourceReport, recording: Recording) -> tuple[str, ...]:
                 )
             )
         if series.time_s.size < 2:
-            found.append(Text("{names}: a single sample", names=_NAMES[name]))
-    return tuple(found)
+            existing.append(Text("{names}: a single sample", names=_NAMES[name]))
+    return tuple(existing)

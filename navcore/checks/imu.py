@@ -98,11 +98,11 @@ def _text(details: dict[str, Any]) -> list[str]:
 
 
 def _warnings(details: dict[str, Any]) -> list[str]:
-    found = []
+    warnings = []
     size, up = details["mean_force_size_mps2"], details["up_axis"]
     low, high = _GRAVITY
     if not low * (1.0 - _FORCE_ERROR) < size < high * (1.0 + _FORCE_ERROR):
-        found.append(
+        warnings.append(
             Text(
                 "the mean specific force is {size:g} m/s², far from gravity: wrong units, "
                 "scale, or not at rest",
@@ -110,9 +110,9 @@ def _warnings(details: dict[str, Any]) -> list[str]:
             )
         )
     if up == "-z":
-        found.append('the -z axis looks like up: forward, right, down? Then give imu.axes = "frd"')
+        warnings.append('the -z axis looks like up: forward, right, down? Then give imu.axes = "frd"')
     elif up != "+z":
-        found.append(
+        warnings.append(
             Text(
                 "the {up} axis looks like up: a run needs x right, y forward, z up (or frd), "
                 "turn the columns",
@@ -120,10 +120,10 @@ def _warnings(details: dict[str, Any]) -> list[str]:
             )
         )
     if details["rate_hz"] < _SLOWEST_HZ:
-        found.append(
+        warnings.append(
             Text(
                 "{rate_hz:g} Hz is slow for a strapdown run: only a vehicle at rest can be navigated",
                 rate_hz=details["rate_hz"],
             )
         )
-    return found
+    return warnings

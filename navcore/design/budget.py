@@ -134,15 +134,15 @@ def _from_seeds(
     return _of_series(method, "seeds", Series(t_s, {}, variance), (note,))
 
 
-def _of_series(method: Method, shown: Shown, series: Series, warnings: tuple[str, ...]) -> MethodBudget:
+def _of_series(method: Method, kind: Shown, series: Series, warnings: tuple[str, ...]) -> MethodBudget:
     if not np.all(np.isfinite(series.total)):
-        return _diverged(method, shown, warnings)
+        return _diverged(method, kind, warnings)
     total = entry_of(series.t_s, series.total)
     sources = {name: entry_of(series.t_s, values) for name, values in series.sources.items()}
-    return MethodBudget(method.name, shown, total, sources, warnings=warnings, series=series)
+    return MethodBudget(method.name, kind, total, sources, warnings=warnings, series=series)
 
 
-def _diverged(method: Method, shown: Shown, warnings: tuple[str, ...]) -> MethodBudget:
+def _diverged(method: Method, kind: Shown, warnings: tuple[str, ...]) -> MethodBudget:
     empty = Entry(Figures(), Figures())
     all_warnings = (*warnings, "diverged: there is no budget along this run")
-    return MethodBudget(method.name, shown, empty, {}, warnings=all_warnings, diverged=True)
+    return MethodBudget(method.name, kind, empty, {}, warnings=all_warnings, diverged=True)

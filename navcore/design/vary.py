@@ -93,22 +93,22 @@ def read_varied(scenario: Scenario, texts: Sequence[str]) -> tuple[Varied, ...]:
     """
     if not texts:
         raise InputError(Fault("", "--vary", None, "is required: e.g. method.0.network.xi"))
-    found, faults = [], []
+    choices, faults = [], []
     for text in texts:
         try:
-            found.append(_read_one(scenario, text))
+            choices.append(_read_one(scenario, text))
         except InputError as error:
             faults += error.faults
     if faults:
         raise InputError(faults)
-    methods = {varied.method for varied in found}
+    methods = {varied.method for varied in choices}
     if len(methods) > 1:
         raise InputError(
             Fault("", "--vary", ", ".join(texts), "must be parameters of one and the same method")
         )
-    if len({varied.field for varied in found}) < len(found):
+    if len({varied.field for varied in choices}) < len(choices):
         raise InputError(Fault("", "--vary", ", ".join(texts), "names a parameter twice"))
-    return tuple(found)
+    return tuple(choices)
 
 
 def network_not_in_force(method: Method, field: str = "") -> str:

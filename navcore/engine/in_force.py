@@ -46,12 +46,12 @@ def damping_in_force(
     """
     damped = law_series[:, _DAMPED] > 0.5
     if isinstance(method.policy, Schedule):
-        found = _scheduled(method.policy, network.omega_s, t_s, damped)
+        damping = _scheduled(method.policy, network.omega_s, t_s, damped)
     elif method.network.tuning(network.omega_s) is None:
-        found = np.full(len(t_s), least_damping(network))
+        damping = np.full(len(t_s), least_damping(network))
     else:
-        found = _tuned(method.network, network.omega_s, law_series[:, _XI])
-    return np.where(damped, found, 0.0)
+        damping = _tuned(method.network, network.omega_s, law_series[:, _XI])
+    return np.where(damped, damping, 0.0)
 
 
 def _tuned(parameters: NetworkParameters, omega_s: float, xi: np.ndarray) -> np.ndarray:

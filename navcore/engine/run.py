@@ -111,9 +111,9 @@ class MethodRun:
     @cached_property
     def fingerprint(self) -> bytes:
         """Digest of curves and output rows: equal results have equal ones."""
-        made = hashlib.blake2b(self.plot.values.tobytes(), digest_size=16)
-        made.update(self.rows.tobytes())
-        return made.digest()
+        hashed = hashlib.blake2b(self.plot.values.tobytes(), digest_size=16)
+        hashed.update(self.rows.tobytes())
+        return hashed.digest()
 
     @property
     def law_in_force(self) -> LawInForce:

@@ -203,12 +203,12 @@ def _differences(full: MethodRun, simple: MethodRun) -> dict[str, Difference]:
     rows = min(len(full.t_s), len(simple.t_s))
     if rows < 2:
         return {}
-    found = {}
+    result = {}
     for i, name in enumerate(NAMES):
         peak = float(np.abs(full.rows[:rows, i] - simple.rows[:rows, i]).max())
         largest = float(np.abs(full.rows[:rows, i]).max())
-        found[name] = Difference(peak, peak / largest if largest > 0.0 else None)
-    return found
+        result[name] = Difference(peak, peak / largest if largest > 0.0 else None)
+    return result
 
 
 def _statements(

@@ -33,8 +33,8 @@ class Fault:
     def __str__(self) -> str:
         """One line: place, field, value, allowed range."""
         place = ": ".join(_cut(part) for part in (self.where, self.field) if part)
-        shown = "" if self.value is None else f" = {_shorten(self.value)}"
-        return " ".join(f"{place}{shown}: {_cut(self.allowed, _LONGEST_ALLOWED)}".split())
+        value_text = "" if self.value is None else f" = {_shorten(self.value)}"
+        return " ".join(f"{place}{value_text}: {_cut(self.allowed, _LONGEST_ALLOWED)}".split())
 
 
 def _shorten(value: object) -> str:

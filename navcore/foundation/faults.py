@@ -56,8 +56,8 @@ def faults_from(error: ValidationError, model: Any, data: Any, where: str) -> li
     for item in items[:_MOST_ERRORS]:
         faults += _unfold(item, model, data, where)
     more = len(items) - _MOST_ERRORS
-    told = [Fault(where, "", None, Text("and {more} more faults", more=more))] if more > 0 else []
-    return [*_merged(faults), *told]
+    rest = [Fault(where, "", None, Text("and {more} more faults", more=more))] if more > 0 else []
+    return [*_merged(faults), *rest]
 
 
 def _merged(faults: list[Fault]) -> list[Fault]:

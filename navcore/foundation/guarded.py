@@ -204,8 +204,8 @@ def _data_pages() -> int:
 def _plain(faults: tuple[Fault, ...]) -> list[tuple[str, str, Any, str]]:
     """Faults as plain values, the first of very many."""
     more = len(faults) - _MOST_FAULTS
-    shown = [(f.where, f.field, _value(f.value), f.allowed) for f in faults[:_MOST_FAULTS]]
-    return [*shown, ("", "", None, f"and {more} more faults")] if more > 0 else shown
+    listed = [(f.where, f.field, _value(f.value), f.allowed) for f in faults[:_MOST_FAULTS]]
+    return [*listed, ("", "", None, f"and {more} more faults")] if more > 0 else listed
 
 
 def _value(value: object) -> Any:

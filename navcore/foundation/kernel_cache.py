@@ -45,12 +45,12 @@ def kernel_hash() -> str:
         if re.fullmatch("[0-9a-f]{16}", text) and place.stat().st_uid == os.getuid():
             _used(place)
             return text
-    found = kernel_digest()
+    digest = kernel_digest()
     for place in places:
         if _writable(place.parent):
-            _write_whole(place, found)
+            _write_whole(place, digest)
             break
-    return found
+    return digest
 
 
 class KernelLocator(_CacheLocator):
@@ -78,9 +78,9 @@ class KernelLocator(_CacheLocator):
         module = str(py_func.__module__)
         if not module.startswith(f"{PACKAGE.name}."):
             return None
-        found = cls(module)
-        found.ensure_cache_path()
-        return found
+        locator = cls(module)
+        locator.ensure_cache_path()
+        return locator
 
 
 def _user_cache() -> Path:
@@ -188,15 +188,15 @@ def _lock(file: int) -> None:
 
 
 def _write_whole(path: Path, text: str) -> None:
-    with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as made:
-        made.write(text)
-    os.replace(made.name, path)
+    with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as file:
+        file.write(text)
+    os.replace(file.name, path)
 
 
 def _copy_writable(source: Path, target: Path) -> None:
     # Renamed into place, so that a process that starts at the same time never sees half a copy.
-    with tempfile.TemporaryDirectory(dir=target.parent) as made:
-        copy = Path(made) / "copy"
+    with tempfile.TemporaryDirectory(dir=target.parent) as folder:
+        copy = Path(folder) / "copy"
         shutil.copytree(source, copy)
         for path in (copy, *copy.rglob("*")):
             path.chmod(path.stat().st_mode | 0o200)

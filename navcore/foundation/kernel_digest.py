@@ -49,19 +49,19 @@ class _Module:
 @cache
 def _module(name: str) -> _Module | None:
     stem = PACKAGE.parent.joinpath(*name.split("."))
-    found = next((p for p in (stem.with_suffix(".py"), stem / "__init__.py") if p.is_file()), None)
-    return None if found is None else _Module(found)
+    path = next((p for p in (stem.with_suffix(".py"), stem / "__init__.py") if p.is_file()), None)
+    return None if path is None else _Module(path)
 
 
 def _defined(module: str, name: str) -> tuple[str, ast.stmt] | None:
     """Module and statement that define a name, imports followed."""
     for _ in range(8):
-        found = _module(module)
-        if found is None or name in found.values:
-            return None if found is None else (module, found.values[name])
-        if name not in found.imported:
+        source = _module(module)
+        if source is None or name in source.values:
+            return None if source is None else (module, source.values[name])
+        if name not in source.imported:
             return None
-        module, name = found.imported[name]
+        module, name = source.imported[name]
     return None
 
 
@@ -87,15 +87,15 @@ def _is_plain(statement: ast.Assign | ast.AnnAssign) -> bool:
 def _named(module: str, statement: ast.stmt) -> Iterator[tuple[str, ast.stmt]]:
     """What a statement names: by a variable, or as a registry does, by a text "package.module:Name"."""
     for node in ast.walk(statement):
-        found = None
+        definition = None
         if isinstance(node, ast.Name):
-            found = _defined(module, node.id)
+            definition = _defined(module, node.id)
         elif isinstance(node, ast.Constant) and isinstance(node.value, str):
             place, _, name = node.value.partition(":")
             if name.isidentifier() and place.startswith(f"{PACKAGE.name}."):
-                found = _defined(place, name)
-        if found is not None:
-            yield found
+                definition = _defined(place, name)
+        if definition is not None:
+            yield definition
 
 
 def kernel_texts() -> Iterator[str]:

@@ -47,9 +47,9 @@ def new_record(kind: np.dtype, **values: Any) -> np.void:
     **values
         Of fields by name; of a field that is itself a record, a mapping of its values.
     """
-    made = np.zeros(1, kind)[0]
-    fill_record(made, values)
-    return made
+    record = np.zeros(1, kind)[0]
+    fill_record(record, values)
+    return record
 
 
 def fill_record(record: np.void, values: Mapping[str, Any]) -> None:

@@ -83,10 +83,10 @@ def blocks_of(model: type[Parameters]) -> dict[type[Parameters], list[tuple[str,
     dict
         Class of a block -> the fields that hold one of it, each with whether it holds a list of them.
     """
-    found: dict[type[Parameters], list[tuple[str, bool]]] = {}
+    blocks: dict[type[Parameters], list[tuple[str, bool]]] = {}
     for name, info in model.model_fields.items():
         many = get_origin(info.annotation) is tuple
         block = get_args(info.annotation)[0] if many else info.annotation
         if isinstance(block, type) and issubclass(block, Parameters):
-            found.setdefault(block, []).append((name, many))
-    return found
+            blocks.setdefault(block, []).append((name, many))
+    return blocks

@@ -85,10 +85,10 @@ def times(where: str, name: str, cells: Sequence[str], rows: Sequence[int]) -> t
         A cell is none of these; names the row.
     """
     try:
-        found = np.array(cells, dtype=float)
+        parsed = np.array(cells, dtype=float)
     except ValueError:
         return _written_times(where, name, cells, rows)
-    return unix_or_elapsed(found)
+    return unix_or_elapsed(parsed)
 
 
 def unix_or_elapsed(values: np.ndarray) -> tuple[np.ndarray, bool]:

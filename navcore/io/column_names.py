@@ -138,7 +138,7 @@ class Column:
         What it holds: a key of `QUANTITIES`, or a column of time.
     unit : str
         Of its numbers; empty for times.
-    told : bool
+    unit_given : bool
         Whether the name gives the unit.
     """
 
@@ -146,7 +146,7 @@ class Column:
     name: str
     stem: str
     unit: str = ""
-    told: bool = True
+    unit_given: bool = True
 
     @property
     def factor(self) -> float:
@@ -178,9 +178,9 @@ def known_columns(names: Sequence[str]) -> dict[str, Column]:
         found = _meaning(name)
         if found is None:
             continue
-        rank, stem, unit, told = found
+        rank, stem, unit, unit_given = found
         if stem not in best or rank < best[stem][0]:
-            best[stem] = rank, Column(index, name.strip(), stem, unit, told)
+            best[stem] = rank, Column(index, name.strip(), stem, unit, unit_given)
     chosen = {stem: column for stem, (_, column) in best.items()}
     if DATE in chosen:
         if UTC in chosen:
@@ -208,8 +208,8 @@ def _meaning(name: str) -> tuple[int, str, str, bool] | None:
         stem = _NAMES.get(words)
         if stem is not None and (not unit or unit in _UNITS[QUANTITIES[stem].dimension]):
             rank = QUANTITIES[stem].names.index(words)
-            told = bool(unit) or QUANTITIES[stem].dimension != "speed"
-            return rank, stem, unit or QUANTITIES[stem].unit, told
+            unit_given = bool(unit) or QUANTITIES[stem].dimension != "speed"
+            return rank, stem, unit or QUANTITIES[stem].unit, unit_given
     if plain in _TIME_NAMES:
         stem = _TIME_NAMES[plain]
         return _TIMES[stem].split().index(plain), stem, "", True

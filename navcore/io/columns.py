@@ -111,18 +111,18 @@ def limited(where: str, faults: list[Fault]) -> list[Fault]:
     ]
 
 
-def column_warnings(names: Sequence[str], found: Mapping[str, Column]) -> list[str]:
+def column_warnings(names: Sequence[str], known: Mapping[str, Column]) -> list[str]:
     """Warn of columns that are not used, in case one is misspelt, and of units that were guessed."""
-    used = {column.index for column in found.values()}
+    used = {column.index for column in known.values()}
     unused = [name for index, name in enumerate(names) if index not in used and name.strip()]
     words: list[str] = [Text("columns not used: {listed}", listed=listed(unused))] if unused else []
-    guessed = [column for column in found.values() if not column.told]
+    guessed = [column for column in known.values() if not column.unit_given]
     words += [
         Text("column {name} names no unit: taken as {unit}", name=column.name, unit=column.unit)
         for column in guessed
     ]
-    if ("sog" in found) != ("cog" in found):
-        there = found.get("sog") or found["cog"]
+    if ("sog" in known) != ("cog" in known):
+        there = known.get("sog") or known["cog"]
         words.append(
             Text("column {name} not used: speed and course over ground serve only together", name=there.name)
         )
@@ -211,8 +211,8 @@ def table_recording(table: Table) -> Recording:
 def _account(table: Table) -> SourceReport:
     used = [table.columns[stem].name.lower() for stem in table.values]
     empty = {table.columns[s].name: int(np.count_nonzero(gone)) for s, gone in table.missing.items()}
-    told = [f"{name} {count}" for name, count in empty.items() if count]
-    warnings = [Text("empty cells, missing samples: {told}", told=", ".join(told))] if told else []
+    counts = [f"{name} {count}" for name, count in empty.items() if count]
+    warnings = [Text("empty cells, missing samples: {told}", told=", ".join(counts))] if counts else []
     report = stream_report("rows", table.time_s.size, True, table.time_s)
     return SourceReport(
         table.where,

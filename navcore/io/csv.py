@@ -103,8 +103,8 @@ def _layout(head: list[str]) -> tuple[str, str, list[str]]:
         bare = line.lstrip("#%/ ") if line.startswith(_COMMENTS) else line
         separator = _separator(bare)
         cells = _cells(bare, separator)
-        found = known_columns(cells[:MOST_COLUMNS])
-        if found.keys() & QUANTITIES.keys() and {UTC, UNIX, SECONDS, CLOCK} & found.keys():
+        known = known_columns(cells[:MOST_COLUMNS])
+        if known.keys() & QUANTITIES.keys() and {UTC, UNIX, SECONDS, CLOCK} & known.keys():
             return separator, line, cells
     return _separator(plain), plain, _cells(plain, _separator(plain))
 
@@ -199,13 +199,13 @@ def _is_units(row: list[str]) -> bool:
         and any(
             known_columns([Text("lat ({cell})", cell=cell), Text("sog ({cell})", cell=cell)])
             .get("sog", _NONE)
-            .told
+            .unit_given
             for cell in row
         )
     )
 
 
-_NONE = Column(0, "", "sog", "", told=False)
+_NONE = Column(0, "", "sog", "", unit_given=False)
 
 
 def _is_last(text: str, fault: Fault) -> bool:
@@ -235,9 +235,9 @@ def _table(where: str, rows: _Rows, warnings: tuple[str, ...]) -> Table:
     if faults or timing is None:
         raise InputError(faults)
     time_s, dated, clock = timing
-    told = [Text("{counted} without a time left out", counted=counted(untimed, "row"))] if untimed else []
+    notes = [Text("{counted} without a time left out", counted=counted(untimed, "row"))] if untimed else []
     return Table(
-        where, "CSV table", rows.columns, time_s, dated, clock, values, missing, numbered, (*warnings, *told)
+        where, "CSV table", rows.columns, time_s, dated, clock, values, missing, numbered, (*warnings, *notes)
     )
 
 

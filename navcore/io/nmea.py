@@ -159,12 +159,12 @@ def _refuse_unusable(path: Path, tally: Tally, readings: dict[Channel, list[tupl
                 kinds=KINDS,
             )
         )
-    found = _named(sorted(tally.intact)) or "none intact"
+    addresses = _named(sorted(tally.intact)) or "none intact"
     raise refuse(
         Text(
             "no usable sentence among {total} (found: {found}); expected {kinds}",
             total=total,
-            found=found,
+            found=addresses,
             kinds=KINDS,
         )
     )

@@ -99,8 +99,8 @@ def _nearest_day(time_of_day: float, near: float) -> float:
 
 def _first_dated(text: str) -> tuple[float, int] | None:
     """UTC of the first RMC or ZDA sentence with a date, and where it stands in the text."""
-    found = [dated for key in _DATE_PLACES for dated in [_first_of(text, key)] if dated is not None]
-    return min(found, key=lambda dated: dated[1], default=None)
+    dates = [dated for key in _DATE_PLACES for dated in [_first_of(text, key)] if dated is not None]
+    return min(dates, key=lambda dated: dated[1], default=None)
 
 
 def _first_of(text: str, key: str) -> tuple[float, int] | None:

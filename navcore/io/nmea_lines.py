@@ -97,11 +97,11 @@ def intact_lines(text: str, tally: Tally) -> Iterator[Line]:
         if not line or line.startswith("#"):
             continue
         tally.lines += 1
-        found = None if len(line) > LONGEST_LINE else _split(line)
-        if found is None:
+        fields = None if len(line) > LONGEST_LINE else _split(line)
+        if fields is None:
             tally.unparsable += 1
             continue
-        before, sentences, after = found
+        before, sentences, after = fields
         try:
             stamp, rest = stamps.read(before[-LONGEST_STAMP:]) if before else (None, "")
             if stamp is None and after:
@@ -144,14 +144,14 @@ def _split(line: str) -> tuple[str, list[tuple[str, str, str | None]], str] | No
     if first < 0:
         return None
     parts = re.split("[$!]", line[first:])[1:]
-    position, found, after = first, [], ""
+    position, fields, after = first, [], ""
     for part in parts:
         mark, position = line[position], position + 1 + len(part)
         sentence = _sentence(mark + part, alone=len(parts) == 1)
         if sentence is not None:
-            found.append(sentence[:3])
+            fields.append(sentence[:3])
             after = sentence[3]
-    return (line[:first], found, after) if found else None
+    return (line[:first], fields, after) if fields else None
 
 
 def _sentence(text: str, alone: bool) -> tuple[str, str, str | None, str] | None:

@@ -103,12 +103,12 @@ def file_keys(paths: PathLike | Sequence[PathLike], where: str = "", field: str 
     faults: list[Fault] = []
     for path in listed:
         try:
-            found = require_file(path, where, field)
+            existing = require_file(path, where, field)
         except InputError as error:
             faults += error.faults
             continue
-        status = found.stat()
-        keys.append((str(found.resolve()), status.st_mtime_ns, status.st_size))
+        status = existing.stat()
+        keys.append((str(existing.resolve()), status.st_mtime_ns, status.st_size))
     if faults:
         raise InputError(faults)
     return tuple(keys)

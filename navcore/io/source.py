@@ -25,7 +25,7 @@ def require_file(path: str | os.PathLike[str], where: str = "", field: str = "")
     InputError
         No such file, not a file, not readable, empty or larger than `LARGEST_FILE_BYTES`.
     """
-    found = Path(path)
+    file = Path(path)
 
     def refuse(why: str) -> InputError:
         return InputError(
@@ -33,16 +33,16 @@ def require_file(path: str | os.PathLike[str], where: str = "", field: str = "")
         )
 
     try:
-        present, regular = found.exists(), found.is_file()
+        present, regular = file.exists(), file.is_file()
     except (OSError, ValueError) as problem:
         raise refuse(Text("cannot be opened ({name})", name=problem.__class__.__name__)) from problem
     if not present:
         raise refuse("no such file")
     if not regular:
         raise refuse("is not a file")
-    if not os.access(found, os.R_OK):
+    if not os.access(file, os.R_OK):
         raise refuse("cannot be read (permissions)")
-    size = found.stat().st_size
+    size = file.stat().st_size
     if size == 0:
         raise refuse("the file is empty")
     if size > LARGEST_FILE_BYTES:
@@ -53,7 +53,7 @@ def require_file(path: str | os.PathLike[str], where: str = "", field: str = "")
                 largest_file_bytes=LARGEST_FILE_BYTES // 2**20,
             )
         )
-    return found
+    return file
 
 
 class FileText(NamedTuple):

@@ -50,43 +50,43 @@ class Stamp:
     dated: bool = True
 
 
-def _calendar(found: re.Match[str], day_first: bool) -> Stamp:
-    return Stamp(midnight(int(found["y"]), int(found["mo"]), int(found["d"])) + _clock_s(found))
+def _calendar(match: re.Match[str], day_first: bool) -> Stamp:
+    return Stamp(midnight(int(match["y"]), int(match["mo"]), int(match["d"])) + _clock_s(match))
 
 
-def _ordinal(found: re.Match[str], day_first: bool) -> Stamp:
-    day = int(found["n"])
+def _ordinal(match: re.Match[str], day_first: bool) -> Stamp:
+    day = int(match["n"])
     if not 1 <= day <= 366:
         raise ValueError(f"{day} is no day of the year")
-    return Stamp(midnight(int(found["y"]), 1, 1) + (day - 1) * _DAY + _clock_s(found))
+    return Stamp(midnight(int(match["y"]), 1, 1) + (day - 1) * _DAY + _clock_s(match))
 
 
-def _either_order(found: re.Match[str], day_first: bool) -> Stamp:
-    first, second = int(found["a"]), int(found["b"])
-    by_day = day_first or found["sep"] != "/"
+def _either_order(match: re.Match[str], day_first: bool) -> Stamp:
+    first, second = int(match["a"]), int(match["b"])
+    by_day = day_first or match["sep"] != "/"
     if first > 12 or second > 12:
         by_day = first > 12
     month, day = (second, first) if by_day else (first, second)
-    return Stamp(midnight(int(found["y"]), month, day) + _clock_s(found))
+    return Stamp(midnight(int(match["y"]), month, day) + _clock_s(match))
 
 
-def _named(found: re.Match[str], day_first: bool) -> Stamp:
-    name = found["name"].lower()
+def _named(match: re.Match[str], day_first: bool) -> Stamp:
+    name = match["name"].lower()
     if name not in _MONTHS:
         raise ValueError(f"{name} is no month")
-    return Stamp(midnight(int(found["y"]), _MONTHS.index(name) + 1, int(found["d"])) + _clock_s(found))
+    return Stamp(midnight(int(match["y"]), _MONTHS.index(name) + 1, int(match["d"])) + _clock_s(match))
 
 
-def _unix(found: re.Match[str], day_first: bool) -> Stamp:
-    digits = found["u"]
-    seconds = float(digits + (found["f"] or "")) / 10.0 ** (0 if len(digits) < 13 else len(digits) - 10)
+def _unix(match: re.Match[str], day_first: bool) -> Stamp:
+    digits = match["u"]
+    seconds = float(digits + (match["f"] or "")) / 10.0 ** (0 if len(digits) < 13 else len(digits) - 10)
     if not _EARLIEST <= seconds <= _LATEST:
         raise LookupError(digits)
     return Stamp(seconds)
 
 
-def _time_of_day(found: re.Match[str], day_first: bool) -> Stamp:
-    return Stamp(_clock_s(found), dated=False)
+def _time_of_day(match: re.Match[str], day_first: bool) -> Stamp:
+    return Stamp(_clock_s(match), dated=False)
 
 
 Reader = Callable[[re.Match[str], bool], Stamp]
@@ -130,16 +130,16 @@ def midnight(year: int, month: int, day: int) -> float:
     return datetime(century + year, month, day, tzinfo=UTC).timestamp()
 
 
-def _clock_s(found: re.Match[str]) -> float:
-    hour, minute, second = int(found["h"]), int(found["m"]), int(found["s"])
-    half = (found["half"] or "").strip().lower()
+def _clock_s(match: re.Match[str]) -> float:
+    hour, minute, second = int(match["h"]), int(match["m"]), int(match["s"])
+    half = (match["half"] or "").strip().lower()
     if half:
         hour = hour % 12 + (12 if half == "pm" else 0)
     if hour > 23 or minute > 59 or second > 60:
         raise ValueError(f"{hour}:{minute}:{second} is no time of day")
-    fraction = found["f"] or found["g"] or ""
+    fraction = match["f"] or match["g"] or ""
     seconds = hour * 3600.0 + minute * 60.0 + second + (float(f"0.{fraction}") if fraction else 0.0)
-    zone = (found["zone"] or "").strip()
+    zone = (match["zone"] or "").strip()
     if zone[:1] in ("+", "-"):
         offset = int(zone[1:3]) * 3600.0 + int(zone[-2:]) * 60.0
         if offset > _FARTHEST_ZONE_S:
@@ -174,16 +174,16 @@ class StampReader:
         order = (self._last, *(i for i in range(len(_FORMS)) if i != self._last))
         for index in order:
             pattern, reader = _FORMS[index]
-            found = pattern.search(text)
-            if found is None:
+            match = pattern.search(text)
+            if match is None:
                 continue
             try:
-                stamp = reader(found, self._day_first)
+                stamp = reader(match, self._day_first)
             except LookupError:
                 continue
             # A time of day is found within a dated stamp too: it never becomes the first form tried.
             self._last = index if stamp.dated else self._last
-            return stamp, text[: found.start()] + text[found.end() :]
+            return stamp, text[: match.start()] + text[match.end() :]
         return None, text
 
 
@@ -194,7 +194,7 @@ def day_comes_first(texts: Iterable[str]) -> bool:
     """Whether dates with slashes begin with the day: some first number is above 12 and no second one."""
     first, second = 0, 0
     for text in texts:
-        found = _EITHER.search(text)
-        if found is not None:
-            first, second = max(first, int(found[1])), max(second, int(found[2]))
+        match = _EITHER.search(text)
+        if match is not None:
+            first, second = max(first, int(match[1])), max(second, int(match[2]))
     return first > 12 >= second

@@ -47,11 +47,11 @@ def combination_faults(
     if CODES[damping] == FREE:
         return
     running = policy.network_in_force(network)
-    found = [*policy.network_faults(network)]
+    faults = [*policy.network_faults(network)]
     if switching.needs_log and CODES[damping] != EXTERNAL:
-        found.append(Fault("", "switching.id", switching.id, switching.needs_log))
+        faults.append(Fault("", "switching.id", switching.id, switching.needs_log))
     else:
-        found += switching.network_faults(running, realisation_of(damping, running), policy)
+        faults += switching.network_faults(running, realisation_of(damping, running), policy)
     for name, part in (("policy", policy), ("switching", switching)):
         rows = part.ring_rows(law_step_s)
         if rows > LONGEST_HISTORY:
@@ -61,10 +61,10 @@ def combination_faults(
                 law_step_s=law_step_s,
                 longest_history=LONGEST_HISTORY,
             )
-            found.append(Fault("", f"{name}.id", part.id, reason))
-    if not found:
-        found += policy.stability_faults(network)
-    yield from found
+            faults.append(Fault("", f"{name}.id", part.id, reason))
+    if not faults:
+        faults += policy.stability_faults(network)
+    yield from faults
 
 
 def combination_warnings(

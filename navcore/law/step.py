@@ -40,8 +40,9 @@ class Correction(NamedTuple):
 
 def _choices(registry: dict[str, Any], function: str, plain: bool = False) -> list[Choice]:
     """Compiled functions of a registry's entries, those that have one; with ``plain`` of plain entries."""
-    found = ((i, name, getattr(registry[name], function)) for i, name in enumerate(registry))
-    return [Choice(*each) for each in found if each[2] is not None and (registry[each[1]].plain or not plain)]
+    functions = ((i, name, getattr(registry[name], function)) for i, name in enumerate(registry))
+    wanted = (each for each in functions if each[2] is not None)
+    return [Choice(*each) for each in wanted if registry[each[1]].plain or not plain]
 
 
 _decide = dispatch("policies", _choices(POLICIES, "decide"), True)

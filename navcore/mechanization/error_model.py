@@ -165,10 +165,10 @@ def _advance(first, last, final, h, half, law_input, gyro, accel, log, law, stat
             reached, code = k, DIVERGED
             break
         t = k * h
-        told = law_input[k * law_stride]
-        read_log(t, x, told.v_e, told.v_n, log, s)
+        motion = law_input[k * law_stride]
+        read_log(t, x, motion.v_e, motion.v_n, log, s)
         # the heading that the ship has is the computed one: level, it is off by phi_U (theory.md 2.3)
-        c = law_step(law, Sensed(told.v_e + x.dv_e, told.v_n + x.dv_n, told.heading + x.phi_u))
+        c = law_step(law, Sensed(motion.v_e + x.dv_e, motion.v_n + x.dv_n, motion.heading + x.phi_u))
         begin = half[2 * k * half_stride]
         watched = Watched(float(s.wanted), 1.0 if s.damped else 0.0, s.xi, s.measure)
         record(k, given_out(x, s), begin.m, begin.n_cos, watched, recorder)

@@ -228,17 +228,13 @@ class _Path:
 
     def __init__(self, position: Series, smoothing_s: float, velocity: Series | None = None) -> None:
         if position.time_s.size < FEWEST_FIXES:
-            found = Text(
-                "only {size} positions ({source})", size=position.time_s.size, source=position.source
-            )
+            gap = Text("only {size} positions ({source})", size=position.time_s.size, source=position.source)
             raise InputError(
                 Fault(
                     "",
                     "file",
                     None,
-                    Text(
-                        "{found}; at least {fewest_fixes} are needed", found=found, fewest_fixes=FEWEST_FIXES
-                    ),
+                    Text("{found}; at least {fewest_fixes} are needed", found=gap, fewest_fixes=FEWEST_FIXES),
                 )
             )
         lat, lon = position.values[:, 0], np.unwrap(position.values[:, 1])

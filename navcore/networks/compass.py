@@ -159,18 +159,18 @@ class CompassNetwork(NetworkParameters):
         else:
             k1, k2, k3 = self.gains(omega_s)
             roots = np.roots([1.0, k1 / omega_s, 1.0 + k2, k3 / omega_s])
-            found = next((root for root in roots if root.imag > 0.0), None)
-            if found is None:
+            pole = next((root for root in roots if root.imag > 0.0), None)
+            if pole is None:
                 return None
-            damping_ratio, frequency = float(-found.real / abs(found)), float(abs(found)) * omega_s
+            damping_ratio, frequency = float(-pole.real / abs(pole)), float(abs(pole)) * omega_s
         rates = bounds_of(type(self).model_fields["sigma"])
         return MainPair(damping_ratio, frequency, dampings(type(self), "xi"), ((0.0, math.inf),), rates)
 
     def following(self, network: LinearNetwork) -> dict[str, Any]:
         """Return the gains, and sigma and xi if these gains have any."""
         k1, k2, k3 = self.gains(network.omega_s)
-        found = sigma_xi_from_gains(k1, k2, k3, network.omega_s)
-        design = {} if found is None else dict(zip(_DESIGN, found, strict=True))
+        design_values = sigma_xi_from_gains(k1, k2, k3, network.omega_s)
+        design = {} if design_values is None else dict(zip(_DESIGN, design_values, strict=True))
         return dict(zip(_GAINS, (k1, k2, k3), strict=True)) | design
 
 

@@ -109,7 +109,7 @@ def discretise(network: LinearNetwork, step_s: float) -> DiscreteNetwork:
         )
         raise InputError(Fault("", "poles", None, reason))
     inverse = np.linalg.inv(np.eye(network.order) - a * continuous.A)
-    found = DiscreteNetwork(
+    discrete = DiscreteNetwork(
         dA=2.0 * a * continuous.A @ inverse,
         B=2.0 * a * inverse @ continuous.B,
         C=continuous.C @ inverse,
@@ -119,5 +119,5 @@ def discretise(network: LinearNetwork, step_s: float) -> DiscreteNetwork:
     for second in others:
         E = network.omega_s * second.C @ inverse
         F = network.omega_s * (second.D + a * float(second.C @ inverse @ second.B))
-        found = replace(found, E=E, F=F)
-    return found
+        discrete = replace(discrete, E=E, F=F)
+    return discrete

@@ -114,14 +114,14 @@ class OptimalNetwork(NetworkParameters):
 
     def with_sensors(self, figures: SensorFigures) -> OptimalNetwork:
         """Return the same network for the sensors of a scenario."""
-        found = self.model_copy()
-        found._sensors = figures
-        return found
+        designed = self.model_copy()
+        designed._sensors = figures
+        return designed
 
     def changed(self, field: str, value: Any) -> NetworkParameters:
         """Return the same network with one field changed, for the same sensors."""
-        found = super().changed(field, value)
-        return found if self._sensors is None else found.with_sensors(self._sensors)
+        network = super().changed(field, value)
+        return network if self._sensors is None else network.with_sensors(self._sensors)
 
     def figures(self) -> tuple[SensorFigures, tuple[str, ...]]:
         """Figures that the network is designed for, and warnings about those that are nobody's."""
@@ -131,14 +131,14 @@ class OptimalNetwork(NetworkParameters):
             for field, (name, unit) in _FIELDS.items()
             if getattr(self, field) is not None
         }
-        found = SensorFigures(**{**vars(base or EXAMPLE_SHIP), **given})
+        used = SensorFigures(**{**vars(base or EXAMPLE_SHIP), **given})
         for what, missing, prefixes in (
-            ("gyros and accelerometers", not found.inertial, ("gyro", "accel")),
-            ("log", not found.log, ("log",)),
+            ("gyros and accelerometers", not used.inertial, ("gyro", "accel")),
+            ("log", not used.log, ("log",)),
         ):
             if missing or (base is None and not any(name.startswith(prefixes) for name in given)):
                 example = {k: v for k, v in vars(EXAMPLE_SHIP).items() if k.startswith(prefixes)}
-                found = SensorFigures(**{**vars(found), **example, **({} if missing else given)})
+                used = SensorFigures(**{**vars(used), **example, **({} if missing else given)})
                 warnings.append(
                     Text(
                         "optimal: no random error of the {what} is given; designed for those of the "
@@ -146,7 +146,7 @@ class OptimalNetwork(NetworkParameters):
                         what=what,
                     )
                 )
-        return found, tuple(warnings)
+        return used, tuple(warnings)
 
     def transfer(self, omega_s: float) -> LinearNetwork:
         """Return H(s) for a Schuler frequency in rad/s.
@@ -163,7 +163,7 @@ class OptimalNetwork(NetworkParameters):
             raise refuse("rho", self.rho, "the Riccati equations of these figures have no solution") from None
         poles = np.linalg.eigvals(law.A)
         zeros = np.linalg.eigvals(law.A + np.outer(law.B, law.C))
-        found = linear_network(
+        network = linear_network(
             "optimal",
             omega_s,
             np.real(np.poly(zeros)),
@@ -173,8 +173,8 @@ class OptimalNetwork(NetworkParameters):
             realisation=self.realisation,
             feedback_p=_second_output(law) if self.realisation == "feedback" else None,
         )
-        self._check(found, law)
-        margin = modulus_margin(found)
+        self._check(network, law)
+        margin = modulus_margin(network)
         if margin < FRAGILE:
             fragile = Text(
                 "fragile: modulus margin {margin:.2g}, below {fragile:g}; change ρ or q",
@@ -182,7 +182,7 @@ class OptimalNetwork(NetworkParameters):
                 fragile=FRAGILE,
             )
             warnings = (*warnings, fragile)
-        return replace(found, warnings=warnings)
+        return replace(network, warnings=warnings)
 
     @property
     def external_form(self) -> str:
@@ -208,8 +208,8 @@ class OptimalNetwork(NetworkParameters):
             nums.append(network.feedback_p)
         systems = state_spaces(nums, poles)
         states = _responses(p, systems[0].A, systems[0].B)
-        found = [states @ system.C + system.D for system in systems]
-        if any(np.max(np.abs(f - e) / np.abs(e)) > _ACCURACY for f, e in zip(found, exact, strict=True)):
+        numerators = [states @ system.C + system.D for system in systems]
+        if any(np.max(np.abs(f - e) / np.abs(e)) > _ACCURACY for f, e in zip(numerators, exact, strict=True)):
             allowed = "makes a network too fast for these figures to run in double precision: must be larger"
             raise refuse("rho", self.rho, allowed)
 

@@ -63,7 +63,7 @@ def state_spaces(nums: Sequence[np.ndarray], poles: np.ndarray) -> tuple[StateSp
     blocks = _blocks(np.asarray(poles).tolist())
     chains = [_chain(num, blocks) for num in nums]
     parallels = [_parallel(num, blocks, chain.D) for num, chain in zip(nums, chains, strict=True)]
-    good = [found for found in parallels if found is not None]
+    good = [parallel for parallel in parallels if parallel is not None]
     if len(good) < len(chains):
         return tuple(chains)
     near = all(_spread(c) < _SPREAD * _spread(p) for c, p in zip(chains, good, strict=True))

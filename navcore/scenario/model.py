@@ -114,6 +114,6 @@ def _method_faults(scenario: ScenarioFields) -> Iterator[Fault]:
         except InputError as error:
             yield from error.located("", f"{at}.network.").faults
             continue
-        found = list(method.kind.faults(method, scenario.law_step_s))
-        if found:
-            yield from InputError(found).located("", f"{at}.").faults
+        own_faults = list(method.kind.faults(method, scenario.law_step_s))
+        if own_faults:
+            yield from InputError(own_faults).located("", f"{at}.").faults

@@ -34,8 +34,8 @@ def _under_way(scenario: ScenarioFields, fault: Fault) -> Iterator[Fault]:
         row = scenario.motion.truth(1, 1.0, scenario.site.site(), scenario.earth).values[0]
     except InputError:
         return  # a fault of the motion itself
-    if found := under_way(row, fault.allowed):
-        yield found
+    if moving := under_way(row, fault.allowed):
+        yield moving
 
 
 _UNMET = {

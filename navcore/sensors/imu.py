@@ -130,11 +130,11 @@ def imu_errors(
     # Gyros, accelerometers and attitude at the same time: of a new seed this is a fifth of the whole run.
     with ThreadPoolExecutor(2) as pool:
         turning = pool.submit(_level if level else _mean_attitude, values, count)
-        made = [
+        errors = [
             pool.submit(_navigation_errors, model, turning, signal[i], coupled[i], clock)
             for i, model in enumerate(models)
         ]
-        return SensorErrors(made[0].result(), made[1].result())
+        return SensorErrors(errors[0].result(), errors[1].result())
 
 
 def _level(values: np.ndarray, count: int) -> np.ndarray:

@@ -30,11 +30,11 @@ def averaged_linear(
     InputError
         The vehicle moves at t = 0, or hardly ever stands still during the alignment.
     """
-    made = _plan(scenario, method, env.truth_half.values[0])
+    plan = _plan(scenario, method, env.truth_half.values[0])
     run = scenario.run
     law = law_of(method, network_of(scenario, method), run.step_s)
     averaged = start_error_model(
-        made,
+        plan,
         state,
         scenario.earth,
         run.step_s,
@@ -44,7 +44,7 @@ def averaged_linear(
         env.sensors,
         law,
     )
-    return averaged, made.notices
+    return averaged, plan.notices
 
 
 def averaged_strapdown(
@@ -60,16 +60,16 @@ def averaged_strapdown(
     # Only now: the strapdown kernels are slow to import, and most runs are linear.
     from navcore.averaging.strapdown import start_strapdown
 
-    made = _plan(scenario, method, env.truth.values[0])
+    plan = _plan(scenario, method, env.truth.values[0])
     network = network_of(scenario, method)
 
     def law(interval_s: float) -> Law:
         return law_of(method, network, interval_s)
 
     averaged = start_strapdown(
-        made, env.start, settings, scenario.earth, law, env.truth.values, env.imu.before()
+        plan, env.start, settings, scenario.earth, law, env.truth.values, env.imu.before()
     )
-    return averaged, made.notices
+    return averaged, plan.notices
 
 
 def _plan(scenario: Scenario, method: Method, true_row: np.ndarray) -> Plan:

@@ -161,7 +161,7 @@ def method_run(
     written = int(recorder.cursor["row"])
     network = network_on_average(method, network, recorder.rows[:written])
     stability = judge(network)
-    told = (
+    ending = (
         Text(
             "{reason} at {reached_s:.0f} s = {reached_s_2:.3g} h",
             reason=reason,
@@ -177,8 +177,8 @@ def method_run(
         loop=stability.loop,
         whole=stability.whole,
         status=status,
-        reason=told,
-        warnings=_warnings(method, network, (*stability.warnings, *notices), told),
+        reason=ending,
+        warnings=_warnings(method, network, (*stability.warnings, *notices), ending),
         t_s=recorder.row_steps[:written] * step_s,
         rows=recorder.rows[:written, : XI_COLUMN + 1],
         errors=statistics(recorder),
@@ -192,5 +192,5 @@ def method_run(
 def _warnings(
     method: Method, network: LinearNetwork, further: tuple[str, ...], reason: str
 ) -> tuple[str, ...]:
-    found = [*dict.fromkeys((*network.warnings, *further)), *method.kind.notices(method)]
-    return (*found, reason) if reason else tuple(found)
+    all_warnings = [*dict.fromkeys((*network.warnings, *further)), *method.kind.notices(method)]
+    return (*all_warnings, reason) if reason else tuple(all_warnings)

@@ -92,8 +92,8 @@ def run_methods(
     known : tuple of MethodRun, optional
         Results of methods in this very environment; an equal method is not run again.
     """
-    found = [next((other for other in known if other.method == method), None) for method in scenario.method]
-    done = [0.0 if other is None else 1.0 for other in found]
+    results = [next((other for other in known if other.method == method), None) for method in scenario.method]
+    done = [0.0 if other is None else 1.0 for other in results]
 
     def advance(index: int) -> MethodRun:
         def report(fraction: float) -> None:
@@ -101,13 +101,13 @@ def run_methods(
             if progress is not None:
                 progress(sum(done) / len(done))
 
-        return found[index] or _run_method(scenario, scenario.method[index], env, state, report, cancelled)
+        return results[index] or _run_method(scenario, scenario.method[index], env, state, report, cancelled)
 
-    if found.count(None) > 1:
+    if results.count(None) > 1:
         with ThreadPoolExecutor(2) as pool:
-            methods = tuple(pool.map(advance, range(len(found))))
+            methods = tuple(pool.map(advance, range(len(results))))
     else:
-        methods = tuple(map(advance, range(len(found))))
+        methods = tuple(map(advance, range(len(results))))
     steps = output_steps(env.steps, scenario.run.step_s, scenario.run.output_step_s)
     return Run(
         scenario=scenario,

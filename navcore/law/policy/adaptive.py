@@ -213,20 +213,20 @@ class Adaptive(PolicyParameters):
 
     def warnings(self, network: NetworkParameters) -> tuple[str, ...]:
         """The quadratic's flaw, and a printed form held where it is stable."""
-        found = []
+        texts = []
         if self.law == "quadratic":
-            found.append(
+            texts.append(
                 "adaptive: the quadratic is negative between 0.95 and 2.77 kn (held at 0.04 there), and "
                 "beyond it rises again: use the table"
             )
         least = self.network_in_force(network).least_coefficient()
         if least > LOWEST:
-            found.append(
+            texts.append(
                 Text(
                     "adaptive: below ζ = {least:.3g} the printed form is unstable: held above it", least=least
                 )
             )
-        return tuple(found)
+        return tuple(texts)
 
     def network_faults(self, network: NetworkParameters) -> Iterator[Fault]:
         """Two networks given, or one that cannot be re-tuned."""

@@ -80,13 +80,13 @@ class Ramp(SwitchingParameters):
         self, network: NetworkParameters, realisation: str, policy: PolicyParameters
     ) -> Iterator[Fault]:
         """Refuse also a printed form whose loop is unstable at the small coefficients of the ramp."""
-        found = list(super().network_faults(network, realisation, policy))
-        if not found and network.least_coefficient() > 0.0:
+        faults = list(super().network_faults(network, realisation, policy))
+        if not faults and network.least_coefficient() > 0.0:
             allowed = Text(
                 "passes damping ratios below {least_coefficient:.3g}, at which the loop of",
                 least_coefficient=network.least_coefficient(),
             )
-            found.append(
+            faults.append(
                 self._refused(Text('{allowed} "{id}" as printed is unstable', allowed=allowed, id=network.id))
             )
-        yield from found
+        yield from faults

@@ -41,16 +41,16 @@ def drive(
     """
     total = max(runs[0].settings.samples, 1)
     done, active = 0, list(runs)
-    made = iter(chunks)
+    remaining = iter(chunks)
     with ThreadPoolExecutor(max(1, min(workers, len(runs)))) as pool:
-        chunk = next(made, None)
+        chunk = next(remaining, None)
         while chunk is not None:
             following = None
             for first in range(0, len(chunk), PIECE):
                 piece = chunk[first : first + PIECE]
                 advancing = [pool.submit(run.advance, piece) for run in active]
                 if first + PIECE >= len(chunk):
-                    following = next(made, None)
+                    following = next(remaining, None)
                 active = [run for run, end in zip(active, advancing, strict=True) if not end.result()]
                 done += len(piece)
                 if progress is not None:

@@ -28,7 +28,7 @@ from navcore.mechanization.strapdown.step import Held, increment_at, strapdown_s
 
 
 @inlined
-def run_samples(increments, first, last, con, x, altimeter, ask, carried, told, network, log):
+def run_samples(increments, first, last, con, x, altimeter, ask, carried, fixed, network, log):
     """Integrate samples first..last of a chunk, ``ask`` the law after each but the last.
 
     ``ask(i, nav, carried, told, network, log)`` gives what is carried on, whose ``held`` is what the law
@@ -46,7 +46,7 @@ def run_samples(increments, first, last, con, x, altimeter, ask, carried, told, 
         i += 1
         if i == last:
             break
-        carried, goes_on = ask(i, nav, carried, told, network, log)
+        carried, goes_on = ask(i, nav, carried, fixed, network, log)
         if not goes_on:
             break
     keep_navigation(x, nav)
@@ -59,7 +59,7 @@ class _Unchanging(NamedTuple):
 
 
 @inlined
-def _ask_nothing(i, nav, carried, told, network, log):
+def _ask_nothing(i, nav, carried, fixed, network, log):
     return carried, True
 
 
@@ -86,7 +86,7 @@ class _Steady(NamedTuple):
     last: LastCall
 
 
-class _Told(NamedTuple):
+class _Fixed(NamedTuple):
     """What it looks at and does not change."""
 
     start: int  # number of the chunk's first sample
@@ -118,30 +118,30 @@ def _newest_difference(t, nav, carried, log):
 
 
 @inlined
-def _fed(t, nav, carried, told, network):
+def _fed(t, nav, carried, fixed, network):
     """Feed the network of both channels with the difference held."""
-    u_e, u_n = (carried.d_e, carried.d_n) if told.external else (-nav.v_e, -nav.v_n)
-    if told.feeds_back:
+    u_e, u_n = (carried.d_e, carried.d_n) if fixed.external else (-nav.v_e, -nav.v_n)
+    if fixed.feeds_back:
         a_e, a_n = fed_back(network, carried.east, u_e), fed_back(network, carried.north, u_n)
     else:
-        a_e, a_n = told.feedback_k1 * u_e, told.feedback_k1 * u_n
-    c_e, east = feed(told.order, network, carried.east, u_e)
-    c_n, north = feed(told.order, network, carried.north, u_n)
-    if told.as_printed:
+        a_e, a_n = fixed.feedback_k1 * u_e, fixed.feedback_k1 * u_n
+    c_e, east = feed(fixed.order, network, carried.east, u_e)
+    c_n, north = feed(fixed.order, network, carried.north, u_n)
+    if fixed.as_printed:
         c_e, c_n = as_printed(c_e, c_n, Sensed(nav.v_e, nav.v_n, 0.0), u_e, u_n)
     held = Held(c_e, c_n, a_e, a_n, 0.0, 0.0)
     return _Steady(held, east, north, carried.epoch, carried.d_e, carried.d_n, LastCall(t, nav.v_e, nav.v_n))
 
 
 @inlined
-def _ask_steadily(i, nav, carried, told, network, log):
-    t = (told.start + i) * told.dt
+def _ask_steadily(i, nav, carried, fixed, network, log):
+    t = (fixed.start + i) * fixed.dt
     epoch, d_e, d_n = _newest_difference(t, nav, carried, log)
     present = usable(t, epoch, log)
-    goes_on = abs(told.lat0 + nav.d_lat) <= LARGEST_LATITUDE and (present or not told.external)
+    goes_on = abs(fixed.lat0 + nav.d_lat) <= LARGEST_LATITUDE and (present or not fixed.external)
     carried = _Steady(carried.held, carried.east, carried.north, epoch, d_e, d_n, carried.last)
     if goes_on:
-        carried = _fed(t, nav, carried, told, network)
+        carried = _fed(t, nav, carried, fixed, network)
     return carried, goes_on
 
 
@@ -154,12 +154,14 @@ def run_steady(increments, first, last, start, con, x, log, law):
     """
     p, s, kept = law.p, law.s, x.last
     external, printed = p.damping == EXTERNAL, p.realisation == AS_PRINTED
-    told = _Told(start, con.dt, con.lat0, external, printed, p.order, p.feedback_k1, p.feeds_back)
+    fixed = _Fixed(start, con.dt, con.lat0, external, printed, p.order, p.feedback_k1, p.feeds_back)
     carried = _Steady(
         Held(x.c[E], x.c[N], x.a[E], x.a[N], 0.0, 0.0), channel_of(s, E), channel_of(s, N),
         s.epoch, s.difference[E], s.difference[N], LastCall(kept.time, kept.v_e, kept.v_n),
     )  # fmt: skip
-    i, end = run_samples(increments, first, last, con, x, False, _ask_steadily, carried, told, s.network, log)
+    i, end = run_samples(
+        increments, first, last, con, x, False, _ask_steadily, carried, fixed, s.network, log
+    )
     x.c[E], x.c[N], x.a[E], x.a[N] = end.held.c_e, end.held.c_n, end.held.a_e, end.held.a_n
     kept.time, kept.v_e, kept.v_n = end.last.time, end.last.v_e, end.last.v_n
     s.epoch, s.difference[E], s.difference[N] = end.epoch, end.d_e, end.d_n
