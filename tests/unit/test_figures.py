@@ -140,6 +140,7 @@ def test_a_pin_is_drawn_over_it_in_its_own_colour(name: str) -> None:
 @pytest.mark.parametrize("preset", presets())
 def test_a_preset_is_drawn(preset: str) -> None:
     run = simulate(load(preset, ["run.duration_h=0.1"]))
+    assert run.scenario.title and run.scenario.source
     for make in FIGURES.values():
         check(make(run), run)
     assert bool(switching_plots(run)) == bool(switched_methods(run))

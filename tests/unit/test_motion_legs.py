@@ -146,10 +146,7 @@ def test_astern_the_ship_moves_against_its_heading() -> None:
     assert values[-1, LAT] < SITE.lat
 
 
-def test_at_rest_one_row_stands_for_all_times() -> None:
-    truth = LegsMotion(leg=[{"heading_deg": 33.0}, {"duration_s": 5.0}]).truth(1001, 0.5, SITE, WGS84)
-    assert truth.constant
-    assert truth.values[0, HEADING] == pytest.approx(33.0 * DEG)
+def test_a_turn_on_the_spot_is_a_motion() -> None:
     turning = LegsMotion(leg=[{"duration_s": 5.0, "turn_dps": 1.0}]).truth(1001, 0.5, SITE, WGS84)
     assert turning.values.shape == (1001, 15)
     assert (turning.values[:, LAT] == SITE.lat).all()

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from navcore.foundation.earth import SPHERE, WGS84
+from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, KNOT
-from navcore.motion import ProfileMotion
+from navcore.motion import MotionParameters, ProfileMotion, WavesMotion
 from navcore.motion.truth import (
     AE,
     AN,
@@ -152,13 +152,6 @@ def test_the_bow_may_point_elsewhere() -> None:
     np.testing.assert_allclose(rows[1:-1, VE] / rows[1:-1, VN], 10.0)
 
 
-def test_rest_is_one_row() -> None:
-    motion = profile({"pitch_deg": 3.0}, {"t_s": 10.0}, heading_deg=50.0)
-    truth = motion.truth(1001, 0.5, SITE, SPHERE)
-    assert truth.values.shape == (1, 15)
-    np.testing.assert_allclose(truth.values[0, [PITCH, ROLL, HEADING]], [3.0 * DEG, 0.0, 50.0 * DEG])
-
-
 @pytest.mark.parametrize(
     ("points", "fields", "field", "words"),
     [
@@ -180,8 +173,14 @@ def test_impossible_profiles_are_refused_by_point_and_field(
     assert caught.value.error_count() == 1
 
 
-def test_a_course_over_the_pole_is_refused() -> None:
-    motion = profile({"speed_mps": 100.0}, {"t_s": 3600.0, "speed_mps": 300.0})
+@pytest.mark.parametrize(
+    ("motion", "lat_deg", "field"),
+    [
+        (profile({"speed_mps": 100.0}, {"t_s": 3600.0, "speed_mps": 300.0}), 80.0, "point.1"),
+        (WavesMotion(speed_mps=50.0), 88.0, "speed_mps"),
+    ],
+)
+def test_a_course_over_the_pole_is_refused(motion: MotionParameters, lat_deg: float, field: str) -> None:
     with pytest.raises(InputError, match=r"89\.5°") as caught:
-        motion.truth(86401, 1.0, Site(80.0 * DEG, 0.0, 0.0), WGS84)
-    assert caught.value.faults[0].field == "point.1"
+        motion.rows(86401, 0.5, Site(lat_deg * DEG, 0.0, 0.0), WGS84)
+    assert caught.value.faults[0].field == field

@@ -1,4 +1,4 @@
-"""Motion `swing` against its formula."""
+"""Motion `swing` against its formula; what it and `static` refuse."""
 
 import math
 from typing import Any
@@ -8,7 +8,9 @@ import pytest
 
 from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import InputError
-from navcore.motion.swing import SwingMotion
+from navcore.foundation.parameters import Parameters
+from navcore.motion.static import StaticMotion
+from navcore.motion.swing import Oscillation, SwingMotion
 from navcore.motion.truth import (
     AE,
     AU,
@@ -60,13 +62,6 @@ def test_the_place_does_not_move() -> None:
     assert AE == VE + 3
 
 
-def test_nothing_swinging_is_one_row_with_its_phase() -> None:
-    motion = SwingMotion(pitch_deg=2.0, pitch={"amplitude_deg": 10.0, "frequency_hz": 0.0, "phase_deg": 90.0})
-    truth = motion.truth(101, 0.5, SITE, WGS84)
-    assert truth.constant
-    assert truth.values[0, PITCH] == pytest.approx(math.radians(12.0))
-
-
 def _refused(step_s: float, **fields: Any) -> InputError:
     with pytest.raises(InputError) as caught:
         SwingMotion(**fields).truth(11, step_s, SITE, WGS84)
@@ -94,8 +89,16 @@ def test_pitch_beyond_the_vertical_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    "block", [{"amplitude_deg": -1.0}, {"amplitude_deg": 91.0}, {"frequency_hz": -0.1}, {"phase_deg": 400.0}]
+    ("model", "field", "value"),
+    [
+        *((Oscillation, "amplitude_deg", value) for value in (-1.0, 91.0)),
+        (Oscillation, "frequency_hz", -0.1),
+        (Oscillation, "phase_deg", 400.0),
+        *((StaticMotion, "pitch_deg", value) for value in (89.1, math.nan)),
+        (StaticMotion, "roll_deg", -180.1),
+        (StaticMotion, "heading_deg", 361.0),
+    ],
 )
-def test_oscillation_fields_out_of_range_are_refused(block: dict[str, float]) -> None:
-    with pytest.raises(ValueError, match=next(iter(block))):
-        SwingMotion(heading=block)
+def test_fields_out_of_range_are_refused(model: type[Parameters], field: str, value: float) -> None:
+    with pytest.raises(ValueError, match=field):
+        model.model_validate({field: value})
