@@ -18,7 +18,7 @@ KERNEL_SOURCES := $(shell find navcore -name '*.py' 2>/dev/null)
 .PHONY: help setup run test nightly check docs format unit windows paint soak serving tour accuracy covariance tuning consistency design benchmarks mutation papers cards guide languages sbom audit lock clean REMAKE
 
 help:
-	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser'
+	@echo 'make run      install what is needed, then serve the dashboard and open it in the browser (PORT=...: there)'
 	@echo 'make test     install what is needed, then lint, check types and run every test'
 	@echo 'make setup    .venv with the command .venv/bin/schuler, kernels compiled'
 	@echo 'make check    lint, format and types only'
@@ -50,7 +50,7 @@ help:
 setup: $(STAMPS)/kernels
 
 run: setup
-	@$(BIN)/schuler serve --open
+	@$(BIN)/schuler serve --open $(if $(findstring command,$(origin PORT)),--port $(PORT))
 
 test: setup $(STAMPS)/test
 	@$(BIN)/python -m tools.stages

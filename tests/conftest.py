@@ -17,6 +17,7 @@ from hypothesis.internal.conjecture import providers
 from navcore.foundation.kernel_cache import cache_folder
 from tools.chromium import FLAGS, find_chromium
 from tools.compile_time import Uncounted
+from tools.fonts import NARROW, one_font
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -64,12 +65,13 @@ def chromium() -> Path:
 
 
 @pytest.fixture(scope="session")
-def browser(chromium: Path) -> Iterator[Browser]:
-    """One headless browser for the whole session."""
+def browser(chromium: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """One headless browser for the whole session; where it can be, all its texts are in one font."""
     from playwright.sync_api import sync_playwright
 
+    env = one_font(NARROW, tmp_path_factory.mktemp("font")) | os.environ
     with sync_playwright() as playwright:
-        launched = playwright.chromium.launch(executable_path=str(chromium), headless=True, args=list(FLAGS))
+        launched = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS), env=env)
         yield launched
         launched.close()
 

@@ -53,12 +53,16 @@ class LawRun:
         self.s["difference"], self.s["valid"] = (d_e, d_n, 0.0), valid
         return np.array(call_law(self.law, Sensed(*v_c, heading)))
 
-    def value(self, path: str) -> float:
-        """Number in the state: ``"xi"``, ``"policies.variation.count"``; of a pair, its east."""
-        found = self.s
+    def numbers(self, path: str) -> np.ndarray:
+        """Numbers in the state: ``"x"``, ``"policies.variation.count"``."""
+        place: Any = self.s
         for name in path.split("."):
-            found = found[name]
-        return float(np.ravel(found)[0])
+            place = place[name]
+        return np.array(place, float)
+
+    def value(self, path: str) -> float:
+        """First number at a place of the state: of a pair, its east."""
+        return float(self.numbers(path).flat[0])
 
     def series(self, differences: Any, *places: str, **inputs: Any) -> np.ndarray:
         """One call for each east difference; the numbers of the state at ``places`` after each."""

@@ -1,8 +1,8 @@
 """The damping law once more, slow and obvious: matrices, lists of everything that was, plain Python.
 
 The compiled law is tested against this call by call. It shares the parameter models, with their H(s), and no
-computation: `tests.law_twin_forms` makes networks discrete, windows come from slices of the whole history,
-the table's curve from scipy.
+computation and no property that a policy or switching method declares of itself: `tests.law_twin_forms` makes
+networks discrete, windows come from slices of the whole history, the table's curve from scipy.
 """
 
 import math
@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from navcore.foundation.units import DEG, KNOT
-from navcore.law.combination import network_in_force, realisation_of
 from navcore.law.policy.base import PolicyParameters
 from navcore.law.switching.base import SwitchingParameters
 from navcore.networks.base import NetworkParameters
 from navcore.networks.compass import CompassNetwork
+from navcore.networks.unity2 import Unity2Network
 from tests.law_twin_forms import Form, bilinear, companion, controller, damping_ratio
 
 Vector = np.ndarray
@@ -48,25 +48,38 @@ class TwinLaw:
         self.policy: Any = policy
         self.switching: Any = switching
         self.external, self.omega_s, self.step_s = damping == "external", omega_s, step_s
-        self.network = network_in_force(damping, network, policy)
-        self.realisation = realisation_of(damping, network)
+        self.network = self._network_in_force(network)
+        self.realisation = getattr(network, "realisation", "network") if self.external else "network"
         self.a = math.tan(0.5 * omega_s * step_s)
-        self.tunes = policy.tunes or switching.tunes
+        self.tunes = policy.id == "adaptive" or switching.id in ("ramp", "step")
         self.k1 = 0.0
         coefficient, transfer = self.network.damping_coefficient(), self.network.transfer(omega_s)
         self.target = damping_ratio(transfer) if coefficient is None else coefficient
+        self.least = 1.05 * self.network.least_coefficient() if self.tunes else 0.0
+        if policy.id == "adaptive":
+            self.target = max(self.target, self.least)
         self.tuned = self.target
         self.form = self._form(self.target)
         self.states = np.zeros((2, len(self.form.B)))
         self.rows: list[dict[str, Any]] = []
         self.damped = self.engaged = False
         self.decision, self.count, self.fresh = True, 0, 0
+        self.wish: bool | None = None
         self.xi = self.measure = self.engaged_at = self.stepped_at = 0.0
-        self.offset = self.low = self.correction = np.zeros(2)
-        # of `bridge`: estimates v, w, b of both channels, covariance, level of the log, b and level of before
-        self.z, self.P, self.level, self.old, self.since = np.zeros((2, 3)), np.eye(3), None, None, 0
+        self.offset = self.low = self.correction = self.output = np.zeros(2)
+        # of `bridge`: estimates v, w, b of both channels, covariance, level of the log
+        self.z, self.P, self.level = np.zeros((2, 3)), np.eye(3), np.zeros(2)
+        self.old = np.zeros(2), math.inf  # b of before the event, its variance
+        self.known, self.since = False, 0
         self.turn = self.growth = np.eye(3)
         self.memory: tuple[np.ndarray, np.ndarray] = (self.states, np.zeros(2))
+
+    def _network_in_force(self, network: NetworkParameters) -> NetworkParameters:
+        if self.policy.id == "adaptive":
+            return self.policy.network or (Unity2Network() if network.id == "none" else network)
+        if self.policy.id == "schedule":
+            return CompassNetwork(**dict(zip(("k1", "k2", "k3"), self.policy.to, strict=True)))
+        return network
 
     def _form(self, xi: float) -> Form:
         if self.policy.id == "schedule":
@@ -100,8 +113,11 @@ class TwinLaw:
             {"d": difference, "u": u, "x": self.states.copy(), "damped": self.damped,
              "c": self.correction, "v_c": v_c, "heading": heading, "total": total}
         )  # fmt: skip
+        self.wish = None
         wanted = getattr(self, f"_policy_{self.policy.id}")(difference, valid)
-        wanted = wanted and (valid or not self.external)
+        self.wish = wanted if self.wish is None else self.wish
+        if self.external and not valid:
+            wanted = self.wish = False
         if wanted and not self.damped:
             self.engaged_at = self.now
         if self.policy.id == "schedule":
@@ -114,7 +130,7 @@ class TwinLaw:
         if self.switching.id == "bridge":
             u = self._bridge_input(difference)
         elif not self.damped:
-            if not self.switching.freezes:
+            if self.switching.id not in ("ramp", "bumpless"):
                 self.correction = np.zeros(2)
             return self.correction, np.zeros(2)
         self.engaged = True
@@ -128,6 +144,22 @@ class TwinLaw:
         self.correction = c + self.offset
         self.offset = self.offset * math.exp(-self.step_s / 100.0)
         return self.correction, a
+
+    def watched(self) -> dict[str, Any]:
+        """Decision, output and memory after a call, at their places in the compiled law's state."""
+        numbers: dict[str, Any] = {
+            name: getattr(self, name) for name in ("damped", "engaged", "xi", "measure")
+        }
+        numbers["wanted"] = self.wish
+        for pair in ("correction", "offset", "output"):  # nothing acts in the third channel, the azimuth
+            numbers[pair] = np.append(getattr(self, pair), 0.0)
+        if self.tunes:
+            numbers["x"] = np.pad(self.states, ((0, 1), (0, 4 - self.states.shape[1])))
+        if self.policy.id == "variation":
+            numbers["policies.variation.count"] = self.count
+        if self.switching.id == "bridge":
+            numbers |= {f"switchings.bridge.{name}": getattr(self, name) for name in ("z", "P", "known")}
+        return numbers
 
     @property
     def now(self) -> float:
@@ -182,6 +214,7 @@ class TwinLaw:
         self.count = 0 if wish == self.decision else self.count + 1
         if self.count == self.policy.count:
             self.decision, self.count = wish, 0
+        self.wish = wish
         return self.decision
 
     def _policy_adaptive(self, difference: Vector, valid: bool) -> bool:
@@ -190,7 +223,7 @@ class TwinLaw:
         share = 1.0 if self.fresh == 1 else 1.0 - math.exp(-self.step_s / self.policy.lowpass_s)
         self.low = self.low + share * (difference - self.low)
         self.measure = float(np.linalg.norm(self.low))
-        self.target = max(self._law(self.measure / KNOT), 1.05 * self.network.least_coefficient())
+        self.target = max(self._law(self.measure / KNOT), self.least)
         return True
 
     def _law(self, knots: float) -> float:
@@ -259,10 +292,7 @@ class TwinLaw:
         left = self.switching.duration_s - 1.0 - (self.now - self.engaged_at)
         left = 0.0 if abs(left) < 1e-6 else left
         xi = self.target * math.exp(-max(left, 0.0))
-        if left > 1e-6 - self.step_s:
-            self._retune(xi, u)
-        else:
-            self._follow_target(u)
+        self._retune(xi, u)
         if not self.damped:
             self._clear(u)
         if left >= 0.0 and self.switching.form == "as_printed":
@@ -275,7 +305,7 @@ class TwinLaw:
         target = self.target if wanted else 0.0
         if not self.damped:
             if wanted:
-                xi = target if not self.engaged else min(self.switching.size, target)
+                xi = max(target if not self.engaged else min(self.switching.size, target), self.least)
                 self.form, self.stepped_at = self._form(xi), self.now
                 self._clear(u)
                 self._set(True, xi)
@@ -284,10 +314,10 @@ class TwinLaw:
             return None
         xi = self.xi + float(np.clip(target - self.xi, -self.switching.size, self.switching.size))
         self.stepped_at = self.now
-        if xi < 1e-9:
+        if xi < 1e-9 or (xi < self.least and not wanted):
             return self._set(False)
-        self._retune(xi, u)
-        return self._set(True, xi)
+        self._retune(max(xi, self.least), u)
+        return self._set(True, self.tuned)
 
     def _switch_bumpless(self, wanted: bool, u: Vector, valid: bool) -> None:
         n, age = self._calls(self.switching.n_s), self._calls(self.switching.memory_s)
@@ -316,25 +346,23 @@ class TwinLaw:
         self.turn = np.eye(3)
         self.turn[:2, :2] = [[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]]
         self.growth = np.diag([s.drive_mpsrth**2, s.drive_mpsrth**2, s.log_walk_mpsrth**2]) * hours
-        if len(self.rows) == 1:
-            self.z, self.P, self.level, self.old = np.zeros((2, 3)), np.eye(3), None, None
-        else:
+        if len(self.rows) > 1:
             self._bridge_predict(row["c"])
         if wanted and valid:
             if not self.damped:
                 self.P[2, :] = self.P[:, 2] = [0.0, 0.0, 1.0]
                 self.P[2, 2] = 1.0
                 self.z[:, 2] = row["d"] + self.z[:, 0]
-                self.level, self.since = None, 0
+                self.known, self.since = False, 0
             h = np.array([-1.0, 0.0, 1.0])
             variance = h @ self.P @ h + s.log_noise_mps**2
             gain = self.P @ h / variance
             self.z = self.z + np.outer(row["d"] - self.z @ h, gain)
             self.P = self.P - np.outer(gain, gain) * variance
             self.since += 1
-            if self.level is None:
+            if not self.known:
                 self._bridge_recognise()
-        row["bridge"] = (self.z.copy(), self.P.copy(), self.level is not None)
+        row["bridge"] = (self.z.copy(), self.P.copy(), self.known)
         if self.damped and not wanted:
             self._bridge_go_back()
         self._follow_target(u)
@@ -347,37 +375,35 @@ class TwinLaw:
 
     def _bridge_recognise(self) -> None:
         if self.since >= self._calls(900.0):
-            self.level = self.z[:, 2].copy()
-        elif self.since >= self._calls(60.0) and self.old is not None:
-            b, variance, level = self.old
+            self.level, self.known = self.z[:, 2].copy(), True
+        elif self.since >= self._calls(60.0):
+            b, variance = self.old
             total = self.P[2, 2] + variance
             off = b - self.z[:, 2]
             if math.sqrt(total) < 0.05 and np.abs(off).max() < 3.0 * math.sqrt(total):
                 gain = self.P[:, 2] / total
                 self.z = self.z + np.outer(off, gain)
                 self.P = self.P - np.outer(gain, gain) * total
-                self.level = level
+                self.known = True
 
     def _bridge_go_back(self) -> None:
         age = min(self._calls(self.switching.memory_s), len(self.rows) - 1)
         before = self.rows[-1 - age]
         self.z, self.P, known = (np.array(part) for part in before["bridge"])
         if known:
-            self.old = (self.z[:, 2].copy(), float(self.P[2, 2]), self.level_of_old())
+            self.old = (self.z[:, 2].copy(), float(self.P[2, 2]))
         self.states = before["x"]
         for row in self.rows[len(self.rows) - age :]:
             self._feed(-self._bridge_share() * self.z[:, 0])
             self._bridge_predict(row["c"])
-
-    def level_of_old(self) -> Vector:
-        """Level in force before the event: it stays in the memory when the log's error is forgotten."""
-        return self.level if self.level is not None else self.old[2]
 
     def _bridge_share(self) -> float:
         square = float(np.sum(self.z[:, :2] ** 2))
         return float(np.clip(square / (12.0 * 0.5 * (self.P[0, 0] + self.P[1, 1])) - 1.0, 0.0, 1.0))
 
     def _bridge_input(self, difference: Vector) -> Vector:
-        if self.damped and self.level is not None:
+        if self.switching.output == "corrected":
+            self.output = self._bridge_share() * self.z[:, 0]
+        if self.damped and self.known:
             return self._bridge_share() * (difference - self.level)
         return -self._bridge_share() * self.z[:, 0]

@@ -62,7 +62,7 @@ def provide_chromium() -> tuple[Path | None, str]:
     if found:
         return found, "found"
     if os.geteuid() == 0 and shutil.which("apt-get"):
-        how, failed = "apt-get install chromium", _apt_install()
+        how, failed = "apt-get install chromium", apt_install("chromium")
     else:
         how = "playwright install chromium"
         failed = _run([sys.executable, "-m", "playwright", "install", "chromium"])
@@ -86,11 +86,12 @@ def launched() -> Iterator[Browser]:
         browser.close()
 
 
-def _apt_install() -> str:
+def apt_install(*packages: str) -> str:
+    """Install packages of Debian as root; return the last line of what failed, or an empty string."""
     quiet = os.environ | {"DEBIAN_FRONTEND": "noninteractive"}
     # An update that fails for one source of several may still have brought what is needed.
     _run(["apt-get", "update", "-q"], quiet)
-    return _run(["apt-get", "install", "-q", "-y", "--no-install-recommends", "chromium"], quiet)
+    return _run(["apt-get", "install", "-q", "-y", "--no-install-recommends", *packages], quiet)
 
 
 def _run(command: list[str], environment: dict[str, str] | None = None) -> str:

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import IO
 
 from tools.chromium import provide_chromium
+from tools.fonts import provide_fonts
 
 ROOT = Path(__file__).resolve().parent.parent
 STAMPS = ROOT / ".venv" / ".stamps"
@@ -106,10 +107,6 @@ def run_check(name: str, out: IO[str] | None = None) -> Count:
 
 def run_stage(name: str, out: IO[str] | None = None) -> Count:
     """Run the tests of one stage; what they print goes to ``out``, by default to the standard output."""
-    if name == "browser":
-        path, how = provide_chromium()
-        found = f"== Chromium: {path} ({how})" if path else f"== tests/browser will be skipped: {how}"
-        print(found, file=out, flush=True)
     print(f"== {name}", file=out, flush=True)
     start = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
@@ -119,6 +116,13 @@ def run_stage(name: str, out: IO[str] | None = None) -> Count:
             command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=out, stderr=out and subprocess.STDOUT
         )
         return read_counts(name, report, done.returncode, time.perf_counter() - start)
+
+
+def provide_browser() -> None:
+    """Find or install what the tests of the page need, and say what was done or what is missing."""
+    path, how = provide_chromium()
+    print(f"== Chromium: {path} ({how})" if path else f"== tests/browser will be skipped: {how}")
+    print(f"== fonts of tests/browser: {provide_fonts()}", flush=True)
 
 
 def run_beside(lanes: Iterable[Iterable[str]] = BESIDE) -> list[Count]:
@@ -167,6 +171,7 @@ def main(arguments: list[str]) -> int:
         subprocess.run([sys.executable, "-m", "navcore.warm"], cwd=ROOT, check=True)
         first, *others = STAGES
         if wanted == "all":
+            provide_browser()
             taken = {name for lane in BESIDE for name in lane}
             counts += [run_check(name) for name in CHECKS if name not in taken]
             counts += run_beside()

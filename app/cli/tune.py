@@ -9,9 +9,6 @@ from tyro.conf import Positional, UseAppendAction, arg
 from app.cli.terminal import emit_result, say
 from navcore.quantities import OBJECTIVES, TUNED
 
-_OBJECTIVE = f"What to make small: one of {', '.join(OBJECTIVES)}, or a sum, tilt_rms + 0.5*velocity_rms."
-_REQUIRE = f"A limit, e.g. settling_s<=3600 or tilt_rms<=5arcsec, of one of {', '.join(TUNED)}."
-
 
 @dataclass(frozen=True)
 class TuneCommand:
@@ -42,9 +39,21 @@ class TuneCommand:
     """
 
     scenario: Annotated[Positional[str], arg(metavar="SCENARIO")]
-    objective: Annotated[str, arg(metavar="NAME", help=_OBJECTIVE)]
+    objective: Annotated[
+        str,
+        arg(
+            metavar="NAME",
+            help=f"What to make small: {', '.join(OBJECTIVES)}, or a sum, tilt_rms + 0.5*velocity_rms.",
+        ),
+    ]
     vary: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="FIELD[=LOW:HIGH]")] = ()
-    require: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="NAME<=VALUE", help=_REQUIRE)] = ()
+    require: Annotated[
+        UseAppendAction[tuple[str, ...]],
+        arg(
+            metavar="NAME<=VALUE",
+            help=f"A limit, e.g. settling_s<=3600 or tilt_rms<=5arcsec, of one of {', '.join(TUNED)}.",
+        ),
+    ] = ()
     worst_of: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="SCENARIO")] = ()
     along: bool = False
     set: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="KEY=VALUE")] = ()

@@ -154,6 +154,21 @@ def values_at(scenario: Scenario, paths: Iterable[Path]) -> dict[Path, Any]:
     return {path: value_at(scenario, path) for path in paths}
 
 
+def with_network(scenario: Scenario, index: int, network: dict[str, Any]) -> Scenario:
+    """Return a scenario with another network in one method.
+
+    Raises
+    ------
+    InputError
+        There is no such method any more, or the network does not go with it.
+    """
+    if not 0 <= index < len(scenario.method) or scenario.method[index].undamped:
+        raise InputError(Fault("", f"method.{index}", None, "is no method with a network any more"))
+    data = scenario.canonical()
+    data["method"][index]["network"] = dict(network)
+    return Scenario.parse(data)
+
+
 def files_of(scenario: Scenario) -> set[str]:
     """Paths of the recordings that the scenario runs on."""
     blocks = (scenario.motion, scenario.reference, scenario.imu)

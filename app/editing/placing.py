@@ -5,12 +5,12 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
+from app.editing.edits import with_network
 from app.plots.units import number
 from navcore.analysis import analyse
 from navcore.analysis.placement import LEAST_DAMPING, place, placeable
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.networks.base import NetworkParameters
 from navcore.networks.pair import MainPair
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
@@ -123,7 +123,7 @@ def with_pair(
         )
     except InputError as error:
         raise _why_not(method, wanted, omega_s, error) from None
-    changed = _with_network(scenario, index, placed.parameters)
+    changed = with_network(scenario, index, placed.parameters.model_dump(exclude_none=True))
     words = f"ζ = {number(placed.damping_ratio, 3)}, ω = {number(placed.frequency / omega_s, 3)} ωₛ"
     return Placed(changed, Text("{name}: pair at {words}", name=method.name, words=words), placed.note)
 
@@ -227,12 +227,6 @@ def handle_of(scenario: Scenario, index: int) -> dict[str, Any]:
         "frequencies": [[min(end / omega_s, _FARTHEST) for end in ends] for ends in pair.frequencies],
         "omega_s": omega_s,
     }
-
-
-def _with_network(scenario: Scenario, index: int, parameters: NetworkParameters) -> Scenario:
-    data = scenario.canonical()
-    data["method"][index]["network"] = parameters.model_dump(exclude_none=True)
-    return Scenario.parse(data)
 
 
 def _why_not(method: Method, wanted: str, omega_s: float, error: InputError) -> InputError:

@@ -8,8 +8,9 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from navcore.foundation.notation import unit_sign
 from navcore.foundation.text import Text
-from navcore.foundation.units import ARCMIN, ARCSEC, DEG, HOUR, KNOT, MINUTE, NAUTICAL_MILE
+from navcore.foundation.units import ARCMIN, ARCSEC, HOUR, MINUTE, NAUTICAL_MILE, UNITS
 
 
 @dataclass(frozen=True)
@@ -28,32 +29,9 @@ class Unit:
     si: float
 
 
-ARCSECONDS = Unit("arcsec", ARCSEC)
-ARCMINUTES = Unit("arcmin", ARCMIN)
-DEGREES = Unit("°", DEG)
-METRES_PER_SECOND = Unit("m/s", 1.0)
-METRES = Unit("m", 1.0)
-NAUTICAL_MILES = Unit("nmi", NAUTICAL_MILE)
-KILOMETRES = Unit("km", 1e3)
-KNOTS = Unit("kn", KNOT)
-MINUTES = Unit("min", MINUTE)
-HOURS = Unit("h", HOUR)
 AUTO = "auto"
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-NAMED: dict[str, Unit] = {"deg": DEGREES} | {
-    unit.name: unit
-    for unit in (
-        ARCSECONDS,
-        ARCMINUTES,
-        METRES,
-        KILOMETRES,
-        NAUTICAL_MILES,
-        METRES_PER_SECOND,
-        KNOTS,
-        MINUTES,
-        HOURS,
-    )
-}
+NAMED = {name: Unit(unit_sign(name), size) for name, size in UNITS.items()}
 """Units that a user can ask for, by name."""
 _LEAST = 0.02
 """Peak below which three decimals say too little."""
@@ -62,45 +40,45 @@ _LEAST = 0.02
 _ANGLES = (
     (0.0, Unit("µas", 1e-6 * ARCSEC)),
     (2e-5 * ARCSEC, Unit("mas", 1e-3 * ARCSEC)),
-    (0.02 * ARCSEC, ARCSECONDS),
-    (180.0 * ARCSEC, ARCMINUTES),
-    (180.0 * ARCMIN, DEGREES),
+    (0.02 * ARCSEC, NAMED["arcsec"]),
+    (180.0 * ARCSEC, NAMED["arcmin"]),
+    (180.0 * ARCMIN, NAMED["deg"]),
 )
 _SPEEDS = (
     (0.0, Unit("µm/s", 1e-6)),
     (2e-5, Unit("mm/s", 1e-3)),
-    (0.02, METRES_PER_SECOND),
+    (0.02, NAMED["m/s"]),
     (5e3, Unit("km/s", 1e3)),
 )
 _LENGTHS = (
     (0.0, Unit("µm", 1e-6)),
     (2e-5, Unit("mm", 1e-3)),
-    (0.02, METRES),
+    (0.02, NAMED["m"]),
     (3e3, Unit("km", 1e3)),
-    (10.0 * NAUTICAL_MILE, NAUTICAL_MILES),
+    (10.0 * NAUTICAL_MILE, NAMED["nmi"]),
 )
 
 
 def angle_unit(peak_rad: float) -> Unit:
     """Unit for angles up to ``peak_rad``: arcsec below 3', arcmin below 3 deg."""
-    return _chosen(_ANGLES, peak_rad, ARCSECONDS)
+    return _chosen(_ANGLES, peak_rad, NAMED["arcsec"])
 
 
 def speed_unit(peak_mps: float) -> Unit:
     """Unit for velocities up to ``peak_mps``: m/s from 2 cm/s."""
-    return _chosen(_SPEEDS, peak_mps, METRES_PER_SECOND)
+    return _chosen(_SPEEDS, peak_mps, NAMED["m/s"])
 
 
 def length_unit(peak_m: float) -> Unit:
     """Unit for lengths up to ``peak_m``: m below 3 km, km below 10 nmi, then nmi."""
-    return _chosen(_LENGTHS, peak_m, METRES)
+    return _chosen(_LENGTHS, peak_m, NAMED["m"])
 
 
 def time_unit(span_s: float, wanted: str = AUTO) -> Unit:
     """Minutes below 3 h, else hours; or the one that is wanted by name."""
     if wanted != AUTO:
         return NAMED[wanted]
-    return MINUTES if span_s < 3.0 * HOUR else HOURS
+    return NAMED["min"] if span_s < 3.0 * HOUR else NAMED["h"]
 
 
 def wanted_unit(name: str, peak: float, chosen: Callable[[float], Unit]) -> Unit:

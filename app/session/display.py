@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Collection
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
+from app.plots.effective import SHOWN
 from app.plots.envelope import BandKind
 from app.plots.legend import State, after
 from app.session.requirements import Requirements
@@ -19,19 +20,13 @@ AXES = ("tilt_rms", "velocity_rms", "settling_s", "log_tilt", "overshoot")
 """Quantities on the axes of the Pareto fronts."""
 
 
-def _one_of(names: Callable[[], Iterable[str]]) -> AfterValidator:
+def _one_of(names: Collection[str]) -> AfterValidator:
     def check(id: str) -> str:
-        if id not in (known := tuple(names())):
-            raise ValueError(f"must be one of {', '.join(known)}")
+        if id not in names:
+            raise ValueError(f"must be one of {', '.join(names)}")
         return id
 
     return AfterValidator(check)
-
-
-def _transfers() -> Iterable[str]:
-    from app.plots.effective import SHOWN
-
-    return SHOWN
 
 
 class Display(BaseModel):
@@ -92,7 +87,7 @@ class Display(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    transfer: Annotated[str, _one_of(_transfers)] = FIRST_TRANSFER
+    transfer: Annotated[str, _one_of(SHOWN)] = FIRST_TRANSFER
     discrete: bool = False
     optimal: bool = False
     poles: Literal["channel", "whole"] = "channel"
@@ -105,13 +100,13 @@ class Display(BaseModel):
     time: Literal["auto", "min", "h"] = "auto"
     scale: Literal["linear", "log"] = "linear"
     envelope: BandKind = "none"
-    spectrum: Annotated[str, _one_of(lambda: (error.key for error in ERRORS))] = "dve"
+    spectrum: Annotated[str, _one_of([error.key for error in ERRORS])] = "dve"
     baseline: Annotated[int | None, Field(ge=1)] = None
     legend: Annotated[
         tuple[tuple[Annotated[str, Field(max_length=300)], State], ...], Field(max_length=60)
     ] = ()
     pins_by: Annotated[str, Field(pattern=r"^-?[a-z]{1,20}$")] = "pinned"
-    delta: Annotated[str, _one_of(lambda: STATISTICS)] = "rms"
+    delta: Annotated[str, _one_of(STATISTICS)] = "rms"
     window: Literal["whole", "settled", "hours"] = "whole"
     window_from_h: Annotated[float, Field(ge=0.0, le=1e5)] = 0.0
     window_to_h: Annotated[float | None, Field(ge=0.0, le=1e5)] = None
@@ -119,10 +114,10 @@ class Display(BaseModel):
     theme: Literal["light", "dark"] = "light"
     size: Literal["normal", "presentation"] = "normal"
     budget: Literal["steady", "run"] = "steady"
-    objective: Annotated[str, _one_of(lambda: OBJECTIVES)] = "tilt_rms"
+    objective: Annotated[str, _one_of(OBJECTIVES)] = "tilt_rms"
     search: Literal["setting", "fronts"] = "setting"
-    front_x: Annotated[str, _one_of(lambda: AXES)] = "tilt_rms"
-    front_y: Annotated[str, _one_of(lambda: AXES)] = "velocity_rms"
+    front_x: Annotated[str, _one_of(AXES)] = "tilt_rms"
+    front_y: Annotated[str, _one_of(AXES)] = "velocity_rms"
 
     @property
     def enlarged(self) -> bool:

@@ -62,12 +62,7 @@ def label_of(name: str) -> str:
     """Label of a limit's box: what, sense and unit, e.g. ``settling ≤ (min)``."""
     row = ROWS[name]
     unit = f" ({row.shown})" if row.shown else ""
-    return f"{row.label} {sign_of(name)}{unit}"
-
-
-def sign_of(name: str) -> str:
-    """``≤`` or ``≥``."""
-    return SIGNS[ROWS[name].sense]
+    return f"{row.label} {SIGNS[row.sense]}{unit}"
 
 
 def read_limit(name: str, text: str) -> float | None:

@@ -30,14 +30,14 @@ class JudgedLoop(NamedTuple):
         Closed loop of one level channel.
     uses_log : bool
         The log drives the loop.
-    whole : callable
-        Returns both channels with heading and latitude at the site.
+    whole : callable or None
+        Returns both channels with heading and latitude at the site; None where nothing of them is asked.
     """
 
     network: LinearNetwork
     loop: Loop
     uses_log: bool
-    whole: Callable[[], WholeSystem]
+    whole: Callable[[], WholeSystem] | None = None
 
 
 def loop_value(key: str, judged: JudgedLoop) -> float:
@@ -54,26 +54,10 @@ def loop_value(key: str, judged: JudgedLoop) -> float:
     return math.inf if value is None or math.isnan(value) else float(value)
 
 
-def after_log_step(network: LinearNetwork, loop: Loop, output: Output) -> float:
-    """Largest tilt (rad) or velocity error (m/s) after a step of the log's error by 1 m/s.
-
-    Parameters
-    ----------
-    network : LinearNetwork
-        H(s), driven by the log.
-    loop : Loop
-        Its closed loop.
-    output : {"phi", "dv"}
-        Tilt or velocity error.
-    """
-    low, high = _extremes(network, loop, "dv_r", output)
-    return max(-low, high)
-
-
-def _extremes(network: LinearNetwork, loop: Loop, source: Source, output: Output) -> tuple[float, float]:
-    if not loop.stable:
+def _extremes(judged: JudgedLoop, source: Source, output: Output) -> tuple[float, float]:
+    if not judged.loop.stable:
         return -math.inf, math.inf
-    return _searched(network, loop.settling_s, source, output)
+    return _searched(judged.network, judged.loop.settling_s, source, output)
 
 
 @lru_cache(maxsize=256)
@@ -92,21 +76,20 @@ def _searched(
     return float(np.min(near(int(np.argmin(sampled))))), float(np.max(near(int(np.argmax(sampled)))))
 
 
-def _log_step(judged: JudgedLoop, output: Output) -> float:
-    unmoved = judged.loop.stable and not judged.uses_log
-    return 0.0 if unmoved else after_log_step(judged.network, judged.loop, output)
+def _after_log_step(judged: JudgedLoop, output: Output) -> float:
+    """Largest magnitude after a step of the log's error by 1 m/s."""
+    low, high = _extremes(judged, "dv_r", output)
+    return 0.0 if judged.loop.stable and not judged.uses_log else max(-low, high)
 
 
 _VALUES: dict[str, Callable[[JudgedLoop], float | None]] = {
     "settling_s": lambda judged: judged.loop.settling_s,
-    "overshoot": lambda judged: _log_step(judged, "dv"),
-    "log_tilt": lambda judged: _log_step(judged, "phi"),
-    "tilt_overshoot": lambda judged: max(
-        0.0, -_extremes(judged.network, judged.loop, "initial_tilt", "phi")[0]
-    ),
+    "overshoot": lambda judged: _after_log_step(judged, "dv"),
+    "log_tilt": lambda judged: _after_log_step(judged, "phi"),
+    "tilt_overshoot": lambda judged: max(0.0, -_extremes(judged, "initial_tilt", "phi")[0]),
     "damping_ratio": lambda judged: judged.loop.damping_ratio,
     "h0": lambda judged: judged.network.h0,
     "h0_deviation": lambda judged: abs(judged.network.h0 - 1.0),
     "h_slope_s": lambda judged: judged.network.h_slope,
-    "earth_mode_growth_per_s": lambda judged: judged.whole().earth_growth,
+    "earth_mode_growth_per_s": lambda judged: judged.whole().earth_growth if judged.whole else None,
 }

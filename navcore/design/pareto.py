@@ -220,8 +220,12 @@ def _checked(objectives: tuple[str, str], networks: Sequence[str] | None) -> lis
 
 
 def _earth_growth(ship: Ship, method: Method, network: dict[str, Any]) -> float:
-    changed = method.model_dump(mode="json", by_alias=True, exclude_none=True) | {"network": network}
-    return Setting(ship, Method.model_validate(changed)).whole.earth_growth
+    return Setting(ship, _with_network(method, network)).whole.earth_growth
+
+
+def _with_network(method: Method, network: dict[str, Any]) -> Method:
+    dumped = method.model_dump(mode="json", by_alias=True, exclude_none=True)
+    return Method.model_validate(dumped | {"network": network})
 
 
 def _both(setting: Setting, names: tuple[str, str]) -> tuple[float, float] | None:
@@ -243,10 +247,7 @@ def _front(
 ) -> tuple[list[tuple[tuple[float, float], dict[str, Any]]], bool]:
     """Every setting of a network that a few weighted searches saw, and whether they were stopped."""
     method = scenario.method[index]
-    block = {"network": {"id": network}}
-    with_network = Method.model_validate(
-        method.model_dump(mode="json", by_alias=True, exclude_none=True) | block
-    )
+    with_network = _with_network(method, {"id": network})
     figures = scenario.figures()
     with_network = with_network.model_copy(update={"network": with_network.network.with_sensors(figures)})
     methods = tuple(with_network if i == index else m for i, m in enumerate(scenario.method))

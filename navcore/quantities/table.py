@@ -78,8 +78,8 @@ _ROWS = (
     Quantity(
         "tilt_rms",
         {
-            "steady": "tilt RMS per axis in the steady state",
-            "ensemble": "tilt RMS per axis of the ensemble",
+            "steady": "steady tilt RMS per axis",
+            "ensemble": "ensemble tilt RMS per axis",
         },
         "rad",
         "arcsec",
@@ -91,8 +91,8 @@ _ROWS = (
     Quantity(
         "velocity_rms",
         {
-            "steady": "velocity RMS per axis in the steady state",
-            "ensemble": "velocity RMS per axis of the ensemble",
+            "steady": "steady velocity RMS per axis",
+            "ensemble": "ensemble velocity RMS per axis",
         },
         "m/s",
         "m/s",
@@ -103,7 +103,7 @@ _ROWS = (
     ),
     Quantity(
         "heading_rms",
-        {"ensemble": "heading RMS of the ensemble"},
+        {"ensemble": "ensemble heading RMS"},
         "rad",
         "arcmin",
         "Root mean square of the heading error over the run.",
@@ -112,7 +112,7 @@ _ROWS = (
     ),
     Quantity(
         "position_rms",
-        {"ensemble": "position RMS of the ensemble"},
+        {"ensemble": "ensemble position RMS"},
         "m",
         "m",
         "Root mean square of the horizontal position error over the run.",

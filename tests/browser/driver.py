@@ -255,8 +255,6 @@ class Bench:
     def clean(self) -> None:
         """Take back what an earlier test has left: dialogs, lessons, pins, choices, the window."""
         session = self.session
-        # Out of a box first: Escape takes back what was typed there, which then cannot be typed again (open).
-        self.page.evaluate("() => document.activeElement?.blur()")
         self.page.keyboard.press("Escape")
         session.present(None)
         session.verifier.cancel()

@@ -202,6 +202,31 @@ look.cut = () => [...document.querySelectorAll('.mantine-ScrollArea-viewport')]
   .filter(e => e.clientHeight > 0 && e.getBoundingClientRect().left > innerWidth / 3)
   .map(e => [e.scrollWidth - e.clientWidth, e.scrollHeight - e.clientHeight]);
 
+// Texts in view that are cut: by what hides what stands out of it, by the window, or by the end of their box.
+look.clipped = () => {
+  const found = [];
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (walker.nextNode()) {
+    const {data, parentElement: parent} = walker.currentNode;
+    const quiet = data.trim() === '' || parent.closest('script, style, svg, math, [hidden]');
+    if (quiet || !parent.checkVisibility({visibilityProperty: true, opacityProperty: true})) continue;
+    const range = document.createRange();
+    range.selectNodeContents(walker.currentNode);
+    const text = range.getBoundingClientRect();
+    let [cut, scrolls] = [text.left < -1 || text.right > innerWidth + 1, false];
+    for (let at = parent; at !== document.body; at = at.parentElement) {
+      const {clipPath, overflowX, overflowY} = getComputedStyle(at), box = at.getBoundingClientRect();
+      if (clipPath !== 'none' || box.width < 2) { cut = false; break; } // for screen readers
+      cut ||= overflowX !== 'visible' && (text.left < box.left - 1.5 || text.right > box.right + 1.5);
+      scrolls ||= ['auto', 'scroll'].includes(overflowY);
+      cut ||= !scrolls && overflowY === 'hidden' && (text.top < box.top - 3 || text.bottom > box.bottom + 3);
+    }
+    if (cut) found.push(data.trim());
+  }
+  const boxes = [...document.querySelectorAll('input')].filter(e => e.offsetParent && e.clientWidth > 2);
+  return [...found, ...boxes.filter(e => e.scrollWidth > e.clientWidth + 1).map(e => e.value)];
+};
+
 // Every plotly figure in view is laid out, and the browser has painted it.
 look.drawn = async () => {
   const plots = [...document.querySelectorAll('.js-plotly-plot')].filter(p => p.offsetParent !== null);

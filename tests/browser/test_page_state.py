@@ -115,6 +115,15 @@ def test_one_field_is_reset_and_all_of_them(fresh: Bench, session: Session) -> N
     assert session.scenario.method[2].damping == "free"
 
 
+def test_a_value_is_taken_in_one_piece_after_a_key_that_types_nothing(fresh: Bench, session: Session) -> None:
+    fresh.type(XI, "0.45")
+    fresh.box(XI).press("Escape")
+    with fresh.next_run():
+        session.undo()
+    fresh.type(XI, "0.45")
+    assert session.scenario.method[2].network.model_dump()["xi"] == 0.45
+
+
 def test_commands_are_found_filtered_and_carried_out(fresh: Bench, session: Session) -> None:
     page = fresh.page
     fresh.button("Commands").click()
@@ -244,7 +253,7 @@ def test_a_reload_keeps_the_work_and_another_visitor_has_none_of_it(
     assert (other.digest, other.value(SIGMA)) == (fresh.digest, 0.0123)
     other.page.wait_for_selector("#sb-theme[data-theme=dark]", state="attached")
     other.tab("Requirements")
-    limit = other.page.get_by_text("overshoot ≤ (%)", exact=True).locator("xpath=ancestor::div[2]")
+    limit = other.page.get_by_text("tilt overshoot ≤ (%)", exact=True).locator("xpath=ancestor::div[2]")
     assert limit.locator("input").input_value() == "36"
     # a change in one window is seen in the other
     fresh.settle()

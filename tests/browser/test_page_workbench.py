@@ -237,10 +237,10 @@ def asked(bench: Bench) -> Bench:
 def test_limits_are_drawn_as_regions_and_lines_and_each_run_is_judged_anew(asked: Bench) -> None:
     for label, text in (
         ("settling ≤ (min)", "90"),
-        ("overshoot ≤ (%)", "30"),
+        ("tilt overshoot ≤ (%)", "30"),
         ("damping ratio ≥", "0.6"),
         ("tilt after log step ≤ (arcsec)", "10"),
-        ("largest tilt ≤ (arcsec)", "12"),
+        ("largest tilt of this run ≤ (arcsec)", "12"),
     ):
         ask(asked, label, text)
     wait_for(asked, "damping_ratio", ["missed", "met", "missed"])
@@ -262,7 +262,7 @@ def test_limits_are_drawn_as_regions_and_lines_and_each_run_is_judged_anew(asked
     assert all(sorted(found) == pytest.approx([-12.0, 12.0]) for found in drawn.values())
     # and gone with the limit
     asked.tab("Requirements")
-    ask(asked, "overshoot ≤ (%)", "")
+    ask(asked, "tilt overshoot ≤ (%)", "")
     asked.page.wait_for_function("() => !look.shapes().some(s => s[0] === 'overshoot')")
 
 

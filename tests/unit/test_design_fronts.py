@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.editing.edits import with_network
 from app.jobs.designer import FrontsTask
 from app.plots.plotly_data import values_of
 from app.session.requirements import Requirements
 from app.views.frequency.curves import optimal_reference
 from app.views.frequency.figure import bode
-from app.views.tune.change import with_network
 from app.views.tune.finder import read_place
 from app.views.tune.fronts import fronts_figure, nearest
 from app.views.tune.setting import requirements_told
@@ -97,7 +97,7 @@ def test_a_point_changes_one_network_and_the_fronts_still_fit(ship: Scenario, fo
 def test_it_is_told_which_requirements_a_search_keeps() -> None:
     told = requirements_told(Requirements(settling_min=60.0, position_rms_m=100.0, tilt_max_arcsec=20.0))
     assert told == (
-        "Requirements that are kept: settling ≤ 60 min, position RMS of the ensemble ≤ 100 m. "
+        "Requirements that are kept: settling ≤ 60 min, ensemble position RMS ≤ 100 m. "
         "Not measured by a search: largest tilt of this run ≤ 20 arcsec."
     )
     assert requirements_told(Requirements()) == "No requirement is to be kept."

@@ -13,13 +13,13 @@ import pytest
 
 from app.misprints import MISPRINTS
 from app.plots import style
-from app.plots.effective import TRANSFERS
+from app.plots.effective import OPEN_LOOP, TRANSFERS
 from app.plots.pinned import restyled, together
 from app.plots.plotly_data import PlotlyFigure, values_of
 from app.plots.saved import time_figure
 from app.session.display import Display
 from app.views.errors.figure import TITLES, error_plots
-from app.views.frequency.figure import OPEN_LOOP, frequency_view
+from app.views.frequency.figure import frequency_view
 from app.views.metrics.table import metrics_html
 from app.views.misprints.figure import SHOWN, comparison_plot
 from app.views.poles.figure import poles

@@ -60,15 +60,10 @@ def run(request: pytest.FixtureRequest) -> Run:
 def test_a_name_stands_for_one_quantity_judged_of_one_thing() -> None:
     names = [name for row in QUANTITIES.values() for name in row.names.values()]
     assert len(set(names)) == len(names)
-    words = {
-        "loop": "",
-        "run": " of this run",
-        "ensemble": " of the ensemble",
-        "steady": " in the steady state",
-    }
-    assert words.keys() == set(get_args(Judged))
+    said = {"loop": "", "run": " of this run", "ensemble": "ensemble ", "steady": "steady "}
+    assert said.keys() == set(get_args(Judged))
     for row in QUANTITIES.values():
-        assert all(name.endswith(words[of]) for of, name in row.names.items()), row.key
+        assert all(said[of] in name for of, name in row.names.items()), row.key
         assert {row.unit, row.shown} <= UNITS.keys() and row.help.endswith(".")
         assert bool(row.kind) == bool(row.statistic) == ("loop" not in row.names)
     assert len({error.name for error in ERRORS}) == len({error.key for error in ERRORS}) == 8

@@ -11,7 +11,7 @@ import pytest
 
 from tests.browser.driver import SIZES
 from tests.browser.windows.conftest import LOCALES, RUNS
-from tools import chromium
+from tools import chromium, fonts
 from tools.mutation.equivalent import is_equivalent, listed
 from tools.mutation.mutants import changed, mutants_of
 from tools.mutation.results import ROOT, sample
@@ -51,6 +51,20 @@ def test_root_gets_it_from_the_distribution(empty_machine: Path, monkeypatch: py
     stand_in(empty_machine, "apt-get", f"test $1 = update || /bin/cp {empty_machine}/apt-get {target}")
     monkeypatch.setattr("os.geteuid", lambda: 0)
     assert chromium.provide_chromium() == (target, "installed by apt-get install chromium")
+
+
+def test_fonts_are_named_to_a_user_and_installed_for_root(
+    empty_machine: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(fonts, "_FOLDERS", (str(empty_machine),))
+    families, command = ", ".join(fonts.FONTS), "apt-get install fonts-liberation fonts-dejavu-core"
+    told = fonts.provide_fonts()
+    assert told.startswith(f"no {families}") and command in told
+    files = " ".join(f"> {empty_machine / file};" for file, _ in fonts.FONTS.values())
+    stand_in(empty_machine, "apt-get", f"test $1 = update && exit\n{files}")
+    monkeypatch.setattr("os.geteuid", lambda: 0)
+    assert fonts.provide_fonts() == f"{families} (installed by {command})"
+    assert fonts.provide_fonts() == f"{families} (found)"
 
 
 def test_what_failed_is_told(empty_machine: Path, monkeypatch: pytest.MonkeyPatch):

@@ -11,9 +11,9 @@ from app.plots.units import rounded
 from app.session.pins import Pin
 from app.session.requirements import Requirements, verdicts
 from app.session.shown import Window, edited
+from app.views.requirements.table import overall
 from navcore.engine.measures import measure
 from navcore.engine.run import Run
-from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES
 
 MEASURED = {
@@ -161,16 +161,8 @@ def _row(line: Line, best: dict[str, float], baseline: int | None) -> str:
 
 def _cell(line: Line, name: str, best: dict[str, float]) -> str:
     if name == "verdict":
-        return cell(_verdict(line), "sb-n")
+        return cell(overall(round(line.numbers.get("verdict", 0.0)), line.asked), "sb-n")
     value = line.numbers[name]
     text = "never" if name == "settling" and math.isinf(value) else rounded(value)
     mark = {"look": "sb-best", "title": style.BEST} if best.get(name) == value else {}
     return cell(cell(text, tag="span", **mark), "sb-n")
-
-
-def _verdict(line: Line) -> str:
-    if not line.asked:
-        return cell("nothing asked", "sb-muted", tag="span")
-    missed = round(line.numbers["verdict"])
-    text = Text("✗ misses {missed} of {asked}", missed=missed, asked=line.asked) if missed else "✓ meets all"
-    return cell(text, "sb-missed" if missed else "sb-met", tag="span")

@@ -10,6 +10,7 @@ from app.plots import style
 from app.plots.effective import (
     OMEGA_MAX,
     OMEGA_MIN,
+    OPEN_LOOP,
     VIEWS,
     FrequencyCurve,
     TransferView,
@@ -19,9 +20,6 @@ from app.plots.effective import (
     network_curve,
     transfer_curve,
 )
-from app.plots.effective import OPEN_LOOP as OPEN_LOOP
-from app.plots.effective import SHOWN as SHOWN
-from app.plots.effective import TRANSFERS as TRANSFERS
 from app.plots.plotly_data import PlotlyFigure, figure, packed
 from app.plots.units import duration
 from app.views.frequency.curves import (
@@ -82,7 +80,7 @@ def frequency_view(
     run : Run
         Result.
     shown : str
-        Key of `SHOWN`.
+        Key of `app.plots.effective.SHOWN`.
     aspect, width_px, discrete, reference
         See `bode`.
     """
@@ -107,7 +105,7 @@ def bode(
     run : Run
         Result; only its networks are used.
     transfer_id : str
-        Key of `TRANSFERS`.
+        Key of `app.plots.effective.TRANSFERS`.
     discrete : bool
         Measure the filters that run, and draw what they do as dots on H.
     aspect : float

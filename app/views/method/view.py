@@ -193,7 +193,7 @@ class MethodView(View):
 
 def described(spec: FieldSpec, method: Method) -> FieldSpec:
     """Description of a network's parameter; where the policy sets it, that says so first."""
-    reason = network_not_in_force(method, f"network.{spec.path[-1]}")
+    reason = "" if method.undamped else network_not_in_force(method, f"network.{spec.path[-1]}")
     hint = Text("This value does not act: {reason}. {hint}", reason=reason, hint=spec.hint)
     return replace(spec, hint=hint) if reason else spec
 

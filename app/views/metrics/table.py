@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from html import escape
 from typing import TYPE_CHECKING
@@ -16,7 +16,6 @@ from app.plots.table import cell, row, table
 from app.plots.units import (
     AUTO,
     NAMED,
-    NAUTICAL_MILES,
     Unit,
     number,
     rounded,
@@ -34,8 +33,7 @@ if TYPE_CHECKING:
 
 _OF_THE_DIFFERENCE = {"rms": "Δ rms", "max_abs": "Δ max", "final": "Δ final"}
 # The units are fixed: numbers of two runs can be compared at a glance.
-_UNITS = tuple((error, NAMED[error.kind.unit]) for error in ERRORS)
-_IN_MILES = ((ERRORS[-1], NAUTICAL_MILES),)
+_UNITS = (*((error, NAMED[error.kind.unit]) for error in ERRORS), (ERRORS[-1], NAMED["nmi"]))
 
 
 @dataclass(frozen=True)
@@ -80,7 +78,7 @@ def metrics_rows(run: Run, display: Display | None = None, baseline: Pinned | No
     # lengths in one unit have one line each
     quantities = dict.fromkeys(
         (error, unit if (chosen := getattr(display, error.kind.dimension)) == AUTO else NAMED[chosen])
-        for error, unit in _UNITS + _IN_MILES
+        for error, unit in _UNITS
     )
     rows = _loop_rows(run)
     if before is not None:
@@ -111,7 +109,7 @@ def difference_rows(verification: Verification) -> tuple[Row, ...]:
             unit.name,
             tuple((_difference(d.get(error.name), unit),) for d in verification.differences),
         )
-        for error, unit in _UNITS
+        for error, unit in _UNITS[:-1]
     )
 
 
@@ -142,23 +140,16 @@ def verdict(verification: Verification) -> str:
 
 
 def _loop_rows(run: Run) -> list[Row]:
-    rows = [
-        _loop_row(run, "damping_ratio", rounded),
-        _loop_row(run, "settling_s", settling),
-        # How far it is from 1 is what counts: three digits would hide it.
-        _loop_row(run, "h0", number),
-    ]
-    return rows if run.status == "ok" else [Row("run", "", tuple((m.status,) for m in run.methods)), *rows]
-
-
-def _loop_row(run: Run, key: str, text: Callable[[float], str]) -> Row:
-    values = [measure(method, key) for method in run.methods]
-    cells = tuple(
-        ("unstable" if key == "settling_s" and not method.loop.stable else text(value),)
-        for method, value in zip(run.methods, values, strict=True)
-    )
-    best = _best([[value] for value in values]) if key == "settling_s" else ()
-    return Row(QUANTITIES[key].label, "", cells, best=best)
+    rows = [Row("run", "", tuple((m.status,) for m in run.methods))] if run.status != "ok" else []
+    # How far H(0) is from 1 is what counts: three digits would hide it.
+    for key, text in (("damping_ratio", rounded), ("settling_s", settling), ("h0", number)):
+        values = [measure(method, key) for method in run.methods]
+        texts = [text(value) for value in values]
+        if key == "settling_s":
+            texts = [t if m.loop.stable else "unstable" for m, t in zip(run.methods, texts, strict=True)]
+        best = _best([[value] for value in values]) if key == "settling_s" else ()
+        rows.append(Row(QUANTITIES[key].label, "", tuple((text,) for text in texts), best=best))
+    return rows
 
 
 def _best(sizes: Sequence[Sequence[float]]) -> tuple[tuple[bool, ...], ...]:

@@ -8,7 +8,7 @@ from app.plots import style
 from app.plots.pinned import Pinned, pinned_methods, together
 from app.plots.table import cell, row, table
 from app.plots.units import number, rounded
-from app.session.requirements import ROWS, Requirements, Verdict, sign_of, verdicts
+from app.session.requirements import ROWS, SIGNS, Requirements, Verdict, verdicts
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
 
@@ -57,7 +57,7 @@ def _row(verdict: Verdict, shown: Sequence[int], *, asked: bool) -> str:
     quantity = ROWS[verdict.name]
     unit = f' <span class="sb-muted">({escape(quantity.shown)})</span>' if quantity.shown else ""
     limit = (
-        "no limit" if verdict.limit is None else f"{sign_of(verdict.name)} {number(verdict.limit, _DIGITS)}"
+        "no limit" if verdict.limit is None else f"{SIGNS[quantity.sense]} {number(verdict.limit, _DIGITS)}"
     )
     cells = (
         cell(
@@ -94,14 +94,17 @@ def _mark(verdict: Verdict, passed: bool) -> str:
 
 def _overall(judged: tuple[Verdict, ...], index: int) -> str:
     asked = [verdict for verdict in judged if verdict.limit is not None]
+    return overall(sum(not verdict.passed[index] for verdict in asked), len(asked))
+
+
+def overall(missed: int, asked: int) -> str:
+    """Badge that says how many of the limits a method misses."""
     if not asked:
         return cell("nothing asked", "sb-muted", tag="span")
-    missed = sum(not verdict.passed[index] for verdict in asked)
     if missed:
-        return _badge(Text("✗ misses {missed} of {asked}", missed=missed, asked=len(asked)), False)
+        return _badge(Text("✗ misses {missed} of {asked}", missed=missed, asked=asked), False)
     return _badge(
-        Text("✓ meets {asked}", asked="it" if len(asked) == 1 else Text("all {asked}", asked=len(asked))),
-        True,
+        Text("✓ meets {asked}", asked="it" if asked == 1 else Text("all {asked}", asked=asked)), True
     )
 
 

@@ -17,7 +17,6 @@ import numpy as np
 from app.plots import style
 from app.plots.units import (
     AUTO,
-    KNOTS,
     NAMED,
     Unit,
     angle_unit,
@@ -312,7 +311,7 @@ def readout_html(now: Moment, selected: int, display: Display = _AS_IT_FITS) -> 
         (name, _degrees(a), _degrees(b), _signed(off, wanted_unit(display.angle, abs(off), angle_unit)))
         for name, a, b, off in attitude
     ]
-    way = KNOTS if display.speed == AUTO else NAMED[display.speed]
+    way = NAMED["kn" if display.speed == AUTO else display.speed]
     a, b = (f"{pose.speed / way.si:.2f} {way.name}" for pose in (true, computed))
     faster, off = computed.speed - true.speed, float(method.errors[POSITION])
     rows.append(("speed", a, b, _signed(faster, wanted_unit(display.speed, abs(faster), speed_unit))))

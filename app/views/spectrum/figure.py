@@ -7,12 +7,13 @@ import numpy as np
 
 from app.plots import style
 from app.plots.plotly_data import PlotlyFigure, figure, packed
-from app.plots.units import HOURS, MINUTES, Unit, duration
+from app.plots.units import NAMED, Unit, duration
 from app.session.display import Display
 from app.views.errors.figure import error_plots
 from app.views.frequency.figure import natural_frequencies
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
+from navcore.foundation.units import HOUR
 from navcore.quantities import NAMES
 
 _PADDING = 6
@@ -127,8 +128,8 @@ def amplitude_spectrum(method: MethodRun, column: int) -> tuple[np.ndarray, np.n
 
 def _period_unit(display: Display, span_s: float) -> Unit:
     if display.time != "auto":
-        return MINUTES if display.time == "min" else HOURS
-    return MINUTES if span_s <= _MINUTES_BELOW_H * HOURS.si else HOURS
+        return NAMED[display.time]
+    return NAMED["min" if span_s <= _MINUTES_BELOW_H * HOUR else "h"]
 
 
 def _period_axis(unit: Unit, shortest_s: float, longest_s: float) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from app.plots import style
 from app.plots.units import duration, rounded, settling
 from navcore.analysis import analyse
 from navcore.analysis.frequencies import curve_frequencies
-from navcore.analysis.judged import after_log_step
+from navcore.analysis.judged import JudgedLoop, loop_value
 from navcore.engine.run import Run
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import InputError
@@ -72,7 +72,7 @@ def _card(id: str, omega_s: float) -> NetworkCard:
 
 def _trade(network: LinearNetwork, gain_db: np.ndarray) -> str:
     loop = analyse(network)
-    tilt = after_log_step(network, loop, "phi") / ARCSEC
+    tilt = loop_value("log_tilt", JudgedLoop(network, loop, True)) / ARCSEC
     if loop.settling_s is None:
         return "Does not damp: an oscillation goes on for ever. The log has no influence on the tilt."
     peak = float(np.max(gain_db))

@@ -2,10 +2,10 @@
 
 from typing import Any
 
+from app.editing.edits import with_network
 from app.shell import notices
 from app.shell.view import Frame
-from navcore.foundation.errors import Fault, InputError
-from navcore.scenario.model import Scenario
+from navcore.foundation.errors import InputError
 
 
 def change_network(frame: Frame, index: int, network: dict[str, Any], name: str) -> bool:
@@ -31,18 +31,3 @@ def change_network(frame: Frame, index: int, network: dict[str, Any], name: str)
             notices.tell(frame.client, "The proposal cannot be used", notices.fault_lines(error))
             return False
     return True
-
-
-def with_network(scenario: Scenario, index: int, network: dict[str, Any]) -> Scenario:
-    """Return a scenario with another network in one method.
-
-    Raises
-    ------
-    InputError
-        There is no such method any more, or the network does not go with it.
-    """
-    if not 0 <= index < len(scenario.method) or scenario.method[index].undamped:
-        raise InputError(Fault("", f"method.{index}", None, "is no method with a network any more"))
-    data = scenario.canonical()
-    data["method"][index]["network"] = dict(network)
-    return Scenario.parse(data)

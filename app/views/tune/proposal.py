@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING
@@ -10,6 +11,7 @@ from app.plots.table import cell, row, table
 from app.plots.units import number
 from app.session.requirements import SIGNS
 from navcore.design.measures import read_requirement
+from navcore.design.vary import present, read_varied
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES
@@ -24,14 +26,13 @@ def proposal_html(task: TuningTask, tuned: Tuned) -> str:
     quantity = QUANTITIES[task.objective]
     label, size = quantity.names.get(tuned.judged, quantity.label), quantity.size
     rows = []
-    data = task.scenario.canonical()
-    for field, value in tuned.best.items():
+    now = present(task.scenario, read_varied(task.scenario, task.vary)).tolist()
+    for (field, value), before in zip(tuned.best.items(), now, strict=True):
         low, high = tuned.flat.get(field, (value, value))
-        now = _value(data, field)
         rows.append(
             (
                 symbol(field.rsplit(".", 1)[-1]),
-                "default" if now is None else number(now, 4),
+                "default" if math.isnan(before) else number(before, 4),
                 number(value, 4),
                 f"{number(low, 3)} to {number(high, 3)}",
             )
@@ -100,15 +101,6 @@ def limit_words(key: str, limit: float) -> str:
     quantity = QUANTITIES[key]
     value = number(limit / quantity.size, 4)
     return f"{quantity.label} {SIGNS[quantity.sense]} {value} {quantity.shown}".rstrip()
-
-
-def _value(data: object, field: str) -> float | None:
-    for part in field.split("."):
-        if isinstance(data, list):
-            data = data[int(part)]
-        elif isinstance(data, dict):
-            data = data.get(part)
-    return float(data) if isinstance(data, int | float) else None
 
 
 def _row(cells: Sequence[str], tag: str = "td") -> str:

@@ -1,0 +1,80 @@
+"""The layout in a wide font, and at a zoom of 125 %: what other tests hold in a narrow one."""
+
+import os
+import re
+from collections.abc import Iterator
+from itertools import product
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser
+
+from tests.browser import test_page_layout as layout
+from tests.browser import test_page_scene as scene
+from tests.browser import test_page_touch as touch
+from tests.browser.conftest import Served
+from tests.browser.driver import SIZES, Bench
+from tests.browser.windows import test_comparing as comparing
+from tests.browser.windows import test_opening as opening
+from tests.browser.windows import test_sharing as sharing
+from tests.browser.windows.seeing import see
+from tools.chromium import FLAGS
+from tools.fonts import FONTS, WIDE, one_font
+
+TABLET = touch.WIDTH, touch.HEIGHT
+
+
+@pytest.fixture(scope="module")
+def wide(browser: Browser, chromium: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """A browser that has the wide font only."""
+    font = one_font(WIDE, tmp_path_factory.mktemp("font"))
+    if not font:
+        pytest.skip(f"no {WIDE} here (Debian: apt-get install {FONTS[WIDE][1]})")
+    launched = browser.browser_type.launch(executable_path=chromium, args=list(FLAGS), env=os.environ | font)
+    yield launched
+    launched.close()
+
+
+@pytest.fixture
+def lettered(request: pytest.FixtureRequest, wide: Browser, dashboard: Served) -> Iterator[Bench]:
+    """A page in the wide font, of a window and a zoom that the test names; on a ship under way."""
+    size, zoom = request.param
+    width, height = (round(px / zoom) for px in size)
+    context = wide.new_context(
+        viewport={"width": width, "height": height}, device_scale_factor=zoom, has_touch=size == TABLET
+    )
+    bench = Bench(context.new_page(), dashboard[0].url, dashboard[1].sessions).open()
+    bench.size = width, height
+    bench.reset("sikuliaq-like", "Method", "Errors", selected=2)
+    assert re.search(r" 1\.1[0-9]", bench.page.evaluate("schuler.state()")), "a tenth wider than Arial"
+    yield bench
+    assert bench.faults == []
+    context.close()
+
+
+def in_windows(*windows: tuple[tuple[int, int], float]) -> pytest.MarkDecorator:
+    """Run a test in windows with their zoom."""
+    return pytest.mark.parametrize("lettered", windows, ids=str, indirect=True)
+
+
+@in_windows(*product((SIZES[0], SIZES[2]), (1.0, 1.25)))
+def test_every_tab_has_room_for_its_texts(lettered: Bench) -> None:
+    layout.test_every_tab_fits_its_panel(lettered)
+    opening.test_every_tab_says_what_to_look_for(lettered)
+    if lettered.size == SIZES[0]:
+        scene.test_a_narrow_readout_lies_clear_of_the_buttons(lettered)
+
+
+@in_windows((SIZES[2], 1.0))
+def test_rows_and_tables_have_room_for_their_texts(lettered: Bench) -> None:
+    comparing.test_the_table_of_metrics_is_whole_rounded_aligned_and_marks_the_best(lettered)
+    lettered.tab("Compare")
+    lettered.button("Pin this run").click()
+    see(lettered, lettered.page.locator(".sb-pins tbody tr").last)
+    sharing.test_presentation_size_is_large_folded_and_whole(lettered)
+    layout.test_tabs_tools_and_boxes_stand_in_one_row(lettered)
+
+
+@in_windows((TABLET, 1.0))
+def test_fingers_have_room(lettered: Bench) -> None:
+    touch.test_fingers_have_room_and_nothing_is_cut(lettered)
