@@ -8,7 +8,7 @@ import pytest
 
 from app.cli import main
 from navcore.analysis import analyse
-from navcore.analysis.held_log import held_log, period_map
+from navcore.analysis.held_log import held_log
 from navcore.analysis.locus import root_locus
 from navcore.analysis.whole_system import whole_system
 from navcore.design.budget import budget
@@ -157,14 +157,10 @@ def test_velocity_feedback_runs_in_every_fidelity_and_halves_the_velocity_error(
 
 
 def test_velocity_feedback_is_damped_in_the_whole_system_and_as_sampled() -> None:
-    """Eigenvalues of both channels, and of the sampled law at a fast step, which are the same."""
+    """In continuous time, and with a difference that is held for a second but not for 400."""
     network = parse_network(FEEDBACK).transfer(OMEGA_S)
     whole = whole_system(network, 0.8)
     assert whole.stable and whole.earth_growth < 0.0
-    factors = np.linalg.eigvals(period_map(network, 0.01, 1, 0.8))
-    rates = np.log(factors[np.abs(factors) > 1e-6].astype(complex)) / 0.01
-    for mode in whole.modes:
-        assert np.min(np.abs(rates - mode.eigenvalue)) < 2e-3 * abs(mode.eigenvalue) + 5e-8
     assert held_log(network, 1.0, 1.0, 0.8).stable
     assert not held_log(network, 400.0, 1.0, 0.8).stable
 

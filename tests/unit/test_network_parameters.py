@@ -23,13 +23,6 @@ def faults_of(text: str) -> list[tuple[str, str]]:
     return [(fault.field, str(fault)) for fault in caught.value.faults]
 
 
-@pytest.mark.parametrize("name", NETWORKS)
-def test_defaults_make_a_runnable_network_and_survive_a_round_trip(name: str) -> None:
-    parameters = parse_network({"id": name})
-    assert parameters.transfer(OMEGA_S).id == name
-    assert parse_network(parameters.model_dump(mode="json")) == parameters
-
-
 def test_out_of_range_names_field_value_and_whole_range() -> None:
     assert faults_of('id = "compass", sigma = -1.0, xi = 99') == [
         ("sigma", "network: sigma = -1.0: must be >= 1e-05 and <= 1 (1/s)"),

@@ -29,6 +29,7 @@ from navcore.scenario.model import Scenario
 pytestmark = pytest.mark.contract
 
 OMEGA_S = SPHERE.schuler_frequency(0.0)
+FEEDBACK = 'id = "optimal", rho = 1e-3, q = 1.0, realisation = "feedback"'
 
 
 def network(text):
@@ -172,10 +173,10 @@ def test_heights_count_from_the_ellipsoid() -> None:
 # ---------------------------------------------------------------- as sampled
 
 
-@pytest.mark.parametrize("text", ['id = "classic2"', 'id = "complementary"', 'id = "compass"'])
+@pytest.mark.parametrize("text", ['id = "classic2"', 'id = "complementary"', 'id = "compass"', FEEDBACK])
 @pytest.mark.parametrize("calls", [1, 4])
 def test_a_fast_law_has_the_eigenvalues_of_continuous_time(text, calls):
-    h, lat, step = network(text), 0.8, 0.02
+    h, lat, step = network(text), 0.8, 0.01
     factors = np.linalg.eigvals(period_map(h, step, calls, lat))
     rates = np.log(factors[np.abs(factors) > 1e-6].astype(complex)) / (calls * step)
     for mode in whole_system(h, lat).modes:
