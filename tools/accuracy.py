@@ -27,8 +27,7 @@ from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
 from tests.acceptance.test_design_values import FLOOR, OPTIMA, OPTIMAL, TABLE, set_a
-from tests.acceptance.test_strapdown_against_error_model import METHODS, VOYAGE, both
-from tests.acceptance.test_strapdown_motions import ORDERS, worst
+from tests.acceptance.test_strapdown_motions import METHODS, ORDERS, VOYAGE, both, worst
 from tests.motions import MANOEUVRES, SEA, SUN, ZHAO, circle_track
 from tests.strapdown import DENG_SWING, DRIVE, SITE, navigate, reference
 

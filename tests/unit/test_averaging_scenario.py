@@ -29,12 +29,6 @@ def scenario(**blocks: Any) -> Scenario:
     return Scenario.parse(data)
 
 
-def test_names_are_made_from_the_variant():
-    names = [m.name for m in scenario().method]
-    assert names == ["averaging (schuler)", "averaging (cascade)", "free"]
-    assert [m.undamped for m in scenario().method] == [True, True, True]
-
-
 def test_both_fidelities_carry_it_out():
     linear, full = simulate(scenario()), simulate(scenario(run={"fidelity": "strapdown"}))
     # of what the free method has: where the copies leave next to nothing, the second order shows

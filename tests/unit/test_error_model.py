@@ -127,28 +127,3 @@ def test_kernel_moves_like_its_system_matrix():
     states = _compiled(truth, law, SPHERE, 1.0, (*quiet, x0))
     exact = expm(system_matrix(LAT0, 6378137.0, 9.80665, EARTH_RATE) * steps) @ x0
     assert np.all(np.abs(states[-1] - exact) <= 1e-9 * np.abs(states).max(axis=0))
-
-
-@pytest.mark.parametrize(("sigma", "xi"), [(0.0088, 0.7), (0.004, 1.0), (0.003, 1.4)])
-def test_channel_compass_follows_the_loops_tilt_response(sigma, xi):
-    """Velocity feedback, network form and Zha's transient are one: phi(t)/phi0 to 0.1 % of phi0."""
-    from navcore.analysis import initial_tilt_response
-
-    step_s, steps = 0.05, 12000
-    omega_s = SPHERE.schuler_frequency(0.0)
-    truth = np.zeros((1, COLUMNS))
-    x0 = np.array([0.0, 0.0, 0.0, 0.0, 1e-3, 0.0, 0.0])
-    quiet = (
-        np.zeros((steps, 3)),
-        np.zeros((steps, 3)),
-        np.zeros((steps + 1, 2)),
-        np.ones(steps + 1, bool),
-        x0,
-    )
-    for realisation in ("feedback", "network"):
-        parameters = CompassNetwork(sigma=sigma, xi=xi, realisation=realisation)
-        law = _law("external", parameters, omega_s, None, step_s)
-        phi = _compiled(truth, law, SPHERE, step_s, quiet, coupled=False)[:, 4] / 1e-3
-        t = np.arange(steps + 1) * step_s
-        expected = initial_tilt_response(parameters.transfer(omega_s), t)
-        assert np.abs(phi - expected).max() < 1e-3

@@ -70,23 +70,23 @@ def test_a_straight_course_keeps_a_bias_constant_and_a_turn_does_not() -> None:
     assert errors.gyro[99] / DEG_PER_HOUR == pytest.approx(expected)
 
 
-@pytest.mark.parametrize("step", [1.0, 0.25])
-def test_angular_random_walk_integrates_to_its_name(step: float) -> None:
+@pytest.mark.parametrize(
+    ("fields", "sensor", "step", "walk"),
+    [
+        *(({"gyro_arw_dpsh": 0.006}, "gyro", step, 0.006 * DEG_PER_SQRT_HOUR) for step in (1.0, 0.25)),
+        ({"accel_vrw_ugpshz": 30.0}, "accel", 1.0, 30.0 * MICRO_G),
+    ],
+)
+def test_a_random_walk_integrates_to_its_name(
+    fields: dict[str, float], sensor: str, step: float, walk: float
+) -> None:
     count = round(DAY / step)
-    rate = _errors(count=count, step=step, gyro_arw_dpsh=0.006).gyro
-    assert np.std(rate, axis=0) == pytest.approx(
-        np.full(3, 0.006 * DEG_PER_SQRT_HOUR / math.sqrt(step)), rel=4.5 / math.sqrt(2.0 * count)
-    )
-    # 288 quarters of an hour (3 axes): sigma = 0.006 deg sqrt(1/4 h).
-    angle = step * rate.reshape(96, -1, 3).sum(axis=1)
-    assert np.std(angle) == pytest.approx(0.006 * DEG * 0.5, rel=4.5 / math.sqrt(2.0 * 288))
-
-
-def test_velocity_random_walk_integrates_to_its_name() -> None:
-    force = _errors(accel_vrw_ugpshz=30.0).accel
-    assert np.std(force, axis=0) == pytest.approx(np.full(3, 30.0 * MICRO_G), rel=4.5 / math.sqrt(2.0 * DAY))
-    velocity = force.reshape(96, 900, 3).sum(axis=1)
-    assert np.std(velocity) == pytest.approx(30.0 * MICRO_G * 30.0, rel=4.5 / math.sqrt(2.0 * 288))
+    rate = getattr(_errors(count=count, step=step, **fields), sensor)
+    white = np.full(3, walk / math.sqrt(step))
+    assert np.std(rate, axis=0) == pytest.approx(white, rel=4.5 / math.sqrt(2.0 * count))
+    # 288 quarters of an hour (3 axes)
+    integral = step * rate.reshape(96, -1, 3).sum(axis=1)
+    assert np.std(integral) == pytest.approx(walk * math.sqrt(900.0), rel=4.5 / math.sqrt(2.0 * 288))
 
 
 @pytest.mark.parametrize(

@@ -78,15 +78,6 @@ def test_against_numeric_differentiation(motion: MotionParameters, earth: Earth)
     assert np.abs(inner[:, 3:] - force).max() < 1e-8
 
 
-def test_at_rest_gyros_feel_the_earth_and_accelerometers_gravity() -> None:
-    motion = StaticMotion(pitch_deg=5.0, roll_deg=-7.0, heading_deg=123.0)
-    (signal,) = inertial_signals(motion.truth(11, 0.5, SITE, WGS84), WGS84)
-    to_body = attitude_matrix(5.0 * DEG, -7.0 * DEG, 123.0 * DEG).T
-    earth_rate = EARTH_RATE * np.array([0.0, math.cos(SITE.lat), math.sin(SITE.lat)])
-    assert signal[:3] == pytest.approx(to_body @ earth_rate, abs=1e-18)
-    assert signal[3:] == pytest.approx(to_body @ [0.0, 0.0, WGS84.gravity(SITE.lat, 100.0)], abs=1e-13)
-
-
 def test_the_level_body_feels_only_its_two_channels() -> None:
     truth = LEGS.truth(101, 0.5, SITE, WGS84)
     signals = inertial_signals(truth, WGS84, level_body=True)

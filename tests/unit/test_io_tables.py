@@ -124,13 +124,17 @@ def test_parquet_faults_are_those_of_a_table(tmp_path):
     write_parquet(tmp_path / "a.parquet", {"t_s": [0.0, 0.0], "heading_deg": [1.0, 2.0]})
     write_parquet(tmp_path / "b.parquet", {"t_s": [0.0, 1.0], "heading_deg": [1.0, None]})
     write_parquet(tmp_path / "c.parquet", {"t_s": [0.0, 1.0], "heading_deg": ["x", "y"]})
+    write_parquet(tmp_path / "e.parquet", {"t_s": [0.0, 1.0], "heading_deg": [[1.0], [2.0]]})
+    write_parquet(tmp_path / "f.parquet", {"utc": ["2024-02-28T23:59:59Z"] * 2, "heading_deg": [1.0, 2.0]})
     write_parquet(tmp_path / "d.parquet", {"t_s": [0, 1, 2], "heading_deg": [1, None, 2]})
     assert read_recording(tmp_path / "d.parquet").heading.time_s.tolist() == [0.0, 2.0]
     assert "row 2: t_s: time is the same" in faults(tmp_path / "a.parquet")[0]
+    assert "is the same time" in faults(tmp_path / "f.parquet")[0]
     recording = read_recording(tmp_path / "b.parquet")
     assert recording.heading.values[:, 0] == pytest.approx([1.0 * DEG])
     assert recording.warnings == ("b.parquet: empty cells, missing samples: heading_deg 1",)
-    assert "heading_deg: must be a column of numbers" in faults(tmp_path / "c.parquet")[0]
+    for name in ("c.parquet", "e.parquet"):
+        assert "heading_deg: must be a column of numbers" in faults(tmp_path / name)[0]
 
 
 @pytest.mark.parametrize("head", [b"PAR1", b"MATLAB 5.0 MAT-file, "])
@@ -201,18 +205,20 @@ def test_numbers_that_stand_for_no_reading_are_missing(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "cells",
-    ["26.03.2019 10:06:31", "03/26/2019 10:06:31", "1553594791", "1553594791000", "2019:085:10:06:31"],
+    ("names", "cells"),
+    [
+        ("timestamp", "26.03.2019 10:06:31.5"),
+        ("timestamp", "03/26/2019 10:06:31.5"),
+        ("timestamp", "1553594791.5"),
+        ("timestamp", "1553594791500"),
+        ("timestamp", "2019:085:10:06:31.5"),
+        ("Date,Time", "03/26/2019,10:06:31.5"),
+    ],
 )
-def test_times_of_a_column_in_any_known_form(tmp_path, cells):
-    recording = read_recording(csv_file(tmp_path, f"timestamp,heading\n{cells},1\n"))
-    assert recording.heading.time_s == pytest.approx([1553594791.0])
-    assert recording.heading.dated
-
-
-def test_date_and_time_in_two_columns(tmp_path):
-    recording = read_recording(csv_file(tmp_path, "Date,Time,Heading\n03/26/2019,10:06:31.5,1\n"))
+def test_times_of_a_column_or_two_in_any_known_form(tmp_path, names, cells):
+    recording = read_recording(csv_file(tmp_path, f"{names},heading\n{cells},1\n"))
     assert recording.heading.time_s == pytest.approx([1553594791.5])
+    assert recording.heading.dated
 
 
 @pytest.mark.parametrize(
@@ -250,18 +256,6 @@ def test_millions_of_columns_are_told_in_one_short_line(tmp_path):
     assert len(found) == 1 and len(found[0]) < 300
     found = faults(csv_file(tmp_path, "t_s," + ",".join(f"unknown {k}" for k in range(900)) + "\n1\n"))
     assert len(found) == 1 and len(found[0]) < 2000
-
-
-def test_parquet_texts_that_repeat_and_types_that_are_no_numbers(tmp_path):
-    import pyarrow as pa
-    import pyarrow.parquet as parquet
-
-    times = ["2024-02-28T23:59:59Z"] * 2
-    parquet.write_table(pa.table({"utc": times, "heading_deg": [1.0, 2.0]}), tmp_path / "a.parquet")
-    assert "is the same time" in faults(tmp_path / "a.parquet")[0]
-    nested = pa.table({"t_s": [0.0, 1.0], "heading_deg": [[1.0], [2.0]]})
-    parquet.write_table(nested, tmp_path / "b.parquet")
-    assert "heading_deg: must be a column of numbers" in faults(tmp_path / "b.parquet")[0]
 
 
 def test_a_mat_file_of_cells_is_refused_unread(tmp_path):

@@ -14,7 +14,6 @@ from navcore.engine.environment import environment
 from navcore.engine.simulation import simulate
 from navcore.engine.strapdown_environment import strapdown_environment
 from navcore.foundation.compiled import plain
-from navcore.foundation.errors import InputError
 from navcore.mechanization.kalman.strapdown import _correct
 from navcore.mechanization.strapdown.attitude import quaternion_of
 from navcore.mechanization.strapdown.run import turned_by
@@ -39,19 +38,6 @@ def scenario(**blocks: Any) -> Scenario:
     for name, block in blocks.items():
         data[name] = {**data[name], **block} if isinstance(block, dict) and name in data else block
     return Scenario.parse(data)
-
-
-@pytest.mark.parametrize(
-    "blocks",
-    [
-        {"run": {"fidelity": "channel"}},
-        {"reference": {"kind": "none"}},
-    ],
-)
-def test_refused_where_the_filter_cannot_work(blocks: dict[str, Any]) -> None:
-    with pytest.raises(InputError) as refused:
-        scenario(**blocks)
-    assert "method.0.damping" in [fault.field for fault in refused.value.faults]
 
 
 def test_network_policy_and_switching_are_told_to_be_unused() -> None:

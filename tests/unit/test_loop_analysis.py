@@ -1,4 +1,4 @@
-"""Stability, damping and settling of the closed loop; root loci."""
+"""Stability, damping and settling of the closed loop; root loci; placement of a pair."""
 
 import math
 
@@ -9,10 +9,14 @@ from hypothesis import strategies as st
 
 from navcore.analysis import analyse, initial_tilt_response
 from navcore.analysis.locus import root_locus
-from navcore.analysis.loop import closed_loop_polynomial
+from navcore.analysis.loop import closed_loop_poles, closed_loop_polynomial
+from navcore.analysis.placement import place
 from navcore.analysis.settling import LEVEL, last_exceedance
+from navcore.foundation.errors import InputError
 from navcore.networks import NETWORKS, LinearNetwork, parse_network
+from navcore.networks.classic import Classic2Network
 from navcore.networks.compass import CompassNetwork
+from navcore.networks.complementary import ComplementaryNetwork
 from navcore.networks.pole2 import Pole2Network
 from navcore.networks.state_space import StateSpace
 from navcore.networks.unity2 import Unity2Network
@@ -183,12 +187,12 @@ def test_what_never_exceeds_the_level_is_settled_at_once() -> None:
 # ---------------------------------------------------------------- root locus
 
 
-LOCUS_OMEGA_S = 1.24e-3
+ROUNDED_OMEGA_S = 1.24e-3
 
 
 def test_compass_poles_move_along_a_ray_with_sigma():
     sigma = np.geomspace(1e-3, 0.1, 30)
-    locus = root_locus(CompassNetwork(sigma=0.01, xi=0.6), "sigma", sigma, LOCUS_OMEGA_S)
+    locus = root_locus(CompassNetwork(sigma=0.01, xi=0.6), "sigma", sigma, ROUNDED_OMEGA_S)
     np.testing.assert_array_equal(locus.values, sigma)
     real = np.abs(locus.poles.imag).max(axis=0).argmin()
     np.testing.assert_allclose(locus.poles[:, real], -sigma, rtol=1e-9)
@@ -197,16 +201,105 @@ def test_compass_poles_move_along_a_ray_with_sigma():
 
 
 def test_branches_do_not_jump():
-    locus = root_locus(Unity2Network(), "zeta", np.linspace(0.05, 0.9, 200), LOCUS_OMEGA_S)
+    locus = root_locus(Unity2Network(), "zeta", np.linspace(0.05, 0.9, 200), ROUNDED_OMEGA_S)
     steps = np.abs(np.diff(locus.poles, axis=0))
     assert steps.max() < 0.1 * np.abs(locus.poles).max()
 
 
 def test_refused_values_are_left_out():
-    locus = root_locus(Pole2Network(), "n1", np.linspace(5.0, 20.0, 31), LOCUS_OMEGA_S)
+    locus = root_locus(Pole2Network(), "n1", np.linspace(5.0, 20.0, 31), ROUNDED_OMEGA_S)
     assert 5.0 not in locus.values
     assert locus.values[0] > 5.0
     assert locus.values[-1] == 20.0
     assert locus.poles.shape == (len(locus.values), 4)
-    nothing = root_locus(Pole2Network(), "n1", np.array([-1.0]), LOCUS_OMEGA_S)
+    nothing = root_locus(Pole2Network(), "n1", np.array([-1.0]), ROUNDED_OMEGA_S)
     assert nothing.poles.shape == (0, 0)
+
+
+# ---------------------------------------------------------------- placement
+
+
+ALL = (CompassNetwork(), Unity2Network(), Pole2Network(), ComplementaryNetwork())
+
+
+@given(
+    xi=st.floats(0.01, 0.999),
+    ratio=st.floats(0.9, 12.0),
+    network=st.sampled_from(ALL),
+)
+def test_the_pair_is_where_it_is_said_to_be(xi, ratio, network):
+    placed = place(network, xi, ratio * ROUNDED_OMEGA_S, ROUNDED_OMEGA_S)
+    p = complex(-placed.damping_ratio, np.sqrt(1.0 - placed.damping_ratio**2)) * placed.frequency
+    poles = closed_loop_poles(placed.parameters.transfer(ROUNDED_OMEGA_S)) * ROUNDED_OMEGA_S
+    assert np.abs(poles - p).min() < 1e-9 * abs(p)
+    assert placed.damping_ratio == xi
+    met = placed.frequency == pytest.approx(ratio * ROUNDED_OMEGA_S, rel=1e-6)
+    assert met == (placed.note == "")
+
+
+@pytest.mark.parametrize(
+    ("network", "xi", "omega", "said"),
+    [
+        (CompassNetwork(), 1.2, ROUNDED_OMEGA_S, "damping ratio = 1.2"),
+        (CompassNetwork(), 0.5, -1.0, "frequency = -1"),
+        (CompassNetwork(), 0.5, 40.0, "sigma = 20"),
+        (Classic2Network(), 0.5, ROUNDED_OMEGA_S, "cannot be placed"),
+        (Pole2Network(variant="as_printed"), 0.5, ROUNDED_OMEGA_S, "pole2 (exact)"),
+    ],
+)
+def test_what_cannot_be_is_said(network, xi, omega, said):
+    with pytest.raises(InputError) as refused:
+        place(network, xi, omega, ROUNDED_OMEGA_S)
+    assert said in str(refused.value)
+
+
+@given(
+    xi=st.floats(0.01, 1.0),
+    ratio=st.floats(0.1, 100.0),
+    network=st.sampled_from(ALL),
+)
+def test_parameters_to_pair_to_parameters(xi, ratio, network):
+    nearest = network.main_pair(ROUNDED_OMEGA_S).nearest(xi, ratio * ROUNDED_OMEGA_S)
+    before = place(network, nearest[0], nearest[1], ROUNDED_OMEGA_S).parameters
+    pair = before.main_pair(ROUNDED_OMEGA_S)
+    after = place(before, pair.damping_ratio, pair.frequency, ROUNDED_OMEGA_S).parameters
+    for name, value in before:
+        assert getattr(after, name) == (pytest.approx(value, rel=1e-12) if name in ("sigma", "r") else value)
+
+
+@given(xi=st.floats(1e-6, 50.0), ratio=st.floats(1e-6, 1e6), network=st.sampled_from(ALL))
+def test_the_nearest_possible_pair_is_placed_without_a_note(xi, ratio, network):
+    pair = network.main_pair(ROUNDED_OMEGA_S)
+    nearest = pair.nearest(xi, ratio * ROUNDED_OMEGA_S)
+    placed = place(network, nearest[0], nearest[1], ROUNDED_OMEGA_S)
+    assert placed.note == ""
+    assert (placed.damping_ratio, placed.frequency) == pytest.approx(nearest, rel=1e-12)
+    assert pair.nearest(*nearest) == pytest.approx(nearest, rel=1e-9)
+
+
+def test_the_nearest_pair_keeps_to_the_ranges_of_the_parameters():
+    unity, compass = (
+        n.main_pair(ROUNDED_OMEGA_S) for n in (Unity2Network(), CompassNetwork(sigma=0.002, xi=0.5))
+    )
+    assert unity.nearest(0.5, 1.004 * ROUNDED_OMEGA_S) == (0.5, pytest.approx(1.01 * ROUNDED_OMEGA_S))
+    assert unity.nearest(0.5, 0.996 * ROUNDED_OMEGA_S) == (0.5, pytest.approx(0.99 * ROUNDED_OMEGA_S))
+    assert unity.nearest(3.0, 20.0 * ROUNDED_OMEGA_S) == (1.0, pytest.approx(10.0 * ROUNDED_OMEGA_S))
+    assert (compass.damping_ratio, compass.frequency) == (0.5, 0.004)
+    assert compass.nearest(0.5, 40.0) == (0.5, pytest.approx(2.0))
+    assert compass.nearest(0.001, 0.01) == (0.01, 0.01)
+    assert ComplementaryNetwork().main_pair(ROUNDED_OMEGA_S).nearest(0.3, 5.0) == (0.3, ROUNDED_OMEGA_S)
+
+
+@given(sigma=st.floats(3e-4, 0.1), xi=st.floats(0.05, 0.95))
+def test_gains_have_the_pair_of_the_sigma_and_xi_that_give_them(sigma, xi):
+    k1, k2, k3 = CompassNetwork(sigma=sigma, xi=xi).gains(ROUNDED_OMEGA_S)
+    pair = CompassNetwork(k1=k1, k2=k2, k3=k3).main_pair(ROUNDED_OMEGA_S)
+    assert (pair.damping_ratio, pair.frequency) == pytest.approx((xi, sigma / xi), rel=1e-6)
+
+
+def test_what_has_no_pair_to_be_placed_has_a_reason():
+    assert CompassNetwork(k1=0.1, k2=0.01, k3=1e-9).main_pair(ROUNDED_OMEGA_S) is None
+    assert Pole2Network(variant="as_printed").main_pair(ROUNDED_OMEGA_S) is None
+    assert Classic2Network().main_pair(ROUNDED_OMEGA_S) is None
+    for network in (CompassNetwork, Pole2Network, Classic2Network):
+        assert network.no_handle

@@ -156,10 +156,6 @@ def test_the_mean_course_is_that_of_legs() -> None:
     assert states[:, HEADING].mean() == pytest.approx(70.0 * DEG, abs=0.05 * DEG)
 
 
-def test_a_state_does_not_depend_on_the_grid() -> None:
-    np.testing.assert_allclose(rows(SEA, 3600.0, 0.5)[::2], rows(SEA, 3600.0, 1.0), rtol=0.0, atol=1e-11)
-
-
 def test_the_seed_alone_decides_the_sea() -> None:
     again = WavesMotion(speed_mps=6.0)
     np.testing.assert_array_equal(rows(SEA, 100.0, 1.0), rows(again, 100.0, 1.0))
@@ -170,12 +166,6 @@ def test_the_seed_alone_decides_the_sea() -> None:
 def test_a_higher_sea_is_the_same_sea_scaled() -> None:
     doubled = rows(SEA.model_copy(update={"height_m": 5.0}), 100.0, 1.0)
     np.testing.assert_allclose(doubled[:, ROLL], 2.0 * rows(SEA, 100.0, 1.0)[:, ROLL], atol=1e-12)
-
-
-def test_no_waves_and_no_speed_is_one_row() -> None:
-    truth = WavesMotion(height_m=0.0, heading_deg=20.0).truth(1001, 0.5, SITE, WGS84)
-    assert truth.values.shape == (1, 15)
-    assert truth.values[0, HEADING] == pytest.approx(20.0 * DEG)
 
 
 def test_too_long_a_step_is_refused_with_the_mean_period() -> None:
@@ -190,9 +180,3 @@ def test_too_long_a_step_is_refused_with_the_mean_period() -> None:
 def test_a_sea_that_pitches_over_is_refused() -> None:
     with pytest.raises(ValidationError, match="height_m = .*pitch could reach"):
         WavesMotion(height_m=20.0, peak_period_s=5.0, pitch_deg=40.0, pitch_damping=0.05)
-
-
-def test_a_course_over_the_pole_is_refused() -> None:
-    with pytest.raises(InputError, match=r"89\.5°") as caught:
-        WavesMotion(speed_mps=50.0).rows(86401, 0.5, Site(88.0 * DEG, 0.0, 0.0), WGS84)
-    assert caught.value.faults[0].field == "speed_mps"

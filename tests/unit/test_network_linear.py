@@ -1,9 +1,5 @@
 """`LinearNetwork`: polynomials, roots, gains and frequency response belong to one H(s)."""
 
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -117,14 +113,3 @@ def test_state_space_has_the_transfer_asked_for(poles: list[complex], num: list[
         matrix = p * np.eye(len(poles)) - system.A
         found = system.D + (system.C @ np.linalg.solve(matrix, system.B) if poles else 0.0)
         assert complex(found) == pytest.approx(complex(direct), rel=1e-11)
-
-
-def test_importing_the_loop_stays_light(repo_root: Path) -> None:
-    code = (
-        "import sys, navcore.analysis, navcore.networks.discrete, navcore.networks;"
-        "heavy = {'scipy', 'control', 'matplotlib', 'numba', 'pandas'} & set(sys.modules);"
-        "sys.exit(' '.join(heavy) or 0)"
-    )
-    command = [sys.executable, "-c", code]
-    run = subprocess.run(command, cwd=repo_root, capture_output=True, text=True, check=False)
-    assert run.returncode == 0, run.stderr

@@ -8,7 +8,7 @@ import pytest
 
 from app.cli import main
 from navcore.analysis import analyse
-from navcore.analysis.held_log import held_log, period_map
+from navcore.analysis.held_log import held_log
 from navcore.analysis.locus import root_locus
 from navcore.analysis.whole_system import whole_system
 from navcore.design.budget import budget
@@ -113,21 +113,32 @@ def test_the_root_locus_keeps_the_sensors() -> None:
     )
 
 
-def test_it_goes_with_switching_policies_and_internal_damping() -> None:
-    """Every switching method that re-tunes nothing."""
-    for switching in ("hard", "keep", "bumpless"):
-        method = {
-            "damping": "external",
-            "network": {"id": "optimal"},
-            "policy": {"id": "threshold"},
+FEEDBACK = {"id": "optimal", "rho": 1e-3, "q": 1.0, "realisation": "feedback"}
+
+
+@pytest.mark.parametrize(
+    ("damping", "network", "policy", "switchings"),
+    [
+        ("external", {"id": "optimal"}, "threshold", ("hard", "keep", "bumpless")),
+        ("external", FEEDBACK, "variation", ("hard", "keep")),
+        ("internal", {"id": "optimal"}, "constant", ("hard",)),
+    ],
+)
+def test_it_goes_with_internal_damping_and_what_re_tunes_nothing(
+    damping: str, network: dict[str, Any], policy: str, switchings: tuple[str, ...]
+) -> None:
+    methods = [
+        {
+            "name": switching,
+            "damping": damping,
+            "network": network,
+            "policy": {"id": policy},
             "switching": {"id": switching},
         }
-        assert simulate(scenario({}, method=[method])).methods[0].status == "ok"
-    internal = {"damping": "internal", "network": {"id": "optimal"}}
-    assert simulate(scenario({}, method=[internal])).methods[0].status == "ok"
-
-
-FEEDBACK = {"id": "optimal", "rho": 1e-3, "q": 1.0, "realisation": "feedback"}
+        for switching in switchings
+    ]
+    run = simulate(scenario({}, method=methods))
+    assert [method.status for method in run.methods] == ["ok"] * len(switchings)
 
 
 @pytest.mark.parametrize("fidelity", ["channel", "error_model", "strapdown"])
@@ -146,14 +157,10 @@ def test_velocity_feedback_runs_in_every_fidelity_and_halves_the_velocity_error(
 
 
 def test_velocity_feedback_is_damped_in_the_whole_system_and_as_sampled() -> None:
-    """Eigenvalues of both channels, and of the sampled law at a fast step, which are the same."""
+    """In continuous time, and with a difference that is held for a second but not for 400."""
     network = parse_network(FEEDBACK).transfer(OMEGA_S)
     whole = whole_system(network, 0.8)
     assert whole.stable and whole.earth_growth < 0.0
-    factors = np.linalg.eigvals(period_map(network, 0.01, 1, 0.8))
-    rates = np.log(factors[np.abs(factors) > 1e-6].astype(complex)) / 0.01
-    for mode in whole.modes:
-        assert np.min(np.abs(rates - mode.eigenvalue)) < 2e-3 * abs(mode.eigenvalue) + 5e-8
     assert held_log(network, 1.0, 1.0, 0.8).stable
     assert not held_log(network, 400.0, 1.0, 0.8).stable
 
@@ -198,14 +205,6 @@ def test_velocity_feedback_is_refused_where_it_cannot_stand(method: dict[str, An
     assert str(caught.value) == f"method.0.{line}"
 
 
-def test_velocity_feedback_goes_with_what_clears_or_keeps_the_network() -> None:
-    """`hard` and `keep`, with a policy that looks at the data."""
-    for switching in ("hard", "keep"):
-        method = {"damping": "external", "network": FEEDBACK, "policy": {"id": "variation"},
-                  "switching": {"id": switching}}  # fmt: skip
-        assert simulate(scenario({}, method=[method])).methods[0].status == "ok"
-
-
 def test_figures_that_make_no_network_are_refused_with_the_field() -> None:
     """A huge random walk: poles too far apart for double precision."""
     with pytest.raises(InputError, match="rho = "):
@@ -219,15 +218,6 @@ def test_an_unstable_compensator_is_refused_before_its_order_is_reduced() -> Non
     figures = {"log_noise_mps": 4e-8, "log_drift_tau_s": 10.0, "accel_tau_s": 10.0}
     with pytest.raises(InputError, match="rho = 1.0: makes an unstable network"):
         parse_network({"id": "optimal", "rho": 1.0, **figures}).transfer(OMEGA_S)
-
-
-def test_command_shows_it(capsys: pytest.CaptureFixture[str]) -> None:
-    """`schuler network` without a scenario."""
-    assert main(["network", 'id = "optimal", rho = 1e-4', "--json"]) == 0
-    document = json.loads(capsys.readouterr().out)
-    assert document["stable"] and 0.0 < document["h0"] < 0.1
-    assert any("example ship" in text for text in document["warnings"])
-    assert "feedback_num" not in document
 
 
 def test_command_shows_the_second_output(capsys: pytest.CaptureFixture[str]) -> None:

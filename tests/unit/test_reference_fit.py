@@ -5,11 +5,15 @@ import math
 import numpy as np
 import pytest
 
+from app.session.log_fit import can_fit, fit_of, told, with_fitted_log
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG
+from navcore.motion.track import TrackMotion
 from navcore.motion.truth import AE, AN, COLUMNS, HEADING, VE, VN, Truth
-from navcore.sensors.fit import LogAlongTrack, _autocovariance, fit_delay, fit_log_error
+from navcore.scenario.file import load
+from navcore.sensors.fit import LogAlongTrack, _autocovariance, fit_delay, fit_log_error, log_along_track
 from navcore.sensors.log import reference_errors
+from navcore.sensors.recorded import recorded_window
 from navcore.sensors.reference import Reference
 from navcore.sensors.true_state import horizontal_state, to_ship
 
@@ -34,7 +38,7 @@ def test_bias_noise_and_drift_of_a_long_record_come_back(seed):
         kind="log", bias_mps=(0.1, -0.2), noise_mps=0.03, drift_mps=0.05, drift_tau_s=20.0, rate_hz=1.0
     )
     simulated = reference_errors(made, AT_REST, 40_000.0, seed)
-    fit = fit_log_error(simulated.time_s, simulated.error)
+    fit = fit_log_error(simulated.time_s, simulated.error, delay_s=12.6)
     assert np.all(np.abs(fit.bias - made.bias_mps) < 4.0 * fit.bias_std)
     # Independent formula: the variance of the mean of a Gauss-Markov process is 2 tau / T of its own.
     assert fit.bias_std == pytest.approx(0.05 * math.sqrt(40.0 / 40_000.0), rel=0.15)
@@ -42,6 +46,9 @@ def test_bias_noise_and_drift_of_a_long_record_come_back(seed):
     assert fit.drift == pytest.approx(0.05, rel=0.05)
     assert fit.drift_tau_s == pytest.approx(20.0, rel=0.15)
     assert (fit.rate_hz, fit.span_s) == pytest.approx((1.0, 40_000.0))
+    again = fit.reference()
+    assert (again.frame, again.delay_s, again.rate_hz) == ("body", 12.6, 1.0)
+    assert (again.noise_mps, again.drift_mps) == pytest.approx((0.03, 0.05), rel=0.06)
 
 
 def test_a_short_record_gives_a_wide_but_honest_bias():
@@ -90,17 +97,42 @@ def test_too_short_records_are_refused():
         fit_delay(LogAlongTrack(np.arange(80.0), np.zeros((80, 2)), AT_REST))
 
 
-def test_the_fitted_error_makes_a_reference():
-    simulated = reference_errors(Reference(kind="log", noise_mps=0.1, rate_hz=0.911), AT_REST, 2000.0, 1)
-    reference = fit_log_error(simulated.time_s, simulated.error, delay_s=12.6).reference()
-    assert reference.frame == "body"
-    assert reference.delay_s == 12.6
-    assert reference.rate_hz == 0.911
-    assert reference.noise_mps == pytest.approx(0.1, rel=0.05)
-
-
 def test_the_autocovariance_is_the_mean_of_products():
     values = np.random.default_rng(1).standard_normal((200, 2))
     found = _autocovariance(values, 20)
     for lag in (0, 1, 19):
         assert found[lag] == pytest.approx(np.mean(values[: 200 - lag] * values[lag:], axis=0))
+
+
+# ---------------------------------------------------------------- the fit that the tab Log offers
+
+
+def test_the_recorded_ships_log_errs_as_the_preset_that_was_fitted_to_it() -> None:
+    recorded = load("sikuliaq-recorded")
+    assert can_fit(recorded)
+    fit = fit_of(recorded)
+    like = load("sikuliaq-like").reference
+    assert fit.delay_s == pytest.approx(like.delay_s, abs=0.5)
+    assert tuple(fit.bias) == pytest.approx(like.bias_mps, abs=0.005)
+    assert f"Delay {fit.delay_s:.1f} s." in told(fit)
+    made = with_fitted_log(recorded, fit)
+    assert made.reference.kind == "log" and made.reference.bias_mps == fit.reference().bias_mps
+    assert made.motion == recorded.motion and not can_fit(made)
+
+
+def test_the_true_motion_ends_with_the_time_that_log_and_track_share() -> None:
+    scenario = load("sikuliaq-recorded")
+    assert isinstance(scenario.motion, TrackMotion)
+    window = recorded_window(scenario.motion, scenario.reference)
+    assert window is not None
+    log = log_along_track(scenario.reference, scenario.motion)
+    end_s = (len(log.truth.values) - 1) * log.truth.step_s
+    assert window.span_s - log.truth.step_s < end_s <= window.span_s
+    assert 0.0 <= log.time_s[0] < log.time_s[-1] <= end_s
+
+
+def test_without_recordings_there_is_nothing_to_fit() -> None:
+    scenario = load("sikuliaq-like")
+    assert not can_fit(scenario)
+    with pytest.raises(InputError, match="recorded track"):
+        fit_of(scenario)

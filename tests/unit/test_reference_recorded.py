@@ -117,9 +117,11 @@ def test_a_file_that_is_no_log_is_refused(files, tmp_path, file, said):
     assert caught.value.faults[0].field == "reference.file"
 
 
-def test_nothing_recorded_has_no_window():
+def test_nothing_recorded_has_no_window_and_a_sound_track_no_notices(files):
     assert recorded_window(StaticMotion(), Reference(kind="log")) is None
     assert recording_notices(StaticMotion(), Reference(kind="log", noise_mps=0.1)) == ()
+    track = TrackMotion(file=(files["gnss"], files["gyro"]))
+    assert recording_notices(track, Reference(kind="file", file=files["log"])) == ()
 
 
 def test_track_and_log_share_their_zero(files, tmp_path):
@@ -127,11 +129,6 @@ def test_track_and_log_share_their_zero(files, tmp_path):
     track = TrackMotion(file=(files["gnss"], files["gyro"]))
     window = recorded_window(track, Reference(kind="file", file=str(late)))
     assert window.start_s - track.window().start_s == pytest.approx(49.51, abs=1e-3)
-
-
-def test_without_errors_in_the_track_notices_are_empty(files):
-    track = TrackMotion(file=(files["gnss"], files["gyro"]))
-    assert recording_notices(track, Reference(kind="file", file=files["log"])) == ()
 
 
 def test_what_the_user_should_know_is_said(files, tmp_path):

@@ -14,13 +14,26 @@ from navcore.analysis.placement import place
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import InputError
-from navcore.foundation.parameters import Parameters, extra_of
+from navcore.foundation.parameters import Parameters, allowed_range, extra_of
 from navcore.foundation.registry import blocks_of, registry
 from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
-from navcore.motion import MOTIONS, MotionParameters, StaticMotion
+from navcore.motion import MOTIONS, MotionParameters
 from navcore.motion.kinematics import KINDS, Kinematics
-from navcore.motion.truth import AE, HEADING, HEADING_RATE, HEIGHT, LAT, LON, PITCH, ROLL, VE, VN, VU, Truth
+from navcore.motion.truth import (
+    AE,
+    COLUMNS,
+    HEADING,
+    HEADING_RATE,
+    HEIGHT,
+    LAT,
+    LON,
+    PITCH,
+    ROLL,
+    VE,
+    VN,
+    VU,
+)
 from navcore.networks import NETWORKS, NetworkParameters
 from navcore.scenario.file import parse_toml, to_toml
 from navcore.scenario.guide import guide
@@ -100,6 +113,10 @@ def test_every_field_has_help_and_a_unit_or_a_list_of_words(part: str, name: str
             told = extra_of(info)
             words = get_origin(info.annotation) or info.annotation in (bool, str)
             assert "unit" in told or "label" in told or words, f"{name}.{field} has neither unit nor label"
+            if "slider" in told:
+                low, high = told["slider"]
+                assert low < high and {">", "<"} <= set(allowed_range(info)), f"{name}.{field}"
+                assert not isinstance(info.default, float) or low <= info.default <= high, f"{name}.{field}"
 
 
 @each_entry
@@ -209,8 +226,8 @@ def test_truth_is_consistent_with_its_derivatives(name: str, tmp_path: Path) -> 
 @each_motion
 def test_truth_does_not_depend_on_the_grid(name: str, tmp_path: Path) -> None:
     motion = moving(name, tmp_path)
-    fine, coarse = motion.rows(241, 0.25, SITE, WGS84), motion.rows(61, 1.0, SITE, WGS84)
-    np.testing.assert_allclose(fine[::4] if len(fine) > 1 else fine, coarse, rtol=0, atol=1e-9)
+    fine, coarse = motion.rows(4801, 0.25, SITE, WGS84), motion.rows(1201, 1.0, SITE, WGS84)
+    np.testing.assert_allclose(fine[::4] if len(fine) > 1 else fine, coarse, rtol=0, atol=1e-11)
 
 
 @each_motion
@@ -223,6 +240,28 @@ def test_a_motion_says_what_happens_before_the_start(name: str, tmp_path: Path) 
     if name != "waves":  # a ship stopped in the same sea meets other waves
         np.testing.assert_allclose(rows[-1, [PITCH, ROLL]], row[[PITCH, ROLL]], atol=1e-9)
         assert math.remainder(rows[-1, HEADING] - row[HEADING], 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("motion", "attitude_deg"),
+    [
+        ({"kind": "static", "pitch_deg": 6.0, "roll_deg": 8.0, "heading_deg": 75.0}, (6.0, 8.0, 75.0)),
+        ({"kind": "legs", "leg": [{"heading_deg": 33.0}, {"duration_s": 5.0}]}, (0.0, 0.0, 33.0)),
+        ({"kind": "profile", "point": [{"pitch_deg": 3.0}, {"t_s": 9.0}]}, (3.0, 0.0, 0.0)),
+        ({"kind": "waves", "height_m": 0.0, "heading_deg": 20.0}, (0.0, 0.0, 20.0)),
+        ({"kind": "swing", "pitch_deg": 2.0,
+          "pitch": {"amplitude_deg": 10.0, "frequency_hz": 0.0, "phase_deg": 90.0}}, (12.0, 0.0, 0.0)),
+    ],
+)  # fmt: skip
+def test_at_rest_one_row_stands_for_all_times(
+    motion: dict[str, Any], attitude_deg: tuple[float, ...]
+) -> None:
+    truth = MOTIONS[motion["kind"]].model_validate(motion).truth(1001, 0.5, SITE, WGS84)
+    assert truth.constant and truth.values.shape == (1, COLUMNS) and truth.step_s == 0.5
+    row = truth.values[0]
+    assert tuple(row[[LAT, LON, HEIGHT]]) == (SITE.lat, SITE.lon, SITE.height)
+    assert row[[PITCH, ROLL, HEADING]] == pytest.approx(np.radians(attitude_deg), rel=1e-15)
+    assert not row[VE:PITCH].any() and not row[HEADING + 1 : HEADING_RATE + 1].any()
 
 
 @each_motion
@@ -253,7 +292,3 @@ def test_every_way_to_tell_a_motion_is_used_and_no_other_is_taken_for_rest(tmp_p
 def test_a_registry_refuses_what_is_no_entry(place: str, said: str) -> None:
     with pytest.raises(TypeError, match=said):
         registry(NetworkParameters, "id", "navcore.networks.undamped:UndampedNetwork", place)
-
-
-def test_a_truth_of_one_row_stands_for_all_times() -> None:
-    assert Truth(1.0, StaticMotion().rows(5, 1.0, SITE, WGS84)).constant

@@ -15,7 +15,7 @@ from app.session.session import Session, runs_on_demand
 from app.session.sessions import Sessions, first_scenario
 from navcore.engine import simulation
 from navcore.foundation.errors import Fault, InputError
-from navcore.scenario.file import load, presets
+from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 
 PRESET = load("zha-fast")
@@ -335,12 +335,6 @@ def test_a_new_visitor_sees_a_preset_with_something_to_tune() -> None:
     scenario, name = first_scenario()
     method = scenario.method[first_editable(scenario)]
     assert name and method.damping != "free" and len(type(method.network).model_fields) > 1
-
-
-@pytest.mark.parametrize("name", presets())
-def test_every_preset_says_what_it_shows_and_where_it_comes_from(name: str) -> None:
-    preset = load(name)
-    assert preset.title and preset.source
 
 
 def test_the_first_picture_of_a_new_visitor_is_computed_before_they_come() -> None:

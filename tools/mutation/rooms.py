@@ -22,14 +22,14 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "sensors": (
         ("test_imu*", "test_noise", "test_reference_*"),
         (
-            "test_scenario_guide", "test_recorded_*", "test_log_fit", "test_strapdown_simulation",
-            "test_strapdown_scenario", "test_sources", "test_signs_and_sizes", "test_own_recordings",
-            "test_sikuliaq_*", "test_presets_golden", "test_strapdown_recorded_imu",
+            "test_scenario_guide", "test_recorded_*", "test_strapdown_simulation",
+            "test_strapdown_scenario", "test_sources", "test_signs_and_sizes", "test_recordings",
+            "test_presets_golden", "test_strapdown_recorded_imu",
         ),
     ),
     "analysis": (
         (
-            "test_loop_*", "test_whole_system*", "test_held_log", "test_network_report",
+            "test_loop_*", "test_whole_system*", "test_network_report",
             "test_network_values",
         ),
         (

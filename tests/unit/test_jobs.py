@@ -1,4 +1,4 @@
-"""Searches in the background: what dominates a run that stands still, and a damping table."""
+"""Jobs in the background: what dominates a run that stands still, a damping table, the verification."""
 
 import threading
 from collections.abc import Callable, Iterator
@@ -7,12 +7,15 @@ from typing import Any
 
 import pytest
 
+from app.editing import edits
 from app.jobs.designer import TableTask, Tuner
 from app.jobs.scheduler import Lane, Load
 from app.jobs.searches import Searches
+from app.jobs.verifier import CHANGED, STOPPED, Verifier
 from app.jobs.why import Explainer
 from navcore.design.sun_settings import TuningSettings
 from navcore.foundation.errors import Fault, InputError
+from navcore.scenario.model import Scenario
 from tests.waiting import until
 
 
@@ -50,7 +53,7 @@ def with_finder(explainer: Explainer, finder: Finder) -> Explainer:
 
 
 @pytest.fixture
-def made(finder: Finder) -> Iterator[tuple[Explainer, list[Any]]]:
+def explained(finder: Finder) -> Iterator[tuple[Explainer, list[Any]]]:
     told: list[Any] = []
     explainer = Explainer(lambda: told.append((explainer.fraction, explainer.result)))
     yield with_finder(explainer, finder), told
@@ -58,8 +61,8 @@ def made(finder: Finder) -> Iterator[tuple[Explainer, list[Any]]]:
     explainer.stop()
 
 
-def test_a_run_that_stands_still_is_explained_once(finder: Finder, made: Any) -> None:
-    explainer, told = made
+def test_a_run_that_stands_still_is_explained_once(finder: Finder, explained: Any) -> None:
+    explainer, told = explained
     first, second = object(), object()
     explainer.follow(first)
     explainer.follow(second)  # the first has not stood still
@@ -69,8 +72,8 @@ def test_a_run_that_stands_still_is_explained_once(finder: Finder, made: Any) ->
     assert len(told) == 1
 
 
-def test_a_change_ends_the_search_at_once_and_the_old_result_stays(finder: Finder, made: Any) -> None:
-    explainer, told = made
+def test_a_change_ends_the_search_at_once_and_the_old_result_stays(finder: Finder, explained: Any) -> None:
+    explainer, told = explained
     first, second = object(), object()
     explainer.follow(first)
     assert explainer.wait_idle(5.0)
@@ -87,8 +90,8 @@ def test_a_change_ends_the_search_at_once_and_the_old_result_stays(finder: Finde
     assert explainer.asked is first
 
 
-def test_a_fault_is_told_and_forgotten_with_the_next_run(finder: Finder, made: Any, caplog: Any) -> None:
-    explainer, _ = made
+def test_a_fault_is_told_and_forgotten_with_the_next_run(finder: Finder, explained: Any, caplog: Any) -> None:
+    explainer, _ = explained
     explainer.follow("fault")
     assert explainer.wait_idle(5.0)
     assert "ZeroDivisionError" in explainer.words[0] and "explainer failed" in caplog.text
@@ -142,7 +145,7 @@ def test_a_run_that_several_pages_show_is_looked_at_once(finder: Finder) -> None
 # ------------------------------------------------------------ the table
 
 
-def compute(task: TableTask, progress: Any, cancelled: Any) -> Any:
+def tuned(task: TableTask, progress: Any, cancelled: Any) -> Any:
     scenario = task.scenario
     if scenario == "refused":
         raise InputError(Fault("", "imu.file", "a.csv", "must be empty"))
@@ -157,7 +160,7 @@ def compute(task: TableTask, progress: Any, cancelled: Any) -> Any:
 def test_a_table_is_found_stopped_refused_and_kept() -> None:
     told: list[float | None] = []
     tuner = Tuner(lambda: told.append(tuner.fraction))
-    tuner._compute = compute
+    tuner._compute = tuned
     tuner._worker._load = lambda _: Load(Lane.SPARE)
 
     def begin(scenario: Any) -> None:
@@ -179,3 +182,100 @@ def test_a_table_is_found_stopped_refused_and_kept() -> None:
         assert words in tuner.words[0] and tuner.fraction is None
         assert tuner.result is kept
     tuner.stop()
+
+
+# ---------------------------------------------------------------- verification
+
+
+DURATION = ("run", "duration_h")
+
+
+def verify(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Any:
+    """Stand-in: 3 h cannot be verified, 4 h is a fault of ours, 5 h lasts until it is stopped."""
+    hours = scenario.run.duration_h
+    if hours == 3.0:
+        raise InputError(Fault("", "run.fidelity", "channel", "leaves the Earth out"))
+    if hours == 4.0:
+        raise ZeroDivisionError("ours")
+    if hours == 5.0:
+        while not cancelled():
+            progress(0.5)
+            threading.Event().wait(0.002)
+        return SimpleNamespace(complete=False)
+    return SimpleNamespace(complete=True, of=scenario)
+
+
+def hours(value: float) -> Scenario:
+    return edits.with_value(Scenario(), DURATION, value)
+
+
+@pytest.fixture
+def made() -> Iterator[tuple[Verifier, list[float | None]]]:
+    told: list[float | None] = []
+    verifier = Verifier(lambda: told.append(verifier.fraction), verify)
+    yield verifier, told
+    verifier.cancel()
+    verifier.stop()
+
+
+def under_way(verifier: Verifier, told: list[float | None]) -> None:
+    verifier.begin(hours(5.0))
+    until(lambda: 0.5 in told)
+
+
+def test_a_result_is_of_its_scenario_until_that_changes(made: tuple[Verifier, list]) -> None:
+    verifier, told = made
+    verifier.begin(hours(1.0))
+    assert verifier.wait_idle(5.0)
+    assert told == [0.0, None]
+    beside = verifier.beside(hours(1.0))
+    assert beside is not None and not beside.old
+    changed = verifier.beside(hours(2.0))
+    assert changed is not None and changed.old
+    other, _ = edits.with_method(edits.with_value(Scenario(), ("reference", "kind"), "log"), None)
+    assert verifier.beside(other) is None  # not the same methods
+    verifier.forget()
+    assert verifier.beside(hours(1.0)) is None
+
+
+def test_progress_is_told_and_a_stop_keeps_the_earlier_result(made: tuple[Verifier, list]) -> None:
+    verifier, told = made
+    verifier.begin(hours(1.0))
+    assert verifier.wait_idle(5.0)
+    kept = verifier.result
+    under_way(verifier, told)
+    verifier.cancel()
+    assert verifier.wait_idle(5.0)
+    assert (verifier.fraction, verifier.words) == (None, (STOPPED,))
+    assert verifier.result is kept
+
+
+def test_a_change_of_the_scenario_stops_it_and_says_so(made: tuple[Verifier, list]) -> None:
+    verifier, told = made
+    under_way(verifier, told)
+    verifier.follow(hours(5.0))
+    assert verifier.fraction is not None
+    verifier.follow(hours(2.0))
+    assert verifier.wait_idle(5.0)
+    assert verifier.words == (CHANGED,)
+    verifier.follow(hours(2.5))
+    assert verifier.words == ()
+    assert verifier.result is None
+
+
+@pytest.mark.parametrize(("length", "words"), [(3.0, "leaves the Earth out"), (4.0, "ZeroDivisionError")])
+def test_what_is_wrong_is_said(made: tuple[Verifier, list], length: float, words: str) -> None:
+    verifier, _ = made
+    verifier.begin(hours(length))
+    assert verifier.wait_idle(5.0)
+    assert words in verifier.words[0]
+    assert verifier.result is None
+
+
+def test_a_second_start_takes_the_place_of_the_first(made: tuple[Verifier, list]) -> None:
+    verifier, told = made
+    under_way(verifier, told)
+    verifier.begin(hours(1.0))
+    assert verifier.wait_idle(5.0)
+    assert verifier.asked == hours(1.0)
+    assert verifier.words == ()
