@@ -1,4 +1,4 @@
-"""What the server writes to its log: a line an event, for people or (SCHULER_LOG=json) for programs."""
+"""The server's log: a line an event, for people or (SCHULER_LOG=json) for programs."""
 
 import json
 import logging

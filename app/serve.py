@@ -61,7 +61,7 @@ _READERS = (
     "pyarrow.parquet",
     "scipy.io",
 )
-"""What reads uploaded files: imported once by the helper from which its child processes are forked."""
+"""Modules that read uploaded files: imported once by the helper from which its child processes are forked."""
 
 
 class Dashboard:

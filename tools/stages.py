@@ -28,7 +28,7 @@ CODE = ["tests", "app", "navcore", "tools"]
 
 @dataclass(frozen=True)
 class Count:
-    """What a stage brought: passed, failed and skipped tests, and its wall time."""
+    """Result of a stage: passed, failed and skipped tests, and its wall time."""
 
     stage: str
     passed: int

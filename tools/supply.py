@@ -1,4 +1,4 @@
-"""What an installation is made of: ``python -m tools.supply sbom`` and ``audit``, from the lock."""
+"""Inventory of an installation: ``python -m tools.supply sbom`` and ``audit``, from the lock."""
 
 import json
 import subprocess

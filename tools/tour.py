@@ -85,7 +85,7 @@ def _font(size: int) -> ImageFont.FreeTypeFont:
 
 
 def film(bench: Bench, take: Film) -> None:
-    """What the tour shows: preset, slider, pin, poles, strapdown, lesson, dark page."""
+    """Scenes of the tour: preset, slider, pin, poles, strapdown, lesson, dark page."""
     page = bench.page
     for part in (_preset, _slider, _pin, _poles, _verify, _lesson):
         part(bench, take)

@@ -22,7 +22,7 @@ _FREE, _GREYED = "_schuler_free", "_schuler_greyed"
 
 @dataclass(frozen=True)
 class Control:
-    """What a browser's new value for a control is judged by.
+    """Bounds by which a browser's new value for a control is judged.
 
     Attributes
     ----------

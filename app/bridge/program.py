@@ -23,7 +23,7 @@ from navcore.foundation.errors import Fault, InputError
 _DIGITS = "".join(chr(code) for code in range(0x21, 0x7F) if chr(code) not in "\"&<>'`")
 _LARGEST = 1 << 25
 _WORKER = (b"type:`set_server`", b"type:`send`", b"{type:`message_batch`,messages:", b"{type:`connected`}")
-"""What page and worker say to each other, which curves.js and socket.js hear."""
+"""Messages between page and worker, which curves.js and socket.js hear."""
 
 SCRIPTS = tuple(Path(__file__).parent / f"{name}.js" for name in ("socket", "curves", "fill"))
 """Scripts for the page, to run before viser's program, which sends through ``schuler.send(message)`` and
@@ -101,7 +101,7 @@ MENDS = (
 
 @dataclass(frozen=True)
 class Program:
-    """What viser's page consists of.
+    """Parts of viser's page.
 
     Attributes
     ----------

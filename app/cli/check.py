@@ -19,7 +19,7 @@ _READERS = (
     "navcore.io.nmea_recording", "navcore.io.tables", "navcore.scenario.file",
 )  # fmt: skip
 _BY_ENDING = {".parquet": ("pyarrow.parquet",), ".mat": ("scipy.io",)}
-"""What reads the file is imported before the bounds are set: a child can write no file, not even a cache."""
+"""Modules that read the file, imported before the bounds are set: a bounded child can write no cache."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What a scenario holds, for ``schuler check``."""
+"""Report on a scenario, for ``schuler check``."""
 
 from __future__ import annotations
 

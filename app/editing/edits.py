@@ -265,14 +265,14 @@ def _place(data: Any, path: Path, value: Any) -> None:
 # ------------------------------------------------------------ as text
 
 WHERE = "pasted text"
-"""What faults call the place of what was pasted."""
+"""Name that faults give the pasted text."""
 DISTURBANCES = ("event", "outage")
 _ALLOWED = "must be [[method]], [[reference.event]] or [[reference.outage]]; open a whole scenario as a file"
 
 
 @dataclass(frozen=True)
 class Pasted:
-    """What a pasted text led to.
+    """Result of a pasted text.
 
     Attributes
     ----------

@@ -119,7 +119,7 @@ class Slider:
 
 @dataclass(frozen=True)
 class FieldSpec:
-    """What a control for one field (or one element of a vector field) needs.
+    """Specification of a control for one field, or for one element of a vector field.
 
     Attributes
     ----------

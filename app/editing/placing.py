@@ -22,7 +22,7 @@ _SAME = 1e-6
 
 @dataclass(frozen=True)
 class Placed:
-    """What a wanted pair led to.
+    """Result of placing a pair.
 
     Attributes
     ----------

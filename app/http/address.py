@@ -149,7 +149,7 @@ def _why_not_bound(error: OSError, host: str, port: int) -> InputError:
 
 @dataclass(frozen=True)
 class Token:
-    """What a visitor must know.
+    """Conditions of access for a visitor.
 
     Attributes
     ----------

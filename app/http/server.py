@@ -29,7 +29,7 @@ _EXIT_WITHIN_S = 3.0
 
 @dataclass(frozen=True)
 class Inner:
-    """What stands behind a door that other processes share (`app.workers`).
+    """Settings of a server behind a door that other processes share (`app.workers`).
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What is answered to an HTTP request: page, script files, health, redirects, refusals."""
+"""Answers to HTTP requests: page, script files, health, redirects, refusals."""
 
 import asyncio
 import html

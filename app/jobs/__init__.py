@@ -1,1 +1,1 @@
-"""What is computed beside the page: runs, verification, envelopes, what dominates, a damping table."""
+"""Work beside the page: runs, verification, envelopes, what dominates, a damping table."""

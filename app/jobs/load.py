@@ -1,4 +1,4 @@
-"""What a job will take, from its scenario: which lane it waits in, and the memory it is admitted by."""
+"""The load of a job, from its scenario: which lane it waits in, and the memory it is admitted by."""
 
 from app.jobs.elsewhere import cluster
 from app.jobs.scheduler import GIB, Lane, Load, largest_run_bytes

@@ -1,4 +1,4 @@
-"""What is computed beside the runs of a session: what dominates the result, budgets, tuning, fronts."""
+"""Work beside the runs of a session: what dominates the result, budgets, tuning, fronts."""
 
 import logging
 import threading

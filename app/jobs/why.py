@@ -1,4 +1,4 @@
-"""What dominates a run whose metrics are in front, computed once it has stood still for a moment."""
+"""The sources that dominate a run whose metrics are in front, computed once the run rests for a moment."""
 
 from __future__ import annotations
 

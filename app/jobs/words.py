@@ -1,4 +1,4 @@
-"""What a page may say of a fault: file names, never where on the server the files lie."""
+"""The words in which a page reports a fault: file names, never a place on the server."""
 
 import re
 from dataclasses import replace

@@ -13,7 +13,7 @@ _SHORTEST = 2
 
 
 class Names:
-    """What users have called something.
+    """Names that users have given.
 
     Parameters
     ----------

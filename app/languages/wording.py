@@ -99,7 +99,7 @@ class _Pattern:
 
 
 class Wording:
-    """What a language says.
+    """Texts of a language.
 
     Parameters
     ----------
@@ -376,5 +376,5 @@ def read_texts(language: str) -> dict[str, str]:
 
 @lru_cache(maxsize=8)
 def wording(language: str) -> Wording | None:
-    """What a language says; None for English, and for one that there is no catalogue for."""
+    """Return the texts of a language; None for English and for a language without a catalogue."""
     return Wording(read_texts(language), language) if language in NAMES and language != "en" else None

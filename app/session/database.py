@@ -137,7 +137,7 @@ class Database:
 
 @contextmanager
 def _as_os_error() -> Iterator[None]:
-    """What SQLite says of a full or broken disk, as what Python says of it."""
+    """Raise an error of SQLite about a full or broken disk as Python's own error."""
     try:
         yield
     except (sqlite3.OperationalError, sqlite3.ProgrammingError) as error:  # the latter: it is closed

@@ -1,4 +1,4 @@
-"""What a visitor's pictures are shown with: everything that changes the view of a run, nothing of the run."""
+"""Display settings of a visitor: everything that changes the view of a run, nothing of the run."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ _NO_DRAG: tuple[tuple[str, ...], float] = ((), 0.0)
 
 @dataclass(frozen=True)
 class State:
-    """What undo brings back.
+    """State that undo brings back.
 
     Attributes
     ----------
@@ -85,12 +85,12 @@ class History:
 
     @property
     def undo_name(self) -> str | None:
-        """What undo would take back, in words; None when there is nothing."""
+        """Name the change that undo would take back; None when there is none."""
         return self.steps[self.at][1] if self.at > 0 else None
 
     @property
     def redo_name(self) -> str | None:
-        """What redo would bring back, in words; None when there is nothing."""
+        """Name the change that redo would bring back; None when there is none."""
         return self.steps[self.at + 1][1] if self.at + 1 < len(self.steps) else None
 
     def push(self, state: State, name: str = "", gesture: str = "") -> None:

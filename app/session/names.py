@@ -1,4 +1,4 @@
-"""What the user of a session has called something: a page in another language leaves it as it is."""
+"""Names that the user of a session has given: a page in another language leaves them as they are."""
 
 from __future__ import annotations
 

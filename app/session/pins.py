@@ -114,7 +114,7 @@ class Pins:
         return next((pin for pin in self._pins if pin.id == id), None)
 
     def baseline(self, id: int | None) -> Pin | None:
-        """What numbers are compared with: the pin of that id, else the first; None when it has no run."""
+        """Baseline of comparisons: the pin of that id, else the first; None when it has no run."""
         pin = self.get(id) or next(iter(self._pins), None)
         return None if pin is None or pin.run is None else pin
 
@@ -199,7 +199,7 @@ class Pins:
     # ------------------------------------------------------------ kept in a file
 
     def to_json(self) -> list[dict[str, Any]]:
-        """What a file keeps of the pins: everything but the runs, which are computed again."""
+        """Form of the pins in a file: everything but the runs, which are computed again."""
         return [
             {
                 "name": pin.name,

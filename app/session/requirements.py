@@ -1,4 +1,4 @@
-"""What a design has to meet: limits that the user sets, what is measured against each, and who meets them."""
+"""Requirements of a design: limits that the user sets, the measure of each, and who meets them."""
 
 from dataclasses import dataclass
 

@@ -171,7 +171,7 @@ class Session:
 
     @property
     def state(self) -> State:
-        """What undo brings back."""
+        """Return the state that undo brings back."""
         return State(self.scenario, self.origin, self.selected, self.opened)
 
     def change(

@@ -42,9 +42,9 @@ _LONGEST_NAME = 60
 Document = dict[str, Any]
 T = TypeVar("T")
 _made: WeakKeyDictionary[Session, dict[int, tuple[Scenario, Document]]] = WeakKeyDictionary()
-"""What each session's last document holds: scenarios by their identity, as they are written."""
+"""Content of each session's last document: scenarios by their identity, as they are written."""
 Unreadable = (InputError, ValidationError, ValueError, TypeError, KeyError, IndexError, AttributeError)
-"""What reading a document of strange content raises."""
+"""Errors that reading a document of strange content raises."""
 
 
 class Sessions:
@@ -106,7 +106,7 @@ class Sessions:
             return {log_name(id) for id, session in self._by_id.items() if session.open_pages}
 
     def figures(self) -> dict[str, float]:
-        """What is held and kept, for ``/metrics``."""
+        """Numbers of sessions and bytes that are kept, for ``/metrics``."""
         with self._lock:
             held = {"sessions_held": float(len(self._by_id))}
         if self._store is not None:

@@ -1,4 +1,4 @@
-"""What the pictures show: a session's run, or the pinned one while flipped, and what is laid over it."""
+"""Source of the pictures: a session's run, or the pinned one while flipped, and its overlays."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Shown:
 
 
 def shown(session: Session) -> Shown | None:
-    """What a session's pictures show now; None before its first run."""
+    """Return what a session's pictures show now; None before its first run."""
     with session.lock:
         run, number, display, selected = (
             session.run, session.run_number, session.display, session.selected,
@@ -197,7 +197,7 @@ _FEWEST_ROWS = 2
 
 @dataclass(frozen=True)
 class Window:
-    """What the errors of a run are measured over.
+    """Span over which the errors of a run are measured.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a session tells the open pages on it."""
+"""Messages of a session to the open pages on it."""
 
 from collections.abc import Set
 from typing import Protocol

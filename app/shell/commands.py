@@ -1,4 +1,4 @@
-"""What a page can be asked for by name: one list for scripts, keys, buttons in our HTML and the palette.
+"""Commands of a page by name: one list for scripts, keys, buttons in our HTML and the palette.
 
 viser has no event for a key, a click in a plot or a click in HTML, and of a control's values its page sends
 the newest only: static/commands.js writes what it asks for, with a running number, into one hidden control,

@@ -117,14 +117,14 @@ class Control:
         self._shown = _UNKNOWN if any(widget.awaited for widget in self._widgets) else value
 
     def take(self, by_slider: bool) -> Any:
-        """What the user has given: a number, a choice, or text as typed."""
+        """Value that the user has given: a number, a choice, or text as typed."""
         self._slider_moved, self._shown, self._behind = by_slider, _UNKNOWN, False
         if by_slider and self._slider is not None and self._range is not None:
             return self._range.value(self._slider.take())
         return self._box.take()
 
     def follow(self, value: Any) -> None:
-        """Take over the value the user has just given, leaving the widget in hand alone.
+        """Take over the value the user has just given, leaving the moved widget alone.
 
         The box follows its slider in `catch_up`, with the picture: alone it would cost the page a frame.
         """
@@ -165,7 +165,7 @@ class Control:
 
     @property
     def held(self) -> Any:
-        """What the box holds, or is to show."""
+        """Value that the box holds, or is to show."""
         return self._as_shown(self.value) if self._behind else self._box.handle.value
 
     @property

@@ -26,7 +26,7 @@ _PASSING_S = 0.25
 
 
 class Editor:
-    """What the controls of one page do to the session.
+    """Link between the controls of one page and the session.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Editor:
         controls: Callable[[], Iterable[Control]],
     ) -> None:
         self.moved: Control | None = None
-        """The control the user has in hand."""
+        """The control that the user moves."""
         self.by_slider = False
         """It is moved by its slider, so that its field keeps its place among the others."""
         self._client, self._session, self._by = client, session, by
@@ -104,7 +104,7 @@ class Editor:
                 self._session.change(changed, self._by, name=name, gesture=gesture)
 
     def catch_up(self) -> None:
-        """Let the box of the slider in hand follow it."""
+        """Let the box of the moved slider follow it."""
         if self.moved is not None:
             self.moved.catch_up()
 
@@ -122,7 +122,7 @@ class Editor:
         return edits.with_value(scenario, path, value, lambda: self._beside(path))
 
     def _beside(self, path: Path) -> dict[str, Any]:
-        """What the controls hold for the other numbers of the same model: name -> value."""
+        """Values of the controls for the other numbers of the same model: name -> value."""
         beside: dict[str, Any] = {}
         for control in self._controls():
             if control.spec.kind == "number" and control.spec.path[:-1] == path[:-1]:

@@ -28,7 +28,7 @@ _DIM = "<style>.js-plotly-plot,.uplot,.sb-table{opacity:.45}</style>"
 
 
 class HeaderPanel:
-    """What is always in view at the left.
+    """The head of the left column, which is always in view.
 
     Parameters
     ----------

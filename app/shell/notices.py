@@ -1,4 +1,4 @@
-"""What the page says in words: notifications at its edge, notes beside controls."""
+"""Messages of the page: notifications at its edge, notes beside controls."""
 
 from __future__ import annotations
 

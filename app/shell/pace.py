@@ -23,7 +23,7 @@ _log = logging.getLogger("schuler.page")
 
 
 class State(Enum):
-    """What a page still has to be sent, and whether a slider is held."""
+    """State of a page: what it has still to be sent, and whether a slider is held."""
 
     OPENING = auto()
     """Nothing is sent yet to a page that says what it paints."""
@@ -46,7 +46,7 @@ class State(Enum):
 
 
 class Event(Enum):
-    """What changes the state of a page; the value is the column of `NEXT`."""
+    """Events that change the state of a page; the value is the column of `NEXT`."""
 
     RUN = 0
     HELD = 1

@@ -171,7 +171,7 @@ class Page:
             self._show_stale()
 
     def refresh(self) -> None:
-        """Let every view show the session's scenario; the control in hand stays as it is."""
+        """Let every view show the session's scenario; the control in use stays as it is."""
         self._pace.controls_wait = False
         self.editor.catch_up()
         self.header.show_scenario()

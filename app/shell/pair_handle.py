@@ -1,4 +1,4 @@
-"""The handle in a plot with which the pole pair of the method in hand is dragged to where it is wanted."""
+"""The handle in a plot with which the pole pair of the edited method is dragged to where it is wanted."""
 
 from collections.abc import Sequence
 from typing import Any, Literal
@@ -15,7 +15,7 @@ from navcore.foundation.text import Text
 PAIR_HANDLE = "pair handle"
 """Label of the hidden control that is told where the handle is (static/handle.js)."""
 Kind = Literal["poles", "bode"]
-"""What the axes of the plot are: real and imaginary part in units of omega_s, or frequency and damping."""
+"""Axes of the plot: real and imaginary part in units of omega_s, or frequency and damping."""
 
 
 class PairHandle:
@@ -44,7 +44,7 @@ class PairHandle:
         self._control.on_update(lambda _: self.take(self._control.value))
 
     def meta(self, found: Shown) -> dict[str, Any]:
-        """What a figure of the run says of the handle, for its ``meta``."""
+        """Description of the handle in a figure's ``meta``."""
         handle = handle_of(found.run.scenario, found.selected)
         told = {"told": handle.pop("told", "")}
         where = {

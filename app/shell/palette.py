@@ -324,7 +324,7 @@ class Toolbar:
         changed : int
             Fields that differ from it.
         last : tuple of str or None
-            Dotted path and label of the field in hand, and the value to which it goes back.
+            Dotted path and label of the edited field, and the value to which it goes back.
         presents, watches : bool
             The page drives alone; it watches another one.
         """

@@ -1,4 +1,4 @@
-"""What a view is to the page that shows it, and what the page gives to its views."""
+"""Views: what the page asks of them, and what it gives them."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ Place = Literal["edit", "upper", "lower", "page"]
 Tab = AbstractContextManager[Any]
 """Widgets that are made inside it stand in the tab."""
 Figures = tuple[PlotlyFigure | None, list[UplotFigure]]
-"""What can be saved of a plot: the plotly figure, or the plots over time."""
+"""Content of a plot that can be saved: the plotly figure, or the plots over time."""
 P = TypeVar("P")
 
 
 @dataclass(frozen=True)
 class Frame:
-    """What a page gives to its views.
+    """Access of a view to its page.
 
     Attributes
     ----------
@@ -153,7 +153,7 @@ class View:
         return ()
 
     def follow_scenario(self) -> None:
-        """Show the session's scenario; the control in hand (``frame.editor.moved``) stays as it is."""
+        """Show the session's scenario; the control in use (``frame.editor.moved``) stays as it is."""
 
     def follow_display(self) -> None:
         """Show what the session's display says."""
@@ -179,7 +179,7 @@ class View:
         raise NotImplementedError(plot)
 
     def sheet(self, found: Shown) -> Sequence[tuple[str, Figures]]:
-        """What of it belongs in a report of the whole session: title and figures of each picture."""
+        """Content for a report of the whole session: title and figures of each picture."""
         pictures: list[tuple[str, Figures]] = []
         for plot in self.plots:
             with suppress(LookupError):  # there is nothing to show

@@ -35,7 +35,7 @@ _SEARCH = 20
 
 @dataclass(frozen=True)
 class HeldLog:
-    """What holding the log's difference does to the loop.
+    """Effect on the loop of holding the log's difference.
 
     Attributes
     ----------

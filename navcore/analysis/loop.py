@@ -17,7 +17,7 @@ H0_TOLERANCE = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Loop:
-    """What the closed loop does.
+    """Verdict on the closed loop.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What python-control does better than we should: its own objects, and the disk margin.
+"""Bridge to python-control: its own objects, and the disk margin.
 
 It is imported only when asked: that takes most of a second. The margins that follow a slider are those of
 `navcore.analysis.margins`.

@@ -1,4 +1,4 @@
-"""What ``schuler network`` prints: one network on the sphere and its closed loop (theory.md 3.6)."""
+"""Report of ``schuler network``: one network on the sphere and its closed loop (theory.md 3.6)."""
 
 import math
 from collections.abc import Iterable

@@ -1,4 +1,4 @@
-"""What the IMU will feel: the mean of the alignment record without small motions of the base (Zhao 18-27).
+"""Forecast of the IMU: the mean of the alignment record without small motions of the base (Zhao 18-27).
 
 The fit is of order 0: a line through 600 s of gyro noise extrapolates to degrees per hour after 12 h
 (theory.md section 5). Zhao's (26) shifts every segment onto the last one's mean, so that a fit of order 0

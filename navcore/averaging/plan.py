@@ -1,4 +1,4 @@
-"""What an averaging method needs before it starts: its copies, its forecast, and what to tell the user."""
+"""Plan of an averaging method: its copies, its forecast, and its notices."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from navcore.sensors.imu import Imu
 
 @dataclass(frozen=True)
 class Plan:
-    """What an averaging method starts from.
+    """Plan from which an averaging method starts.
 
     Attributes
     ----------

@@ -48,7 +48,7 @@ def standing_row(true_row: np.ndarray) -> np.ndarray:
 
 
 def standing_signals(standing: np.ndarray, earth: Earth) -> np.ndarray:
-    """What perfect sensors feel at rest in body axes: rad/s and m/s^2, shape (6,)."""
+    """Return what perfect sensors feel at rest in body axes: rad/s and m/s^2, shape (6,)."""
     assert not standing[AE : AU + 1].any()
     return inertial_signals(Truth(RECORD_STEP_S, standing[None, :]), earth)[0]
 

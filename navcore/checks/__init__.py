@@ -1,1 +1,1 @@
-"""What a log, an IMU record or a scenario file holds, and what is wrong with it."""
+"""Reports on a log, an IMU record or a scenario file, and on their faults."""

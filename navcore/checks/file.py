@@ -1,4 +1,4 @@
-"""What a file holds and what is wrong with it, in words and as data: behind ``schuler check``."""
+"""Report on a file and its faults, in words and as data: behind ``schuler check``."""
 
 import math
 import os

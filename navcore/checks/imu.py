@@ -1,4 +1,4 @@
-"""What a recorded IMU holds, for ``schuler check``: rate, span, size of force and turn, which axis is up."""
+"""Report on a recorded IMU, for ``schuler check``: rate, span, size of force and turn, which axis is up."""
 
 from pathlib import Path
 from typing import Any

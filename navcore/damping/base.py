@@ -1,4 +1,4 @@
-"""What every kind of damping is: one class a kind, from which the other rooms take the rest.
+"""Base of the kinds of damping: one class a kind, from which the other rooms take the rest.
 
 A kind names what it needs of the rooms above by a word of a short list, and the room above has one table of
 how that is done: `Need` in `navcore.scenario.needs`, `Carrying` in `navcore.engine.drivers`, `Covering` in
@@ -117,7 +117,7 @@ class Damping:
         return self.id
 
     def description(self, method: Configured) -> str:
-        """What the method is, in a line."""
+        """Describe the method in a line."""
         return self.label(method)
 
     def network(self, method: Configured) -> NetworkParameters:

@@ -34,7 +34,7 @@ class Kalman(Damping):
     )
 
     def description(self, method: Configured) -> str:
-        """What the filter measures."""
+        """Name the measurement of the filter."""
         return "Kalman filter on the difference to the log"
 
     def notices(self, method: Configured) -> Iterator[str]:

@@ -56,7 +56,7 @@ class Swing:
 
 @dataclass(frozen=True)
 class Cause:
-    """What dominates one error of one method.
+    """Source that dominates one error of one method.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class Cause:
 
 @dataclass(frozen=True)
 class Why:
-    """What dominates a run.
+    """Sources that dominate a run.
 
     Attributes
     ----------

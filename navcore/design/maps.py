@@ -1,4 +1,4 @@
-"""What an interval does to the errors of a damped system: transition matrices of the sampled loop itself.
+"""Effect of an interval on the errors of a damped system: transition matrices of the sampled loop itself.
 
 One call of the damping law is written as a linear map, exactly as the simulation carries it out (held
 difference, bilinear network, RK4 of the error model with held inputs); an interval of m calls is that map

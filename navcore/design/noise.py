@@ -1,4 +1,4 @@
-"""What the random processes add to the errors within one interval, for one set of coefficients.
+"""Covariance that the random processes add within one interval, for one set of coefficients.
 
 A source is carried with three states of its own, the values of its drift on each axis (zero for white
 noise), so that all six have the same shape: x first, then the drift.

@@ -1,4 +1,4 @@
-"""What two objectives cost each other: the Pareto front of every network of the catalogue (theory.md 18)."""
+"""Pareto fronts of two objectives, one for every network of the catalogue (theory.md 18)."""
 
 import math
 from collections.abc import Callable, Sequence

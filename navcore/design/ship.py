@@ -1,4 +1,4 @@
-"""What all methods of a scenario share in budget, bands and tuning: sensors, motion, responses, floor."""
+"""Inputs that all methods share in budget, bands and tuning: sensors, motion, responses, floor."""
 
 from dataclasses import dataclass
 from functools import cached_property

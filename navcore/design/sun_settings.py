@@ -1,4 +1,4 @@
-"""What Sun's double loop searches: differences, coefficients, the network, and how the log errs meanwhile."""
+"""Settings of Sun's double loop: differences, coefficients, the network, and the log's errors meanwhile."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What of a scenario the stochastic model does not hold, so that budget, floor and tuning do not either."""
+"""Terms of a scenario that the stochastic model leaves out, and with it budget, floor and tuning."""
 
 import numpy as np
 

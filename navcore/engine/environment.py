@@ -1,4 +1,4 @@
-"""What all methods of a scenario share: truth, coefficients, sensor errors and log; made once and kept.
+"""Inputs that all methods of a scenario share: truth, coefficients, sensor errors and log; kept by stages.
 
 Kept by what each stage depends on, so that a slider on a network or policy recomputes none of it, and one on
 a sensor error neither the truth nor its coefficients.
@@ -52,7 +52,7 @@ class Environment:
 
 
 def recorded_notices(scenario: Scenario) -> tuple[str, ...]:
-    """What the user should know about the recordings of a scenario; raises `InputError`."""
+    """Return the notices about the recordings of a scenario; raises `InputError`."""
     recorded = scenario.reference.kind == "file" or scenario.imu.file is not None
     short = short_run_notices(scenario.motion, recorded, scenario.run.duration_h * HOUR)
     return (*recording_notices(scenario.motion, scenario.reference), *short)

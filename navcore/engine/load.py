@@ -1,4 +1,4 @@
-"""What a run will cost before it is started: memory and processor time, for a scheduler that admits runs.
+"""Cost of a run before it is started: memory and processor time, for a scheduler that admits runs.
 
 Both are estimates from the scenario alone: no file is opened and nothing is simulated. The coefficients were
 fitted to measured runs (peak of the resident set above the start, time of the process) and are meant to be

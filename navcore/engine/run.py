@@ -1,4 +1,4 @@
-"""What a simulation gives back."""
+"""Result of a simulation."""
 
 import hashlib
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ class PlotSeries:
 
 @dataclass(frozen=True)
 class LawInForce:
-    """What the damping law did, over the output rows.
+    """Action of the damping law, over the output rows.
 
     Attributes
     ----------

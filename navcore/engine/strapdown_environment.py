@@ -1,4 +1,4 @@
-"""What all methods of a strapdown scenario share: truth, the stream of IMU samples, the start and the log."""
+"""Inputs that all methods of a strapdown scenario share: truth, IMU samples, start and log."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -21,7 +21,7 @@ config.CACHE_LOCATOR_CLASSES = (  # pyright: ignore[reportAttributeAccessIssue]
 
 
 class Compilation(event.Listener):
-    """What numba compiles in this process; what it loads from the cache does not count.
+    """Compilation by numba in this process; a kernel that is loaded from the cache does not count.
 
     Attributes
     ----------

@@ -253,7 +253,7 @@ def _tags_of(member: Any, name: str) -> list[str]:
 
 
 def _names(member: Any) -> list[str]:
-    """What pydantic may call a member of a union: class name, type text or discriminator tag."""
+    """Names that pydantic may give a member of a union: class name, type text or discriminator tag."""
     names = [str(member), getattr(member, "__name__", "")]
     if _is_model(member):
         names += [tag for name in member.model_fields for tag in _tags_of(member, name)]

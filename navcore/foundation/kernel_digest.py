@@ -1,4 +1,4 @@
-"""What decides whether machine code is up to date: the compiled functions and the constants that they name.
+"""Digest that decides whether machine code is up to date: compiled functions and the constants they name.
 
 A docstring, a comment, a help text or a moved line changes nothing; an edited constant in *another* module
 does, which numba's own cache would not notice.
@@ -20,7 +20,7 @@ _DECORATORS = {"kernel", "inlined"}
 
 
 class _Module:
-    """What one source file defines at its top level."""
+    """Top-level definitions of one source file."""
 
     def __init__(self, path: Path) -> None:
         self.functions: list[ast.FunctionDef] = []
@@ -85,7 +85,7 @@ def _is_plain(statement: ast.Assign | ast.AnnAssign) -> bool:
 
 
 def _named(module: str, statement: ast.stmt) -> Iterator[tuple[str, ast.stmt]]:
-    """What a statement names: by a variable, or as a registry does, by a text "package.module:Name"."""
+    """Yield what a statement names: by a variable, or as a registry does, by a text "package.module:Name"."""
     for node in ast.walk(statement):
         definition = None
         if isinstance(node, ast.Name):

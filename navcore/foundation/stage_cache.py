@@ -85,7 +85,7 @@ class SharedCache:
 
     @property
     def bytes(self) -> int:
-        """What the entries take."""
+        """Bytes that the entries take."""
         return self._held.total()
 
     def _drop(self, key: Hashable) -> None:

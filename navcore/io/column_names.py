@@ -1,4 +1,4 @@
-"""What the columns of a table are called: our own names with their units, and those that ships' loggers use.
+"""Names of the columns of a table: our own with their units, and those that ships' loggers use.
 
 A name is read without regard to case, spaces and signs. A unit may stand behind it or in brackets:
 ``speed_kn``, ``SOG (m/s)``, ``Heading [deg]``, ``Latitude_deg``.

@@ -37,7 +37,7 @@ _HEAD_LINES = 60
 
 @dataclass
 class _Rows:
-    """What is left of a table's text: the header, and the cells of the columns that are used."""
+    """Remains of a table's text: the header, and the cells of the columns that are used."""
 
     header: list[str]
     columns: dict[str, Column]

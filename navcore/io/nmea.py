@@ -38,7 +38,7 @@ class Channel(NamedTuple):
 
 @dataclass(frozen=True)
 class NmeaLog:
-    """What the lines of one file said.
+    """Content of the lines of one file.
 
     Attributes
     ----------

@@ -21,7 +21,7 @@ _DEGREES = re.compile(r"(\d+)(\d\d\.\d+)")
 
 
 class Reading(NamedTuple):
-    """What one sentence says; None where it says nothing.
+    """Reading of one sentence; None where it holds nothing.
 
     Attributes
     ----------
@@ -253,7 +253,7 @@ _WHOLE: dict[str, Callable[[list[str]], Reading]] = {"THS": _ths}
 _MAKERS: dict[str, Callable[[list[str]], Reading]] = {"PASHR": _pashr, "PRDID": _prdid, "PSXN": _psxn}
 """Decoders of makers' own sentences, by the whole address."""
 KINDS = ", ".join((*sorted(_STANDARD | _WHOLE), *_MAKERS))
-"""What a person is told can be read."""
+"""Sentences that can be read, for messages."""
 
 
 def is_used(address: str) -> bool:

@@ -1,4 +1,4 @@
-"""What a recording holds: time series in UTC, and an account of the files they came from."""
+"""Content of a recording: time series in UTC, and an account of the files they came from."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, fields

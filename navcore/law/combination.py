@@ -70,7 +70,7 @@ def combination_faults(
 def combination_warnings(
     network: NetworkParameters, policy: PolicyParameters, switching: SwitchingParameters
 ) -> tuple[str, ...]:
-    """What the user should know about policy and switching method with this network.
+    """Return the notices about policy and switching method with this network.
 
     Parameters
     ----------

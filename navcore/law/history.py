@@ -1,4 +1,4 @@
-"""What the law remembers: clock and a ring with one row a call. Compiled."""
+"""Memory of the law: clock and a ring with one row a call. Compiled."""
 
 import math
 
@@ -6,7 +6,7 @@ from navcore.foundation.compiled import inlined, kernel
 from navcore.law.records import CHANNELS, MAX_STATES, E, N
 
 USE_NOTHING, USE_HEADING, USE_ACCELERATION = 0, 1, 2
-"""What a policy wants remembered besides the differences."""
+"""Quantities that a policy wants remembered besides the differences."""
 
 
 @inlined

@@ -1,4 +1,4 @@
-"""What the law reads and changes: the shared fields of its parameters, state and history, each in one place.
+"""Records of the law: the shared fields of its parameters, state and history, each in one place.
 
 `navcore.law.law` joins them with the records that each policy and each switching method declares for itself.
 The network itself is part of the *state*: `adaptive`, `schedule`, `ramp` and `step` re-tune it while it runs.
@@ -17,14 +17,14 @@ E, N, U = 0, 1, 2
 CHANNELS = 3
 
 LawKind = Literal["free", "internal", "external"]
-"""What the networks are fed with: nothing, minus the computed velocity, or the difference V_r - V_c."""
+"""Input of the networks: nothing, minus the computed velocity, or the difference V_r - V_c."""
 FREE, INTERNAL, EXTERNAL = 0, 1, 2
 CODES: dict[LawKind, int] = {"free": FREE, "internal": INTERNAL, "external": EXTERNAL}
 """Codes of `LawKind` in the compiled law."""
 NETWORK, FEEDBACK, AS_PRINTED = 0, 1, 2
 """Realisations of a network."""
 NOTHING, CLEAR, REST, RESTORE, MASKED = 0, 1, 2, 3, 4
-"""What a switching method asks to be done with the network's states."""
+"""Actions on the network's states that a switching method asks for."""
 AS_DECIDED = -1
 """`wanted` while a policy has not said that it wishes something else than it decides."""
 
@@ -139,7 +139,7 @@ class Law(NamedTuple):
 
 
 class Sensed(NamedTuple):
-    """What the law is told in a call.
+    """Input of a call of the law.
 
     Attributes
     ----------
@@ -155,7 +155,7 @@ class Sensed(NamedTuple):
 
 
 class Watched(NamedTuple):
-    """What of the law is recorded: the wish, the state (0/1), xi in force, the policy's measure."""
+    """Recorded values of the law: the wish, the state (0/1), xi in force, the policy's measure."""
 
     wanted: float
     damped: float

@@ -30,7 +30,7 @@ from navcore.law.tuned_network import retune
 
 
 class Correction(NamedTuple):
-    """What the law gives: velocity corrections c (m/s) and accelerations a fed back (m/s^2)."""
+    """Output of the law: velocity corrections c (m/s) and accelerations a fed back (m/s^2)."""
 
     c_e: float
     c_n: float

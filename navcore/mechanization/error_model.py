@@ -41,7 +41,7 @@ class LogErrors(NamedTuple):
 
 
 class Held(NamedTuple):
-    """What holds over a step: sensor errors (rad/s, m/s^2), and the law's c (m/s) and a (m/s^2)."""
+    """Values held over a step: sensor errors (rad/s, m/s^2), and the law's c (m/s) and a (m/s^2)."""
 
     eps_e: float
     eps_n: float

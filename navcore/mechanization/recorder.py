@@ -1,4 +1,4 @@
-"""What a kernel keeps of a run: output rows, statistics on every step, and minima and maxima for the plots.
+"""Recorder of a run: output rows, statistics on every step, and minima and maxima for the plots.
 
 A 24 h run has 86,401 states; only the output rows are stored. Statistics and the extremes of each plot bin
 are formed on the way, so that a peak of one second is neither lost in the metrics nor on the screen.
@@ -19,7 +19,7 @@ QUANTITIES = 8
 DAMPED_COLUMN, XI_COLUMN, WANTED_COLUMN, MEASURE_COLUMN = 8, 9, 10, 11
 ROW_COLUMNS = 12
 LAW_COLUMNS = (WANTED_COLUMN, DAMPED_COLUMN, XI_COLUMN, MEASURE_COLUMN)
-"""What the switching view draws: the policy's wish, the state, xi in force, what the policy measured."""
+"""Columns of the switching view: the policy's wish, the state, xi in force, the policy's measure."""
 
 SUM, SUM_SQUARES, MAX_ABS, FINAL = range(4)
 STATISTICS = 4
@@ -33,7 +33,7 @@ MAX_BINS = 1000
 
 
 class Recorder(NamedTuple):
-    """What a kernel fills; given to it as a whole.
+    """Arrays that a kernel fills; given to it as a whole.
 
     Attributes
     ----------

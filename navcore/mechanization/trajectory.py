@@ -28,12 +28,12 @@ LAW_INPUT = record_type(
     v_e=REAL, v_n=REAL,  # true velocity, m/s
     heading=REAL,  # rad
 )  # fmt: skip
-"""What the law is told of the true motion at one step."""
+"""True motion at one step, as the law is given it."""
 
 
 @dataclass(frozen=True)
 class Coefficients:
-    """What the error model needs to know of the true motion.
+    """Coefficients of the error model along the true motion.
 
     Attributes
     ----------

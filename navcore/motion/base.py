@@ -1,4 +1,4 @@
-"""What every motion gives: the vehicle's true state on a uniform time grid."""
+"""Base of the motions: the vehicle's true state on a uniform time grid."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Streams:
-    """What a motion takes from a recording: positions, heading, and pitch and roll if recorded.
+    """Streams that a motion takes from a recording: positions, heading, and pitch and roll if recorded.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What perfect gyros and accelerometers feel along a true motion, and the body's attitude.
+"""Signals of perfect gyros and accelerometers along a true motion, and the body's attitude.
 
 omega_ib^b = C_n^b (omega_ie + omega_en) + omega_nb^b, f^b = C_n^b [dV/dt + (2 omega_ie + omega_en) x V - g]
 (Titterton & Weston 2004, ch. 3; Groves 2013, ch. 5).

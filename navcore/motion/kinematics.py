@@ -1,4 +1,4 @@
-"""What compiled loops read of a motion: one layout of plain arrays for all kinds."""
+"""A motion as compiled loops read it: one layout of plain arrays for all kinds."""
 
 from __future__ import annotations
 

@@ -152,7 +152,7 @@ class LegsMotion(AttitudeMotion):
         return self
 
     def faults(self) -> Iterator[Fault]:
-        """What is wrong: both speeds given, a change that does not fit, a speed out of range."""
+        """Yield the faults: both speeds given, a change that does not fit, a speed out of range."""
         if not self.leg:
             yield Fault("", "leg", None, "must hold at least one [[motion.leg]]")
             return

@@ -209,7 +209,7 @@ class ProfileMotion(AttitudeMotion):
         return self
 
     def faults(self) -> Iterator[Fault]:
-        """What is wrong: times out of order, a quantity given twice over or without effect."""
+        """Yield the faults: times out of order, a quantity given twice over or without effect."""
         if not self.point:
             yield Fault("", "point", None, "must hold at least one [[motion.point]]")
         elif self.point[0].t_s != 0.0:

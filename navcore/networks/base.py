@@ -1,4 +1,4 @@
-"""What every damping network is: checked parameters that give an LTI object H(s).
+"""Base of the damping networks: checked parameters that give an LTI object H(s).
 
 All polynomials are formed in normalised frequency p = s / omega_s, where their coefficients lie near 1; the
 physical ones (rad/s, as low as 1e-12) are exact multiples of them.

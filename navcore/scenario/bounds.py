@@ -1,4 +1,4 @@
-"""What a scenario's text may be before it is read: bounded, so that hostile text is told at once.
+"""Bounds on a scenario's text before it is read, so that hostile text is refused at once.
 
 A scenario of every field and twelve methods has some 20 kB. The TOML reader of the standard library takes
 quadratic time for a key of very many parts, recurses into nested arrays and refuses integers of thousands of

@@ -59,7 +59,7 @@ class Scenario(ScenarioFields):
         return self.model_copy(update={"method": methods})
 
     def faults(self) -> Iterator[Fault]:
-        """What only the whole scenario can tell: lengths, names, missing references, refused networks."""
+        """Yield the faults of the whole scenario: lengths, names, missing references, refused networks."""
         run = self.run
         if self.steps < 1:
             yield Fault(

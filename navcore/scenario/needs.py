@@ -1,4 +1,4 @@
-"""What a kind of damping may need of the rest of a scenario: how each condition is checked."""
+"""Checks of what a kind of damping needs of the rest of a scenario."""
 
 from collections.abc import Callable, Iterator
 

@@ -1,4 +1,4 @@
-"""What the errors at t = 0 owe to constant sensor errors: after an alignment they are correlated."""
+"""Correlation of the errors at t = 0 with constant sensor errors, which an alignment leaves."""
 
 import math
 

@@ -35,7 +35,7 @@ class Drift:
 
 @dataclass(frozen=True, eq=False)
 class StochasticModel:
-    """What is known of the error sources beforehand.
+    """Prior knowledge of the error sources.
 
     Attributes
     ----------

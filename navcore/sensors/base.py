@@ -1,4 +1,4 @@
-"""What the terms of a sensor's error have in common, and what the models hand to the mechanizations."""
+"""Common parts of the terms of a sensor's error, and the errors as the mechanizations take them."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

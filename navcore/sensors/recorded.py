@@ -153,7 +153,7 @@ def heading_at(heading: Series, time_s: np.ndarray) -> np.ndarray:
 
 
 def recording_notices(motion: MotionParameters, reference: Reference) -> tuple[str, ...]:
-    """What the user should know about the recordings of a scenario, and about settings they leave unused.
+    """Return the notices about the recordings of a scenario, and about settings they leave unused.
 
     Raises
     ------

@@ -248,7 +248,7 @@ class Bench:
         self.catch_up()
 
     def select(self, index: int) -> None:
-        """Take a method in hand, without a click; wait until the page shows it."""
+        """Take a edited method, without a click; wait until the page shows it."""
         self.session.select(index, None)
         self.catch_up()
 
@@ -345,7 +345,7 @@ class Bench:
             chosen = {name: value for name, value in session.display if value != getattr(plain, name)}
             told |= {
                 "server: scenario": f"{session.origin}, methods {[m.name for m in session.scenario.method]}",
-                "server: method in hand": session.selected,
+                "server: edited method": session.selected,
                 "server: runs made": f"{session.run_number}{', one under way' * session.outdated}",
                 "server: display": chosen,
             }

@@ -74,7 +74,7 @@ class PythonIns:
         return once
 
     def public_call(self) -> Timed:
-        """What its user calls: ``Integrator.integrate`` on a table of increments."""
+        """Call of its user: ``Integrator.integrate`` on a table of increments."""
 
         def once() -> float:
             with warnings.catch_warnings():

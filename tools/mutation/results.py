@@ -33,7 +33,7 @@ def key(mutant: Mutant) -> str:
 
 
 class Kept:
-    """What became of each change, a line each in a folder's ``results.jsonl``."""
+    """Outcome of each change, a line each in a folder's ``results.jsonl``."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder

@@ -30,7 +30,7 @@ SIZES: dict[str, tuple[Any, tuple[str, ...]]] = {
     "Errors alone": ({"width": 1366, "height": 768}, ("Method", "Errors")),
 }
 _THREADS = ("main thread", "painting")
-"""What `browser_cpu_ms` tells apart."""
+"""Parts that `browser_cpu_ms` tells apart."""
 _MOVES = 60
 _WARM_S = 5.0
 """So long the kernels may take that are loaded behind the page."""

@@ -1,4 +1,4 @@
-"""What measurements of the page share: a server of a tree, CPU times (Linux), timed steps of a slider."""
+"""Common parts of measurements of the page: a server of a tree, CPU times (Linux), timed slider steps."""
 
 import os
 import subprocess
@@ -125,7 +125,7 @@ def _descendants(root: int) -> set[int]:
 
 
 def _entries(folder: Path) -> list[Path]:
-    """What is in a folder of a process; nothing once the process has ended."""
+    """Read a file of a process's folder; nothing once the process has ended."""
     try:
         return list(folder.iterdir())
     except OSError:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _SMALLEST = 1e-6
-"""What is smaller is rounding in most places, and not the same on every processor."""
+"""Size below which a difference is rounding in most places, and not the same on every processor."""
 
 Verdict = Literal["agrees", "differs", "undecided"]
 """Agrees: our number, or its whole confidence interval, lies in the range. Differs: none of it does.

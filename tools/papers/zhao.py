@@ -29,7 +29,7 @@ TEXT = {
 }
 AT_REST = ("motion.kind=static",)
 EFFECTIVE = 0.25
-"""What "suppressed effectively" may leave of a line; the paper prints no number."""
+"""Share of a line that "suppressed effectively" may leave; the paper prints no number."""
 _FOUR = ("free", "Zhao", "four copies", "eight copies")
 _THREE = ("free", "Zhao", "eight copies")
 

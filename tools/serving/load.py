@@ -41,7 +41,7 @@ _spawn = multiprocessing.get_context("spawn")
 
 @dataclass
 class Seen:
-    """What some visitors saw.
+    """Observations of some visitors.
 
     Attributes
     ----------
@@ -74,7 +74,7 @@ class Seen:
 
 @dataclass(frozen=True)
 class Order:
-    """What a visitor is to do: for how long, with which pauses between two moves, s."""
+    """Task of a visitor: for how long, with which pauses between two moves, s."""
 
     port: int
     seconds: float
@@ -305,7 +305,7 @@ def beside(
     first: int,
     ready: Callable[[], None] = lambda: None,
 ) -> Seen:
-    """What one visitor sees beside others who take what they can."""
+    """Observations of one visitor beside others who take what they can."""
     ended = _spawn.Event()
     arguments = [(order.port, first + 1000 * (i + 1), ended) for i in range(processes)]
     with _processes([(attack, each) for each in arguments if attack is not None], 20.0):

@@ -249,7 +249,7 @@ def measure(arguments: argparse.Namespace) -> list[Row]:
 
 
 def circumstances_of(arguments: argparse.Namespace) -> str:
-    """What is measured, where and when, in one line."""
+    """Describe the measurement, its place and time in one line."""
     return (
         f"{arguments.clients} visitors, {arguments.browsers} of them browsers, {arguments.minutes:g} min; "
         f"{arguments.workers} server process{'es' * (arguments.workers > 1)}; "

@@ -44,7 +44,7 @@ _OF_VISER = (
     "Search commands...",
     "Adaptive",
 )
-"""What viser's page says by itself."""
+"""Texts of viser's own page."""
 _SYMBOLS = frozenset({"starboard"})
 """Element names that stay as they are."""
 

@@ -50,7 +50,7 @@ _NO_TEXTS = frozenset(
     "page painted|pair handle|<span>{0}</span>|Hz|skip|height|alpha|{0} next|{0} open {1}|{0} list|"
     "{0}px {1}".split("|")
 )
-"""What looks like prose and is none: keys, labels and arguments for scripts."""
+"""Strings that look like prose and are none: keys, labels and arguments for scripts."""
 _CITATION = re.compile(
     r"(?:Deng|Liu|Zhao|Sun|Zha|theory\.md|eq\.|eqs\.|figs?\.|"
     r"table|tables|and|to|et al\.|[0-9.,;:() +-]|\{\d+\})+"
@@ -199,7 +199,7 @@ def _alternatives(node: ast.expr) -> list[str] | None:
 
 
 def _quiet(tree: ast.AST) -> set[int]:
-    """What nobody is shown: documentation, names for the program, texts of its own errors and of its log."""
+    """Strings that nobody reads: documentation, names for the program, texts of its own errors and log."""
     return {id(part) for node in ast.walk(tree) for part in _quiet_parts(node)}
 
 

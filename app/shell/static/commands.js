@@ -87,7 +87,7 @@
     if (!event.repeat || event.ctrlKey || event.metaKey) window.schuler.command(name);
   });
 
-  // A value that is typed and ended by Enter or Escape is done with: the keys act again. A form's text stays in hand.
+  // A value that is typed and ended by Enter or Escape is done with: the keys act again. A form's text stays open.
   addEventListener("keydown", (event) => {
     const box = event.target;
     if (!["Enter", "Escape"].includes(event.key) || !(box instanceof HTMLInputElement)) return;

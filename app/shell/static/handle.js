@@ -1,4 +1,4 @@
-// The handle over a plotly figure, a ring at the pole pair of the method in hand: dragged by mouse or finger, or moved by the arrow
+// The handle over a plotly figure, a ring at the pole pair of the edited method: dragged by mouse or finger, or moved by the arrow
 // keys, it places the pair. A figure says by layout.meta.handle where the pair is and which pairs are possible
 // (app/shell/pair_handle.py). The ring follows the hand at once, and the pictures follow as they do a slider: its newest
 // place goes to the server through a control of its own (app/bridge/socket.js). What is drawn is an element of ours, so
@@ -69,7 +69,7 @@
     return { made, numbers, scale };
   }
 
-  // While the handle of a Bode plot is in hand: the damping ratios along its way up and down.
+  // While the handle of a Bode plot is dragged: the damping ratios along its way up and down.
   function showScale(scale, made, handle, across, up) {
     if (handle.kind !== "bode") return void scale.remove();
     if (made.nextSibling !== scale) made.after(scale);

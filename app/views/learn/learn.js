@@ -1,5 +1,5 @@
 // Lessons and explanations: what viser's page cannot do. Answers typed into a lesson, tabs that a lesson brings to the
-// front, and the panel that explains the control in hand ("?" beside a label, F1, or E).
+// front, and the panel that explains the control in use ("?" beside a label, F1, or E).
 (() => {
   // ------------------------------------------------------------ answers
 
@@ -46,7 +46,7 @@
 
   setInterval(bringToFront, 150);
 
-  // ------------------------------------------------------------ the control in hand, explained
+  // ------------------------------------------------------------ the control in use, explained
 
   const ROW = ".mantine-Flex-root";
   const TYPED = "input:not([type=checkbox]):not([type=radio]), textarea, select, [contenteditable]";
@@ -101,7 +101,7 @@
     true,
   );
 
-  // An open panel follows the control in hand.
+  // An open panel follows the control in use.
   addEventListener("focusin", (event) => {
     const label = panel?.isConnected ? labelOf(event.target) : null;
     if (label) explain(label);

@@ -33,7 +33,7 @@ _RIGHT_SHARE = 0.14
 PANELS = (("xaxis", "yaxis"), ("xaxis2", "yaxis2"))
 """Axes of the two panels: all poles, and those near the Schuler frequency."""
 _PICK = {"command": COMMAND, "panels": PANELS}
-"""What pick.js does with a click: it is a wanted pole, in units of the Schuler frequency."""
+"""Action of pick.js on a click: it is a wanted pole, in units of the Schuler frequency."""
 _UNSTABLE_PX = 58.0
 """Width of the word."""
 _INSIDE = 0.955

@@ -1,4 +1,4 @@
-"""What lies under the pole map: rays, settling lines, regions without poles, and the root locus."""
+"""Background of the pole map: rays, settling lines, regions without poles, and the root locus."""
 
 import math
 from collections.abc import Mapping

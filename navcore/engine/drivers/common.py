@@ -1,4 +1,4 @@
-"""What every fidelity does alike for a method: its network and law, the log it sees, its result."""
+"""Steps that every fidelity takes alike for a method: its network and law, the log it sees, its result."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -52,7 +52,7 @@ def truth_at(values: np.ndarray, rows: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Stability:
-    """What the analysis says of a method before it runs.
+    """Verdict of the analysis on a method before it runs.
 
     Attributes
     ----------

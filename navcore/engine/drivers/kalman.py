@@ -33,7 +33,7 @@ NOTHING_RANDOM = "the scenario gives sensors and start no error that the filter 
 def filter_model(
     scenario: Scenario, step_s: float, true_row: np.ndarray
 ) -> tuple[FilterModel, np.ndarray, tuple[str, ...]]:
-    """What the filter is told, and its covariance at t = 0: the stochastic model of the scenario.
+    """Return the filter's model and its covariance at t = 0: the stochastic model of the scenario.
 
     Scale factors, current, tide, delay and events are not in it (theory.md 16).
 

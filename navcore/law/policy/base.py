@@ -1,4 +1,4 @@
-"""What every policy has: parameters, a compiled decision, and what it needs to decide."""
+"""Base of the policies: parameters, a compiled decision, and what it needs to decide."""
 
 from collections.abc import Iterator
 from typing import Any, ClassVar, NamedTuple
@@ -16,7 +16,7 @@ LOW_MARGIN = 1.05
 
 
 class Measure(NamedTuple):
-    """What a policy measures, for the switching view.
+    """Measure of a policy, for the switching view.
 
     Attributes
     ----------
@@ -109,7 +109,7 @@ class PolicyParameters(Parameters):
         return ()
 
     def warnings(self, network: NetworkParameters) -> tuple[str, ...]:
-        """What the user should know about these parameters with a network, as configured."""
+        """Return the notices about these parameters with a network, as configured."""
         return ()
 
     def network_faults(self, network: NetworkParameters) -> Iterator[Fault]:

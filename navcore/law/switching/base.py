@@ -1,4 +1,4 @@
-"""What every switching method has."""
+"""Base of the switching methods."""
 
 from collections.abc import Iterator
 from typing import Any, ClassVar
@@ -66,7 +66,7 @@ class SwitchingParameters(Parameters):
         return 0
 
     def warnings(self, network: NetworkParameters) -> tuple[str, ...]:
-        """What the user should know about the method with the network in force."""
+        """Return the notices about the method with the network in force."""
         return ()
 
     def network_faults(

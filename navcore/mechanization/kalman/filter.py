@@ -22,7 +22,7 @@ INPUTS = 5
 
 
 class FilterModel(NamedTuple):
-    """What the filter is told, over one step.
+    """Model of the filter over one step.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class FilterModel(NamedTuple):
 
 
 class FilterState(NamedTuple):
-    """What the filter carries; n = 7 + m states.
+    """State of the filter; n = 7 + m states.
 
     Attributes
     ----------

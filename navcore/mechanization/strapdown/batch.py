@@ -138,7 +138,7 @@ def _draw(number, block, key, again, x, w):
 
 
 class _Runs(NamedTuple):
-    """What each run has of its own, and the common log and truth."""
+    """Records of each run, and the common log and truth."""
 
     con: np.ndarray  # `records.CONSTANTS`, a run each
     last: np.ndarray  # `records.LAST_CALL`

@@ -1,4 +1,4 @@
-"""What a strapdown run reads and changes: its constants and its state, each in one place."""
+"""Records of a strapdown run: its constants and its state, each in one place."""
 
 import math
 
@@ -21,7 +21,7 @@ CONSTANTS = record_type(
     altimeter_k2=REAL,  # 1/s^2
     altimeter_k3=REAL,  # 1/s^3
 )
-"""What a run reads and never changes."""
+"""Constants of a run."""
 LAST_CALL = record_type(
     time=REAL,  # s
     v_e=REAL,  # computed velocity, m/s
@@ -47,7 +47,7 @@ STATE = record_type(
     origin=REAL,  # offset of the latitude at which they were formed, rad
     since=COUNT,  # samples since then
 )
-"""What a run changes."""
+"""State of a run."""
 
 NAVIGATION = (
     "lat_rad", "lon_rad", "height_m", "ve_mps", "vn_mps", "vu_mps", "pitch_rad", "roll_rad", "heading_rad",

@@ -75,7 +75,7 @@ def run_held(increments, first, last, con, x, altimeter):
 
 
 class _Steady(NamedTuple):
-    """What the law changes while it is steady: all that `law_step` would keep in its state."""
+    """State of the law while it is steady: all that `law_step` would keep in its state."""
 
     held: Held
     east: Channel
@@ -87,7 +87,7 @@ class _Steady(NamedTuple):
 
 
 class _Fixed(NamedTuple):
-    """What it looks at and does not change."""
+    """Constants of the loop over samples."""
 
     start: int  # number of the chunk's first sample
     dt: float

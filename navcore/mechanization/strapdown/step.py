@@ -23,7 +23,7 @@ THIRD_ORDER = 1.0 / 6.0
 
 
 class Increment(NamedTuple):
-    """What an IMU gives over one interval in body axes: angles t (rad) and velocities b (m/s)."""
+    """Output of an IMU over one interval in body axes: angles t (rad) and velocities b (m/s)."""
 
     tx: float
     ty: float
@@ -34,7 +34,7 @@ class Increment(NamedTuple):
 
 
 class Constants(NamedTuple):
-    """What a step needs and never changes: interval (s), Earth, weights of the compensation terms."""
+    """Constants of a step: interval (s), Earth, weights of the compensation terms."""
 
     dt: float
     e2: float
@@ -58,7 +58,7 @@ class EarthTerms(NamedTuple):
 
 
 class Navigation(NamedTuple):
-    """What changes with each interval.
+    """Navigation state, which changes with each interval.
 
     Latitude and longitude (rad) are offsets from the start; q is the quaternion body to navigation axes and z
     its carries; m are the changes of velocity (m/s) and latitude over the last interval.
@@ -85,7 +85,7 @@ class Navigation(NamedTuple):
 
 
 class Held(NamedTuple):
-    """What law and altimeter hold: c (m/s) into the transport rate, a (m/s^2), a rate of the height (m/s)."""
+    """Corrections held by law and altimeter: c (m/s), a (m/s^2), a rate of the height (m/s)."""
 
     c_e: float
     c_n: float
