@@ -1,4 +1,4 @@
-"""Memory of the server: how it is given back to the system, and how seldom the garbage collector looks at it.
+"""Memory of the server: its return to the system, and the interval of the garbage collector.
 
 On Linux what is freed is kept, in an arena for every thread. Python's collector holds the interpreter while
 it looks through all objects, and nobody is answered meanwhile.

@@ -142,7 +142,7 @@ class Gate:
             return frame if value is given else msgspec.msgpack.encode(changed)
         self.visitor.restore(uuid)
         if not control.disabled:
-            text = "{name} must {reason}; {value} was not taken over."
+            text = "{name} must {reason}; {value} was refused."
             name = control.label or "The control"
             self.visitor.tell("Not accepted", Text(text, name=name, reason=reason, value=shown(given)))
         return None

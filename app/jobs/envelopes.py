@@ -1,4 +1,4 @@
-"""Computes the bands of a scenario's error curves in the background, once the user's hands are still."""
+"""Computes the bands of a scenario's error curves in the background, once the user stops changing it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Whose turn it is: one scheduler for everything that is computed for the visitors of this process.
+"""Scheduler: the order of everything that is computed for the visitors of this process.
 
 Three lanes for what is computed here. *Answers* are the short runs that follow a control: one a core, the
 visitors in turn. *Long* runs are those that are estimated to take a while: one a core but for one core, and

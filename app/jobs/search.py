@@ -42,7 +42,7 @@ class Search(Generic[Asked, Found]):
     Attributes
     ----------
     report_after_s, report_every_s : float
-        How long it must have been under way before its progress is told, and then how seldom.
+        Time under way before its progress is reported first, and between two reports.
     fraction : float or None
         Part that is done while it is under way.
     result

@@ -40,7 +40,7 @@ class Explainer(Search[Run, "Why"]):
         )
 
     def follow(self, run: Run) -> None:
-        """Explain this run once it has stood still, unless that is done or under way."""
+        """Explain this run once it rests, unless that is done or under way."""
         if run is not self.under_way and run is not self.asked:
             self._submit(run, None)
 

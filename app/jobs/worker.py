@@ -81,7 +81,7 @@ class Worker(Generic[Job]):
     load : callable, optional
         ``load(job)``: what the job will take.
     still_s : float
-        The slot must have stood still for so long before its job is begun.
+        Time without a change of the slot after which its job begins.
     turns : Scheduler, optional
         Gives the turns; by default the one of this process.
     """

@@ -185,7 +185,7 @@ class Control:
         self._note.visible = bool(html)
 
     def refuse(self, lines: list[str]) -> None:
-        """Say below the control why a value was not taken over."""
+        """Say below the control why a value was refused."""
         self.say(notices.note(lines, "error"))
 
     def remove(self) -> None:

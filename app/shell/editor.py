@@ -35,7 +35,7 @@ class Editor:
     session : Session
         Whose scenario is edited.
     by : object
-        Whom the session is told to be the author of changes.
+        Author of the changes, for the session.
     controls : callable
         Gives all controls of the page.
     """
@@ -164,7 +164,7 @@ class Editor:
             else:
                 lines = [
                     Text(
-                        "{shown!r} was not taken over: cannot be read ({kept} is kept)",
+                        "{shown!r} was refused: cannot be read ({kept} is kept)",
                         shown=shown,
                         kept=kept,
                     )

@@ -106,7 +106,7 @@ def refusal(fault: Fault, kept: str = "", field: str = "", entered: object = Non
     return (
         told
         if fault.value is None
-        else Text("{shown} was not taken over: {told}", shown=_shown(fault.value), told=told)
+        else Text("{shown} was refused: {told}", shown=_shown(fault.value), told=told)
     )
 
 

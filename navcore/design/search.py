@@ -21,7 +21,7 @@ _SEED = 1
 
 @dataclass(frozen=True)
 class Effort:
-    """How long a search may look.
+    """Limits of a search.
 
     Attributes
     ----------

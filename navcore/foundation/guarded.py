@@ -178,7 +178,7 @@ def _work(
 
 
 def _bound(limits: Limits) -> None:
-    """Bound memory and time, write no files, leave no trace of a crash, and give way to the server."""
+    """Bound memory and time, write no files, leave no trace of a crash, run at a lower priority."""
     import resource  # not on every system
 
     setrlimit = resource.setrlimit

@@ -53,7 +53,7 @@ def test_a_wrong_value_is_restored_and_the_reason_said(fresh: Bench, session: Se
         notice = fresh.notice(f"{label_of('network.sigma')}: not taken over")
         assert "must be >= 1e-05 and <= 1 (1/s)" in notice
         assert fresh.value("network.sigma") == 0.0088
-        assert any("was not taken over" in note for note in fresh.notes)
+        assert any("was refused" in note for note in fresh.notes)
         fresh.close_notices()
     fresh.tab("Log")
     fresh.choose("reference", "none")

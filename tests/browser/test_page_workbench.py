@@ -274,6 +274,6 @@ def test_bad_input_is_refused_beside_the_boxes_and_the_old_limit_kept(asked: Ben
             asked.page.locator(".sb-note:visible").filter(has_text="settling ≤ (min)").filter(has_text=text)
         )
         told = note.inner_text()
-        assert "was not taken over" in told and "<= 100000 (min)" in told and "90 is kept" in told
+        assert "was refused" in told and "<= 100000 (min)" in told and "90 is kept" in told
         assert box(asked, "settling ≤ (min)").input_value() == "90"
         assert asked.session.display.requirements == Requirements(settling_min=90.0)

@@ -128,7 +128,7 @@ def test_a_value_that_does_not_fit_is_dropped_and_told(gate: Gate, guest: Page) 
     values = [1e9, -5, math.nan, "x"]
     assert [judge(gate, **update("gain", {"value": value})) for value in values] == [None] * 4
     assert guest.restored == ["gain"] * 4
-    assert guest.notices[0] == "Gain must be from 0 to 1; 1000000000.0 was not taken over."
+    assert guest.notices[0] == "Gain must be from 0 to 1; 1000000000.0 was refused."
 
 
 @pytest.mark.parametrize(
