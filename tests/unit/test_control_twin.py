@@ -102,14 +102,15 @@ def hold_beside_the_twin(rng: np.random.Generator, run: LawRun, twin: TwinLaw) -
     valid = episodes(rng, quiet, 1)[:, 0] == 0.0
     heading = np.cumsum(u(-0.3, 0.3) * episodes(rng, 30, 1)) + u(0.0, 6.0)
     v_c = u(-5.0, 5.0, 2) + np.cumsum(u(-0.1, 0.1, 2) * twin.step_s * episodes(rng, 30, 2), axis=0)
-    calls = []
+    calls, watched = [], twin.watched()
     for k in range(CALLS):
         inputs = log[k] - swing[0], bool(valid[k]), v_c[k], heading[k] % (2.0 * math.pi)
         given, expected = run.step(*inputs[0], *inputs[1:]), np.ravel(twin.step(*inputs))
         watched = twin.watched()
         calls.append([(given, expected), *((run.numbers(name), watched[name]) for name in watched)])
-        c = given[:2] if twin.switching.id == "bridge" else np.zeros(2)
-        swing = np.array([[cos, sin], [-sin, cos]]) @ (swing + [c, [0.0, 0.0]]) - [c, [0.0, 0.0]]
+        c = np.zeros((2, 2))
+        c[0] = given[:2] if twin.switching.id == "bridge" else 0.0
+        swing = np.array([[cos, sin], [-sin, cos]]) @ (swing + c) - c
     for name, pairs in zip(("given", *watched), zip(*calls, strict=True), strict=True):
         seen, expected = (np.array(each, float) for each in zip(*pairs, strict=True))
         off = np.abs(seen - expected) > 1e-8 * np.abs(expected).max(axis=0) + 1e-11
