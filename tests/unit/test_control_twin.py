@@ -104,8 +104,9 @@ def hold_beside_the_twin(rng: np.random.Generator, run: LawRun, twin: TwinLaw) -
     v_c = u(-5.0, 5.0, 2) + np.cumsum(u(-0.1, 0.1, 2) * twin.step_s * episodes(rng, 30, 2), axis=0)
     calls, watched = [], twin.watched()
     for k in range(CALLS):
-        inputs = log[k] - swing[0], bool(valid[k]), v_c[k], heading[k] % (2.0 * math.pi)
-        given, expected = run.step(*inputs[0], *inputs[1:]), np.ravel(twin.step(*inputs))
+        d, v, at = log[k] - swing[0], v_c[k], heading[k] % (2.0 * math.pi)
+        given = run.step(*d, valid=bool(valid[k]), v_c=v, heading=at)
+        expected = np.ravel(twin.step(d, bool(valid[k]), v, at))
         watched = twin.watched()
         calls.append([(given, expected), *((run.numbers(name), watched[name]) for name in watched)])
         c = np.zeros((2, 2))
