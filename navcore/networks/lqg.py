@@ -197,11 +197,18 @@ class Compensator:
         ----------
         order : int
             States to keep.
+
+        Raises
+        ------
+        numpy.linalg.LinAlgError
+            A mode does not decay: no balanced form exists.
         """
         from scipy.linalg import solve_continuous_lyapunov
 
         if len(self.B) <= order:
             return self
+        if np.linalg.eigvals(self.A).real.max() >= -np.finfo(float).eps * np.abs(self.A).max():
+            raise np.linalg.LinAlgError("the compensator has a mode that does not decay")
         outputs = np.stack([self.C, self.E])
         reach = _root(solve_continuous_lyapunov(self.A, -np.outer(self.B, self.B)))
         watch = _root(solve_continuous_lyapunov(self.A.T, -outputs.T @ outputs))

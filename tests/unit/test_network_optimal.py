@@ -245,3 +245,10 @@ def test_states_that_nothing_reaches_are_left_out():
     for p in (0.1j, 1.0j, 10.0j):
         gain = small.C @ np.linalg.solve(p * np.eye(1) - small.A, small.B)
         assert gain == pytest.approx(np.sum(reached / (p - decays)), rel=1e-9)
+
+
+def test_a_compensator_that_does_not_decay_is_refused() -> None:
+    """scipy warned of it, and a random network in a contract test died of the warning."""
+    law = Compensator(np.diag([-1.0, -2.0, -3.0, -4.0, 0.0]), np.ones(5), np.ones(5), np.ones(5))
+    with pytest.raises(np.linalg.LinAlgError, match="does not decay"):
+        law.reduced(4)
