@@ -15,8 +15,8 @@ from tests.browser.driver import Bench
 CHINESE = re.compile("[\u4e00-\u9fff]")
 PATIENCE_S = 20.0
 WORD = re.compile(r"[A-Za-z]{3,}")
-KEY = re.compile(r"\b[a-z]+(?:[._][a-z0-9]+)+\b")
-"""A field of the scenario file, a column, a file."""
+KEY = re.compile(r"\b[a-z]+(?:[._][a-z0-9]+)+\b|\b[a-z_]+ = \"[a-z0-9_]+\"")
+"""A field of the scenario file, alone or with its value, a column, a file."""
 SYMBOLS = frozenset(
     "Schuler Bench CSV SVG PNG TOML JSON HTML NMEA Parquet MAT PSINS arcsec arcmin min nmi MiB sin per "
     "log linear exact Deng Liu Zhao Sun Zha Sikuliaq fig eq theory md RMS GPS LQG IMU WGS ENE ESE SSE SSW "
