@@ -2,7 +2,7 @@
 
 Tolerances: 1e-6 of a quantity's largest magnitude for every statistic (compilers may order sums differently,
 which is some 1e-12), 1e-9 for the loop. Where half-period averaging leaves nothing of a quantity, what is
-compared is rounding: see `ROUNDING`. When a change is meant: ``python -m tests.acceptance.golden_files``.
+compared is rounding: see `ROUNDING`. When a change is meant: ``python -m tools.golden``.
 """
 
 import json
@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from navcore.scenario.file import presets
-from tests.acceptance.golden_files import FOLDER, present
+from tools.golden import FOLDER, present
 
 ROUNDING = {"rad": 1e-7, "mps": 1e-4, "m": 1.0}
 """Magnitude below which a quantity is compared as if it were so large."""

@@ -15,7 +15,7 @@ from navcore.foundation.units import DEG, DEG_PER_HOUR, HOUR, KNOT
 from navcore.io.recording import load, shared_window
 from navcore.mechanization.strapdown.attitude import angles_of
 from navcore.motion.track import TrackMotion
-from navcore.motion.truth import HEADING, VE, VN, Site
+from navcore.motion.truth import HEADING, LAT, LON, VE, VN, Site
 from navcore.scenario.file import load as load_scenario
 from navcore.scenario.file import read_toml
 from navcore.scenario.model import Scenario
@@ -24,7 +24,7 @@ from navcore.sensors.log import reference_errors
 from navcore.sensors.recorded import recorded_window, recording_notices
 from navcore.sensors.recorded_imu import check_rest, read_imu
 from navcore.sensors.reference import Reference
-from tests.recordings import OWN_SHIP, ship
+from tests.recordings import OWN_SHIP, imu, ship
 
 SHARED_S = 714.0
 """714 fixes of the GNSS receiver, one a second; gyro and log last longer."""
@@ -251,3 +251,40 @@ def test_the_parked_imu_measures_gravity_the_earths_rate_and_its_heading(recordi
     # The file's own heading is -90.6 deg, counted counter-clockwise.
     assert heading == pytest.approx(90.6, abs=1.0)
     assert abs(pitch) < 2.0 and abs(roll) < 2.0
+
+
+# ---------------------------------------------------------------- a parked vehicle
+
+
+PARKED = Site(34.246048 * DEG, 108.909664 * DEG, 380.0)
+
+
+def test_damping_with_zero_velocity_holds_what_runs_away_free():
+    """``imu.file``: 570 s left out, aligned until 950 s, then navigated with V_r = 0."""
+    # the raw recording gives its place itself
+    own_site = {"lat_deg": PARKED.lat / DEG, "lon_deg": PARKED.lon / DEG, "height_m": PARKED.height}
+    run = simulate(
+        Scenario.parse(
+            {
+                "run": {"fidelity": "strapdown", "duration_h": 0.24},
+                "site": {} if imu().raw else own_site,
+                "imu": {"file": str(imu().path), "axes": imu().axes, "begin_s": 570.0},
+                "alignment": {"kind": "compass", "duration_s": 380.0},
+                "reference": {"kind": "log"},
+                "method": [
+                    {"name": "free"},
+                    {
+                        "name": "compass",
+                        "damping": "external",
+                        "network": {"id": "compass", "sigma": 0.0088, "xi": 0.7},
+                    },
+                ],
+            }
+        )
+    )
+    assert run.truth[0, HEADING] / DEG == pytest.approx(90.7, abs=0.3)
+    assert run.truth[0, [LAT, LON]] / DEG == pytest.approx([34.246048, 108.909664], abs=1e-6)
+    free, compass = (method.errors["dve_mps"]["max_abs"] for method in run.methods)
+    assert free < 1.0 and compass < 0.3 * free
+    if imu().raw:
+        assert any("gives its place" in text for text in run.warnings)

@@ -1,14 +1,25 @@
-"""Averaging as a method of a scenario: what is refused, and that both fidelities carry it out."""
+"""Averaging as a method of a scenario; the alignment record and the forecast from it."""
 
+import math
 from typing import Any
 
 import numpy as np
 import pytest
 
+from navcore.averaging import AlignmentMotion, Averaging
+from navcore.averaging.forecast import base_motion, forecast_from, second_increments, still_segments
+from navcore.averaging.record import alignment_record, standing_row, standing_signals
 from navcore.engine.simulation import simulate
+from navcore.foundation.earth import EARTH_RATE, WGS84
 from navcore.foundation.errors import InputError
+from navcore.foundation.units import DEG, DEG_PER_HOUR, MICRO_G
 from navcore.mechanization.strapdown.records import NAVIGATION
+from navcore.motion.static import StaticMotion
+from navcore.motion.truth import VE
 from navcore.scenario.model import Scenario
+from navcore.sensors.imu import Imu
+from navcore.sensors.noise import unit_noise
+from tests.averaging import SITE, made, truth_row
 
 METHODS = [
     {"damping": "averaging"},
@@ -94,3 +105,134 @@ def test_what_is_refused(blocks, field, reason):
 
 def test_a_policy_asks_for_no_reference_when_nothing_is_damped():
     assert scenario(method=[{"damping": "averaging", "policy": {"id": "threshold"}}]).method[0].undamped
+
+
+# ---------------------------------------------------------------- the alignment record and the forecast
+
+
+TILTED = StaticMotion(pitch_deg=3.0, roll_deg=-2.0, heading_deg=70.0)
+STANDING = standing_row(truth_row(TILTED, WGS84))
+NOISY = Imu(gyro_bias_dph=(0.01, 0.02, -0.01), gyro_arw_dpsh=0.005, accel_bias_ug=(100.0, -50.0, 20.0),
+            accel_vrw_ugpshz=50.0)  # fmt: skip
+ZHAO_FIG_4 = (
+    AlignmentMotion(t_s=-500.0, duration_s=5.0, turn_deg=(0.2, 0.0, 0.05)),
+    AlignmentMotion(t_s=-402.0, duration_s=5.0, turn_deg=(-0.1, 0.1, 0.0)),
+)
+
+
+def record(imu=None, motions=(), seconds=600.0, seed=1):
+    return alignment_record(imu or Imu(), STANDING, seconds, motions, WGS84, seed)
+
+
+def test_perfect_record_is_earth_rate_and_gravity():
+    increments = record()
+    assert increments.shape == (600, 6)
+    signals = standing_signals(STANDING, WGS84)
+    assert np.linalg.norm(signals[:3]) == pytest.approx(EARTH_RATE, rel=1e-12)
+    assert np.linalg.norm(signals[3:]) == pytest.approx(WGS84.gravity(SITE.lat), rel=1e-12)
+    np.testing.assert_allclose(increments, np.tile(signals, (600, 1)), rtol=1e-12)
+
+
+def test_motion_of_the_base_ends_in_the_attitude_of_the_start_of_navigation():
+    still, moved = record(), record(motions=ZHAO_FIG_4)
+    np.testing.assert_allclose(moved[205:], still[205:], atol=1e-12)
+    assert np.abs(moved[:95] - still[:95])[:, 3:].max() > 1e-3
+    # about one axis the angles add up to the turn
+    single = record(motions=(AlignmentMotion(t_s=-300.5, duration_s=7.0, turn_deg=(0.0, 0.0, 0.3)),))
+    turned = (single - still)[290:320, 2].sum()
+    assert turned == pytest.approx(0.3 * DEG, rel=1e-4)
+
+
+def test_base_motion_is_found_with_its_guard_in_noise():
+    angles = record(NOISY, ZHAO_FIG_4)[:, :3]
+    found = base_motion(angles)
+    assert still_segments(found) == ((0, 98), (107, 196), (205, 600))
+
+
+def test_no_motion_is_seen_in_noise_alone():
+    false = sum(base_motion(1e-6 * unit_noise(seed, "test", 600, 3)).any() for seed in range(20))
+    assert false <= 1
+
+
+def test_turned_earth_rate_of_a_perfect_record_is_no_motion():
+    found = base_motion(record(motions=ZHAO_FIG_4)[:, :3])
+    assert found.sum() < 25
+
+
+@pytest.mark.parametrize("imu", [Imu(), NOISY], ids=["perfect", "noisy"])
+def test_motions_leave_the_forecast_as_it_was(imu):
+    calm, moved = forecast_from(record(imu)), forecast_from(record(imu, ZHAO_FIG_4))
+    assert calm.segments == ((0, 600),)
+    # 1 sigma of the means of 600 s: 0.012 deg/h and 2 ug
+    assert np.abs(moved.gyro - calm.gyro).max() < 0.02 * DEG_PER_HOUR
+    assert np.abs(moved.accel - calm.accel).max() < 6 * MICRO_G
+    # what a fit that takes no notice of the motions would give
+    plain = record(imu, ZHAO_FIG_4).mean(axis=0)
+    assert np.abs(plain[:3] - calm.gyro).max() > 0.5 * DEG_PER_HOUR
+    assert np.abs(plain[3:] - calm.accel).max() > 400 * MICRO_G
+
+
+def test_forecast_noise_is_that_of_the_mean():
+    # theory.md 5: 0.012 deg/h for 0.005 deg/sqrt(h) and 600 s
+    noise = Imu(gyro_arw_dpsh=0.005)
+    signals = standing_signals(STANDING, WGS84)[:3]
+    errors = [forecast_from(record(noise, seed=seed)).gyro - signals for seed in range(60)]
+    assert np.std(errors) / DEG_PER_HOUR == pytest.approx(0.0122, rel=0.15)
+    assert "0.012 °/h" in made(Averaging(), imu=noise).notices[0]
+
+
+def test_biases_and_drifts_of_the_run_are_in_the_forecast():
+    imu = Imu(gyro_bias_dph=(0.01, 0.02, -0.03), accel_bias_ug=(30.0, 0.0, 0.0))
+    forecast, signals = forecast_from(record(imu)), standing_signals(STANDING, WGS84)
+    np.testing.assert_allclose((forecast.gyro - signals[:3]) / DEG_PER_HOUR, imu.gyro_bias_dph, atol=1e-9)
+    np.testing.assert_allclose((forecast.accel - signals[3:]) / MICRO_G, imu.accel_bias_ug, atol=1e-6)
+    # the drift goes back in time from its value at t = 0
+    slow = Imu(gyro_instability_dph=0.02, gyro_tau_s=1e6)
+    drift = forecast_from(record(slow)).gyro - signals[:3]
+    first = 0.02 * unit_noise(1, "gyro.instability", 1, 3)[0]
+    np.testing.assert_allclose(drift / DEG_PER_HOUR, first, atol=0.002)
+
+
+def test_counts_lose_nothing():
+    fine = forecast_from(record(Imu(gyro_lsb=(1e-6, 1e-6, 1e-6)))).gyro
+    np.testing.assert_allclose(fine, standing_signals(STANDING, WGS84)[:3], atol=1e-6 / 600)
+    steps = record(Imu(gyro_lsb=(1e-6, 0.0, 0.0)))[:, 0] / 1e-6
+    np.testing.assert_allclose(steps, np.rint(steps), atol=1e-9)
+
+
+@pytest.mark.parametrize(("seconds", "swing", "still"), [(600.0, 0.01, 0), (8.0, 0.0, 8)])
+def test_too_few_seconds_at_rest_are_refused(seconds, swing, still):
+    increments = record(seconds=seconds)
+    increments[:, 0] += swing * np.sin(0.3 * np.arange(seconds))
+    with pytest.raises(InputError, match=f"stands still for {still} s"):
+        forecast_from(increments)
+
+
+def test_a_vehicle_under_way_is_refused():
+    row = truth_row()
+    row[VE] = 5.0
+    with pytest.raises(InputError, match="must start from rest"):
+        standing_row(row)
+
+
+def test_second_increments_end_with_the_record():
+    increments = np.arange(250.0)[:, None] * np.ones(6)
+    seconds = second_increments(increments, 100.0)
+    assert seconds.shape == (2, 6)
+    assert seconds[1, 0] == np.arange(150, 250).sum()
+    assert math.isclose(seconds[0, 5], np.arange(50, 150).sum())
+
+
+def test_a_base_that_moves_at_the_end_is_forecast_in_the_attitude_in_which_it_ends():
+    """The record ends while the base turns: the means are turned by what came after the last still part."""
+    at_the_end = (AlignmentMotion(t_s=-4.0, duration_s=4.0, turn_deg=(0.4, -0.3, 0.5)),)
+    forecast = forecast_from(record(motions=at_the_end))
+    assert forecast.segments[-1][1] < 600
+    # the attitude of t = 0 is that of the scenario, so the forecast is what the sensors feel there
+    wanted = standing_signals(STANDING, WGS84)
+    np.testing.assert_allclose(forecast.accel, wanted[3:], atol=2e-4)
+    np.testing.assert_allclose(forecast.gyro, wanted[:3], atol=2e-9)
+    # without the turn it would be off by gravity times half a degree
+    still = record()[:590].mean(axis=0)
+    before = record(motions=at_the_end)[:590].mean(axis=0)
+    assert np.abs(before - still)[3:].max() > 0.05

@@ -1,7 +1,8 @@
-"""The command line as a whole: usage errors, help, exit codes, streams that take no more."""
+"""The command line as a whole: usage errors, help, exit codes, streams that take no more; presets, schema."""
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -10,6 +11,8 @@ from pathlib import Path
 import pytest
 
 from app.cli import main
+from navcore.scenario.file import presets
+from navcore.scenario.schema_file import schema_text
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -130,3 +133,50 @@ def test_a_full_disk_behind_stdout_is_one_line():
         _, err = process.communicate(timeout=60)
     assert process.returncode == 2
     assert err == "standard output: cannot be written: No space left on device\n"
+
+
+# ---------------------------------------------------------------- presets and the schema
+
+
+def test_json_lists_every_preset_with_its_source(capsys):
+    assert main(["presets", "--json"]) == 0
+    captured = capsys.readouterr()
+    document = json.loads(captured.out)
+    assert list(document) == ["presets", "studies", "schema_file"]
+    assert document["studies"] == []
+    assert [p["name"] for p in document["presets"]] == sorted(presets())
+    assert {"liu-networks", "liu-overshoot", "sun-step", "zha-fast"} <= set(presets())
+    for preset in document["presets"]:
+        assert list(preset) == ["name", "title", "source", "fidelity"]
+        assert all(preset.values())
+    assert Path(document["schema_file"]).is_file()
+
+
+def test_people_get_a_line_a_preset(capsys):
+    assert main(["presets"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    for name in presets():
+        assert any(line.startswith(f"{name} ") for line in lines)
+
+
+def test_the_schema_file_is_up_to_date(capsys):
+    assert main(["presets", "--json"]) == 0
+    file = Path(json.loads(capsys.readouterr().out)["schema_file"])
+    assert file.read_text("utf-8") == schema_text(), "write it anew: python -m navcore.scenario.schema_file"
+
+
+def test_the_schema_knows_the_fields_and_their_ranges():
+    schema = json.loads(schema_text())
+    assert set(schema["properties"]) >= {
+        "schema",
+        "run",
+        "site",
+        "motion",
+        "imu",
+        "reference",
+        "method",
+        "view",
+    }
+    duration = schema["$defs"]["RunSettings"]["properties"]["duration_h"]
+    assert (duration["exclusiveMinimum"], duration["maximum"], duration["unit"]) == (0.0, 8760.0, "h")
+    assert "required" not in schema  # every field has a default

@@ -30,18 +30,17 @@ def test_the_example_runs_on_the_files_beside_it(example):
         assert np.abs(method.rows[:, 3:5]).max() < 0.5
 
 
-def test_a_longer_run_than_the_recordings_is_refused(example):
-    with pytest.raises(InputError, match=r"motion\.file = .*lasts 720\.0 s = 0\.2000 h"):
-        simulate(load(str(example), ["run.duration_h=0.3"]))
-
-
-def test_missing_recordings_are_named(example):
-    (example.parent / "gyro.txt").unlink()
-    with pytest.raises(InputError, match=r"motion\.file = '.*gyro\.txt': no such file"):
-        simulate(load(str(example)))
-
-
-def test_a_track_without_heading_is_refused(example):
-    gnss = example.parent / "gnss.txt"
-    with pytest.raises(InputError, match=r"motion\.file = .*: holds no heading"):
-        simulate(load(str(example), [f'motion.file="{gnss}"']))
+@pytest.mark.parametrize(
+    ("missing", "override", "said"),
+    [
+        ("", "run.duration_h=0.3", r"lasts 720\.0 s = 0\.2000 h"),
+        ("gyro.txt", "run.seed=1", r"'.*gyro\.txt': no such file"),
+        ("", 'motion.file="{folder}/gnss.txt"', r".*: holds no heading"),
+    ],
+    ids=["too long", "missing", "no heading"],
+)
+def test_recordings_that_do_not_serve_are_refused(example, missing, override, said):
+    if missing:
+        (example.parent / missing).unlink()
+    with pytest.raises(InputError, match=r"motion\.file = .*" + said):
+        simulate(load(str(example), [override.format(folder=example.parent)]))

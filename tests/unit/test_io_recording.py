@@ -67,29 +67,21 @@ def test_dated_and_undated_files_are_not_joined(tmp_path):
         load([ship_files(tmp_path)["gnss"], table])
 
 
-def test_time_zero_is_the_first_epoch_that_all_streams_cover():
-    gnss, gyro, log = (
-        series(np.arange(714.0)),
-        series(0.0117 + 0.5 * np.arange(2000)),
-        series(0.62 + 1.1 * np.arange(2500)),
-    )
-    window = shared_window([gnss, gyro, log])
-    assert window.start_s == 0.0
-    assert window.end_s == 714.0
-    assert window.covers(0.0, 714.0)
-    assert not window.covers(0.0, 714.1)
-    assert not window.covers(-1.0, 10.0)
-
-
-def test_time_zero_waits_for_the_stream_that_starts_last():
-    window = shared_window([series(np.arange(100.0)), series(50.3 + 0.5 * np.arange(200))])
-    assert window.start_s == 50.0
-    assert window.end_s == 100.0
-
-
-def test_slow_streams_reach_two_seconds_beyond_their_samples_at_most():
-    window = shared_window([series(np.arange(0.0, 601.0, 60.0))])
-    assert (window.start_s, window.end_s) == (0.0, 602.0)
+@pytest.mark.parametrize(
+    ("times", "start_s", "end_s"),
+    [
+        ([np.arange(714.0), 0.0117 + 0.5 * np.arange(2000), 0.62 + 1.1 * np.arange(2500)], 0.0, 714.0),
+        ([np.arange(100.0), 50.3 + 0.5 * np.arange(200)], 50.0, 100.0),
+        ([np.arange(0.0, 601.0, 60.0)], 0.0, 602.0),
+    ],
+    ids=["the first epoch that all cover", "one begins late", "slow: two seconds beyond its samples at most"],
+)
+def test_time_zero_and_the_end_are_shared(times, start_s, end_s):
+    window = shared_window([series(each) for each in times])
+    assert (window.start_s, window.end_s) == (start_s, end_s)
+    assert window.covers(start_s, end_s - start_s)
+    assert not window.covers(start_s, end_s - start_s + 0.1)
+    assert not window.covers(start_s - 3.0, 10.0)
 
 
 def test_streams_without_common_time_are_refused_with_their_spans(tmp_path):

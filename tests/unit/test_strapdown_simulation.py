@@ -1,4 +1,4 @@
-"""simulate(): identical inputs, rows, cancel, divergence; of strapdown: columns, alignment, law series."""
+"""simulate(): inputs, rows, cancel, divergence; of strapdown: rates, columns, alignment, law series."""
 
 from typing import Any
 
@@ -9,14 +9,17 @@ import pytest
 from navcore.engine.results import timeseries, write_results
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
+from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG
 from navcore.mechanization.recorder import NAMES, output_steps
 from navcore.mechanization.strapdown.records import NAVIGATION
 from navcore.motion.truth import HEADING, LAT, VE
+from navcore.scenario.file import load, presets
 from navcore.scenario.model import Scenario
 
 COMPASS = {"damping": "external", "network": {"id": "compass", "sigma": 0.0088, "xi": 0.7}}
 UNSTABLE = {"damping": "external", "network": {"id": "compass", "k1": 0.001, "k2": 1.0, "k3": 0.5}}
+LINEAR = {"fidelity": "error_model", "output_step_s": 1.0}
 CHUNK_S = 60.0
 """A cancel is asked for after each: at 100 Hz some 2 ms for the IMU and each method."""
 NOISY: dict[str, Any] = {
@@ -61,13 +64,6 @@ def test_rows_hold_start_every_output_step_and_the_end(fidelity):
     navigation = None if method.navigation is None else method.navigation.shape
     assert navigation == ((4, len(NAVIGATION)) if fidelity == "strapdown" else None)
     assert output_steps(7, 1.0, 0.1).tolist() == list(range(8))
-
-
-def test_statistics_are_those_of_the_recorded_states():
-    method = run_of(run={"output_step_s": 1.0}, method=[COMPASS]).methods[0]
-    for i, name in enumerate(NAMES):
-        assert method.errors[name]["rms"] == pytest.approx(np.sqrt(np.mean(method.rows[:, i] ** 2)), rel=1e-9)
-        assert method.errors[name]["final"] == method.rows[-1, i]
 
 
 @pytest.mark.parametrize("stop_at", [1, 3])
@@ -195,21 +191,10 @@ def test_an_alignment_at_sea_leaves_what_one_at_rest_would():
 # ---------------------------------------------------------------- the linear model
 
 
-NOISY_RUN = {
-    "run": {"duration_h": 2.0, "seed": 5},
-    "imu": {"gyro_bias_dph": [0.01, 0.02, 0.0], "gyro_arw_dpsh": 0.01, "accel_vrw_ugpshz": 20.0},
-    "reference": {"kind": "log", "noise_mps": 0.2, "bias_mps": [0.1, -0.2]},
-}
-
-
-def _run(**changes):
-    return simulate(Scenario.parse({**NOISY_RUN, **changes}))
-
-
-def test_statistics_are_those_of_every_step():
+@pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
+def test_statistics_are_those_of_every_step(fidelity):
     """With a row each step the metrics must be recomputable from the rows."""
-    run = _run(run={"duration_h": 1.2, "output_step_s": 1.0}, method=[COMPASS])
-    method = run.methods[0]
+    method = run_of(run={"fidelity": fidelity, "output_step_s": 1.0}, method=[COMPASS]).methods[0]
     for i, name in enumerate(NAMES):
         column = method.rows[:, i]
         found = method.errors[name]
@@ -221,7 +206,7 @@ def test_statistics_are_those_of_every_step():
 
 
 def test_plot_curves_keep_every_extreme_in_order():
-    run = _run(run={"duration_h": 4.0, "output_step_s": 1.0}, method=[COMPASS])
+    run = run_of(4.0, run=LINEAR, method=[COMPASS])
     plot, rows = run.methods[0].plot, run.methods[0].rows
     assert len(plot.t_s) <= 2000 and np.all(np.diff(plot.t_s) > 0)
     assert np.array_equal(plot.values.max(axis=0), rows[:, :8].max(axis=0))
@@ -231,8 +216,9 @@ def test_plot_curves_keep_every_extreme_in_order():
 
 
 def test_an_outage_leaves_the_loop_undamped_until_the_log_returns():
-    run = _run(
-        run={"duration_h": 1.0, "output_step_s": 1.0},
+    run = run_of(
+        1.0,
+        run=LINEAR,
         reference={"kind": "log", "outage": [{"t_h": 0.5, "duration_s": 600.0}]},
         method=[COMPASS],
     )
@@ -275,3 +261,124 @@ def test_the_law_in_force_is_told_and_the_loop_is_that_of_its_mean():
     assert adaptive.loop.damping_ratio == pytest.approx(law.xi_mean, rel=1e-9)
     assert constant.law_in_force.xi_min == constant.law_in_force.xi_max
     assert (free.law_in_force.damped_share, free.law_in_force.xi_mean) == (0.0, None)
+
+
+# ---------------------------------------------------------------- rates of a strapdown scenario
+
+
+FAST = {"amplitude_deg": 2.0, "frequency_hz": 5.0}
+
+
+def parse(**blocks) -> Scenario:
+    run = {"fidelity": "strapdown", "duration_h": 1.0} | blocks.pop("run", {})
+    return Scenario.parse({"run": run, **blocks})
+
+
+@pytest.mark.parametrize(
+    ("run", "log_hz", "law_every", "record_every"),
+    [
+        ({"rate_hz": 100.0}, 1.0, 100, 100),
+        ({"rate_hz": 200.0}, 200.0, 1, 200),
+        ({"rate_hz": 200.0}, 1000.0, 1, 200),
+        ({"rate_hz": 100.0}, 3.0, 25, 100),
+        ({"rate_hz": 100.0}, 0.2, 100, 100),
+        ({"rate_hz": 100.0, "step_s": 0.1}, 1.0, 10, 10),
+        ({"rate_hz": 100.0, "step_s": 10.0}, 1.0, 100, 1000),
+        ({"rate_hz": 33.3}, 1.0, 33, 33),
+    ],
+)
+def test_the_law_is_asked_every_step_or_as_often_as_a_faster_log(run, log_hz, law_every, record_every):
+    rates = parse(run=run, reference={"kind": "log", "rate_hz": log_hz}).sampling
+    assert (rates.law_every, rates.record_every) == (law_every, record_every)
+    assert rates.samples == rates.records * record_every
+    assert 0.0 <= 3600.0 - rates.duration_s < rates.record_step_s
+
+
+def test_without_a_log_the_law_runs_at_the_step():
+    assert parse(run={"step_s": 0.5}).sampling.law_every == 50
+
+
+@pytest.mark.parametrize(
+    ("blocks", "line"),
+    [
+        (
+            {"site": {"lat_deg": -86.0}, "alignment": {"kind": "compass"}},
+            "site.lat_deg = -86.0: compass alignment needs |latitude| <= 85°",
+        ),
+        (
+            {"run": {"rate_hz": 50.0}, "motion": {"kind": "swing", "roll": FAST}},
+            "run.rate_hz = 50.0: is too low for the motion: must be >= 80 (Hz), 16 samples a period of "
+            "motion.roll.frequency_hz, which is 5 Hz",
+        ),
+        (
+            {
+                "run": {"rate_hz": 10.0},
+                "motion": {
+                    "kind": "legs",
+                    "leg": [{"speed_mps": 1.0}, {"speed_mps": 2.0, "accel_mps2": 2.0}],
+                },
+            },
+            "run.rate_hz = 10.0: is too low for the motion: must be >= 32 (Hz), 16 samples a period of "
+            "motion.leg.1, which is 2 Hz",
+        ),
+        (
+            {"run": {"rate_hz": 20.0}, "motion": {"kind": "waves", "peak_period_s": 2.0}},
+            "run.rate_hz = 20.0: is too low for the motion: must be >= ",
+        ),
+        ({"run": {"rate_hz": 5.0}}, "run.rate_hz = 5.0: must be >= 10 and <= 1000 (Hz)"),
+        ({"run": {"duration_h": 300.0}}, "run.duration_h = 300.0: is 1.08e+08 samples at 100 Hz; at most"),
+        (
+            {"run": {"duration_h": 100.0}, "reference": {"kind": "log", "rate_hz": 100.0}},
+            "reference.rate_hz = 100.0: gives 3.6e+07 log samples in 100 h; at most 10000000",
+        ),
+        (
+            {"alignment": {"kind": "compass", "duration_s": 20000.0}},
+            "alignment.duration_s = 20000.0: must be <= 15000 (s) at 100 Hz",
+        ),
+        (
+            {"alignment": {"kind": "compass", "sigma": 9.0, "xi": 0.7}},
+            "alignment.sigma = 9.0: must be <= 7 (1/s) at 100 Hz: the loop is too fast",
+        ),
+        (
+            {"imu": {"file": "x.imu"}, "motion": {"kind": "swing"}},
+            'motion.kind = \'swing\': must be "static" or "track" with a recorded IMU (imu.file)',
+        ),
+        ({"imu": {"begin_s": 3.0}}, "imu.begin_s = 3.0: needs a recorded IMU: imu.file"),
+        ({"imu": {"axes": "ned"}}, "imu.axes = 'ned': must be one of 'rfu' or 'frd'"),
+        ({"run": {"vertical": "free"}}, "run.vertical = 'free': must be one of 'locked' or 'altimeter'"),
+    ],
+)
+def test_each_fault_names_field_value_and_range(blocks, line):
+    with pytest.raises(InputError) as caught:
+        parse(**blocks)
+    (fault,) = caught.value.faults
+    assert str(fault).startswith(line)
+
+
+@pytest.mark.parametrize("fidelity", ["channel", "error_model"])
+@pytest.mark.parametrize(
+    ("blocks", "field"),
+    [
+        ({"alignment": {"kind": "compass"}}, "alignment.kind"),
+        ({"imu": {"file": "x.imu"}}, "imu.file"),
+        ({"run": {"vertical": "altimeter"}}, "run.vertical"),
+        ({"run": {"compensation": False}}, "run.compensation"),
+    ],
+)
+def test_what_only_a_strapdown_run_can_do_is_refused_elsewhere(fidelity, blocks, field):
+    with pytest.raises(InputError) as caught:
+        parse(**blocks | {"run": blocks.get("run", {}) | {"fidelity": fidelity}})
+    (fault,) = caught.value.faults
+    assert fault.field == field
+    assert fault.allowed == f'needs run.fidelity = "strapdown", which is "{fidelity}"'
+
+
+def test_every_preset_may_be_run_as_strapdown():
+    for name in presets():
+        assert load(name, ["run.fidelity=strapdown"]).sampling.records > 0
+
+
+def test_the_path_of_a_recorded_imu_is_relative_to_the_scenario(tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_text('schema = 1\n[run]\nfidelity = "strapdown"\n[imu]\nfile = "ship.imu"\n')
+    assert load(str(path)).imu.file == str(tmp_path / "ship.imu")

@@ -1,11 +1,16 @@
-"""Latest wins: what waits is replaced, what runs is cancelled once it has run for a while."""
+"""Workers: the latest job wins, and heavy jobs go elsewhere and come back."""
 
+import importlib.util
 import threading
 
 import pytest
 
+from app.cli import main
 from app.jobs import worker
-from app.jobs.worker import Watch, Worker
+from app.jobs.cluster import check_address
+from app.jobs.scheduler import Lane, Load, Scheduler
+from app.jobs.worker import ElsewhereLost, Watch, Worker
+from navcore.foundation.errors import InputError
 from tests.waiting import until
 
 
@@ -95,3 +100,89 @@ def test_nothing_runs_after_stop() -> None:
     running.submit("late")
     assert running.wait_idle(0.2)
     assert done == []
+
+
+# ---------------------------------------------------------------- elsewhere, without a cluster
+
+
+@pytest.mark.parametrize("address", ["", "127.0.0.1", "http://a:1", "tcp://a", "tcp://a:b", "tcp://a b:1"])
+def test_what_is_no_address_is_refused(address: str) -> None:
+    with pytest.raises(InputError, match=r"--cluster.*tcp://HOST:PORT"):
+        check_address(address)
+
+
+def test_without_the_extra_the_command_says_how_to_install_it(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    assert main(["serve", "--port", "0", "--cluster", "tcp://[::1]:8786"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "--cluster" in line and "pip install 'schuler-bench[cluster]'" in line
+
+
+def test_a_job_that_was_lost_elsewhere_is_done_here() -> None:
+    lanes: list[Lane] = []
+    there = [True]
+
+    def work(job: str, watch: Watch) -> None:
+        lanes.append(watch.lane)
+        if watch.lane is Lane.CLUSTER:
+            there[0] = False
+            raise ElsewhereLost
+
+    worker = Worker(
+        work, load=lambda _: Load(Lane.CLUSTER if there[0] else Lane.SPARE), turns=Scheduler(1, 100.0)
+    )
+    worker.submit("job")
+    assert worker.wait_idle(10.0)
+    assert lanes == [Lane.CLUSTER, Lane.SPARE]
+    worker.stop()
+
+
+def test_a_lost_job_that_was_cancelled_or_has_a_successor_is_not_done_again() -> None:
+    done: list[str] = []
+    begun, gate = threading.Event(), threading.Event()
+
+    def work(job: str, watch: Watch) -> None:
+        done.append(job)
+        begun.set()
+        gate.wait(10.0)
+        if job == "lost":
+            raise ElsewhereLost
+
+    for submit_another in (True, False):
+        done.clear()
+        begun.clear()
+        gate.clear()
+        worker = Worker(work, turns=Scheduler(1, 100.0))
+        worker.submit("lost")
+        assert begun.wait(10.0)
+        if submit_another:
+            worker.submit("next")
+        else:
+            worker.cancel()
+        gate.set()
+        assert worker.wait_idle(10.0)
+        assert done == (["lost", "next"] if submit_another else ["lost"])
+        worker.stop()
+
+
+def test_jobs_elsewhere_take_no_core_and_no_memory_of_this_machine() -> None:
+    turns, gate = Scheduler(1, 100.0), threading.Event()
+    away = [
+        Worker(lambda job, watch: gate.wait(10.0), load=lambda _: Load(Lane.CLUSTER), turns=turns)
+        for _ in range(3)
+    ]
+    for one in away:
+        one.submit(1)
+    here = [
+        Worker(lambda job, watch: None, load=lambda _, lane=lane: Load(lane, 1e9), turns=turns)
+        for lane in (Lane.ANSWER, Lane.LONG, Lane.SPARE)
+    ]
+    for one in here:
+        one.submit(1)
+        assert one.wait_idle(10.0)
+    assert turns.figures()["running_cluster"] == 3.0
+    gate.set()
+    for one in away:
+        assert one.wait_idle(10.0)

@@ -15,7 +15,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ),
         (
             "test_scenario_guide", "test_strapdown_*", "test_control_twin", "test_control_strapdown",
-            "test_averaging_*", "test_alignment", "test_results", "test_zhao_values",
+            "test_averaging_*", "test_alignment", "test_results", "test_paper_figures",
             "test_presets_golden",
         ),
     ),
@@ -23,8 +23,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ("test_imu*", "test_noise", "test_reference_*"),
         (
             "test_scenario_guide", "test_recorded_*", "test_strapdown_simulation",
-            "test_strapdown_scenario", "test_sources", "test_signs_and_sizes", "test_recordings",
-            "test_presets_golden", "test_strapdown_recorded_imu",
+            "test_sources", "test_signs_and_sizes", "test_recordings", "test_presets_golden",
         ),
     ),
     "analysis": (
