@@ -65,4 +65,5 @@ def _extremes(zeros: np.ndarray, poles: np.ndarray) -> np.ndarray:
     above, below = (np.atleast_1d(np.real(np.poly(-(roots**2)))) for roots in (zeros, poles))
     by_power = [part * np.arange(len(part) - 1, -1, -1) for part in (above, below)]
     slope = np.convolve(by_power[0], below) - np.convolve(above, by_power[1])
-    return np.sqrt(np.abs(np.roots(slope)))
+    places = np.roots(slope)  # rounding decides whether one at infinity is left out
+    return np.sqrt(np.abs(np.pad(places, (0, len(slope) - 1 - len(places)))))

@@ -264,12 +264,13 @@ def test_narrow_peaks_and_notches_reach_their_true_value(seed: int) -> None:
             assert (size.max(), size.min()) == pytest.approx(extremes(exact, span), rel=5e-3), name
 
 
-def test_a_curve_keeps_its_number_of_points_when_a_slider_moves() -> None:
+@pytest.mark.parametrize(("network", "least"), [("unity2", 0.001), ("complementary", 0.05)])
+def test_a_curve_keeps_its_number_of_points_when_a_slider_moves(network: str, least: float) -> None:
     """Else the page lays the figure out anew (`static/redraw.js`)."""
     counts = set()
-    for zeta in (0.001, 0.3, 1.0, 1.7):
+    for zeta in np.round(np.linspace(least, 2.0, 60), 3).tolist():
         run = run_of(
-            run={"duration_h": 0.02}, method=[{**THREE[1], "network": {"id": "unity2", "zeta": zeta}}]
+            run={"duration_h": 0.02}, method=[{**THREE[1], "network": {"id": network, "zeta": zeta}}]
         )
         counts.add(tuple(len(of_trace(bode(run), "classic2", axis)[0]) for axis in ("y", "y3")))
     assert len(counts) == 1
