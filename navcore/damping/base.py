@@ -2,7 +2,7 @@
 
 A kind names what it needs of the rooms above by a word of a short list, and the room above has one table of
 how that is done: `Need` in `navcore.scenario.needs`, `Carrying` in `navcore.engine.drivers`, `Covering` in
-`navcore.design.coverings`.
+`navcore.design`, for the steady state and for the bands.
 """
 
 from collections.abc import Iterator

@@ -5,7 +5,6 @@ from concurrent.futures import Future, ThreadPoolExecutor
 
 import numpy as np
 
-from navcore.damping.base import Covering
 from navcore.design.constants import TOLD
 from navcore.design.figures import Entry, Figures, Series, entry_of
 from navcore.design.floor import steady_floor
@@ -73,7 +72,7 @@ def budget(
     def one(index: int, least: Future[Series | None]) -> MethodBudget:
         method = scenario.method[index]
         reason = no_covariance(scenario, method)
-        own = _OWN_SERIES[method.kind.covering](least) if not untold else None
+        own = least.result() if method.kind.covering == "filter" and not untold else None
         if own is not None:
             note = "its own covariance, which is the floor: it is told of every error of this scenario"
             result = _of_series(method, "covariance", own, (note, *left_out))
@@ -97,14 +96,6 @@ def budget(
         reason = steady_floor(ship.model, scenario.omega_s).reason
         return Budget(False, Entry(Figures(), Figures()), reason, None, methods)
     return Budget(False, entry_of(floor.t_s, floor.total), "", floor, methods)
-
-
-_OWN_SERIES: dict[Covering, Callable[[Future[Series | None]], Series | None]] = {
-    "covariance": lambda floor: None,
-    "seeds": lambda floor: None,
-    "filter": lambda floor: floor.result(),
-}
-"""Covariance that a method keeps itself, by where its budget comes from: the floor, or none."""
 
 
 def _warnings(scenario: Scenario) -> tuple[str, ...]:
