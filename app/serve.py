@@ -10,11 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
+from app.jobs.words import what_failed
 from app.languages import LANGUAGE_SCRIPTS
 from app.logs import begin_logging
 from app.memory import GiveBack, bound_arenas, collect_seldom
 from app.views import VIEWS, load, scripts
 from navcore.foundation import guarded
+from navcore.foundation.errors import InputError
 
 if TYPE_CHECKING:
     import viser
@@ -112,17 +114,17 @@ class Dashboard:
             sessions = self.sessions
         return sessions.knows(session_id)
 
-    def warm_up(self, prepare: Callable[[], None]) -> threading.Thread:
+    def warm_up(self, prepare: Callable[[], None], failed: Callable[[str], None]) -> threading.Thread:
         """Do in the background what the first page would have to wait for.
 
         Import what it needs, load the compiled kernels, run the scenario that a new visitor sees, and
-        ``prepare()`` the files that browsers load.
+        ``prepare()`` the files that browsers load; ``failed(reason)`` when that cannot be done.
         """
-        thread = threading.Thread(target=self._warm_up, args=(prepare,), name="warm-up", daemon=True)
+        thread = threading.Thread(target=self._warm_up, args=(prepare, failed), name="warm-up", daemon=True)
         thread.start()
         return thread
 
-    def _warm_up(self, prepare: Callable[[], None]) -> None:
+    def _warm_up(self, prepare: Callable[[], None], failed: Callable[[str], None]) -> None:
         try:
             prepare()
             import app.shell.page  # noqa: F401
@@ -135,8 +137,12 @@ class Dashboard:
                 sessions = self.sessions
             sessions.prepared = simulate(first_scenario()[0])
             collect_seldom()
-        except Exception:
+        except InputError as error:
+            _log.error("no scenario can be run: %s", error)
+            failed(what_failed(error))
+        except Exception as error:
             _log.exception("warming up failed")
+            failed(what_failed(error))
 
     def on_connect(self, client: viser.ClientHandle, session_id: str) -> None:
         """Build the page of a browser."""
@@ -227,7 +233,7 @@ def open_dashboard(
     )
     # No axes cross in the middle of the map; they belong to the server's scene.
     server.viser.scene.world_axes.visible = False
-    dashboard.warm_up(server.prepare)
+    dashboard.warm_up(server.prepare, server.fail)
     return server, dashboard
 
 

@@ -17,6 +17,7 @@ from navcore.alignment.fine import coarse_alignment
 from navcore.engine.environment import environment
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import WGS84
+from navcore.foundation.errors import InputError
 from navcore.foundation.kernel_cache import cache_folder, compiling, complete
 from navcore.law.law import prepare_law
 from navcore.law.policy.constant import Constant
@@ -185,7 +186,10 @@ def main() -> None:
     if sys.argv[1:] == ["sensors"]:
         warm_sensors()
         return
-    compile_once(lambda what: print(f"kernels: {what}", file=sys.stderr, flush=True))
+    try:
+        compile_once(lambda what: print(f"kernels: {what}", file=sys.stderr, flush=True))
+    except InputError as error:
+        sys.exit(str(error))
     print(f"kernels: ready in {cache_folder()}", file=sys.stderr)
 
 

@@ -246,9 +246,10 @@ def answer_headers(length: int, content_type: str) -> dict[str, str]:
     }
 
 
-def health() -> str:
-    """Answer to ``/healthz``, JSON."""
-    return json.dumps({"status": "ok", "version": __version__})
+def health(fault: str = "") -> str:
+    """Answer to ``/healthz``, JSON; with what keeps the server from its work, if anything does."""
+    state = {"status": "failed", "reason": fault} if fault else {"status": "ok"}
+    return json.dumps({**state, "version": __version__})
 
 
 _MOST_ADDRESSES = 4096

@@ -12,13 +12,12 @@ import time
 import zlib
 from collections.abc import Callable, Sequence
 
-from app.http.access import answer_headers, health, security_headers
+from app.http.access import answer_headers, security_headers
 from app.http.address import FORWARDED
 from app.http.limits import Limits
 from app.http.places import Door
 
 _SESSION = re.compile(rb"^[A-Z]+ /s/([A-Za-z0-9_-]{8,64})[/? ]")
-_HEALTH = re.compile(rb"^GET /healthz[? ]")
 _HEAD_BYTES = 16 * 1024
 _PIECE = 64 * 1024
 _CONNECT_S = 3.0
@@ -78,11 +77,7 @@ class Front:
             async with asyncio.timeout(self._limits.request_s):
                 head = await reader.readuntil(b"\r\n\r\n")
             guest.asked = True
-            if _HEALTH.match(head):
-                writer.write(_answer(200, "OK", health().encode(), "application/json"))
-                await writer.drain()
-            else:
-                await self._pass_on(head, guest, reader, writer)
+            await self._pass_on(head, guest, reader, writer)
         except (OSError, TimeoutError, asyncio.IncompleteReadError, asyncio.LimitOverrunError):
             pass
         finally:

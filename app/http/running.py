@@ -27,6 +27,7 @@ from app.http.limits import Limits
 from app.http.page import FIRST_SCRIPTS, PLOTLY, build_page
 from app.http.places import Door, Places
 from app.http.site import Site
+from app.jobs.words import what_failed
 from app.languages.wording import NAMES, wording
 
 if TYPE_CHECKING:
@@ -174,7 +175,7 @@ def _call(callback: SessionCallback, client: viser.ClientHandle, session_id: str
         callback(client, session_id)
     except Exception as error:
         _log.exception("a session callback failed")
-        client.add_notification("Something went wrong", f"{type(error).__name__}: {error}", color="red")
+        client.add_notification("Something went wrong", what_failed(error), color="red")
 
 
 def _quiet_log() -> logging.Logger:

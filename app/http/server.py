@@ -59,6 +59,8 @@ class DashboardServer:
         Where to open it, without the token.
     prepare : callable
         Makes the page's files before they are asked for; from any thread.
+    fail : callable
+        ``fail(reason)`` lets ``/healthz`` fail from now on; from any thread.
     """
 
     viser: viser.ViserServer
@@ -66,6 +68,7 @@ class DashboardServer:
     port: int
     url: str
     prepare: Callable[[], None]
+    fail: Callable[[str], None]
     _callbacks: ThreadPoolExecutor
     _stopping: threading.Lock = field(default_factory=threading.Lock)
     _stopped: bool = False
@@ -173,4 +176,5 @@ def start(
     running.follow_visits(callbacks, on_connect, on_disconnect)
     shown = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
     address = f"http://{authority(shown, bound_port)}/"
-    return DashboardServer(running.viser, host, bound_port, address, running.site.prepare, callbacks)
+    site = running.site
+    return DashboardServer(running.viser, host, bound_port, address, site.prepare, site.fail, callbacks)

@@ -57,6 +57,8 @@ class Site:
         A door before this process tells where requests come from.
     metrics : callable or None
         Gives the figures for ``/metrics``; None: there are none.
+    fault : str
+        What keeps the server from its work, for ``/healthz``; without a place on the server.
     """
 
     access: Access
@@ -66,6 +68,7 @@ class Site:
     load_page: Callable[[], Page]
     forwarded: bool = False
     metrics: Callable[[], bytes] | None = None
+    fault: str = ""
     ready: threading.Event = field(default_factory=threading.Event)
     _page: Page | None = None
     _loading: asyncio.Lock = field(default_factory=asyncio.Lock)
@@ -83,7 +86,8 @@ class Site:
         if refusal is not None:
             return _refuse(refusal)
         if path == "/healthz":
-            return _respond(HTTPStatus.OK, health(), "application/json")
+            status = HTTPStatus.SERVICE_UNAVAILABLE if self.fault else HTTPStatus.OK
+            return _respond(status, health(self.fault), "application/json")
         websocket = any("websocket" in value.lower() for value in headers.get_all("Upgrade"))
         if not websocket and "token" in dict(parse_qsl(query)) and self.access.token is not None:
             return self._guarded(connection, lambda: self._exchange_token(path, query, headers))
@@ -161,6 +165,10 @@ class Site:
             if file is not None:
                 return await _serve(file, headers, _FOR_EVER)
         return _not_found()
+
+    def fail(self, fault: str) -> None:
+        """Let ``/healthz`` fail from now on; from any thread."""
+        self.fault = fault
 
     def prepare(self) -> None:
         """Make the page and compress its files before they are asked for; from any thread."""

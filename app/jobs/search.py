@@ -8,7 +8,7 @@ from typing import Any, Generic, TypeVar
 from app.jobs.elsewhere import LOST, carried_out
 from app.jobs.load import heavy_load
 from app.jobs.scheduler import Load
-from app.jobs.words import for_a_page
+from app.jobs.words import for_a_page, what_failed
 from app.jobs.worker import ElsewhereLost, Watch, Worker
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
@@ -150,7 +150,8 @@ class Search(Generic[Asked, Found]):
             words = tuple(str(fault) for fault in for_a_page(error).faults)
         except Exception as error:
             _log.exception("%s failed", self._name)
-            words = (Text("Something went wrong: {name}: {error}", name=type(error).__name__, error=error),)
+            name, _, why = what_failed(error).partition(": ")
+            words = (Text("Something went wrong: {name}: {error}", name=name, error=why),)
         complete = result is not None and self._complete(result)
         with self._lock:
             if self.under_way is not asked:  # stopped, or another one waits

@@ -19,6 +19,20 @@ def without_folders(text: str) -> str:
     return _FOLDERS.sub("", text)
 
 
+def what_failed(error: BaseException) -> str:
+    """An exception in words, without the folders of the server.
+
+    Examples
+    --------
+    >>> what_failed(PermissionError(13, "Permission denied", "/opt/kernels/digests"))
+    'PermissionError: Permission denied'
+    """
+    if isinstance(error, InputError):
+        return "\n".join(str(fault) for fault in for_a_page(error).faults)
+    words = error.strerror if isinstance(error, OSError) else None
+    return f"{type(error).__name__}: {words or without_folders(str(error))}"
+
+
 def for_a_page(error: InputError) -> InputError:
     """The same faults without the folders of the server."""
 

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from app.http.ids import log_name
+from app.jobs.words import without_folders
 from app.session.content import Contents, link_files
 from app.session.database import Database, parsed
 from navcore.foundation.text import Text
@@ -36,20 +37,27 @@ CLAIMED = "SCHULER_STATE_CLAIMED"
 """Set in the environment of a worker whose door has claimed the folder."""
 _UPKEEP_EVERY_S = 600.0
 _ORPHAN_S = 86_400.0
+_STATE = ("Library", "Application Support") if sys.platform == "darwin" else (".local", "state")
+NO_HOME = "there is no home folder: set XDG_STATE_HOME"
 _ID = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _KEY_BYTES = 32
 _log = logging.getLogger("schuler.store")
 
 
-def default_folder() -> Path:
-    """Where the user's sessions are kept: under ``XDG_STATE_HOME``, else where the platform keeps such."""
+def default_folder() -> Path | None:
+    """Where the user's sessions are kept: under ``XDG_STATE_HOME``, else where the platform keeps such.
+
+    None, with a line in the log, where there is neither that nor a home folder.
+    """
     chosen = os.environ.get("XDG_STATE_HOME")
     if chosen and Path(chosen).is_absolute():
         base = Path(chosen)
-    elif sys.platform == "darwin":
-        base = Path.home() / "Library" / "Application Support"
     else:
-        base = Path.home() / ".local" / "state"
+        try:
+            base = Path.home().joinpath(*_STATE)
+        except RuntimeError:
+            _log.warning("sessions are not kept over a restart: %s", NO_HOME)
+            return None
     return base / "schuler-bench" / "sessions"
 
 
@@ -271,7 +279,7 @@ class Store:
             self.write(id, make())
             self._complained = False
         except OSError as error:
-            words = str(error.strerror or error)
+            words = without_folders(str(error.strerror or error))
             if not self._complained:
                 _log.warning("sessions cannot be kept at present: %s", words)
             self._complained = True

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from html import escape
 from typing import TYPE_CHECKING, Literal
 
+from app.jobs.words import for_a_page, without_folders
 from app.plots import style
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
@@ -47,7 +48,7 @@ def told(client: viser.ClientHandle, title: str, otherwise: Callable[[], None]) 
         tell(client, title, fault_lines(error))
         otherwise()
     except OSError as error:
-        tell(client, title, [error.strerror or str(error)])
+        tell(client, title, [error.strerror or without_folders(str(error))])
         otherwise()
 
 
@@ -112,7 +113,7 @@ def refusal(fault: Fault, kept: str = "", field: str = "", entered: object = Non
 
 def fault_lines(error: InputError) -> list[str]:
     """Faults of an error, one line each."""
-    return [str(fault) for fault in error.faults]
+    return [str(fault) for fault in for_a_page(error).faults]
 
 
 def _shown(value: object) -> str:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from app.bridge.server import leaving_is_no_fault
 from app.bridge.texts import keep_names
+from app.jobs.words import what_failed
 from app.session.names import GivenNames
 from app.session.session import Session
 from app.session.shown import shown
@@ -149,9 +150,7 @@ class Page:
         self.session.detach(self)
 
     def _command_failed(self, error: Exception) -> None:
-        fault = isinstance(error, InputError)
-        lines = notices.fault_lines(error) if fault else [f"{type(error).__name__}: {error}"]
-        notices.tell(self.client, "That did not work", lines)
+        notices.tell(self.client, "That did not work", [what_failed(error)])
 
     # ------------------------------------------------------------ what the session says
 
@@ -280,7 +279,7 @@ class Page:
 
     def run_failed(self, error: Exception) -> None:
         """Something of ours went wrong; the last good picture stays."""
-        notices.tell(self.client, "Something went wrong", [f"{type(error).__name__}: {error}"])
+        notices.tell(self.client, "Something went wrong", [what_failed(error)])
         self.header.show_failed(self.session.run_number)
         self.client.flush()
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from app.bridge.controls import lock_controls
 from app.editing.edits import disturbances_toml, method_toml, paste
 from app.editing.typed import read_typed, unit_of
+from app.jobs.words import without_folders
 from app.session.history import History, changed_fields
 from app.session.view import View
 from app.shell import notices
@@ -239,7 +240,7 @@ class Palette:
         try:
             link = self._session.share()
         except OSError as error:
-            why = f"{error.strerror or error}."
+            why = f"{error.strerror or without_folders(str(error))}."
             notices.tell(self._client, "No link was made", [why[:1].upper() + why[1:]], "warning")
             return
         self._commands.ask_page(what, link)

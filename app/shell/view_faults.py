@@ -6,6 +6,7 @@ import logging
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
+from app.jobs.words import what_failed
 from app.shell import notices
 from navcore.foundation.text import Text
 
@@ -45,7 +46,7 @@ class ViewFaults:
         try:
             answer = step(*given, **named)
         except Exception as error:
-            fault = f"{type(error).__name__}: {error}"[:300]
+            fault = what_failed(error)[:300]
             if known.get(name) != fault:
                 log.exception("the view %r failed in %s", view.title, name)
                 known[name] = fault

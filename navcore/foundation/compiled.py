@@ -10,11 +10,11 @@ from typing import Any, TypeVar
 import numba
 from numba.core import config, event
 
-from navcore.foundation.kernel_cache import KernelLocator, cache_folder
+from navcore.foundation.kernel_cache import KernelCache, KernelLocator, any_folder
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 
-config.CACHE_DIR = str(cache_folder())  # pyright: ignore[reportAttributeAccessIssue]
+config.CACHE_DIR = str(any_folder())  # pyright: ignore[reportAttributeAccessIssue]
 config.CACHE_LOCATOR_CLASSES = (  # pyright: ignore[reportAttributeAccessIssue]
     f"{KernelLocator.__module__}.{KernelLocator.__qualname__},UserProvidedCacheLocator"
 )
@@ -61,7 +61,9 @@ event.register("numba:compile", COMPILATION)
 
 def kernel(function: _F) -> _F:
     """Compile a function of scalars and arrays: cached on disk, GIL released, no Python exceptions on 1/0."""
-    return numba.njit(cache=True, nogil=True, error_model="numpy")(function)  # pyright: ignore[reportReturnType]
+    compiled: Any = numba.njit(nogil=True, error_model="numpy")(function)
+    compiled._cache = KernelCache(function)
+    return compiled
 
 
 def inlined(function: _F) -> _F:

@@ -172,9 +172,15 @@ def _work(
     except MemoryError:
         sent = pickle.dumps(("memory", ""))
     except Exception as problem:
-        sent = pickle.dumps(("broken", type(problem).__name__))
+        sent = pickle.dumps(("broken", _cause(problem)))
     answer.send_bytes(sent)
     answer.close()
+
+
+def _cause(problem: Exception) -> str:
+    """Kind of an exception; the system's own words, which name no file, where it has some."""
+    words = getattr(problem, "strerror", None)
+    return f"{type(problem).__name__}: {words}" if words else type(problem).__name__
 
 
 def _bound(limits: Limits) -> None:

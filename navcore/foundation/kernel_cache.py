@@ -1,14 +1,16 @@
 """Where the machine code of the kernels is kept, under a name that only the compiled text decides.
 
 The folder is named after the digest of `navcore.foundation.kernel_digest` and lies under
-``SCHULER_CACHE_DIR``, else the user's cache folder, else (read-only home) a temporary folder; a cache that
-was shipped read-only is copied to a writable place first: numba refuses a folder that it cannot write to.
+``SCHULER_CACHE_DIR``, else the user's cache folder, else (no home, or a read-only one) a temporary folder; a
+cache that root has compiled, or that is read-only, is copied to a writable place first: further kernels may
+have to be compiled. Where nothing can be written to, a complete one is used where it lies.
 Forming that digest takes some 150 ms, so it is kept beside the folders under the digest of the raw sources.
 Folders that nothing has used for a month are removed when kernels are compiled.
 """
 
 from __future__ import annotations
 
+import logging
 import os
 import re
 import shutil
@@ -16,20 +18,25 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
-from numba.core.caching import _CacheLocator
+from numba.core.caching import FunctionCache, IndexDataCacheFile, _CacheLocator
 
+from navcore.foundation import kernel_files
+from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.kernel_digest import PACKAGE, kernel_digest, source_digest
 
 UNUSED_S = 30.0 * 86400.0
 """A folder of kernels that nothing has used for so long is removed, s."""
+ROOM_BYTES = 64 << 20
+"""All kernels of one version take 40 MiB."""
 _A_DAY_S = 86400.0
 _KNOWN = "digests"
 _COMPLETE = "complete"
+_log = logging.getLogger("schuler.kernels")
 
 
 @cache
@@ -40,15 +47,17 @@ def kernel_hash() -> str:
     for place in places:
         try:
             text = place.read_text("ascii")
+            distrust = kernel_files.distrust(place)
         except (OSError, UnicodeDecodeError):
             continue
-        if re.fullmatch("[0-9a-f]{16}", text) and place.stat().st_uid == os.getuid():
+        if re.fullmatch("[0-9a-f]{16}", text) and not distrust:
             _used(place)
             return text
     digest = kernel_digest()
     for place in places:
-        if _writable(place.parent):
-            _write_whole(place, digest)
+        if not kernel_files.refusal(place.parent):
+            with suppress(OSError), kernel_files.replacing(place) as file:
+                file.write(digest.encode())
             break
     return digest
 
@@ -57,7 +66,7 @@ class KernelLocator(_CacheLocator):
     """Tells numba where a kernel's machine code lies: by its module and name, under `cache_folder`."""
 
     def __init__(self, module: str) -> None:
-        self._path = str(cache_folder() / module)
+        self._path = str(any_folder() / module)
 
     def get_cache_path(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Folder of the kernels of one module."""
@@ -71,6 +80,11 @@ class KernelLocator(_CacheLocator):
         """Tell kernels of one name in one module apart: there are none."""
         return "0"
 
+    def ensure_cache_path(self) -> None:
+        """Make the folder where that can be done: what is not kept is compiled again."""
+        with suppress(OSError):
+            kernel_files.make_folder(Path(self._path))
+
     @classmethod
     def from_function(cls, py_func: Any, py_file: str) -> KernelLocator | None:
         """Locator of a function, None for one that is not ours."""
@@ -83,42 +97,109 @@ class KernelLocator(_CacheLocator):
         return locator
 
 
-def _user_cache() -> Path:
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+class _Files(IndexDataCacheFile):
+    """Machine code of one kernel on disk, of which nobody sees a half or can write to it."""
+
+    @contextmanager
+    def _open_for_write(self, filepath: str) -> Iterator[IO[bytes]]:
+        with kernel_files.replacing(Path(filepath)) as file:
+            yield file
 
 
-def _writable(folder: Path) -> bool:
-    try:
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        if folder.stat().st_uid != os.getuid():  # what lies there is loaded as code
-            return False
-        with tempfile.TemporaryFile(dir=folder):
-            return True
-    except OSError:
-        return False
+class KernelCache(FunctionCache):
+    """Machine code of one kernel; what cannot be read is compiled, what cannot be written is not kept."""
+
+    def __init__(self, function: Any) -> None:
+        super().__init__(function)
+        self._cache_file = _Files(self._cache_path, self._impl.filename_base, kernel_hash())
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Load the machine code for a signature; None when there is none that can be read.
+
+        Raises
+        ------
+        InputError
+            See `cache_folder`: only now, so that a program without kernels can be imported and say so.
+        """
+        cache_folder()
+        with suppress(OSError):
+            return super().load_overload(sig, target_context)
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep the machine code for a signature, on a full disk or a read-only one as long as we run."""
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            _say_not_kept(error.strerror or type(error).__name__)
+
+
+@cache
+def _say_not_kept(reason: str) -> None:
+    _log.warning("compiled kernels are not kept: %s", reason)
 
 
 def _bases() -> list[Path]:
     """Folders that may hold the machine code, the first that can be written to is taken."""
-    shipped = os.environ.get("SCHULER_CACHE_DIR")
-    own = [_user_cache() / "schuler-bench", Path(tempfile.gettempdir()) / f"schuler-bench-{os.getuid()}"]
-    return [Path(shipped), *own] if shipped else own
+    bases = [Path(shipped)] if (shipped := os.environ.get("SCHULER_CACHE_DIR")) else []
+    bases += [home / "schuler-bench"] if (home := _user_cache()) else []
+    with suppress(FileNotFoundError):  # no temporary folder can be written to
+        bases.append(Path(tempfile.gettempdir()) / f"schuler-bench-{os.getuid()}")
+    return bases
+
+
+def _user_cache() -> Path | None:
+    try:
+        if sys.platform == "darwin":
+            return Path.home() / "Library" / "Caches"
+        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    except RuntimeError:  # no HOME, and a user without an account
+        return None
 
 
 @cache
 def cache_folder() -> Path:
-    """Folder of the machine code of exactly these kernels; writable, made when missing."""
-    name = f"kernels-{kernel_hash()}"
-    shipped = os.environ.get("SCHULER_CACHE_DIR")
-    for base in _bases():
-        if shipped and not (base / name).exists() and (Path(shipped) / name).is_dir() and _writable(base):
-            _copy_writable(Path(shipped) / name, base / name)
-        if _writable(base / name):
-            _used(base / name)
-            return base / name
-    raise OSError("no folder for compiled kernels can be written to: name one in SCHULER_CACHE_DIR")
+    """Folder of the machine code of exactly these kernels; made when missing.
+
+    Raises
+    ------
+    InputError
+        Nothing can be written to, and there is no complete one.
+    """
+    name, bases = f"kernels-{kernel_hash()}", _bases()
+    named = os.environ.get("SCHULER_CACHE_DIR") or _user_cache()
+    why_not = "" if named else "there is no home folder"
+    for at, base in enumerate(bases):
+        folder = base / name
+        missing = not _exists(folder)
+        copied = missing and any(kernel_files.copy(other / name, folder) for other in bases[:at])
+        reason = kernel_files.refusal(folder)
+        if not reason:
+            _used(folder)
+            if missing and why_not and not copied:
+                _log.warning("compiled kernels are kept in %s: %s", base, why_not)
+            return folder
+        why_not = f"{base} {reason}"
+    for folder in (base / name for base in bases):
+        with suppress(OSError):
+            if (folder / _COMPLETE).is_file() and not kernel_files.untrusted(folder):
+                return folder
+    nowhere = "no folder for compiled kernels can be written to: name one in SCHULER_CACHE_DIR"
+    raise InputError(Fault("kernels", "", None, nowhere))
+
+
+def any_folder() -> Path:
+    """Folder of the machine code, or a place where nothing can be."""
+    try:
+        return cache_folder()
+    except InputError:
+        return Path(os.devnull)
+
+
+def _exists(folder: Path) -> bool:
+    try:
+        return folder.exists()
+    except OSError:  # it lies in a folder that cannot be searched
+        return False
 
 
 def _used(path: Path) -> None:
@@ -164,18 +245,27 @@ def compiling() -> Iterator[bool]:
 
     While another process has it, wait: it compiles the same. False when nothing is left to do. The folder
     counts as complete once the body has ended without an exception.
+
+    Raises
+    ------
+    InputError
+        The folder has no room for them.
     """
     if complete():
         yield False
         return
     folder = cache_folder()
+    if shutil.disk_usage(folder).free < ROOM_BYTES:
+        allowed = f"the disk has no {ROOM_BYTES >> 20} MiB for them: name another folder in SCHULER_CACHE_DIR"
+        raise InputError(Fault("kernels", "", None, allowed))
     with open(folder / "lock", "a") as lock:
         _lock(lock.fileno())
         if complete():
             yield False
             return
         yield True
-        (folder / _COMPLETE).touch()
+        with kernel_files.replacing(folder / _COMPLETE):
+            pass
         prune()
 
 
@@ -185,23 +275,3 @@ def _lock(file: int) -> None:
     except ImportError:  # no such thing: two processes then compile the same, which is only slower
         return
     fcntl.flock(file, fcntl.LOCK_EX)
-
-
-def _write_whole(path: Path, text: str) -> None:
-    with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as file:
-        file.write(text)
-    os.replace(file.name, path)
-
-
-def _copy_writable(source: Path, target: Path) -> None:
-    # Renamed into place, so that a process that starts at the same time never sees half a copy.
-    with tempfile.TemporaryDirectory(dir=target.parent) as folder:
-        copy = Path(folder) / "copy"
-        shutil.copytree(source, copy)
-        for path in (copy, *copy.rglob("*")):
-            path.chmod(path.stat().st_mode | 0o200)
-        try:
-            copy.rename(target)
-        except OSError:
-            if not target.is_dir():
-                raise

@@ -35,7 +35,8 @@ def require_file(path: str | os.PathLike[str], where: str = "", field: str = "")
     try:
         present, regular = file.exists(), file.is_file()
     except (OSError, ValueError) as problem:
-        raise refuse(Text("cannot be opened ({name})", name=problem.__class__.__name__)) from problem
+        why = getattr(problem, "strerror", None) or type(problem).__name__
+        raise refuse(Text("cannot be opened ({name})", name=why)) from problem
     if not present:
         raise refuse("no such file")
     if not regular:
