@@ -30,7 +30,7 @@ def what_failed(error: BaseException) -> str:
     if isinstance(error, InputError):
         return "\n".join(str(fault) for fault in for_a_page(error).faults)
     words = error.strerror if isinstance(error, OSError) else None
-    return f"{type(error).__name__}: {words or without_folders(str(error))}"
+    return f"{type(error).__name__}: {without_folders(words or str(error))}"
 
 
 def for_a_page(error: InputError) -> InputError:

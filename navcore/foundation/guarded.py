@@ -111,7 +111,11 @@ def _in_child(what: str, limits: Limits, function: Callable[..., Any], arguments
     context = get_context("forkserver")
     ours, theirs = context.Pipe(duplex=False)
     child = context.Process(target=_work, args=(theirs, limits, function, arguments), daemon=True)
-    child.start()
+    try:
+        child.start()
+    except OSError:  # the helper listens in a temporary folder
+        allowed = "cannot be read: no process can be started for it; is there a temporary folder with room?"
+        raise _refused(what, allowed) from None
     theirs.close()
     try:
         if not ours.poll(limits.wall_s):

@@ -172,6 +172,8 @@ def cache_folder() -> Path:
         folder = base / name
         missing = not _exists(folder)
         copied = missing and any(kernel_files.copy(other / name, folder) for other in bases[:at])
+        if missing and not copied and (as_it_lies := _complete_in(bases[:at], name)):
+            return as_it_lies
         reason = kernel_files.refusal(folder)
         if not reason:
             _used(folder)
@@ -179,12 +181,18 @@ def cache_folder() -> Path:
                 _log.warning("compiled kernels are kept in %s: %s", base, why_not)
             return folder
         why_not = f"{base} {reason}"
+    if as_it_lies := _complete_in(bases, name):
+        return as_it_lies
+    nowhere = "no folder for compiled kernels can be written to: name one in SCHULER_CACHE_DIR"
+    raise InputError(Fault("kernels", "", None, nowhere))
+
+
+def _complete_in(bases: list[Path], name: str) -> Path | None:
     for folder in (base / name for base in bases):
         with suppress(OSError):
             if (folder / _COMPLETE).is_file() and not kernel_files.untrusted(folder):
                 return folder
-    nowhere = "no folder for compiled kernels can be written to: name one in SCHULER_CACHE_DIR"
-    raise InputError(Fault("kernels", "", None, nowhere))
+    return None
 
 
 def any_folder() -> Path:

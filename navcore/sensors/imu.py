@@ -160,6 +160,6 @@ def _navigation_errors(
     body = model.body_errors(signal, clock)
     turning = turned_by.result()
     moving = turning.shape[0] > 1 or (coupled.shape[0] > 1 and bool(model.coupling.any()))
-    error = np.array(np.broadcast_to(body, (clock.count if moving else len(body), 3)))
+    error = np.array(np.broadcast_to(body, (clock.count if moving else len(body), 3)), order="C")
     turn_errors(turning, coupled, error)
     return error

@@ -1,11 +1,17 @@
 """``schuler check`` of scenarios and logs."""
 
 import json
+import subprocess
+import sys
 
 import pytest
+from numba.core import event
 
+from app.bench.process import environment
 from app.cli import main
+from app.cli.check import check
 from navcore.scenario.file import load, scenario_hash
+from navcore.warm import compile_once
 from tests.recordings import ship
 
 
@@ -153,3 +159,54 @@ def test_people_get_the_same_in_words(tmp_path, capsys):
         "warning: 1 Hz is slow",
     ):
         assert word in out
+
+
+def test_no_kernel_is_compiled_for_a_scenario_that_check_understands(tmp_path):
+    """Each error alone and with another: the child can keep no kernels, so all must be there before."""
+    errors = ("gyro_bias_dph=[0.005,0.0,0.0]", "gyro_arw_dpsh=0.001", "gyro_lsb=[1e-7,1e-7,1e-7]")
+    motions = {
+        "static": 'kind = "static"',
+        "legs": 'kind = "legs"\nleg = [{duration_s = 600.0, speed_kn = 18.0}, {duration_s = 60.0, heading_deg = 90.0}]',
+    }
+    compile_once()
+    with Uncached() as compiled:
+        for imu in (*errors, f"{errors[1]}\n{errors[2]}"):
+            for name, motion in motions.items():
+                file = tmp_path / f"{name}.toml"
+                file.write_text(
+                    f"schema = 1\n[run]\nduration_h = 0.1\n[motion]\n{motion}\n[imu]\n{imu}\n[[method]]\n"
+                )
+                assert check(str(file)).ok
+    assert compiled.names == []
+
+
+class Uncached(event.Listener):
+    """Names of the kernels that are compiled, and not loaded, within its block."""
+
+    def __enter__(self):
+        self.names = []
+        event.register("numba:compile", self)
+        return self
+
+    def __exit__(self, *_):
+        event.unregister("numba:compile", self)
+
+    def on_start(self, event):
+        self.names.append(event.data["dispatcher"].py_func.__qualname__)
+
+    def on_end(self, event):
+        del event
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_a_preset_is_understood_right_after_an_installation(tmp_path):
+    """With an empty cache, as after ``pip install``; the second time without a word about kernels."""
+    places = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "TMPDIR"), str(tmp_path))
+    variables = {name: value for name, value in environment().items() if name != "SCHULER_CACHE_DIR"} | places
+    words = [sys.executable, "-m", "app", "check", "zha-fast"]
+    first, second = (
+        subprocess.run(words, env=variables, capture_output=True, text=True, check=False) for _ in range(2)
+    )
+    assert (first.returncode, second.returncode, second.stderr) == (0, 0, "")
+    assert first.stderr.startswith("kernels: ") and first.stdout == second.stdout

@@ -1,5 +1,6 @@
 """Hostile files and scenarios: read in a child with bounds, told in a short line, the caller unharmed."""
 
+import errno
 import os
 import time
 from collections.abc import Iterator
@@ -31,6 +32,8 @@ def _answer(what: str) -> object:
         os.abort()
     if what == "break":
         raise KeyError("some parser's own")
+    if what == "refuse":
+        raise OSError(errno.EFBIG, os.strerror(errno.EFBIG), "/opt/some/place")
     if what == "faults":
         raise InputError([Fault("file", f"field {k}", "x" * 10_000, "must not") for k in range(1000)])
     if what == "write":
@@ -78,6 +81,7 @@ def test_a_result_comes_from_another_process(limits: guarded.Limits) -> None:
         ("time", "input: takes more than 4 s of processor time to read"),
         ("die", "input: cannot be read: it needs more than 0.5 GiB of memory, or is damaged"),
         ("break", "input: cannot be read (KeyError)"),
+        ("refuse", "input: cannot be read (OSError: File too large)"),
         ("write", "input: cannot be read"),
     ],
 )

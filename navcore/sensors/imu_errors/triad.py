@@ -88,6 +88,6 @@ class Triad:
             amplitude = self.white / math.sqrt(clock.step_s)
             error = error + np.multiply(clock.white_noise(self.sensor), amplitude, dtype=float)
         if self.lsb.any():
-            error = np.array(np.broadcast_to(error, (clock.count, 3)))
+            error = np.array(np.broadcast_to(error, (clock.count, 3)), order="C")
             add_quantisation(signal, self.coupling, self.lsb, clock.step_s, error)
         return error
