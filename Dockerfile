@@ -4,6 +4,7 @@
 #   docker run --init --read-only -e SCHULER_TOKEN_FILE=/run/token -v $PWD/token:/run/token:ro \
 #     -v schuler-data:/data -p 127.0.0.1:8080:8080 schuler-bench
 #
+# User 10001 must be able to read the token: chown 10001 token && chmod 0400 token.
 # Published on another port or under another name, it is told so: -e SCHULER_ALLOW_ORIGIN=http://localhost:9000.
 # deploy/compose.yml puts a proxy with TLS before it.
 #
@@ -28,6 +29,7 @@ RUN python -m pip wheel --no-deps --no-index --no-build-isolation --wheel-dir /w
  && python -m pip --python /opt/schuler/bin/python install --no-deps --no-index /wheels/*.whl
 
 # Machine code is kept for the processor that compiled it. On another one the first start compiles anew, into /data.
+# Root compiles, and the user schuler reads: the first start copies the kernels to /data.
 # Away from the sources: the cache is tied to the path of the installed modules.
 WORKDIR /opt/schuler
 ENV SCHULER_CACHE_DIR=/opt/schuler-kernels

@@ -20,7 +20,10 @@ if [ -n "$HIDDEN" ]; then
     mount --move "$HOLD" "$BASE"
 fi
 for place in $READ_ONLY; do mount --bind "$place" "$place"; mount -o remount,bind,ro "$place"; done
-for place in $FULL; do mount -t tmpfs -o size=4k,mode=1777 none "$place"; head -c 4096 /dev/zero >"$place/full"; done
+for place in $FULL; do
+    mount -t tmpfs -o size=4k,mode=1777 none "$place"
+    head -c 4096 /dev/zero >"$place/full"
+done
 exec setpriv --reuid="$USER_ID" --regid="$USER_ID" --clear-groups -- "$@"
 """
 

@@ -1,4 +1,4 @@
-"""Kernels that root has compiled, used by a user without account, home, room, or the right to write anywhere."""
+"""Kernels that root has compiled, used by another user: without account, home, or room to write."""
 
 import json
 import shutil
@@ -61,11 +61,8 @@ def command(
     """Words and environment of a command of the other user."""
     disks = (place.home, place.scratch) if full else ()
     enter, needed = entering(place.top, read_only=tuple(map(Path, read_only)), full=disks)
-    variables = {
-        "SCHULER_CACHE_DIR": str(place.kernels),
-        "HOME": str(place.home),
-        "TMPDIR": str(place.scratch),
-    }
+    folders = {"SCHULER_CACHE_DIR": place.kernels, "HOME": place.home, "TMPDIR": place.scratch}
+    variables = {name: str(folder) for name, folder in folders.items()}
     given = environment() | needed | variables | {"PYTHONDONTWRITEBYTECODE": "1"}
     kept = {name: value for name, value in given.items() if name not in (*without.split(), "XDG_STATE_HOME")}
     return [*enter, sys.executable, "-m", *words], kept

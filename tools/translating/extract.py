@@ -21,6 +21,7 @@ _NOT_ON_THE_PAGE = tuple(
     app/jobs/scheduler.py navcore/__init__.py navcore/warm.py navcore/design/form.py
     navcore/scenario/guide.py navcore/scenario/schema_file.py navcore/foundation/guarded.py
     navcore/foundation/kernel_cache.py navcore/foundation/kernel_digest.py
+    navcore/foundation/kernel_files.py
     navcore/foundation/registry.py navcore/design/sun.py navcore/design/sun_settings.py
     navcore/analysis/report.py navcore/analysis/network_table.py navcore/analysis/python_control.py
     navcore/io/column_names.py
