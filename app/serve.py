@@ -130,8 +130,10 @@ class Dashboard:
             import app.shell.page  # noqa: F401
             from app.session.sessions import first_scenario
             from navcore.engine.simulation import simulate
+            from navcore.foundation.kernel_cache import cache_folder
 
             load(self._views)
+            cache_folder()  # nothing can be shown without it
             guarded.warm()
             with self._lock:
                 sessions = self.sessions

@@ -1,4 +1,4 @@
-"""The steps of the Dockerfile without an engine: root builds in an overlay of this system, user 10001 serves."""
+"""The steps of the Dockerfile without an engine: root builds in an overlay, user 10001 serves."""
 
 import shlex
 import shutil

@@ -117,14 +117,10 @@ def test_health_tells_whether_the_kernels_can_be_had(place: Place, kernels: bool
     """Served as the container does it: by another user than the one that compiled."""
     port = free_port()
     words = ["app", "serve", "--port", str(port), "--workers", workers]
-    without, read_only = ("", ()) if kernels else ("SCHULER_CACHE_DIR", (str(place.home), *_NOWHERE))
-    line, variables = command(place, words, without, read_only)
-    if not kernels:
-        # The helper that reads uploads listens in a temporary folder; only the kernels have none.
-        state = place.top / "state"
-        state.mkdir(mode=0o777)
-        state.chmod(0o777)
-        variables |= {"XDG_STATE_HOME": str(state)}
+    line, variables = command(place, words, "" if kernels else "SCHULER_CACHE_DIR HOME")
+    if not kernels:  # uploads still need a temporary folder
+        (place.scratch / "schuler-bench-10001").touch()
+        variables["XDG_STATE_HOME"] = str(place.home / "state")  # workers share the key of their sessions
     with (place.top / "log").open("w+") as log:
         server = subprocess.Popen(line, env=variables, cwd=place.top, stdout=log, stderr=log)
         try:
