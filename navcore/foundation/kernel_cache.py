@@ -101,7 +101,7 @@ class _Files(IndexDataCacheFile):
     """Machine code of one kernel on disk, of which nobody sees a half or can write to it."""
 
     @contextmanager
-    def _open_for_write(self, filepath: str) -> Iterator[IO[bytes]]:
+    def _open_for_write(self, filepath: str) -> Iterator[IO[bytes]]:  # pyright: ignore[reportIncompatibleMethodOverride]
         with kernel_files.replacing(Path(filepath)) as file:
             yield file
 

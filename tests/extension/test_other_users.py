@@ -125,7 +125,7 @@ def test_health_tells_whether_the_kernels_can_be_had(place: Place, kernels: bool
         server = subprocess.Popen(line, env=variables, cwd=place.top, stdout=log, stderr=log)
         try:
             wanted = 200 if kernels else 503
-            eventually(lambda: _status(port) == wanted, 60.0)
+            eventually(lambda: all(_status(port) == wanted for _ in range(4)), 60.0)  # of each worker
             told = json.loads(ask(port, "/healthz").body)
             if kernels:
                 assert told["status"] == "ok"
