@@ -153,7 +153,9 @@ def test_the_note_above_the_panels_is_not_cut(ship, width, aspect):
 @pytest.mark.parametrize(("width", "aspect"), [(788.0, 0.41), (628.0, 0.94), (948.0, 0.43)])
 def test_eight_methods_have_room_for_their_bars_and_numbers(ship, width, aspect):
     data = ship.canonical()
-    data["method"] = [data["method"][1 + i % 2] | {"name": f"a method with a long name {i}"} for i in range(8)]
+    data["method"] = [
+        data["method"][1 + i % 2] | {"name": f"a method with a long name {i}"} for i in range(8)
+    ]
     layout = budget_figure(budget(Scenario.parse(data)), aspect, width_px=width)["layout"]
     margin = layout["margin"]
     inner = width - margin["l"] - margin["r"], aspect * width - margin["t"] - margin["b"]
