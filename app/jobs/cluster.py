@@ -214,6 +214,7 @@ class Cluster:
     def _look(self, client: Client) -> None:
         try:
             if client.status != "running":
+                self._passed_over = {}
                 raise ConnectionError("the connection has ended")
             self._judge(client)
         except (Exception, CancelledError) as error:
