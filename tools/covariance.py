@@ -1,8 +1,9 @@
 """The covariance of the error budget beside many seeds: ``make covariance``.
 
-Six networks, at rest and along legs with turns; tilt, heading, velocity and position at five times. Every
-seed draws its own noise, biases, log bias and initial errors. The mean square of the seeds over the variance
-of the budget is chi-squared; counted is how many comparisons lie within its 99 % interval.
+Six networks against the log, one without it, and none, at rest and along legs with turns; tilt, heading,
+velocity and position at five times. Every seed draws its own noise, biases, log bias and initial errors. The
+mean square of the seeds over the variance of the budget is chi-squared; counted is how many comparisons lie
+within its 99 % interval.
 """
 
 import sys
@@ -39,6 +40,11 @@ TURNS = {
         {"duration_s": 9000.0},
     ],
 }
+METHODS = (
+    *({"name": str(network["id"]), "damping": "external", "network": network} for network in NETWORKS),
+    {"name": "without the log", "damping": "internal", "network": NETWORKS[0]},
+    {"name": "free"},
+)
 MOTIONS: dict[str, dict[str, Any]] = {
     "at rest": {"kind": "static", "heading_deg": 40.0},
     "legs with turns": TURNS,
@@ -88,23 +94,20 @@ def drawn(motion: str, seed: int, random: bool = True, step_s: float = 1.0) -> S
                 "velocity_std_mps": START["velocity"],
                 "position_std_arcsec": START["position"],
             },
-            "method": [
-                {"name": str(network["id"]), "damping": "external", "network": network}
-                for network in NETWORKS
-            ],
+            "method": METHODS,
         }
     )
 
 
 def mean_squares(motion: str, seeds: int, step_s: float) -> np.ndarray:
-    """Mean squares of phi E, N, U, dV E, N, dL, dlambda at the times; shape (6, 5, 7)."""
+    """Mean squares of phi E, N, U, dV E, N, dL, dlambda at the times; shape (8, 5, 7)."""
     rows = np.rint(np.array(TIMES_H) * 60.0).astype(int)
 
     def one(seed: int) -> np.ndarray:
         run = simulate(drawn(motion, seed, step_s=step_s))
         return np.stack([method.rows[rows, :7] ** 2 for method in run.methods])
 
-    total = np.zeros((len(NETWORKS), len(TIMES_H), 7))
+    total = np.zeros((len(METHODS), len(TIMES_H), 7))
     with ThreadPoolExecutor(2) as pool:
         for squares in pool.map(one, range(seeds)):
             total += squares
@@ -112,9 +115,9 @@ def mean_squares(motion: str, seeds: int, step_s: float) -> np.ndarray:
 
 
 def ratios(motion: str, seeds: int, step_s: float = 1.0) -> np.ndarray:
-    """Mean square of the seeds over the variance of the budget; shape (6, 5, 7)."""
+    """Mean square of the seeds over the variance of the budget; shape (8, 5, 7)."""
     found = budget(drawn(motion, 0, random=False, step_s=step_s))
-    variance = np.empty((len(NETWORKS), len(TIMES_H), 7))
+    variance = np.empty((len(METHODS), len(TIMES_H), 7))
     for k, method in enumerate(found.methods):
         assert method.shown == "covariance" and method.series is not None
         at = [int(np.argmin(np.abs(method.series.t_s - hours * 3600.0))) for hours in TIMES_H]

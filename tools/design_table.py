@@ -30,7 +30,7 @@ HEAD = (
 def row(name: str) -> list[str]:
     """Compute the cells of one preset; a dash where its note says why there is no number."""
     scenario = load(name)
-    damped = [i for i, m in enumerate(scenario.method) if m.damping in ("external", "internal")]
+    damped = [i for i, m in enumerate(scenario.method) if m.kind.uses_network]
     index = damped[0] if damped else 0
     method = scenario.method[index]
     alone = scenario.model_copy(update={"method": (method,)})
@@ -38,8 +38,6 @@ def row(name: str) -> list[str]:
     steady = budget(alone, steady=True)
     if steady.floor_reason or not steady.floor.rms.tilt_rad:
         return [name, method.name, source, *"----", steady.floor_note]
-    if method.damping != "external":
-        return [name, method.name, source, *"----", "no method is damped by the log"]
     found = {n: _least(alone, n) for n in NETWORKS if n not in LEFT_OUT}
     times = {n: value / steady.floor.rms.tilt_rad for n, value in found.items() if value is not None}
     optimal = times.pop("optimal")
@@ -62,7 +60,7 @@ def _least(scenario: Scenario, network: str) -> float | None:
     """Least steady tilt of a network in place of the method's own, rad."""
     method = scenario.method[0]
     plain = Method.model_validate({"name": method.name, "damping": "external", "network": {"id": network}})
-    plain = plain.model_copy(update={"network": plain.network.with_sensors(scenario.figures())})
+    plain = scenario.designed(plain)
     other = scenario.model_copy(update={"method": (plain,)})
     fields = plain.network.design_fields()
     if not fields:

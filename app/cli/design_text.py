@@ -47,7 +47,7 @@ def _floor(budget: Budget) -> list[str]:
     rows = [
         _head(budget, "floor"),
         _units(budget),
-        ["  any causal linear damping", *_cells(budget, budget.floor.rms)],
+        ["  any causal linear damping with the log", *_cells(budget, budget.floor.rms)],
     ]
     if budget.floor.final is not None:
         rows.append(["  at the end", *_cells(budget, budget.floor.final)])

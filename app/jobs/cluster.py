@@ -1,5 +1,8 @@
 """Heavy jobs on a Dask cluster: sent there, watched, called back. What the cluster does not do is done here.
 
+Jobs go to the workers that give the same numbers as this process (`app.jobs.remote.program`). The others are
+passed over and named in the log.
+
 The package ``distributed`` is an extra, ``schuler-bench[cluster]``, imported only when an address is given.
 """
 
@@ -15,10 +18,9 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from app.jobs.remote import Outcome, carry_out, nothing
+from app.jobs.remote import NO_PROGRAM, Outcome, carry_out, misfit, program
 from app.jobs.worker import ElsewhereLost
 from navcore.foundation.errors import Fault, InputError
-from navcore.foundation.version import __version__
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -27,6 +29,8 @@ _ADDRESS = re.compile(r"(tcp|tls)://[^\s/:@]+:\d{1,5}|(tcp|tls)://\[[0-9a-fA-F:]
 _CONNECT_S, _ANSWER_S = 10.0, 10.0
 _LOOK_S, _AGAIN_S, _POLL_S = 2.0, 15.0, 0.05
 """Between two looks: at a cluster that answers, at one that does not, at jobs that are under way there."""
+_AFRESH_S = 60.0
+"""Between two questions to a worker which program it has."""
 _log = logging.getLogger("schuler.cluster")
 
 Item = TypeVar("Item")
@@ -52,7 +56,9 @@ class Cluster:
         check_address(address)
         self.address = address
         self._client: Client | None = None
-        self._threads = 0
+        self._fitting: dict[str, int] = {}
+        self._passed_over: dict[str, str] = {}
+        self._afresh_s = 0.0
         self._topic = f"schuler-{uuid.uuid4().hex}"
         self._heard: dict[str, Callable[[int, float], None]] = {}
         self._told = ""
@@ -68,8 +74,23 @@ class Cluster:
 
     @property
     def threads(self) -> int:
-        """Threads of its workers; 0 while no job may be sent there."""
-        return self._threads if self.ready else 0
+        """Threads of the workers that fit; 0 while no job may be sent there."""
+        return sum(self._fitting.values()) if self.ready else 0
+
+    @property
+    def lost(self) -> bool:
+        """Whether it has been tried, and no job may be sent there."""
+        return bool(self._told) and not self.ready
+
+    @property
+    def workers(self) -> int:
+        """Number of its workers, those that do not fit included."""
+        return len(self._fitting) + len(self._passed_over)
+
+    @property
+    def passed_over(self) -> tuple[str, ...]:
+        """Of each worker that gets no job, in what its program differs."""
+        return tuple(self._passed_over.values())
 
     def compute(
         self,
@@ -101,9 +122,10 @@ class Cluster:
         Exception
             Whatever the function has raised.
         """
-        client = self._client
+        client, workers = self._client, list(self._fitting)
         if client is None:
             raise ElsewhereLost
+        ours = program()
         name, fractions = uuid.uuid4().hex, [0.0] * len(items)
 
         def heard(number: int, fraction: float) -> None:
@@ -115,12 +137,14 @@ class Cluster:
             for number, item in enumerate(items):
                 report = (self._topic, name, number)
                 key = f"schuler-{name}-{number}"
-                futures.append(client.submit(carry_out, __version__, report, function, item, key=key))
+                futures.append(
+                    client.submit(carry_out, ours, report, function, item, key=key, workers=workers)
+                )
             reported = 0.0
             while not all(future.done() for future in futures):
                 if cancelled():
                     return None
-                if self._client is not client:
+                if self._client is not client or self._fitting.keys().isdisjoint(workers):
                     raise ElsewhereLost
                 parts = [1.0 if f.done() else part for f, part in zip(futures, fractions, strict=True)]
                 if (now := sum(parts) / len(parts)) > reported:
@@ -170,15 +194,11 @@ class Cluster:
                 self.address, timeout=_CONNECT_S, set_as_default=False, name="schuler-bench"
             )
         except Exception as error:
+            self._passed_over = {}
             self._tell(f"cannot be reached ({_line(error)})")
             return
         try:
-            threads = _threads(client)
-            if threads == 0:
-                raise RuntimeError("it has no worker")
-            # Whether its workers have this program, in this version.
-            first = client.submit(carry_out, __version__, ("", "", 0), nothing, None, pure=False)
-            first.result(_CONNECT_S + _ANSWER_S)
+            self._judge(client)
             client.subscribe_topic(self._topic, self._hear)
         except (Exception, CancelledError) as error:
             self._tell(f"is of no use ({_line(error)})")
@@ -188,18 +208,46 @@ class Cluster:
             if self._closed.is_set():
                 _end(client)
                 return
-            self._client, self._threads = client, threads
+            self._client = client
         self._tell("")
 
     def _look(self, client: Client) -> None:
         try:
             if client.status != "running":
+                self._passed_over = {}
                 raise ConnectionError("the connection has ended")
-            self._threads = _threads(client)
-            if self._threads == 0:
-                raise RuntimeError("it has no worker")
+            self._judge(client)
         except (Exception, CancelledError) as error:
             self._lose(client, f"is lost ({_line(error)})")
+
+    def _judge(self, client: Client) -> None:
+        """Find the workers that fit; raises RuntimeError when there are none."""
+        ask: Any = client.scheduler  # None while it is not connected
+        threads: Any = client.sync(ask.ncores, callback_timeout=_ANSWER_S)
+        afresh = time.monotonic() >= self._afresh_s  # a worker may have begun anew at its old address
+        if afresh:
+            self._afresh_s = time.monotonic() + _AFRESH_S
+        known: dict[str, str | None] = {**dict.fromkeys(self._fitting, ""), **self._passed_over}
+        for address in threads:
+            if afresh or address not in known:
+                known[address] = self._verdict(client, address, known.get(address))
+        self._passed_over = {address: why for address in threads if (why := known[address])}
+        self._fitting = {address: count for address, count in threads.items() if known[address] == ""}
+        if not self._fitting:
+            raise RuntimeError("none of its workers fits" if self._passed_over else "it has no worker")
+
+    def _verdict(self, client: Client, address: str, before: str | None) -> str | None:
+        """Say why a worker does not fit: empty where it does; as before where it does not answer in time."""
+        try:
+            running: Any = client.run(program, workers=[address], callback_timeout=_CONNECT_S + _ANSWER_S)
+            why = shown = misfit(running[address], program())
+        except OSError:  # among them TimeoutError
+            return before
+        except Exception as error:
+            why, shown = f"{NO_PROGRAM} ({_line(error)})", NO_PROGRAM
+        if why and shown != before:
+            _log.warning("the Dask cluster %s: worker %s is passed over: %s", self.address, address, why)
+        return shown
 
     def _lose(self, client: Client, why: str) -> None:
         """From now on jobs are done here, until the cluster answers again."""
@@ -248,12 +296,6 @@ def check_address(address: str | None) -> None:
     if importlib.util.find_spec("distributed") is None:
         allowed = "needs the package distributed: pip install 'schuler-bench[cluster]'"
         raise InputError([Fault("serve", "--cluster", address, allowed)])
-
-
-def _threads(client: Client) -> int:
-    ask: Any = client.scheduler  # None while it is not connected
-    cores: Any = client.sync(ask.ncores, callback_timeout=_ANSWER_S)
-    return sum(cores.values())
 
 
 def _let_go(client: Client, futures: Sequence[Any]) -> None:

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from app.jobs.cluster import Cluster, Compute, Found, Item
 from app.jobs.scheduler import Lane
 from app.jobs.worker import ElsewhereLost, Watch
+from navcore.foundation.text import Text
 
 CLUSTER = "SCHULER_CLUSTER"
 """In the environment: address of the scheduler of a Dask cluster."""
@@ -33,13 +34,35 @@ def leave_cluster() -> None:
 
 
 def cluster_figures() -> dict[str, float]:
-    """For ``/metrics``: threads of the cluster's workers, 0 while none is used."""
-    return {} if not _one else {"cluster_threads": float(_one[0].threads)}
+    """For ``/metrics``: threads of the workers that are used, and how many workers are passed over."""
+    one = cluster()
+    if one is None:
+        return {}
+    return {"cluster_threads": float(one.threads), "cluster_workers_passed_over": float(len(one.passed_over))}
 
 
 def cluster() -> Cluster | None:
     """The cluster of this process, if there is one."""
     return _one[0] if _one else None
+
+
+def note_of(there: Cluster) -> str:
+    """Sentence for a page about what a cluster does not do; empty where all its workers fit."""
+    misfits = there.passed_over
+    if there.lost:
+        if not misfits:
+            return LOST
+        return Text(
+            "No worker of the Dask cluster fits: {why}. This is now computed on the server.", why=misfits[0]
+        )
+    if not misfits:
+        return ""
+    return Text(
+        "The Dask cluster passes over {count} of its {whole} workers: {why}.",
+        count=len(misfits),
+        whole=there.workers,
+        why=misfits[0],
+    )
 
 
 def carried_out(

@@ -1,6 +1,8 @@
 """The load of a job, from its scenario: which lane it waits in, and the memory it is admitted by."""
 
-from app.jobs.elsewhere import cluster
+from dataclasses import replace
+
+from app.jobs.elsewhere import cluster, note_of
 from app.jobs.scheduler import GIB, Lane, Load, largest_run_bytes
 from navcore.engine.load import estimated_bytes, estimated_seconds
 from navcore.foundation.errors import Fault, InputError
@@ -33,9 +35,10 @@ def heavy_load(scenario: Scenario) -> Load:
     A scenario that names files is computed where they lie.
     """
     there = cluster()
-    if there is None or not there.ready or names_files(scenario):
+    if there is None or names_files(scenario):
         return spare_load(scenario)
-    return Load(Lane.CLUSTER)
+    note = note_of(there)
+    return Load(Lane.CLUSTER, note=note) if there.ready else replace(spare_load(scenario), note=note)
 
 
 def refuse_too_large(scenario: Scenario) -> None:

@@ -54,10 +54,13 @@ class Load:
         Where it waits.
     bytes : float
         Memory it holds while it is under way.
+    note : str
+        What is to be known of the place where it is computed.
     """
 
     lane: Lane = Lane.ANSWER
     bytes: float = 0.0
+    note: str = ""
 
 
 @dataclass(eq=False)

@@ -21,7 +21,8 @@ def steady_budget(scenario: Scenario) -> Budget:
     # frozen, and so hashable, which its type does not say
     keys: list[Any] = [scenario.model_copy(update={"method": (method,)}) for method in scenario.method]
     budgets = [_kept(key) for key in keys]
-    return replace(budgets[0], methods=tuple(each.methods[0] for each in budgets))
+    beside = next((each for each in budgets if not each.floor_reason), budgets[0])
+    return replace(beside, methods=tuple(each.methods[0] for each in budgets))
 
 
 @lru_cache(maxsize=64)
@@ -48,5 +49,5 @@ def times_the_floor(scenario: Scenario) -> list[str]:
     for method, given in zip(steady.methods, scenario.method, strict=True):
         times = [number(value, 3) for value in steady.times_floor(method).values() if value is not None]
         ratios = "the floor itself" if given.kind.covering == "filter" else ", ".join(times)
-        texts.append(ratios or "no steady state")
+        texts.append(ratios or ("no steady state" if given.reads_log else "without the log"))
     return texts

@@ -76,7 +76,8 @@ class Damping:
     blocks : tuple of str
         Blocks of the method that act, in the order in which the page offers them.
     uses_network, uses_log : bool
-        Whether the method's network acts, and whether the log's velocity is read.
+        Whether the method's network acts, and whether the log's velocity enters the navigation. What does not
+        enter is 0 in the error budget, and no floor with a log stands beside it.
     law : {"free", "internal", "external"}
         Law of `navcore.law.law.prepare_law`.
     carrying, covering : str
@@ -111,6 +112,10 @@ class Damping:
     def self_referenced(self) -> bool:
         """Whether the network is fed with the system's own velocity, so that manoeuvres enter."""
         return self.uses_network and not self.uses_log
+
+    def reads_log(self, method: Configured) -> bool:
+        """Whether the log changes a run: by its velocity, or by the difference that a policy decides by."""
+        return self.uses_log or (self.uses_network and method.policy.needs_reference)
 
     def label(self, method: Configured) -> str:
         """Name of a method without a name of its own."""

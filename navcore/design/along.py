@@ -16,7 +16,8 @@ from navcore.design.maps import (
     ERRORS,
     GYRO,
     INPUTS,
-    LAW,
+    LOG,
+    MOTION,
     LoopModel,
     interval_map,
     loop_model,
@@ -203,7 +204,7 @@ def _joint(
     own = slice(n, n + AXES)
     log = np.zeros((len(turn), 2, AXES))  # nothing hangs on the third axis
     log[:, :, :2] = log_axes(loop.body_frame, turn)
-    axes = {GYRO.start: turn, ACCEL.start: turn[:, :2], LAW.start: log}
+    axes = {GYRO.start: turn, ACCEL.start: turn[:, :2], LOG.start: log}
     for s in (1, 3, 5):
         inputs = INPUTS_OF[s]
         to_navigation, width = axes[inputs.start], inputs.stop - inputs.start
@@ -253,5 +254,5 @@ def _rest(loop: LoopModel, X: np.ndarray, first: np.ndarray) -> None:
         return
     steady = np.linalg.solve(loop.form.A, -loop.form.B)
     for channel in (0, 1):
-        u = first[LAW.start + channel] - X[channel]
+        u = first[MOTION.start + channel] - X[channel]
         X[ERRORS + n * channel : ERRORS + n * (channel + 1)] = steady[:, None] * u

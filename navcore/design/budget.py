@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from navcore.design.figures import Entry, Figures, Series, entry_of
 from navcore.design.floor import steady_floor
 from navcore.design.form import law_form
 from navcore.design.level import level
-from navcore.design.result import Budget, MethodBudget, Shown
+from navcore.design.result import Budget, MethodBudget, Shown, with_floor
 from navcore.design.seeds import SEEDS, no_covariance, seed_variance
 from navcore.design.ship import Ship
 from navcore.design.steady import instability, steady_budget
@@ -85,7 +86,7 @@ def budget(
             warnings = (Text("{growth}: the errors grow without bound", growth=growth),) if growth else ()
             result = _of_series(method, "covariance", series, (*warnings, *left_out))
         report(index, 1.0)
-        return result
+        return replace(result, reads_log=method.reads_log)
 
     with ThreadPoolExecutor(2) as pool:
         least = pool.submit(lambda: ship.floor_series)
@@ -95,7 +96,7 @@ def budget(
     if floor is None:
         reason = steady_floor(ship.model, scenario.omega_s).reason
         return Budget(False, Entry(Figures(), Figures()), reason, None, methods)
-    return Budget(False, entry_of(floor.t_s, floor.total), "", floor, methods)
+    return with_floor(False, entry_of(floor.t_s, floor.total), "", floor, methods)
 
 
 def _warnings(scenario: Scenario) -> tuple[str, ...]:

@@ -207,6 +207,8 @@ def constant_part(channel: Level, source: str, size: float) -> Entry:
     size : float
         Its standard deviation, SI.
     """
+    if not channel.constants[source].any():  # it does not enter, whatever the loop does
+        return Entry(Figures(0.0, 0.0))
     if channel.growth_per_s() >= -_MARGINAL * channel.omega_s:
         return Entry(Figures())
     x = np.linalg.solve(channel.A, -channel.constants[source]) * size

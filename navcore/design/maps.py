@@ -28,9 +28,9 @@ class _Piece(Protocol):
 
 Joined = TypeVar("Joined", bound=_Piece)
 
-GYRO, ACCEL, LAW, RATE = slice(0, 3), slice(3, 5), slice(5, 7), slice(7, 9)
-"""Columns of the inputs: eps E, N, U; nabla E, N; error of the log E, N; velocity added to the transport
-rate by hand E, N."""
+GYRO, ACCEL, LOG, MOTION = slice(0, 3), slice(3, 5), slice(5, 7), slice(7, 9)
+"""Columns of the inputs: eps E, N, U; nabla E, N; error of the log E, N; minus the true velocity E, N, which
+enters where the law takes the computed velocity by itself."""
 INPUTS = 9
 ERRORS = 7
 
@@ -156,7 +156,7 @@ class LoopModel:
     omega_s, step_s : float
         rad/s, s.
     hold : int
-        Calls for which a difference is held.
+        Calls for which a difference is held; 1 where the law takes no log.
     body_frame : bool
         The log is turned by the computed heading.
     heading : bool
@@ -221,7 +221,7 @@ def call_map(loop: LoopModel, half: np.ndarray, damped: bool, fresh: bool) -> Ma
         B[:, :, 2] = 0.0
     decay = loop.decay.copy()
     if not fresh:
-        decay[LAW] = 1.0
+        decay[LOG] = 1.0
     if damped and loop.form.acts:
         _put_law(loop, law, half, integral, fresh, Phi, B)
     return Map(Phi, B, B.copy(), decay)
@@ -244,8 +244,9 @@ def _put_law(
     rate = integral @ rate
     fed = integral[:, :, 0:2] * law.F
     into = rate * (law.D - printed) + fed  # of the input u on the errors
-    B[:, :ERRORS, RATE] = rate
     Phi[:, :ERRORS, 0:2] -= printed * rate
+    B[:, :ERRORS, MOTION] = printed * rate
+    enters = LOG if loop.form.uses_log else MOTION
     own = np.zeros((g, 2, ERRORS))
     own[:, 0, 0] = own[:, 1, 1] = -1.0
     if loop.body_frame and loop.form.uses_log:
@@ -257,16 +258,16 @@ def _put_law(
         Phi[:, :ERRORS, net] = rate[:, :, channel, None] * law.C + integral[:, :, channel, None] * law.E
         if fresh:
             Phi[:, net, :ERRORS] = law.B[:, None] * own[:, channel, None, :]
-            B[:, net, LAW.start + channel] = law.B
+            B[:, net, enters.start + channel] = law.B
         else:
             Phi[:, net, held.start + channel] = law.B
     if fresh:
         Phi[:, :ERRORS, :ERRORS] += into @ own
-        B[:, :ERRORS, LAW] = into
+        B[:, :ERRORS, enters] = into
         if loop.hold > 1:
             Phi[:, held, held] = 0.0
             Phi[:, held, :ERRORS] = own
-            B[:, held, LAW] = np.eye(2)
+            B[:, held, enters] = np.eye(2)
     else:
         Phi[:, :ERRORS, held] = into
 
@@ -281,10 +282,11 @@ def loop_model(
     taus: tuple[float, float, float],
 ) -> LoopModel:
     """Collect what `call_map` needs; ``taus`` are the correlation times of gyros, accelerometers, log (s)."""
+    hold = course.hold if form.uses_log else 1
     decay = np.ones(INPUTS)
-    for columns, tau, calls in zip((GYRO, ACCEL, LAW), taus, (1, 1, course.hold), strict=True):
+    for columns, tau, calls in zip((GYRO, ACCEL, LOG), taus, (1, 1, hold), strict=True):
         decay[columns] = math.exp(-calls * course.step_s / tau)
-    return LoopModel(form, omega_s, course.step_s, course.hold, body_frame, heading, decay)
+    return LoopModel(form, omega_s, course.step_s, hold, body_frame, heading, decay)
 
 
 def mean_coefficients(course: Course) -> np.ndarray:

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from navcore.design.maps import ACCEL, GYRO, LAW, LoopModel, Map, call_map, calls_joined
+from navcore.design.maps import ACCEL, GYRO, LOG, LoopModel, Map, call_map, calls_joined
 from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
 
 AXES = 3
-_INPUTS = {"gyro": GYRO, "accel": ACCEL, "log": LAW}
+_INPUTS = {"gyro": GYRO, "accel": ACCEL, "log": LOG}
 INPUTS_OF = tuple(_INPUTS[source.split("_")[0]] for source in RANDOM_SOURCES)
 """Input columns of each random source."""
 

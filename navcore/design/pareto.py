@@ -174,7 +174,7 @@ def pareto(
         report(1.0)
         if stopped:
             break
-    least = ship.floor()
+    least = ship.floor(scenario.method[method])
     kinds = [QUANTITIES[name].kind for name in objectives]
     floors = [None if kind is None else getattr(least, kind.figure) for kind in kinds]
     return Pareto(
@@ -247,9 +247,7 @@ def _front(
 ) -> tuple[list[tuple[tuple[float, float], dict[str, Any]]], bool]:
     """Every setting of a network that a few weighted searches saw, and whether they were stopped."""
     method = scenario.method[index]
-    with_network = _with_network(method, {"id": network})
-    figures = scenario.figures()
-    with_network = with_network.model_copy(update={"network": with_network.network.with_sensors(figures)})
+    with_network = scenario.designed(_with_network(method, {"id": network}))
     methods = tuple(with_network if i == index else m for i, m in enumerate(scenario.method))
     other = scenario.model_copy(update={"method": methods})
     ship = Ship(other, along, TUNING_INTERVALS)

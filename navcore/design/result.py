@@ -4,11 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from navcore.design.figures import Entry, Series
+from navcore.design.figures import Entry, Figures, Series
 from navcore.design.floor import FLOOR_OF_ZERO
 from navcore.foundation.drawing import drawn
 from navcore.quantities import budgeted
 
+WITHOUT_LOG = "no method uses the log: the floor is that of damping with the log"
 Shown = Literal["steady", "covariance", "seeds", "none"]
 
 
@@ -35,6 +36,8 @@ class MethodBudget:
         Along the run only.
     diverged : bool
         The errors overflow along the run: there are no figures.
+    reads_log : bool
+        Whether the log changes a run of the method; the floor is that of damping with the log.
     """
 
     name: str
@@ -45,6 +48,7 @@ class MethodBudget:
     warnings: tuple[str, ...] = ()
     series: Series | None = None
     diverged: bool = False
+    reads_log: bool = True
 
     @property
     def largest(self) -> str | None:
@@ -75,7 +79,7 @@ class Budget:
     steady : bool
         One level channel at rest in the steady state, else along the scenario.
     floor : Entry
-        The least that any causal linear damping can reach.
+        The least that any causal linear damping with the log can reach; empty where no method reads the log.
     floor_reason : str
         Why there is no floor; empty when there is one.
     floor_series : Series or None
@@ -113,9 +117,23 @@ class Budget:
         return self.floor_reason or (FLOOR_OF_ZERO if self.floor.rms.tilt_rad == 0.0 else "")
 
     def times_floor(self, method: MethodBudget) -> dict[str, float | None]:
-        """Each figure of a method over that of the floor; None where one of them is missing or zero."""
+        """Each figure of a method over that of the floor; None where one is missing or without the log."""
         ratios = {}
         for kind in budgeted(self.steady):
             own, least = getattr(method.total.rms, kind.figure), getattr(self.floor.rms, kind.figure)
-            ratios[kind.name] = own / least if own is not None and least else None
+            ratios[kind.name] = own / least if method.reads_log and own is not None and least else None
         return ratios
+
+
+def with_floor(
+    steady: bool, floor: Entry, reason: str, series: Series | None, methods: tuple[MethodBudget, ...]
+) -> Budget:
+    """Put methods beside the floor of damping with the log; beside none where no method reads the log.
+
+    Without the log, the velocity that the network is fed with holds the ship's own motion, for which nobody
+    has a stochastic model: there is no least error.
+    """
+    if any(method.reads_log for method in methods):
+        return Budget(steady, floor, reason, series, methods)
+    none = Entry(Figures(), None if steady else Figures())
+    return Budget(steady, none, reason or WITHOUT_LOG, None, methods)

@@ -7,6 +7,7 @@ import numpy as np
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.law.combination import realisation_of
 from navcore.quantities import COMPONENTS
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
@@ -29,7 +30,7 @@ def no_covariance(scenario: Scenario, method: Method) -> str:
         return kind.no_covariance
     if method.policy.id not in ("constant", "schedule"):
         return Text('policy "{id}" looks at the data', id=method.policy.id)
-    if method.policy.id == "schedule" and method.network.model_dump().get("realisation") != "feedback":
+    if method.policy.id == "schedule" and realisation_of(kind.law, kind.network(method)) != "feedback":
         return 'policy "schedule" is followed in advance only with network.realisation = "feedback"'
     if method.policy.id == "schedule" and scenario.reference.outage:
         return 'policy "schedule" begins anew after each outage of the log'

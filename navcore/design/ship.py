@@ -60,8 +60,10 @@ class Ship:
             return None
         return Series(self.course.t_s, {}, filter_variance(self.scenario, self.course, self.model))
 
-    def floor(self) -> Figures:
-        """Least that any causal linear damping can reach; empty where there is no floor."""
+    def floor(self, method: Method) -> Figures:
+        """Least that any causal linear damping with the log can reach; empty for a method without the log."""
+        if not method.reads_log:
+            return Figures()
         if not self.along_run:
             least = steady_floor(self.model, self.scenario.omega_s)
             return Figures(least.tilt_rad, least.velocity_mps)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from navcore.design.figures import Entry, Figures, total_of
 from navcore.design.floor import Floor, steady_floor
 from navcore.design.form import law_form
 from navcore.design.level import Level, constant_part, level, line_part, steady_parts
-from navcore.design.result import Budget, MethodBudget
+from navcore.design.result import Budget, MethodBudget, with_floor
 from navcore.design.unmodelled import unmodelled_warnings
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
@@ -25,16 +26,12 @@ _MARGINAL = 1e-9
 def steady_budget(scenario: Scenario, model: StochasticModel) -> Budget:
     """Steady state of one level channel at rest; ``model`` may differ from that of the scenario."""
     least, unmodelled = steady_floor(model, scenario.omega_s), unmodelled_warnings(scenario, steady=True)
-    return Budget(
-        steady=True,
-        floor=Entry(Figures(least.tilt_rad, least.velocity_mps)),
-        floor_reason=least.reason,
-        floor_series=None,
-        methods=tuple(
-            _STEADY[method.kind.covering](scenario, method, model, least, unmodelled)
-            for method in scenario.method
-        ),
-    )
+    methods = []
+    for method in scenario.method:
+        found = _STEADY[method.kind.covering](scenario, method, model, least, unmodelled)
+        methods.append(replace(found, reads_log=method.reads_log))
+    floor = Entry(Figures(least.tilt_rad, least.velocity_mps))
+    return with_floor(True, floor, least.reason, None, tuple(methods))
 
 
 def _steady_loop(

@@ -221,7 +221,7 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
     kind = QUANTITIES[search.objective.names[0]].kind
     floor = None
     if len(search.objective.terms) == 1 and kind is not None:
-        floors = [getattr(ship.floor(), kind.figure) for ship in search.ships]
+        floors = [getattr(one.ship.floor(one.method), kind.figure) for one in settings]
         floor = max((value for value in floors if value is not None), default=None)
     scenario = search.ships[0].scenario
     index = search.varied[0].method

@@ -255,8 +255,7 @@ def changed(scenario: Scenario, varied: Sequence[Varied], values: Sequence[float
         at = f"method.{varied[0].method}"
         faults = faults_from(error, Method, data, "")
         raise InputError([replace(fault, field=f"{at}.{fault.field}") for fault in faults]) from None
-    network = method_changed.network.with_sensors(scenario.figures())
-    return method_changed.model_copy(update={"network": network})
+    return scenario.designed(method_changed)
 
 
 def present(scenario: Scenario, varied: Sequence[Varied]) -> np.ndarray:

@@ -59,6 +59,11 @@ class Method(_Settled):
         return KINDS[self.damping]
 
     @property
+    def reads_log(self) -> bool:
+        """Whether the log changes a run of the method."""
+        return self.kind.reads_log(self)
+
+    @property
     def settings(self) -> Any:
         """Parameters of the kind's own; None where it has none."""
         return getattr(self, self.damping, None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 from pydantic import ValidationError
@@ -13,6 +14,7 @@ from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.scenario.bounds import MAX_METHODS
 from navcore.scenario.fields import ScenarioFields
+from navcore.scenario.method import Method
 from navcore.scenario.needs import need_faults
 from navcore.scenario.strapdown_faults import strapdown_faults
 
@@ -52,11 +54,14 @@ class Scenario(ScenarioFields):
 
     def with_sensors(self) -> Scenario:
         """Return the scenario with networks that are designed for its sensors and log."""
+        return self.model_copy(update={"method": tuple(map(self.designed, self.method))})
+
+    def designed(self, method: Method) -> Method:
+        """Return a method with its network designed for the sensors, and for the log where that enters."""
         figures = self.figures()
-        methods = tuple(
-            m.model_copy(update={"network": m.network.with_sensors(figures)}) for m in self.method
-        )
-        return self.model_copy(update={"method": methods})
+        if method.kind.self_referenced:
+            figures = replace(figures, log_noise=0.0, log_drift=0.0)
+        return method.model_copy(update={"network": method.network.with_sensors(figures)})
 
     def faults(self) -> Iterator[Fault]:
         """Yield the faults of the whole scenario: lengths, names, missing references, refused networks."""

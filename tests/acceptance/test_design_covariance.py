@@ -10,7 +10,7 @@ SEEDS = 200
 
 @pytest.mark.parametrize("motion", MOTIONS)
 def test_covariance_holds_against_seeds(motion: str) -> None:
-    """Six networks, five times, seven quantities: no bias, and no ratio beyond what 200 seeds leave."""
+    """Eight methods, five times, seven quantities: no bias, and no ratio beyond what 200 seeds leave."""
     found = np.sqrt(ratios(motion, SEEDS, step_s=2.0))
     assert np.all(np.abs(found - 1.0) < 4.5 / np.sqrt(2.0 * SEEDS))
     assert abs(float(np.mean(found)) - 1.0) < 0.05

@@ -1,6 +1,7 @@
 """Heavy jobs on a Dask cluster of this machine: the same result, progress, cancel; a lost cluster is told."""
 
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -17,10 +18,9 @@ from app.jobs import cluster as module
 from app.jobs import envelopes
 from app.jobs.cluster import Cluster
 from app.jobs.designer import Budgeter
-from app.jobs.elsewhere import CLUSTER, LOST, cluster, use_cluster
+from app.jobs.elsewhere import CLUSTER, LOST, cluster, note_of, use_cluster
 from app.jobs.envelopes import Envelopes
 from app.jobs.load import heavy_load
-from app.jobs.remote import nothing
 from app.jobs.scheduler import Lane, scheduler
 from app.jobs.search import Search
 from navcore.design.budget import budget
@@ -48,15 +48,15 @@ class Machines:
         )
         self.worker = self.start_worker()
 
-    def start_worker(self) -> subprocess.Popen[bytes]:
+    def start_worker(self, own: dict[str, str] | None = None) -> subprocess.Popen[bytes]:
         words = (self.address, "--no-nanny", "--nthreads", "1")
-        return self._start("distributed.cli.dask_worker", *words)
+        return self._start("distributed.cli.dask_worker", *words, own=own)
 
-    def _start(self, name: str, *words: str) -> subprocess.Popen[bytes]:
+    def _start(self, name: str, *words: str, own: dict[str, str] | None = None) -> subprocess.Popen[bytes]:
         return subprocess.Popen(
             [sys.executable, "-m", name, *words, "--host", "127.0.0.1", "--no-dashboard"],
             cwd=self._folder,
-            env=environment(),
+            env=own or environment(),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
@@ -98,6 +98,10 @@ def endless(folder: str, progress: Callable[[float], None], cancelled: Callable[
         progress(0.25)
         time.sleep(0.01)
     (Path(folder) / "called-back").touch()
+
+
+def nothing(item: None, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> None:
+    """Done at once."""
 
 
 @dataclass(frozen=True)
@@ -200,6 +204,75 @@ def test_a_lost_cluster_is_told_and_the_work_done_here(
     machines.worker = machines.start_worker()
     eventually(lambda: there.ready, 120.0)
     search.stop()
+
+
+def changed_program(folder: Path, change: str) -> dict[str, str]:
+    """Environment of a worker whose copy of the program differs in one place."""
+    own = environment()
+    root = Path(own["PYTHONPATH"].split(os.pathsep)[0])
+    for package in ("app", "navcore", "assets"):
+        shutil.copytree(root / package, folder / package, ignore=shutil.ignore_patterns("__pycache__"))
+    name, old, new = CHANGES[change]
+    text = (folder / name).read_text("utf-8")
+    assert text.count(old) == 1
+    (folder / name).write_text(text.replace(old, new), "utf-8")
+    return own | {"PYTHONPATH": str(folder), "SCHULER_CACHE_DIR": str(folder / "cache")}
+
+
+CHANGES = {
+    "version": ("navcore/foundation/version.py", '"0.1.0"', '"0.0.9"'),
+    "kernels": ("navcore/foundation/earth.py", "7.292115e-5", "7.292116e-5"),
+    "sources": ("navcore/design/seeds.py", "SEEDS = 24", "SEEDS = 25"),
+}
+"""What differs first, and by which change in which file."""
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_a_worker_with_another_program_is_passed_over_and_named(
+    there: Cluster,
+    scenario: Scenario,
+    machines: Machines,
+    tmp_path: Path,
+    change: str,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    other = machines.start_worker(changed_program(tmp_path, change))
+    try:
+        eventually(lambda: len(there.passed_over) == 1, 120.0)
+        assert there.ready and there.threads == 1
+        named = [record.getMessage() for record in caplog.records if "is passed over" in record.getMessage()]
+        assert len(named) == 1 and "worker tcp://127.0.0.1:" in named[0] and f": {change} " in named[0]
+        assert heavy_load(scenario).note.startswith(
+            f"The Dask cluster passes over 1 of its 2 workers: {change} "
+        )
+        assert (
+            there.compute(whereabouts, [None] * 6, lambda _: None, lambda: False) == [machines.worker.pid] * 6
+        )
+        # Alone it is of no use: the page says why, and the work is done here.
+        machines.worker.kill()
+        machines.worker.wait()
+        eventually(lambda: not there.ready, 120.0)
+        load = heavy_load(scenario)
+        assert load.lane is Lane.SPARE and load.note.startswith(
+            f"No worker of the Dask cluster fits: {change} "
+        )
+        budgeter = Budgeter(lambda: told.append(budgeter.words))
+        told: list[tuple[str, ...]] = []
+        budgeter.begin(scenario)
+        assert budgeter.wait_idle(120.0) and budgeter.result is not None
+        assert (load.note,) in told and budgeter.words == ()
+        budgeter.stop()
+    finally:
+        other.kill()
+        other.wait()
+        if machines.worker.poll() is not None:
+            machines.worker = machines.start_worker()
+    eventually(lambda: there.ready and note_of(there) == "", 120.0)
+
+
+def whereabouts(item: None, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> int:
+    """Process in which it is computed."""
+    return os.getpid()
 
 
 def test_a_server_says_how_many_threads_its_cluster_has(

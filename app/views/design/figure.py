@@ -86,7 +86,11 @@ def budget_figure(
         layout["annotations"] += _ends(budget, kind, suffix, grid)
         floor = getattr(budget.floor.rms, kind.figure)
         if floor is not None:
-            layout["shapes"].append(_floor_line(floor / kind.size, suffix))
+            layout["shapes"] += [
+                _floor_line(floor / kind.size, suffix, row)
+                for row, method in enumerate(budget.methods)
+                if method.reads_log
+            ]
     return figure(data, layout)
 
 
@@ -229,15 +233,16 @@ def _short(value: float) -> str:
     return f"{value:.0f}" if 1000.0 <= value < 1e6 else number(value, 3)
 
 
-def _floor_line(value: float, suffix: str) -> dict[str, Any]:
+def _floor_line(value: float, suffix: str, row: int) -> dict[str, Any]:
+    """Line across the row of one method: beside the others, which do without the log, there is no floor."""
     return {
         "type": "line",
         "xref": f"x{suffix}",
-        "yref": Text("y{suffix} domain", suffix=suffix),
+        "yref": f"y{suffix}",
         "x0": value,
         "x1": value,
-        "y0": 0.0,
-        "y1": 1.0,
+        "y0": row - 0.5,
+        "y1": row + 0.5,
         "line": {"color": style.INK, "width": 2, "dash": "dash"},
         "layer": "above",
     }

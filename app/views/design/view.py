@@ -41,7 +41,8 @@ class DesignView(PlotlyView):
             tuple(CHOICES.values()),
             initial_value=CHOICES[self.session.display.budget],
             hint="Which source each method's error is made of. Dashed: the floor, the least error that any "
-            "causal linear damping can reach with these sensors and this log.",
+            "causal linear damping can reach with these sensors and this log; it does not bound methods "
+            "that do not use the log.",
         )
         words = {word: key for key, word in CHOICES.items()}
         self._chooser.on_update(if_user(lambda: self.frame.show(budget=words[self._chooser.value])))

@@ -236,7 +236,7 @@ def _add_key(layout: dict[str, Any], found: Pareto) -> None:
     points = [point for front in found.fronts.values() for point in front]
     said = ["open mark: its 24 h mode grows"] if any(p.earth_growth > 0.0 for p in points) else []
     if any(found.floor):
-        said.append("grey: below the floor, out of reach of any causal linear damping")
+        said.append("grey: below the floor, out of reach of any causal linear damping with the log")
     if said:
         layout["annotations"].append(
             style.text(
