@@ -1,6 +1,7 @@
 """Budgets, best settings and fronts as tables for people."""
 
 from app.cli.table import columns, number
+from navcore.analysis.whole_system import duration
 from navcore.design.figures import Figures
 from navcore.design.measures import in_display_unit
 from navcore.design.pareto import Pareto
@@ -21,15 +22,14 @@ def budget_text(budget: Budget) -> list[str]:
     for method in budget.methods:
         rows = [_head(budget, method.name), _units(budget)]
         rows += [[f"  {name}", *_cells(budget, entry.rms)] for name, entry in method.sources.items()]
+        if method.random is not None:
+            rows.append(["  all that is random", *_cells(budget, method.random)])
         rows.append(["  all", *_cells(budget, method.total.rms)])
         times = budget.times_floor(method)
         if any(value is not None for value in times.values()):
             rows.append(["  times the floor", *(number(value, 3) for value in times.values())])
         if method.total.final is not None:
             rows.append(["  at the end", *_cells(budget, method.total.final)])
-        rows += [
-            [f"  {name}, constant", *_cells(budget, entry.rms)] for name, entry in method.constants.items()
-        ]
         lines += ["", *columns(rows)]
         lines += [
             f"  {name}: grows to {_cell(entry.growth, TILT)} {TILT.unit}, "
@@ -109,8 +109,9 @@ def pareto_text(fronts: Pareto) -> list[str]:
             setting = ", ".join(
                 f"{field} = {value:.4g}" for field, value in point.network.items() if isinstance(value, float)
             )
-            if point.earth_growth > 0.0:
-                setting = f"{setting or 'no parameter'}; its 24 h mode grows"
+            if point.growth_per_s > 0.0:
+                every = duration(1.0 / point.growth_per_s)
+                setting = f"{setting or 'no parameter'}; its whole system grows by e in {every}"
             rows.append([name if k == 0 else "", *_values(fronts, point.values), setting])
     if fronts.present is not None:
         rows.append(["as it is", *_values(fronts, fronts.present), ""])

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from navcore.analysis.whole_system import duration
 from navcore.design.measures import (
     TUNING_INTERVALS,
     Objective,
@@ -19,10 +20,20 @@ from navcore.design.measures import (
     read_objective,
     read_requirement,
 )
-from navcore.design.search import ALONG, BOUNDLESS, EXPLAIN, MISSED, REFUSED, STEADY, Effort, Search
+from navcore.design.search import (
+    ALONG,
+    BOUNDLESS,
+    EXPLAIN,
+    MISSED,
+    REFUSED,
+    STEADY,
+    UNSTABLE,
+    Effort,
+    Search,
+)
 from navcore.design.unmodelled import unmodelled_warnings
 from navcore.design.vary import Varied, present, read_varied
-from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.errors import Fault, InputError, UnstableError
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES, Judged
 from navcore.scenario.model import Scenario
@@ -131,6 +142,8 @@ def tune(
     InputError
         A field must not vary or is set by the policy, a range or requirement is wrong, or no setting meets
         all requirements.
+    UnstableError
+        The level loop of every setting is unstable as it is sampled.
 
     Examples
     --------
@@ -155,6 +168,9 @@ def tune(
         if stopped:
             raise InputError(Fault("", "--vary", None, "the search was stopped before it found a setting"))
         raise InputError(list(_no_method(search, ", ".join(vary))))
+    if best[0] >= UNSTABLE:
+        reason = Text("no setting within these ranges is stable: {unstable}", unstable=search.unstable)
+        raise UnstableError(Fault("", "--vary", ", ".join(vary), reason))
     if best[0] >= MISSED:
         raise InputError(list(_nothing_meets(search, ALONG if along else EXPLAIN, start)))
     return _result(search, best[1], before, effort, stopped)
@@ -244,9 +260,16 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
     )
 
 
-def _unseen(setting: Setting) -> tuple[str, ...]:
+def _unseen(setting: Setting) -> Iterator[str]:
     """Whole system and unmodelled errors, of which a measure of one channel says nothing."""
-    return (*setting.whole.warnings, *unmodelled_warnings(setting.ship.scenario, not setting.ship.along_run))
+    growth = setting.growth_per_s
+    if growth > 0.0 and setting.whole.stable:
+        every = duration(1.0 / growth)
+        yield Text("whole system: it grows as it is sampled, by e every {every}", every=every)
+    yield from (
+        *setting.whole.warnings,
+        *unmodelled_warnings(setting.ship.scenario, not setting.ship.along_run),
+    )
 
 
 def _without(search: Search, rest: Sequence[Requirement], effort: Effort, start: np.ndarray | None) -> float:

@@ -61,7 +61,9 @@ def measure(run: MethodRun, key: str) -> float:
     quantity = QUANTITIES[key]
     if quantity.kind is None:
         uses_log = run.method.kind.referenced
-        return loop_value(key, JudgedLoop(run.network, run.loop, uses_log, lambda: run.whole))
+        return loop_value(
+            key, JudgedLoop(run.network, run.loop, uses_log, lambda: run.whole, lambda: run.growth_per_s)
+        )
     values = [run.errors[name][quantity.statistic] for name in quantity.errors]
     value = max(values) if quantity.axes == "larger_axis" else math.hypot(*values)
     return value if run.status == "ok" and math.isfinite(value) else math.inf
@@ -103,6 +105,7 @@ def _loop(run: MethodRun) -> dict[str, Any]:
         "damping_ratio": _finite(loop.damping_ratio),
         "settling_s": None if loop.settling_s is None else _finite(loop.settling_s),
         **whole_system_report(run.whole),
+        "growth_per_s": None if run.growth_per_s is None else _finite(run.growth_per_s),
     }
 
 

@@ -91,6 +91,9 @@ class MethodRun:
     sigma : ndarray, shape (m, 7), or None
         Standard deviations that a Kalman filter gives its own errors at the output rows, for the first seven
         of `navcore.quantities.NAMES`; None for every other method.
+    growth_per_s : float or None
+        Fastest growth of the whole system as the law is sampled, of one channel with the `channel` fidelity,
+        1/s; None where no closed loop stands for the method.
     """
 
     method: Method
@@ -107,6 +110,7 @@ class MethodRun:
     law_series: np.ndarray
     navigation: np.ndarray | None = None
     sigma: np.ndarray | None = None
+    growth_per_s: float | None = None
 
     @cached_property
     def fingerprint(self) -> bytes:

@@ -191,6 +191,15 @@ _ROWS = (
         signed=True,
     ),
     Quantity(
+        "growth_per_s",
+        {"loop": "growth of the whole system"},
+        "1/s",
+        "1/s",
+        "Fastest growth of both channels with heading and latitude at the site, as the law is sampled and "
+        "the log's difference is held; negative when all decay. Longitude is left out.",
+        signed=True,
+    ),
+    Quantity(
         "tilt_max_arcsec",
         {"run": "largest tilt of this run"},
         "rad",
