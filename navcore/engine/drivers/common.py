@@ -1,5 +1,6 @@
 """Steps that every fidelity takes alike for a method: its network and law, the log it sees, its result."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -8,11 +9,11 @@ import numpy as np
 from navcore.analysis import Loop, analyse
 from navcore.analysis.held_log import held_log
 from navcore.analysis.whole_system import WholeSystem, whole_system
-from navcore.engine.run import MethodRun, Status, plot_series, statistics
+from navcore.engine.run import MethodRun, Status, plot_series, spans, statistics
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.law.law import Law, prepare_law
-from navcore.mechanization.recorder import DAMPED_COLUMN, LAW_COLUMNS, XI_COLUMN, Recorder
+from navcore.mechanization.recorder import DAMPED_COLUMN, LAW_COLUMNS, XI_COLUMN, Recorder, watch
 from navcore.motion.truth import COLUMNS
 from navcore.networks.base import LinearNetwork
 from navcore.scenario.method import Method
@@ -33,6 +34,11 @@ def network_of(scenario: Scenario, method: Method) -> LinearNetwork:
 def law_of(method: Method, network: LinearNetwork, law_step_s: float) -> Law:
     """Damping law of a method, asked every ``law_step_s`` seconds."""
     return prepare_law(method.kind.law, method.network, network, method.policy, method.switching, law_step_s)
+
+
+def watch_requirements(scenario: Scenario, recorder: Recorder, step_s: float) -> None:
+    """Have a recorder look at the errors from where each requirement begins."""
+    watch(recorder, (math.ceil(one.from_h * HOUR / step_s - 1e-9) for one in scenario.requirement))
 
 
 def seen_by(method: Method, reference: ReferenceErrors) -> ReferenceErrors:
@@ -188,6 +194,7 @@ def method_run(
         loop=stability.loop,
         whole=stability.whole,
         growth_per_s=stability.growth_per_s,
+        spans=spans(recorder, step_s),
         status=status,
         reason=ending,
         warnings=_warnings(method, network, (*stability.warnings, *notices), ending),

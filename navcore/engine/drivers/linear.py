@@ -20,6 +20,7 @@ from navcore.engine.drivers.common import (
     seen_by,
     stability_of,
     truth_at,
+    watch_requirements,
 )
 from navcore.engine.drivers.kalman import filtered_linear, own_sigma
 from navcore.engine.environment import Environment, environment
@@ -130,6 +131,7 @@ def _run_method(
 ) -> MethodRun:
     step_s = scenario.run.step_s
     run, notices = _STARTS[method.kind.carrying](scenario, method, env, state)
+    watch_requirements(scenario, run.recorder, step_s)
     status, reason = _carry_out(run, report, cancelled)
     report(1.0)
     return method_run(
