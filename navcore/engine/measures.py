@@ -2,15 +2,16 @@
 
 import math
 import platform
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
 from navcore.analysis.judged import JudgedLoop, loop_value
 from navcore.analysis.report import whole_system_report
-from navcore.engine.run import MethodRun, Run
+from navcore.engine.run import MethodRun, Run, Span
 from navcore.foundation.units import HOUR
 from navcore.foundation.version import __version__
-from navcore.quantities import KINDS, NAMES, QUANTITIES, limit_unit
+from navcore.quantities import KINDS, NAMES, QUANTITIES, Quantity, limit_unit
 from navcore.scenario.fields import SCHEMA
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING, Requirement
@@ -64,11 +65,12 @@ def judged(requirement: Requirement, run: MethodRun) -> tuple[float | None, bool
     run : MethodRun
         Of a method. Null is not met, and what diverged meets nothing.
     """
-    value = measure(run, requirement.quantity, _begins_s(requirement)) / limit_unit(requirement.quantity)
+    value = measure(run, requirement.quantity, begins_s(requirement)) / limit_unit(requirement.quantity)
     return _finite(value), run.status == "ok" and value <= requirement.at_most
 
 
-def _begins_s(requirement: Requirement) -> float:
+def begins_s(requirement: Requirement) -> float:
+    """Time from which a requirement's quantity is judged, s; 0 for one of the setting."""
     return 0.0 if requirement.quantity in OF_THE_SETTING else requirement.from_h * HOUR
 
 
@@ -98,15 +100,31 @@ def measure(run: MethodRun, key: str, from_s: float = 0.0) -> float:
         return loop_value(
             key, JudgedLoop(run.network, run.loop, uses_log, lambda: run.whole, lambda: run.growth_per_s)
         )
-    if quantity.statistic == "final":
-        value = run.errors[POSITION_ERROR]["final"]
-    else:
-        span = next((one for one in run.spans if one.from_s >= from_s - 1e-6), None)
-        if span is None:
-            return math.inf
-        lengths = span.rms if quantity.statistic == "rms" else span.largest
-        value = lengths[KINDS.index(quantity.kind)] * (math.sqrt(0.5) if quantity.axes == "per_axis" else 1.0)
+    value = run_value(quantity, run.spans, run.errors[POSITION_ERROR]["final"], from_s)
     return value if run.status == "ok" and math.isfinite(value) else math.inf
+
+
+def run_value(quantity: Quantity, spans: Sequence[Span], final_m: float, from_s: float = 0.0) -> float:
+    """Value of a quantity of a run from its recorded lengths, SI; infinite where the run is shorter.
+
+    Parameters
+    ----------
+    quantity : Quantity
+        Judged of a run.
+    spans : sequence of Span
+        Of the run, in order.
+    final_m : float
+        Position error at the end, m.
+    from_s : float
+        Time from which errors count, s: 0, or that of a requirement of the scenario.
+    """
+    if quantity.statistic == "final":
+        return final_m
+    span = next((one for one in spans if one.from_s >= from_s - 1e-6), None)
+    if span is None or quantity.kind is None:
+        return math.inf
+    lengths = span.rms if quantity.statistic == "rms" else span.largest
+    return lengths[KINDS.index(quantity.kind)] * (math.sqrt(0.5) if quantity.axes == "per_axis" else 1.0)
 
 
 def versions() -> dict[str, str]:
