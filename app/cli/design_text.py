@@ -2,12 +2,13 @@
 
 from app.cli.table import columns, number
 from navcore.analysis.whole_system import duration
+from navcore.design.confirm import Confirmed
 from navcore.design.figures import Figures
 from navcore.design.measures import in_display_unit
 from navcore.design.pareto import Pareto
 from navcore.design.result import Budget
 from navcore.design.tune import Tuned
-from navcore.quantities import TILT, VELOCITY, Kind, budgeted
+from navcore.quantities import TILT, TUNED, VELOCITY, Kind, budgeted
 
 
 def budget_text(budget: Budget) -> list[str]:
@@ -89,11 +90,25 @@ def tune_text(objective: str, tuned: Tuned) -> list[str]:
             ["  times the floor", number(tuned.objective / tuned.floor, 4) if tuned.floor else "-", ""],
         ]
     )
+    if tuned.confirmed is not None:
+        lines += _confirmed(tuned.confirmed)
+    if tuned.default_limits:
+        lines.append(f"by default: {', '.join(tuned.default_limits)} (--no-default-limits: without)")
     for text in tuned.active:
         cost = tuned.cost.get(text)
         without = " ".join(_in_unit(objective, cost)).rstrip()
         lines.append(f"active: {text}" + ("" if cost is None else f"; without it {without}"))
     return [*lines, *(f"warning: {text}" for text in tuned.warnings)]
+
+
+def _confirmed(confirmed: Confirmed) -> list[str]:
+    rows = [[f"run, {confirmed.seeds} seeds", "before", "after", "difference", "95 % interval", ""]]
+    for name, change in confirmed.changes.items():
+        values = [change.before, change.after, change.difference, change.low, change.high]
+        cells = [_in_unit(name, value)[0] if name in TUNED else number(value) for value in values]
+        unit = _in_unit(name, 0.0)[1] if name in TUNED else ""
+        rows.append([f"  {name}", *cells[:3], f"{cells[3]} to {cells[4]}", unit])
+    return ["", *columns(rows), ""]
 
 
 def pareto_text(fronts: Pareto) -> list[str]:

@@ -17,6 +17,7 @@ from navcore.design.seeds import alone, no_covariance, seed_variance
 from navcore.design.ship import Ship
 from navcore.design.steady import constant_parts, instability, loops_of, random_parts
 from navcore.engine.drivers.common import network_of
+from navcore.engine.ensemble import SEARCHED
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
@@ -95,7 +96,7 @@ class Setting:
             return total_of(parts.values())
         if no_covariance(ship.scenario, self.method):
             try:
-                return mean_figures(*seed_variance(ship.scenario, self.method, TUNING_SEEDS))
+                return mean_figures(*seed_variance(ship.scenario, self.method, TUNING_SEEDS, first=SEARCHED))
             except InputError:
                 return Figures()
         variances = ship.along(self.method)

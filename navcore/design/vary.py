@@ -19,7 +19,7 @@ from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 
 _WIDEST = 1e6
-"""Ratio of the ends of an allowed range that is searched as a whole; else the slider's range is."""
+"""Largest ratio of the ends of an allowed range that is searched."""
 _LOG_FROM = 30.0
 """Ratio of two positive ends from which a parameter is searched in equal ratios."""
 _END = 1e-3
@@ -77,7 +77,7 @@ class Varied:
 def read_varied(scenario: Scenario, texts: Sequence[str]) -> tuple[Varied, ...]:
     """Read ``method.1.network.sigma`` or ``method.1.network.sigma=1e-4:0.1``.
 
-    Without ends the range is all that the field allows, or that of its slider where that is endless.
+    Without ends the range is that of the field's slider, or all that the field allows where it has none.
 
     Parameters
     ----------
@@ -222,15 +222,15 @@ def _read_ends(text: str, ends: str, allowed: tuple[float, float]) -> tuple[floa
 
 
 def _own_ends(text: str, info: FieldInfo, allowed: tuple[float, float]) -> tuple[float, float]:
-    low, high = allowed
     slider = extra_of(info).get("slider")
+    if slider:
+        return float(slider[0]), float(slider[1])
+    low, high = allowed
     if math.isfinite(low) and math.isfinite(high):
         if low > 0.0 and high / low <= _WIDEST:
             return low, high
         if low == 0.0 and high <= 10.0:
             return 1e-3 * high, high
-    if slider:
-        return float(slider[0]), float(slider[1])
     raise InputError(Fault("", "--vary", text, "has no range of its own: give one, as in FIELD=LOW:HIGH"))
 
 
