@@ -267,7 +267,7 @@ def _front(
     fields = with_network.network.design_fields()
     if not fields:
         return seen, False
-    varied = read_varied(other, [f"method.{index}.network.{field}" for field in fields])
+    varied = read_varied(other, [f"method.{index}.network.{field}" for field in fields], whole=True)
     search = _Weighed(ship, varied, names)
     search.cancelled = cancelled
     for k, weight in enumerate(_WEIGHTS):

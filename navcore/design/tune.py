@@ -149,8 +149,8 @@ def tune(
     worst_of : sequence of Scenario
         Further scenarios in whose same method the parameters are put too: the worst of all counts.
     default_limits : bool
-        Keep `navcore.design.default_limits.DEFAULT_LIMITS` of what nothing limits; where no setting keeps them, the search does without
-        them, and says so.
+        Keep `navcore.design.default_limits.DEFAULT_LIMITS` of what nothing limits; where no setting keeps
+        them, the search does without them, and says so.
     confirm : bool
         Run the present setting and the proposal on 32 seeds of the scenario.
     progress, cancelled : callable, optional
