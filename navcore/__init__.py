@@ -30,6 +30,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from navcore.design.budget import Budget, budget
+    from navcore.design.designs import Designs, designs
     from navcore.design.pareto import Pareto, pareto
     from navcore.design.tune import Tuned, tune
     from navcore.engine.measures import metrics
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Budget",
+    "Designs",
     "Fault",
     "InputError",
     "MethodRun",
@@ -55,6 +57,7 @@ __all__ = [
     "Verification",
     "__version__",
     "budget",
+    "designs",
     "load",
     "metrics",
     "pareto",
@@ -69,7 +72,9 @@ _HOME = {
     "Budget": "design.budget",
     "Pareto": "design.pareto",
     "Tuned": "design.tune",
+    "Designs": "design.designs",
     "budget": "design.budget",
+    "designs": "design.designs",
     "pareto": "design.pareto",
     "tune": "design.tune",
     "Fault": "foundation.errors",

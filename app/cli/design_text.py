@@ -1,12 +1,14 @@
 """Budgets, best settings and fronts as tables for people."""
 
 from app.cli.table import columns, number
+from navcore.analysis.whole_system import duration
+from navcore.design.confirm import Confirmed
 from navcore.design.figures import Figures
 from navcore.design.measures import in_display_unit
 from navcore.design.pareto import Pareto
 from navcore.design.result import Budget
 from navcore.design.tune import Tuned
-from navcore.quantities import TILT, VELOCITY, Kind, budgeted
+from navcore.quantities import TILT, TUNED, VELOCITY, Kind, budgeted
 
 
 def budget_text(budget: Budget) -> list[str]:
@@ -21,15 +23,14 @@ def budget_text(budget: Budget) -> list[str]:
     for method in budget.methods:
         rows = [_head(budget, method.name), _units(budget)]
         rows += [[f"  {name}", *_cells(budget, entry.rms)] for name, entry in method.sources.items()]
+        if method.random is not None:
+            rows.append(["  all that is random", *_cells(budget, method.random)])
         rows.append(["  all", *_cells(budget, method.total.rms)])
         times = budget.times_floor(method)
         if any(value is not None for value in times.values()):
             rows.append(["  times the floor", *(number(value, 3) for value in times.values())])
         if method.total.final is not None:
             rows.append(["  at the end", *_cells(budget, method.total.final)])
-        rows += [
-            [f"  {name}, constant", *_cells(budget, entry.rms)] for name, entry in method.constants.items()
-        ]
         lines += ["", *columns(rows)]
         lines += [
             f"  {name}: grows to {_cell(entry.growth, TILT)} {TILT.unit}, "
@@ -89,11 +90,25 @@ def tune_text(objective: str, tuned: Tuned) -> list[str]:
             ["  times the floor", number(tuned.objective / tuned.floor, 4) if tuned.floor else "-", ""],
         ]
     )
+    if tuned.confirmed is not None:
+        lines += _confirmed(tuned.confirmed)
+    if tuned.default_limits:
+        lines.append(f"by default: {', '.join(tuned.default_limits)} (--no-default-limits: without)")
     for text in tuned.active:
         cost = tuned.cost.get(text)
         without = " ".join(_in_unit(objective, cost)).rstrip()
         lines.append(f"active: {text}" + ("" if cost is None else f"; without it {without}"))
     return [*lines, *(f"warning: {text}" for text in tuned.warnings)]
+
+
+def _confirmed(confirmed: Confirmed) -> list[str]:
+    rows = [[f"run, {confirmed.seeds} seeds", "before", "after", "difference", "95 % interval", ""]]
+    for name, change in confirmed.changes.items():
+        values = [change.before, change.after, change.difference, change.low, change.high]
+        cells = [_in_unit(name, value)[0] if name in TUNED else number(value) for value in values]
+        unit = _in_unit(name, 0.0)[1] if name in TUNED else ""
+        rows.append([f"  {name}", *cells[:3], f"{cells[3]} to {cells[4]}", unit])
+    return ["", *columns(rows), ""]
 
 
 def pareto_text(fronts: Pareto) -> list[str]:
@@ -109,8 +124,9 @@ def pareto_text(fronts: Pareto) -> list[str]:
             setting = ", ".join(
                 f"{field} = {value:.4g}" for field, value in point.network.items() if isinstance(value, float)
             )
-            if point.earth_growth > 0.0:
-                setting = f"{setting or 'no parameter'}; its 24 h mode grows"
+            if point.growth_per_s > 0.0:
+                every = duration(1.0 / point.growth_per_s)
+                setting = f"{setting or 'no parameter'}; its whole system grows by e in {every}"
             rows.append([name if k == 0 else "", *_values(fronts, point.values), setting])
     if fronts.present is not None:
         rows.append(["as it is", *_values(fronts, fronts.present), ""])

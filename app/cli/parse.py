@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Protocol, Union
 from app.cli.bench import BenchCommand
 from app.cli.budget import BudgetCommand
 from app.cli.check import CheckCommand
+from app.cli.design import DesignCommand
 from app.cli.network import NetworkCommand
 from app.cli.pareto import ParetoCommand
 from app.cli.presets import PresetsCommand
@@ -34,6 +35,7 @@ _COMMANDS = {
     "budget": BudgetCommand,
     "tune": TuneCommand,
     "pareto": ParetoCommand,
+    "design": DesignCommand,
     "bench": BenchCommand,
 }
 _NO_INT = "invalid literal for int() with base 10: "

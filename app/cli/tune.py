@@ -26,6 +26,10 @@ class TuneCommand:
         A limit, e.g. 'settling_s<=3600' or 'tilt_rms<=5arcsec'.
     worst_of : tuple of str
         A further scenario in which the same method counts too: the worst of all is made small.
+    no_default_limits : bool
+        Search without the limits on settling and growth that count where none is given.
+    no_confirm : bool
+        Do not run the present setting and the proposal on 32 seeds.
     along : bool
         Over the scenario's run, in place of the steady state at rest.
     set : tuple of str
@@ -55,6 +59,8 @@ class TuneCommand:
         ),
     ] = ()
     worst_of: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="SCENARIO")] = ()
+    no_default_limits: bool = False
+    no_confirm: bool = False
     along: bool = False
     set: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="KEY=VALUE")] = ()
     out: Annotated[Path | None, arg(metavar="FILE")] = None
@@ -79,6 +85,8 @@ class TuneCommand:
                 self.require,
                 along=self.along,
                 worst_of=others,
+                default_limits=not self.no_default_limits,
+                confirm=not self.no_confirm,
                 progress=progress,
                 cancelled=stopped,
             )

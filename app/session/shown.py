@@ -14,7 +14,7 @@ from app.plots.envelope import Envelope
 from app.session.display import Display
 from app.session.history import differences
 from app.session.pins import LONGEST_NAME, Pin
-from navcore.engine.run import MethodRun, Run
+from navcore.engine.run import MethodRun, Run, span_of
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
@@ -273,7 +273,7 @@ def _method(method: MethodRun, from_s: float, to_s: float) -> MethodRun:
     drawn = method.plot.values[(method.plot.t_s >= from_s) & (method.plot.t_s <= to_s)]
     if not len(rows):
         empty = dict.fromkeys(("mean", "std", "rms", "max_abs", "final"), float("nan"))
-        return replace(method, errors=dict.fromkeys(NAMES, empty))
+        return replace(method, errors=dict.fromkeys(NAMES, empty), spans=())
     largest = np.abs(np.concatenate([rows, drawn])).max(axis=0)
     return replace(
         method,
@@ -287,4 +287,5 @@ def _method(method: MethodRun, from_s: float, to_s: float) -> MethodRun:
             }
             for i, name in enumerate(NAMES)
         },
+        spans=(span_of(rows),),
     )

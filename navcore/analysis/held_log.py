@@ -15,6 +15,12 @@ import numpy as np
 from navcore.analysis.loop import closed_loop_poles
 from navcore.analysis.response import matrix_exponential
 from navcore.analysis.whole_system import (
+    DV_E,
+    DV_N,
+    LATITUDE,
+    PHI_E,
+    PHI_N,
+    PHI_U,
     STATES,
     duration,
     feedback_gains,
@@ -31,6 +37,11 @@ _FAST = 0.3
 """A growing mode faster than this times omega_s is not the 24 h mode: it comes from the hold."""
 _STANDS = 1e-7
 _SEARCH = 20
+_CHANNELS = np.zeros((STATES, STATES))
+"""Ones where a level channel acts on itself."""
+for _velocity, _tilt in ((DV_E, PHI_N), (DV_N, PHI_E)):
+    _CHANNELS[_velocity, _tilt] = _CHANNELS[_tilt, _velocity] = 1.0
+_ALONE = [LATITUDE, PHI_U]
 
 
 @dataclass(frozen=True)
@@ -45,6 +56,9 @@ class HeldLog:
         No mode that comes from the hold grows.
     growth : float
         Fastest growth of such a mode, 1/s; negative: all decay; nan where there is none.
+    growth_per_s : float
+        Fastest growth of all modes, the slow ones too, 1/s; 0 where rounding could make it; nan where the
+        network cannot run at this step.
     stable_up_to_s : float or None
         Longest log period (or law step, when the log is as fast as the law) that is stable, s; None when
         stable as it is, or unstable in continuous time too; 0 when no shorter one helps.
@@ -56,6 +70,7 @@ class HeldLog:
     law_step_s: float
     stable: bool
     growth: float
+    growth_per_s: float
     stable_up_to_s: float | None
     warnings: tuple[str, ...]
 
@@ -67,6 +82,7 @@ def held_log(
     law_step_s: float,
     lat: float,
     earth: Earth = SPHERE,
+    coupled: bool = True,
 ) -> HeldLog:
     """Check the sampled law of a method at rest.
 
@@ -83,24 +99,37 @@ def held_log(
         rad.
     earth : Earth
         WGS-84 or the sphere.
+    coupled : bool
+        False: `growth_per_s` is that of the level channels by themselves, without heading and latitude.
     """
     calls = max(1, round(log_period_s / law_step_s))
     growth = _growth(network, law_step_s, calls, lat, earth)
+    try:
+        period = period_map(network, law_step_s, calls, lat, earth, coupled)
+        overall = growth_of_map(period, calls * law_step_s, network.omega_s)
+    except InputError:
+        overall = math.nan
     stable = not growth > _STANDS * network.omega_s
     up_to, warnings = None, ()
     if not stable and np.max(closed_loop_poles(network).real) <= _STANDS:
         up_to = _stable_up_to(network, law_step_s, calls, lat, earth)
         warnings = (_warning(growth, calls * law_step_s, law_step_s, calls, up_to),)
-    return HeldLog(calls * law_step_s, law_step_s, stable, growth, up_to, warnings)
+    return HeldLog(calls * law_step_s, law_step_s, stable, growth, overall, up_to, warnings)
 
 
 def period_map(
-    network: LinearNetwork, law_step_s: float, calls: int, lat: float, earth: Earth = SPHERE
+    network: LinearNetwork,
+    law_step_s: float,
+    calls: int,
+    lat: float,
+    earth: Earth = SPHERE,
+    coupled: bool = True,
 ) -> np.ndarray:
     """Map of the state over one period of the log, i.e. ``calls`` calls of the law.
 
     The state holds the six errors (normalised as in `whole_system.free_matrix`), the law's states of both
-    channels and, when the log is slower than the law, the two held differences V_r - V_c.
+    channels and, when the log is slower than the law, the two held differences V_r - V_c. Uncoupled, it is
+    that of the level channels, without heading and latitude.
 
     Raises
     ------
@@ -109,7 +138,7 @@ def period_map(
     """
     dA, B, C, D, E, k1 = _sampled_law(network, law_step_s)
     n, omega_s = len(B), network.omega_s
-    plant, forced = _held_plant(lat, omega_s, law_step_s, earth)
+    plant, forced = _held_plant(lat, omega_s, law_step_s, earth, coupled)
     held = STATES + 2 * n
     step = np.zeros((held + 2, held + 2))
     step[:STATES, :STATES] = plant
@@ -124,7 +153,23 @@ def period_map(
     fresh = np.eye(held + 2)
     fresh[held:, held:] = 0.0
     fresh[held, 0] = fresh[held + 1, 1] = -1.0
-    return np.linalg.matrix_power(step, calls) @ fresh
+    period = np.linalg.matrix_power(step, calls) @ fresh
+    return period if coupled else np.delete(np.delete(period, _ALONE, 0), _ALONE, 1)
+
+
+def growth_of_map(period: np.ndarray, period_s: float, omega_s: float) -> float:
+    """Growth of the fastest growing mode of a map over a period, 1/s; 0 where rounding could make it.
+
+    Parameters
+    ----------
+    period : ndarray, shape (n, n)
+    period_s : float
+        s.
+    omega_s : float
+        Schuler frequency, rad/s.
+    """
+    growth = math.log(max(float(np.max(np.abs(np.linalg.eigvals(period)))), 1e-300)) / period_s
+    return growth if abs(growth) > _STANDS * omega_s else 0.0
 
 
 def _sampled_law(
@@ -140,10 +185,12 @@ def _sampled_law(
     return discrete.dA, discrete.B, -discrete.C, 1.0 - discrete.D, E, discrete.F / network.omega_s
 
 
-def _held_plant(lat: float, omega_s: float, step_s: float, earth: Earth) -> tuple[np.ndarray, np.ndarray]:
+def _held_plant(
+    lat: float, omega_s: float, step_s: float, earth: Earth, coupled: bool
+) -> tuple[np.ndarray, np.ndarray]:
     """Transition of the six states over a step, and that of the four inputs held over it."""
     both = np.zeros((STATES + 4, STATES + 4))
-    both[:STATES, :STATES] = free_matrix(lat, omega_s, earth)
+    both[:STATES, :STATES] = free_matrix(lat, omega_s, earth) * (1.0 if coupled else _CHANNELS)
     both[:STATES, STATES:] = inputs_of_law(lat, omega_s, earth)
     moved = matrix_exponential(both * (omega_s * step_s))
     return moved[:STATES, :STATES], moved[:STATES, STATES:]

@@ -32,12 +32,15 @@ class JudgedLoop(NamedTuple):
         The log drives the loop.
     whole : callable or None
         Returns both channels with heading and latitude at the site; None where nothing of them is asked.
+    growth : callable or None
+        Returns the growth of the whole system as its law is sampled, 1/s; None where there is none.
     """
 
     network: LinearNetwork
     loop: Loop
     uses_log: bool
     whole: Callable[[], WholeSystem] | None = None
+    growth: Callable[[], float | None] | None = None
 
 
 def loop_value(key: str, judged: JudgedLoop) -> float:
@@ -92,4 +95,5 @@ _VALUES: dict[str, Callable[[JudgedLoop], float | None]] = {
     "h0_deviation": lambda judged: abs(judged.network.h0 - 1.0),
     "h_slope_s": lambda judged: judged.network.h_slope,
     "earth_mode_growth_per_s": lambda judged: judged.whole().earth_growth if judged.whole else None,
+    "growth_per_s": lambda judged: judged.growth() if judged.growth else None,
 }

@@ -49,8 +49,11 @@ def network_report(
     loop = analyse(network)
     whole = whole_system(network, lat_deg * DEG)
     warnings = [*network.warnings, *loop.warnings, *whole.warnings]
+    growth = max(mode.growth for mode in whole.modes)
     if log_period_s is not None:
-        warnings += held_log(network, log_period_s, law_step_s, lat_deg * DEG).warnings
+        sampled = held_log(network, log_period_s, law_step_s, lat_deg * DEG)
+        warnings += sampled.warnings
+        growth = sampled.growth_per_s
     return {
         "id": network.id,
         "num": [float(c) for c in network.num],
@@ -67,6 +70,7 @@ def network_report(
         "settling_s": loop.settling_s,
         "lat_deg": lat_deg,
         **whole_system_report(whole),
+        "growth_per_s": _finite(growth),
         **({"margins": _margins(network)} if with_margins else {}),
         "warnings": list(dict.fromkeys(warnings)),
     }

@@ -9,12 +9,10 @@ import numpy as np
 from navcore.design.constants import TOLD
 from navcore.design.figures import Entry, Figures, Series, entry_of
 from navcore.design.floor import steady_floor
-from navcore.design.form import law_form
-from navcore.design.level import level
 from navcore.design.result import Budget, MethodBudget, Shown, with_floor
 from navcore.design.seeds import SEEDS, no_covariance, seed_variance
 from navcore.design.ship import Ship
-from navcore.design.steady import instability, steady_budget
+from navcore.design.steady import instability, loops_of, steady_budget
 from navcore.design.unmodelled import unmodelled_warnings
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
@@ -80,11 +78,13 @@ def budget(
         elif reason:
             result = _from_seeds(scenario, method, reason, seeds, lambda f: report(index, f), cancelled)
         else:
-            variances = ship.along(method)
-            series = Series(variances.t_s, variances.variance, variances.total)
-            growth = instability(level(law_form(method, scenario.omega_s), ship.model, scenario.omega_s))
-            warnings = (Text("{growth}: the errors grow without bound", growth=growth),) if growth else ()
-            result = _of_series(method, "covariance", series, (*warnings, *left_out))
+            growth = instability(loops_of(scenario, method, ship.model)[1])
+            if growth:
+                result = _diverged(method, "covariance", (growth, *left_out))
+            else:
+                variances = ship.along(method)
+                series = Series(variances.t_s, variances.variance, variances.total)
+                result = _of_series(method, "covariance", series, left_out)
         report(index, 1.0)
         return replace(result, reads_log=method.reads_log)
 

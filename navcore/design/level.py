@@ -120,7 +120,7 @@ def steady_parts(channel: Level) -> dict[str, Entry]:
     from scipy.linalg import get_lapack_funcs, matrix_balance, schur
 
     A = channel.A
-    if np.max(np.real(np.linalg.eigvals(A))) >= -_MARGINAL:
+    if not decays(channel):
         return {source: _growing(channel, channel.drives[source]) for source in RANDOM_SOURCES}
     balanced, (scale, order) = matrix_balance(A, separate=True)
     columns = np.stack([channel.drives[source] for source in RANDOM_SOURCES], axis=1)
@@ -139,6 +139,11 @@ def steady_parts(channel: Level) -> dict[str, Entry]:
         source: Entry(Figures(float(deviations[PHI][k]) * channel.tilt_unit, float(deviations[DV][k])))
         for k, source in enumerate(RANDOM_SOURCES)
     }
+
+
+def decays(channel: Level) -> bool:
+    """Whether every mode of a channel decays in continuous time."""
+    return channel.growth_per_s() < -_MARGINAL * channel.omega_s
 
 
 def _growing(channel: Level, column: np.ndarray) -> Entry:
@@ -207,9 +212,9 @@ def constant_part(channel: Level, source: str, size: float) -> Entry:
     size : float
         Its standard deviation, SI.
     """
-    if not channel.constants[source].any():  # it does not enter, whatever the loop does
+    if size == 0.0 or not channel.constants[source].any():  # it does not enter, whatever the loop does
         return Entry(Figures(0.0, 0.0))
-    if channel.growth_per_s() >= -_MARGINAL * channel.omega_s:
+    if not decays(channel):
         return Entry(Figures())
     x = np.linalg.solve(channel.A, -channel.constants[source]) * size
     return Entry(Figures(abs(float(x[PHI])) * channel.tilt_unit, abs(float(x[DV]))))

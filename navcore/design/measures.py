@@ -7,14 +7,17 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from navcore.analysis import Loop, analyse
+from navcore.analysis.held_log import held_log
 from navcore.analysis.judged import JudgedLoop, loop_value
 from navcore.analysis.whole_system import WholeSystem, whole_system
 from navcore.design.figures import Figures, mean_figures, total_of
-from navcore.design.form import law_form
-from navcore.design.level import level, steady_parts
+from navcore.design.level import Level
+from navcore.design.sampled import SampledLevel, timing_of
 from navcore.design.seeds import alone, no_covariance, seed_variance
 from navcore.design.ship import Ship
+from navcore.design.steady import constant_parts, instability, loops_of, random_parts
 from navcore.engine.drivers.common import network_of
+from navcore.engine.ensemble import SEARCHED
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
@@ -62,16 +65,38 @@ class Setting:
         return whole_system(self.method.kind.acting(self.network), *place)
 
     @cached_property
+    def growth_per_s(self) -> float:
+        """Fastest growth of the whole system as the law is sampled, 1/s; nan where it cannot run."""
+        scenario, timing = self.ship.scenario, timing_of(self.ship.scenario)
+        if not self.method.kind.uses_network:
+            return 0.0
+        period_s = timing.step_s * (timing.hold if self.method.kind.referenced else 1)
+        place = scenario.site.lat_deg * DEG, scenario.earth, scenario.run.fidelity != "channel"
+        return held_log(self.method.kind.acting(self.network), period_s, timing.step_s, *place).growth_per_s
+
+    @cached_property
+    def instability(self) -> str:
+        """Say how fast the level loop grows as it is sampled; empty where it does not, or nobody knows."""
+        if self.method.policy.tunes or not self.method.kind.uses_network:
+            return ""
+        return instability(self._loops[1])
+
+    @cached_property
+    def _loops(self) -> tuple[Level, SampledLevel]:
+        return loops_of(self.ship.scenario, self.method, self.ship.model)
+
+    @cached_property
     def figures(self) -> Figures:
         """Root mean squares of the errors; None, infinite or NaN where there is none."""
-        ship, omega_s = self.ship, self.ship.scenario.omega_s
-        if not ship.along_run:
-            return total_of(steady_parts(level(law_form(self.method, omega_s), ship.model, omega_s)).values())
-        if not self.loop.stable:
+        ship = self.ship
+        if self.instability or (ship.along_run and not self.loop.stable):
             return Figures()
+        if not ship.along_run:
+            parts = random_parts(*self._loops) | constant_parts(self._loops[0], ship.model)
+            return total_of(parts.values())
         if no_covariance(ship.scenario, self.method):
             try:
-                return mean_figures(*seed_variance(ship.scenario, self.method, TUNING_SEEDS))
+                return mean_figures(*seed_variance(ship.scenario, self.method, TUNING_SEEDS, first=SEARCHED))
             except InputError:
                 return Figures()
         variances = ship.along(self.method)
@@ -90,10 +115,15 @@ def measure(setting: Setting, key: str) -> float:
     """
     kind = QUANTITIES[key].kind
     if kind is None:
-        uses_log = setting.method.kind.referenced
-        return loop_value(key, JudgedLoop(setting.network, setting.loop, uses_log, lambda: setting.whole))
+        return loop_value(key, _judged(setting))
     value = getattr(setting.figures, kind.figure)
     return math.inf if value is None or math.isnan(value) else value
+
+
+def _judged(setting: Setting) -> JudgedLoop:
+    uses_log = setting.method.kind.referenced
+    whole, growth = lambda: setting.whole, lambda: setting.growth_per_s
+    return JudgedLoop(setting.network, setting.loop, uses_log, whole, growth)
 
 
 def over_run(keys: Iterable[str]) -> bool:

@@ -44,6 +44,8 @@ class Point:
         Objectives, SI.
     network : dict
         The network block that gives them.
+    growth_per_s : float
+        Fastest growth of the whole system with it as the law is sampled, 1/s.
     earth_growth : float
         Growth of the 24 h mode of the whole system with it, 1/s (theory.md 10); negative when it decays.
     """
@@ -51,6 +53,7 @@ class Point:
     values: tuple[float, float]
     network: dict[str, Any]
     earth_growth: float = 0.0
+    growth_per_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -86,7 +89,10 @@ class Pareto:
             "fronts": [
                 {
                     "network": name,
-                    "points": [{"values": list(p.values), "network": p.network} for p in points],
+                    "points": [
+                        {"values": list(p.values), "network": p.network, "growth_per_s": p.growth_per_s}
+                        for p in points
+                    ],
                 }
                 for name, points in self.fronts.items()
             ],
@@ -168,7 +174,7 @@ def pareto(
 
         seen, stopped = _front(scenario, method, name, objectives, along, report, cancelled)
         fronts[name] = tuple(
-            replace(point, earth_growth=_earth_growth(ship, scenario.method[method], point.network))
+            _judged(point, Setting(ship, _with_network(scenario.method[method], point.network)))
             for point in _best(seen)
         )
         report(1.0)
@@ -219,8 +225,8 @@ def _checked(objectives: tuple[str, str], networks: Sequence[str] | None) -> lis
     return ids if networks is None else list(dict.fromkeys(networks))
 
 
-def _earth_growth(ship: Ship, method: Method, network: dict[str, Any]) -> float:
-    return Setting(ship, _with_network(method, network)).whole.earth_growth
+def _judged(point: Point, setting: Setting) -> Point:
+    return replace(point, earth_growth=setting.whole.earth_growth, growth_per_s=setting.growth_per_s)
 
 
 def _with_network(method: Method, network: dict[str, Any]) -> Method:
@@ -229,6 +235,8 @@ def _with_network(method: Method, network: dict[str, Any]) -> Method:
 
 
 def _both(setting: Setting, names: tuple[str, str]) -> tuple[float, float] | None:
+    if setting.instability:
+        return None
     try:
         first, second = (measure(setting, name) for name in names)
     except (InputError, np.linalg.LinAlgError):
@@ -257,7 +265,7 @@ def _front(
     fields = with_network.network.design_fields()
     if not fields:
         return seen, False
-    varied = read_varied(other, [f"method.{index}.network.{field}" for field in fields])
+    varied = read_varied(other, [f"method.{index}.network.{field}" for field in fields], whole=True)
     search = _Weighed(ship, varied, names)
     search.cancelled = cancelled
     for k, weight in enumerate(_WEIGHTS):

@@ -1,7 +1,7 @@
 """Error budgets: every method by source, and the floor."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Literal
 
 from navcore.design.figures import Entry, Figures, Series
@@ -25,11 +25,11 @@ class MethodBudget:
         What the numbers are: one channel's steady state, the covariance along the run, or the mean square of
         several seeds.
     total : Entry
-        All sources together.
+        All sources together, biases too.
     sources : dict of Entry
         Each source; with ``seeds`` there are none.
-    constants : dict of Entry
-        Steady state only: what biases leave, which is not in the total.
+    random : Figures or None
+        Steady state only: the random sources together, without biases.
     warnings : tuple of str
         What is to be heeded.
     series : Series or None
@@ -44,7 +44,7 @@ class MethodBudget:
     shown: Shown
     total: Entry
     sources: Mapping[str, Entry]
-    constants: Mapping[str, Entry] = field(default_factory=dict)
+    random: Figures | None = None
     warnings: tuple[str, ...] = ()
     series: Series | None = None
     diverged: bool = False
@@ -64,10 +64,16 @@ class MethodBudget:
             "shown": self.shown,
             "status": "diverged" if self.diverged else "ok",
             **self.total.as_dict(),
+            **self._random(),
             "sources": {name: entry.as_dict() for name, entry in self.sources.items()},
-            **({"constants": {k: v.as_dict() for k, v in self.constants.items()}} if self.constants else {}),
             "warnings": list(self.warnings),
         }
+
+    def _random(self) -> dict[str, float | None]:
+        if self.total.final is not None:
+            return {}
+        figures = (self.random or Figures()).as_dict(False)
+        return {f"random_{name}": value for name, value in figures.items()}
 
 
 @dataclass(frozen=True)
@@ -117,10 +123,14 @@ class Budget:
         return self.floor_reason or (FLOOR_OF_ZERO if self.floor.rms.tilt_rad == 0.0 else "")
 
     def times_floor(self, method: MethodBudget) -> dict[str, float | None]:
-        """Each figure of a method over that of the floor; None where one is missing or without the log."""
+        """Each figure of a method over that of the floor; None where one is missing, zero or without the log.
+
+        In the steady state both are of the random sources.
+        """
+        figures = (method.random or Figures()) if self.steady else method.total.rms
         ratios = {}
         for kind in budgeted(self.steady):
-            own, least = getattr(method.total.rms, kind.figure), getattr(self.floor.rms, kind.figure)
+            own, least = getattr(figures, kind.figure), getattr(self.floor.rms, kind.figure)
             ratios[kind.name] = own / least if method.reads_log and own is not None and least else None
         return ratios
 

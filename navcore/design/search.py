@@ -14,6 +14,8 @@ MISSED = 1e12
 """Cost of a setting that misses a requirement, above every one that meets all."""
 BOUNDLESS = 0.9 * MISSED
 """Cost of a setting that meets them and whose objective has no finite value."""
+UNSTABLE = 5e17
+"""Cost of a setting whose level loop grows as it is sampled, and more the faster it grows."""
 REFUSED = 1e18
 """Cost of a setting that makes no method at all."""
 _SEED = 1
@@ -81,6 +83,7 @@ class Search:
         self.scale = 1.0
         self.best: tuple[float, np.ndarray] | None = None
         self.refused: InputError | None = None
+        self.unstable = ""
 
     def settings(self, places: np.ndarray) -> list[Setting]:
         """Return the method at a place of the ranges, on each ship; raises InputError where there is none."""
@@ -110,7 +113,10 @@ class Search:
         try:
             settings = self.settings(places)
             missed = self.excess(settings) if self.requirements else 0.0
-            if missed > 0.0:
+            self.unstable = max(setting.instability for setting in settings)
+            if self.unstable:
+                cost = UNSTABLE * (1.0 + min(0.5, max(setting.growth_per_s for setting in settings)))
+            elif missed > 0.0:
                 cost = MISSED * (1.0 + min(missed, 1e5))
             else:
                 cost = min(self.value(settings) / self.scale, BOUNDLESS)

@@ -54,6 +54,7 @@ def seed_variance(
     seeds: int = SEEDS,
     progress: Callable[[float], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
+    first: int = 0,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Mean squares of a method's errors over several seeds, on the linear error model.
 
@@ -71,6 +72,8 @@ def seed_variance(
         Told the fraction done.
     cancelled : callable, optional
         When it says True, what was run so far is used.
+    first : int
+        Added to the seed of the scenario.
 
     Returns
     -------
@@ -88,7 +91,7 @@ def seed_variance(
     for k in range(seeds):
         if k and cancelled is not None and cancelled():
             break
-        result = simulate(alone(scenario, method, k)).methods[0]
+        result = simulate(alone(scenario, method, first + k)).methods[0]
         if result.status == "diverged":
             raise InputError(
                 Fault(

@@ -6,21 +6,19 @@ from dataclasses import replace
 
 import numpy as np
 
+from navcore.analysis.whole_system import duration
 from navcore.damping.base import Covering
 from navcore.design.figures import Entry, Figures, total_of
 from navcore.design.floor import Floor, steady_floor
 from navcore.design.form import law_form
-from navcore.design.level import Level, constant_part, level, line_part, steady_parts
+from navcore.design.level import Level, constant_part, decays, level, line_part, steady_parts
 from navcore.design.result import Budget, MethodBudget, with_floor
+from navcore.design.sampled import SampledLevel, sampled_level, sampled_parts, timing_of
 from navcore.design.unmodelled import unmodelled_warnings
 from navcore.foundation.text import Text
-from navcore.foundation.units import HOUR
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
-
-_MARGINAL = 1e-9
-"""Growth over omega_s above which a loop counts as unstable."""
 
 
 def steady_budget(scenario: Scenario, model: StochasticModel) -> Budget:
@@ -38,8 +36,13 @@ def _steady_loop(
     scenario: Scenario, method: Method, model: StochasticModel, floor: Floor, unmodelled: tuple[str, ...]
 ) -> MethodBudget:
     """Steady state of the channel that the method's network closes."""
-    channel = level(law_form(method, scenario.omega_s), model, scenario.omega_s)
-    parts = steady_parts(channel)
+    channel, sampled = loops_of(scenario, method, model)
+    unstable = instability(sampled)
+    if unstable:
+        return MethodBudget(
+            method.name, "steady", Entry(Figures()), {}, warnings=(unstable, *unmodelled), diverged=True
+        )
+    parts = random_parts(channel, sampled)
     if model.tide.any():
         amplitude = float(np.sqrt(np.mean(model.tide**2)))
         parts["log_tide"] = line_part(channel, amplitude, 2.0 * math.pi / model.tide_period_s)
@@ -49,19 +52,13 @@ def _steady_loop(
             Text('policy "{id}" looks at the data: shown is the loop while it is damped', id=method.policy.id)
         )
     missing = [name for name, part in parts.items() if None in (part.rms.tilt_rad, part.rms.velocity_mps)]
-    unstable = instability(channel)
-    if missing and unstable:
-        warnings.append(Text("{unstable}: no source has a steady state", unstable=unstable))
-    elif missing:
+    if missing:
         warnings.append(
             Text("no steady state: {missing} drive a mode without decay", missing=", ".join(missing))
         )
-    sizes = {"gyro_bias": model.gyro_bias[:2], "accel_bias": model.accel_bias[:2], "log_bias": model.log_bias}
-    constants = {}
-    for name, values in sizes.items():
-        constants[name] = constant_part(channel, name.split("_")[0], float(np.sqrt(np.mean(values**2))))
-    total = Entry(total_of(parts.values()))
-    return MethodBudget(method.name, "steady", total, parts, constants, tuple(warnings))
+    sources = parts | constant_parts(channel, model)
+    total, random = Entry(total_of(sources.values())), total_of(parts.values())
+    return MethodBudget(method.name, "steady", total, sources, random, tuple(warnings))
 
 
 def _no_steady_state(
@@ -83,8 +80,8 @@ def _steady_filter(
     warnings = ["the steady state of the Kalman filter is the floor itself"]
     if model.tide.any():
         warnings.append("the filter is not told of the tide, which is not in these figures")
-    total = Entry(Figures(floor.tilt_rad, floor.velocity_mps))
-    return MethodBudget(method.name, "steady", total, sources, warnings=tuple(warnings))
+    random = Figures(floor.tilt_rad, floor.velocity_mps)
+    return MethodBudget(method.name, "steady", Entry(random), sources, random, tuple(warnings))
 
 
 _STEADY: dict[
@@ -93,9 +90,29 @@ _STEADY: dict[
 """Steady state of a method, by where its budget comes from."""
 
 
-def instability(channel: Level) -> str:
-    """Say how fast the loop of a channel grows; empty where it does not."""
-    growth = channel.growth_per_s()
-    if growth <= _MARGINAL * channel.omega_s:
+def loops_of(scenario: Scenario, method: Method, model: StochasticModel) -> tuple[Level, SampledLevel]:
+    """Level channel of a method in continuous time, and as its law is sampled."""
+    form, omega_s = law_form(method, scenario.omega_s), scenario.omega_s
+    return level(form, model, omega_s), sampled_level(form, model, omega_s, timing_of(scenario))
+
+
+def random_parts(channel: Level, sampled: SampledLevel) -> dict[str, Entry]:
+    """Standard deviations that each random source leaves; of a loop with a mode that stands, what grows."""
+    return sampled_parts(sampled, channel) if decays(channel) else steady_parts(channel)
+
+
+def constant_parts(channel: Level, model: StochasticModel) -> dict[str, Entry]:
+    """Standard deviations that biases leave; root mean square of the axes of each sensor."""
+    biases = {"gyro": model.gyro_bias[:2], "accel": model.accel_bias[:2], "log": model.log_bias}
+    return {
+        f"{name}_bias": constant_part(channel, name, float(np.sqrt(np.mean(values**2))))
+        for name, values in biases.items()
+    }
+
+
+def instability(sampled: SampledLevel) -> str:
+    """Say how fast the loop of a channel grows as it is sampled; empty where it does not."""
+    if not sampled.grows:
         return ""
-    return Text("the loop is unstable (e-folding {growth:.3g} days)", growth=1.0 / growth / (24.0 * HOUR))
+    every = duration(1.0 / sampled.growth_per_s())
+    return Text("the loop is unstable as it is sampled: its errors grow by e every {every}", every=every)

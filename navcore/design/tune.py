@@ -2,11 +2,14 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
+from navcore.analysis.whole_system import duration
+from navcore.design.confirm import Confirmed, confirmed
+from navcore.design.default_limits import limits_by_default, own_limits, without_defaults
 from navcore.design.measures import (
     TUNING_INTERVALS,
     Objective,
@@ -19,14 +22,26 @@ from navcore.design.measures import (
     read_objective,
     read_requirement,
 )
-from navcore.design.search import ALONG, BOUNDLESS, EXPLAIN, MISSED, REFUSED, STEADY, Effort, Search
+from navcore.design.search import (
+    ALONG,
+    BOUNDLESS,
+    EXPLAIN,
+    MISSED,
+    REFUSED,
+    STEADY,
+    UNSTABLE,
+    Effort,
+    Search,
+)
 from navcore.design.unmodelled import unmodelled_warnings
 from navcore.design.vary import Varied, present, read_varied
-from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.errors import Fault, InputError, UnstableError
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES, Judged
 from navcore.scenario.model import Scenario
 
+_SEARCH_SHARE = 0.8
+"""Of the time that a search takes with its confirmation."""
 _FLAT = 1.05
 _GAIN = 1e-4
 """Relative gain without a requirement from which it counts as holding the optimum back."""
@@ -61,6 +76,10 @@ class Tuned:
         recording that counts as free of error.
     judged : {"steady", "ensemble"}
         What root mean squares are of.
+    default_limits : tuple of str
+        Limits that were kept because none of their quantity was given.
+    confirmed : Confirmed or None
+        Both settings in runs; None where that was not asked for.
     scenario : Scenario
         With the best setting in place.
     """
@@ -76,7 +95,9 @@ class Tuned:
     stopped: bool
     warnings: tuple[str, ...]
     judged: Judged
+    default_limits: tuple[str, ...]
     scenario: Scenario = field(repr=False)
+    confirmed: Confirmed | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """Return the document of interface.md."""
@@ -90,7 +111,9 @@ class Tuned:
             "cost": self.cost,
             "flat": {name: list(ends) for name, ends in self.flat.items()},
             "stopped": self.stopped,
+            "default_limits": list(self.default_limits),
             "warnings": list(self.warnings),
+            **({} if self.confirmed is None else {"confirmed": self.confirmed.as_dict()}),
         }
 
 
@@ -102,6 +125,8 @@ def tune(
     *,
     along: bool = False,
     worst_of: Sequence[Scenario] = (),
+    default_limits: bool = True,
+    confirm: bool = False,
     progress: Callable[[float], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Tuned:
@@ -117,12 +142,17 @@ def tune(
     vary : sequence of str
         Fields, ``method.1.network.sigma`` or with a range ``method.1.network.sigma=1e-4:0.1``.
     require : sequence of str
-        Limits, ``settling_s<=3600``.
+        Limits, ``settling_s<=3600``. The scenario's own limits on settling and growth count too.
     along : bool
         Root mean squares over the scenario's run; else in the steady state at rest. Heading and position,
         and a method whose policy re-tunes its network, have no steady state and are always over the run.
     worst_of : sequence of Scenario
         Further scenarios in whose same method the parameters are put too: the worst of all counts.
+    default_limits : bool
+        Keep `navcore.design.default_limits.DEFAULT_LIMITS` of what nothing limits; where no setting keeps
+        them, the search does without them, and says so.
+    confirm : bool
+        Run the present setting and the proposal on 32 seeds of the scenario.
     progress, cancelled : callable, optional
         Told the fraction done, 0..1; when ``cancelled`` says True the best so far is given.
 
@@ -131,6 +161,8 @@ def tune(
     InputError
         A field must not vary or is set by the policy, a range or requirement is wrong, or no setting meets
         all requirements.
+    UnstableError
+        The level loop of every setting is unstable as it is sampled, or the proposal diverges in a run.
 
     Examples
     --------
@@ -138,26 +170,63 @@ def tune(
     >>> found = tune(load("sikuliaq-like"), "tilt_rms", ["method.1.network.xi=0.1:5"]) # doctest: +SKIP
     """
     wanted, limits = read_objective(objective), [read_requirement(text) for text in require]
+    limits += own_limits(scenario, limits)
     varied = read_varied(scenario, vary)
     judged = scenario.method[varied[0].method]
     along = along or over_run((*wanted.names, *(one.name for one in limits))) or judged.policy.tunes
     ships = [Ship(one, along, TUNING_INTERVALS) for one in (scenario, *worst_of)]
     _check(ships, varied, wanted)
-    search = Search(ships, varied, wanted, limits, progress, cancelled)
+    defaults = limits_by_default(wanted, limits) if default_limits else []
+    part = _SEARCH_SHARE if confirm and progress is not None else 1.0
+    told = None if progress is None else lambda fraction: progress(part * fraction)
+    search = Search(ships, varied, wanted, [*limits, *defaults], told, cancelled)
     start, before = _begin(search)
     if before == 0.0 and all(QUANTITIES[name].kind for name in wanted.names):
         reason = "is 0 as it is: the scenario has no error that a setting could make smaller"
         raise InputError(Fault("", "--objective", wanted.text, reason))
     effort = ALONG if along else STEADY
     stopped = search.run(effort, start)
+    left = ()
+    if defaults and not stopped and search.best is not None and MISSED <= search.best[0] < UNSTABLE:
+        left = (without_defaults(defaults),)
+        search.requirements, defaults = tuple(limits), []
+        stopped = search.run(effort, start)
     best = search.best
     if best is None or best[0] >= REFUSED:
         if stopped:
             raise InputError(Fault("", "--vary", None, "the search was stopped before it found a setting"))
         raise InputError(list(_no_method(search, ", ".join(vary))))
+    if best[0] >= UNSTABLE:
+        reason = Text("no setting within these ranges is stable: {unstable}", unstable=search.unstable)
+        raise UnstableError(Fault("", "--vary", ", ".join(vary), reason))
     if best[0] >= MISSED:
         raise InputError(list(_nothing_meets(search, ALONG if along else EXPLAIN, start)))
-    return _result(search, best[1], before, effort, stopped)
+    found = _result(search, best[1], before, effort, stopped)
+    found = replace(
+        found, default_limits=tuple(one.text for one in defaults), warnings=(*left, *found.warnings)
+    )
+    if not confirm or stopped:
+        return found
+    return _confirmed(found, scenario, varied[0].method, wanted, part, progress, cancelled)
+
+
+def _confirmed(
+    found: Tuned,
+    scenario: Scenario,
+    index: int,
+    objective: Objective,
+    part: float,
+    progress: Callable[[float], None] | None,
+    cancelled: Callable[[], bool] | None,
+) -> Tuned:
+    """Add what runs say of the proposal."""
+    told = None if progress is None else lambda fraction: progress(part + (1.0 - part) * fraction)
+    pair = scenario.method[index], found.scenario.method[index]
+    result = confirmed(scenario, *pair, progress=told, cancelled=cancelled)
+    if result is None:
+        return replace(found, stopped=True)
+    verdicts = (result.verdict(name) for name in objective.names)
+    return replace(found, confirmed=result, warnings=(*filter(None, verdicts), *found.warnings))
 
 
 def _check(ships: Sequence[Ship], varied: Sequence[Varied], objective: Objective) -> None:
@@ -240,13 +309,21 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
         stopped=stopped,
         warnings=tuple(dict.fromkeys(text for setting in settings for text in _unseen(setting))),
         judged="ensemble" if search.ships[0].along_run else "steady",
+        default_limits=(),
         scenario=scenario.model_copy(update={"method": methods}),
     )
 
 
-def _unseen(setting: Setting) -> tuple[str, ...]:
+def _unseen(setting: Setting) -> Iterator[str]:
     """Whole system and unmodelled errors, of which a measure of one channel says nothing."""
-    return (*setting.whole.warnings, *unmodelled_warnings(setting.ship.scenario, not setting.ship.along_run))
+    growth = setting.growth_per_s
+    if growth > 0.0 and setting.whole.stable:
+        every = duration(1.0 / growth)
+        yield Text("whole system: it grows as it is sampled, by e every {every}", every=every)
+    yield from (
+        *setting.whole.warnings,
+        *unmodelled_warnings(setting.ship.scenario, not setting.ship.along_run),
+    )
 
 
 def _without(search: Search, rest: Sequence[Requirement], effort: Effort, start: np.ndarray | None) -> float:

@@ -19,7 +19,7 @@ from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 
 _WIDEST = 1e6
-"""Ratio of the ends of an allowed range that is searched as a whole; else the slider's range is."""
+"""Largest ratio of the ends of an allowed range that is searched."""
 _LOG_FROM = 30.0
 """Ratio of two positive ends from which a parameter is searched in equal ratios."""
 _END = 1e-3
@@ -74,10 +74,10 @@ class Varied:
         return place < _END or place > 1.0 - _END
 
 
-def read_varied(scenario: Scenario, texts: Sequence[str]) -> tuple[Varied, ...]:
+def read_varied(scenario: Scenario, texts: Sequence[str], whole: bool = False) -> tuple[Varied, ...]:
     """Read ``method.1.network.sigma`` or ``method.1.network.sigma=1e-4:0.1``.
 
-    Without ends the range is all that the field allows, or that of its slider where that is endless.
+    Without ends the range is that of the field's slider, or all that the field allows where it has none.
 
     Parameters
     ----------
@@ -85,6 +85,8 @@ def read_varied(scenario: Scenario, texts: Sequence[str]) -> tuple[Varied, ...]:
         Whose method is tuned.
     texts : sequence of str
         One a parameter; all of the same method.
+    whole : bool
+        Without ends the range is all that the field allows, where that has ends.
 
     Raises
     ------
@@ -96,7 +98,7 @@ def read_varied(scenario: Scenario, texts: Sequence[str]) -> tuple[Varied, ...]:
     choices, faults = [], []
     for text in texts:
         try:
-            choices.append(_read_one(scenario, text))
+            choices.append(_read_one(scenario, text, whole))
         except InputError as error:
             faults += error.faults
     if faults:
@@ -156,7 +158,7 @@ def tunable_fields(scenario: Scenario, index: int) -> tuple[str, ...]:
     return tuple(fields)
 
 
-def _read_one(scenario: Scenario, text: str) -> Varied:
+def _read_one(scenario: Scenario, text: str, whole: bool = False) -> Varied:
     field, equals, ends = (part.strip() for part in text.partition("="))
     names = field.split(".")
 
@@ -188,7 +190,7 @@ def _read_one(scenario: Scenario, text: str) -> Varied:
     if not _is_number(info):
         raise refuse("must not vary: it is not a number")
     allowed = _allowed(info)
-    low, high = _read_ends(text, ends, allowed) if equals else _own_ends(text, info, allowed)
+    low, high = _read_ends(text, ends, allowed) if equals else _own_ends(text, info, allowed, whole)
     if not low < high:
         raise refuse("the lower end must be below the upper one")
     log = low > 0.0 and (high / low >= _LOG_FROM or bool(extra_of(info).get("log")))
@@ -221,9 +223,11 @@ def _read_ends(text: str, ends: str, allowed: tuple[float, float]) -> tuple[floa
     return low, high
 
 
-def _own_ends(text: str, info: FieldInfo, allowed: tuple[float, float]) -> tuple[float, float]:
-    low, high = allowed
+def _own_ends(text: str, info: FieldInfo, allowed: tuple[float, float], whole: bool) -> tuple[float, float]:
     slider = extra_of(info).get("slider")
+    if slider and not whole:
+        return float(slider[0]), float(slider[1])
+    low, high = allowed
     if math.isfinite(low) and math.isfinite(high):
         if low > 0.0 and high / low <= _WIDEST:
             return low, high

@@ -2,15 +2,21 @@
 
 import math
 import platform
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
 from navcore.analysis.judged import JudgedLoop, loop_value
 from navcore.analysis.report import whole_system_report
-from navcore.engine.run import MethodRun, Run
+from navcore.engine.run import MethodRun, Run, Span
+from navcore.foundation.units import HOUR
 from navcore.foundation.version import __version__
-from navcore.quantities import QUANTITIES
+from navcore.quantities import KINDS, NAMES, QUANTITIES, Quantity, limit_unit
 from navcore.scenario.fields import SCHEMA
+from navcore.scenario.model import Scenario
+from navcore.scenario.requirement import OF_THE_SETTING, Requirement
+
+POSITION_ERROR = NAMES[-1]
 
 
 def metrics(run: Run) -> dict[str, Any]:
@@ -28,7 +34,8 @@ def metrics(run: Run) -> dict[str, Any]:
         ``computed_on`` (the steps that the statistics cover), ``warnings`` (about the scenario as a whole)
         and ``methods``. Each method has ``name``, ``status``, ``warnings``, ``loop``, ``law`` (the share of
         the output rows that were damped, the damping coefficient in force) and ``errors``, in SI units and
-        radians. An infinite value, or one that is not a number, is None.
+        radians; ``requirements`` where the scenario has any. An infinite value, or one that is not a number,
+        is None.
 
     Examples
     --------
@@ -44,11 +51,38 @@ def metrics(run: Run) -> dict[str, Any]:
         "elapsed_s": round(run.elapsed_s, 4),
         "computed_on": run.computed_on,
         "warnings": list(run.warnings),
-        "methods": [_method(method) for method in run.methods],
+        "methods": [_method(method) | _requirements(run.scenario, method) for method in run.methods],
     }
 
 
-def measure(run: MethodRun, key: str) -> float:
+def judged(requirement: Requirement, run: MethodRun) -> tuple[float | None, bool]:
+    """Value of a requirement's quantity, in the unit of its name, and whether a method's run meets it.
+
+    Parameters
+    ----------
+    requirement : Requirement
+        Of the run's scenario. One that begins after the end is not met.
+    run : MethodRun
+        Of a method. Null is not met, and what diverged meets nothing.
+    """
+    value = measure(run, requirement.quantity, begins_s(requirement)) / limit_unit(requirement.quantity)
+    return _finite(value), run.status == "ok" and value <= requirement.at_most
+
+
+def begins_s(requirement: Requirement) -> float:
+    """Time from which a requirement's quantity is judged, s; 0 for one of the setting."""
+    return 0.0 if requirement.quantity in OF_THE_SETTING else requirement.from_h * HOUR
+
+
+def _requirements(scenario: Scenario, run: MethodRun) -> dict[str, Any]:
+    found = []
+    for one in scenario.requirement:
+        value, met = judged(one, run)
+        found.append({**one.model_dump(mode="json"), "value": value, "met": met})
+    return {"requirements": found} if found else {}
+
+
+def measure(run: MethodRun, key: str, from_s: float = 0.0) -> float:
     """Value of a quantity of a method's run, SI; infinite where there is none or the run did not end well.
 
     Parameters
@@ -57,14 +91,40 @@ def measure(run: MethodRun, key: str) -> float:
         Its loop is the one in force, its errors those of the run or of a part of it.
     key : str
         A row of `navcore.quantities.QUANTITIES` that is judged of a loop or of a run.
+    from_s : float
+        Time from which errors count, s: 0, or that of a requirement of the scenario.
     """
     quantity = QUANTITIES[key]
     if quantity.kind is None:
         uses_log = run.method.kind.referenced
-        return loop_value(key, JudgedLoop(run.network, run.loop, uses_log, lambda: run.whole))
-    values = [run.errors[name][quantity.statistic] for name in quantity.errors]
-    value = max(values) if quantity.axes == "larger_axis" else math.hypot(*values)
+        return loop_value(
+            key, JudgedLoop(run.network, run.loop, uses_log, lambda: run.whole, lambda: run.growth_per_s)
+        )
+    value = run_value(quantity, run.spans, run.errors[POSITION_ERROR]["final"], from_s)
     return value if run.status == "ok" and math.isfinite(value) else math.inf
+
+
+def run_value(quantity: Quantity, spans: Sequence[Span], final_m: float, from_s: float = 0.0) -> float:
+    """Value of a quantity of a run from its recorded lengths, SI; infinite where the run is shorter.
+
+    Parameters
+    ----------
+    quantity : Quantity
+        Judged of a run.
+    spans : sequence of Span
+        Of the run, in order.
+    final_m : float
+        Position error at the end, m.
+    from_s : float
+        Time from which errors count, s: 0, or that of a requirement of the scenario.
+    """
+    if quantity.statistic == "final":
+        return final_m
+    span = next((one for one in spans if one.from_s >= from_s - 1e-6), None)
+    if span is None or quantity.kind is None:
+        return math.inf
+    lengths = span.rms if quantity.statistic == "rms" else span.largest
+    return lengths[KINDS.index(quantity.kind)] * (math.sqrt(0.5) if quantity.axes == "per_axis" else 1.0)
 
 
 def versions() -> dict[str, str]:
@@ -103,6 +163,7 @@ def _loop(run: MethodRun) -> dict[str, Any]:
         "damping_ratio": _finite(loop.damping_ratio),
         "settling_s": None if loop.settling_s is None else _finite(loop.settling_s),
         **whole_system_report(run.whole),
+        "growth_per_s": None if run.growth_per_s is None else _finite(run.growth_per_s),
     }
 
 

@@ -13,6 +13,7 @@ from navcore.foundation.drawing import drawn
 from navcore.foundation.text import Text
 from navcore.mechanization.recorder import Recorder
 from navcore.networks.base import LinearNetwork
+from navcore.quantities import NAMES
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.sampling import Sampling
@@ -56,6 +57,25 @@ class LawInForce:
 
 
 @dataclass(frozen=True)
+class Span:
+    """Lengths of the error vectors from a time to the end of a run, on the mechanization's own steps, SI.
+
+    Attributes
+    ----------
+    from_s : float
+        Time of the first step, s.
+    largest : tuple of float
+        Largest tilt and velocity error as vectors, heading and position error.
+    rms : tuple of float
+        Root mean squares of the same.
+    """
+
+    from_s: float
+    largest: tuple[float, ...]
+    rms: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class MethodRun:
     """One method's result.
 
@@ -91,6 +111,11 @@ class MethodRun:
     sigma : ndarray, shape (m, 7), or None
         Standard deviations that a Kalman filter gives its own errors at the output rows, for the first seven
         of `navcore.quantities.NAMES`; None for every other method.
+    growth_per_s : float or None
+        Fastest growth of the whole system as the law is sampled, of one channel with the `channel` fidelity,
+        1/s; None where no closed loop stands for the method.
+    spans : tuple of Span
+        The whole run, and from each ``from_h`` of the scenario's requirements on; in order.
     """
 
     method: Method
@@ -107,6 +132,8 @@ class MethodRun:
     law_series: np.ndarray
     navigation: np.ndarray | None = None
     sigma: np.ndarray | None = None
+    growth_per_s: float | None = None
+    spans: tuple[Span, ...] = ()
 
     @cached_property
     def fingerprint(self) -> bytes:
@@ -239,3 +266,21 @@ def statistics(recorder: Recorder) -> dict[str, dict[str, float]]:
             "final": float(row[FINAL]),
         }
     return out
+
+
+def spans(recorder: Recorder, step_s: float) -> tuple[Span, ...]:
+    """Lengths of the error vectors over each span that has a state."""
+    found = []
+    for span in recorder.spans[recorder.spans["count"] > 0]:
+        rms = np.sqrt(span["sums"] / span["count"])
+        largest = np.sqrt(span["largest"])
+        found.append(Span(float(span["first"] * step_s), tuple(largest.tolist()), tuple(rms.tolist())))
+    return tuple(found)
+
+
+def span_of(rows: np.ndarray) -> Span:
+    """Lengths of the error vectors in output rows of a part of a run, shape (m, 8) or more columns."""
+    phi_e, phi_n, phi_u, dv_e, dv_n = rows[:, :5].T
+    squares = np.array([phi_e**2 + phi_n**2, dv_e**2 + dv_n**2, phi_u**2, rows[:, len(NAMES) - 1] ** 2])
+    largest, rms = np.sqrt(squares.max(axis=1)), np.sqrt(squares.mean(axis=1))
+    return Span(0.0, tuple(largest.tolist()), tuple(rms.tolist()))

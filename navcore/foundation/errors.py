@@ -75,7 +75,7 @@ class InputError(ValueError):
 
     def __reduce__(self) -> tuple[type[InputError], tuple[tuple[Fault, ...]]]:
         """Keep the faults when it goes from one process to another."""
-        return InputError, (self.faults,)
+        return type(self), (self.faults,)
 
     def located(self, where: str, prefix: str = "") -> InputError:
         """Return the same error with the place filled in where it is still unknown.
@@ -93,3 +93,7 @@ class InputError(ValueError):
             )
             for f in self.faults
         )
+
+
+class UnstableError(InputError):
+    """Every setting that was tried is unstable: the input is read, and there is no answer to it."""

@@ -5,12 +5,13 @@ are formed on the way, so that a peak of one second is neither lost in the metri
 """
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
 
 from navcore.foundation.compiled import inlined
-from navcore.foundation.records import COUNT, new_record, record_type
+from navcore.foundation.records import COUNT, REAL, new_record, record_type
 from navcore.quantities import NAMES as NAMES
 
 # Columns of the errors `NAMES`, in this order everywhere.
@@ -30,6 +31,15 @@ CURSOR = record_type(
 )
 
 MAX_BINS = 1000
+MOST_SPANS = 24
+SPAN = record_type(
+    first=COUNT,  # step at which it begins
+    count=COUNT,  # states in it
+    largest=(REAL, (4,)),  # squares of tilt, velocity, heading, position: tilt and velocity as vectors
+    sums=(REAL, (4,)),
+)
+"""Lengths of the error vectors from a step on."""
+_NEVER = 2**62
 
 
 class Recorder(NamedTuple):
@@ -51,6 +61,8 @@ class Recorder(NamedTuple):
         1 where the maximum came after the minimum.
     buffer : ndarray, shape (8, bin_width)
         Quantities of the steps since the last flush.
+    spans : ndarray of `SPAN`, shape (MOST_SPANS,)
+        The first is the whole run; `watch` sets where others begin.
     cursor : record
         `CURSOR`: how far all this is filled.
     """
@@ -63,6 +75,7 @@ class Recorder(NamedTuple):
     bin_high: np.ndarray
     bin_order: np.ndarray
     buffer: np.ndarray
+    spans: np.ndarray
     cursor: np.void
 
 
@@ -90,6 +103,8 @@ def make_recorder(steps: int, step_s: float, output_step_s: float) -> Recorder:
     row_steps = output_steps(steps, step_s, output_step_s)
     width = max(1, math.ceil((steps + 1) / MAX_BINS)) if steps + 1 > 2 * MAX_BINS else 1
     bins = math.ceil((steps + 1) / width)
+    spans = np.zeros(MOST_SPANS, SPAN)
+    spans["first"][1:] = _NEVER
     return Recorder(
         row_steps=row_steps,
         rows=np.zeros((len(row_steps), ROW_COLUMNS)),
@@ -99,8 +114,15 @@ def make_recorder(steps: int, step_s: float, output_step_s: float) -> Recorder:
         bin_high=np.full((bins, QUANTITIES), -np.inf),
         bin_order=np.zeros((bins, QUANTITIES), np.int8),
         buffer=np.zeros((QUANTITIES, width)),
+        spans=spans,
         cursor=new_record(CURSOR),
     )
+
+
+def watch(recorder: Recorder, first_steps: Iterable[int]) -> None:
+    """Form lengths of the error vectors from further steps on; at most `MOST_SPANS` - 1 different ones."""
+    for place, step in enumerate(sorted({*first_steps} - {0}), 1):
+        recorder.spans["first"][place] = step
 
 
 @inlined
@@ -163,5 +185,26 @@ def flush(recorder):
         stats[q, FINAL] = buffer[q, count - 1]
         recorder.bin_low[b, q], recorder.bin_high[b, q] = low, high
         recorder.bin_order[b, q] = order
+    for w in range(recorder.spans.shape[0]):
+        span = recorder.spans[w]
+        begin = max(0, span.first - recorder.cursor.count)
+        if begin >= count:
+            continue
+        for v in range(4):
+            total, largest = span.sums[v], span.largest[v]
+            if v == 0 or v == 1:
+                a, b = (PHI_E, PHI_N) if v == 0 else (DV_E, DV_N)
+                for i in range(begin, count):
+                    square = buffer[a, i] * buffer[a, i] + buffer[b, i] * buffer[b, i]
+                    total += square
+                    largest = max(largest, square)
+            else:
+                a = PHI_U if v == 2 else POSITION
+                for i in range(begin, count):
+                    square = buffer[a, i] * buffer[a, i]
+                    total += square
+                    largest = max(largest, square)
+            span.sums[v], span.largest[v] = total, largest
+        span.count += count - begin
     recorder.cursor.count += count
     recorder.cursor.buffer = 0

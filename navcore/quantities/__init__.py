@@ -15,13 +15,24 @@ from navcore.quantities.errors import (
     budgeted,
     components,
 )
-from navcore.quantities.table import OBJECTIVES, QUANTITIES, TUNED, WEIGHED, Judged, Quantity, searched
+from navcore.quantities.table import (
+    LIMITED,
+    OBJECTIVES,
+    QUANTITIES,
+    TUNED,
+    WEIGHED,
+    Judged,
+    Quantity,
+    limit_unit,
+    searched,
+)
 
 __all__ = [
     "COMPONENTS",
     "ERRORS",
     "HEADING",
     "KINDS",
+    "LIMITED",
     "NAMES",
     "OBJECTIVES",
     "POSITION",
@@ -37,5 +48,6 @@ __all__ = [
     "RecordedError",
     "budgeted",
     "components",
+    "limit_unit",
     "searched",
 ]

@@ -32,10 +32,10 @@ class Quantity:
         Definition.
     kind : Kind or None
         Kind of the errors that it summarises; None for a quantity of a loop.
-    statistic : {"rms", "max_abs"} or ""
+    statistic : {"rms", "max_abs", "final"} or ""
         Statistic of these errors.
-    axes : {"per_axis", "larger_axis", "vector"} or ""
-        How two axes make one number: root mean square of both, the larger one, or the length of the vector.
+    axes : {"per_axis", "vector"} or ""
+        How two axes make one number: root mean square of both, or the length of the vector.
     sense : {"<=", ">="} or ""
         Sense of a limit. Only what is better when smaller is an objective; "" for what has no better side.
     signed : bool
@@ -50,8 +50,8 @@ class Quantity:
     shown: str
     help: str
     kind: Kind | None = None
-    statistic: Literal["", "rms", "max_abs"] = ""
-    axes: Literal["", "per_axis", "larger_axis", "vector"] = ""
+    statistic: Literal["", "rms", "max_abs", "final"] = ""
+    axes: Literal["", "per_axis", "vector"] = ""
     sense: Literal["", "<=", ">="] = "<="
     signed: bool = False
     typical: float = 1e-12
@@ -191,24 +191,71 @@ _ROWS = (
         signed=True,
     ),
     Quantity(
+        "growth_per_s",
+        {"loop": "growth of the whole system"},
+        "1/s",
+        "1/s",
+        "Fastest growth of both channels with heading and latitude at the site, as the law is sampled and "
+        "the log's difference is held; negative when all decay. Longitude is left out.",
+        signed=True,
+    ),
+    Quantity(
         "tilt_max_arcsec",
         {"run": "largest tilt of this run"},
         "rad",
         "arcsec",
-        "Largest of the two tilts in this run, over what the tab Metrics measures.",
+        "Largest length of the tilt in this run, over what the tab Metrics measures.",
         kind=TILT,
         statistic="max_abs",
-        axes="larger_axis",
+        axes="vector",
+    ),
+    Quantity(
+        "tilt_rms_arcsec",
+        {"run": "tilt RMS per axis of this run"},
+        "rad",
+        "arcsec",
+        "RMS of the tilt per axis in this run, over what the tab Metrics measures.",
+        kind=TILT,
+        statistic="rms",
+        axes="per_axis",
+    ),
+    Quantity(
+        "velocity_max_mps",
+        {"run": "largest velocity error of this run"},
+        "m/s",
+        "m/s",
+        "Largest length of the velocity error in this run, over what the tab Metrics measures.",
+        kind=VELOCITY,
+        statistic="max_abs",
+        axes="vector",
     ),
     Quantity(
         "velocity_rms_mps",
-        {"run": "velocity RMS of this run"},
+        {"run": "velocity RMS per axis of this run"},
         "m/s",
         "m/s",
-        "RMS of the horizontal velocity error of this run, over what the tab Metrics measures.",
+        "RMS of the velocity error per axis in this run, over what the tab Metrics measures.",
         kind=VELOCITY,
         statistic="rms",
-        axes="vector",
+        axes="per_axis",
+    ),
+    Quantity(
+        "heading_max_arcmin",
+        {"run": "largest heading error of this run"},
+        "rad",
+        "arcmin",
+        "Largest heading error in this run, over what the tab Metrics measures.",
+        kind=HEADING,
+        statistic="max_abs",
+    ),
+    Quantity(
+        "heading_rms_arcmin",
+        {"run": "heading RMS of this run"},
+        "rad",
+        "arcmin",
+        "RMS of the heading error in this run, over what the tab Metrics measures.",
+        kind=HEADING,
+        statistic="rms",
     ),
     Quantity(
         "position_rms_m",
@@ -230,6 +277,16 @@ _ROWS = (
         statistic="max_abs",
         axes="vector",
     ),
+    Quantity(
+        "position_final_m",
+        {"run": "position error at the end of this run"},
+        "m",
+        "m",
+        "Horizontal position error at the end of what the tab Metrics measures.",
+        kind=POSITION,
+        statistic="final",
+        axes="vector",
+    ),
 )
 QUANTITIES = {row.key: row for row in _ROWS}
 """All rows by key."""
@@ -239,6 +296,30 @@ OBJECTIVES = tuple(key for key in TUNED if QUANTITIES[key].sense == "<=")
 """Quantities that a search can make small."""
 WEIGHED = tuple(key for key in OBJECTIVES if not QUANTITIES[key].signed)
 """Objectives of which there are ratios: a Pareto front can have them on its axes."""
+LIMITED = (
+    "tilt_max_arcsec",
+    "tilt_rms_arcsec",
+    "velocity_max_mps",
+    "velocity_rms_mps",
+    "heading_max_arcmin",
+    "heading_rms_arcmin",
+    "position_max_m",
+    "position_final_m",
+    "settling_s",
+    "growth_per_s",
+)
+"""Quantities of a ``[[requirement]]``; the last part of a name is the unit of its limit."""
+
+
+def limit_unit(key: str) -> float:
+    """SI value of the unit in the name of a row of `LIMITED`.
+
+    Examples
+    --------
+    >>> limit_unit("heading_max_arcmin") == UNITS["arcmin"], limit_unit("velocity_max_mps")
+    (True, 1.0)
+    """
+    return UNITS.get(key.rpartition("_")[2], 1.0)
 
 
 def searched(key: str) -> Quantity | None:

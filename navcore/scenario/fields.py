@@ -13,6 +13,7 @@ from navcore.networks.lqg import SensorFigures
 from navcore.scenario.blocks import Alignment, RunSettings, SiteSettings, View
 from navcore.scenario.initial_error import InitialError
 from navcore.scenario.method import Method
+from navcore.scenario.requirement import MOST, Requirement
 from navcore.scenario.sampling import Sampling, sampling
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import Reference
@@ -34,6 +35,9 @@ class ScenarioFields(Parameters):
     initial_error: InitialError = InitialError()
     reference: Reference = Reference()
     method: tuple[Method, ...] = (Method(name="free"),)
+    requirement: tuple[Requirement, ...] = Field(
+        default=(), max_length=MOST, description="Limits that a design has to keep."
+    )
     view: View = View()
 
     def figures(self) -> SensorFigures:
@@ -74,7 +78,10 @@ class ScenarioFields(Parameters):
 
     def canonical(self) -> dict[str, Any]:
         """Complete mapping of every field, as written to scenario.toml (None left out)."""
-        return self.model_dump(mode="json", by_alias=True, exclude_none=True)
+        data = self.model_dump(mode="json", by_alias=True, exclude_none=True)
+        return (
+            data if self.requirement else {key: value for key, value in data.items() if key != "requirement"}
+        )
 
 
 @lru_cache(maxsize=64)

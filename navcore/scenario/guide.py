@@ -23,6 +23,7 @@ from navcore.scenario.blocks import Alignment, RunSettings, SiteSettings, View
 from navcore.scenario.initial_error import InitialError
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from navcore.scenario.requirement import Requirement
 from navcore.sensors.imu import Imu
 from navcore.sensors.log_errors.events import LogEvent
 from navcore.sensors.reference import Outage, Reference
@@ -74,6 +75,7 @@ def _sections() -> Iterator[tuple[str, type[Parameters], str]]:
         yield f'policy = {{ id = "{name}" }}', model, ""
     for name, model in SWITCHINGS.items():
         yield f'switching = {{ id = "{name}" }}', model, ""
+    yield "[[requirement]]", Requirement, ""
     yield "[view]", View, ""
 
 

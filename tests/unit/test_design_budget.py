@@ -14,7 +14,7 @@ from navcore.design.seeds import no_covariance
 from navcore.engine.simulation import simulate
 from navcore.foundation.units import ARCMIN, DEG_PER_HOUR, MICRO_G
 from navcore.scenario.model import Scenario
-from navcore.scenario.stochastic import stochastic_model
+from navcore.scenario.stochastic import RANDOM_SOURCES, stochastic_model
 
 IMU = {
     "gyro_arw_dpsh": 0.003,
@@ -106,14 +106,11 @@ def test_the_run_settles_at_the_steady_state() -> None:
     )
     for method, steady in zip(budget(long).methods, budget(long, steady=True).methods, strict=True):
         assert method.shown == "covariance"
-        for source, entry in steady.sources.items():
-            final = method.sources[source].final
+        for source in RANDOM_SOURCES:
+            final, entry = method.sources[source].final, steady.sources[source].rms
             assert final is not None
-            assert final.tilt_rad == pytest.approx(entry.rms.tilt_rad, rel=0.02), (method.name, source)
-            assert final.velocity_mps == pytest.approx(entry.rms.velocity_mps, rel=0.02), (
-                method.name,
-                source,
-            )
+            assert final.tilt_rad == pytest.approx(entry.tilt_rad, rel=0.01), (method.name, source)
+            assert final.velocity_mps == pytest.approx(entry.velocity_mps, rel=0.01), (method.name, source)
 
 
 @pytest.mark.parametrize("outage", [pytest.param(False, marks=pytest.mark.nightly), True])
@@ -249,13 +246,11 @@ def test_without_a_log_there_is_no_floor() -> None:
 
 
 def test_an_unstable_loop_has_no_budget() -> None:
-    """Steady: a warning with the time in which it grows; along a run: marked once it overflows."""
+    """Steady and along a run: a warning with the time in which it grows, and no figures."""
     unstable = {"damping": "external", "network": {"id": "custom", "num": [1.0, -0.1], "den": [1.0, 0.1]}}
     steady = budget(scenario(method=[unstable]), steady=True).methods[0]
     assert steady.total.rms.tilt_rad is None and "unstable" in steady.warnings[0]
     stable = {"damping": "external", "network": {"id": "classic2"}}
-    short = budget(scenario(method=[unstable]))
-    assert "unstable" in short.methods[0].warnings[0] and not short.methods[0].diverged
     long = {"duration_h": 400.0, "output_step_s": 3600.0}
     found = budget(scenario(run=long, method=[stable, unstable]))
     assert [method.diverged for method in found.methods] == [False, True]

@@ -104,8 +104,8 @@ def test_requirements_that_nothing_meets(saved: Any, capsys: pytest.CaptureFixtu
     limits = ("--require", "velocity_rms<=0.01", "--require", "settling_s<=60min")
     lines = refused(capsys, "tune", saved(ship()), *TUNE, *limits).splitlines()
     assert len(lines) == 2
-    assert "'velocity_rms<=0.01'" in lines[0] and "alone velocity_rms comes to 0.1032 m/s" in lines[0]
-    assert "without it tilt_rms comes to 5.175 arcsec" in lines[0]
+    assert "'velocity_rms<=0.01'" in lines[0] and "alone velocity_rms comes to 0.1033 m/s" in lines[0]
+    assert "without it tilt_rms comes to 5.176 arcsec" in lines[0]
     assert "'settling_s<=60min'" in lines[1] and "without it the others are not met either" in lines[1]
 
 
@@ -122,7 +122,9 @@ def test_what_is_in_reach_is_told_however_large_it_is() -> None:
 
 def test_a_requirement_that_is_met_by_chance_is_not_called_active() -> None:
     """Settling holds the optimum back here; the velocity comes near its own limit with it."""
-    found = tune(ship(), "tilt_rms", [SIGMA, XI], ["velocity_rms<=0.1", "settling_s<=3600"])
+    found = tune(
+        ship(), "tilt_rms", [f"{SIGMA}=1e-5:1", f"{XI}=0.01:5"], ["velocity_rms<=0.1", "settling_s<=3600"]
+    )
     assert found.active == ("settling_s<=3600",)
     assert list(found.cost) == ["settling_s<=3600"]
     assert found.cost["settling_s<=3600"] < found.objective
@@ -185,9 +187,10 @@ def test_only_the_log_errs(saved: Any, capsys: pytest.CaptureFixture[str]) -> No
 
 
 def test_a_log_without_error_has_a_floor_below_every_setting() -> None:
-    """The velocity is known exactly then, the tilt is not; the fastest compass loop comes near its floor."""
+    """The velocity is known exactly then, the tilt is not; a fast compass loop comes near its floor."""
+    often = {"earth": "sphere", "step_s": 0.005, "duration_h": 1.0}
     fast = {"damping": "external", "network": {"id": "compass", "sigma": 1.0, "xi": 10.0}}
-    found = budget(ship(fast, reference=QUIET_LOG), steady=True)
+    found = budget(ship(fast, reference={**QUIET_LOG, "rate_hz": 200.0}, run=often), steady=True)
     least, own = found.floor.rms, found.methods[0].total.rms
     assert least.velocity_mps == 0.0 and own.velocity_mps == pytest.approx(4e-5, rel=0.1)
     assert least.tilt_rad and own.tilt_rad
@@ -215,7 +218,7 @@ def test_a_method_that_diverges_leaves_the_others_their_budget(
     methods = json.loads(capsys.readouterr().out)["methods"]
     assert [method["status"] for method in methods] == ["ok", "diverged", "diverged"]
     assert methods[0]["tilt_rad"] > 0.0 and methods[1]["tilt_rad"] is None
-    assert "the loop is unstable (e-folding" in methods[1]["warnings"][0]
+    assert "the loop is unstable as it is sampled" in methods[1]["warnings"][0]
 
 
 def test_an_unstable_start_is_no_hindrance(saved: Any, capsys: pytest.CaptureFixture[str]) -> None:

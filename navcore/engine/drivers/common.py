@@ -1,5 +1,6 @@
 """Steps that every fidelity takes alike for a method: its network and law, the log it sees, its result."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -8,11 +9,11 @@ import numpy as np
 from navcore.analysis import Loop, analyse
 from navcore.analysis.held_log import held_log
 from navcore.analysis.whole_system import WholeSystem, whole_system
-from navcore.engine.run import MethodRun, Status, plot_series, statistics
+from navcore.engine.run import MethodRun, Status, plot_series, spans, statistics
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.law.law import Law, prepare_law
-from navcore.mechanization.recorder import DAMPED_COLUMN, LAW_COLUMNS, XI_COLUMN, Recorder
+from navcore.mechanization.recorder import DAMPED_COLUMN, LAW_COLUMNS, XI_COLUMN, Recorder, watch
 from navcore.motion.truth import COLUMNS
 from navcore.networks.base import LinearNetwork
 from navcore.scenario.method import Method
@@ -33,6 +34,11 @@ def network_of(scenario: Scenario, method: Method) -> LinearNetwork:
 def law_of(method: Method, network: LinearNetwork, law_step_s: float) -> Law:
     """Damping law of a method, asked every ``law_step_s`` seconds."""
     return prepare_law(method.kind.law, method.network, network, method.policy, method.switching, law_step_s)
+
+
+def watch_requirements(scenario: Scenario, recorder: Recorder, step_s: float) -> None:
+    """Have a recorder look at the errors from where each requirement begins."""
+    watch(recorder, (math.ceil(one.from_h * HOUR / step_s - 1e-9) for one in scenario.requirement))
 
 
 def seen_by(method: Method, reference: ReferenceErrors) -> ReferenceErrors:
@@ -62,11 +68,14 @@ class Stability:
         Both channels, heading and latitude at the site.
     warnings : tuple of str
         Of the channel, of the whole system, and of the law as it is sampled.
+    growth_per_s : float or None
+        Of `navcore.analysis.held_log.HeldLog`; None where no closed loop stands for the method.
     """
 
     loop: Loop
     whole: WholeSystem
     warnings: tuple[str, ...]
+    growth_per_s: float | None = None
 
 
 def stability_of(
@@ -93,12 +102,20 @@ def stability_of(
     if kind.no_loop:
         return Stability(loop, whole, ())
     warnings = loop.warnings if scenario.run.fidelity == "channel" else (*loop.warnings, *whole.warnings)
+    growth = 0.0
     if kind.uses_network:
-        epochs = kind.referenced and len(log.time_s) > 1
-        period_s = float(np.median(np.diff(log.time_s))) if epochs else law_step_s
-        sampled = held_log(acting, period_s, law_step_s, lat, scenario.earth)
-        warnings = (*warnings, *sampled.warnings)
-    return Stability(loop, whole, warnings)
+        period_s = _log_period_s(scenario, log, law_step_s) if kind.referenced else law_step_s
+        coupled = scenario.run.fidelity != "channel"
+        sampled = held_log(acting, period_s, law_step_s, lat, scenario.earth, coupled)
+        warnings, growth = (*warnings, *sampled.warnings), sampled.growth_per_s
+    return Stability(loop, whole, warnings, growth)
+
+
+def _log_period_s(scenario: Scenario, log: ReferenceErrors, law_step_s: float) -> float:
+    """Time between two epochs of the log, s; of a recorded one the usual one."""
+    if scenario.reference.kind == "log":
+        return 1.0 / scenario.reference.rate_hz
+    return float(np.median(np.diff(log.time_s))) if len(log.time_s) > 1 else law_step_s
 
 
 def network_on_average(method: Method, network: LinearNetwork, rows: np.ndarray) -> LinearNetwork:
@@ -176,6 +193,8 @@ def method_run(
         network=network,
         loop=stability.loop,
         whole=stability.whole,
+        growth_per_s=stability.growth_per_s,
+        spans=spans(recorder, step_s),
         status=status,
         reason=ending,
         warnings=_warnings(method, network, (*stability.warnings, *notices), ending),

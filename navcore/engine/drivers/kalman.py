@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,6 +25,20 @@ if TYPE_CHECKING:
     from navcore.engine.strapdown_environment import StrapdownEnvironment
     from navcore.mechanization.kalman.strapdown import FilteredStrapdown
     from navcore.mechanization.strapdown import Settings
+
+
+@dataclass
+class Gains:
+    """Gains of a filter at each epoch of the log, shared by runs on the same truth with other noise.
+
+    Attributes
+    ----------
+    values : ndarray, shape (epochs, 2, n), or None
+        None until a run begins to fill them.
+    """
+
+    values: np.ndarray | None = None
+
 
 LEAST_NOISE_MPS = 1e-5
 """Standard deviation of a sample that counts as free of noise, m/s: the gain needs some."""
@@ -105,12 +120,25 @@ def _sensor_states(
 
 
 def filtered_linear(
-    scenario: Scenario, method: Method, env: Environment, state: np.ndarray
+    scenario: Scenario,
+    method: Method,
+    env: Environment,
+    state: np.ndarray,
+    gains: Gains | None = None,
 ) -> tuple[FilteredErrorModel, tuple[str, ...]]:
-    """Run of the filter on the error model, and what to tell the user."""
+    """Run of the filter on the error model, and what to tell the user.
+
+    Runs that are given the same ``gains``, one after the other, share those that the first one computes.
+    """
     run, truth = scenario.run, env.truth_half.values
     model, P, notices = filter_model(scenario, run.step_s, truth[0])
     recorder = make_recorder(env.steps, run.step_s, run.output_step_s)
+    kept, known = None, False
+    if gains is not None:
+        known = gains.values is not None
+        if gains.values is None:
+            gains.values = np.zeros((len(env.reference.time_s), 2, len(P)))
+        kept = gains.values
     filtered = FilteredErrorModel(
         step_s=run.step_s,
         steps=env.steps,
@@ -122,7 +150,7 @@ def filtered_linear(
         x=state.copy(),
         recorder=recorder,
         model=model,
-        filter=filter_state(P, len(recorder.row_steps)),
+        filter=filter_state(P, len(recorder.row_steps), kept, known),
     )
     return filtered, notices
 

@@ -20,8 +20,9 @@ from navcore.engine.drivers.common import (
     seen_by,
     stability_of,
     truth_at,
+    watch_requirements,
 )
-from navcore.engine.drivers.kalman import filtered_linear, own_sigma
+from navcore.engine.drivers.kalman import Gains, filtered_linear, own_sigma
 from navcore.engine.environment import Environment, environment
 from navcore.engine.run import MethodRun, Run, Status
 from navcore.mechanization.error_model import ErrorModelRun
@@ -31,6 +32,7 @@ from navcore.scenario.file import scenario_hash
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 
+_Started = ErrorModelRun | AveragedErrorModel | FilteredErrorModel
 CHUNK = 50_000
 """Steps between two looks at the cancel flag, some 10 ms."""
 
@@ -129,8 +131,7 @@ def _run_method(
     cancelled: Cancelled | None,
 ) -> MethodRun:
     step_s = scenario.run.step_s
-    run, notices = _STARTS[method.kind.carrying](scenario, method, env, state)
-    status, reason = _carry_out(run, report, cancelled)
+    run, notices, status, reason = carried_out(scenario, method, env, state, report, cancelled)
     report(1.0)
     return method_run(
         method,
@@ -144,6 +145,43 @@ def _run_method(
         notices=notices,
         sigma=own_sigma(run, truth_at(env.truth_half.values, 2 * run.recorder.row_steps), scenario.earth),
     )
+
+
+def carried_out(
+    scenario: Scenario,
+    method: Method,
+    env: Environment,
+    state: np.ndarray,
+    report: Progress,
+    cancelled: Cancelled | None,
+    gains: Gains | None = None,
+) -> tuple[_Started, tuple[str, ...], Status, str]:
+    """Run a method to its end in an environment.
+
+    Parameters
+    ----------
+    scenario, method : Scenario, Method
+        What the method knows of: its law, and a Kalman filter's model.
+    env, state, report, cancelled
+        As of `run_methods`.
+    gains : Gains, optional
+        Of a Kalman filter, shared by runs on the same truth.
+
+    Returns
+    -------
+    run : ErrorModelRun or like it
+        With the recorder.
+    notices : tuple of str
+        What the user should know.
+    status, reason : str
+        How it ended and why.
+    """
+    if gains is None:
+        run, notices = _STARTS[method.kind.carrying](scenario, method, env, state)
+    else:
+        run, notices = filtered_linear(scenario, method, env, state, gains)
+    watch_requirements(scenario, run.recorder, scenario.run.step_s)
+    return run, notices, *_carry_out(run, report, cancelled)
 
 
 def _damped(
@@ -164,7 +202,6 @@ def _damped(
     return run, ()
 
 
-_Started = ErrorModelRun | AveragedErrorModel | FilteredErrorModel
 _STARTS: dict[
     Carrying, Callable[[Scenario, Method, Environment, np.ndarray], tuple[_Started, tuple[str, ...]]]
 ] = {"law": _damped, "copies": averaged_linear, "filter": filtered_linear}

@@ -55,7 +55,7 @@ def _advance(
         read_log(k * h, x, log_inputs.v_e, log_inputs.v_n, log, s)
         fill_turn(true[PITCH], true[ROLL], true[HEADING], f.turn)
         if s.epoch != before and s.valid:
-            update(model, s.difference[E], s.difference[N], log_inputs.v_e, log_inputs.v_n, f)
+            update(model, s.epoch, s.difference[E], s.difference[N], log_inputs.v_e, log_inputs.v_n, f)
             d = f.found
             x = Errors(
                 x.dv_e - d[0], x.dv_n - d[1], x.d_lat - d[2], x.d_lon - d[3],
@@ -78,7 +78,7 @@ def _advance(
             0.0, 0.0, 0.0, 0.0,
         )  # fmt: skip
         x = runge_kutta(x, h, begin, middle, end, held)
-        if half_stride or k == first:
+        if (half_stride or k == first) and not f.known:
             fill_transition(h, begin, middle, end, f)
         predict(model, f)
     state[0], state[1], state[2], state[3] = x.dv_e, x.dv_n, x.d_lat, x.d_lon

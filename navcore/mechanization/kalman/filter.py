@@ -69,6 +69,11 @@ class FilterState(NamedTuple):
     scratch : ndarray, shape (n, n)
     found : ndarray, shape (n,)
         What the last sample of the log corrected.
+    gains : ndarray, shape (epochs, 2, n)
+        Gains of each epoch of the log, for both components; no epochs where they are not kept.
+    known : bool
+        The gains are known: they depend on the truth and on the model alone, so that runs with other noise
+        share them, and the covariance need not be carried.
     """
 
     P: np.ndarray
@@ -79,14 +84,19 @@ class FilterState(NamedTuple):
     sigma: np.ndarray
     scratch: np.ndarray
     found: np.ndarray
+    gains: np.ndarray
+    known: bool
 
 
-def filter_state(P: np.ndarray, rows: int) -> FilterState:
+def filter_state(
+    P: np.ndarray, rows: int, gains: np.ndarray | None = None, known: bool = False
+) -> FilterState:
     """State at t = 0 from the covariance, shape (n, n), of a run with so many output rows."""
     n = len(P)
     return FilterState(
         np.array(P, dtype=float), np.zeros(n - STATES), np.eye(3), np.zeros((STATES, n)),
         np.zeros((STATES, INPUTS)), np.zeros((rows, STATES)), np.zeros((n, n)), np.zeros(n),
+        np.zeros((0, 2, n)) if gains is None else gains, known,
     )  # fmt: skip
 
 
@@ -147,6 +157,10 @@ def predict(model, f):
     """Move covariance and estimates over the step of `fill_transition` with the attitude ``f.turn``."""
     P, A, G, M = f.P, f.moved, f.inputs, f.scratch
     n = P.shape[0]
+    if f.known:
+        for i in range(n - STATES):
+            f.sensors[i] *= model.left[i]
+        return
     for i in range(n - STATES):
         axis = model.axis[i]
         first, body, inputs = (0, axis, 3) if axis < ACCEL else (3, axis - ACCEL, 2)
@@ -183,8 +197,8 @@ def predict(model, f):
 
 
 @kernel
-def update(model, d_e, d_n, v_e, v_n, f):
-    """Take the difference V_r - V_c of a sample; ``f.found`` is what to take off the navigation's errors.
+def update(model, epoch, d_e, d_n, v_e, v_n, f):
+    """Take the difference V_r - V_c of an epoch; ``f.found`` is what to take off the navigation's errors.
 
     The two components are independent, so that they are taken one after the other.
     """
@@ -202,6 +216,12 @@ def update(model, d_e, d_n, v_e, v_n, f):
                 share = log_axis(model, f.turn, channel, model.axis[i])
                 seen[STATES + i] = -share
                 innovation += share * f.sensors[i]
+        if f.known:
+            for i in range(n):
+                innovation -= seen[i] * f.found[i]
+            for i in range(n):
+                f.found[i] += f.gains[epoch, channel, i] * innovation
+            continue
         variance = model.log_white
         for i in range(n):
             total = 0.0
@@ -214,6 +234,9 @@ def update(model, d_e, d_n, v_e, v_n, f):
             f.found[i] += gain[i] * innovation / variance
             for j in range(n):
                 P[i, j] -= gain[i] * gain[j] / variance
+        if f.gains.shape[0] > 0:
+            for i in range(n):
+                f.gains[epoch, channel, i] = gain[i] / variance
     for i in range(n - STATES):
         f.sensors[i] += f.found[STATES + i]
 

@@ -1,0 +1,99 @@
+"""``schuler design``: which methods meet the limits of a scenario, and with what probability."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from tyro.conf import Positional, UseAppendAction, arg
+
+from app.cli.terminal import emit_result, say
+from navcore.foundation.errors import Fault, InputError
+
+if TYPE_CHECKING:
+    from navcore.design.designs import Designs
+    from navcore.scenario.model import Scenario
+
+
+@dataclass(frozen=True)
+class DesignCommand:
+    """Share of seeds on which each method meets all [[requirement]] blocks of a scenario.
+
+    Attributes
+    ----------
+    scenario : str
+        Name of a preset, or a TOML file.
+    set : tuple of str
+        Override one field, e.g. requirement.0.at_most=10.
+    seeds : int
+        Runs of each method.
+    as_set : bool
+        Judge the scenario's methods as they stand, in place of every network tuned and a Kalman filter.
+    out : Path or None
+        Folder for design.json and scenario.toml with these methods, best first.
+    json : bool
+        Print one JSON document.
+    quiet : bool
+        No progress bar.
+    """
+
+    scenario: Annotated[Positional[str], arg(metavar="SCENARIO")]
+    set: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="KEY=VALUE")] = ()
+    seeds: Annotated[int, arg(metavar="N")] = 200
+    as_set: bool = False
+    out: Annotated[Path | None, arg(metavar="DIR")] = None
+    json: bool = False
+    quiet: bool = False
+
+    def execute(self) -> int:
+        """Search, run and print; 3 when it was stopped."""
+        from app.cli.designs_text import designs_text
+        from app.cli.progress import working
+        from navcore.design.designs import designs
+        from navcore.scenario.file import load
+
+        if self.out is not None:
+            _require_own(self.out)
+        scenario = load(self.scenario, self.set)
+        with working("design", self.quiet, self.scenario) as (progress, stopped):
+            result = designs(scenario, self.seeds, as_set=self.as_set, progress=progress, cancelled=stopped)
+        if self.out is not None:
+            _write(self.out, result, scenario)
+        emit_result(self.json, result.as_dict(), lambda: designs_text(result))
+        if result.stopped:
+            say(f"{self.scenario}: stopped; these are the shares of {result.seeds} seeds")
+        return 3 if result.stopped else 0
+
+
+_FILES = ("design.json", "scenario.toml")
+
+
+def _require_own(folder: Path) -> None:
+    """Refuse a folder with files that this command does not write."""
+    try:
+        foreign = sorted(path.name for path in folder.iterdir() if path.name not in _FILES)
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        raise _refused(folder, f"cannot be read: {error.strerror}") from None
+    if foreign:
+        raise _refused(folder, f"holds what this command did not write: {', '.join(foreign[:3])}")
+
+
+def _write(folder: Path, found: Designs, scenario: Scenario) -> None:
+    from navcore.scenario.file import to_toml
+
+    methods = tuple(share.method for share in found.methods)
+    texts = json.dumps(found.as_dict(), indent=2), to_toml(scenario.model_copy(update={"method": methods}))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, text in zip(_FILES, texts, strict=True):
+            (folder / name).write_text(text + "\n", encoding="utf-8")
+    except OSError as error:
+        raise _refused(folder, f"cannot be written: {error.strerror}") from None
+
+
+def _refused(folder: Path, reason: str) -> InputError:
+    return InputError(Fault("", "--out", str(folder), reason))

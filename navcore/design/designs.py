@@ -1,0 +1,138 @@
+"""From limits to designs: which methods meet the requirements, on which share of seeds (theory.md 18)."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from navcore.design.measures import TUNING_INTERVALS, Setting
+from navcore.design.shares import Share, require_limits, share_of
+from navcore.design.ship import Ship
+from navcore.design.tuned_designs import kalman, tuned_methods
+from navcore.engine.ensemble import outcomes
+from navcore.foundation.errors import Fault, InputError
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
+
+SEEDS = 200
+_TUNING_SHARE = 0.5
+"""Of the time that a design takes."""
+_STATED = (
+    ("imu", "gyro_bias_std_dph", "gyro_bias_dph"),
+    ("imu", "accel_bias_std_ug", "accel_bias_ug"),
+    ("reference", "bias_std_mps", "bias_mps"),
+    ("initial_error", "level_std_arcmin", "attitude_arcmin"),
+    ("initial_error", "heading_std_arcmin", "attitude_arcmin"),
+    ("initial_error", "velocity_std_mps", "velocity_mps"),
+    ("initial_error", "position_std_arcsec", "position_arcsec"),
+)
+"""Block, field of a standard deviation, and field of the numbers whose sizes take its place."""
+
+
+@dataclass(frozen=True)
+class Designs:
+    """Methods by the share of seeds on which they meet all requirements.
+
+    Attributes
+    ----------
+    seeds : int
+        Runs of each method.
+    methods : tuple of Share
+        Best first.
+    assumed_zero : tuple of str
+        Standard deviations that the scenario states neither by themselves nor by a number: 0 is assumed.
+    left_out : tuple of (str, str)
+        Networks for which there is no method, and why.
+    stopped : bool
+        It was cancelled: fewer seeds, or methods that were not tuned to the end.
+    """
+
+    seeds: int
+    methods: tuple[Share, ...]
+    assumed_zero: tuple[str, ...]
+    left_out: tuple[tuple[str, str], ...] = ()
+    stopped: bool = False
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the document of interface.md."""
+        return {
+            "seeds": self.seeds,
+            "methods": [share.as_dict() for share in self.methods],
+            "assumed_zero": list(self.assumed_zero),
+            "left_out": dict(self.left_out),
+            "stopped": self.stopped,
+        }
+
+
+def designs(
+    scenario: Scenario,
+    seeds: int = SEEDS,
+    *,
+    as_set: bool = False,
+    progress: Callable[[float], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> Designs:
+    """Judge methods by the share of seeds on which they meet all requirements of a scenario.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        With requirements.
+    seeds : int
+        Runs of each method; their seeds follow that of the scenario, the same for all methods. Each draws the
+        noise and the constants (`navcore.engine.ensemble.drawn`).
+    as_set : bool
+        Judge the scenario's methods as they stand; else each network of the catalogue, tuned for the largest
+        share, and a Kalman filter that is told the same standard deviations.
+    progress, cancelled : callable, optional
+        Told the fraction done, 0..1; when ``cancelled`` says True, what was completed is judged.
+
+    Raises
+    ------
+    InputError
+        There is no requirement, one that this run cannot be judged by, or no method.
+
+    Examples
+    --------
+    >>> from navcore import designs, load
+    >>> limit = ["requirement.0.quantity=velocity_rms_mps", "requirement.0.at_most=0.5"]
+    >>> found = designs(load("zha-fast", ["run.duration_h=1"]), 4, as_set=True)  # doctest: +SKIP
+    """
+    require_limits(scenario)
+    if seeds < 1:
+        raise InputError(Fault("", "--seeds", seeds, "must be >= 1"))
+    share = 0.0 if as_set else _TUNING_SHARE
+
+    def report(begin: float, width: float) -> Callable[[float], None]:
+        return lambda fraction: None if progress is None else progress(begin + width * fraction)
+
+    if as_set:
+        methods, left_out = scenario.method, ()
+    else:
+        tuned, left_out = tuned_methods(scenario, report(0.0, share), cancelled)
+        methods = (*tuned, *kalman(scenario))
+    if not methods:
+        raise InputError([Fault("", "method", name, reason) for name, reason in left_out])
+    found = outcomes(scenario, methods, range(seeds), report(share, 1.0 - share), cancelled)
+    stopped = cancelled is not None and cancelled()
+    if not found:
+        raise InputError(Fault("", "--seeds", seeds, "the command was stopped before a seed was completed"))
+    shares = _judged(scenario, methods, found)
+    return Designs(len(found), shares, assumed_zero(scenario), tuple(left_out), stopped)
+
+
+def _judged(scenario: Scenario, methods: Sequence[Method], found: Sequence[Any]) -> tuple[Share, ...]:
+    ship = Ship(scenario, True, TUNING_INTERVALS)
+    shares = [share_of(Setting(ship, method), [one[k] for one in found]) for k, method in enumerate(methods)]
+    return tuple(sorted(shares, key=lambda share: share.order))
+
+
+def assumed_zero(scenario: Scenario) -> tuple[str, ...]:
+    """Fields of standard deviations that the scenario states in no way, so that 0 is assumed."""
+    fields = []
+    for block, deviation, number in _STATED:
+        settings = getattr(scenario, block)
+        if block == "reference" and settings.kind != "log":
+            continue
+        if getattr(settings, deviation) is None and number not in settings.model_fields_set:
+            fields.append(f"{block}.{deviation}")
+    return tuple(fields)

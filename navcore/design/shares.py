@@ -1,0 +1,176 @@
+"""Share of seeds on which a method meets all limits of a scenario (design.md, from limits to designs)."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from navcore.design.measures import Setting, measure
+from navcore.engine.ensemble import Outcome
+from navcore.engine.measures import begins_s, run_value
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
+from navcore.foundation.units import HOUR
+from navcore.quantities import HEADING, QUANTITIES, limit_unit
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
+from navcore.scenario.requirement import OF_THE_SETTING, Requirement
+
+_Z = 1.96
+"""Quantile of the 95 % interval."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """One limit and what a method makes of it.
+
+    Attributes
+    ----------
+    requirement : Requirement
+    median : float or None
+        Over the seeds, in the unit of the quantity's name; None where it is infinite.
+    met : float
+        Share of the seeds that meet this limit.
+    """
+
+    requirement: Requirement
+    median: float | None
+    met: float
+
+    @property
+    def ratio(self) -> float:
+        """Median over the limit; infinite without a median, or where a limit of 0 is missed."""
+        if self.median is None:
+            return math.inf
+        at_most = self.requirement.at_most
+        if at_most > 0.0:
+            return self.median / at_most
+        return 0.0 if self.median <= at_most else math.inf
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the document of interface.md."""
+        one = self.requirement
+        return {"quantity": one.quantity, "at_most": one.at_most, "median": self.median, "met": self.met}
+
+
+@dataclass(frozen=True)
+class Share:
+    """One method.
+
+    Attributes
+    ----------
+    method : Method
+        Its setting.
+    met : float
+        Share of the seeds that meet all limits in the same run.
+    low, high : float
+        Wilson interval of it, 95 %.
+    limits : tuple of Limit
+        In the scenario's order.
+    diverged : int
+        Seeds on which it diverged.
+    """
+
+    method: Method
+    met: float
+    low: float
+    high: float
+    limits: tuple[Limit, ...]
+    diverged: int
+
+    @property
+    def order(self) -> tuple[float, float]:
+        """Key by which methods are ordered, best first."""
+        return -self.met, max(limit.ratio for limit in self.limits)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the document of interface.md."""
+        network = self.method.network.model_dump(mode="json", exclude_none=True)
+        return {
+            "name": self.method.label(),
+            "network": None if self.method.undamped else network,
+            "azimuth": None,
+            "met": self.met,
+            "low": self.low,
+            "high": self.high,
+            "diverged": self.diverged,
+            "limits": [limit.as_dict() for limit in self.limits],
+        }
+
+
+def wilson(met: int, count: int) -> tuple[float, float]:
+    """Wilson interval of a share, 95 %, without continuity term.
+
+    Examples
+    --------
+    >>> [round(end, 4) for end in wilson(150, 200)]
+    [0.6858, 0.8049]
+    """
+    share, square = met / count, _Z * _Z
+    middle = share + square / (2.0 * count)
+    width = _Z * math.sqrt(share * (1.0 - share) / count + square / (4.0 * count * count))
+    below = 1.0 + square / count
+    return max(0.0, (middle - width) / below), min(1.0, (middle + width) / below)
+
+
+def require_limits(scenario: Scenario) -> None:
+    """Refuse a scenario without limits, or with one that its run cannot be judged by.
+
+    Raises
+    ------
+    InputError
+        One fault a requirement.
+    """
+    faults = []
+    if not scenario.requirement:
+        allowed = "is needed: [[requirement]] with quantity and at_most"
+        faults.append(Fault("", "requirement", None, allowed))
+    end_h = scenario.run.duration_h
+    for i, one in enumerate(scenario.requirement):
+        if begins_s(one) > end_h * HOUR:
+            allowed = Text("must be <= {end_h:g} (h), the end of the run", end_h=end_h)
+            faults.append(Fault("", f"requirement.{i}.from_h", one.from_h, allowed))
+        if scenario.run.fidelity == "channel" and QUANTITIES[one.quantity].kind is HEADING:
+            allowed = 'has no value with run.fidelity = "channel": take "error_model"'
+            faults.append(Fault("", f"requirement.{i}.quantity", one.quantity, allowed))
+    if faults:
+        raise InputError(faults)
+
+
+def share_of(setting: Setting, outcomes: Sequence[Outcome]) -> Share:
+    """Judge a method by its outcomes on all seeds.
+
+    Parameters
+    ----------
+    setting : Setting
+        Gives the quantities of the setting.
+    outcomes : sequence of Outcome
+        One a seed.
+    """
+    requirements = setting.ship.scenario.requirement
+    values = np.column_stack([_values(setting, one, outcomes) for one in requirements])
+    met = values <= [one.at_most for one in requirements]
+    ended = np.array([one.ended for one in outcomes])
+    met &= ended[:, None]
+    count, full = len(outcomes), int(np.count_nonzero(met.all(axis=1)))
+    medians = np.median(values, axis=0).tolist()
+    limits = tuple(
+        Limit(one, median if math.isfinite(median) else None, float(np.mean(met[:, k])))
+        for k, (one, median) in enumerate(zip(requirements, medians, strict=True))
+    )
+    return Share(setting.method, full / count, *wilson(full, count), limits, count - int(ended.sum()))
+
+
+def _values(setting: Setting, one: Requirement, outcomes: Sequence[Outcome]) -> np.ndarray:
+    """Value on each seed, in the unit of the quantity's name; infinite where it diverged or has none."""
+    unit, quantity = limit_unit(one.quantity), QUANTITIES[one.quantity]
+    if one.quantity in OF_THE_SETTING:
+        return np.full(len(outcomes), measure(setting, one.quantity) / unit)
+    begins = begins_s(one)
+    values = (
+        run_value(quantity, outcome.spans, outcome.final_m, begins) if outcome.ended else math.inf
+        for outcome in outcomes
+    )
+    return np.fromiter(values, float, len(outcomes)) / unit

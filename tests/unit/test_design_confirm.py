@@ -1,0 +1,131 @@
+"""A proposal in runs: paired seeds and their interval; limits that count by default; sliders' ranges."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.cli import main
+from navcore.design.confirm import confirmed
+from navcore.design.measures import Setting
+from navcore.design.ship import Ship
+from navcore.design.tune import tune
+from navcore.design.vary import read_varied
+from navcore.engine.ensemble import drawn
+from navcore.engine.simulation import simulate
+from navcore.foundation.errors import UnstableError
+from navcore.scenario.file import to_toml
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
+
+SHIP: dict[str, Any] = {
+    "run": {"duration_h": 3.0},
+    "imu": {"gyro_bias_dph": [0.01, 0.01, 0.01], "accel_bias_ug": [50.0, 50.0, 0.0], "gyro_arw_dpsh": 0.001},
+    "reference": {"kind": "log", "noise_mps": 0.1, "drift_mps": 0.05},
+    "method": [{"name": "damped", "damping": "external", "network": {"id": "complementary"}}],
+}
+ZETA, ETA = "method.0.network.zeta", "method.0.network.eta"
+
+
+def ship(**blocks: Any) -> Scenario:
+    """The scenario with blocks exchanged."""
+    return Scenario.parse({**SHIP, **blocks})
+
+
+def test_changes_are_those_of_paired_runs() -> None:
+    """Carried out again by `simulate`; the interval is Student's of the differences."""
+    scenario, seeds = ship(), 6
+    other = Method.model_validate({**SHIP["method"][0], "network": {"id": "classic2"}})
+    found = confirmed(scenario, scenario.method[0], other, seeds)
+    assert found is not None
+    rms = []
+    for number in range(seeds):
+        made = drawn(scenario, number)
+        pair = (made.method[0], other.model_copy(update={"name": "other"}))
+        methods = simulate(made.model_copy(update={"method": pair})).methods
+        rms.append(
+            [np.hypot(m.errors["dve_mps"]["rms"], m.errors["dvn_mps"]["rms"]) / 2**0.5 for m in methods]
+        )
+    before, after = np.array(rms).T
+    change = found.changes["velocity_rms"]
+    assert (change.before, change.after) == pytest.approx((before.mean(), after.mean()), rel=1e-9)
+    half = 2.5706 * (after - before).std(ddof=1) / seeds**0.5
+    mean = (after - before).mean()
+    assert (change.low, change.high) == pytest.approx((mean - half, mean + half), rel=1e-4)
+
+
+def test_limited_quantities_are_compared_too() -> None:
+    """In the unit of their name, from their time on."""
+    limit = {"quantity": "tilt_max_arcsec", "at_most": 20.0, "from_h": 1.0}
+    scenario = ship(requirement=[limit])
+    found = confirmed(scenario, scenario.method[0], scenario.method[0], 3)
+    assert found is not None and found.changes["tilt_max_arcsec"].difference == 0.0
+    assert 1.0 < (found.changes["tilt_max_arcsec"].before or 0.0) < 1000.0
+    assert "velocity_rms" in found.verdict("velocity_rms")
+
+
+def test_a_proposal_that_diverges_is_not_offered() -> None:
+    """The level loop is unstable as it is sampled."""
+    slow = ship(reference={"kind": "log", "rate_hz": 0.01})
+    runaway = Method.model_validate(
+        {"damping": "external", "network": {"id": "compass", "sigma": 0.0088, "xi": 0.7}}
+    )
+    with pytest.raises(UnstableError, match="diverges on 3 of 3 seeds"):
+        confirmed(slow, slow.method[0], runaway, 3)
+    back = confirmed(slow, runaway, slow.method[0], 3)
+    assert back is not None and back.changes["tilt_rms"].before is None
+    assert back.changes["tilt_rms"].difference is None and back.changes["tilt_rms"].after
+
+
+def test_command_confirms_unless_told_otherwise(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The key `confirmed` of the document, and a table for people."""
+    path = tmp_path / "ship.toml"
+    path.write_text(to_toml(ship(run={"duration_h": 1.0})))
+    command = ["tune", str(path), "--objective", "velocity_rms", "--vary", f"{ZETA}=0.3:1"]
+    assert main([*command, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["confirmed"]["seeds"] == 32
+    for name in ("tilt_rms", "velocity_rms", "heading_rms", "position_rms"):
+        change = found["confirmed"][name]
+        assert change["low"] <= change["difference"] <= change["high"]
+        assert change["difference"] == pytest.approx(change["after"] - change["before"], abs=1e-12)
+    assert found["default_limits"] == ["settling_s<=4h", "growth_per_s<=1.2e-5"]
+    assert main([*command, "--json", "--no-confirm", "--no-default-limits"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert "confirmed" not in found and found["default_limits"] == []
+    assert main(command) == 0
+    assert "run, 32 seeds" in capsys.readouterr().out
+
+
+def test_the_damping_is_not_tuned_away() -> None:
+    """Without limits a slow log makes the best setting one that hardly settles; by default it settles."""
+    noisy = ship(imu={"gyro_arw_dpsh": 1e-5}, reference={"kind": "log", "noise_mps": 5.0, "drift_mps": 1.0})
+    vary = [f"{ZETA}=0.01:2"]
+    free = tune(noisy, "tilt_rms", vary, default_limits=False)
+    kept = tune(noisy, "tilt_rms", vary)
+    loops = [Setting(Ship(one.scenario, False), one.scenario.method[0]).loop for one in (free, kept)]
+    settling = [loop.settling_s for loop in loops]
+    assert (settling[0] or 1e9) > 4.5 * 3600.0 and (settling[1] or 1e9) <= 4.0 * 3600.0
+    assert kept.default_limits and free.default_limits == ()
+
+
+def test_limits_by_default_give_way() -> None:
+    """To limits of the scenario and of the command, and where no setting keeps them."""
+    limit = {"quantity": "settling_s", "at_most": 10000.0}
+    found = tune(ship(requirement=[limit]), "tilt_rms", [ZETA])
+    assert found.default_limits == ("growth_per_s<=1.2e-5",)
+    assert tune(ship(), "tilt_rms", [ZETA], ["damping_ratio>=0.3", "growth_per_s<=1"]).default_limits == ()
+    greedy = ship(method=[{"damping": "external", "network": {"id": "optimal", "q": 0.0}}])
+    found = tune(greedy, "tilt_rms", ["method.0.network.rho=1e-4:1e-2"])
+    assert found.default_limits == () and any("searched without" in text for text in found.warnings)
+
+
+def test_a_range_that_is_not_given_is_the_sliders() -> None:
+    """zeta of complementary; one that is asked for may lie outside."""
+    (own,) = read_varied(ship(), [ZETA])
+    slider = type(ship().method[0].network).model_fields["zeta"].json_schema_extra["slider"]  # pyright: ignore
+    assert [own.low, own.high] == slider
+    (asked,) = read_varied(ship(), [f"{ETA}=0.01:9"])
+    assert (asked.low, asked.high) == (0.01, 9.0)
