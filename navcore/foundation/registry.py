@@ -5,13 +5,10 @@ that holds any of them, the page's form, the guide, the JSON Schema and the cont
 that a new entry is a file with a class and a line in the registry.
 """
 
-from dataclasses import dataclass
 from importlib import import_module
-from typing import Annotated, Any, ClassVar, TypeVar, Union, get_args, get_origin
+from typing import Annotated, Any, ClassVar, Literal, TypeVar, Union, get_args, get_origin
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
-from pydantic_core import CoreSchema
-from pydantic_core.core_schema import no_info_before_validator_function
+from pydantic import BeforeValidator, Field
 
 from navcore.foundation.parameters import Parameters
 
@@ -73,32 +70,18 @@ def registry(base: type[_Entry], discriminator: str, *places: str) -> dict[str, 
     return entries
 
 
-@dataclass(frozen=True)
-class _ByName:
-    """Lets a name alone stand for the block that has nothing else: ``"unity2"`` for ``{ id = "unity2" }``."""
-
-    discriminator: str
-    names: tuple[str, ...]
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return no_info_before_validator_function(self._block, handler(source))
-
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        return {"anyOf": [{"enum": list(self.names)}, handler(schema)]}
-
-    def _block(self, value: Any) -> Any:
-        return {self.discriminator: value} if isinstance(value, str) else value
-
-
 def any_of(entries: dict[str, type[_Entry]], discriminator: str) -> Any:
     """Make the type of a field that holds any entry of a registry, told apart by ``discriminator``.
 
-    The name of an entry alone is the entry with its defaults.
+    The name of an entry alone, ``"unity2"``, is the entry with its defaults, ``{ id = "unity2" }``.
     """
-    union = Union[tuple(entries.values())]  # noqa: UP007
-    return Annotated[union, Field(discriminator=discriminator), _ByName(discriminator, tuple(entries))]
+
+    def block(value: Any) -> Any:
+        return {discriminator: value} if isinstance(value, str) else value
+
+    entry = Annotated[Union[tuple(entries.values())], Field(discriminator=discriminator)]  # noqa: UP007
+    named = Union[Literal[tuple(entries)], entry]  # noqa: UP007
+    return Annotated[entry, BeforeValidator(block, json_schema_input_type=named)]
 
 
 def blocks_of(model: type[Parameters]) -> dict[type[Parameters], list[tuple[str, bool]]]:

@@ -3,7 +3,6 @@
 from typing import Any
 
 from pydantic import GetJsonSchemaHandler, model_validator
-from pydantic_core import CoreSchema
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import Parameters
@@ -45,9 +44,7 @@ class EitherUnit(Parameters):
         return data
 
     @classmethod
-    def __get_pydantic_json_schema__(
-        cls, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(cls, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         """Properties of the fields, and of those that may stand in their place."""
         made = handler(schema)
         properties = handler.resolve_ref_schema(made)["properties"]

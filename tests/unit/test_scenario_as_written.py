@@ -8,6 +8,8 @@ import pytest
 
 from app.cli import main
 from navcore import InputError, Scenario, load, parse_network, simulate
+from navcore.law.policy.adaptive import Adaptive
+from navcore.motion.swing import SwingMotion
 from navcore.scenario.file import parse_toml
 from navcore.scenario.schema_file import schema_text
 
@@ -109,8 +111,9 @@ def test_a_name_alone_means_the_same_everywhere(tmp_path: Path) -> None:
     changes = ["method.0.network.zeta=0.6", "method.0.policy.network.zeta=0.6", "motion.roll_deg=2"]
     scenario = load(str(path), changes)
     (damped,) = scenario.method
-    assert damped.network == damped.policy.network == parse_network('id = "unity2", zeta = 0.6')
-    assert (scenario.motion.kind, scenario.motion.roll_deg) == ("swing", 2.0)
+    wanted = parse_network('id = "unity2", zeta = 0.6')
+    assert damped.network == wanted and damped.policy == Adaptive(network=wanted)
+    assert scenario.motion == SwingMotion(roll_deg=2.0)
     (other,) = load(str(path), ["method.0.policy=constant", "method.0.network=classic2"]).method
     assert (other.policy.id, other.network.id) == ("constant", "classic2")
     assert parse_network("unity2") == parse_network('id = "unity2"')
