@@ -7,6 +7,8 @@ from typing import Any
 import pytest
 
 from app.cli import main
+from app.editing.edits import paste
+from app.session.uploads import Uploads, opened_scenario
 from navcore import InputError, Scenario, load, parse_network, simulate
 from navcore.law.policy.adaptive import Adaptive
 from navcore.motion.swing import SwingMotion
@@ -26,6 +28,7 @@ def test_a_byte_order_mark_is_no_part_of_a_scenario(tmp_path: Path) -> None:
     path = tmp_path / "bom.toml"
     path.write_text(HEAD, "utf-8-sig")
     assert load(str(path)) == Scenario.parse(parse_toml(HEAD, "x"))
+    assert opened_scenario("bom.toml", path.read_bytes(), Uploads(tmp_path)) == load(str(path))
 
 
 @pytest.mark.parametrize(
@@ -117,6 +120,8 @@ def test_a_name_alone_means_the_same_everywhere(tmp_path: Path) -> None:
     (other,) = load(str(path), ["method.0.policy=constant", "method.0.network=classic2"]).method
     assert (other.policy.id, other.network.id) == ("constant", "classic2")
     assert parse_network("unity2") == parse_network('id = "unity2"')
+    (_, pasted) = paste(Scenario(), 0, '[[method]]\nnetwork = "unity2"\n').scenario.method
+    assert (pasted.name, pasted.network.id) == ("unity2", "unity2")
     models = json.loads(schema_text())["$defs"]
     offered = [models[name]["properties"]["network"]["anyOf"][0]["enum"] for name in ("Method", "Adaptive")]
     assert "classic2" in offered[0] and offered[1] == ["unity2", "pole2"]
