@@ -1,10 +1,13 @@
-"""The page's figures for a notebook, as `plotly.graph_objects.Figure`: behind `Run.figure` and the like."""
+"""The page's figures for a notebook, as `plotly.graph_objects.Figure`, and the commands' tables as HTML."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from html import escape
 from typing import TYPE_CHECKING, Any
 
+from app.cli.design_text import budget_text
+from app.cli.run_text import run_text
 from app.plots.plotly_data import Packed, PlotlyFigure
 from app.plots.saved import time_figure
 from app.views.design.figure import budget_figure
@@ -70,6 +73,21 @@ def network_figure(network: NetworkParameters, name: str, lat_deg: float, **opti
 def budget_bars(budget: Budget) -> Figure:
     """Make the bars of an error budget; see `Budget.figure`."""
     return _made({"budget": budget_figure}, "budget", budget, {})
+
+
+def run_tables(run: Run) -> str:
+    """Write the tables of ``schuler run`` as HTML."""
+    return _as_html(run_text(run))
+
+
+def budget_tables(budget: Budget) -> str:
+    """Write the tables of ``schuler budget`` as HTML."""
+    return _as_html(budget_text(budget))
+
+
+def _as_html(lines: list[str]) -> str:
+    text = escape("\n".join(lines))
+    return f'<pre style="white-space: pre; overflow-x: auto">{text}</pre>'
 
 
 def _made(offered: dict[str, Maker], name: str, subject: Any, options: dict[str, Any]) -> Figure:

@@ -7,6 +7,8 @@ import sys
 from collections.abc import Callable, Iterable
 from typing import Any, TextIO
 
+_OF_A_NOTEBOOK = "JPY_PARENT_PID"
+"""Variable that Jupyter sets for its kernels: a cell keeps every state of a bar, and its control codes."""
 _lost: list[str] = []
 
 
@@ -43,9 +45,9 @@ def finish() -> bool:
 
 
 def on_terminal() -> bool:
-    """True when someone watches stderr."""
+    """True when someone watches stderr on a terminal, which a notebook only pretends to its cells to be."""
     try:
-        return sys.stderr is not None and sys.stderr.isatty()
+        return sys.stderr is not None and sys.stderr.isatty() and _OF_A_NOTEBOOK not in os.environ
     except ValueError:
         return False
 

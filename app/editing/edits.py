@@ -358,7 +358,7 @@ def _with_free_name(method: Any, known: list[str]) -> Any:
     if not isinstance(method, dict):
         return method
     network = method.get("network")
-    made = network.get("id") if isinstance(network, dict) else None
+    made = network.get("id") if isinstance(network, dict) else network
     name = free_name(str(method.get("name") or made or method.get("damping") or "free"), known)
     known.append(name)
     return method | {"name": name}

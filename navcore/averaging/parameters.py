@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from navcore.foundation.parameters import Parameters, bounded, choice, quantity, vector_quantity
+from navcore.foundation.times import EitherUnit
 
 Variant = Literal["schuler", "cascade"]
 _Turn = Annotated[float, bounded(unit="deg", ge=-5.0, le=5.0)]
@@ -28,7 +29,7 @@ class Averaging(Parameters):
     )
 
 
-class AlignmentMotion(Parameters):
+class AlignmentMotion(EitherUnit):
     """Small motion of the base while the record is taken from which the future is forecast (Zhao, fig. 3)."""
 
     t_s: float = quantity(

@@ -50,6 +50,10 @@ class MethodBudget:
     diverged: bool = False
     reads_log: bool = True
 
+    def __repr__(self) -> str:
+        """Name, and what the numbers are."""
+        return f"<MethodBudget {self.name!r}: {'diverged' if self.diverged else self.shown}>"
+
     @property
     def largest(self) -> str | None:
         """Source that contributes most to the tilt; None where there is none."""
@@ -99,6 +103,15 @@ class Budget:
     floor_reason: str
     floor_series: Series | None
     methods: tuple[MethodBudget, ...]
+
+    def __repr__(self) -> str:
+        """One line: of what, and the methods."""
+        over = "steady state" if self.steady else "along the scenario"
+        return f"<Budget, {over}; {', '.join(repr(method.name) for method in self.methods)}>"
+
+    def _repr_html_(self) -> str:
+        """Tables of ``schuler budget``, for a notebook."""
+        return drawn("budget_tables", self)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the document of interface.md."""

@@ -40,7 +40,7 @@ class Environment:
     reference : ReferenceErrors
         Log errors at the log's epochs.
     warnings : tuple of str
-        What the recordings made necessary to say.
+        What the recordings and the motion make necessary to say.
     """
 
     steps: int
@@ -51,11 +51,12 @@ class Environment:
     warnings: tuple[str, ...]
 
 
-def recorded_notices(scenario: Scenario) -> tuple[str, ...]:
-    """Return the notices about the recordings of a scenario; raises `InputError`."""
+def input_notices(scenario: Scenario) -> tuple[str, ...]:
+    """Return the notices about a scenario's recordings and a motion that ends early; raises `InputError`."""
     recorded = scenario.reference.kind == "file" or scenario.imu.file is not None
-    short = short_run_notices(scenario.motion, recorded, scenario.run.duration_h * HOUR)
-    return (*recording_notices(scenario.motion, scenario.reference), *short)
+    end_s = scenario.run.duration_h * HOUR
+    short = short_run_notices(scenario.motion, recorded, end_s)
+    return (*recording_notices(scenario.motion, scenario.reference), *short, *scenario.motion.ending(end_s))
 
 
 def site_notices(scenario: Scenario, truth: Truth) -> list[str]:
@@ -151,5 +152,5 @@ def environment(scenario: Scenario) -> Environment:
             make_sensors,
         ),
         reference=kept(("reference", truth_key, log_key, seed), make_reference),
-        warnings=(*recorded_notices(scenario), *site_notices(scenario, truth)),
+        warnings=(*input_notices(scenario), *site_notices(scenario, truth)),
     )

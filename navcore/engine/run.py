@@ -135,6 +135,10 @@ class MethodRun:
     growth_per_s: float | None = None
     spans: tuple[Span, ...] = ()
 
+    def __repr__(self) -> str:
+        """Name and status."""
+        return f"<MethodRun {self.method.name!r}: {self.status}>"
+
     @cached_property
     def fingerprint(self) -> bytes:
         """Digest of curves and output rows: equal results have equal ones."""
@@ -185,6 +189,16 @@ class Run:
     elapsed_s: float
     sampling: Sampling | None = None
     scenario_sha256: str = ""
+
+    def __repr__(self) -> str:
+        """One line: what was run, and the status of each method."""
+        settings = self.scenario.run
+        states = ", ".join(f"{m.method.name!r}: {m.status}" for m in self.methods)
+        return f"<Run {self.scenario.title!r}, {settings.fidelity}, {settings.duration_h:g} h; {states}>"
+
+    def _repr_html_(self) -> str:
+        """Tables of ``schuler run``, for a notebook."""
+        return drawn("run_tables", self)
 
     @property
     def computed_on(self) -> str:

@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from navcore.engine.alignment_start import aligned_start, start_errors
-from navcore.engine.environment import recorded_notices, site_notices
+from navcore.engine.environment import input_notices, site_notices
 from navcore.engine.recorded_start import RecordedImu, recorded_imu
 from navcore.foundation.errors import InputError
 from navcore.foundation.stage_cache import file_state, kept
@@ -102,7 +102,7 @@ def strapdown_environment(scenario: Scenario) -> StrapdownEnvironment:
         )
     except InputError as error:
         raise error.located("", "motion.") from None
-    warnings = [*recorded_notices(scenario), *site_notices(scenario, truth)]
+    warnings = [*input_notices(scenario), *site_notices(scenario, truth)]
     initial = np.array(scenario.initial_error.state())
     start = start_from(truth.values[0], initial)
     if scenario.alignment.kind == "compass":
@@ -137,7 +137,7 @@ def _of_record(scenario: Scenario) -> StrapdownEnvironment:
     start_utc = None if window is None else window.start_s
     recorded: RecordedImu = recorded_imu(scenario, start_utc)
     truth = recorded.truth
-    notices = recorded_notices(scenario)
+    notices = input_notices(scenario)
     tracked = scenario.motion.recorded
     return StrapdownEnvironment(
         sampling=recorded.sampling,

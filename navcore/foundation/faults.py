@@ -9,8 +9,9 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
+from navcore.foundation.decimal_comma import comma_refused
 from navcore.foundation.errors import Fault, InputError
-from navcore.foundation.parameters import allowed_range
+from navcore.foundation.parameters import allowed_range, element_of, extra_of
 from navcore.foundation.text import Text
 
 _ABSENT = object()
@@ -22,12 +23,11 @@ _WANTED = {
     "int": "must be a whole number",
     "bool": "must be true or false",
     "string": "must be text",
-    "list": "must be a list",
-    "tuple": "must be a list",
     "dict": "must be a table of fields",
     "model": "must be a table of fields",
     "finite": "must be a finite number",
 }
+_NO_LIST = ("list_type", "tuple_type", "named_tuple_type")
 _BOUNDS = {"greater_than": ">", "greater_than_equal": ">=", "less_than": "<", "less_than_equal": "<="}
 
 
@@ -84,12 +84,18 @@ def _unfold(item: Any, model: Any, data: Any, where: str) -> list[Fault]:
     kind = item["type"]
     if kind.startswith("union_tag"):
         name = (item.get("ctx") or {}).get("discriminator", "'id'").strip("'")
+        value = _lookup(data, path)
+        if isinstance(value, str):  # a name alone
+            return [Fault(where, ".".join(path), value, _tags(place, name, value))]
         value = _lookup(data, [*path, name])
         return [Fault(where, ".".join([*path, name]), _shown(value, None), _tags(place, name, value))]
+    if kind == "missing" and isinstance(item["loc"][-1], int):  # an element of a list that is too short
+        path, place, info = _walk(model, data, item["loc"][:-1])
+        kind = "tuple_type"
     value = _lookup(data, path)
     if kind == "missing":
         return [Fault(where, ".".join(path), None, _join("is required", _range(info)))]
-    allowed = _allowed(item, path, place, info)
+    allowed = _allowed(item, path, place, info) if kind == item["type"] else _list(path, place, info)
     return [Fault(where, ".".join(path), _shown(value, item.get("input")), allowed)]
 
 
@@ -127,6 +133,8 @@ def _allowed(item: Any, path: list[str], place: Any, info: FieldInfo | None) -> 
         return _range(info) or Text(
             "must be {bounds} {next:g}", bounds=_BOUNDS[kind], next=next(iter(context.values()))
         )
+    if kind in _NO_LIST or (kind == "too_long" and _length(place)):
+        return _list(path, place, info)
     if kind in ("too_short", "too_long"):
         limit = context.get("min_length", context.get("max_length"))
         return (
@@ -135,10 +143,53 @@ def _allowed(item: Any, path: list[str], place: Any, info: FieldInfo | None) -> 
             else Text("must have at most {limit} values", limit=limit)
         )
     wanted = _WANTED.get(kind.split("_")[0])
+    if kind.startswith("model") and len(list(_members(place))) > 1:
+        wanted = "must be a name or a table of fields"
     if wanted is not None:
+        if kind.startswith(("float", "int")):
+            wanted = comma_refused(item["input"]) or wanted
         return _join(wanted, _range(info))
     message = str(context["error"]) if "error" in context else item["msg"]
     return _join(message.replace("Input should be", "must be", 1), _range(info))
+
+
+def _length(place: Any) -> int:
+    """Number of values of a list that has a fixed one; 0 for others."""
+    if names := getattr(place, "_fields", ()):
+        return len(names)
+    elements = get_args(place) if get_origin(place) is tuple else ()
+    return 0 if Ellipsis in elements else len(elements)
+
+
+def _list(path: list[str], place: Any, info: FieldInfo | None) -> str:
+    """Say what a list must hold: of how many what, and in which range each."""
+    count, elements = _length(place), get_args(place)
+    members = [_unwrap(member, None)[0] for element in elements[:1] for member in _members(element)]
+    names = getattr(place, "_fields", ()) or extra_of(info).get("elements", ()) if info else ()
+    if any(_is_model(member) for member in members):
+        block = ".".join(part for part in path if not part.isdigit())
+        return Text("must be a list of blocks, [[{block}]]", block=block)
+    if str in members:
+        return "must be a list of texts"
+    if rows := [member for member in members if getattr(member, "_fields", ())]:
+        fields = ", ".join(rows[0]._fields)
+        return Text(
+            "must be a list of lists of {count} numbers ({names})", count=_length(rows[0]), names=fields
+        )
+    if not count:
+        numbers = float in members or any(map(_length, members))
+        return "must be a list of numbers" if numbers else "must be a list"
+    if not names:
+        return Text("must be a list of {count} numbers", count=count)
+    element = element_of(info) if info else None
+    if each := allowed_range(element).removeprefix("must be ") if element else "":
+        return Text(
+            "must be a list of {count} numbers ({names}), each {each}",
+            count=count,
+            names=", ".join(names),
+            each=each,
+        )
+    return Text("must be a list of {count} numbers ({names})", count=count, names=", ".join(names))
 
 
 def _unknown_field(name: str, place: Any) -> str:

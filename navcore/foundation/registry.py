@@ -6,9 +6,9 @@ that a new entry is a file with a class and a line in the registry.
 """
 
 from importlib import import_module
-from typing import Annotated, Any, ClassVar, TypeVar, Union, get_args, get_origin
+from typing import Annotated, Any, ClassVar, Literal, TypeVar, Union, get_args, get_origin
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from navcore.foundation.parameters import Parameters
 
@@ -71,8 +71,17 @@ def registry(base: type[_Entry], discriminator: str, *places: str) -> dict[str, 
 
 
 def any_of(entries: dict[str, type[_Entry]], discriminator: str) -> Any:
-    """Make the type of a field that holds any entry of a registry, told apart by ``discriminator``."""
-    return Annotated[Union[tuple(entries.values())], Field(discriminator=discriminator)]  # noqa: UP007
+    """Make the type of a field that holds any entry of a registry, told apart by ``discriminator``.
+
+    The name of an entry alone, ``"unity2"``, is the entry with its defaults, ``{ id = "unity2" }``.
+    """
+
+    def block(value: Any) -> Any:
+        return {discriminator: value} if isinstance(value, str) else value
+
+    entry = Annotated[Union[tuple(entries.values())], Field(discriminator=discriminator)]  # noqa: UP007
+    named = Union[Literal[tuple(entries)], entry]  # noqa: UP007
+    return Annotated[entry, BeforeValidator(block, json_schema_input_type=named)]
 
 
 def blocks_of(model: type[Parameters]) -> dict[type[Parameters], list[tuple[str, bool]]]:

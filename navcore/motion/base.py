@@ -136,6 +136,16 @@ class MotionParameters(Entry, ABC):
         """Yield what the user should know about a recording and the settings that it leaves unused."""
         yield from ()
 
+    def ending(self, end_s: float) -> Iterator[str]:
+        """Yield what the vehicle does once a motion that is shorter than the run is over.
+
+        Parameters
+        ----------
+        end_s : float
+            End of the run, s.
+        """
+        yield from ()
+
     def rows(
         self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
     ) -> np.ndarray:

@@ -11,23 +11,27 @@ from pydantic import Field, model_validator
 
 from navcore.foundation.earth import Earth
 from navcore.foundation.errors import Fault, InputError
-from navcore.foundation.parameters import Parameters, quantity
+from navcore.foundation.parameters import quantity
 from navcore.foundation.text import Text
-from navcore.foundation.units import DEG, KNOT
+from navcore.foundation.times import EitherUnit
+from navcore.foundation.units import DEG, HOUR, KNOT
 from navcore.motion.course import (
+    COURSE,
     COURSE_CHANGE,
     COURSE_TIME,
     RAISED_COSINE,
     SPEED,
     SPEED_CHANGE,
     SPEED_TIME,
+    START,
     Course,
     PoleReached,
     askable_before_start,
     lay_course,
     sample_course,
 )
-from navcore.motion.kinematics import COURSE, Kinematics
+from navcore.motion.kinematics import COURSE as BY_COURSE
+from navcore.motion.kinematics import Kinematics
 from navcore.motion.static import AttitudeMotion
 from navcore.motion.truth import Site, Truth
 
@@ -40,7 +44,7 @@ SLOWEST, FASTEST = -50.0, 500.0
 _SAME_HEADING_DEG = 1e-6
 
 
-class Leg(Parameters):
+class Leg(EitherUnit):
     """One leg of a `legs` motion; a field left out changes nothing."""
 
     duration_s: float = quantity(
@@ -130,7 +134,8 @@ class LegsMotion(AttitudeMotion):
     start on: speed at the mean acceleration ``accel_mps2`` (its size; default 0.1 m/s^2), heading by the
     shorter way at 1 deg/s (mean), or at ``turn_dps``, whose sign then chooses the side. ``accel_mps2`` or
     ``turn_dps`` without a speed or heading to reach acts over the whole leg. A change that does not end
-    within its leg is a fault. After the last leg speed and heading stay.
+    within its leg is a fault. After the last leg speed and heading stay; a notice
+    says so where the run goes on.
 
     Every change follows tau - sin(2 pi tau)/(2 pi): acceleration and turn rate are raised cosines,
     continuous, with a peak of twice the mean. While turning the vehicle keeps its speed,
@@ -260,7 +265,7 @@ class LegsMotion(AttitudeMotion):
         """Return legs, position nodes and the constant pitch and roll."""
         course = self.course(end_s, site, earth)
         return Kinematics(
-            COURSE, self.rest_row(site)[0], legs=askable_before_start(course.legs), nodes=course.nodes
+            BY_COURSE, self.rest_row(site)[0], legs=askable_before_start(course.legs), nodes=course.nodes
         )
 
     def frequencies(self) -> Iterator[tuple[str, float]]:
@@ -269,6 +274,23 @@ class LegsMotion(AttitudeMotion):
             times = [time for time in (row[SPEED_TIME], row[COURSE_TIME]) if time > 0.0]
             if times:
                 yield f"leg.{number}", 1.0 / min(times)
+
+    def ending(self, end_s: float) -> Iterator[str]:
+        """Say when the last leg ends before the run, and that speed and heading stay."""
+        last, number = self.table()[-1], len(self.leg) - 1
+        over_s = last[START] + self.leg[number].duration_s
+        if over_s >= end_s:
+            return
+        speed, course = last[SPEED] + last[SPEED_CHANGE], (last[COURSE] + last[COURSE_CHANGE]) / DEG % 360.0
+        yield Text(
+            "motion.leg.{number} is the last and ends after {over:.4g} h: for the other {rest:.4g} h of the "
+            "run the vehicle keeps {speed:.4g} m/s and heading {heading:.4g}°",
+            number=number,
+            over=over_s / HOUR,
+            rest=(end_s - over_s) / HOUR,
+            speed=speed,
+            heading=course,
+        )
 
     def _resolved(self) -> Iterator[tuple[int, float, tuple[_Change, _Change]]]:
         """Number of each leg, the speed at its end, and its changes of speed and heading."""

@@ -12,8 +12,9 @@ from pydantic import Field, model_validator
 from navcore.foundation.compiled import kernel
 from navcore.foundation.earth import Earth
 from navcore.foundation.errors import Fault, InputError
-from navcore.foundation.parameters import Parameters, bounded, choice, quantity
+from navcore.foundation.parameters import bounded, choice, quantity
 from navcore.foundation.text import Text
+from navcore.foundation.times import EitherUnit
 from navcore.foundation.trigonometry import sincos
 from navcore.foundation.units import DEG, KNOT
 from navcore.motion.course import (
@@ -60,7 +61,7 @@ _SHAPES = {"raised_cosine": RAISED_COSINE, "half_sine": HALF_SINE, "triangle": T
 _Component = Annotated[float, bounded(unit="m/s", ge=-FASTEST, le=FASTEST)]
 
 
-class Point(Parameters):
+class Point(EitherUnit):
     """State of a `profile` at one time; a field left out is as at the point before."""
 
     t_s: float = quantity(

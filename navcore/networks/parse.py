@@ -6,10 +6,11 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from navcore.foundation.decimal_comma import refuse_comma
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
 from navcore.networks.base import NetworkParameters
-from navcore.networks.catalogue import Network
+from navcore.networks.catalogue import NETWORKS, Network
 
 _ADAPTER: TypeAdapter[Any] = TypeAdapter(Network)
 _EXAMPLE = 'must be fields such as: id = "compass", sigma = 0.0088, xi = 0.7'
@@ -21,7 +22,7 @@ def parse_network(text_or_mapping: str | Mapping[str, Any], where: str = "networ
     Parameters
     ----------
     text_or_mapping : str or mapping
-        The inside of an inline TOML table, or the fields themselves.
+        An id, the inside of an inline TOML table, or the fields themselves.
     where : str
         Place named in the faults.
 
@@ -36,7 +37,7 @@ def parse_network(text_or_mapping: str | Mapping[str, Any], where: str = "networ
     0.7
     """
     if isinstance(text_or_mapping, str):
-        data = _table(text_or_mapping, where)
+        data = text_or_mapping if text_or_mapping in NETWORKS else _table(text_or_mapping, where)
     else:
         data = dict(text_or_mapping)
     try:
@@ -50,6 +51,7 @@ def _table(text: str, where: str) -> dict[str, Any]:
     try:
         document = tomllib.loads(f"network = {{{inside}}}")
     except tomllib.TOMLDecodeError as error:
+        refuse_comma(inside, "", where)
         reason = str(error).split(" (at line")[0]
         raise InputError(Fault(where, "", text, f"{_EXAMPLE} ({reason})")) from None
     return document["network"]

@@ -10,11 +10,12 @@ from navcore.averaging import AlignmentMotion
 from navcore.foundation.errors import Fault
 from navcore.foundation.parameters import Parameters, choice, quantity
 from navcore.foundation.text import Text
+from navcore.foundation.times import EitherUnit
 from navcore.foundation.units import DEG
 from navcore.motion.truth import Site
 
 
-class RunSettings(Parameters):
+class RunSettings(EitherUnit):
     """Block ``run``: fidelity, duration, steps, seed, Earth."""
 
     fidelity: Literal["channel", "error_model", "strapdown"] = choice(
@@ -95,7 +96,7 @@ class SiteSettings(Parameters):
         return Site(self.lat_deg * DEG, self.lon_deg * DEG, self.height_m)
 
 
-class Alignment(Parameters):
+class Alignment(EitherUnit):
     """Block ``alignment``: how navigation gets its first attitude (strapdown).
 
     ``compass`` (theory.md 6.1): the compass loop with V_r = 0, first its level channels, then the azimuth,

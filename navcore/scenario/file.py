@@ -10,12 +10,16 @@ from pathlib import Path
 from typing import Any
 
 from navcore.foundation.assets import asset_path
+from navcore.foundation.decimal_comma import refuse_comma
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.foundation.times import in_other_unit
 from navcore.scenario.bounds import LARGEST_BYTES, require_bounded, require_readable
 from navcore.scenario.fields import SCHEMA
 from navcore.scenario.model import Scenario
 
+_NAMED = {"motion": "kind", "network": "id", "policy": "id", "switching": "id"}
+"""Blocks that may be given by their name alone, and the field that bears it."""
 _FILE_FIELDS = (("motion", "file"), ("reference", "file"), ("imu", "file"))
 
 
@@ -103,12 +107,14 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
         Not TOML (with line and column), too large or too deep for a scenario, or of a schema that this
         version does not know.
     """
+    text = text.removeprefix("\ufeff")  # the byte order mark of Windows' editors
     require_readable(text, where)
     try:
         data = tomllib.loads(text)
     except RecursionError:
         raise InputError(Fault(where, "", None, "is nested too deep: no scenario")) from None
     except ValueError as error:  # also what the reader does not call its own
+        refuse_comma(text, str(error), where)
         raise InputError(
             Fault(where, "", None, Text("is not valid TOML: {error}", error=str(error)[:200]))
         ) from None
@@ -177,6 +183,8 @@ def _set(data: Any, path: list[str], value: Any) -> str:
         elif isinstance(data, dict):
             if part not in data and depth == 0 and part == "method":
                 data[part] = [{}]
+            if part in _NAMED and isinstance(data.get(part), str):
+                data[part] = {_NAMED[part]: data[part]}
             data = data.setdefault(part, {})
         else:
             return Text('"{path}" is a single value, not a block', path=".".join(path[:depth]))
@@ -188,6 +196,7 @@ def _set(data: Any, path: list[str], value: Any) -> str:
     elif isinstance(data, dict):
         if last in ("id", "kind") and path[0] in ("motion", "method") and data.get(last) != value:
             data.clear()
+        data.pop(in_other_unit(last), None)
         data[last] = value
     else:
         return Text('"{path}" is a single value, not a block', path=".".join(path[:-1]))

@@ -31,9 +31,14 @@ from navcore.sensors.reference import Outage, Reference
 INTRODUCTION = """# The scenario file
 
 TOML, schema 1. Every field has a default; a field that is not known here is refused, as is a value out of
-its range. `schuler check FILE` tells what a scenario holds, `schuler run FILE --set KEY=VALUE` changes one
+its range. `schuler check FILE` says what a scenario holds, `schuler run FILE --set KEY=VALUE` changes one
 field of it, and [the JSON Schema](../assets/scenario.schema.json) serves an editor. This page is written from
 the program by `make guide`; do not edit it.
+
+A name alone stands for a block that has nothing else: `network = "classic2"` is
+`network = { id = "classic2" }`; likewise `policy`, `policy.network`, `switching` and `motion`. A block that
+has `t_h` or `duration_s` below takes `t_s` or `duration_h` as well, and the other way round, but not one time
+in both units. Numbers have a decimal point.
 
 All `[[method]]` blocks of a scenario run on the same truth, the same sensor errors and the same log.
 """

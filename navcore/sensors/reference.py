@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Field, create_model
 
 from navcore.foundation.parameters import FileName, Parameters, quantity
+from navcore.foundation.times import EitherUnit
 from navcore.foundation.units import HOUR
 from navcore.sensors.base import NO_DRIFT, modelled_drift
 from navcore.sensors.log_errors import TERMS
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from navcore.sensors.log_errors.water import Water
 
 
-class Outage(Parameters):
+class Outage(EitherUnit):
     """Time in which the log gives nothing."""
 
     t_h: float = quantity(

@@ -4,6 +4,7 @@ import csv
 import errno
 import json
 import signal
+import sys
 from typing import Any
 
 import numba
@@ -13,6 +14,7 @@ from numba.core import event
 
 from app.cli import main
 from app.cli.progress import Bar, compiling
+from app.cli.terminal import on_terminal
 from navcore.engine.measures import metrics
 from navcore.engine.simulation import simulate
 from navcore.scenario.file import load
@@ -275,6 +277,15 @@ def test_the_bar_says_what_is_compiled_and_how_long_it_took(capsys):
 
 
 _LAMBDA = "test_the_bar_says_what_is_compiled_and_how_long_it_took.<locals>.<lambda>"
+
+
+def test_no_bar_is_drawn_in_a_cell_of_a_notebook(monkeypatch):
+    """Behind `!schuler run` stands a pseudo-terminal, and the cell kept 20 states of the bar."""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    monkeypatch.delenv("JPY_PARENT_PID", raising=False)
+    assert on_terminal()
+    monkeypatch.setenv("JPY_PARENT_PID", "4711")
+    assert not on_terminal()
 
 
 def test_no_bar_appears_after_the_run():

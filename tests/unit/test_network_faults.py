@@ -115,7 +115,7 @@ def test_one_fault(data: dict[str, Any], line: str) -> None:
 
 def test_a_plain_union_gives_one_fault_that_names_both_ways() -> None:
     (found,) = lines({"method": [{"name": "a", "either": "x"}]})
-    assert found == "x.toml: method.0.either = 'x': must be a number, or must be a list"
+    assert found == "x.toml: method.0.either = 'x': must be a number, or must be a list of numbers"
 
 
 def test_inside_a_member_of_a_plain_union_the_index_stays() -> None:

@@ -61,7 +61,7 @@ def test_out_of_range_names_field_value_and_whole_range() -> None:
         ('id = "custom", num = [1.0], den = [1.0], gain = 2.0', "num", "together with gain"),
         ('id = "custom", gain = 0.0', "gain", "must not be 0"),
         ('id = "custom", poles = [1e9]', "poles.0.0", "must be >= -10000 and <= 10000 (rad/s)"),
-        ('id = "custom", poles = [[1, 2, 3]]', "poles.0", "at most 2 values"),
+        ('id = "custom", poles = [[1, 2, 3]]', "poles.0", "must be a list of 2 numbers"),
         ('id = "custom", poles = [[-1, "a"]]', "poles.0.1", "must be a number"),
         ('id = "custom", poles = "x"', "poles", "must be a list"),
         ("hello", "", "must be fields such as"),

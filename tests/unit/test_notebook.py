@@ -1,11 +1,14 @@
 """Figures in a notebook: those of the page, as plotly's own class, which checks every property."""
 
+from html.parser import HTMLParser
 from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
 import pytest
 
+from app.cli.design_text import budget_text
+from app.cli.run_text import run_text
 from app.notebook import OF_NETWORK, OF_RUN
 from navcore import InputError, budget, load, parse_network, simulate
 
@@ -50,3 +53,31 @@ def test_an_unknown_or_empty_figure_is_refused_by_name() -> None:
         RUN.figure("curves")
     with pytest.raises(InputError, match="no method of this run switches"):
         simulate(load("zha-fast", ["run.duration_h=0.1"])).figure("switching")
+
+
+class Text(HTMLParser):
+    """Text that a browser shows of some HTML."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.shown = ""
+        self.feed(html)
+
+    def handle_data(self, data: str) -> None:
+        self.shown += data
+
+
+def test_a_run_as_a_cell_s_last_line_is_the_tables_of_the_command() -> None:
+    run = simulate(load("liu-switching", ["run.duration_h=0.1", "title=a<b> & c"]))
+    assert Text(run._repr_html_()).shown == "\n".join(run_text(run))
+    assert repr(run).startswith("<Run 'a<b> & c', error_model, 0.1 h; ") and len(repr(run)) < 300
+    assert all(f"{method.method.name!r}: ok" in repr(run) for method in run.methods)
+    assert len(repr(run.methods)) < 300
+
+
+@pytest.mark.parametrize("steady", [False, True])
+def test_a_budget_as_a_cell_s_last_line_is_the_tables_of_the_command(steady: bool) -> None:
+    result = budget(load("sikuliaq-like", ["run.duration_h=1"]), steady)
+    assert Text(result._repr_html_()).shown == "\n".join(budget_text(result))
+    assert all(repr(method.name) in repr(result) for method in result.methods)
+    assert len(repr(result)) < 300 and len(repr(result.methods)) < 300

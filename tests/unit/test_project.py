@@ -268,8 +268,8 @@ def test_locks_satisfy_what_the_project_asks_for(repo_root: Path, platform: tupl
                 )
 
 
-RUN_BY_NAME = {"axe-playwright-python", "basedpyright", "pytest-timeout", "pytest-xdist", "ruff"}
-"""Required by the tests and imported nowhere: programs, plugins of pytest, a script for the page."""
+RUN_BY_NAME = {"axe-playwright-python", "basedpyright", "ipykernel", "pytest-timeout", "pytest-xdist", "ruff"}
+"""Required by the tests and imported nowhere: programs, plugins of pytest, a script for the page, kernel."""
 
 
 def test_imports_and_requirements_are_the_same_packages(repo_root: Path):

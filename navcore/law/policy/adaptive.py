@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, TypeAlias
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.errors import Fault
 from navcore.foundation.parameters import bounded, choice, quantity
 from navcore.foundation.records import COUNT, FLAG, REAL, record_type
+from navcore.foundation.registry import any_of
 from navcore.foundation.text import Text
 from navcore.foundation.units import KNOT
 from navcore.law.policy.base import LOW_MARGIN, Measure, PolicyParameters
@@ -28,6 +29,10 @@ QUADRATIC = (0.3076, -1.1452, 0.8101)
 """Sun 9 with its sign mended: coefficients of d^2, d, 1 with d in knots (theory.md section 4)."""
 _LEAST_ROWS, _MOST_ROWS = 2, 500
 _LEAST_SPACING_KN = 1e-3
+if TYPE_CHECKING:
+    _Retuned: TypeAlias = Unity2Network | Pole2Network
+else:
+    _Retuned = any_of({"unity2": Unity2Network, "pole2": Pole2Network}, "id")
 _ADAPTABLE = "pole2 or unity2, in network or policy.network"
 
 
@@ -47,12 +52,6 @@ SUN_TABLE = _rows(
     (1.8, 0.05), (3.0, 0.04),
 )  # fmt: skip
 """Sun 2017, Table 1."""
-
-
-def _by_id(value: Any) -> Any:
-    if isinstance(value, str) and value not in ("unity2", "pole2"):
-        raise refuse("", value, "must be unity2 or pole2, or a block with one of them as id")
-    return {"id": value} if isinstance(value, str) else value
 
 
 def _filled(values: np.ndarray) -> np.ndarray:
@@ -141,9 +140,7 @@ class Adaptive(PolicyParameters):
         default=SUN_TABLE,
         description="Pairs [difference in kn, damping ratio], in any order (Sun 2017, Table 1).",
     )
-    network: Annotated[
-        Annotated[Unity2Network | Pole2Network, Field(discriminator="id")] | None, BeforeValidator(_by_id)
-    ] = Field(
+    network: _Retuned | None = Field(
         default=None,
         description="Network that is re-tuned: unity2 or pole2, a name or a block. When not given, that of "
         "the method, and unity2 where the method has none.",

@@ -13,6 +13,7 @@ from navcore.foundation.errors import Fault
 from navcore.foundation.parameters import bounded, quantity, vector_quantity
 from navcore.foundation.records import REAL, record_type
 from navcore.foundation.text import Text
+from navcore.foundation.times import EitherUnit
 from navcore.law.policy.base import PolicyParameters
 from navcore.law.records import NETWORK, E, N
 from navcore.networks.base import NetworkParameters, refuse
@@ -74,7 +75,7 @@ def _follow(own, memory, law, u_e, u_n):
     network.steady[0] = b / k if k != 0.0 else 0.0
 
 
-class Schedule(_From):
+class Schedule(EitherUnit, _From):
     """Always damped; K1, K2, K3 pass linearly from one set to another after each start (Zha 2019, 4.2).
 
     For the `compass` network, whose own gains it replaces, in each of its realisations.

@@ -11,6 +11,7 @@ from navcore.foundation.errors import Fault
 from navcore.foundation.parameters import choice, quantity
 from navcore.foundation.records import FLAG, REAL, record_type
 from navcore.foundation.text import Text
+from navcore.foundation.times import EitherUnit
 from navcore.law.policy.base import PolicyParameters
 from navcore.law.records import CLEAR, REST
 from navcore.law.switching.base import SwitchingParameters
@@ -38,7 +39,7 @@ def _switch(own, memory, law, wanted):
         s.action = REST
 
 
-class Ramp(SwitchingParameters):
+class Ramp(EitherUnit, SwitchingParameters):
     """Cleared on re-engagement, the coefficient raised as xi e^-(49-m), m = 0..49 s (Liu 2021, fig. 10).
 
     While undamped the last correction stays. The start of the run is no switch: it begins with the full

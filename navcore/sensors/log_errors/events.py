@@ -7,14 +7,15 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from navcore.foundation.parameters import Parameters, bounded, quantity, vector_quantity
+from navcore.foundation.parameters import bounded, quantity, vector_quantity
+from navcore.foundation.times import EitherUnit
 from navcore.foundation.units import HOUR
 from navcore.sensors.log_errors.base import LogPart, LogTerm
 
 _Acceleration = Annotated[float, bounded(unit="m/s2", ge=-50.0, le=50.0)]
 
 
-class LogEvent(Parameters):
+class LogEvent(EitherUnit):
     """Passing disturbance of the log: an acceleration integrated into dV_r, which stays after the event."""
 
     t_h: float = quantity(
