@@ -36,7 +36,7 @@ from navcore.motion.course import (
     smooth_change,
 )
 from navcore.motion.kinematics import PROFILE, WIDTH, Kinematics, write_rows
-from navcore.motion.legs import FASTEST, SLOWEST
+from navcore.motion.leg import FASTEST, SLOWEST
 from navcore.motion.static import AttitudeMotion
 from navcore.motion.truth import (
     AE,

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field, create_model
 
 from navcore.foundation.parameters import FileName, Parameters, quantity
-from navcore.foundation.units import HOUR
+from navcore.foundation.repeated import Repeated
 from navcore.sensors.base import NO_DRIFT, modelled_drift
 from navcore.sensors.log_errors import TERMS
 from navcore.sensors.log_errors.base import LogPart
@@ -21,12 +21,9 @@ if TYPE_CHECKING:
     from navcore.sensors.log_errors.water import Water
 
 
-class Outage(Parameters):
+class Outage(Repeated):
     """Time in which the log gives nothing."""
 
-    t_h: float = quantity(
-        0.0, unit="h", ge=0.0, le=10000.0, slider=(0.0, 72.0), label="begins", help="Time of the outage."
-    )
     duration_s: float = quantity(
         600.0,
         unit="s",
@@ -127,6 +124,5 @@ def in_service(outages: Iterable[Outage], time_s: np.ndarray) -> np.ndarray:
     """Whether the log works at each time, ndarray of bool, shape (m,)."""
     valid = np.ones(time_s.size, dtype=bool)
     for outage in outages:
-        begin = outage.t_h * HOUR
-        valid &= (time_s < begin) | (time_s >= begin + outage.duration_s)
+        valid &= ~outage.holds(time_s)
     return valid
