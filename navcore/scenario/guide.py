@@ -25,6 +25,7 @@ from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.log_errors.events import LogEvent
+from navcore.sensors.log_errors.water import Current
 from navcore.sensors.reference import Outage, Reference
 
 INTRODUCTION = """# The scenario file
@@ -64,6 +65,7 @@ def _sections() -> Iterator[tuple[str, type[Parameters], str]]:
     yield "[reference]", Reference, ""
     yield "[[reference.event]]", LogEvent, "also `event` of a method"
     yield "[[reference.outage]]", Outage, ""
+    yield "[[reference.current]]", Current, ""
     yield "[[method]]", Method, ""
     for name, kind in KINDS.items():
         if kind.settings is not None:
