@@ -14,8 +14,7 @@ from navcore.engine.environment import coefficients_of, truth_of
 from navcore.mechanization.trajectory import COLUMNS, named, table_of
 from navcore.motion.truth import HEADING, PITCH, ROLL, VE, VN, Truth
 from navcore.scenario.model import Scenario
-from navcore.sensors.reference import in_service
-from navcore.sensors.simulated_log import hold_time
+from navcore.sensors.simulated_log import hold_time, log_works
 
 MOST_INTERVALS = 1440
 """Of a run: a minute each of a day. Shorter runs have one an output row."""
@@ -113,11 +112,11 @@ def course(scenario: Scenario, most: int = MOST_INTERVALS, extra_s: tuple[float,
     """
     step_s, steps = law_steps(scenario)
     hold = _hold(scenario, step_s)
-    served = _served(scenario, step_s, steps)
-    edges = _edges(scenario, step_s, steps, hold, most, served, extra_s)
     truth_step = scenario.run.step_s if not scenario.strapdown else min(scenario.sampling.record_step_s, 1.0)
     count = max(1, math.ceil(steps * step_s / truth_step - 1e-9))
     truth = truth_of(scenario, count, truth_step)
+    served = _served(scenario, truth, step_s, steps)
+    edges = _edges(scenario, step_s, steps, hold, most, served, extra_s)
     half = table_of(coefficients_of(scenario, count, truth_step).half)
     places = np.minimum(np.rint(edges * (step_s / (0.5 * truth_step))).astype(np.int64), 2 * count)
     level = scenario.run.fidelity == "channel"
@@ -147,15 +146,15 @@ def _hold(scenario: Scenario, step_s: float) -> int:
     return 1 if log.kind != "log" else max(1, round(1.0 / (log.rate_hz * step_s)))
 
 
-def _served(scenario: Scenario, step_s: float, steps: int) -> np.ndarray:
+def _served(scenario: Scenario, truth: Truth, step_s: float, steps: int) -> np.ndarray:
     """Whether the law has a log at each call; one value where that never changes."""
     log = scenario.reference
-    if log.kind != "log" or not log.outage:
+    if log.kind != "log" or not log.interrupted:
         return np.full(1, log.kind != "none")
     interval = max(1.0, log.rate_hz * step_s) / log.rate_hz
     t = np.arange(steps + 1) * step_s
     epoch = np.floor(t / interval + 1e-9) * interval
-    return in_service(log.outage, epoch) & (t - epoch <= hold_time(interval))
+    return log_works(log, truth, epoch) & (t - epoch <= hold_time(interval))
 
 
 def _edges(

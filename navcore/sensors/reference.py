@@ -75,11 +75,22 @@ class Reference(_Errors):
     The simulated log (``kind = "log"``) reads, in its own axes,
     ``(1 + scale) (V - V_water) + bias + drift + noise``, rounded to ``lsb_mps``, with V and the velocity of
     the water ``V_water`` (current and tide) taken ``delay_s`` earlier; events are added to that. The recorded
-    one (``kind = "file"``) uses only ``file``, ``speed``, ``frame``, ``event`` and ``outage``.
+    one (``kind = "file"``) uses only ``file``, ``speed``, ``frame``, ``event``, ``outage`` and
+    ``min_speed_mps``.
     """
 
     outage: tuple[Outage, ...] = Field(
         default=(), max_length=200, description="Times without log, [[reference.outage]]."
+    )
+    min_speed_mps: float = quantity(
+        0.0,
+        unit="m/s",
+        ge=0.0,
+        le=50.0,
+        slider=(0.0, 3.0),
+        label="valid from",
+        help="The log gives nothing while the ship is slower than this through the water (a recorded log: "
+        "while its reading is below this).",
     )
     file: FileName | tuple[FileName, ...] | None = Field(
         default=None,
@@ -96,6 +107,11 @@ class Reference(_Errors):
     def all_parts(self) -> tuple[LogPart, ...]:
         """Contributions of all terms, whether they do anything or not."""
         return _parts_of(self)  # pyright: ignore[reportArgumentType]
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether the log can fail within a run."""
+        return bool(self.outage) or self.min_speed_mps > 0.0
 
     @property
     def white(self) -> float:

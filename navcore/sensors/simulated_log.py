@@ -23,6 +23,21 @@ def hold_time(interval_s: float) -> float:
     return max(3.0 * interval_s, SHORTEST_HOLD_S)
 
 
+def log_works(reference: Reference, truth: Truth, time_s: np.ndarray) -> np.ndarray:
+    """Whether a simulated log gives anything at each time (m,): no outage, and fast enough through the water.
+
+    Returns
+    -------
+    ndarray of bool, shape (m,)
+    """
+    works = in_service(reference.outage, time_s)
+    if reference.min_speed_mps > 0.0:
+        water = _Log(reference.all_parts(), False).water(time_s)
+        through = horizontal_state(truth, time_s)[0] - water
+        works &= np.hypot(through[:, 0], through[:, 1]) >= reference.min_speed_mps
+    return works
+
+
 def simulated_errors(
     reference: Reference,
     truth: Truth,
@@ -70,7 +85,7 @@ def simulated_errors(
         time_s=time_s,
         # A copy: one that may not be written to would make numba compile the kernels a second time.
         error=np.array(np.broadcast_to(error, (time_s.size, 2)), order="C"),
-        valid=in_service(reference.outage, time_s),
+        valid=log_works(reference, truth, time_s),
         body_frame=log.body_frame,
         hold_s=hold_time(interval),
     )
