@@ -92,6 +92,16 @@ class Reference(_Errors):
         help="The log gives nothing while the ship is slower than this through the water (a recorded log: "
         "while its reading is below this).",
     )
+    zero_below_mps: float = quantity(
+        0.0,
+        unit="m/s",
+        ge=0.0,
+        le=5.0,
+        slider=(0.0, 0.5),
+        label="moored below",
+        help="While the ship is slower than this over the ground, the reference is the velocity zero instead "
+        "of the log, whose errors and outages then do not count: a moored ship knows it. 0 for never.",
+    )
     file: FileName | tuple[FileName, ...] | None = Field(
         default=None,
         description="Recorded log: NMEA 0183 (VBW, VHW, VTG, RMC), CSV, Parquet or MAT; several files are "

@@ -55,7 +55,7 @@ def _advance(
         read_log(k * h, x, log_inputs.v_e, log_inputs.v_n, log, s)
         fill_turn(true[PITCH], true[ROLL], true[HEADING], f.turn)
         if s.epoch != before and s.valid:
-            update(model, s.difference[E], s.difference[N], log_inputs.v_e, log_inputs.v_n, f)
+            update(model, s.epoch, s.difference[E], s.difference[N], log_inputs.v_e, log_inputs.v_n, f)
             d = f.found
             x = Errors(
                 x.dv_e - d[0], x.dv_n - d[1], x.d_lat - d[2], x.d_lon - d[3],
