@@ -28,14 +28,14 @@ from navcore.motion.course import (
 )
 from navcore.motion.kinematics import COURSE, Kinematics
 from navcore.motion.leg import FASTEST, SLOWEST, Change, Leg, change_of_heading, change_of_speed
-from navcore.motion.static import AttitudeMotion
+from navcore.motion.seagoing import SeagoingMotion
 from navcore.motion.truth import Site, Truth
 
 MOST_LEGS = 10_000
 """Legs that a motion runs at most, all rounds together."""
 
 
-class LegsMotion(AttitudeMotion):
+class LegsMotion(SeagoingMotion):
     """Legs one after the other; pitch and roll are constant, the vehicle moves along its heading.
 
     The speed of the first leg is the initial speed (0 if it names none), its heading the initial heading
@@ -83,7 +83,7 @@ class LegsMotion(AttitudeMotion):
 
     @model_validator(mode="after")
     def _possible(self) -> LegsMotion:
-        faults = list(self.faults())
+        faults = list(self.faults()) or list(self.sea_faults())
         if faults:
             raise InputError(faults)
         return self
@@ -204,9 +204,7 @@ class LegsMotion(AttitudeMotion):
                 )
             ) from None
 
-    def truth(
-        self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
-    ) -> Truth:
+    def calm_truth(self, count: int, step_s: float, site: Site, earth: Earth) -> Truth:
         """Return the true motion at ``count`` times 0, step_s, ...; shape (count, 15), or (1, 15) at rest.
 
         The position is within 0.01 mm of an exact integration over 24 h, whatever the step. Heading and
@@ -225,16 +223,18 @@ class LegsMotion(AttitudeMotion):
         pitch, roll = self.pitch_deg * DEG, self.roll_deg * DEG
         return Truth(step_s, sample_course(course, count, step_s, pitch, roll, site.height))
 
-    def kinematics(
-        self, end_s: float, site: Site, earth: Earth, start_utc: float | None = None
-    ) -> Kinematics:
+    def changes(self) -> np.ndarray:
+        """Return the table of the legs."""
+        return self.table()
+
+    def calm_kinematics(self, end_s: float, site: Site, earth: Earth) -> Kinematics:
         """Return legs, position nodes and the constant pitch and roll."""
         course = self.course(end_s, site, earth)
         return Kinematics(
             COURSE, self.rest_row(site)[0], legs=askable_before_start(course.legs), nodes=course.nodes
         )
 
-    def frequencies(self) -> Iterator[tuple[str, float]]:
+    def calm_frequencies(self) -> Iterator[tuple[str, float]]:
         """Yield one over the shortest change of each leg."""
         shortest: dict[int, float] = {}
         for (_, number), row in zip(self._sequence(), self.table(), strict=True):
