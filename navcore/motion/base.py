@@ -54,14 +54,16 @@ class MotionParameters(Entry, ABC):
         The motion is read from files: `streams` gives what they hold.
     carries_recorded_imu : bool
         The motion can stand beside a recorded IMU, whose own motion is not known.
-    dives : bool
-        Its mean height changes.
     """
 
     recorded: ClassVar[bool] = False
     carries_recorded_imu: ClassVar[bool] = False
-    dives: ClassVar[bool] = False
     kind: Any  # a Literal in each subclass
+
+    @property
+    def dives(self) -> bool:
+        """Whether the vehicle leaves the height of the site for a depth."""
+        return False
 
     @abstractmethod
     def truth(

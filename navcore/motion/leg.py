@@ -13,6 +13,8 @@ DEFAULT_TURN_RATE_DPS = 1.0
 """Mean turn rate of a change of heading when none is given, deg/s."""
 SLOWEST, FASTEST = -50.0, 500.0
 """Range of speeds, m/s; negative is astern."""
+DEFAULT_DIVE = 0.5
+"""Mean vertical speed of a change of depth when none is given, m/s."""
 _SAME_HEADING_DEG = 1e-6
 
 
@@ -79,6 +81,26 @@ class Leg(Parameters):
         "reach, at turn_dps (mean) if given, else by the shorter way at a mean of 1 °/s.",
     )
 
+    depth_m: float | None = quantity(
+        None,
+        unit="m",
+        ge=0.0,
+        le=12000.0,
+        slider=(0.0, 500.0),
+        label="depth",
+        help="First leg: the initial depth below the height of the site, 0 if it names none. Later legs: the "
+        "depth to reach, at dive_mps.",
+    )
+    dive_mps: float | None = quantity(
+        None,
+        unit="m/s",
+        gt=0.0,
+        le=20.0,
+        slider=(0.05, 3.0),
+        label="dive",
+        help="Mean vertical speed of a change of depth, up or down, else 0.5 m/s; its peak is twice that.",
+    )
+
     @property
     def speed(self) -> float | None:
         """Speed in m/s, None when the leg names none."""
@@ -91,7 +113,7 @@ class Leg(Parameters):
 
 
 class Change(NamedTuple):
-    """Change of speed (m/s) or heading (rad), the time it takes (s), and what is wrong with it."""
+    """Change of speed (m/s), heading (rad) or depth (m), the time it takes (s), and what is wrong with it."""
 
     amount: float
     time_s: float
@@ -114,6 +136,21 @@ def change_of_speed(leg: Leg, speed: float) -> Change:
         rate=rate,
     )
     return _fitted(leg, amount, rate, what, leg.speed_field)
+
+
+def change_of_depth(leg: Leg, depth: float) -> Change:
+    """Change of depth that a leg asks for, from a depth in m."""
+    amount = 0.0 if leg.depth_m is None else leg.depth_m - depth
+    if amount == 0.0:
+        return Change(0.0, 0.0)
+    rate = DEFAULT_DIVE if leg.dive_mps is None else leg.dive_mps
+    what = Text(
+        "the change from {depth:g} to {depth_2:g} m at a mean of {rate:g} m/s",
+        depth=depth,
+        depth_2=leg.depth_m,
+        rate=rate,
+    )
+    return _fitted(leg, amount, rate, what, "depth_m")
 
 
 def change_of_heading(leg: Leg, heading_deg: float) -> Change:

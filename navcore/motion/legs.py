@@ -27,7 +27,15 @@ from navcore.motion.course import (
     sample_course,
 )
 from navcore.motion.kinematics import COURSE, Kinematics
-from navcore.motion.leg import FASTEST, SLOWEST, Change, Leg, change_of_heading, change_of_speed
+from navcore.motion.leg import (
+    FASTEST,
+    SLOWEST,
+    Change,
+    Leg,
+    change_of_depth,
+    change_of_heading,
+    change_of_speed,
+)
 from navcore.motion.seagoing import SeagoingMotion
 from navcore.motion.truth import Site, Truth
 
@@ -45,7 +53,7 @@ class LegsMotion(SeagoingMotion):
     ``turn_dps`` without a speed or heading to reach acts over the whole leg. A change that does not end
     within its leg is a fault. After the last leg speed and heading stay. With ``repeat`` the legs are run
     again and again; from the second round on the first leg is one like the others, whose speed and heading
-    are reached.
+    are reached. A change of depth (``depth_m``) leaves the pitch and the speed over the ground as they are.
 
     Every change follows tau - sin(2 pi tau)/(2 pi): acceleration and turn rate are raised cosines,
     continuous, with a peak of twice the mean. While turning the vehicle keeps its speed,
@@ -165,7 +173,7 @@ class LegsMotion(SeagoingMotion):
         speed = first.speed or 0.0
         heading = (self.heading_deg if first.heading_deg is None else first.heading_deg) * DEG
         rows = []
-        for start, _, _, (faster, turned) in self._resolved():
+        for start, _, _, (faster, turned, _) in self._resolved():
             rows.append(
                 [
                     start,
@@ -223,6 +231,31 @@ class LegsMotion(SeagoingMotion):
         pitch, roll = self.pitch_deg * DEG, self.roll_deg * DEG
         return Truth(step_s, sample_course(course, count, step_s, pitch, roll, site.height))
 
+    @property
+    def dives(self) -> bool:
+        """Whether any leg is below the height of the site."""
+        return any(leg.depth_m for leg in self.leg)
+
+    def depths(self) -> np.ndarray:
+        """Start (s), depth and its change (m) and the time it takes (s) of each leg that is run, (m, 4)."""
+        rows, depth = [], self.leg[0].depth_m or 0.0
+        for start, _, _, (_, _, dived) in self._resolved():
+            rows.append((start, depth, dived.amount, dived.time_s))
+            depth += dived.amount
+        return np.array(rows)
+
+    def depth_at(self, t_s: np.ndarray) -> np.ndarray:
+        """Depth at times (n,), m; shape (n,). A change follows tau - sin(2 pi tau)/(2 pi)."""
+        table = self.depths()
+        leg = table[np.maximum(np.searchsorted(table[:, 0], t_s, side="right") - 1, 0)]
+        tau = np.clip((t_s - leg[:, 0]) / np.maximum(leg[:, 3], 1e-6), 0.0, 1.0)
+        return leg[:, 1] + leg[:, 2] * (tau - np.sin(2.0 * np.pi * tau) / (2.0 * np.pi))
+
+    def shortest_dive_s(self) -> float:
+        """Return the shortest time of a change of depth, s; inf where there is none."""
+        times = self.depths()[:, 3]
+        return float(times[times > 0.0].min(initial=np.inf))
+
     def changes(self) -> np.ndarray:
         """Return the table of the legs."""
         return self.table()
@@ -244,14 +277,18 @@ class LegsMotion(SeagoingMotion):
         for number, time in sorted(shortest.items()):
             yield f"leg.{number}", 1.0 / time
 
-    def _resolved(self) -> Iterator[tuple[float, int, float, tuple[Change, Change]]]:
-        """Start and number of each leg that is run, its final speed, its changes of speed and heading."""
+    def _resolved(self) -> Iterator[tuple[float, int, float, tuple[Change, Change, Change]]]:
+        """Start and number of each leg that is run, its final speed, its changes of speed, heading, depth."""
         first = self.leg[0]
         speed = first.speed or 0.0
         heading_deg = self.heading_deg if first.heading_deg is None else first.heading_deg
-        given = first.model_copy(update={"speed_mps": None, "speed_kn": None, "heading_deg": None})
+        depth = first.depth_m or 0.0
+        initial = ("speed_mps", "speed_kn", "heading_deg", "depth_m")
+        given = first.model_copy(update=dict.fromkeys(initial))
         for place, (start, number) in enumerate(self._sequence()):
             goal = self.leg[number] if place else given
             faster, turned = change_of_speed(goal, speed), change_of_heading(goal, heading_deg)
+            dived = change_of_depth(goal, depth)
             speed, heading_deg = speed + faster.amount, heading_deg + turned.amount / DEG
-            yield start, number, speed, (faster, turned)
+            depth += dived.amount
+            yield start, number, speed, (faster, turned, dived)

@@ -62,6 +62,10 @@ class SeagoingMotion(AttitudeMotion):
         """Depth below the height of the site at times (n,), m; shape (n,)."""
         return np.zeros(t_s.size)
 
+    def shortest_dive_s(self) -> float:
+        """Return the shortest time of a change of depth, s; inf where there is none."""
+        return math.inf
+
     @property
     def rough(self) -> bool:
         """Whether there are waves."""
@@ -148,7 +152,7 @@ class Voyage(SampledMotion):
         """Return the shortest period of waves and changes, s."""
         times = self.motion.changes()[:, [SPEED_TIME, COURSE_TIME]]
         waves = [1.0 / frequency for _, frequency in self.motion.frequencies()]
-        return min([*times[times > 0.0], *waves], default=math.inf)
+        return min([self.motion.shortest_dive_s(), *times[times > 0.0], *waves])
 
     def path(self, t_s: np.ndarray, site: Site, earth: Earth) -> np.ndarray:
         """Return the course's position and attitude with what the sea adds; steady before t = 0."""
