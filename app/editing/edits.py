@@ -266,8 +266,11 @@ def _place(data: Any, path: Path, value: Any) -> None:
 
 WHERE = "pasted text"
 """Name that faults give the pasted text."""
-DISTURBANCES = ("event", "outage")
-_ALLOWED = "must be [[method]], [[reference.event]] or [[reference.outage]]; open a whole scenario as a file"
+DISTURBANCES = ("event", "outage", "current")
+_ALLOWED = (
+    "must be [[method]], [[reference.event]], [[reference.outage]] or [[reference.current]]; open a whole "
+    "scenario as a file"
+)
 
 
 @dataclass(frozen=True)
@@ -295,7 +298,7 @@ def method_toml(scenario: Scenario, index: int) -> str:
 
 
 def disturbances_toml(scenario: Scenario) -> str:
-    """All events and outages of the log, as blocks ``[[reference.event]]`` and ``[[reference.outage]]``."""
+    """All events, outages and passing currents of the log, as blocks such as ``[[reference.event]]``."""
     reference = scenario.canonical()["reference"]
     return blocks_to_toml({"reference": {name: reference.get(name, []) for name in DISTURBANCES}}).lstrip()
 
@@ -350,6 +353,8 @@ def paste(scenario: Scenario, selected: int, text: str) -> Pasted:
         said.append(Text("log events: {event}", event=len(made.reference.event)))
     if "outage" in reference:
         said.append(Text("log outages: {outage}", outage=len(made.reference.outage)))
+    if reference.get("current"):
+        said.append(Text("currents: {current}", current=len(made.reference.current)))
     return Pasted(made, at, ", ".join(said))
 
 

@@ -30,6 +30,7 @@ from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import RANDOM_SOURCES, StochasticModel
 
+_LOG_WHITE, _LOG_DRIFT = (RANDOM_SOURCES.index(source) for source in ("log_white", "log_drift"))
 _STATES = np.array([4, 5, 6, 0, 1, 2, 3])
 
 
@@ -104,6 +105,7 @@ def _with_stages(course: Course, stage: np.ndarray) -> tuple[Course, np.ndarray]
         kind=kind.reshape(-1),
         length=course.length[old],
         served=course.served[old],
+        moored=course.moored[old],
         half=course.half[old],
     )
     return apart, pairs[:, 1]
@@ -160,6 +162,9 @@ def _tables(loops: list[LoopModel], stage: np.ndarray, model: StochasticModel, c
         interval = interval_map(loop, course.half[of], calls, bool(damped))
         Phi[of], B[of], G[of], decay[of] = interval.Phi, interval.B, interval.G, interval.decay
         Q[of] = interval_noise(loop, model, mean, calls, bool(damped)).Q
+    for k in (_LOG_WHITE, _LOG_DRIFT):  # a moored ship does not read its log
+        Q[course.moored, k, :n, :] = 0.0
+        Q[course.moored, k, :, :n] = 0.0
     works = served[course.kind]
     engaged = works & ~np.concatenate([works[:1], works[:-1]])
     return _Tables(Phi, B, G, decay, Q, engaged)
@@ -209,6 +214,8 @@ def _joint(
         inputs = INPUTS_OF[s]
         to_navigation, width = axes[inputs.start], inputs.stop - inputs.start
         A[:, s, :n, own] = tables.G[kind][:, :, inputs] @ to_navigation
+        if s == _LOG_DRIFT:
+            A[course.moored[kind], s, :n, own] = 0.0
         left = tables.decay[kind, inputs.start]
         A[:, s, range(n, n + AXES), range(n, n + AXES)] = left[:, None]
         # the drift lives in body axes: x stays, the covariance with the drift is turned back

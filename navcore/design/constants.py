@@ -71,7 +71,7 @@ def own_columns(method: Method, course: Course, loop: LoopModel) -> Iterator[Col
     """Responses of one method: its own log events, and what its law makes of the ship's manoeuvres."""
     if method.event and loop.form.uses_log:
         t = np.arange(course.edges[-1] + 1) * course.step_s
-        yield _column("log_events", LOG, course.means(t, event_velocity(method.event, t)))
+        yield _column("log_events", LOG, course.log_counts * course.means(t, event_velocity(method.event, t)))
     if loop.form.self_referenced or loop.form.as_printed:
         yield _column("motion", MOTION, -course.velocity)
 
@@ -120,7 +120,7 @@ def _known_parts(scenario: Scenario, course: Course) -> Iterator[Column]:
 def _log_bias(scenario: Scenario, course: Course, model: StochasticModel) -> Iterator[Column]:
     axes = log_axes(scenario.reference.frame == "body", course.turn.reshape(-1, 3, 3))
     for axis in range(2):
-        yield _column("log_bias", LOG, axes[:, :, axis] * model.log_bias[axis])
+        yield _column("log_bias", LOG, course.log_counts * axes[:, :, axis] * model.log_bias[axis])
 
 
 def _log_shapes(scenario: Scenario, course: Course) -> Iterator[Column]:
@@ -132,4 +132,4 @@ def _log_shapes(scenario: Scenario, course: Course) -> Iterator[Column]:
         for element in part.elements():
             quiet = Reference(kind="log", frame=log.frame, rate_hz=log.rate_hz)
             errors = simulated_errors(quiet, course.truth, end_s, 0, course.step_s, (element,))
-            yield _column(part.source, LOG, course.means(errors.time_s, errors.error))
+            yield _column(part.source, LOG, course.log_counts * course.means(errors.time_s, errors.error))

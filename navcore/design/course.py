@@ -14,8 +14,7 @@ from navcore.engine.environment import coefficients_of, truth_of
 from navcore.mechanization.trajectory import COLUMNS, named, table_of
 from navcore.motion.truth import HEADING, PITCH, ROLL, VE, VN, Truth
 from navcore.scenario.model import Scenario
-from navcore.sensors.reference import in_service
-from navcore.sensors.simulated_log import hold_time
+from navcore.sensors.simulated_log import hold_time, log_works, moored
 
 MOST_INTERVALS = 1440
 """Of a run: a minute each of a day. Shorter runs have one an output row."""
@@ -44,6 +43,8 @@ class Course:
         Calls in an interval of each kind.
     served : ndarray of bool, shape (g,)
         Whether the log works in it.
+    moored : ndarray of bool, shape (g,)
+        Whether the velocity zero of a moored ship stands in the place of the log.
     half : ndarray, shape (g, COLUMNS)
         Mean coefficients, columns of `navcore.mechanization.trajectory`.
     turn : ndarray, shape (k, 9)
@@ -64,12 +65,18 @@ class Course:
     kind: np.ndarray
     length: np.ndarray
     served: np.ndarray
+    moored: np.ndarray
     half: np.ndarray
     turn: np.ndarray
     velocity: np.ndarray
     metres: np.ndarray
     truth: Truth
     truth_step_s: float
+
+    @property
+    def log_counts(self) -> np.ndarray:
+        """1 for each interval in which the log's errors count, 0 while the ship is moored; shape (k, 1)."""
+        return 1.0 - self.moored[self.kind][:, None]
 
     @property
     def t_s(self) -> np.ndarray:
@@ -113,18 +120,21 @@ def course(scenario: Scenario, most: int = MOST_INTERVALS, extra_s: tuple[float,
     """
     step_s, steps = law_steps(scenario)
     hold = _hold(scenario, step_s)
-    served = _served(scenario, step_s, steps)
-    edges = _edges(scenario, step_s, steps, hold, most, served, extra_s)
     truth_step = scenario.run.step_s if not scenario.strapdown else min(scenario.sampling.record_step_s, 1.0)
     count = max(1, math.ceil(steps * step_s / truth_step - 1e-9))
     truth = truth_of(scenario, count, truth_step)
+    served, still = _served(scenario, truth, step_s, steps)
+    edges = _edges(scenario, step_s, steps, hold, most, served + 2 * still, extra_s)
     half = table_of(coefficients_of(scenario, count, truth_step).half)
     places = np.minimum(np.rint(edges * (step_s / (0.5 * truth_step))).astype(np.int64), 2 * count)
     level = scenario.run.fidelity == "channel"
     turns = np.eye(3).reshape(1, 9) if level else _attitudes(truth.values)
     mean_half, turn = _means(half, places), _means(turns, places)
-    states = served[edges[:-1]] if len(served) > 1 else np.full(len(edges) - 1, served[0])
-    kinds, kind = _kinds(mean_half, turn, np.diff(edges), states)
+    works, lies = (
+        state[edges[:-1]] if len(state) > 1 else np.full(len(edges) - 1, state[0])
+        for state in (served, still)
+    )
+    kinds, kind = _kinds(mean_half, turn, np.diff(edges), works + 2 * lies)
     at_edges = half[places] if len(half) > 1 else np.broadcast_to(half, (len(edges), COLUMNS))
     return Course(
         step_s=step_s,
@@ -132,7 +142,8 @@ def course(scenario: Scenario, most: int = MOST_INTERVALS, extra_s: tuple[float,
         edges=edges,
         kind=kind,
         length=np.diff(edges)[kinds],
-        served=states[kinds],
+        served=works[kinds],
+        moored=lies[kinds],
         half=_mean_of_kinds(mean_half, kind, len(kinds)),
         turn=turn,
         velocity=_means(truth.values[:, [VE, VN]], places),
@@ -147,15 +158,16 @@ def _hold(scenario: Scenario, step_s: float) -> int:
     return 1 if log.kind != "log" else max(1, round(1.0 / (log.rate_hz * step_s)))
 
 
-def _served(scenario: Scenario, step_s: float, steps: int) -> np.ndarray:
-    """Whether the law has a log at each call; one value where that never changes."""
+def _served(scenario: Scenario, truth: Truth, step_s: float, steps: int) -> tuple[np.ndarray, np.ndarray]:
+    """Whether the law has a reference at each call, and whether that of a moored ship; one value for all."""
     log = scenario.reference
-    if log.kind != "log" or not log.outage:
-        return np.full(1, log.kind != "none")
+    if log.kind != "log" or not (log.interrupted or log.zero_below_mps > 0.0):
+        return np.full(1, log.kind != "none"), np.zeros(1, dtype=bool)
     interval = max(1.0, log.rate_hz * step_s) / log.rate_hz
     t = np.arange(steps + 1) * step_s
     epoch = np.floor(t / interval + 1e-9) * interval
-    return in_service(log.outage, epoch) & (t - epoch <= hold_time(interval))
+    still = np.array(np.broadcast_to(moored(log, truth, epoch), epoch.size))
+    return (log_works(log, truth, epoch) | still) & (t - epoch <= hold_time(interval)), still
 
 
 def _edges(
@@ -164,12 +176,12 @@ def _edges(
     steps: int,
     hold: int,
     most: int,
-    served: np.ndarray,
+    state: np.ndarray,
     extra_s: tuple[float, ...],
 ) -> np.ndarray:
     width = max(scenario.run.output_step_s, steps * step_s / most)
     every = max(1, round(width / (step_s * hold))) * hold
-    changes = np.flatnonzero(np.diff(served)) + 1 if len(served) > 1 else np.zeros(0, dtype=np.int64)
+    changes = np.flatnonzero(np.diff(state)) + 1 if len(state) > 1 else np.zeros(0, dtype=np.int64)
     extra = np.rint(np.array(extra_s) / step_s).astype(np.int64)
     regular = np.arange(0, steps, every)
     edges = np.unique(np.concatenate([regular, changes, extra[extra < steps], [steps]]))
@@ -216,10 +228,10 @@ def _means(rows: np.ndarray, places: np.ndarray) -> np.ndarray:
 
 
 def _kinds(
-    half: np.ndarray, turn: np.ndarray, length: np.ndarray, served: np.ndarray
+    half: np.ndarray, turn: np.ndarray, length: np.ndarray, state: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """First interval of each kind, and the kind of each interval."""
-    key = np.column_stack([np.rint(half / _TOLERANCES), np.rint(turn / _ANGLE), length, served])
+    key = np.column_stack([np.rint(half / _TOLERANCES), np.rint(turn / _ANGLE), length, state])
     _, first, kind = np.unique(key.astype(np.int64), axis=0, return_index=True, return_inverse=True)
     return first, kind.reshape(-1)
 

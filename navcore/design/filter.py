@@ -80,12 +80,14 @@ def filter_variance(scenario: Scenario, course: Course, model: StochasticModel) 
     sensors = _Sensors(scenario, course, model)
     pairs, places = _pairs(course)
     kinds, turns = course.kind[pairs], course.turn[pairs].reshape(-1, 3, 3)
-    half, length, served = course.half[kinds], course.length[kinds], course.served[kinds]
+    half, length = course.half[kinds], course.length[kinds]
+    served, moored = course.served[kinds], course.moored[kinds]
     n = sensors.size
     whole = RiccatiMap(*np.zeros((3, len(pairs), n, n)))
-    for calls, works in {(int(m), bool(d)) for m, d in zip(length, served, strict=True)}:
-        of = np.flatnonzero((length == calls) & (served == works))
-        interval = _interval(sensors, half[of], turns[of], calls, works)
+    alike = np.column_stack([length, served, moored])
+    for calls, works, still in np.unique(alike, axis=0).tolist():
+        of = np.flatnonzero((alike == (calls, works, still)).all(axis=1))
+        interval = _interval(sensors, half[of], turns[of], calls, bool(works), bool(still))
         whole.A[of], whole.C[of], whole.J[of] = interval.A, interval.C, interval.J
     P = sensors.start
     out = np.empty((len(course.edges), len(COMPONENTS)))
@@ -147,13 +149,20 @@ class _Sensors:
         return len(self.units)
 
 
-def _interval(sensors: _Sensors, half: np.ndarray, turns: np.ndarray, calls: int, works: bool) -> RiccatiMap:
-    fresh = _one_call(sensors, half, turns, works)
+def _interval(
+    sensors: _Sensors, half: np.ndarray, turns: np.ndarray, calls: int, works: bool, still: bool
+) -> RiccatiMap:
+    fresh = _one_call(sensors, half, turns, works, still)
     return calls_joined(fresh, lambda: _one_call(sensors, half, turns, False), calls, sensors.course.hold)
 
 
-def _one_call(sensors: _Sensors, half: np.ndarray, turns: np.ndarray, works: bool) -> RiccatiMap:
-    """Update with the log where there is a sample, then a step of the undamped model."""
+def _one_call(
+    sensors: _Sensors, half: np.ndarray, turns: np.ndarray, works: bool, still: bool = False
+) -> RiccatiMap:
+    """Update with the log, or the zero of a ship that lies still, where there is a sample.
+
+    Then comes a step of the undamped model.
+    """
     model, scenario, h = sensors.model, sensors.scenario, sensors.course.step_s
     g, n = len(half), sensors.size
     transition, integral = error_step(half, h)
@@ -164,7 +173,7 @@ def _one_call(sensors: _Sensors, half: np.ndarray, turns: np.ndarray, works: boo
     seen[:, 0, 0] = seen[:, 1, 1] = 1.0
     body = scenario.reference.frame == "body"
     axes = log_axes(body, turns)
-    if body:
+    if body and not still:
         seen[:, 0, 6], seen[:, 1, 6] = -named(half)["v_n"], named(half)["v_e"]
     A, Q = np.zeros((2, g, n, n))
     A[:, :ERRORS, :ERRORS] = transition
@@ -172,7 +181,7 @@ def _one_call(sensors: _Sensors, half: np.ndarray, turns: np.ndarray, works: boo
     for name, at, width, *drift in (*sensors.biases, *sensors.drifts):
         own = slice(at, at + width)
         if name == "log":
-            seen[:, :, own] -= axes
+            seen[:, :, own] -= 0.0 if still else axes
         else:
             A[:, :ERRORS, own] = into[name] @ (turns if name == "gyro" else turns[:, :2])
         if drift:
@@ -185,6 +194,8 @@ def _one_call(sensors: _Sensors, half: np.ndarray, turns: np.ndarray, works: boo
     ):
         Q[:, :ERRORS, :ERRORS] += density * into[name] @ into[name].mT
     noise = max(model.figures.log_noise**2 / max(1.0, model.figures.log_rate_hz * h), _LEAST_NOISE**2)
+    if still:
+        noise = scenario.reference.zero_below_mps**2
     s = sensors.units
     A, Q, seen = A / s[:, None] * s, Q / s[:, None] / s, seen * s
     J = seen.mT @ seen / noise if works else np.zeros((g, n, n))

@@ -32,9 +32,9 @@ def no_covariance(scenario: Scenario, method: Method) -> str:
         return Text('policy "{id}" looks at the data', id=method.policy.id)
     if method.policy.id == "schedule" and realisation_of(kind.law, kind.network(method)) != "feedback":
         return 'policy "schedule" is followed in advance only with network.realisation = "feedback"'
-    if method.policy.id == "schedule" and scenario.reference.outage:
+    if method.policy.id == "schedule" and scenario.reference.interrupted:
         return 'policy "schedule" begins anew after each outage of the log'
-    outages = bool(scenario.reference.outage) and kind.referenced
+    outages = scenario.reference.interrupted and kind.referenced
     if method.switching.id == "hard" or (method.switching.id == "keep" and not outages):
         return ""
     return Text('switching "{id}" acts on what was measured before', id=method.switching.id)

@@ -18,7 +18,7 @@ does, `unity2` does not.
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import chain, count
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -184,7 +184,9 @@ def _unit_errors(scenario: Scenario, settings: TuningSettings) -> Iterator[Scena
     """Scenarios in which nothing errs but the log, by an RMS of 1 m/s over both axes."""
     base = _base(scenario)
     own = base.reference
-    log = {"kind": "log", "outage": own.outage, "rate_hz": own.rate_hz, "frame": own.frame}
+    log: dict[str, Any] = {
+        name: getattr(own, name) for name in ("outage", "min_speed_mps", "rate_hz", "frame")
+    } | {"kind": "log"}
     silent = base.model_copy(update={"imu": Imu(), "initial_error": InitialError()})
     if settings.error == "constant":
         for bias in ((1.0, 0.0), (0.0, 1.0)):  # their mean is that over all directions

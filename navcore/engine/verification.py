@@ -196,7 +196,8 @@ def _gathered(log: ReferenceErrors, step_s: float) -> ReferenceErrors:
     whole = len(log.time_s) // many
     first = np.arange(whole) * many
     means = log.error[: whole * many].reshape(whole, many, 2).mean(axis=1)
-    return ReferenceErrors(log.time_s[first], means, log.valid[first], log.body_frame, log.hold_s)
+    kept = log.moored[first] if log.moored.size else log.moored
+    return replace(log, time_s=log.time_s[first], error=means, valid=log.valid[first], moored=kept)
 
 
 def _differences(full: MethodRun, simple: MethodRun) -> dict[str, Difference]:

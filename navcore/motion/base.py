@@ -60,6 +60,11 @@ class MotionParameters(Entry, ABC):
     carries_recorded_imu: ClassVar[bool] = False
     kind: Any  # a Literal in each subclass
 
+    @property
+    def dives(self) -> bool:
+        """Whether the vehicle leaves the height of the site for a depth."""
+        return False
+
     @abstractmethod
     def truth(
         self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None

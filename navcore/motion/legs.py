@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -13,8 +12,7 @@ from navcore.foundation.earth import Earth
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import quantity
 from navcore.foundation.text import Text
-from navcore.foundation.times import EitherUnit
-from navcore.foundation.units import DEG, HOUR, KNOT
+from navcore.foundation.units import DEG, HOUR
 from navcore.motion.course import (
     COURSE,
     COURSE_CHANGE,
@@ -32,101 +30,23 @@ from navcore.motion.course import (
 )
 from navcore.motion.kinematics import COURSE as BY_COURSE
 from navcore.motion.kinematics import Kinematics
-from navcore.motion.static import AttitudeMotion
+from navcore.motion.leg import (
+    FASTEST,
+    SLOWEST,
+    Change,
+    Leg,
+    change_of_depth,
+    change_of_heading,
+    change_of_speed,
+)
+from navcore.motion.seagoing import SeagoingMotion
 from navcore.motion.truth import Site, Truth
 
-DEFAULT_ACCELERATION = 0.1
-"""Mean acceleration of a change of speed when none is given, m/s^2."""
-DEFAULT_TURN_RATE_DPS = 1.0
-"""Mean turn rate of a change of heading when none is given, deg/s."""
-SLOWEST, FASTEST = -50.0, 500.0
-"""Range of speeds, m/s; negative is astern."""
-_SAME_HEADING_DEG = 1e-6
+MOST_LEGS = 10_000
+"""Legs that a motion runs at most, all rounds together."""
 
 
-class Leg(EitherUnit):
-    """One leg of a `legs` motion; a field left out changes nothing."""
-
-    duration_s: float = quantity(
-        3600.0,
-        unit="s",
-        gt=0.0,
-        le=1e7,
-        slider=(60.0, 36000.0),
-        log=True,
-        label="duration",
-        help="Length of the leg; a change must end within it.",
-    )
-    speed_mps: float | None = quantity(
-        None,
-        unit="m/s",
-        ge=SLOWEST,
-        le=FASTEST,
-        slider=(0.0, 20.0),
-        label="speed",
-        help="First leg: the initial speed. Later legs: the speed to reach, at accel_mps2 (mean), else at a "
-        "mean of 0.1 m/s². Negative is astern. Not together with speed_kn.",
-    )
-    speed_kn: float | None = quantity(
-        None,
-        unit="kn",
-        ge=-97.0,
-        le=970.0,
-        slider=(0.0, 40.0),
-        label="speed",
-        help="The same in knots. Not together with speed_mps.",
-    )
-    accel_mps2: float | None = quantity(
-        None,
-        unit="m/s2",
-        ge=-20.0,
-        le=20.0,
-        slider=(-0.5, 0.5),
-        label="acceleration",
-        help="With a speed to reach: the size of the mean acceleration. Alone, or in the first leg: the mean "
-        "acceleration over the whole leg. It rises and falls as a raised cosine, its peak is twice the mean.",
-    )
-    turn_dps: float | None = quantity(
-        None,
-        unit="deg/s",
-        ge=-60.0,
-        le=60.0,
-        slider=(-3.0, 3.0),
-        label="turn rate",
-        help="With a heading to reach: the mean turn rate, whose sign chooses the side. Alone, or in the "
-        "first leg: the mean turn rate over the whole leg, starboard positive. Its peak is twice the mean.",
-    )
-    heading_deg: float | None = quantity(
-        None,
-        unit="deg",
-        ge=-360.0,
-        le=360.0,
-        slider=(0.0, 360.0),
-        label="heading",
-        help="First leg: the initial heading, in place of that of the motion. Later legs: the heading to "
-        "reach, at turn_dps (mean) if given, else by the shorter way at a mean of 1 °/s.",
-    )
-
-    @property
-    def speed(self) -> float | None:
-        """Speed in m/s, None when the leg names none."""
-        return self.speed_kn * KNOT if self.speed_kn is not None else self.speed_mps
-
-    @property
-    def speed_field(self) -> str:
-        """Name of the field that the speed came from."""
-        return "speed_kn" if self.speed_kn is not None else "speed_mps"
-
-
-class _Change(NamedTuple):
-    """Change of speed (m/s) or heading (rad), the time it takes (s), and what is wrong with it."""
-
-    amount: float
-    time_s: float
-    fault: tuple[str, object, str] | None = None
-
-
-class LegsMotion(AttitudeMotion):
+class LegsMotion(SeagoingMotion):
     """Legs one after the other; pitch and roll are constant, the vehicle moves along its heading.
 
     The speed of the first leg is the initial speed (0 if it names none), its heading the initial heading
@@ -134,8 +54,10 @@ class LegsMotion(AttitudeMotion):
     start on: speed at the mean acceleration ``accel_mps2`` (its size; default 0.1 m/s^2), heading by the
     shorter way at 1 deg/s (mean), or at ``turn_dps``, whose sign then chooses the side. ``accel_mps2`` or
     ``turn_dps`` without a speed or heading to reach acts over the whole leg. A change that does not end
-    within its leg is a fault. After the last leg speed and heading stay; a notice
-    says so where the run goes on.
+    within its leg is a fault. After the last leg speed and heading stay; a
+    notice says so where the run goes on. With ``repeat`` the legs are run
+    again and again; from the second round on the first leg is one like the others, whose speed and heading
+    are reached. A change of depth (``depth_m``) leaves the pitch and the speed over the ground as they are.
 
     Every change follows tau - sin(2 pi tau)/(2 pi): acceleration and turn rate are raised cosines,
     continuous, with a peak of twice the mean. While turning the vehicle keeps its speed,
@@ -148,10 +70,32 @@ class LegsMotion(AttitudeMotion):
         max_length=1000,
         description="The legs in their order, [[motion.leg]].",
     )
+    repeat: int = quantity(
+        1, unit="1", ge=1, le=MOST_LEGS, slider=(1, 100), label="rounds", help="How often the legs are run."
+    )
+    repeat_from: int = quantity(
+        0,
+        unit="1",
+        ge=0,
+        le=999,
+        label="rounds from leg",
+        help="With repeat: the leg at which each further round begins, counted from 0. The legs before "
+        "it are run once.",
+    )
+    every_h: float | None = quantity(
+        None,
+        unit="h",
+        gt=0.0,
+        le=10000.0,
+        slider=(0.1, 24.0),
+        label="a round every",
+        help="With repeat: time from the beginning of one round to that of the next; after its last leg the "
+        "vehicle keeps speed and heading until then. Not given: the length of the legs.",
+    )
 
     @model_validator(mode="after")
     def _possible(self) -> LegsMotion:
-        faults = list(self.faults())
+        faults = list(self.faults()) or list(self.sea_faults())
         if faults:
             raise InputError(faults)
         return self
@@ -167,13 +111,48 @@ class LegsMotion(AttitudeMotion):
         for number in twice:
             knots = self.leg[number].speed_kn
             yield Fault("", f"leg.{number}.speed_kn", knots, "give speed_mps or speed_kn, not both")
-        if not twice:
+        rounds = list(self._misplaced_rounds())
+        yield from rounds
+        if not twice and not rounds:
             yield from self._misfits()
 
+    def _misplaced_rounds(self) -> Iterator[Fault]:
+        count = len(self.leg)
+        if self.repeat_from >= count:
+            allowed = Text("must be <= {last}, the number of the last leg", last=count - 1)
+            yield Fault("", "repeat_from", self.repeat_from, allowed)
+            return
+        most = 1 + (MOST_LEGS - count) // (count - self.repeat_from)
+        if self.repeat > most:
+            allowed = Text("must be <= {most}: at most {legs} legs are run", most=most, legs=MOST_LEGS)
+            yield Fault("", "repeat", self.repeat, allowed)
+        length = sum(leg.duration_s for leg in self.leg[self.repeat_from :])
+        if self.repeat > 1 and self.every_h is not None and self.every_h * HOUR < length * (1.0 - 1e-9):
+            allowed = Text(
+                "must be >= {length:g} (h), the length of the legs of a round", length=length / HOUR
+            )
+            yield Fault("", "every_h", self.every_h, allowed)
+
+    def _sequence(self) -> Iterator[tuple[float, int]]:
+        """Start (s) and number of each leg that is run, round after round."""
+        start = again = 0.0
+        for number, leg in enumerate(self.leg):
+            again = start if number == self.repeat_from else again
+            yield start, number
+            start += leg.duration_s
+        every = start - again if self.every_h is None else self.every_h * HOUR
+        for turn in range(1, self.repeat):
+            start = again + turn * every
+            for number in range(self.repeat_from, len(self.leg)):
+                yield start, number
+                start += self.leg[number].duration_s
+
     def _misfits(self) -> Iterator[Fault]:
-        for number, speed, changes in self._resolved():
+        faulty = set()
+        for _, number, speed, changes in self._resolved():
             for change in changes:
-                if change.fault:
+                if change.fault and (number, change.fault[0]) not in faulty:
+                    faulty.add((number, change.fault[0]))
                     field, value, text = change.fault
                     yield Fault("", f"leg.{number}.{field}", value, text)
             if not SLOWEST - 1e-9 <= speed <= FASTEST + 1e-9:
@@ -195,10 +174,10 @@ class LegsMotion(AttitudeMotion):
     def table(self) -> np.ndarray:
         """Legs as numbers, shape (m, 8), columns of `navcore.motion.course`; s, m/s, rad."""
         first = self.leg[0]
-        start, speed = 0.0, first.speed or 0.0
+        speed = first.speed or 0.0
         heading = (self.heading_deg if first.heading_deg is None else first.heading_deg) * DEG
         rows = []
-        for number, _, (faster, turned) in self._resolved():
+        for start, _, _, (faster, turned, _) in self._resolved():
             rows.append(
                 [
                     start,
@@ -211,7 +190,6 @@ class LegsMotion(AttitudeMotion):
                     RAISED_COSINE,
                 ]
             )
-            start += self.leg[number].duration_s
             speed, heading = speed + faster.amount, heading + turned.amount
         return np.array(rows)
 
@@ -229,7 +207,7 @@ class LegsMotion(AttitudeMotion):
             raise InputError(
                 Fault(
                     "",
-                    f"leg.{reached.leg}",
+                    f"leg.{list(self._sequence())[reached.leg][1]}",
                     None,
                     Text(
                         "passes 89.5° of latitude after {time_s:.0f} s: must stay within +-89.5°",
@@ -238,9 +216,7 @@ class LegsMotion(AttitudeMotion):
                 )
             ) from None
 
-    def truth(
-        self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
-    ) -> Truth:
+    def calm_truth(self, count: int, step_s: float, site: Site, earth: Earth) -> Truth:
         """Return the true motion at ``count`` times 0, step_s, ...; shape (count, 15), or (1, 15) at rest.
 
         The position is within 0.01 mm of an exact integration over 24 h, whatever the step. Heading and
@@ -259,21 +235,51 @@ class LegsMotion(AttitudeMotion):
         pitch, roll = self.pitch_deg * DEG, self.roll_deg * DEG
         return Truth(step_s, sample_course(course, count, step_s, pitch, roll, site.height))
 
-    def kinematics(
-        self, end_s: float, site: Site, earth: Earth, start_utc: float | None = None
-    ) -> Kinematics:
+    @property
+    def dives(self) -> bool:
+        """Whether any leg is below the height of the site."""
+        return any(leg.depth_m for leg in self.leg)
+
+    def depths(self) -> np.ndarray:
+        """Start (s), depth and its change (m) and the time it takes (s) of each leg that is run, (m, 4)."""
+        rows, depth = [], self.leg[0].depth_m or 0.0
+        for start, _, _, (_, _, dived) in self._resolved():
+            rows.append((start, depth, dived.amount, dived.time_s))
+            depth += dived.amount
+        return np.array(rows)
+
+    def depth_at(self, t_s: np.ndarray) -> np.ndarray:
+        """Depth at times (n,), m; shape (n,). A change follows tau - sin(2 pi tau)/(2 pi)."""
+        table = self.depths()
+        leg = table[np.maximum(np.searchsorted(table[:, 0], t_s, side="right") - 1, 0)]
+        tau = np.clip((t_s - leg[:, 0]) / np.maximum(leg[:, 3], 1e-6), 0.0, 1.0)
+        return leg[:, 1] + leg[:, 2] * (tau - np.sin(2.0 * np.pi * tau) / (2.0 * np.pi))
+
+    def shortest_dive_s(self) -> float:
+        """Return the shortest time of a change of depth, s; inf where there is none."""
+        times = self.depths()[:, 3]
+        return float(times[times > 0.0].min(initial=np.inf))
+
+    def changes(self) -> np.ndarray:
+        """Return the table of the legs."""
+        return self.table()
+
+    def calm_kinematics(self, end_s: float, site: Site, earth: Earth) -> Kinematics:
         """Return legs, position nodes and the constant pitch and roll."""
         course = self.course(end_s, site, earth)
         return Kinematics(
             BY_COURSE, self.rest_row(site)[0], legs=askable_before_start(course.legs), nodes=course.nodes
         )
 
-    def frequencies(self) -> Iterator[tuple[str, float]]:
+    def calm_frequencies(self) -> Iterator[tuple[str, float]]:
         """Yield one over the shortest change of each leg."""
-        for number, row in enumerate(self.table()):
-            times = [time for time in (row[SPEED_TIME], row[COURSE_TIME]) if time > 0.0]
-            if times:
-                yield f"leg.{number}", 1.0 / min(times)
+        shortest: dict[int, float] = {}
+        for (_, number), row in zip(self._sequence(), self.table(), strict=True):
+            for time in (row[SPEED_TIME], row[COURSE_TIME]):
+                if time > 0.0:
+                    shortest[number] = min(time, shortest.get(number, time))
+        for number, time in sorted(shortest.items()):
+            yield f"leg.{number}", 1.0 / time
 
     def ending(self, end_s: float) -> Iterator[str]:
         """Say when the last leg ends before the run, and that speed and heading stay."""
@@ -292,71 +298,18 @@ class LegsMotion(AttitudeMotion):
             heading=course,
         )
 
-    def _resolved(self) -> Iterator[tuple[int, float, tuple[_Change, _Change]]]:
-        """Number of each leg, the speed at its end, and its changes of speed and heading."""
+    def _resolved(self) -> Iterator[tuple[float, int, float, tuple[Change, Change, Change]]]:
+        """Start and number of each leg that is run, its final speed, its changes of speed, heading, depth."""
         first = self.leg[0]
         speed = first.speed or 0.0
         heading_deg = self.heading_deg if first.heading_deg is None else first.heading_deg
-        for number, leg in enumerate(self.leg):
-            given = leg.model_copy(update={"speed_mps": None, "speed_kn": None, "heading_deg": None})
-            goal = given if number == 0 else leg
-            faster, turned = _change_of_speed(goal, speed), _change_of_heading(goal, heading_deg)
+        depth = first.depth_m or 0.0
+        initial = ("speed_mps", "speed_kn", "heading_deg", "depth_m")
+        given = first.model_copy(update=dict.fromkeys(initial))
+        for place, (start, number) in enumerate(self._sequence()):
+            goal = self.leg[number] if place else given
+            faster, turned = change_of_speed(goal, speed), change_of_heading(goal, heading_deg)
+            dived = change_of_depth(goal, depth)
             speed, heading_deg = speed + faster.amount, heading_deg + turned.amount / DEG
-            yield number, speed, (faster, turned)
-
-
-def _change_of_speed(leg: Leg, speed: float) -> _Change:
-    if leg.speed is None:
-        amount = (leg.accel_mps2 or 0.0) * leg.duration_s
-        return _Change(amount, leg.duration_s if amount else 0.0)
-    amount = leg.speed - speed
-    if amount == 0.0:
-        return _Change(0.0, 0.0)
-    rate = DEFAULT_ACCELERATION if leg.accel_mps2 is None else abs(leg.accel_mps2)
-    what = Text(
-        "the change from {speed:g} to {speed_2:g} m/s at a mean of {rate:g} m/s²",
-        speed=speed,
-        speed_2=leg.speed,
-        rate=rate,
-    )
-    return _fitted(leg, amount, rate, what, leg.speed_field)
-
-
-def _change_of_heading(leg: Leg, heading_deg: float) -> _Change:
-    turn = leg.turn_dps
-    if leg.heading_deg is None:
-        amount = (turn or 0.0) * leg.duration_s * DEG
-        return _Change(amount, leg.duration_s if amount else 0.0)
-    amount = _turn_deg(leg.heading_deg - heading_deg, turn)
-    if amount == 0.0:
-        return _Change(0.0, 0.0)
-    rate = DEFAULT_TURN_RATE_DPS if turn is None else abs(turn)
-    what = Text("the turn by {amount:g}° at a mean of {rate:g} °/s", amount=amount, rate=rate)
-    change = _fitted(leg, amount, rate, what, "heading_deg")
-    return change._replace(amount=amount * DEG)
-
-
-def _turn_deg(difference: float, turn: float | None) -> float:
-    """Turn to a heading: by the shorter way (starboard when both are equal), or to the side of ``turn``."""
-    shorter = difference - 360.0 * math.floor(difference / 360.0 + 0.5)
-    if abs(shorter) < _SAME_HEADING_DEG:
-        return shorter
-    if abs(abs(shorter) - 180.0) < _SAME_HEADING_DEG:
-        shorter = 180.0
-    if turn is not None and turn * shorter < 0.0:
-        return shorter + math.copysign(360.0, turn)
-    return shorter
-
-
-def _fitted(leg: Leg, amount: float, rate: float, what: str, field: str) -> _Change:
-    """Change at a mean rate, with a fault when it does not end within the leg."""
-    if rate * leg.duration_s >= abs(amount) * (1.0 - 1e-9):
-        return _Change(amount, min(abs(amount) / rate, leg.duration_s))
-    takes = Text("takes {amount:.6g} s", amount=abs(amount) / rate) if rate else "never ends"
-    text = Text(
-        "{what} {takes}, but the leg ends after {duration_s:g} s",
-        what=what,
-        takes=takes,
-        duration_s=leg.duration_s,
-    )
-    return _Change(amount, leg.duration_s, (field, getattr(leg, field), text))
+            depth += dived.amount
+            yield start, number, speed, (faster, turned, dived)

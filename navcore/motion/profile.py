@@ -37,8 +37,8 @@ from navcore.motion.course import (
     smooth_change,
 )
 from navcore.motion.kinematics import PROFILE, WIDTH, Kinematics, write_rows
-from navcore.motion.legs import FASTEST, SLOWEST
-from navcore.motion.static import AttitudeMotion
+from navcore.motion.leg import FASTEST, SLOWEST
+from navcore.motion.seagoing import SeagoingMotion
 from navcore.motion.truth import (
     AE,
     AN,
@@ -170,7 +170,7 @@ class _State(NamedTuple):
     heading: float
 
 
-class ProfileMotion(AttitudeMotion):
+class ProfileMotion(SeagoingMotion):
     """Speed, course and attitude at given times; in between all change together, smoothly.
 
     From one point to the next every quantity goes over the whole time between them. ``shape`` is the course
@@ -204,7 +204,7 @@ class ProfileMotion(AttitudeMotion):
 
     @model_validator(mode="after")
     def _possible(self) -> ProfileMotion:
-        faults = list(self.faults())
+        faults = list(self.faults()) or list(self.sea_faults())
         if faults:
             raise InputError(faults)
         return self
@@ -239,9 +239,7 @@ class ProfileMotion(AttitudeMotion):
             )
         return np.array(legs), np.array(attitude)
 
-    def truth(
-        self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
-    ) -> Truth:
+    def calm_truth(self, count: int, step_s: float, site: Site, earth: Earth) -> Truth:
         """Return the true motion at ``count`` times 0, step_s, ...; shape (count, 15), or (1, 15) at rest.
 
         The position is as exact as that of `legs`; heading and longitude are not wrapped.
@@ -256,14 +254,16 @@ class ProfileMotion(AttitudeMotion):
             row = self.rest_row(site)
             row[0, [PITCH, ROLL, HEADING]] = attitude[0, :3]
             return Truth(step_s, row)
-        kin = self.kinematics(max(count - 1, 1) * step_s, site, earth)
+        kin = self.calm_kinematics(max(count - 1, 1) * step_s, site, earth)
         values = np.empty((count, COLUMNS))
         _sample(kin.rest, kin.legs, kin.nodes, kin.attitude, float(step_s), values)
         return Truth(step_s, values)
 
-    def kinematics(
-        self, end_s: float, site: Site, earth: Earth, start_utc: float | None = None
-    ) -> Kinematics:
+    def changes(self) -> np.ndarray:
+        """Return the table of the legs."""
+        return self.table()[0]
+
+    def calm_kinematics(self, end_s: float, site: Site, earth: Earth) -> Kinematics:
         """Return legs, position nodes and attitudes; raises `InputError` near a pole, naming the point."""
         legs, attitude = self.table()
         try:

@@ -11,6 +11,7 @@ sinusoid is followed to (2 pi/n)^4/180 of its amplitude, 3.4e-6 at the 40 sample
 import math
 from abc import abstractmethod
 from collections.abc import Iterator
+from typing import ClassVar
 
 import numpy as np
 
@@ -49,6 +50,8 @@ class SampledMotion(MotionParameters):
     During an alignment before t = 0 the vehicle rests at the attitude of t = 0; a motion that knows better
     overrides `before_start`.
     """
+
+    samples_a_period: ClassVar[float] = SAMPLES_A_PERIOD
 
     @abstractmethod
     def path(self, t_s: np.ndarray, site: Site, earth: Earth) -> np.ndarray:
@@ -99,7 +102,7 @@ class SampledMotion(MotionParameters):
     def _pieces(self, end_s: float, site: Site, earth: Earth) -> np.ndarray:
         from scipy.interpolate import CubicSpline
 
-        step = min(LONGEST_SAMPLE_S, self.shortest_period_s() / SAMPLES_A_PERIOD)
+        step = min(LONGEST_SAMPLE_S, self.shortest_period_s() / self.samples_a_period)
         last = math.ceil(end_s / step)
         if last > MAX_SAMPLES:
             allowed = Text(

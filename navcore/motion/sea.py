@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -134,11 +135,57 @@ def ship_motion(
         Pitch, roll, yaw (rad) and heave (m): the motion is Re(answer exp(j frequency t)).
     """
     frequency = encounter_frequency(sea, speed, heading)
+    return frequency, _answers(sea, frequency, heading, (pitch, roll, yaw, heave))
+
+
+def _answers(sea: Seaway, frequency: np.ndarray, heading: Any, answers: tuple[Answer, ...]) -> np.ndarray:
+    """Complex answers in pitch, roll, yaw and heave at the frequencies of encounter, shape (n, 4)."""
     ahead, starboard = np.cos(sea.towards - heading), np.sin(sea.towards - heading)
     elevation = sea.amplitude * np.exp(1j * sea.phase)
     # The crest comes later by k x: elevation = Re(a exp(j (w t - k x + phase))).
     slope = -1j * sea.wave_number * elevation
     excitation = (slope * ahead, -slope * starboard, slope * ahead * starboard, elevation)
-    answers = (pitch, roll, yaw, heave)
     pairs = zip(answers, excitation, strict=True)
-    return frequency, np.stack([answer.transfer(frequency) * u for answer, u in pairs], axis=1)
+    return np.stack([answer.transfer(frequency) * u for answer, u in pairs], axis=1)
+
+
+def motion_along(
+    sea: Seaway,
+    t_s: np.ndarray,
+    moved_m: np.ndarray,
+    velocity_mps: np.ndarray,
+    heading: np.ndarray,
+    depth_m: np.ndarray,
+    answers: tuple[Answer, ...],
+) -> np.ndarray:
+    """Answers of a ship along any course: each component's phase where the ship is, at each time's frequency.
+
+    The answer is that of a steady course with the velocity and heading of the time, which change slowly
+    against the waves. Below the surface waves fade as exp(-k depth).
+
+    Parameters
+    ----------
+    t_s : ndarray, shape (n,)
+        Times, s.
+    moved_m, velocity_mps : ndarray, shape (n, 2)
+        Way from the start and velocity, E and N.
+    heading, depth_m : ndarray, shape (n,)
+        rad; m.
+    answers : tuple of Answer
+        Pitch, roll, yaw, heave.
+
+    Returns
+    -------
+    ndarray, shape (n, 4)
+        Pitch, roll, yaw (rad) and heave (m).
+    """
+    total = np.zeros((t_s.size, 4))
+    for i, number in enumerate(sea.wave_number):
+        one = Seaway(
+            *(values[i : i + 1] for values in (sea.amplitude, sea.frequency, sea.towards, sea.phase))
+        )
+        along = number * np.array([np.sin(one.towards[0]), np.cos(one.towards[0])])
+        complex_answers = _answers(one, one.frequency - velocity_mps @ along, heading, answers)
+        turn = np.exp(1j * (one.frequency * t_s - moved_m @ along) - number * depth_m)
+        total += np.real(complex_answers * turn[:, None])
+    return total

@@ -12,14 +12,15 @@ from pydantic import model_validator
 from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.earth import Earth
 from navcore.foundation.errors import Fault, InputError
-from navcore.foundation.parameters import choice, quantity
+from navcore.foundation.parameters import Parameters, quantity
 from navcore.foundation.text import Text
 from navcore.foundation.trigonometry import sincos_cycles
 from navcore.foundation.units import DEG
 from navcore.motion.base import MotionParameters
 from navcore.motion.course import PoleReached, lay_course, node_at, position_at
 from navcore.motion.kinematics import FREQUENCY, PHASE, WAVES, WIDTH, Kinematics, write_rows
-from navcore.motion.sea import Answer, fully_developed_peak_period, make_seaway, ship_motion
+from navcore.motion.sea import ship_motion
+from navcore.motion.sea_fields import ANSWERS, AnswerFields, SeaFields
 from navcore.motion.static import AttitudeMotion
 from navcore.motion.swing import SAMPLES_A_PERIOD, STEEPEST_PITCH_DEG
 from navcore.motion.truth import (
@@ -45,48 +46,23 @@ from navcore.motion.truth import (
 # parts of the answers in pitch, roll, heading and height.
 OMEGA, OMEGA_SQUARED, REAL, IMAGINARY = 0, 1, 4, 8
 COMPONENT_COLUMNS = 12
-_ANSWERS = ("pitch", "roll", "heading", "heave")
 HEAVE = 3
 """Place of heave among the answers."""
 
 
-def _gain(default: float, what: str, unit: str = "deg/deg") -> float:
-    return quantity(
-        default,
-        unit=unit,
+class _Way(Parameters):
+    speed_mps: float = quantity(
+        0.0,
+        unit="m/s",
         ge=0.0,
-        le=5.0,
-        slider=(0.0, 2.0),
-        label=Text("{what} gain", what=what),
-        help=Text("{what} in long waves as a part of what excites it; 0 for none.", what=what),
+        le=50.0,
+        slider=(0.0, 15.0),
+        label="speed",
+        help="Speed along the mean heading; it changes the frequency at which the waves are met.",
     )
 
 
-def _period(default: float, what: str) -> float:
-    return quantity(
-        default,
-        unit="s",
-        ge=0.5,
-        le=60.0,
-        slider=(3.0, 30.0),
-        label=Text("{what} period", what=what),
-        help=Text("Natural period of the ship's {what}.", what=what),
-    )
-
-
-def _damping(default: float, what: str) -> float:
-    return quantity(
-        default,
-        unit="1",
-        ge=0.02,
-        le=2.0,
-        slider=(0.02, 1.0),
-        label=Text("{what} damping", what=what),
-        help=Text("Damping ratio of the ship's {what}.", what=what),
-    )
-
-
-class WavesMotion(AttitudeMotion):
+class WavesMotion(AnswerFields, _Way, SeaFields, AttitudeMotion):
     """A ship on a steady course in a seaway: it rolls, pitches, yaws and heaves.
 
     The seaway is a sum of long-crested waves on deep water, drawn from ``seed``; its significant height is
@@ -99,90 +75,14 @@ class WavesMotion(AttitudeMotion):
     """
 
     kind: Literal["waves"] = "waves"
-    spectrum: Literal["bretschneider", "pierson_moskowitz"] = choice(
-        "bretschneider",
-        label="spectrum",
-        help="bretschneider: height and peak period are free; pierson_moskowitz: a fully developed sea, "
-        "whose peak period follows from the height, 5.0 s x √(height in m).",
-    )
-    height_m: float = quantity(
-        2.5,
-        unit="m",
-        ge=0.0,
-        le=20.0,
-        slider=(0.0, 10.0),
-        label="wave height",
-        help="Significant wave height, four times the standard deviation of the surface.",
-    )
-    peak_period_s: float = quantity(
-        8.0,
-        unit="s",
-        ge=2.0,
-        le=30.0,
-        slider=(4.0, 20.0),
-        label="peak period",
-        help="Period at the peak of the spectrum; bretschneider only.",
-    )
-    direction_deg: float = quantity(
-        60.0,
-        unit="deg",
-        ge=-360.0,
-        le=360.0,
-        slider=(0.0, 360.0),
-        label="waves from",
-        help="Direction the waves come from, clockwise from true north.",
-    )
-    spread_deg: float = quantity(
-        15.0,
-        unit="deg",
-        ge=0.0,
-        le=60.0,
-        slider=(0.0, 45.0),
-        label="spread",
-        help="Standard deviation of the components' directions; 0 for a long-crested sea.",
-    )
-    components: int = quantity(
-        32,
-        unit="1",
-        ge=8,
-        le=200,
-        slider=(8, 100),
-        label="components",
-        help="Number of sinusoids; their frequencies are irregular, so the motion does not repeat.",
-    )
-    seed: int = quantity(
-        1,
-        unit="1",
-        ge=0,
-        le=2**31 - 1,
-        slider=(0, 100),
-        label="sea",
-        help="Seed of the seaway: another number, another sea of the same spectrum.",
-    )
-    speed_mps: float = quantity(
-        0.0,
-        unit="m/s",
-        ge=0.0,
-        le=50.0,
-        slider=(0.0, 15.0),
-        label="speed",
-        help="Speed along the mean heading; it changes the frequency at which the waves are met.",
-    )
-    pitch_gain: float = _gain(0.7, "pitch")
-    pitch_period_s: float = _period(6.0, "pitch")
-    pitch_damping: float = _damping(0.4, "pitch")
-    roll_gain: float = _gain(0.8, "roll")
-    roll_period_s: float = _period(11.0, "roll")
-    roll_damping: float = _damping(0.12, "roll")
-    heading_gain: float = _gain(0.5, "heading")
-    heading_period_s: float = _period(12.0, "heading")
-    heading_damping: float = _damping(0.5, "heading")
-    heave_gain: float = _gain(1.0, "heave", "m/m")
-    heave_period_s: float = _period(6.0, "heave")
-    heave_damping: float = _damping(0.4, "heave")
 
     @model_validator(mode="after")
     def _upright(self) -> WavesMotion:
+        self.require_upright()
+        return self
+
+    def require_upright(self) -> None:
+        """Refuse waves in which the pitch could pass its limit; raises `InputError`."""
         swing = np.hypot(*self._answers(0)).sum() / DEG
         room = STEEPEST_PITCH_DEG - abs(self.pitch_deg)
         if swing > room:
@@ -200,31 +100,18 @@ class WavesMotion(AttitudeMotion):
                     ),
                 )
             )
-        return self
-
-    @property
-    def modal_period_s(self) -> float:
-        """Period at the peak of the spectrum in use, s."""
-        if self.spectrum == "bretschneider" or self.height_m == 0.0:
-            return self.peak_period_s
-        return fully_developed_peak_period(self.height_m)
 
     def packed(self) -> np.ndarray:
         """Components of the ship's motion, shape (n, 12), columns OMEGA ... IMAGINARY + 3; SI, Hz, cycles."""
-        sea = make_seaway(
-            self.height_m,
-            self.modal_period_s,
-            (self.direction_deg + 180.0) * DEG,
-            self.spread_deg * DEG,
-            self.components,
-            np.random.default_rng(self.seed),
-        )
-        pitch, roll, heading, heave = (
-            Answer(*(getattr(self, f"{name}_{field}") for field in ("gain", "period_s", "damping")))
-            for name in _ANSWERS
-        )
+        pitch, roll, heading, heave = self.answers()
         omega, complex_answers = ship_motion(
-            sea, self.speed_mps, self.heading_deg * DEG, pitch=pitch, roll=roll, yaw=heading, heave=heave
+            self.seaway(),
+            self.speed_mps,
+            self.heading_deg * DEG,
+            pitch=pitch,
+            roll=roll,
+            yaw=heading,
+            heave=heave,
         )
         packed = np.zeros((self.components, COMPONENT_COLUMNS))
         packed[:, OMEGA], packed[:, OMEGA_SQUARED] = omega, omega**2
@@ -244,7 +131,7 @@ class WavesMotion(AttitudeMotion):
             The ship moves too fast for the step (fewer than 8 true states a mean period), or leads beyond
             89.5 deg of latitude.
         """
-        self._check_step(step_s)
+        self.check_step(step_s)
         return Truth(step_s, self.rows(count, step_s, site, earth))
 
     def rows(
@@ -296,7 +183,8 @@ class WavesMotion(AttitudeMotion):
         packed = self.packed()
         return packed[:, REAL + which], packed[:, IMAGINARY + which]
 
-    def _check_step(self, step_s: float) -> None:
+    def check_step(self, step_s: float) -> None:
+        """Refuse fewer than 8 true states a mean period; raises `InputError`."""
         packed = self.packed()
         energy = packed[:, REAL : REAL + 4] ** 2 + packed[:, IMAGINARY : IMAGINARY + 4] ** 2
         moving = energy.sum(axis=0) > 0.0
@@ -306,7 +194,7 @@ class WavesMotion(AttitudeMotion):
         periods = 2.0 * math.pi / np.sqrt(mean_square)
         shortest = int(np.argmin(periods))
         if periods[shortest] < SAMPLES_A_PERIOD * step_s * (1.0 - 1e-9):
-            name = [answer for answer, moves in zip(_ANSWERS, moving, strict=True) if moves][shortest]
+            name = [answer for answer, moves in zip(ANSWERS, moving, strict=True) if moves][shortest]
             raise InputError(
                 Fault(
                     "",

@@ -26,6 +26,7 @@ from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import Requirement
 from navcore.sensors.imu import Imu
 from navcore.sensors.log_errors.events import LogEvent
+from navcore.sensors.log_errors.water import Current
 from navcore.sensors.reference import Outage, Reference
 
 INTRODUCTION = """# The scenario file
@@ -43,6 +44,15 @@ in both units. Numbers have a decimal point.
 All `[[method]]` blocks of a scenario run on the same truth, the same sensor errors and the same log.
 """
 
+
+SHIPS = ("ferry", "submarine", "survey")
+"""Scenarios of ``examples`` that the guide holds."""
+_ABOUT_SHIPS = """## Three ships
+
+`examples/` holds them. Legs, outages, events and currents repeat; a log fails below a speed and in its
+outages; a moored ship knows its velocity; waves and changes of depth belong to the course.
+"""
+_ROOT = Path(__file__).resolve().parents[2]
 
 _CITATION = re.compile(r"theory\.md (?:section )?(\d+)(?:\.(\d+))?")
 
@@ -70,6 +80,7 @@ def _sections() -> Iterator[tuple[str, type[Parameters], str]]:
     yield "[reference]", Reference, ""
     yield "[[reference.event]]", LogEvent, "also `event` of a method"
     yield "[[reference.outage]]", Outage, ""
+    yield "[[reference.current]]", Current, ""
     yield "[[method]]", Method, ""
     for name, kind in KINDS.items():
         if kind.settings is not None:
@@ -114,7 +125,10 @@ def _row(name: str, info: FieldInfo) -> list[str]:
 
 def guide() -> str:
     """Return the guide as Markdown."""
-    parts = [INTRODUCTION]
+    parts = [INTRODUCTION, _ABOUT_SHIPS]
+    for ship in SHIPS:
+        text = (_ROOT / "examples" / f"{ship}.toml").read_text(encoding="utf-8")
+        parts.append(f"```toml\n{text.strip()}\n```\n")
     for heading, model, note in _sections():
         about = " ".join(text for text in (_first_paragraph(model), note) if text)
         rows = [_row(name, info) for name, info in model.model_fields.items() if info.description]
@@ -126,7 +140,7 @@ def guide() -> str:
 
 def main() -> None:
     """Write ``docs/scenario.md`` of the checkout."""
-    path = Path(__file__).resolve().parents[2] / "docs" / "scenario.md"
+    path = _ROOT / "docs" / "scenario.md"
     path.parent.mkdir(exist_ok=True)
     path.write_text(guide(), encoding="utf-8")
 

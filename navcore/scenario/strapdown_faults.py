@@ -30,6 +30,9 @@ def strapdown_faults(scenario: ScenarioFields) -> Iterator[Fault]:
         return
     yield from _recorded_faults(scenario)
     yield from _length_faults(scenario)
+    if scenario.motion.dives and scenario.run.vertical == "locked" and scenario.imu.file is None:
+        allowed = 'must be "altimeter", a depth gauge say: the motion changes its depth (motion.leg.depth_m)'
+        yield Fault("", "run.vertical", "locked", allowed)
     if scenario.imu.file is None:
         yield from rate_faults(scenario.motion, scenario.run.rate_hz)
     if scenario.alignment.kind == "compass":

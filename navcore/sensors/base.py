@@ -1,7 +1,7 @@
 """Common parts of the terms of a sensor's error, and the errors as the mechanizations take them."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -104,6 +104,8 @@ class ReferenceErrors:
         the effect of the heading error (physics: dV_rE += phi_U V_N, dV_rN -= phi_U V_E).
     hold_s : float
         A sample older than this counts as missing.
+    moored : ndarray of bool, shape (m,) or (0,)
+        Epochs at which the velocity zero of a moored ship stands in the place of the log; none where empty.
     """
 
     time_s: np.ndarray
@@ -111,3 +113,4 @@ class ReferenceErrors:
     valid: np.ndarray
     body_frame: bool
     hold_s: float
+    moored: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))

@@ -19,7 +19,7 @@ from navcore.sensors.simulated_log import hold_time
 from navcore.sensors.true_state import horizontal_state, to_navigation
 
 SCHULER_PERIOD_S = 84.4 * 60.0
-_RECORDED_FIELDS = {"kind", "frame", "event", "outage", "file", "speed"}
+_RECORDED_FIELDS = {"kind", "frame", "event", "outage", "min_speed_mps", "file", "speed"}
 
 
 def log_recording(reference: Reference) -> Recording:
@@ -137,6 +137,7 @@ def recorded_errors(
             heading = heading_at(recording.heading, series.time_s[within])
         values = to_navigation(values, heading)
     valid = series.valid[within] & in_service(reference.outage, time_s)
+    valid &= ~(np.hypot(values[:, 0], values[:, 1]) < reference.min_speed_mps)
     error = values - velocity + event_velocity(reference.event, time_s)
     return ReferenceErrors(
         time_s=time_s,

@@ -9,8 +9,7 @@ import numpy as np
 from pydantic import Field, create_model
 
 from navcore.foundation.parameters import FileName, Parameters, quantity
-from navcore.foundation.times import EitherUnit
-from navcore.foundation.units import HOUR
+from navcore.foundation.repeated import Repeated
 from navcore.sensors.base import NO_DRIFT, modelled_drift
 from navcore.sensors.log_errors import TERMS
 from navcore.sensors.log_errors.base import LogPart
@@ -22,12 +21,9 @@ if TYPE_CHECKING:
     from navcore.sensors.log_errors.water import Water
 
 
-class Outage(EitherUnit):
+class Outage(Repeated):
     """Time in which the log gives nothing."""
 
-    t_h: float = quantity(
-        0.0, unit="h", ge=0.0, le=10000.0, slider=(0.0, 72.0), label="begins", help="Time of the outage."
-    )
     duration_s: float = quantity(
         600.0,
         unit="s",
@@ -79,11 +75,32 @@ class Reference(_Errors):
     The simulated log (``kind = "log"``) reads, in its own axes,
     ``(1 + scale) (V - V_water) + bias + drift + noise``, rounded to ``lsb_mps``, with V and the velocity of
     the water ``V_water`` (current and tide) taken ``delay_s`` earlier; events are added to that. The recorded
-    one (``kind = "file"``) uses only ``file``, ``speed``, ``frame``, ``event`` and ``outage``.
+    one (``kind = "file"``) uses only ``file``, ``speed``, ``frame``, ``event``, ``outage`` and
+    ``min_speed_mps``.
     """
 
     outage: tuple[Outage, ...] = Field(
         default=(), max_length=200, description="Times without log, [[reference.outage]]."
+    )
+    min_speed_mps: float = quantity(
+        0.0,
+        unit="m/s",
+        ge=0.0,
+        le=50.0,
+        slider=(0.0, 3.0),
+        label="valid from",
+        help="The log gives nothing while the ship is slower than this through the water (a recorded log: "
+        "while its reading is below this).",
+    )
+    zero_below_mps: float = quantity(
+        0.0,
+        unit="m/s",
+        ge=0.0,
+        le=5.0,
+        slider=(0.0, 0.5),
+        label="moored below",
+        help="While the ship is slower than this over the ground, the reference is the velocity zero instead "
+        "of the log, whose errors and outages then do not count: a moored ship knows it. 0 for never.",
     )
     file: FileName | tuple[FileName, ...] | None = Field(
         default=None,
@@ -100,6 +117,11 @@ class Reference(_Errors):
     def all_parts(self) -> tuple[LogPart, ...]:
         """Contributions of all terms, whether they do anything or not."""
         return _parts_of(self)  # pyright: ignore[reportArgumentType]
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether the log can fail within a run."""
+        return bool(self.outage) or self.min_speed_mps > 0.0
 
     @property
     def white(self) -> float:
@@ -128,6 +150,5 @@ def in_service(outages: Iterable[Outage], time_s: np.ndarray) -> np.ndarray:
     """Whether the log works at each time, ndarray of bool, shape (m,)."""
     valid = np.ones(time_s.size, dtype=bool)
     for outage in outages:
-        begin = outage.t_h * HOUR
-        valid &= (time_s < begin) | (time_s >= begin + outage.duration_s)
+        valid &= ~outage.holds(time_s)
     return valid

@@ -23,6 +23,27 @@ def hold_time(interval_s: float) -> float:
     return max(3.0 * interval_s, SHORTEST_HOLD_S)
 
 
+def log_works(reference: Reference, truth: Truth, time_s: np.ndarray) -> np.ndarray:
+    """Whether a simulated log gives anything at each time (m,): no outage, and fast enough through the water.
+
+    Returns
+    -------
+    ndarray of bool, shape (m,)
+    """
+    works = in_service(reference.outage, time_s)
+    if reference.min_speed_mps > 0.0:
+        water = _Log(reference.all_parts(), False).water(time_s)
+        through = horizontal_state(truth, time_s)[0] - water
+        works &= np.hypot(through[:, 0], through[:, 1]) >= reference.min_speed_mps
+    return works
+
+
+def moored(reference: Reference, truth: Truth, time_s: np.ndarray) -> np.ndarray:
+    """Whether the ship knows at each time (m,) that it lies still; ndarray of bool, shape (m,) or (1,)."""
+    velocity = horizontal_state(truth, time_s)[0]
+    return np.hypot(velocity[:, 0], velocity[:, 1]) < reference.zero_below_mps
+
+
 def simulated_errors(
     reference: Reference,
     truth: Truth,
@@ -66,13 +87,20 @@ def simulated_errors(
     else:
         error = log.delayed_rounded_errors(truth, time_s, own, delay_s, lsb)
     error = sum((part.after(time_s) for part in log.parts if part.after), error)
+    valid = log_works(reference, truth, time_s)
+    still = np.zeros(0, dtype=bool)
+    if reference.zero_below_mps > 0.0:
+        still = np.array(np.broadcast_to(moored(reference, truth, time_s), time_s.size))
+        error = np.where(still[:, None], -horizontal_state(truth, time_s)[0], error)
+        valid |= still
     return ReferenceErrors(
         time_s=time_s,
         # A copy: one that may not be written to would make numba compile the kernels a second time.
         error=np.array(np.broadcast_to(error, (time_s.size, 2)), order="C"),
-        valid=in_service(reference.outage, time_s),
+        valid=valid,
         body_frame=log.body_frame,
         hold_s=hold_time(interval),
+        moored=still,
     )
 
 

@@ -243,7 +243,7 @@ def test_events_and_outages_take_the_place_of_those_there() -> None:
     ("text", "field", "allowed"),
     [
         ("[[method]", "", "is not valid TOML"),
-        ("", "", "must be [[method]], [[reference.event]] or [[reference.outage]]"),
+        ("", "", "must be [[method]], [[reference.event]], [[reference.outage]] or [[reference.current]]"),
         ("method = 3", "", "must be [[method]]"),
         ("[imu]\ngrade = 1", "imu", "open a whole scenario as a file"),
         ("[reference]\nwhite = 1.0", "reference.white", "must be [[method]]"),

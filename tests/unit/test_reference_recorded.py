@@ -152,3 +152,8 @@ def test_what_the_user_should_know_is_said(files, tmp_path):
     )
     bridged = recording_notices(TrackMotion(file=(str(gappy), files["gyro"])), Reference())
     assert bridged == ("gappy.txt GPRMC: 1 gaps (longest 20.0 s) bridged by the smoothing",)
+
+
+def test_readings_below_the_speed_of_the_log_are_not_valid(files):
+    assert run(files, min_speed_mps=4.0).valid.any()
+    assert not run(files, min_speed_mps=40.0).valid.any()

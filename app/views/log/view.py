@@ -59,8 +59,8 @@ class LogView(FieldsView):
             self._clipboard = gui.add_button_group(
                 "events as text",
                 (COPY_TEXT, PASTE_TEXT),
-                hint="Copy all events and outages as TOML, or paste such a list in their place. Ctrl+V "
-                "pastes too.",
+                hint="Copy all events, outages and currents as TOML, or paste such a list in their place. "
+                "Ctrl+V pastes too.",
                 order=59,
             )
             self._fit = gui.add_button(FIT, hint=_FIT_TOLD, order=20, visible=False)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -46,9 +46,9 @@ def seen_by(method: Method, reference: ReferenceErrors) -> ReferenceErrors:
     if not method.event:
         return reference
     extra = event_velocity(method.event, reference.time_s)
-    return ReferenceErrors(
-        reference.time_s, reference.error + extra, reference.valid, reference.body_frame, reference.hold_s
-    )
+    if reference.moored.size:
+        extra[reference.moored] = 0.0
+    return replace(reference, error=reference.error + extra)
 
 
 def truth_at(values: np.ndarray, rows: np.ndarray) -> np.ndarray:

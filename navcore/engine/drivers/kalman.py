@@ -46,7 +46,7 @@ NOTHING_RANDOM = "the scenario gives sensors and start no error that the filter 
 
 
 def filter_model(
-    scenario: Scenario, step_s: float, true_row: np.ndarray
+    scenario: Scenario, step_s: float, true_row: np.ndarray, moored: np.ndarray
 ) -> tuple[FilterModel, np.ndarray, tuple[str, ...]]:
     """Return the filter's model and its covariance at t = 0: the stochastic model of the scenario.
 
@@ -60,6 +60,8 @@ def filter_model(
         Time between two steps of the filter, s.
     true_row : ndarray, shape (15,)
         Truth at t = 0: its attitude turns what an alignment makes of the sensors' biases.
+    moored : ndarray of bool
+        Of `navcore.sensors.base.ReferenceErrors`.
 
     Returns
     -------
@@ -80,6 +82,8 @@ def filter_model(
         accel_white=figures.accel_white**2 / step_s,
         log_white=max(figures.log_noise**2 / max(1.0, figures.log_rate_hz * step_s), LEAST_NOISE_MPS**2),
         body_frame=scenario.reference.frame == "body",
+        moored=moored,
+        moored_white=scenario.reference.zero_below_mps**2,
     )
     spread = np.diag([*independent_errors(scenario, known.initial), *start])
     turn = attitude_matrix(true_row[PITCH], true_row[ROLL], true_row[HEADING])
@@ -131,7 +135,7 @@ def filtered_linear(
     Runs that are given the same ``gains``, one after the other, share those that the first one computes.
     """
     run, truth = scenario.run, env.truth_half.values
-    model, P, notices = filter_model(scenario, run.step_s, truth[0])
+    model, P, notices = filter_model(scenario, run.step_s, truth[0], env.reference.moored)
     recorder = make_recorder(env.steps, run.step_s, run.output_step_s)
     kept, known = None, False
     if gains is not None:
@@ -164,7 +168,7 @@ def filtered_strapdown(
     from navcore.mechanization.strapdown import start_run, velocity_reference
 
     interval_s, truth = env.sampling.law_step_s, env.truth.values
-    model, P, notices = filter_model(scenario, interval_s, truth[0])
+    model, P, notices = filter_model(scenario, interval_s, truth[0], env.reference.moored)
     law = law_of(method, network_of(scenario, method), interval_s)
     free = start_run(env.start, settings, scenario.earth, law, truth, before=env.imu.before())
     log = velocity_reference(seen_by(method, env.reference), env.truth)

@@ -38,6 +38,10 @@ class FilterModel(NamedTuple):
         Variance of a sample of the log, (m/s)^2.
     body_frame : bool
         The log measures along the ship's axes and is turned by the computed heading.
+    moored : ndarray of bool, shape (k,) or (0,)
+        Samples that are the velocity zero of a moored ship.
+    moored_white : float
+        Variance of such a sample, (m/s)^2.
     """
 
     axis: np.ndarray
@@ -47,6 +51,8 @@ class FilterModel(NamedTuple):
     accel_white: float
     log_white: float
     body_frame: bool
+    moored: np.ndarray
+    moored_white: float
 
 
 class FilterState(NamedTuple):
@@ -198,10 +204,11 @@ def predict(model, f):
 
 @kernel
 def update(model, epoch, d_e, d_n, v_e, v_n, f):
-    """Take the difference V_r - V_c of an epoch; ``f.found`` is what to take off the navigation's errors.
+    """Take the difference V_r - V_c of sample ``epoch``; ``f.found`` is to be taken off the errors.
 
     The two components are independent, so that they are taken one after the other.
     """
+    moored = model.moored.shape[0] > 0 and model.moored[epoch]
     P, seen, gain = f.P, f.scratch[0], f.scratch[1]
     n = P.shape[0]
     f.found[:] = 0.0
@@ -209,10 +216,10 @@ def update(model, epoch, d_e, d_n, v_e, v_n, f):
         innovation = -(d_e if channel == 0 else d_n)
         seen[:] = 0.0
         seen[channel] = 1.0
-        if model.body_frame:
+        if model.body_frame and not moored:
             seen[6] = -v_n if channel == 0 else v_e
         for i in range(n - STATES):
-            if model.axis[i] >= LOG:
+            if model.axis[i] >= LOG and not moored:
                 share = log_axis(model, f.turn, channel, model.axis[i])
                 seen[STATES + i] = -share
                 innovation += share * f.sensors[i]
@@ -222,7 +229,7 @@ def update(model, epoch, d_e, d_n, v_e, v_n, f):
             for i in range(n):
                 f.found[i] += f.gains[epoch, channel, i] * innovation
             continue
-        variance = model.log_white
+        variance = model.moored_white if moored else model.log_white
         for i in range(n):
             total = 0.0
             for j in range(n):

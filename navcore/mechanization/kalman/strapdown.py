@@ -119,7 +119,7 @@ def _measure(t, con, x, log, model, f, place):
     v_e, v_n = x.v[0], x.v[1]
     last = LastCall(x.last.time, x.last.v_e, x.last.v_n)
     d_e, d_n = held_difference(t, j, v_e, v_n, heading, last, log)
-    update(model, 0, d_e, d_n, v_e, v_n, f)
+    update(model, j, d_e, d_n, v_e, v_n, f)
     _correct(x, f.found)
 
 

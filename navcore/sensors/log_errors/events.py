@@ -2,25 +2,21 @@
 
 from collections.abc import Iterable, Iterator
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
 
 from navcore.foundation.parameters import bounded, quantity, vector_quantity
-from navcore.foundation.times import EitherUnit
-from navcore.foundation.units import HOUR
+from navcore.foundation.repeated import Repeated
 from navcore.sensors.log_errors.base import LogPart, LogTerm
 
 _Acceleration = Annotated[float, bounded(unit="m/s2", ge=-50.0, le=50.0)]
 
 
-class LogEvent(EitherUnit):
+class LogEvent(Repeated):
     """Passing disturbance of the log: an acceleration integrated into dV_r, which stays after the event."""
 
-    t_h: float = quantity(
-        0.0, unit="h", ge=0.0, le=10000.0, slider=(0.0, 72.0), label="begins", help="Time of the event."
-    )
     duration_s: float = quantity(
         60.0,
         unit="s",
@@ -37,7 +33,8 @@ class LogEvent(EitherUnit):
         elements=("E", "N"),
         slider=(-0.1, 0.1),
         label="acceleration of δVr",
-        help="East, north (Liu 2021, fig. 4). Its integral stays after the event; events add up.",
+        help="East, north (Liu 2021, fig. 4). Its integral stays after the event; events add up, and so do "
+        "the repetitions of one.",
     )
     sine_hz: float = quantity(
         0.0,
@@ -70,14 +67,22 @@ def event_velocity(events: Iterable[LogEvent], time_s: np.ndarray) -> np.ndarray
     """
     total = np.zeros((time_s.size, 2))
     for event in events:
-        elapsed = np.clip(time_s - event.t_h * HOUR, 0.0, event.duration_s)
-        if event.sine_hz > 0.0:
-            angular = 2.0 * np.pi * event.sine_hz
-            elapsed = (1.0 - np.cos(angular * elapsed)) / angular
+        since, before = event.since(time_s)
+        elapsed = _integral(event, np.clip(since, 0.0, event.duration_s))
+        if event.repeat > 1:
+            elapsed = elapsed + before * _integral(event, event.duration_s)
         for axis, acceleration in enumerate(event.accel_mps2):  # by axis: many times faster than rows of two
             if acceleration != 0.0:
                 total[:, axis] += elapsed * acceleration
     return total
+
+
+def _integral(event: LogEvent, elapsed: Any) -> Any:
+    """Integral over ``elapsed`` s of an event's acceleration as a part of its size, s."""
+    if event.sine_hz > 0.0:
+        angular = 2.0 * np.pi * event.sine_hz
+        return (1.0 - np.cos(angular * elapsed)) / angular
+    return elapsed
 
 
 class LogEvents(LogTerm):
