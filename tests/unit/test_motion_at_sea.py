@@ -97,3 +97,12 @@ def test_waves_too_short_for_the_step_are_refused():
     with pytest.raises(InputError) as refused:
         simulate(Scenario.parse({"motion": motion, "run": {"duration_h": 0.1, "step_s": 10.0}}))
     assert refused.value.faults[0].field == "motion.waves.peak_period_s"
+
+
+def test_an_alignment_lies_stopped_in_the_same_sea():
+    motion = LegsMotion(leg=(STEADY,), waves=SEA, roll_deg=2.0)
+    before = motion.before_start(motion.truth(1, 0.1, SITE, WGS84).values[0], 600.0)
+    assert isinstance(before, WavesMotion)
+    meant = WavesMotion(**SEA, heading_deg=40.0, roll_deg=2.0)
+    found = before.truth(600, 0.5, SITE, WGS84).values
+    assert found == pytest.approx(meant.truth(600, 0.5, SITE, WGS84).values, abs=1e-9)
