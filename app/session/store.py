@@ -37,7 +37,6 @@ CLAIMED = "SCHULER_STATE_CLAIMED"
 """Set in the environment of a worker whose door has claimed the folder."""
 _UPKEEP_EVERY_S = 600.0
 _ORPHAN_S = 86_400.0
-_STATE = ("Library", "Application Support") if sys.platform == "darwin" else (".local", "state")
 NO_HOME = "there is no home folder: set XDG_STATE_HOME"
 _ID = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _KEY_BYTES = 32
@@ -54,7 +53,8 @@ def default_folder() -> Path | None:
         base = Path(chosen)
     else:
         try:
-            base = Path.home().joinpath(*_STATE)
+            within = "Library/Application Support" if sys.platform == "darwin" else ".local/state"
+            base = Path.home() / within
         except RuntimeError:
             _log.warning("sessions are not kept over a restart: %s", NO_HOME)
             return None

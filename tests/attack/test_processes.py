@@ -145,15 +145,29 @@ def test_strangers_leave_no_trace_on_the_console(capfd: pytest.CaptureFixture[st
     assert "".join(capfd.readouterr()) == ""
 
 
-def test_a_failing_callback_is_shown_in_the_page(caplog: pytest.LogCaptureFixture) -> None:
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (RuntimeError("no picture"), "RuntimeError: no picture"),
+        (
+            PermissionError(13, "Permission denied", "/opt/kernels/digests"),
+            "PermissionError: Permission denied",
+        ),
+        (ValueError("in /opt/kernels/digests"), "ValueError: in digests"),
+    ],
+    ids=["words", "a file's", "a path"],
+)
+def test_a_failing_callback_is_shown_in_the_page(
+    caplog: pytest.LogCaptureFixture, error: Exception, told: str
+) -> None:
     def fail(client: object, session: str) -> None:
-        raise RuntimeError("no picture")
+        raise error
 
     gone: list[str] = []
     server = start(port=0, on_connect=fail, on_disconnect=lambda client, session: gone.append(session))
     try:
         with visit(server.port) as visitor:
-            assert visitor.notice() == "RuntimeError: no picture"
+            assert visitor.notice() == told
         eventually(lambda: gone)
     finally:
         server.stop()

@@ -279,3 +279,17 @@ def test_the_place_is_the_one_the_user_names(
     monkeypatch.setattr(Path, "home", lambda: Path("/me"))
     monkeypatch.setattr("sys.platform", platform)
     assert default_folder() == Path(base, "schuler-bench", "sessions")
+
+
+def test_without_a_home_folder_sessions_are_not_kept_and_the_log_says_so(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def none() -> Path:
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.delenv("XDG_STATE_HOME")
+    monkeypatch.setattr(Path, "home", none)
+    assert default_folder() is None
+    assert [record.message for record in caplog.records] == [
+        "sessions are not kept over a restart: there is no home folder: set XDG_STATE_HOME"
+    ]
