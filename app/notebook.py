@@ -32,7 +32,7 @@ Maker = Callable[..., PlotlyFigure]
 WIDTH_PX = 940
 
 
-def _errors(run: Run, group: str = "Overview") -> PlotlyFigure:
+def _errors(run: Run, group: str = Text("Overview")) -> PlotlyFigure:
     plots = error_plots(run)
     return time_figure([plots[key] for key in GROUPS[group]])
 
@@ -40,7 +40,7 @@ def _errors(run: Run, group: str = "Overview") -> PlotlyFigure:
 def _switching(run: Run) -> PlotlyFigure:
     plots = switching_plots(run)
     if not plots:
-        raise InputError(Fault("", "figure", "switching", "no method of this run switches"))
+        raise InputError(Fault("", "figure", "switching", Text("no method of this run switches")))
     return time_figure(plots)
 
 

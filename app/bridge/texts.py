@@ -11,7 +11,7 @@ from typing import Any, Protocol, cast
 import msgspec
 from viser import _messages as messages
 
-from app.languages.names import NONE, Names
+from navcore.foundation.text import Text
 
 Say = Callable[[str], str]
 
@@ -21,7 +21,7 @@ class Language(Protocol):
 
     name: str
 
-    def text(self, text: str, names: Names = ...) -> str:
+    def text(self, text: str, names: frozenset[str] = ...) -> str:
         """Translate a text, HTML or not, in which these names stay as they are."""
         ...
 
@@ -51,7 +51,7 @@ class Translator:
 
     def __init__(self, language: Language) -> None:
         self.name, self._language = language.name, language
-        self.names: Callable[[], Names] = lambda: NONE
+        self.names: Callable[[], frozenset[str]] = frozenset
         self._meant: dict[str, dict[str, str]] = {}
 
     def text(self, text: str) -> str:
@@ -61,7 +61,7 @@ class Translator:
     def _say_label(self, label: str) -> str:
         """Translate what a control is called: it may hold a name, but is none."""
         names = self.names()
-        return self._language.text(label, NONE if names.are(label) else names)
+        return self._language.text(label, names - {label})
 
     def message(self, message: messages.Message) -> messages.Message:
         """Return a message to the page with its texts translated; the message itself stays as it is.
@@ -127,27 +127,27 @@ class Translator:
 
     def figure(self, figure: str) -> str:
         """Return a plotly figure (JSON) with its texts translated."""
-        told = msgspec.json.decode(figure)
-        return msgspec.json.encode(self._walk(told)).decode()
+        texts: Mapping[str, Text] = getattr(figure, "texts", {})
+        return msgspec.json.encode(self._walk(msgspec.json.decode(str(figure)), texts)).decode()
 
-    def _walk(self, part: Any, is_text: bool = False) -> Any:
+    def _walk(self, part: Any, texts: Mapping[str, Text], is_text: bool = False) -> Any:
         if isinstance(part, dict):
             return {
-                name: self._walk(value, name in _PLOTLY_TEXTS or (is_text and name == "text"))
+                name: self._walk(value, texts, name in _PLOTLY_TEXTS or (is_text and name == "text"))
                 if name != "meta"
-                else self._meta(value)
+                else self._meta(value, texts)
                 for name, value in part.items()
             }
         if isinstance(part, list):
             if part and isinstance(part[0], (int, float)):
                 return part
-            return [self._walk(one, is_text) for one in part]
-        return self.text(part) if is_text and isinstance(part, str) else part
+            return [self._walk(one, texts, is_text) for one in part]
+        return self.text(texts.get(part, part)) if is_text and isinstance(part, str) else part
 
-    def _meta(self, meta: Any) -> Any:
+    def _meta(self, meta: Any, texts: Mapping[str, Text]) -> Any:
         """Of what a figure tells our scripts only ``told`` is for a reader."""
         told = meta.get("told") if isinstance(meta, dict) else None
-        return {**meta, "told": self.text(told)} if told else meta
+        return {**meta, "told": self.text(texts.get(told, told))} if told else meta
 
     def _uplot(self, part: Mapping[str, Any]) -> dict[str, Any]:
         told = {name: part[name] for name in _UPLOT_TEXTS & part.keys()}
@@ -169,7 +169,7 @@ def speak(server: Any, client_id: int, language: Language | None) -> None:
     buffer.translator = None if language is None else Translator(language)
 
 
-def keep_names(client: Any, names: Callable[[], Names]) -> None:
+def keep_names(client: Any, names: Callable[[], frozenset[str]]) -> None:
     """Let a page's texts have these names in them as users wrote them, in whatever language it is."""
     translator = _translator(client)
     if translator is not None:

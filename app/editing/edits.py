@@ -163,7 +163,7 @@ def with_network(scenario: Scenario, index: int, network: dict[str, Any]) -> Sce
         There is no such method any more, or the network does not go with it.
     """
     if not 0 <= index < len(scenario.method) or scenario.method[index].undamped:
-        raise InputError(Fault("", f"method.{index}", None, "is no method with a network any more"))
+        raise InputError(Fault("", f"method.{index}", None, Text("is no method with a network any more")))
     data = scenario.canonical()
     data["method"][index]["network"] = dict(network)
     return Scenario.parse(data)
@@ -239,7 +239,10 @@ def _forget_made_name(scenario: Scenario, data: Any, index: int) -> None:
 def free_name(name: str, taken: list[str]) -> str:
     """Name that no other method has: this one, or with another number: the copy of "a 2" is "a 3"."""
     plain = _unnumbered(name) if name in taken else name
-    names = (plain, *(f"{plain} {number}" for number in range(2, MAX_METHODS + 2)))
+    names = (
+        plain,
+        *(Text("{plain} {number}", plain=plain, number=number) for number in range(2, MAX_METHODS + 2)),
+    )
     return next(free for free in names if free not in taken)
 
 
@@ -264,10 +267,10 @@ def _place(data: Any, path: Path, value: Any) -> None:
 
 # ------------------------------------------------------------ as text
 
-WHERE = "pasted text"
+WHERE = Text("pasted text")
 """Name that faults give the pasted text."""
 DISTURBANCES = ("event", "outage", "current")
-_ALLOWED = (
+_ALLOWED = Text(
     "must be [[method]], [[reference.event]], [[reference.outage]] or [[reference.current]]; open a whole "
     "scenario as a file"
 )

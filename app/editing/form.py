@@ -225,15 +225,21 @@ def _fields(model: type[BaseModel], path: Path, prefix: str) -> tuple[FieldSpec,
 def choice(model: type[BaseModel], name: str, path: Path, label: str = "") -> FieldSpec:
     """The control of one field that offers choices, discriminators (``kind``, ``id``) included."""
     info = model.model_fields[name]
-    offered = _literals(info.annotation)
+    offered = choices_of(info)
     return FieldSpec(
         (*path, name), label or full_label(name, info), _hint(info, ""), "choice", info.default, offered
     )
 
 
+def choices_of(info: FieldInfo) -> tuple[str, ...]:
+    """Values that a field offers; none where it takes others."""
+    annotation = _without_none(info.annotation)
+    return tuple(str(v) for v in get_args(annotation)) if get_origin(annotation) is Literal else ()
+
+
 def _field(name: str, info: FieldInfo, path: Path, prefix: str) -> list[FieldSpec]:
     annotation = _without_none(info.annotation)
-    offered = _literals(annotation)
+    offered = choices_of(info)
     kind: Kind | None = "choice" if offered else _PLAIN.get(annotation)
     if kind is None and get_origin(annotation) is tuple:
         items = [_bare(item) for item in get_args(annotation)]
@@ -279,8 +285,8 @@ def full_label(name: str, info: FieldInfo, prefix: str = "", part: str = "") -> 
     extra = extra_of(info)
     words = [prefix, plain_label(name, info), part]
     sign = unit_sign(extra.get("unit", ""))
-    unit = f"({sign})" if sign else ""
-    return " ".join(word for word in (*words, unit) if word)
+    unit = Text("({sign})", sign=sign) if sign else ""
+    return Text.joined(" ", (word for word in (*words, unit) if word))
 
 
 def plain_label(name: str, info: FieldInfo) -> str:
@@ -291,11 +297,11 @@ def plain_label(name: str, info: FieldInfo) -> str:
 
 def _hint(info: FieldInfo, allowed: str) -> str:
     text = (info.description or "").strip()
-    bounds = f"{allowed[0].upper()}{allowed[1:]}." if allowed else ""
     # The elements of a vector may have units of their own, in their names.
-    if bounds and not extra_of(info).get("elements") and extra_of(info).get("unit") in (None, "", "1"):
-        bounds = Text("{bounds} (no unit).", bounds=bounds.removesuffix("."))
-    return " ".join(part for part in (text, bounds) if part)
+    if allowed and not extra_of(info).get("elements") and extra_of(info).get("unit") in (None, "", "1"):
+        allowed = Text("{allowed} (no unit)", allowed=allowed)
+    bounds = Text("{allowed:sentence}", allowed=allowed) if allowed else ""
+    return Text.joined(" ", (part for part in (text, bounds) if part))
 
 
 def _slider(info: FieldInfo) -> Slider | None:
@@ -319,8 +325,3 @@ def _without_none(annotation: Any) -> Any:
         rest = [a for a in get_args(annotation) if a is not type(None)]
         return _bare(rest[0]) if len(rest) == 1 else annotation
     return annotation
-
-
-def _literals(annotation: Any) -> tuple[str, ...]:
-    annotation = _without_none(annotation)
-    return tuple(str(v) for v in get_args(annotation)) if get_origin(annotation) is Literal else ()

@@ -51,7 +51,9 @@ def read_point(text: str) -> complex:
     try:
         real, imag = (float(word) for word in words)
     except ValueError:
-        raise InputError(Fault("", "point", text[:60], "must be two numbers: Re and Im of s/ωₛ")) from None
+        raise InputError(
+            Fault("", "point", text[:60], Text("must be two numbers: Re and Im of s/ωₛ"))
+        ) from None
     if not (abs(real) <= _FARTHEST and abs(imag) <= _FARTHEST) or real == imag == 0.0:
         raise InputError(
             Fault(
@@ -75,7 +77,7 @@ def pair_at(point: complex) -> tuple[float, float]:
     size = abs(point)
     ratio = -point.real / size
     if ratio < LEAST_DAMPING:
-        side = "grows without bound" if ratio < 0.0 else "is hardly damped"
+        side = Text("grows without bound") if ratio < 0.0 else Text("is hardly damped")
         allowed = Text(
             "must be >= {least_damping:g}: a pair there {side}; the nearest possible one "
             "at ω = {size} ωₛ has ζ = {least_damping:g}",
@@ -83,7 +85,7 @@ def pair_at(point: complex) -> tuple[float, float]:
             side=side,
             size=number(size, 3),
         )
-        raise InputError(Fault("", "damping ratio ζ", round(ratio, 4), allowed))
+        raise InputError(Fault("", Text("damping ratio ζ"), round(ratio, 4), allowed))
     return ratio, size
 
 
@@ -217,7 +219,7 @@ def handle_of(scenario: Scenario, index: int) -> dict[str, Any]:
         return {}
     method, pair, omega_s = scenario.method[index], main_pair(scenario, index), scenario.omega_s
     if pair is None:
-        reason = "it runs without its network" if method.undamped else method.network.no_handle
+        reason = Text("it runs without its network") if method.undamped else method.network.no_handle
         return {"told": Text("No handle for {name}: {reason}.", name=method.name, reason=reason)}
     return {
         "method": index,
@@ -245,11 +247,11 @@ def _why_not(method: Method, wanted: str, omega_s: float, error: InputError) -> 
             now=now,
             placeable=placeable(),
         )
-        return InputError(Fault("", f"{method.name}, network", method.network.id, reason))
+        return InputError(Fault("", Text("{name}, network", name=method.name), method.network.id, reason))
     return InputError(
         Fault(
             "",
-            f"{method.name}, {fault.field}",
+            Text("{name}, {field}", name=method.name, field=fault.field),
             fault.value,
             Text("{allowed}, for {wanted}; {now}", allowed=fault.allowed, wanted=wanted, now=now),
         )

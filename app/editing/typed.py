@@ -70,7 +70,7 @@ def read_typed(text: str, unit: str) -> float:
         return value
     family = next((units for units in _FAMILIES if mine in units), {mine: 1.0} if mine else {})
     if given not in family:
-        allowed = "takes a number without a unit"
+        allowed = Text("takes a number without a unit")
         if family:
             allowed = Text("must be in one of {family}", family=", ".join(map(unit_sign, family)))
         raise ValueError(f"{allowed}, not in {given!r}")

@@ -13,8 +13,9 @@ from websockets.frames import CloseCode
 from app.http.frames import BadFrame, Gate
 from app.http.limits import Limits
 from app.http.places import Door, Places
+from navcore.foundation.text import Text
 
-GAVE_UP_PLACE = "This page was idle and gave up its place."
+GAVE_UP_PLACE = Text("This page was idle and gave up its place.")
 """Reason with which an idle page is closed."""
 
 

@@ -142,9 +142,11 @@ class Gate:
             return frame if value is given else msgspec.msgpack.encode(changed)
         self.visitor.restore(uuid)
         if not control.disabled:
-            text = "{name} must {reason}; {value} was refused."
-            name = control.label or "The control"
-            self.visitor.tell("Not accepted", Text(text, name=name, reason=reason, value=shown(given)))
+            name = control.label or Text("The control")
+            refusal = Text(
+                "{name} must {reason}; {value} was refused.", name=name, reason=reason, value=shown(given)
+            )
+            self.visitor.tell(Text("Not accepted"), refusal)
         return None
 
     def _judge_hold(self, frame: bytes, fields: dict[str, Any]) -> bytes | None:
@@ -164,7 +166,7 @@ class Gate:
         refusal = self._why_not_upload(size)
         if refusal is not None:
             self.visitor.end_upload(component, transfer, size)
-            self.visitor.tell("Not accepted", f"{name} {refusal}.")
+            self.visitor.tell(Text("Not accepted"), f"{name} {refusal}.")
             return None
         if parts:
             self._uploads[transfer] = _Upload(component, size, size, parts, time.monotonic())
@@ -180,9 +182,9 @@ class Gate:
             )
         many = len(self._uploads) >= limits.uploads_at_once
         if many or self.uploading_bytes + size > limits.upload_bytes:
-            return "must wait until the other uploads have ended"
+            return Text("must wait until the other uploads have ended")
         if not self.others.has_room(size):
-            return "must wait until the uploads of other visitors have ended"
+            return Text("must wait until the uploads of other visitors have ended")
         return None
 
     def _judge_part(self, frame: bytes, fields: dict[str, Any]) -> bytes | None:
@@ -289,15 +291,15 @@ def shown(value: object) -> str:
 
 def _why_not_scalar(control: Control, held: object, value: object, longest_text: int) -> str | None:
     if isinstance(held, bool):
-        return None if isinstance(value, bool) else "be on or off"
+        return None if isinstance(value, bool) else Text("be on or off")
     if isinstance(held, (int, float)):
         return _why_not_number(control, isinstance(held, int), value)
     if not isinstance(held, str):
-        return "not be set in this way"
+        return Text("not be set in this way")
     if not isinstance(value, str):
-        return "be text"
+        return Text("be text")
     if control.options is not None and value not in control.options:
-        return "be one of the choices offered"
+        return Text("be one of the choices offered")
     if len(value) > longest_text:
         return Text("have at most {longest_text} characters", longest_text=longest_text)
     return None
@@ -305,9 +307,9 @@ def _why_not_scalar(control: Control, held: object, value: object, longest_text:
 
 def _why_not_number(control: Control, whole: bool, value: object) -> str | None:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        return "be a number"
+        return Text("be a number")
     if whole and value != math.floor(value):
-        return "be a whole number"
+        return Text("be a whole number")
     if control.bounds is not None:
         low, high = control.bounds
         # Browsers compute min + k * step in binary: the last step may lie a rounding error beyond the end.

@@ -29,6 +29,7 @@ from app.http.places import Door, Places
 from app.http.site import Site
 from app.jobs.words import what_failed
 from app.languages.wording import NAMES, wording
+from navcore.foundation.text import Text
 
 if TYPE_CHECKING:
     from app.http.metrics import Metrics
@@ -175,7 +176,7 @@ def _call(callback: SessionCallback, client: viser.ClientHandle, session_id: str
         callback(client, session_id)
     except Exception as error:
         _log.exception("a session callback failed")
-        client.add_notification("Something went wrong", what_failed(error), color="red")
+        client.add_notification(Text("Something went wrong"), what_failed(error), color="red")
 
 
 def _quiet_log() -> logging.Logger:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from app.jobs.search import Search
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ class Budgeter(Search[Scenario, "Budget"]):
     """Computes the error budget along one scenario's run at a time; ``tell`` and ``name`` as of `Search`."""
 
     def __init__(self, tell: Callable[[], None], name: str = "budgeter") -> None:
-        super().__init__(tell, _budget, stopped="Stopped: no budget.", name=name)
+        super().__init__(tell, _budget, stopped=Text("Stopped: no budget."), name=name)
 
     def beside(self, scenario: Scenario) -> Budget | None:
         """Budget of exactly this scenario; None when there is none."""
@@ -104,7 +105,7 @@ class Designer(Search[TuningTask, "Tuned"]):
     """Searches for the best setting of one method at a time; ``tell`` and ``name`` as of `Search`."""
 
     def __init__(self, tell: Callable[[], None], name: str = "designer") -> None:
-        super().__init__(tell, _tune, stopped="Stopped: there is no proposal.", name=name)
+        super().__init__(tell, _tune, stopped=Text("Stopped: there is no proposal."), name=name)
 
     def discard(self) -> None:
         """Forget the proposal."""
@@ -117,7 +118,7 @@ class Tuner(Search[TableTask, "Tuning"]):
 
     def __init__(self, tell: Callable[[], None], name: str = "tuner") -> None:
         super().__init__(
-            tell, _table, lambda found: found.status == "ok", "Stopped: no table was found.", name
+            tell, _table, lambda found: found.status == "ok", Text("Stopped: no table was found."), name
         )
 
 
@@ -126,7 +127,7 @@ class Fronts(Search[FrontsTask, "Pareto"]):
 
     def __init__(self, tell: Callable[[], None], name: str = "fronts") -> None:
         super().__init__(
-            tell, _fronts, lambda found: not found.stopped, "Stopped: no fronts were found.", name
+            tell, _fronts, lambda found: not found.stopped, Text("Stopped: no fronts were found."), name
         )
 
 

@@ -9,7 +9,7 @@ from navcore.foundation.text import Text
 
 CLUSTER = "SCHULER_CLUSTER"
 """In the environment: address of the scheduler of a Dask cluster."""
-LOST = "The Dask cluster does not answer: this is now computed on the server."
+LOST = Text("The Dask cluster does not answer: this is now computed on the server.")
 
 _one: list[Cluster] = []
 

@@ -15,7 +15,7 @@ from navcore.foundation.kernel_digest import source_digest
 from navcore.foundation.text import Text
 from navcore.foundation.version import __version__
 
-NO_PROGRAM = "no program that answers"
+NO_PROGRAM = Text("no program that answers")
 _REPORT_S = 0.2
 
 Compute = Callable[[Any, Callable[[float], None], Callable[[], bool]], Any]

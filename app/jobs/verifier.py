@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from app.jobs.search import Search
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
 if TYPE_CHECKING:
@@ -29,7 +30,10 @@ class Verified:
     old: bool
 
 
-STOPPED, CHANGED = "Stopped: nothing was verified.", "Stopped: the scenario was changed meanwhile."
+STOPPED, CHANGED = (
+    Text("Stopped: nothing was verified."),
+    Text("Stopped: the scenario was changed meanwhile."),
+)
 
 Verify = Callable[[Scenario, Callable[[float], None], Callable[[], bool]], "Verification"]
 

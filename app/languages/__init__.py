@@ -1,8 +1,8 @@
 """The page in other languages: English is written in the code, a gettext catalogue holds what others read.
 
-Nothing is marked in the code. `app.languages.extract` finds the texts that a page can show, ``make
-languages`` writes them into ``<language>/LC_MESSAGES/schuler.po`` and compiles that, and
-`app.bridge.texts` translates what goes to a page on its way there (`app.languages.wording`).
+A text of the page is a `navcore.foundation.text.Text`. ``make languages`` writes them into
+``<language>/LC_MESSAGES/schuler.po`` and compiles that, and `app.bridge.texts` translates what goes to a page
+on its way there (`app.languages.wording`).
 """
 
 from pathlib import Path

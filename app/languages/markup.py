@@ -9,9 +9,14 @@ import json
 import re
 from collections.abc import Callable
 from html import escape, unescape
+from string import Formatter
 
 OPEN, CLOSE = "\ue000", "\ue001"
 """Around the number of a value while a text is looked up; no text has these letters."""
+
+
+HIDDEN = re.compile(f"{OPEN}([^{CLOSE}]*){CLOSE}")
+"""A value; a number or a name with a format."""
 
 
 def _element(name: str, attributes: str = r"\b[^<>]*>") -> str:
@@ -38,6 +43,8 @@ _HIDDEN = "|".join(
 _TOKEN = re.compile(rf"({_HIDDEN}|</?[a-zA-Z][^<>]*>|<!--(?>(?:[^-<]|-(?!->)|<(?!!--))*)-->)")
 _INLINE = re.compile(r"<(/?)(b|i|em|strong|code|sub|sup|a|span|kbd|small|var)\b([^>]*)>")
 _ATTRIBUTE = re.compile(r'(?<![\w-])(title|aria-label|aria-valuetext|alt|placeholder|data-told)="([^"]*)"')
+_VALUE_IN_TAG = re.compile(f"{_ATTRIBUTE.pattern}|{OPEN}[^{CLOSE}]*{CLOSE}")
+_TAG_WITH_VALUE = re.compile(f"<[a-zA-Z][^<>]*{OPEN}[^<>]*>")
 _TAG = re.compile(r"</?[a-z]+>")
 _PARTS = re.compile(r"(</?[a-z]+>)")
 _AROUND = re.compile(r"<([a-z]+)>(.*)</\1>", re.DOTALL)
@@ -52,8 +59,29 @@ def has_markup(text: str) -> bool:
     return "%{" in text or ("<" in text and _TOKEN.search(text) is not None)
 
 
+def hidden(template: str) -> str:
+    """Put each field of a template between `OPEN` and `CLOSE`, as markup takes a value for it."""
+    return "".join(
+        literal + ("" if name is None else f"{OPEN}{name}:{spec}{CLOSE}")
+        for literal, name, spec, _ in Formatter().parse(template)
+    )
+
+
+def key_of(piece: str) -> tuple[str, list[str]]:
+    """Key of a piece in the catalogue, and those of its values that have no name: they count as ``{0}``."""
+    values: list[str] = []
+
+    def field(found: re.Match[str]) -> str:
+        if found[1][0].isalpha():
+            return f"{{{found[1].rstrip(':')}}}"
+        values.append(found[0])
+        return f"{{{len(values) - 1}}}"
+
+    return HIDDEN.sub(field, piece), values
+
+
 def in_pieces(html: str) -> list[str]:
-    """Keys of the texts in some HTML, with those in attributes; values are ``OPEN number CLOSE``.
+    """Keys of the texts in some HTML, with those in attributes.
 
     Examples
     --------
@@ -63,7 +91,7 @@ def in_pieces(html: str) -> list[str]:
     found: list[str] = []
 
     def keep(key: str) -> str:
-        found.append(key)
+        found.append(key_of(key)[0])
         return f"{key} "  # another text: what is the same counts as unknown, and is looked up piece by piece
 
     translate(html, keep)
@@ -103,6 +131,15 @@ def translate(html: str, say: Say) -> str:
     return re.sub(
         f"{OPEN}([0-9]+){CLOSE}", lambda found: _LIVE.sub(live, values[int(found[1])]), "".join(out)
     )
+
+
+def for_scripts(html: str) -> str:
+    """Put ``!`` before each value in a tag that is no text for a reader: a class, a command."""
+    return _TAG_WITH_VALUE.sub(lambda tag: _VALUE_IN_TAG.sub(_marked, tag[0]), html)
+
+
+def _marked(found: re.Match[str]) -> str:
+    return found[0] if found[0][0] != OPEN else f"{OPEN}!{found[0][1:]}"
 
 
 def _translate_piece(piece: str, say: Say) -> str:

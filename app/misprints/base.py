@@ -8,6 +8,7 @@ import numpy as np
 
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import SPHERE
+from navcore.foundation.text import Text
 from navcore.networks.base import LinearNetwork, linear_network
 from navcore.scenario.model import Scenario
 
@@ -26,7 +27,7 @@ class Axis:
 
 
 TIME = Axis("time", "s")
-TILT = Axis("tilt / initial tilt")
+TILT = Axis(Text("tilt / initial tilt"))
 """The axes that most comparisons share."""
 
 

@@ -35,16 +35,16 @@ def _periods() -> Comparison:
     schuler = 2.0 * math.pi / OMEGA_S
     return Comparison(
         x_axis=Axis("latitude", "rad"),
-        y_axis=Axis("Foucault period", "s"),
+        y_axis=Axis(Text("Foucault period"), "s"),
         x=lat,
         curves=(
-            Curve("2π/ωᵢₑ sin(φ) as printed", "printed", day * np.sin(lat)),
+            Curve(Text("2π/ωᵢₑ sin(φ) as printed"), "printed", day * np.sin(lat)),
             Curve("2π/(ωᵢₑ sin(φ))", "corrected", day / np.sin(lat)),
         ),
         numbers=(
-            Number("Schuler period", "s", printed_schuler, schuler),
-            Number("Earth period", "s", printed_day, day),
-            Number("Foucault period at 32.06°", "s", day * here, day / here),
+            Number(Text("Schuler period"), "s", printed_schuler, schuler),
+            Number(Text("Earth period"), "s", printed_day, day),
+            Number(Text("Foucault period at 32.06°"), "s", day * here, day / here),
         ),
         words=Text(
             "As printed the Schuler period would be {printed_schuler:.4f} s instead of "
@@ -68,7 +68,7 @@ def _extra_s() -> Comparison:
     assert loops.corrected.settling_s is not None
     return loops.compare(
         np.arange(0.0, 901.0, 2.0),
-        ("with the extra s", "((1+K₂)s+K₃)/(s+K₁)"),
+        (Text("with the extra s"), "((1+K₂)s+K₃)/(s+K₁)"),
         (loops.growth, loops.settling),
         Text(
             "Taken as the network, the printed H makes the loop unstable: e-fold in "
@@ -124,13 +124,13 @@ def _transport_rate() -> Comparison:
     peaks = float(np.nanmax(np.abs(printed))), float(np.nanmax(np.abs(corrected)))
     return Comparison(
         x_axis=TIME,
-        y_axis=Axis("tilt φN", "rad"),
+        y_axis=Axis(Text("tilt φN"), "rad"),
         x=t,
         curves=(
-            Curve("Deng 4 as printed", "printed", printed),
-            Curve("with the reference's transport rate", "corrected", corrected),
+            Curve(Text("Deng 4 as printed"), "printed", printed),
+            Curve(Text("with the reference's transport rate"), "corrected", corrected),
         ),
-        numbers=(Number("largest tilt", "rad", peaks[0], peaks[1]),),
+        numbers=(Number(Text("largest tilt"), "rad", peaks[0], peaks[1]),),
         words=Text(
             "Perfect sensors and log, 0 to 10 m/s and back: as printed every change of "
             "speed tilts the platform by up to {peaks:.0f} arcsec; with Vᵣ/R the tilt "
@@ -169,15 +169,15 @@ def _coriolis() -> Comparison:
     ends = float(printed[-1]), float(corrected[-1])
     return Comparison(
         x_axis=TIME,
-        y_axis=Axis("heading error φU", "rad"),
+        y_axis=Axis(Text("heading error φU"), "rad"),
         x=t,
         curves=(
-            Curve("no Coriolis, no up command", "printed", printed),
-            Curve("with both", "corrected", corrected),
+            Curve(Text("no Coriolis, no up command"), "printed", printed),
+            Curve(Text("with both"), "corrected", corrected),
         ),
         numbers=(
-            Number("heading error after 2 h", "rad", ends[0], ends[1]),
-            Number("Coriolis term left out", "m/s²", coriolis_north, 0.0),
+            Number(Text("heading error after 2 h"), "rad", ends[0], ends[1]),
+            Number(Text("Coriolis term left out"), "m/s²", coriolis_north, 0.0),
         ),
         words=Text(
             "Due east at 10 m/s in 32° north the terms left out act like "
@@ -194,46 +194,46 @@ DENG = (
     Misprint(
         id="deng-intro",
         paper="Deng 2019",
-        where="introduction",
-        printed="2π/√(R/g), 2π/√(ωᵢₑ), 2π/ωᵢₑ sin(φ)",
-        right="2π √(R/g), 2π/ωᵢₑ, 2π/(ωᵢₑ sin(φ))",
-        consequence="none of the three periods comes out",
+        where=Text("introduction"),
+        printed=Text("2π/√(R/g), 2π/√(ωᵢₑ), 2π/ωᵢₑ sin(φ)"),
+        right=Text("2π √(R/g), 2π/ωᵢₑ, 2π/(ωᵢₑ sin(φ))"),
+        consequence=Text("none of the three periods comes out"),
         compute=_periods,
     ),
     Misprint(
         id="deng-1",
         paper="Deng 2019",
         where="eq. 1",
-        printed="H has an extra s in the denominator",
-        right="H = ((1+K₂)s+K₃)/(s+K₁): that s is the velocity integrator",
-        consequence="the loop is unstable",
+        printed=Text("H has an extra s in the denominator"),
+        right=Text("H = ((1+K₂)s+K₃)/(s+K₁): that s is the velocity integrator"),
+        consequence=Text("the loop is unstable"),
         compute=_extra_s,
     ),
     Misprint(
         id="deng-3",
         paper="Deng 2019",
         where="eq. 3 and 4",
-        printed="dp = K₃ dv/s, added to a rate",
+        printed=Text("dp = K₃ dv/s, added to a rate"),
         right="dp = K₃ dv/(R s)",
-        consequence="the integral gain is R times too large: the loop explodes within seconds",
+        consequence=Text("the integral gain is R times too large: the loop explodes within seconds"),
         compute=_radius,
     ),
     Misprint(
         id="deng-4-transport",
         paper="Deng 2019",
         where="eq. 3 and 4",
-        printed="the platform turns with the difference dv alone",
-        right="plus the reference's transport rate Vᵣ/R",
-        consequence="a moving vehicle has transients at every change of speed",
+        printed=Text("the platform turns with the difference dv alone"),
+        right=Text("plus the reference's transport rate Vᵣ/R"),
+        consequence=Text("a moving vehicle has transients at every change of speed"),
         compute=_transport_rate,
     ),
     Misprint(
         id="deng-4-coriolis",
         paper="Deng 2019",
         where="eq. 3 and 4",
-        printed="no Coriolis term, no up command",
-        right="add both",
-        consequence="a moving vehicle's heading drifts",
+        printed=Text("no Coriolis term, no up command"),
+        right=Text("add both"),
+        consequence=Text("a moving vehicle's heading drifts"),
         compute=_coriolis,
     ),
 )

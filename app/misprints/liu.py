@@ -60,10 +60,10 @@ def _transfer_powers() -> Comparison:
         y_axis=Axis("R φ / δVr", "s", log=True),
         x=omega,
         curves=(
-            Curve("Liu 6 as printed", "printed", printed),
-            Curve("powers mended", "corrected", corrected),
+            Curve(Text("Liu 6 as printed"), "printed", printed),
+            Curve(Text("powers mended"), "corrected", corrected),
         ),
-        numbers=(Number("gain at the Schuler frequency", "s", gains[0], gains[1]),),
+        numbers=(Number(Text("gain at the Schuler frequency"), "s", gains[0], gains[1]),),
         words=Text(
             "At the Schuler frequency the printed transfer has the gain {gains} s "
             "instead of {gains_2:.0f} s: fig. 3 cannot have been drawn with it.",
@@ -100,13 +100,13 @@ def _terms() -> Comparison:
     peaks = float(np.max(printed)), float(np.max(corrected))
     return Comparison(
         x_axis=TIME,
-        y_axis=Axis("s of Liu 15", "m/s"),
+        y_axis=Axis(Text("s of Liu 15"), "m/s"),
         x=t,
         curves=(
-            Curve("n + 1 terms over n (printed)", "printed", printed),
-            Curve("n terms over n", "corrected", corrected),
+            Curve(Text("n + 1 terms over n (printed)"), "printed", printed),
+            Curve(Text("n terms over n"), "corrected", corrected),
         ),
-        numbers=(Number("largest s for a change of 0.43 m/s", "m/s", peaks[0], peaks[1]),),
+        numbers=(Number(Text("largest s for a change of 0.43 m/s"), "m/s", peaks[0], peaks[1]),),
         words=Text(
             "A change of {change:g} m/s counts as {peaks:.4g} m/s, beyond c = 0.45: the "
             "loop is undamped where it should stay as it is.",
@@ -130,17 +130,17 @@ def _direct_form() -> Comparison:
         else Text(", and at 0.01 s it is unstable (e-fold in {growth:.0f} s)", growth=growth)
     )
     return Comparison(
-        x_axis=Axis("step T", "s", log=True),
-        y_axis=Axis("largest relative error of H", "", log=True),
+        x_axis=Axis(Text("step T"), "s", log=True),
+        y_axis=Axis(Text("largest relative error of H"), "", log=True),
         x=steps,
         curves=(
-            Curve("direct form, double", "printed", double),
-            Curve("direct form, single", "printed", single),
-            Curve("state space in normalised time", "corrected", right),
+            Curve(Text("direct form, double"), "printed", double),
+            Curve(Text("direct form, single"), "printed", single),
+            Curve(Text("state space in normalised time"), "corrected", right),
         ),
         numbers=(
-            Number("error of H at T = 0.1 s", "", at_tenth[0], at_tenth[1]),
-            Number("e-folding time at T = 0.01 s", "s", growth, None),
+            Number(Text("error of H at T = 0.1 s"), "", at_tenth[0], at_tenth[1]),
+            Number(Text("e-folding time at T = 0.01 s"), "s", growth, None),
         ),
         words=Text(
             "The coefficients are right, but they do not fit into a double: at 0.1 s H "
@@ -184,17 +184,17 @@ def _figure_7() -> Comparison:
     peaks = [float(np.max(np.abs(y))) for y in (quarter, half, switched, kept)]
     return Comparison(
         x_axis=TIME,
-        y_axis=Axis("change of the east velocity error", "m/s"),
+        y_axis=Axis(Text("change of the east velocity error"), "m/s"),
         x=t,
         curves=(
-            Curve("s = 0.25 m/s (what Liu says it is like)", "printed", quarter),
-            Curve("undamped for 200 s, network cleared", "corrected", switched),
+            Curve(Text("s = 0.25 m/s (what Liu says it is like)"), "printed", quarter),
+            Curve(Text("undamped for 200 s, network cleared"), "corrected", switched),
             Curve("s = 0.5 m/s", "corrected", half),
-            Curve("undamped for 200 s, network kept", "corrected", kept),
+            Curve(Text("undamped for 200 s, network kept"), "corrected", kept),
         ),
         numbers=(
-            Number("overshoot after the switch", "m/s", peaks[0], peaks[2]),
-            Number("the same without clearing the network", "m/s", None, peaks[3]),
+            Number(Text("overshoot after the switch"), "m/s", peaks[0], peaks[2]),
+            Number(Text("the same without clearing the network"), "m/s", None, peaks[3]),
         ),
         words=Text(
             "Clearing the network with 0.5 m/s of log error present acts like a step of "
@@ -212,9 +212,9 @@ LIU = (
         id="liu-5",
         paper="Liu 2021",
         where="eq. 5",
-        printed="ωₛ³ s³ in numerator and denominator",
+        printed=Text("ωₛ³ s³ in numerator and denominator"),
         right="ωₛ s³",
-        consequence="the loop is unstable",
+        consequence=Text("the loop is unstable"),
         compute=_power,
     ),
     Misprint(
@@ -223,34 +223,34 @@ LIU = (
         where="eq. 6",
         printed="3.4 ωₛ⁵ s⁵ + 6.8 ωₛ⁴ s⁴ + ... + 3.4 ωₛ s + ωₛ⁶",
         right="ωₛ s⁵, ωₛ² s⁴, ..., ωₛ⁵ s",
-        consequence="a gain that has nothing to do with fig. 3",
+        consequence=Text("a gain that has nothing to do with fig. 3"),
         compute=_transfer_powers,
     ),
     Misprint(
         id="liu-15",
         paper="Liu 2021",
         where="eq. 15",
-        printed="n + 1 terms divided by n",
+        printed=Text("n + 1 terms divided by n"),
         right="n terms",
-        consequence="every change counts 5 % too large",
+        consequence=Text("every change counts 5 % too large"),
         compute=_terms,
     ),
     Misprint(
         id="liu-19",
         paper="Liu 2021",
         where="eq. 17 to 19",
-        printed="the direct form",
-        right="state space in normalised time (theory.md 3.5)",
-        consequence="a wrong, then unstable network at small steps",
+        printed=Text("the direct form"),
+        right=Text("state space in normalised time (theory.md 3.5)"),
+        consequence=Text("a wrong, then unstable network at small steps"),
         compute=_direct_form,
     ),
     Misprint(
         id="liu-fig7",
         paper="Liu 2021",
         where="fig. 7",
-        printed="switching undamped for 200 s is like s = 0.25 m/s",
-        right="like a step of the whole 0.5 m/s that the log is off",
-        consequence="the cost of a switch is put at half its size",
+        printed=Text("switching undamped for 200 s is like s = 0.25 m/s"),
+        right=Text("like a step of the whole 0.5 m/s that the log is off"),
+        consequence=Text("the cost of a switch is put at half its size"),
         compute=_figure_7,
     ),
 )

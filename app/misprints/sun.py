@@ -41,13 +41,13 @@ def _radius() -> Comparison:
     gains = float(printed[here]), float(corrected[here])
     return Comparison(
         x_axis=Axis("frequency", "rad/s", log=True),
-        y_axis=Axis("tilt for 1 m/s² of acceleration", "rad", log=True),
+        y_axis=Axis(Text("tilt for 1 m/s² of acceleration"), "rad", log=True),
         x=omega,
         curves=(
             Curve("(1-H)/(s² + ωₛ² H)", "printed", printed),
             Curve("(1-H)/(R (s² + ωₛ² H))", "corrected", corrected),
         ),
-        numbers=(Number("gain at the Schuler frequency", "rad/(m/s²)", gains[0], gains[1]),),
+        numbers=(Number(Text("gain at the Schuler frequency"), "rad/(m/s²)", gains[0], gains[1]),),
         words=Text(
             "Without 1/R the tilt comes out {radius} times too large: {gains} rad for 1 "
             "m/s² at the Schuler frequency instead of {gains_2:.2f} rad.",
@@ -64,14 +64,14 @@ def _sign() -> Comparison:
     table = _table(knots)
     return Comparison(
         x_axis=_DIFFERENCE,
-        y_axis=Axis("damping ratio ζ"),
+        y_axis=Axis(Text("damping ratio ζ")),
         x=knots * KNOT,
         curves=(
-            Curve("Sun 9 as printed", "printed", printed),
-            Curve("Sun 9, sign mended", "corrected", mended),
-            Curve("Sun's Table 1, PCHIP", "corrected", table),
+            Curve(Text("Sun 9 as printed"), "printed", printed),
+            Curve(Text("Sun 9, sign mended"), "corrected", mended),
+            Curve(Text("Sun's Table 1, PCHIP"), "corrected", table),
         ),
-        numbers=(Number("ζ at 3 kn", "", float(printed[-1]), float(table[-1])),),
+        numbers=(Number(Text("ζ at 3 kn"), "", float(printed[-1]), float(table[-1])),),
         words=Text(
             "As printed ζ rises with the difference, to {printed:.1f} at 3 kn where "
             "Sun's own table has {table:.2f}: the worse the log, the harder it is "
@@ -108,10 +108,10 @@ def _negative() -> Comparison:
             Text("table at 1.8 kn: ζ = {table:.2f}", table=table),
         ),
         (
-            Number("ζ at 1.8 kn", "", asked, table),
+            Number(Text("ζ at 1.8 kn"), "", asked, table),
             loops.growth,
-            Number("negative from", "m/s", low, None),
-            Number("negative to", "m/s", high, None),
+            Number(Text("negative from"), "m/s", low, None),
+            Number(Text("negative to"), "m/s", high, None),
         ),
         Text(
             "Even with its sign mended the quadratic is negative between {low:.2f} and "
@@ -128,7 +128,7 @@ def _sigma() -> Comparison:
     loops = TwoLoops(_mirrored(right), right)
     return loops.compare(
         np.arange(0.0, 901.0, 2.0),
-        ("σ = + ζ ωₙ (printed)", "σ = - ζ ωₙ"),
+        (Text("σ = + ζ ωₙ (printed)"), "σ = - ζ ωₙ"),
         (loops.damping, loops.growth),
         Text(
             "With the positive σ of Sun 16 all four poles of Sun 14 and 15 lie on the "
@@ -158,16 +158,16 @@ def _residue() -> Comparison:
     real = np.array([real_damping(float(xi)) for xi in asked])
     limit, (printed, exact) = least_stable(), real_damping(0.5)
     return Comparison(
-        x_axis=Axis("damping ratio asked"),
-        y_axis=Axis("damping ratio of the loop"),
+        x_axis=Axis(Text("damping ratio asked")),
+        y_axis=Axis(Text("damping ratio of the loop")),
         x=asked,
         curves=(
             Curve("B = -A w₂/w₁ (printed)", "printed", real[:, 0]),
             Curve("B = (c-a) - A", "corrected", real[:, 1]),
         ),
         numbers=(
-            Number("damping ratio when 0.5 is asked", "", printed, exact),
-            Number("unstable for ζ up to", "", limit, None),
+            Number(Text("damping ratio when 0.5 is asked"), "", printed, exact),
+            Number(Text("unstable for ζ up to"), "", limit, None),
         ),
         words=Text(
             "Forcing H(0) = 1 moves the pair: {printed:.2f} when 0.5 is asked, and no "
@@ -186,7 +186,7 @@ def _small_xi() -> Comparison:
     entries = sum(real_damping(value)[0] < 0.0 for _, value in SUN_TABLE)
     return loops.compare(
         np.arange(0.0, 86401.0, 120.0),
-        ("ζ = 0.08 as printed", "ζ = 0.08 exact"),
+        (Text("ζ = 0.08 as printed"), "ζ = 0.08 exact"),
         (loops.damping, loops.growth),
         Text(
             "At ζ = 0.08, an entry of Sun's own table, the loop as printed grows e-fold "
@@ -207,7 +207,7 @@ SUN = (
         where="eq. 3",
         printed="φ/A = (1-H)/(s² + ωₛ² H)",
         right="with 1/R",
-        consequence="a tilt six million times too large",
+        consequence=Text("a tilt six million times too large"),
         compute=_radius,
     ),
     Misprint(
@@ -215,17 +215,17 @@ SUN = (
         paper="Sun 2017",
         where="eq. 9",
         printed="ζ = 0.3076 d² + 1.1452 d + 0.8101",
-        right="- 1.1452 d; better the table itself",
-        consequence="the damping rises with the difference instead of falling",
+        right=Text("- 1.1452 d; better the table itself"),
+        consequence=Text("the damping rises with the difference instead of falling"),
         compute=_sign,
     ),
     Misprint(
         id="sun-9-negative",
         paper="Sun 2017",
-        where="eq. 9, sign mended",
+        where=Text("eq. 9, sign mended"),
         printed="ζ = 0.3076 d² - 1.1452 d + 0.8101",
-        right="the table, interpolated monotonically and clamped to 0.04 .. 0.99",
-        consequence="negative damping between 0.95 and 2.77 kn",
+        right=Text("the table, interpolated monotonically and clamped to 0.04 .. 0.99"),
+        consequence=Text("negative damping between 0.95 and 2.77 kn"),
         compute=_negative,
     ),
     Misprint(
@@ -234,7 +234,7 @@ SUN = (
         where="eq. 16",
         printed="σ = ζ ωₙ",
         right="σ = -ζ ωₙ",
-        consequence="all poles on the right",
+        consequence=Text("all poles on the right"),
         compute=_sigma,
     ),
     Misprint(
@@ -242,17 +242,17 @@ SUN = (
         paper="Sun 2017",
         where="eq. 18",
         printed="B = -A w₂/w₁",
-        right="B = (c-a) - A (pole2 exact), or unity2 for H(0) = 1",
-        consequence="the loop is less damped than asked",
+        right=Text("B = (c-a) - A (pole2 exact), or unity2 for H(0) = 1"),
+        consequence=Text("the loop is less damped than asked"),
         compute=_residue,
     ),
     Misprint(
         id="sun-18-unstable",
         paper="Sun 2017",
-        where="eq. 18 with Table 1",
-        printed="B = -A w₂/w₁ at ζ = 0.08",
+        where=Text("eq. 18 with Table 1"),
+        printed=Text("B = -A w₂/w₁ at ζ = 0.08"),
         right="B = (c-a) - A",
-        consequence="the loop is unstable",
+        consequence=Text("the loop is unstable"),
         compute=_small_xi,
     ),
 )

@@ -4,6 +4,7 @@ import numpy as np
 
 from app.misprints.base import TILT, TIME, Comparison, Curve, Number, growth_time
 from navcore.analysis import analyse, initial_tilt_response
+from navcore.foundation.text import Text
 from navcore.networks.base import LinearNetwork
 
 
@@ -33,17 +34,17 @@ class TwoLoops:
     @property
     def damping(self) -> Number:
         """Least damping ratio of both."""
-        return Number("damping ratio", "", self.printed.damping_ratio, self.corrected.damping_ratio)
+        return Number(Text("damping ratio"), "", self.printed.damping_ratio, self.corrected.damping_ratio)
 
     @property
     def growth(self) -> Number:
         """e-folding time of both, s."""
-        return Number("e-folding time", "s", self.growth_s, growth_time(self.corrected.poles))
+        return Number(Text("e-folding time"), "s", self.growth_s, growth_time(self.corrected.poles))
 
     @property
     def settling(self) -> Number:
         """Settling time of both, s."""
-        return Number("settling time (2 %)", "s", self.printed.settling_s, self.corrected.settling_s)
+        return Number(Text("settling time (2 %)"), "s", self.printed.settling_s, self.corrected.settling_s)
 
     def compare(
         self, t: np.ndarray, labels: tuple[str, str], numbers: tuple[Number, ...], words: str

@@ -43,10 +43,12 @@ def _gain() -> Comparison:
         ),
         numbers=(
             Number("K₂", "", PRINTED_K2, k2),
-            Number("damping ratio", "", loop["printed"].damping_ratio, loop["corrected"].damping_ratio),
-            Number("time in which the slowest pole decays to 0.5 %", "s", *slowest.values()),
-            Number("last above 0.5 % of the initial tilt", "s", settled["printed"], settled["corrected"]),
-            Number("last above 2 %", "s", loop["printed"].settling_s, loop["corrected"].settling_s),
+            Number(Text("damping ratio"), "", loop["printed"].damping_ratio, loop["corrected"].damping_ratio),
+            Number(Text("time in which the slowest pole decays to 0.5 %"), "s", *slowest.values()),
+            Number(
+                Text("last above 0.5 % of the initial tilt"), "s", settled["printed"], settled["corrected"]
+            ),
+            Number(Text("last above 2 %"), "s", loop["printed"].settling_s, loop["corrected"].settling_s),
         ),
         words=Text(
             "With the printed K₂ the damping is {damping_ratio:.2f} instead of "
@@ -76,12 +78,12 @@ def _design() -> Comparison:
         y_axis=TILT,
         x=t,
         curves=(
-            Curve("σ t = 525 (printed)", "printed", y["printed"]),
+            Curve(Text("σ t = 525 (printed)"), "printed", y["printed"]),
             Curve("σ t = 5.25", "corrected", y["corrected"]),
         ),
         numbers=(
-            Number("σ for t = 600 s", "1/s", sigmas["printed"], sigmas["corrected"]),
-            Number("exp(-σ t) at 600 s", "", left["printed"], left["corrected"]),
+            Number(Text("σ for t = 600 s"), "1/s", sigmas["printed"], sigmas["corrected"]),
+            Number(Text("exp(-σ t) at 600 s"), "", left["printed"], left["corrected"]),
         ),
         words=Text(
             "The σ = 0.0088 that Zha uses belongs to σ t = 5.25: {corrected:.1f} % is "
@@ -97,9 +99,9 @@ ZHA = (
         id="zha-3",
         paper="Zha 2019",
         where="section 3",
-        printed='"99.995 %" in 10 min, σ t = 525',
-        right="σ t = 5.25 gives 99.5 %; σ = 0.0088",
-        consequence="taken at its word, σ a hundred times too large",
+        printed=Text('"99.995 %" in 10 min, σ t = 525'),
+        right=Text("σ t = 5.25 gives 99.5 %; σ = 0.0088"),
+        consequence=Text("taken at its word, σ a hundred times too large"),
         compute=_design,
     ),
     Misprint(
@@ -108,7 +110,7 @@ ZHA = (
         where="section 4.1",
         printed=Text("K₂ = {printed_k2:g} for σ = 0.0088, ζ = 0.7", printed_k2=PRINTED_K2),
         right="K₂ = 202.52 (K₁ = 0.0264, K₃ = 0.9045 agree)",
-        consequence="less damped and twice as slow as designed",
+        consequence=Text("less damped and twice as slow as designed"),
         compute=_gain,
     ),
 )

@@ -57,16 +57,16 @@ def _signs() -> Comparison:
     assert growth is not None
     return Comparison(
         x_axis=TIME,
-        y_axis=Axis("east velocity error", "m/s"),
+        y_axis=Axis(Text("east velocity error"), "m/s"),
         x=step * np.arange(count),
         curves=(
-            Curve("Zhao 1 as printed", "printed", printed),
-            Curve("signs mended", "corrected", corrected),
+            Curve(Text("Zhao 1 as printed"), "printed", printed),
+            Curve(Text("signs mended"), "corrected", corrected),
         ),
         numbers=(
-            Number("e-folding time", "s", growth, growth_time(np.linalg.eigvals(_matrix()))),
+            Number(Text("e-folding time"), "s", growth, growth_time(np.linalg.eigvals(_matrix()))),
             Number(
-                "east velocity error after 3 h at most",
+                Text("east velocity error after 3 h at most"),
                 "m/s",
                 float(np.max(np.abs(printed))),
                 float(np.max(np.abs(corrected))),
@@ -99,16 +99,16 @@ def _tilt_coefficient() -> Comparison:
     printed, corrected, tilt = _tilt(t, True), _tilt(t, False), float(_INITIAL[4])
     return Comparison(
         x_axis=TIME,
-        y_axis=Axis("tilt φE", "rad"),
+        y_axis=Axis(Text("tilt φE"), "rad"),
         x=t,
         curves=(
-            Curve("Zhao 6 as printed", "printed", printed),
-            Curve("Zhao 6, M4 mended", "corrected", corrected),
-            Curve("error model (with Foucault)", "corrected", model),
+            Curve(Text("Zhao 6 as printed"), "printed", printed),
+            Curve(Text("Zhao 6, M4 mended"), "corrected", corrected),
+            Curve(Text("error model (with Foucault)"), "corrected", model),
         ),
         numbers=(
-            Number("tilt at t = 0", "rad", float(printed[0]), float(corrected[0])),
-            Number("amplitude of the 24 h line", "rad", tilt, (EARTH_RATE / OMEGA_S) ** 2 * tilt),
+            Number(Text("tilt at t = 0"), "rad", float(printed[0]), float(corrected[0])),
+            Number(Text("amplitude of the 24 h line"), "rad", tilt, (EARTH_RATE / OMEGA_S) ** 2 * tilt),
         ),
         words=Text(
             "As printed the solution starts at {printed:.0f} arcsec although the initial "
@@ -142,17 +142,17 @@ def _latitude_coefficients() -> Comparison:
     metres = SEMI_MAJOR_AXIS
     return Comparison(
         x_axis=TIME,
-        y_axis=Axis("latitude error", "rad"),
+        y_axis=Axis(Text("latitude error"), "rad"),
         x=t,
         curves=(
-            Curve("Zhao 7 as printed", "printed", printed),
-            Curve("Zhao 7, L4 and L5 mended", "corrected", corrected),
-            Curve("error model (with Foucault)", "corrected", model),
+            Curve(Text("Zhao 7 as printed"), "printed", printed),
+            Curve(Text("Zhao 7, L4 and L5 mended"), "corrected", corrected),
+            Curve(Text("error model (with Foucault)"), "corrected", model),
         ),
         numbers=(
-            Number("latitude error at t = 0", "rad", float(printed[0]), float(corrected[0])),
+            Number(Text("latitude error at t = 0"), "rad", float(printed[0]), float(corrected[0])),
             Number(
-                "largest departure from the error model",
+                Text("largest departure from the error model"),
                 "rad",
                 float(np.max(np.abs(printed - model))),
                 float(np.max(np.abs(corrected - model))),
@@ -185,13 +185,13 @@ def _unit() -> Comparison:
     rms = [float(np.sqrt(np.mean(y * y))) for y in (printed, corrected)]
     return Comparison(
         x_axis=TIME,
-        y_axis=Axis("east velocity error", "m/s"),
+        y_axis=Axis(Text("east velocity error"), "m/s"),
         x=t,
         curves=(
-            Curve("5×10⁻⁴ g read per √Hz", "printed", printed),
-            Curve("5×10⁻⁴ g per 100 Hz sample: 50 µg/√Hz", "corrected", corrected),
+            Curve(Text("5×10⁻⁴ g read per √Hz"), "printed", printed),
+            Curve(Text("5×10⁻⁴ g per 100 Hz sample: 50 µg/√Hz"), "corrected", corrected),
         ),
-        numbers=(Number("RMS of the east velocity error", "m/s", rms[0], rms[1]),),
+        numbers=(Number(Text("RMS of the east velocity error"), "m/s", rms[0], rms[1]),),
         words=Text(
             "Read per √Hz the random walk alone gives {rms:.2f} m/s RMS in 24 h; read "
             "per sample of 100 Hz it gives {rms_2:.3f} m/s.",
@@ -208,7 +208,7 @@ ZHAO = (
         where="eq. 1",
         printed="F(3,2) = -1/R, F(5,1) = -1/R",
         right="both +1/R",
-        consequence="one channel diverges",
+        consequence=Text("one channel diverges"),
         compute=_signs,
     ),
     Misprint(
@@ -217,7 +217,7 @@ ZHAO = (
         where="eq. 6",
         printed="M4 contains -ΦE₀",
         right="-(Ω/ωₛ)² ΦE₀",
-        consequence="the tilt does not start at its initial value and swings with 24 h",
+        consequence=Text("the tilt does not start at its initial value and swings with 24 h"),
         compute=_tilt_coefficient,
     ),
     Misprint(
@@ -226,16 +226,16 @@ ZHAO = (
         where="eq. 7",
         printed="L4: + sin(φ) εN/Ω; L5: sin(φ) εE/Ω",
         right="L4: - sin(φ) εN/Ω; L5: sin(φ) εN/Ω",
-        consequence="a latitude error of kilometres at t = 0",
+        consequence=Text("a latitude error of kilometres at t = 0"),
         compute=_latitude_coefficients,
     ),
     Misprint(
         id="zhao-5.1.2",
         paper="Zhao 2015",
         where="section 5.1.2",
-        printed="angle random walk in °/h, velocity random walk 5×10⁻⁴ g",
-        right="°/√h; 5×10⁻⁴ g per 100 Hz sample = 50 µg/√Hz",
-        consequence="read per √Hz, ten times the velocity random walk",
+        printed=Text("angle random walk in °/h, velocity random walk 5×10⁻⁴ g"),
+        right=Text("°/√h; 5×10⁻⁴ g per 100 Hz sample = 50 µg/√Hz"),
+        consequence=Text("read per √Hz, ten times the velocity random walk"),
         compute=_unit,
     ),
 )

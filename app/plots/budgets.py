@@ -7,6 +7,7 @@ from typing import Any
 from app.plots.units import number
 from navcore.design.budget import Budget, budget
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
 
@@ -44,10 +45,10 @@ def times_the_floor(scenario: Scenario) -> list[str]:
     except InputError:
         return ["none"] * len(scenario.method)
     if steady.floor_reason:
-        return ["no floor"] * len(scenario.method)
+        return [Text("no floor")] * len(scenario.method)
     texts = []
     for method, given in zip(steady.methods, scenario.method, strict=True):
         times = [number(value, 3) for value in steady.times_floor(method).values() if value is not None]
-        ratios = "the floor itself" if given.kind.covering == "filter" else ", ".join(times)
-        texts.append(ratios or ("no steady state" if given.reads_log else "without the log"))
+        ratios = Text("the floor itself") if given.kind.covering == "filter" else ", ".join(times)
+        texts.append(ratios or (Text("no steady state") if given.reads_log else Text("without the log")))
     return texts

@@ -44,7 +44,7 @@ class TransferView:
     note: str = ""
 
 
-_TILT, _SPEED = "tilt", "velocity error"
+_TILT, _SPEED = Text("tilt"), Text("velocity error")
 _PER_10_UG = 10.0 * MICRO_G
 _LOG = "δV<sub>r</sub>"
 _GYRO = 0.01 * DEG_PER_HOUR
@@ -52,16 +52,32 @@ _ACCELERATION = 0.01
 
 VIEWS: dict[str, TransferView] = {
     "phi/dv_r": TransferView(
-        "dv_r", "phi", Text("{tilt} from log error", tilt=_TILT), f"φ/{_LOG}", "arcsec per m/s", 1.0 / ARCSEC
+        "dv_r",
+        "phi",
+        Text("{tilt} from log error", tilt=_TILT),
+        f"φ/{_LOG}",
+        Text("arcsec per m/s"),
+        1.0 / ARCSEC,
     ),
     "dv/dv_r": TransferView(
         "dv_r", "dv", Text("{speed} from log error", speed=_SPEED), f"δV/{_LOG}", "dB", 1.0
     ),
     "R phi/dv_r": TransferView(
-        "dv_r", "phi", "R × tilt from log error", f"R φ/{_LOG}", "dB re 1 s", RADIUS, "(Liu fig. 3, 5)"
+        "dv_r",
+        "phi",
+        Text("R × tilt from log error"),
+        f"R φ/{_LOG}",
+        Text("dB re 1 s"),
+        RADIUS,
+        Text("(Liu fig. 3, 5)"),
     ),
     "phi/eps": TransferView(
-        "eps", "phi", Text("{tilt} from gyro error", tilt=_TILT), "φ/ε", "arcsec per 0.01 °/h", _GYRO / ARCSEC
+        "eps",
+        "phi",
+        Text("{tilt} from gyro error", tilt=_TILT),
+        "φ/ε",
+        Text("arcsec per 0.01 °/h"),
+        _GYRO / ARCSEC,
     ),
     "dv/eps": TransferView(
         "eps", "dv", Text("{speed} from gyro error", speed=_SPEED), "δV/ε", "m/s per 0.01 °/h", _GYRO
@@ -71,7 +87,7 @@ VIEWS: dict[str, TransferView] = {
         "phi",
         Text("{tilt} from accelerometer error", tilt=_TILT),
         "φ/∇",
-        "arcsec per 10 µg",
+        Text("arcsec per 10 µg"),
         _PER_10_UG / ARCSEC,
     ),
     "dv/nabla": TransferView(
@@ -87,9 +103,9 @@ VIEWS: dict[str, TransferView] = {
         "phi",
         Text("{tilt} from own acceleration", tilt=_TILT),
         "φ/A",
-        "arcsec per 0.01 m/s²",
+        Text("arcsec per 0.01 m/s²"),
         _ACCELERATION / ARCSEC,
-        "(internal damping)",
+        Text("(internal damping)"),
     ),
     "dv/acceleration": TransferView(
         "acceleration",
@@ -98,24 +114,26 @@ VIEWS: dict[str, TransferView] = {
         "δV/A",
         "m/s per 0.01 m/s²",
         _ACCELERATION,
-        "(internal damping)",
+        Text("(internal damping)"),
     ),
 }
-TRANSFERS: dict[str, str] = {key: f"{view.title} {view.note}".rstrip() for key, view in VIEWS.items()}
+TRANSFERS: dict[str, str] = {
+    key: Text.joined(" ", filter(None, (view.title, view.note))) for key, view in VIEWS.items()
+}
 """Transfers that the Bode plot can show: id -> label."""
-OPEN_LOOP = "open loop"
+OPEN_LOOP = Text("open loop")
 OMEGA_MIN, OMEGA_MAX = 5e-6, 0.2
 """Range of the curves over frequency, rad/s: periods from 14 days to 31 s."""
 _EVEN = np.geomspace(OMEGA_MIN, OMEGA_MAX, 240)
 _NEAR = 0.02
-SHOWN: dict[str, str] = TRANSFERS | {OPEN_LOOP: "open loop: Nyquist plot and margins"}
+SHOWN: dict[str, str] = TRANSFERS | {OPEN_LOOP: Text("open loop: Nyquist plot and margins")}
 """All that the chooser of the frequency side offers: id -> label."""
 
 
 def earth_mode_text(growth: float) -> str:
     """How the 24 h mode behaves, e.g. "grows, e-folding 3.1 days"; ``growth`` in 1/s."""
     if growth == 0.0:
-        return "neither grows nor decays"
+        return Text("neither grows nor decays")
     return (
         Text("grows, e-folding {growth}", growth=duration(1.0 / growth))
         if growth > 0.0

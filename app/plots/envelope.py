@@ -20,7 +20,7 @@ BandKind = Literal["none", "covariance", "seeds"]
 
 LOWEST, HIGHEST = 5.0, 95.0
 """Per cent of the runs that lie below the lower and the upper edge."""
-OLD = " (of an earlier setting)"
+OLD = Text(" (of an earlier setting)")
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,11 +81,11 @@ def envelope(runs: Sequence[Run]) -> Envelope:
     )
     lower, upper = (tuple(each[:count] for each in edges) for edges in (low, high))
     return Envelope(
-        times[0][:count], lower, upper, words, ("Each seed is another draw of all random errors.",)
+        times[0][:count], lower, upper, words, (Text("Each seed is another draw of all random errors."),)
     )
 
 
-_COVERS = (
+_COVERS = Text(
     "One standard deviation of the errors, by covariance along the motion: random errors of IMU and log, and "
     "biases and initial errors with their standard deviations."
 )
@@ -120,9 +120,11 @@ def covariance_envelope(scenario: Scenario, bands: Bands) -> Envelope:
         high.append(np.column_stack([band.sigma, distance]))
         low.append(np.column_stack([-band.sigma, np.zeros_like(distance)]))
     names = (
-        ", ".join(missing) if len(missing) <= _MOST_NAMED else Text("{missing} methods", missing=len(missing))
+        Text.joined(", ", missing)
+        if len(missing) <= _MOST_NAMED
+        else Text("{missing} methods", missing=len(missing))
     )
-    words = Text(
-        "±1σ by covariance{names}", names=Text("; no covariance: {names}", names=names) if missing else ""
-    )
+    words = Text("±1σ by covariance")
+    if missing:
+        words += Text("; no covariance: {names}", names=names)
     return Envelope(bands.t_s, tuple(low), tuple(high), words, tuple(details))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from html import escape
 from typing import TYPE_CHECKING, Literal
 
 from navcore.foundation.text import Text
@@ -35,15 +34,15 @@ COMMAND = "legend"
 """Name of the command that a click asks for, with the entry's key."""
 _WORDS: dict[State, str] = {
     "shown": "",
-    "unscaled": "off scale",
+    "unscaled": Text("off scale"),
     "dimmed": "dimmed",
     "hidden": "hidden",
 }
 _NEXT_WORDS: dict[State, str] = {
-    "shown": "show it again",
-    "unscaled": "leave it out of the scale",
-    "dimmed": "dim it",
-    "hidden": "hide it",
+    "shown": Text("show it again"),
+    "unscaled": Text("leave it out of the scale"),
+    "dimmed": Text("dim it"),
+    "hidden": Text("hide it"),
 }
 FAINT = "59"
 """Opacity of what is dimmed, as colours carry it."""
@@ -83,9 +82,16 @@ def entry(key: str, name: str, bar: str, state: State) -> str:
     state : State
         Of the curve.
     """
-    said = f'<small class="sb-said">{_WORDS[state]}</small>' if state != "shown" else ""
-    return (
-        f'<button class="sb-entry" data-command="{COMMAND} {escape(key)}" data-state="{state}" '
-        f'title="{hint(state)}"><span class="sb-line" style="{bar}"></span>'
-        f"<span>{escape(name)}</span>{said}</button>"
+    said = Text('<small class="sb-said">{words}</small>', words=_WORDS[state]) if state != "shown" else ""
+    return Text(
+        '<button class="sb-entry" data-command="{command} {key:html}" data-state="{state}" '
+        'title="{hint}"><span class="sb-line" style="{bar}"></span><span>{name:html}</span>'
+        "{said}</button>",
+        command=COMMAND,
+        key=key,
+        state=state,
+        hint=hint(state),
+        bar=bar,
+        name=name,
+        said=said,
     )

@@ -8,6 +8,7 @@ from app.plots.plotly_data import PlotlyFigure
 from app.plots.units import Unit, number
 from app.plots.uplot import Dash
 from navcore.engine.run import MethodRun, Run
+from navcore.foundation.text import Text
 
 PIN_WIDTH = 1.0
 """Curves of pins are thinner than those of the present run."""
@@ -63,7 +64,7 @@ def pinned_methods(pins: Sequence[Pinned]) -> tuple[PinnedMethod, ...]:
     """All methods of all pins whose runs are known."""
     return tuple(
         PinnedMethod(
-            f"{pin.name}: {method.method.name}",
+            Text("{name}: {name2}", name=pin.name, name2=method.method.name),
             pin.hex,
             _DASHES[place % len(_DASHES)],
             _PLOTLY_DASHES[place % len(_PLOTLY_DASHES)],

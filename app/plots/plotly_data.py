@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from navcore.foundation.text import Text
+
 _PLOTLY_PX = frozenset(
     {"size", "standoff", "ticklen", "tickwidth", "linewidth", "gridwidth", "zerolinewidth", "xshift",
      "yshift", "itemwidth", "tracegroupgap", "borderpad", "borderwidth", "ax", "ay"}
@@ -90,6 +92,18 @@ def _times(value: Any, scale: float) -> Any:
 CONFIG: dict[str, Any] = {"displayModeBar": False, "doubleClick": "reset", "responsive": False}
 
 
+class FigureJson(str):
+    """JSON text of a figure.
+
+    Attributes
+    ----------
+    texts : dict of str to Text
+        Texts with values in it, by their English.
+    """
+
+    texts: dict[str, Text]
+
+
 class PlotlyFigure(dict[str, Any]):
     """Keys ``data``, ``layout`` and ``config`` as plotly.js reads them.
 
@@ -102,11 +116,23 @@ class PlotlyFigure(dict[str, Any]):
         """Height / width the layout was made for, to be given to viser's ``add_plotly`` too."""
         return self["layout"]["meta"]["aspect"]
 
-    def to_json(self) -> str:
+    def to_json(self) -> FigureJson:
         """JSON text of the figure."""
         import orjson
 
-        return orjson.dumps(self, option=orjson.OPT_SERIALIZE_NUMPY).decode()
+        texts: dict[str, Text] = {}
+
+        def plain(value: Any) -> Any:
+            if isinstance(value, str):
+                if isinstance(value, Text):
+                    texts[str(value)] = value
+                return str(value)
+            return dict(value)
+
+        options = orjson.OPT_SERIALIZE_NUMPY | orjson.OPT_PASSTHROUGH_SUBCLASS
+        json = FigureJson(orjson.dumps(self, plain, options).decode())
+        json.texts = texts
+        return json
 
 
 def figure(data: list[dict[str, Any]], layout: dict[str, Any]) -> PlotlyFigure:

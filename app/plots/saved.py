@@ -137,11 +137,15 @@ def time_csv(figures: Sequence[UplotFigure], about: Iterable[str]) -> bytes:
     columns = [first.time]
     heads: list[str] = [Text("time ({name})", name=first.time_unit.name)]
     for plot in figures:
-        unit = f" ({plot.unit.name})" if plot.unit.name else ""
-        which = f"{plot.symbol}: " if len(figures) > 1 else ""
-        heads += [f"{which}{curve.name}{unit}" for curve in plot.curves]
+        unit = Text(" ({name})", name=plot.unit.name) if plot.unit.name else ""
+        which = Text("{symbol}: ", symbol=plot.symbol) if len(figures) > 1 else ""
+        heads += [
+            Text("{which}{name}{unit}", which=which, name=curve.name, unit=unit) for curve in plot.curves
+        ]
         columns += [curve.values for curve in plot.curves]
-    quantity = "; ".join(f"{plot.symbol}: {plot.title}" for plot in figures)
+    quantity = Text.joined(
+        "; ", (Text("{symbol}: {title}", symbol=plot.symbol, title=plot.title) for plot in figures)
+    )
     return _csv([*about, quantity], heads, zip(*(column.tolist() for column in columns), strict=True))
 
 

@@ -36,7 +36,7 @@ GRID_FINE = "#F1F4F7"
 REFERENCE = "#9AA9B8"
 """Reference lines: natural frequencies, damping rays, zero."""
 DANGER = "#B42318"
-BEST = "best of all"
+BEST = Text("best of all")
 """Said of the best number of a table's row or column, which ``class="sb-best"`` marks."""
 SEA = "#F4F7FA"
 
@@ -65,7 +65,8 @@ UPLOT_CSS = (
 
 def plain(name: str) -> str:
     """Name as plotly must get it to show it letter by letter: it reads a part of HTML."""
-    return escape(name, quote=False)
+    quoted = escape(name, quote=False)
+    return name if quoted == name else quoted
 
 
 def method_color(index: int) -> str:
@@ -251,6 +252,5 @@ def fitting(titles: Sequence[str], room_px: float, letter_px: float = _BOLD_PX) 
 
 def panel_title(content: str, suffix: str = "", shift_px: float = 13.0) -> dict[str, Any]:
     """Bold title above the subplot with axes ``x<suffix>``, ``y<suffix>``, flush left."""
-    return heading(f"<b>{content}</b>", shift_px, Text("x{suffix} domain", suffix=suffix)) | {
-        "yref": Text("y{suffix} domain", suffix=suffix)
-    }
+    title = Text("<b>{content}</b>", content=content)
+    return heading(title, shift_px, f"x{suffix} domain") | {"yref": f"y{suffix} domain"}

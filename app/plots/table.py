@@ -1,8 +1,9 @@
 """Tables of the page and of its reports: cells as data, their look in table.css."""
 
 from collections.abc import Iterable
-from html import escape
 from pathlib import Path
+
+from navcore.foundation.text import Text
 
 CSS = (Path(__file__).parent / "table.css").read_text(encoding="utf-8")
 """For the page, and for every file with tables, to add once."""
@@ -22,18 +23,18 @@ def cell(content: str = "", look: str = "", *, tag: str = "td", **attributes: ob
     **attributes
         Of the element, ``data_value`` for ``data-value``; None and "" are left out.
     """
-    given = {"class": look} | attributes
-    words = (
-        f' {name.replace("_", "-")}="{escape(str(value))}"'
-        for name, value in given.items()
+    given = {
+        name: value if isinstance(value, str) else str(value)
+        for name, value in ({"class": look} | attributes).items()
         if value not in (None, "")
-    )
-    return f"<{tag}{''.join(words)}>{content}</{tag}>"
+    }
+    words = "".join(f' {name.replace("_", "-")}="{{{name}:html}}"' for name in given)
+    return Text(f"<{tag}{words}>{{content}}</{tag}>", content=content, **given)
 
 
 def row(cells: Iterable[str], look: str = "", **attributes: object) -> str:
     """HTML of a row; attributes as for `cell`."""
-    return cell("".join(cells), look, tag="tr", **attributes)
+    return cell(Text.joined("", cells), look, tag="tr", **attributes)
 
 
 def parts(count: int, most: int) -> list[range]:
@@ -44,5 +45,7 @@ def parts(count: int, most: int) -> list[range]:
 
 def table(head: Iterable[str], body: Iterable[str], look: str = "") -> str:
     """HTML of a table of rows, which scrolls where it is too wide; ``look``: more classes."""
-    rows = f"<thead>{''.join(head)}</thead><tbody>{''.join(body)}</tbody>"
+    rows = Text(
+        "<thead>{head}</thead><tbody>{body}</tbody>", head=Text.joined("", head), body=Text.joined("", body)
+    )
     return cell(cell(rows, f"sb-t {look}".rstrip(), tag="table"), "sb-scroll", tag="div")

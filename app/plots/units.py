@@ -99,7 +99,7 @@ def scaled_unit(name: str, peak: float) -> Unit:
         return unit
     parts = ((1e-3, "10⁻³"), (1e-6, "10⁻⁶"), (1e-9, "10⁻⁹"))
     part, word = next((each for each in parts if peak >= _LEAST * unit.si * each[0]), parts[-1])
-    return Unit(f"{word} {unit.name}", unit.si * part)
+    return Unit(Text("{word} {name}", word=word, name=unit.name), unit.si * part)
 
 
 def _chosen(table: tuple[tuple[float, Unit], ...], peak: float, otherwise: Unit) -> Unit:
@@ -159,7 +159,7 @@ def settling(seconds: float | None) -> str:
     ('200 min', 'never')
     """
     return (
-        "never"
+        Text("never")
         if seconds is None or math.isinf(seconds)
         else Text("{seconds} min", seconds=rounded(seconds / MINUTE))
     )

@@ -177,10 +177,10 @@ class UplotFigure:
             }
         else:
             x |= {"ticks": {"show": False}, "font": f"1px {style.FONT_FAMILY}", "stroke": "rgba(0,0,0,0)"}
-        unit = f"({self.unit.name})" if self.unit.name else ""
+        unit = Text("({name})", name=self.unit.name) if self.unit.name else ""
         y = common | {
             "scale": "y",
-            "label": " ".join(part for part in (self.symbol, unit) if part),
+            "label": Text.joined(" ", (part for part in (self.symbol, unit) if part)),
             "labelSize": LABEL_SIZE,
             "labelGap": 0,
             "size": Y_SIZE,

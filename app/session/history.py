@@ -214,11 +214,16 @@ def change_name(before: State, after: State) -> str:
         return Text("open {origin}", origin=after.origin)
     count = len(after.scenario.method) - len(before.scenario.method)
     if count:
-        return "add a method" if count > 0 else "remove a method"
+        return Text("add a method") if count > 0 else Text("remove a method")
     changes = sorted(differences(before.scenario, after.scenario), key=itemgetter(0))
     if len(changes) == 1:
         field, old, new = changes[0]
-        return f"{_named(field, after.scenario)}: {_short(old)} → {_short(new)}"
+        return Text(
+            "{named}: {short} → {short2}",
+            named=_named(field, after.scenario),
+            short=_short(old),
+            short2=_short(new),
+        )
     blocks = {field.rpartition(".")[0] or field for field, _, _ in changes}
     if len(blocks) == 1:
         return Text("change of {pop}", pop=blocks.pop())

@@ -29,7 +29,7 @@ def fit_of(scenario: Scenario) -> LogErrorFit:
     from navcore.sensors.fit import fit_delay, fit_log_error, log_along_track
 
     if not isinstance(scenario.motion, TrackMotion) or scenario.reference.kind != "file":
-        allowed = 'must be a recorded log ("file") beside a recorded track ("track")'
+        allowed = Text('must be a recorded log ("file") beside a recorded track ("track")')
         raise InputError(Fault("", "reference.kind", scenario.reference.kind, allowed))
     log = log_along_track(scenario.reference, scenario.motion)
     delay_s = fit_delay(log)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.languages.names import Names, names_of
-
 if TYPE_CHECKING:
     from app.session.session import Session
 
@@ -26,9 +24,9 @@ class GivenNames:
         self._of: tuple[object, ...] = ()
         self._files: tuple[str, ...] = ()
         self._kept: dict[str, None] = {}
-        self._names = names_of(frozenset())
+        self._names: frozenset[str] = frozenset()
 
-    def __call__(self) -> Names:
+    def __call__(self) -> frozenset[str]:
         """Return all of them; asked for each message to a page."""
         session = self._session
         run, pins = session.run, session.pins.all
@@ -43,6 +41,6 @@ class GivenNames:
             fresh += files
             kept = [name for name in self._kept if name not in fresh][-_MOST_KEPT:]
             self._kept = dict.fromkeys([*kept, *fresh])
-            self._names, self._of = names_of(frozenset(self._kept)), now
+            self._names, self._of = frozenset(self._kept), now
             self._files = files
         return self._names

@@ -19,9 +19,9 @@ from navcore.scenario.model import Scenario
 MOST_PINS = 8
 LONGEST_NAME, LONGEST_NOTE = 40, 400
 COLORS: dict[str, str] = {
-    "black": "#1F2933",
-    "magenta": "#C2185B",
-    "brown": "#795548",
+    Text("black"): "#1F2933",
+    Text("magenta"): "#C2185B",
+    Text("brown"): "#795548",
     "petrol": "#00697A",
     "violet": "#5E35B1",
     "slate": "#546E7A",

@@ -61,8 +61,8 @@ ROWS = {name: QUANTITIES[extra_of(info)["key"]] for name, info in Requirements.m
 def label_of(name: str) -> str:
     """Label of a limit's box: what, sense and unit, e.g. ``settling ≤ (min)``."""
     row = ROWS[name]
-    unit = f" ({row.shown})" if row.shown else ""
-    return f"{row.label} {SIGNS[row.sense]}{unit}"
+    unit = Text(" ({shown})", shown=row.shown) if row.shown else ""
+    return Text("{label} {signs}{unit}", label=row.label, signs=SIGNS[row.sense], unit=unit)
 
 
 def read_limit(name: str, text: str) -> float | None:

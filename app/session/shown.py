@@ -116,7 +116,7 @@ def titled(pins: Sequence[Pin], scenario: Scenario) -> tuple[Pin, ...]:
     names: list[str] = []
     for pin in pins:
         name = difference(pin, scenario) if pin.unnamed else pin.name
-        names.append(f"{name} ({pin.id})" if name in names else name)
+        names.append(Text("{name} ({id})", name=name, id=pin.id) if name in names else name)
     return tuple(replace(pin, name=name) for pin, name in zip(pins, names, strict=True))
 
 
@@ -128,8 +128,8 @@ def difference(pin: Pin, scenario: Scenario) -> str:
     if not parts:
         return pin.name
     more = len(parts) - _MOST_PARTS
-    words = ", ".join(parts[:_MOST_PARTS]) + (Text(" + {more} more", more=more) if more > 0 else "")
-    return words if len(words) <= LONGEST_NAME else f"{words[: LONGEST_NAME - 1]}…"
+    words = Text.joined(", ", parts[:_MOST_PARTS]) + (Text(" + {more} more", more=more) if more > 0 else "")
+    return words if len(words) <= LONGEST_NAME else Text("{words}…", words=words[: LONGEST_NAME - 1])
 
 
 def edited(pin: Pin) -> int:
@@ -159,7 +159,10 @@ def _parts(pin: Pin, scenario: Scenario) -> Iterator[str]:
         if method.name == pin.method:
             yield from words
         else:
-            others += [f"{method.name}: {word}" if now is not None else word for word in words]
+            others += [
+                Text("{name}: {word}", name=method.name, word=word) if now is not None else word
+                for word in words
+            ]
     yield from others
     yield from _differing(*(one.model_copy(update={"method": ()}) for one in (pin.scenario, scenario)))
 
@@ -181,13 +184,17 @@ def _differing(old: BaseModel, new: BaseModel) -> list[str]:
 def _words(path: str, value: Any) -> str:
     block, _, name = path.rpartition(".")
     if name.isdigit():
-        name = f"{block.rpartition('.')[2]} {name}"
+        name = Text("{rpartition} {name}", rpartition=block.rpartition(".")[2], name=name)
     if name in _KINDS:
         return str(value)
     name = symbol(name)
     if value is None:
         return Text("no {name}", name=name)
-    return f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}"
+    return (
+        Text("{name} {value:g}", name=name, value=value)
+        if isinstance(value, float)
+        else Text("{name} {value}", name=name, value=value)
+    )
 
 
 # ------------------------------------------------------------ the part that is measured
@@ -237,8 +244,10 @@ def window_of(run: Run, display: Display) -> Window:
     if display.window == "settled":
         settling = [s for method in run.methods if (s := method.loop.settling_s) is not None]
         if not settling:
-            return Window(run, told="No method settles: the errors are of the whole run.", possible=False)
-        begins, why = max(settling), " (the slowest damped method has settled)"
+            return Window(
+                run, told=Text("No method settles: the errors are of the whole run."), possible=False
+            )
+        begins, why = max(settling), Text(" (the slowest damped method has settled)")
     else:
         begins = display.window_from_h * HOUR
         end = end if display.window_to_h is None else min(end, display.window_to_h * HOUR)

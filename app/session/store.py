@@ -37,7 +37,7 @@ CLAIMED = "SCHULER_STATE_CLAIMED"
 """Set in the environment of a worker whose door has claimed the folder."""
 _UPKEEP_EVERY_S = 600.0
 _ORPHAN_S = 86_400.0
-NO_HOME = "there is no home folder: set XDG_STATE_HOME"
+NO_HOME = Text("there is no home folder: set XDG_STATE_HOME")
 _ID = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _KEY_BYTES = 32
 _log = logging.getLogger("schuler.store")
@@ -66,7 +66,7 @@ def open_store(folder: Path) -> Store | None:
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         if hasattr(os, "getuid") and folder.stat().st_uid != os.getuid():
-            raise PermissionError("it belongs to another user")
+            raise PermissionError(Text("it belongs to another user"))
         folder.chmod(0o700)
         with tempfile.TemporaryFile(dir=folder):
             pass
@@ -102,7 +102,7 @@ def claim(folder: Path, *, shared: bool = False) -> IO[bytes]:
         return file
     except OSError:
         file.close()
-        raise OSError(None, "another server keeps its sessions there; set XDG_STATE_HOME") from None
+        raise OSError(None, Text("another server keeps its sessions there; set XDG_STATE_HOME")) from None
     return file
 
 
@@ -286,7 +286,7 @@ class Store:
             failed(words)
         except Exception:  # the thread must outlive a document that cannot be made
             _log.exception("a session cannot be kept")
-            failed("an error of this program")
+            failed(Text("an error of this program"))
 
     # ------------------------------------------------------------ upkeep
 

@@ -133,7 +133,7 @@ class Uploads:
             ),
             (
                 not self.has_room(size),
-                "cannot be kept: the room of this server for uploaded files is used up",
+                Text("cannot be kept: the room of this server for uploaded files is used up"),
             ),
             (
                 name not in self.files and len(self.files) >= MOST_FILES,
@@ -218,9 +218,9 @@ def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, l
     speeds = uploads.holding(*_SPEEDS)
     if uploads.holding("position") and uploads.holding("heading"):
         data["motion"] = {"kind": "track", "file": uploads.holding("position", "heading", "attitude")}
-        notes.append("The ship follows the uploaded track and heading.")
+        notes.append(Text("The ship follows the uploaded track and heading."))
     elif uploads.holding("position", "heading"):
-        missing = "heading" if uploads.holding("position") else "track (positions)"
+        missing = "heading" if uploads.holding("position") else Text("track (positions)")
         notes.append(
             Text("The track is not used yet: a {missing} is missing. Upload it too.", missing=missing)
         )
@@ -231,14 +231,15 @@ def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, l
         data["reference"] = {"kind": "file", "file": logs, **kept, "frame": "body"}
         notes.append(
             Text(
-                "The reference is the uploaded log {name}.", name=", ".join(Path(path).name for path in logs)
+                "The reference is the uploaded log {name}.",
+                name=Text.joined(", ", (Path(path).name for path in logs)),
             )
         )
     made = Scenario.parse(data)
     window = recorded_window(made.motion, made.reference)
     if window is None:
         raise InputError(
-            Fault("", "upload", None, "holds neither a log nor a track with heading: nothing to run on")
+            Fault("", "upload", None, Text("holds neither a log nor a track with heading: nothing to run on"))
         )
     step_s = made.run.step_s
     span_s = math.floor(window.span_s / step_s) * step_s
@@ -258,7 +259,7 @@ def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, l
                 lon_deg=lon_deg,
             )
         )
-    data["title"], data["source"] = "Uploaded recording", ", ".join(uploads.files)[:300]
+    data["title"], data["source"] = Text("Uploaded recording"), Text.joined(", ", uploads.files)[:300]
     return Scenario.parse(data), notes
 
 
@@ -294,7 +295,7 @@ def _on_recorded_imu(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, li
                 lon_deg=place["lon_deg"],
             )
         )
-    data["title"], data["source"] = "Recorded IMU", name[:300]
+    data["title"], data["source"] = Text("Recorded IMU"), name[:300]
     return Scenario.parse(data), notes
 
 
@@ -313,7 +314,7 @@ def shared_files(scenario: Scenario, names: Mapping[str, Path]) -> Scenario:
 
     def path_of(block: str, name: str) -> str:
         if name not in ours:
-            wanted = "upload this file first, then the scenario"
+            wanted = Text("upload this file first, then the scenario")
             faults.append(Fault("", f"{block}.file", name, wanted))
         return str(ours.get(name, name))
 
@@ -332,11 +333,11 @@ def opened_scenario(name: str, content: bytes, uploads: Uploads) -> Scenario:
         Not a scenario, or one fault for each thing wrong in it.
     """
     if len(content) > MIB:
-        raise InputError(Fault(name, "", None, "is larger than 1 MiB: no scenario"))
+        raise InputError(Fault(name, "", None, Text("is larger than 1 MiB: no scenario")))
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError:
-        raise InputError(Fault(name, "", None, "is not UTF-8 text: no scenario")) from None
+        raise InputError(Fault(name, "", None, Text("is not UTF-8 text: no scenario"))) from None
     scenario = Scenario.parse(guarded.call(name, complete_scenario, text, name), name)
     try:
         return shared_files(scenario, {held: upload.path for held, upload in uploads.files.items()})

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence, Set
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 from app.session.shown import Shown
 from app.shell.layout import Layout
 from app.shell.view import PictureView, View
 from app.shell.view_faults import ViewFaults
+from navcore.foundation.text import Text, quoted
 
 if TYPE_CHECKING:
     import viser
@@ -58,8 +58,10 @@ class Column:
         with tab:
             self._faults.place(view)
             if view.look_for:
-                told = escape(view.look_for)
-                self._gui.add_html(f'<div class="sb-look" title="{told}">{told}</div>', order=-1)
+                told = quoted(view.look_for)
+                self._gui.add_html(
+                    Text('<div class="sb-look" title="{told}">{told}</div>', told=told), order=-1
+                )
         self._faults.call(view.build, tab)
 
     @property

@@ -191,7 +191,7 @@ class Commands:
         if not title:
             return
         if entry is None:
-            entry = self._gui.add_command(title, description=" or ".join(command.keys) or None)
+            entry = self._gui.add_command(title, description=" / ".join(command.keys) or None)
             entry.on_trigger(lambda _: self.run(name))
             self._entries[name] = entry
         elif entry.label != title:
@@ -201,7 +201,7 @@ class Commands:
         named = [(key, command) for command in self._by_name.values() for key in command.keys]
         pressed = json.dumps({as_pressed(key): command.name for key, command in named})
         told = json.dumps(
-            [[" or ".join(c.keys), c.title] for c in self._by_name.values() if c.keys and c.title]
+            [[" / ".join(c.keys), c.title] for c in self._by_name.values() if c.keys and c.title]
         )
         self._keys.content = (
             f'<div id="sb-commands" hidden data-keys="{escape(pressed)}" data-told="{escape(told)}"></div>'

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from html import escape
 from typing import TYPE_CHECKING
 
 from app.plots import style
@@ -12,15 +11,15 @@ from app.session.session import Session
 from app.shell import notices
 from app.shell.opening import Opening
 from app.shell.view import if_user
-from navcore.engine.run import Run
-from navcore.foundation.text import Text
+from navcore.engine.run import ENDINGS, Run
+from navcore.foundation.text import Text, quoted
 from navcore.foundation.units import HOUR
 from navcore.scenario.model import Scenario
 
 if TYPE_CHECKING:
     import viser
 
-RUN_AGAIN, RUN_STRAPDOWN = "Run again", "Run the strapdown"
+RUN_AGAIN, RUN_STRAPDOWN = Text("Run again"), Text("Run the strapdown")
 _WAITS = "#B26A00"
 """Colour of a state that will not last."""
 # While a picture is old it is dimmed.
@@ -48,12 +47,12 @@ class HeaderPanel:
         self._opening, self._session, self._focus = opening, session, focus
         self._state = gui.add_html("", order=10)
         self._progress = gui.add_progress_bar(0.0, visible=False, order=11)
-        self._stop = gui.add_button("Stop the run", color="orange", visible=False, order=12)
+        self._stop = gui.add_button(Text("Stop the run"), color="orange", visible=False, order=12)
         self._again = gui.add_button(RUN_AGAIN, visible=False, order=13)
         self._scenario = gui.add_dropdown(
             "scenario",
             opening.scenarios(),
-            hint="A preset, or what was uploaded; choosing one starts from it anew.",
+            hint=Text("A preset, or what was uploaded; choosing one starts from it anew."),
             order=14,
         )
         self._about = gui.add_html("", order=15)
@@ -69,12 +68,19 @@ class HeaderPanel:
         if self._scenario.options != offered:
             self._scenario.options = offered
         self._scenario.value = origin
-        lines = [f"<b>{escape(scenario.title)}</b>" if scenario.title else "", escape(scenario.source)]
+        lines = [
+            Text("<b>{title:html}</b>", title=scenario.title) if scenario.title else "",
+            quoted(scenario.source),
+        ]
         tab = self._focus.get(scenario.view.focus, "")
-        self._about.content = (
-            f'<div id="sb-focus" data-scenario="{escape(origin)}" data-tab="{escape(tab)}" '
-            f'style="margin:-2px 10px 8px;font-size:12.5px;line-height:1.35;color:{style.MUTED}">'
-            f"{'<br>'.join(line for line in lines if line)}</div>"
+        self._about.content = Text(
+            '<div id="sb-focus" data-scenario="{origin:html}" data-tab="{tab:html}" '
+            'style="margin:-2px 10px 8px;font-size:12.5px;line-height:1.35;color:{muted}">'
+            "{line}</div>",
+            origin=origin,
+            tab=tab,
+            muted=style.MUTED,
+            line=Text.joined("<br>", (line for line in lines if line)),
         )
 
     def fold(self, folded: bool) -> None:
@@ -84,10 +90,18 @@ class HeaderPanel:
 
     def show_run(self, run: Run, number: int, *, outdated: bool, frame_ms: float) -> None:
         """Say which run the pictures show."""
-        ended = {"ok": "", "diverged": ", diverged", "stopped": ", stopped"}[run.status]
         count = len(run.methods)
         span = duration(float(run.t_s[-1])) if len(run.t_s) else "0 s"
-        text = f"Run {number}: {span}, {count} method{'s' * (count != 1)}, {frame_ms:.0f} ms{ended}"
+        text = Text.plural(
+            "Run {number}: {span}, {count} method, {frame_ms:.0f} ms",
+            "Run {number}: {span}, {count} methods, {frame_ms:.0f} ms",
+            number=number,
+            span=span,
+            count=count,
+            frame_ms=frame_ms,
+        )
+        if run.status != "ok":
+            text = Text("{text}, {status}", text=text, status=ENDINGS[run.status])
         if outdated:
             self._show_state(Text("{text}; a new run follows", text=text), _WAITS)
         else:
@@ -98,7 +112,7 @@ class HeaderPanel:
 
     def show_moving(self) -> None:
         """Say that only the pictures in front follow the slider; the rest is shown when it rests."""
-        self._show_state("The slider moves; 3D view and numbers follow when it rests", _WAITS)
+        self._show_state(Text("The slider moves; 3D view and numbers follow when it rests"), _WAITS)
 
     def show_progress(self, fraction: float, number: int) -> None:
         """Say that the pictures are old and a run is under way."""
@@ -135,8 +149,13 @@ class HeaderPanel:
         self._again.visible = again
 
     def _show_state(self, text: str, color: str, *, old: bool = False) -> None:
-        self._state.content = (
-            '<div id="sb-status" role="status" style="margin:2px 10px 8px;font-size:12.5px;'
-            f'color:{style.INK}"><span style="display:inline-block;width:9px;height:9px;border-radius:50%;'
-            f'margin-right:7px;background:{color}"></span>{escape(text)}</div>{_DIM if old else ""}'
+        self._state.content = Text(
+            '<div id="sb-status" role="status" style="margin:2px 10px '
+            '8px;font-size:12.5px;color:{ink}"><span '
+            'style="display:inline-block;width:9px;height:9px;border-radius:50%;margin-right:7px;backg'
+            'round:{color}"></span>{text:html}</div>{dim}',
+            ink=style.INK,
+            color=color,
+            text=text,
+            dim=_DIM if old else "",
         )

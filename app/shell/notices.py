@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from html import escape
 from typing import TYPE_CHECKING, Literal
 
 from app.jobs.words import for_a_page, without_folders
 from app.plots import style
 from navcore.foundation.errors import Fault, InputError
-from navcore.foundation.text import Text
+from navcore.foundation.text import Text, quoted
 
 if TYPE_CHECKING:
     import viser
@@ -32,7 +31,7 @@ _LONGEST_NOTICE = 600
 
 def tell(client: viser.ClientHandle, title: str, lines: Iterable[str], tone: Tone = "error") -> None:
     """Show a notification that goes away by itself; errors stay longer."""
-    text = "\n".join(lines)
+    text = Text.joined("\n", lines)
     if len(text) > _LONGEST_NOTICE:
         text = text[: _LONGEST_NOTICE - 3] + "..."
     seconds = 10.0 if tone == "info" else 15.0
@@ -54,30 +53,36 @@ def told(client: viser.ClientHandle, title: str, otherwise: Callable[[], None]) 
 
 def note(lines: Iterable[str], tone: Tone) -> str:
     """HTML of a note that stands beside the control it is about; empty without lines."""
-    shown = "<br>".join(escape(line) for line in lines)
+    shown = Text.joined("<br>", (quoted(line) for line in lines))
     if not shown:
         return ""
     ink, ground = _TONES[tone]
-    return (
-        f'<div role="note" class="sb-note sb-{tone}" style="margin:0 10px 8px;padding:4px 8px;'
-        f"font-size:12.5px;line-height:1.35;color:{ink};background:{ground};border-left:3px solid {ink};"
-        f'border-radius:2px">{shown}</div>'
+    return Text(
+        '<div role="note" class="sb-note sb-{tone}" style="margin:0 10px 8px;padding:4px '
+        "8px;font-size:12.5px;line-height:1.35;color:{ink};background:{ground};border-left:3px "
+        'solid {ink};border-radius:2px">{shown}</div>',
+        tone=tone,
+        ink=ink,
+        ground=ground,
+        shown=shown,
     )
 
 
 def heading(text: str) -> str:
     """HTML of a small heading between controls."""
-    return (
-        f'<div style="margin:6px 10px 4px;font-size:12.5px;font-weight:600;color:{style.INK}">'
-        f"{escape(text)}</div>"
+    return Text(
+        '<div style="margin:6px 10px 4px;font-size:12.5px;font-weight:600;color:{ink}">{text:html}</div>',
+        ink=style.INK,
+        text=text,
     )
 
 
 def small(text: str) -> str:
     """HTML of a line of secondary text."""
-    return (
-        f'<div style="margin:0 10px 8px;font-size:12.5px;line-height:1.35;color:{style.MUTED}">'
-        f"{escape(text)}</div>"
+    return Text(
+        '<div style="margin:0 10px 8px;font-size:12.5px;line-height:1.35;color:{muted}">{text:html}</div>',
+        muted=style.MUTED,
+        text=text,
     )
 
 

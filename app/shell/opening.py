@@ -64,7 +64,7 @@ class Opening:
     def take_file(self, name: str, content: bytes) -> None:
         """Keep an uploaded recording and run on it, or open an uploaded scenario."""
         session = self._session
-        title = "The file cannot be used; nothing was changed"
+        title = Text("The file cannot be used; nothing was changed")
         with session.lock, notices.told(self._client, title, self._refresh):
             if name.lower().endswith(".toml"):
                 opened = opened_scenario(name, content, session.uploads)
@@ -73,12 +73,14 @@ class Opening:
             upload = session.uploads.add(name, content)
             session.on_change()
             held = Text("It holds: {quantities}.", quantities=", ".join(sorted(upload.quantities)))
-            self._run_on_files(f"{upload.path.name}: {upload.kind}", [held, *upload.warnings])
+            self._run_on_files(
+                Text("{name}: {kind}", name=upload.path.name, kind=upload.kind), [held, *upload.warnings]
+            )
 
     def use_files(self) -> None:
         """Run on the uploaded recordings."""
         with self._session.lock:
-            self._run_on_files("Running on the uploaded recording", [])
+            self._run_on_files(Text("Running on the uploaded recording"), [])
 
     def _run_on_files(self, title: str, lines: list[str]) -> None:
         """Run on the files if they suffice, and tell in one notification what was done."""
@@ -88,7 +90,7 @@ class Opening:
             changed, notes = recorded_scenario(session.scenario, session.uploads)
             session.change(changed, None, origin=UPLOADED)
         except InputError as error:
-            notes, tone = ["Not run on the files yet:", *notices.fault_lines(error)], "warning"
+            notes, tone = [Text("Not run on the files yet:"), *notices.fault_lines(error)], "warning"
         notices.tell(self._client, title, [*lines, *notes], tone)
         self._refresh()
 
@@ -98,8 +100,8 @@ class Opening:
         with self._session.lock:
             used = {str(upload.path) for upload in uploads.files.values()}
             if used & edits.files_of(self._session.scenario):
-                reason = "the scenario runs on them: choose another scenario first"
-                notices.tell(self._client, "The files were kept", [reason], "warning")
+                reason = Text("the scenario runs on them: choose another scenario first")
+                notices.tell(self._client, Text("The files were kept"), [reason], "warning")
                 return
             uploads.clear()
             self._session.on_change()
@@ -114,7 +116,9 @@ class Opening:
         elif run is not None:
             content = as_json(metrics(run), indent=True)
         else:
-            notices.tell(self._client, "No run yet", ["there are no numbers to download"], "warning")
+            notices.tell(
+                self._client, Text("No run yet"), [Text("there are no numbers to download")], "warning"
+            )
             return
         self._client.send_file_download(name, content, save_immediately=True)
         self._client.flush()

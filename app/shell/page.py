@@ -150,7 +150,7 @@ class Page:
         self.session.detach(self)
 
     def _command_failed(self, error: Exception) -> None:
-        notices.tell(self.client, "That did not work", [what_failed(error)])
+        notices.tell(self.client, Text("That did not work"), [what_failed(error)])
 
     # ------------------------------------------------------------ what the session says
 
@@ -214,9 +214,9 @@ class Page:
             self._say_again_s = time.monotonic() + _SAY_AGAIN_S
             words = [
                 Text("The server could not write it down: {why}.", why=why),
-                "A download keeps the scenario.",
+                Text("A download keeps the scenario."),
             ]
-            notices.tell(self.client, "Your work is not saved at present", words, "warning")
+            notices.tell(self.client, Text("Your work is not saved at present"), words, "warning")
 
     def run_waits(self) -> None:
         """The changed scenario takes long: it runs when the user asks for it."""
@@ -272,14 +272,14 @@ class Page:
 
     def run_refused(self, error: InputError) -> None:
         """The scenario cannot run; the last good one is back."""
-        title = "The scenario cannot run; the last good one is back"
+        title = Text("The scenario cannot run; the last good one is back")
         notices.tell(self.client, title, notices.fault_lines(error))
         if self.session.run is not None:
             self.run_ended()
 
     def run_failed(self, error: Exception) -> None:
         """Something of ours went wrong; the last good picture stays."""
-        notices.tell(self.client, "Something went wrong", [what_failed(error)])
+        notices.tell(self.client, Text("Something went wrong"), [what_failed(error)])
         self.header.show_failed(self.session.run_number)
         self.client.flush()
 
@@ -314,7 +314,7 @@ class Page:
             elif self._pace.moving:
                 self.header.show_moving()
             told = f'data-number="{number}" data-answer="{self._reports.painted_id}"'
-            self._picture.content = f"<div id='sb-picture' hidden {told}></div>"
+            self._picture.content = Text("<div id='sb-picture' hidden {told}></div>", told=told)
         self.client.flush()
         # A tab that came to the front meanwhile was not yet known to be out of date.
         self._show_stale()

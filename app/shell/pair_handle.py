@@ -71,14 +71,14 @@ class PairHandle:
                     session.scenario, drag.method, drag.damping_ratio, drag.ratio, limit
                 )
             except InputError as error:
-                words, lines = "The pair was not placed", notices.fault_lines(error)
+                words, lines = Text("The pair was not placed"), notices.fault_lines(error)
             else:
                 name = session.scenario.method[drag.method].name
                 self._frame.editor.drag(
                     placed.scenario, Text("placing the pair of {name}", name=name), gesture
                 )
                 if placed.note:
-                    words, lines = "Placed in part", [placed.words, placed.note]
+                    words, lines = Text("Placed in part"), [placed.words, placed.note]
         if drag.ends and words and lines and self._told != gesture:
             self._told = gesture
             notices.tell(client, words, lines, "warning")

@@ -28,6 +28,7 @@ from app.shell.opening import Opening
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
 from navcore.foundation.faults import faults_from
+from navcore.foundation.text import Text
 
 if TYPE_CHECKING:
     import viser
@@ -95,7 +96,7 @@ class Frame:
             self.session.show(None, **choices)
         except ValidationError as error:
             refused = InputError(faults_from(error, Display, choices, ""))
-            notices.tell(self.client, "Not changed", notices.fault_lines(refused))
+            notices.tell(self.client, Text("Not changed"), notices.fault_lines(refused))
             for view in self.views():
                 view.follow_display()
 

@@ -64,7 +64,7 @@ class ViewFaults:
         if view in self._places:
             self._places[view].content = self._note(view)
         elif self._faults[view]:
-            notices.tell(self._client, "Something went wrong", self._faults[view].values())
+            notices.tell(self._client, Text("Something went wrong"), self._faults[view].values())
 
     def _note(self, view: View) -> str:
         faults = tuple(dict.fromkeys(self._faults.get(view, {}).values()))

@@ -75,13 +75,13 @@ def coarse_alignment(increments: np.ndarray, rate_hz: float, lat: float) -> np.n
     # Both halves' mean specific force in the inertial frame that was the body frame at the start.
     early, late = sums[0], sums[1]
     if np.linalg.norm(early) == 0.0 or np.linalg.norm(late) == 0.0:
-        raise InputError(Fault("", "imu", None, "no specific force in the alignment record"))
+        raise InputError(Fault("", "imu", None, Text("no specific force in the alignment record")))
     # The mean over a half stands for its middle; the present is half of one further than the late one.
     angle = EARTH_RATE * half / rate_hz
     up_early, up_late = early / np.linalg.norm(early), late / np.linalg.norm(late)
     east = up_late - up_early
     if np.linalg.norm(east) < 0.05 * angle * math.cos(lat):
-        raise InputError(Fault("", "imu", None, "gravity does not turn with the Earth: no north found"))
+        raise InputError(Fault("", "imu", None, Text("gravity does not turn with the Earth: no north found")))
     middle = up_early + up_late
     east, up = east / np.linalg.norm(east), middle / np.linalg.norm(middle)
     # The bisector of two directions on the cone round the Earth's axis lies inside it.

@@ -241,5 +241,5 @@ def _warning(growth: float, period_s: float, step_s: float, calls: int, up_to: f
         every=every,
     )
     if up_to > 0.0:
-        return "; ".join((text, Text("stable up to about {up_to:.3g} s", up_to=up_to)))
+        return Text.joined("; ", (text, Text("stable up to about {up_to:.3g} s", up_to=up_to)))
     return text

@@ -136,11 +136,13 @@ def _settling(network: LinearNetwork, poles: ComplexArray, zero: np.ndarray) -> 
 def _warnings(network: LinearNetwork, unstable: bool, undamped: bool, zero: bool) -> tuple[str, ...]:
     warnings = []
     if unstable:
-        warnings.append("unstable: the errors grow without bound")
+        warnings.append(Text("unstable: the errors grow without bound"))
     if undamped:
-        warnings.append("undamped")
+        warnings.append(Text("undamped"))
     if zero and not unstable:
-        warnings.append("H(0) = 0: a closed-loop pole at zero, what constant errors do is never worked off")
+        warnings.append(
+            Text("H(0) = 0: a closed-loop pole at zero, what constant errors do is never worked off")
+        )
     elif abs(network.h0 - 1.0) > H0_TOLERANCE:
         warnings.append(
             Text(

@@ -48,9 +48,9 @@ def place(
             least_damping=LEAST_DAMPING,
             largest_damping=LARGEST_DAMPING,
         )
-        raise InputError(Fault("", "damping ratio", damping_ratio, allowed))
+        raise InputError(Fault("", Text("damping ratio"), damping_ratio, allowed))
     if not (math.isfinite(frequency) and frequency > 0.0):
-        raise InputError(Fault("", "frequency", frequency, "must be > 0 (rad/s)"))
+        raise InputError(Fault("", "frequency", frequency, Text("must be > 0 (rad/s)")))
     placed = parameters.with_pair(damping_ratio, frequency, omega_s)
     if placed is None:
         allowed = Text("cannot be placed by a pole: use {placeable}", placeable=placeable())
@@ -63,7 +63,7 @@ def place(
 def _require_slope(placed: Placement, limit_s: float, omega_s: float) -> None:
     """Refuse a pair whose network does not have H(0) = 1 and a slope H'(0) within the limit."""
     network = placed.parameters.transfer(omega_s)
-    instead = "use complementary, or unity2 with a pair below ωₛ"
+    instead = Text("use complementary, or unity2 with a pair below ωₛ")
     if not abs(network.h0 - 1.0) <= H0_TOLERANCE:
         allowed = Text(
             "must be 1 when H'(0) is limited, and is not with this pair: {instead}", instead=instead
@@ -72,8 +72,15 @@ def _require_slope(placed: Placement, limit_s: float, omega_s: float) -> None:
     if not network.h_slope <= limit_s:
         allowed = Text("must be <= {limit_s:.4g} (s)", limit_s=limit_s)
         if limit_s <= 0.0 < network.h_slope:
-            allowed += ": with this pair the 24 h mode grows"
-        raise InputError(Fault("", "H'(0)", float(f"{network.h_slope:.4g}"), f"{allowed}; {instead}"))
+            allowed += Text(": with this pair the 24 h mode grows")
+        raise InputError(
+            Fault(
+                "",
+                "H'(0)",
+                float(f"{network.h_slope:.4g}"),
+                Text("{allowed}; {instead}", allowed=allowed, instead=instead),
+            )
+        )
 
 
 def placeable() -> str:

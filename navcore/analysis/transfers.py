@@ -25,13 +25,13 @@ Output = Literal["phi", "dv"]
 Channel = Literal["north", "east"]
 
 SOURCES: dict[Source, str] = {
-    "eps": "gyro error, rad/s",
-    "nabla": "accelerometer error, m/s²",
-    "dv_r": "reference velocity error, m/s",
-    "acceleration": "vehicle acceleration (no reference), m/s²",
-    "initial_tilt": "initial tilt, rad",
+    "eps": Text("gyro error, rad/s"),
+    "nabla": Text("accelerometer error, m/s²"),
+    "dv_r": Text("reference velocity error, m/s"),
+    "acceleration": Text("vehicle acceleration (no reference), m/s²"),
+    "initial_tilt": Text("initial tilt, rad"),
 }
-OUTPUTS: dict[Output, str] = {"phi": "tilt, rad", "dv": "velocity error, m/s"}
+OUTPUTS: dict[Output, str] = {"phi": Text("tilt, rad"), "dv": Text("velocity error, m/s")}
 
 
 class TransferOptions(TypedDict, total=False):

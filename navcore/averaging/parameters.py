@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from navcore.foundation.parameters import Parameters, bounded, choice, quantity, vector_quantity
+from navcore.foundation.text import Text
 from navcore.foundation.times import EitherUnit
 
 Variant = Literal["schuler", "cascade"]
@@ -16,16 +17,20 @@ class Averaging(Parameters):
 
     variant: Variant = choice(
         "schuler",
-        label="averaging",
-        help="schuler: one copy half a Schuler period ahead (Zhao 17); cascade: copies half a period of each "
-        "of the two lines into which the Foucault term splits it.",
+        label=Text("averaging"),
+        help=Text(
+            "schuler: one copy half a Schuler period ahead (Zhao 17); cascade: copies half a period of each "
+            "of the two lines into which the Foucault term splits it."
+        ),
     )
     earth: bool = Field(
         default=True,
         strict=True,
-        description="A further copy (cascade: as many again) runs half a sidereal day ahead, against the "
-        "24 h line. Its forecast carries the gyro noise of the alignment record.",
-        json_schema_extra={"label": "24 h line too"},
+        description=Text(
+            "A further copy (cascade: as many again) runs half a sidereal day ahead, against the "
+            "24 h line. Its forecast carries the gyro noise of the alignment record."
+        ),
+        json_schema_extra={"label": Text("24 h line too")},
     )
 
 
@@ -38,16 +43,22 @@ class AlignmentMotion(EitherUnit):
         ge=-86400.0,
         lt=0.0,
         slider=(-600.0, -10.0),
-        label="begins",
-        help="Start; navigation starts at 0, so the alignment lies at negative times.",
+        label=Text("begins"),
+        help=Text("Start; navigation starts at 0, so the alignment lies at negative times."),
     )
     duration_s: float = quantity(
-        5.0, unit="s", ge=1.0, le=600.0, slider=(1.0, 60.0), label="lasts", help="Length of the motion."
+        5.0,
+        unit="s",
+        ge=1.0,
+        le=600.0,
+        slider=(1.0, 60.0),
+        label=Text("lasts"),
+        help=Text("Length of the motion."),
     )
     turn_deg: tuple[_Turn, _Turn, _Turn] = vector_quantity(
         (0.0, 0.0, 0.0),
         unit="deg",
         slider=(-1.0, 1.0),
-        label="turns by",
-        help="About body x, y, z; it stays there. A base that turns back makes a second motion.",
+        label=Text("turns by"),
+        help=Text("About body x, y, z; it stays there. A base that turns back makes a second motion."),
     )

@@ -20,7 +20,9 @@ RECORD_STEP_S = 1.0
 """Interval of the record's increments (theory.md section 5), s."""
 FASTEST_START_MPS = 0.01
 """A vehicle faster than this at t = 0 did not stand before."""
-MUST_STAND = "half-period averaging forecasts from an alignment at rest: the motion must start from rest"
+MUST_STAND = Text(
+    "half-period averaging forecasts from an alignment at rest: the motion must start from rest"
+)
 
 
 def under_way(true_row: np.ndarray, because: str) -> Fault | None:

@@ -19,12 +19,12 @@ from navcore.io.source import require_file
 
 _SNIFFED_BYTES = 8192
 _NAMES = {
-    "position": "positions",
-    "velocity": "velocity over ground (E, N)",
-    "water": "speed through water",
-    "ground": "speed over ground along axes",
+    "position": Text("positions"),
+    "velocity": Text("velocity over ground (E, N)"),
+    "water": Text("speed through water"),
+    "ground": Text("speed over ground along axes"),
     "heading": "heading",
-    "attitude": "pitch and roll",
+    "attitude": Text("pitch and roll"),
 }
 
 
@@ -218,15 +218,8 @@ def _text(source: SourceReport, recording: Recording, quantities: dict[str, Any]
     ]
     for stream in source.streams:
         rate = f", {stream.rate_hz:.3g} Hz" if math.isfinite(stream.rate_hz) else ""
-        words.append(
-            Text(
-                "  {count:>7} {name}{rate}{value}",
-                count=stream.count,
-                name=stream.name,
-                rate=rate,
-                value="" if stream.used else " (not used)",
-            )
-        )
+        line = Text("  {count:>7} {name}{rate}", count=stream.count, name=stream.name, rate=rate)
+        words.append(line if stream.used else line + Text(" (not used)"))
     series = recording.quantities()
     for name, entry in quantities.items():
         when = f"{entry['start_utc']} to {entry['end_utc']}, " if entry["dated"] else ""
@@ -237,7 +230,7 @@ def _text(source: SourceReport, recording: Recording, quantities: dict[str, Any]
                 longest_gap_s=entry["longest_gap_s"],
             )
             if entry["gaps"]
-            else "no gaps"
+            else Text("no gaps")
         )
         every = (
             Text(", each {interval_s:.3g} s", interval_s=entry["interval_s"])

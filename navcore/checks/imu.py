@@ -110,7 +110,7 @@ def _warnings(details: dict[str, Any]) -> list[str]:
             )
         )
     if up == "-z":
-        warnings.append('the -z axis looks like up: forward, right, down? Then give imu.axes = "frd"')
+        warnings.append(Text('the -z axis looks like up: forward, right, down? Then give imu.axes = "frd"'))
     elif up != "+z":
         warnings.append(
             Text(

@@ -13,22 +13,26 @@ class HalfPeriodAveraging(Damping):
     """Averaged copies of the free navigation (Zhao 2015; theory.md 5)."""
 
     id: ClassVar[str] = "averaging"
-    help: ClassVar[str] = "none, but copies of the navigation half a period ahead are averaged (Zhao 2015)"
+    help: ClassVar[str] = Text(
+        "none, but copies of the navigation half a period ahead are averaged (Zhao 2015)"
+    )
     settings: ClassVar[type[Parameters] | None] = Averaging
     blocks: ClassVar[tuple[str, ...]] = ("averaging",)
     carrying: ClassVar[Carrying] = "copies"
     covering: ClassVar[Covering] = "seeds"
-    no_covariance: ClassVar[str] = "averaging combines several navigations"
+    no_covariance: ClassVar[str] = Text("averaging combines several navigations")
     needs: ClassVar[tuple[Need, ...]] = (
         Need("standing start", MUST_STAND),
         Need(
             "coupled channels",
-            'needs run.fidelity "error_model" or "strapdown": two channels by themselves have neither '
-            "Foucault nor 24 h oscillation",
+            Text(
+                'needs run.fidelity "error_model" or "strapdown": two channels by themselves have neither '
+                "Foucault nor 24 h oscillation"
+            ),
         ),
         Need(
             "simulated IMU",
-            "needs a simulated IMU: its forecast comes from a simulated alignment record (no imu.file)",
+            Text("needs a simulated IMU: its forecast comes from a simulated alignment record (no imu.file)"),
         ),
     )
 

@@ -164,7 +164,7 @@ class NetworkDamping(Damping):
 
     def label(self, method: Configured) -> str:
         """Network and kind."""
-        return f"{method.network.id} ({self.id})"
+        return Text("{id} ({id2})", id=method.network.id, id2=self.id)
 
     def description(self, method: Configured) -> str:
         """Kind, network, policy and switching method."""

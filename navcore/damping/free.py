@@ -3,10 +3,11 @@
 from typing import ClassVar
 
 from navcore.damping.base import Damping
+from navcore.foundation.text import Text
 
 
 class Free(Damping):
     """The navigation runs undamped (theory.md 2)."""
 
     id: ClassVar[str] = "free"
-    help: ClassVar[str] = "none"
+    help: ClassVar[str] = Text("none")

@@ -13,7 +13,7 @@ class Internal(NetworkDamping):
     """Damping without a reference: the ship's own manoeuvres enter (theory.md 3)."""
 
     id: ClassVar[str] = "internal"
-    help: ClassVar[str] = "own velocity"
+    help: ClassVar[str] = Text("own velocity")
     law: ClassVar[LawKind] = "internal"
 
     def faults(self, method: Configured, law_step_s: float) -> Iterator[Fault]:
@@ -30,5 +30,5 @@ class Internal(NetworkDamping):
     def notices(self, method: Configured) -> Iterator[str]:
         """Yield also that a realisation by velocity feedback is not used."""
         if method.network.external_form != "network":
-            yield "internal damping uses the network form; the feedback realisation needs a reference"
+            yield Text("internal damping uses the network form; the feedback realisation needs a reference")
         yield from super().notices(method)

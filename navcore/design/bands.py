@@ -13,6 +13,7 @@ import numpy as np
 from navcore.damping.base import Covering
 from navcore.design.seeds import no_covariance
 from navcore.design.ship import Ship
+from navcore.foundation.text import Text
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 
@@ -95,7 +96,7 @@ def _of_loop(ship: Ship, method: Method) -> Band:
         return Band("none", reason=reason)
     variance = ship.along(method).total
     if not np.all(np.isfinite(variance)):
-        return Band("none", reason="the loop is unstable: its variance overflows")
+        return Band("none", reason=Text("the loop is unstable: its variance overflows"))
     return Band("covariance", _deviation(variance))
 
 
@@ -103,7 +104,7 @@ def _of_filter(ship: Ship, method: Method) -> Band:
     del method
     own = ship.floor_series
     if own is None:
-        return Band("none", reason="the filter is told of no random error, or has no log")
+        return Band("none", reason=Text("the filter is told of no random error, or has no log"))
     return Band("filter", _deviation(own.total))
 
 

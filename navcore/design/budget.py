@@ -73,7 +73,7 @@ def budget(
         reason = no_covariance(scenario, method)
         own = least.result() if method.kind.covering == "filter" and not untold else None
         if own is not None:
-            note = "its own covariance, which is the floor: it is told of every error of this scenario"
+            note = Text("its own covariance, which is the floor: it is told of every error of this scenario")
             result = _of_series(method, "covariance", own, (note, *left_out))
         elif reason:
             result = _from_seeds(scenario, method, reason, seeds, lambda f: report(index, f), cancelled)
@@ -102,7 +102,7 @@ def budget(
 def _warnings(scenario: Scenario) -> tuple[str, ...]:
     warnings = [*unmodelled_warnings(scenario)]
     if scenario.alignment.kind == "compass":
-        warnings.append("alignment: what biases leave after it is in the budget, its own noise is not")
+        warnings.append(Text("alignment: what biases leave after it is in the budget, its own noise is not"))
     return tuple(warnings)
 
 
@@ -117,7 +117,13 @@ def _from_seeds(
     try:
         t_s, variance = seed_variance(scenario, method, seeds, report, cancelled)
     except InputError as error:  # it diverges
-        return _diverged(method, "seeds", tuple(f"{fault.field}: {fault.allowed}" for fault in error.faults))
+        return _diverged(
+            method,
+            "seeds",
+            tuple(
+                Text("{field}: {allowed}", field=fault.field, allowed=fault.allowed) for fault in error.faults
+            ),
+        )
     note = Text(
         "{reason}: there is no covariance; shown is the mean square of {seeds} seeds, not split by source",
         reason=reason,
@@ -136,5 +142,5 @@ def _of_series(method: Method, kind: Shown, series: Series, warnings: tuple[str,
 
 def _diverged(method: Method, kind: Shown, warnings: tuple[str, ...]) -> MethodBudget:
     empty = Entry(Figures(), Figures())
-    all_warnings = (*warnings, "diverged: there is no budget along this run")
+    all_warnings = (*warnings, Text("diverged: there is no budget along this run"))
     return MethodBudget(method.name, kind, empty, {}, warnings=all_warnings, diverged=True)

@@ -72,8 +72,11 @@ class Confirmed:
             return Text(
                 "{name} is larger after it, over {seeds} seeds of the run", name=name, seeds=self.seeds
             )
-        words = "{name} is not smaller after it beyond chance, over {seeds} seeds of the run"
-        return Text(words, name=name, seeds=self.seeds)
+        return Text(
+            "{name} is not smaller after it beyond chance, over {seeds} seeds of the run",
+            name=name,
+            seeds=self.seeds,
+        )
 
 
 def confirmed(

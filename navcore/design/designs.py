@@ -10,6 +10,7 @@ from navcore.design.ship import Ship
 from navcore.design.tuned_designs import kalman, tuned_methods
 from navcore.engine.ensemble import outcomes
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 
@@ -99,7 +100,7 @@ def designs(
     """
     require_limits(scenario)
     if seeds < 1:
-        raise InputError(Fault("", "--seeds", seeds, "must be >= 1"))
+        raise InputError(Fault("", "--seeds", seeds, Text("must be >= 1")))
     share = 0.0 if as_set else _TUNING_SHARE
 
     def report(begin: float, width: float) -> Callable[[float], None]:
@@ -115,7 +116,9 @@ def designs(
     found = outcomes(scenario, methods, range(seeds), report(share, 1.0 - share), cancelled)
     stopped = cancelled is not None and cancelled()
     if not found:
-        raise InputError(Fault("", "--seeds", seeds, "the command was stopped before a seed was completed"))
+        raise InputError(
+            Fault("", "--seeds", seeds, Text("the command was stopped before a seed was completed"))
+        )
     shares = _judged(scenario, methods, found)
     return Designs(len(found), shares, assumed_zero(scenario), tuple(left_out), stopped)
 

@@ -18,6 +18,7 @@ from navcore.design.sources import contributions
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.stage_cache import file_state, kept
+from navcore.foundation.text import Text
 from navcore.motion.truth import LAT
 from navcore.quantities import COMPONENTS, HEADING, NAMES, POSITION, TILT, Kind, components
 from navcore.scenario.model import Scenario
@@ -143,16 +144,16 @@ def why(
 def _remarks(scenario: Scenario) -> tuple[str, ...]:
     switches = any(method.policy.id != "constant" and not method.undamped for method in scenario.method)
     remarks = {
-        "A recorded IMU: its errors are not known one by one, so only the periods are told.": (
+        Text("A recorded IMU: its errors are not known one by one, so only the periods are told."): (
             scenario.imu.file is not None
         ),
-        "The recorded log counts as one source: what it errs by is not known part by part.": (
+        Text("The recorded log counts as one source: what it errs by is not known part by part."): (
             scenario.imu.file is None and scenario.reference.kind == "file"
         ),
-        "The shares come from the linear error model, not from the strapdown.": (
+        Text("The shares come from the linear error model, not from the strapdown."): (
             scenario.imu.file is None and scenario.strapdown
         ),
-        "Where a policy switches, the sources do not simply add up: shares are approximate.": switches,
+        Text("Where a policy switches, the sources do not simply add up: shares are approximate."): switches,
     }
     return tuple(text for text, holds in remarks.items() if holds)
 

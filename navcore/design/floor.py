@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from navcore.foundation.earth import SEMI_MAJOR_AXIS
+from navcore.foundation.text import Text
 from navcore.networks.lqg import ACCEL, DV, GYRO, LOG, PHI, Plant, filter_covariance, plant, riccati
 from navcore.scenario.stochastic import StochasticModel
 
@@ -21,7 +22,7 @@ _ENTRIES = {
 """State that each random source drives; the log's noise enters by the gain of the filter."""
 
 
-FLOOR_OF_ZERO = "with so few random errors a filter could remove all of it: the floor is 0"
+FLOOR_OF_ZERO = Text("with so few random errors a filter could remove all of it: the floor is 0")
 
 
 @dataclass(frozen=True)
@@ -55,9 +56,11 @@ def steady_floor(model: StochasticModel, omega_s: float) -> Floor:
         Schuler frequency, rad/s.
     """
     if model.silent:
-        return Floor(None, None, "imu and reference have no random error: there is no floor to compare with")
+        return Floor(
+            None, None, Text("imu and reference have no random error: there is no floor to compare with")
+        )
     if not model.log:
-        return Floor(None, None, 'reference.kind = "none": without a log nothing bounds the error')
+        return Floor(None, None, Text('reference.kind = "none": without a log nothing bounds the error'))
     if not model.figures.inertial:
         return Floor(0.0, 0.0)
     whole = plant(model.figures, omega_s)
@@ -66,7 +69,7 @@ def steady_floor(model: StochasticModel, omega_s: float) -> Floor:
         error = _steady_filter(system, white=model.figures.log_noise > 0.0)
         sources = _sources(system, whole.kept, error, omega_s)
     except np.linalg.LinAlgError:
-        return Floor(None, None, "the Kalman filter of these sensors comes to no steady state")
+        return Floor(None, None, Text("the Kalman filter of these sensors comes to no steady state"))
     return Floor(_tilt(error.P, omega_s), math.sqrt(max(error.P[DV, DV], 0.0)), sources=sources)
 
 
@@ -121,7 +124,7 @@ def _steady_filter(system: Plant, white: bool) -> _Filter:
     while len(A):
         size = np.linalg.norm(C)
         if size < _ROUNDING:
-            raise np.linalg.LinAlgError("the log does not see every state")
+            raise np.linalg.LinAlgError(Text("the log does not see every state"))
         C = C / size
         rest = null_space(C)
         into = C @ enter
@@ -149,7 +152,7 @@ def _sources(
     from scipy.linalg import solve_continuous_lyapunov
 
     if len(error.closed) and np.max(np.real(np.linalg.eigvals(error.closed))) > -_ROUNDING:
-        raise np.linalg.LinAlgError("the filter goes on learning for ever")
+        raise np.linalg.LinAlgError(Text("the filter goes on learning for ever"))
     noises = {"log_white": system.V * error.noise @ error.noise.T}
     for name, state in _ENTRIES.items():
         if state in kept:

@@ -219,7 +219,7 @@ def in_display_unit(name: str, value: float | None) -> tuple[float | None, str]:
 def in_words(name: str, value: float) -> str:
     """Value of a measure with its unit."""
     if not math.isfinite(value):
-        return "no finite value"
+        return Text("no finite value")
     in_unit, unit = in_display_unit(name, value)
     return f"{in_unit:.4g} {unit}".rstrip()
 
@@ -251,7 +251,7 @@ def read_objective(text: str) -> Objective:
         except ValueError:
             weight = 0.0
         if not 0.0 < weight < math.inf:
-            raise InputError(Fault("", "--objective", text, "weights must be numbers > 0"))
+            raise InputError(Fault("", "--objective", text, Text("weights must be numbers > 0")))
         terms.append((match["name"], weight))
     return Objective(text, tuple(terms))
 
@@ -283,5 +283,5 @@ def read_requirement(text: str) -> Requirement:
     try:
         limit = float(match["value"]) * (UNITS[unit] if unit else 1.0)
     except ValueError:
-        raise InputError(Fault("", "--require", text, "the limit must be a number")) from None
+        raise InputError(Fault("", "--require", text, Text("the limit must be a number"))) from None
     return Requirement(text.strip(), match["name"], match["sense"], limit)

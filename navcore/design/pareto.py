@@ -162,7 +162,9 @@ def pareto(
     along = along or over_run(objectives)
     ship = Ship(scenario, along, TUNING_INTERVALS)
     if ship.model.silent and not along:
-        reason = "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
+        reason = Text(
+            "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
+        )
         raise InputError(Fault("", "objectives", objectives[0], reason))
     fronts: dict[str, tuple[Point, ...]] = {}
     stopped = False
@@ -217,7 +219,7 @@ def _checked(objectives: tuple[str, str], networks: Sequence[str] | None) -> lis
             allowed = Text("must be one of {known}", known=", ".join(WEIGHED))
             raise InputError(Fault("", "objectives", name, allowed))
     if objectives[0] == objectives[1]:
-        raise InputError(Fault("", "objectives", objectives[1], "must be two different ones"))
+        raise InputError(Fault("", "objectives", objectives[1], Text("must be two different ones")))
     ids = [name for name in NETWORKS if name not in LEFT_OUT]
     for name in networks or ():
         if name not in ids:

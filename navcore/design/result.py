@@ -7,9 +7,10 @@ from typing import Any, Literal
 from navcore.design.figures import Entry, Figures, Series
 from navcore.design.floor import FLOOR_OF_ZERO
 from navcore.foundation.drawing import drawn
+from navcore.foundation.text import Text
 from navcore.quantities import budgeted
 
-WITHOUT_LOG = "no method uses the log: the floor is that of damping with the log"
+WITHOUT_LOG = Text("no method uses the log: the floor is that of damping with the log")
 Shown = Literal["steady", "covariance", "seeds", "none"]
 
 
@@ -106,7 +107,7 @@ class Budget:
 
     def __repr__(self) -> str:
         """One line: of what, and the methods."""
-        over = "steady state" if self.steady else "along the scenario"
+        over = Text("steady state") if self.steady else Text("along the scenario")
         return f"<Budget, {over}; {', '.join(repr(method.name) for method in self.methods)}>"
 
     def _repr_html_(self) -> str:

@@ -31,9 +31,9 @@ def no_covariance(scenario: Scenario, method: Method) -> str:
     if method.policy.id not in ("constant", "schedule"):
         return Text('policy "{id}" looks at the data', id=method.policy.id)
     if method.policy.id == "schedule" and realisation_of(kind.law, kind.network(method)) != "feedback":
-        return 'policy "schedule" is followed in advance only with network.realisation = "feedback"'
+        return Text('policy "schedule" is followed in advance only with network.realisation = "feedback"')
     if method.policy.id == "schedule" and scenario.reference.interrupted:
-        return 'policy "schedule" begins anew after each outage of the log'
+        return Text('policy "schedule" begins anew after each outage of the log')
     outages = scenario.reference.interrupted and kind.referenced
     if method.switching.id == "hard" or (method.switching.id == "keep" and not outages):
         return ""

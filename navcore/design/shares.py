@@ -125,7 +125,7 @@ def require_limits(scenario: Scenario) -> None:
     """
     faults = []
     if not scenario.requirement:
-        allowed = "is needed: [[requirement]] with quantity and at_most"
+        allowed = Text("is needed: [[requirement]] with quantity and at_most")
         faults.append(Fault("", "requirement", None, allowed))
     end_h = scenario.run.duration_h
     for i, one in enumerate(scenario.requirement):
@@ -133,7 +133,7 @@ def require_limits(scenario: Scenario) -> None:
             allowed = Text("must be <= {end_h:g} (h), the end of the run", end_h=end_h)
             faults.append(Fault("", f"requirement.{i}.from_h", one.from_h, allowed))
         if scenario.run.fidelity == "channel" and QUANTITIES[one.quantity].kind is HEADING:
-            allowed = 'has no value with run.fidelity = "channel": take "error_model"'
+            allowed = Text('has no value with run.fidelity = "channel": take "error_model"')
             faults.append(Fault("", f"requirement.{i}.quantity", one.quantity, allowed))
     if faults:
         raise InputError(faults)

@@ -14,6 +14,7 @@ import numpy as np
 from navcore.design.seeds import no_covariance
 from navcore.design.ship import Ship
 from navcore.engine.simulation import simulate
+from navcore.foundation.text import Text
 from navcore.quantities import COMPONENTS
 from navcore.scenario.initial_error import InitialError
 from navcore.scenario.method import Method
@@ -22,9 +23,9 @@ from navcore.sensors.imu import Imu
 from navcore.sensors.reference import Reference
 
 _Block = TypeVar("_Block", Imu, Reference)
-RECORDED_LOG = "recorded log"
-INITIAL = "initial error"
-_EVENTS = "log events"
+RECORDED_LOG = Text("recorded log")
+INITIAL = Text("initial error")
+_EVENTS = Text("log events")
 
 
 def contributions(

@@ -77,9 +77,9 @@ def _steady_filter(
     if floor.tilt_rad is None:
         return MethodBudget(method.name, "none", Entry(Figures()), {}, warnings=(floor.reason,))
     sources = {name: Entry(Figures(*floor.sources.get(name, (0.0, 0.0)))) for name in RANDOM_SOURCES}
-    warnings = ["the steady state of the Kalman filter is the floor itself"]
+    warnings = [Text("the steady state of the Kalman filter is the floor itself")]
     if model.tide.any():
-        warnings.append("the filter is not told of the tide, which is not in these figures")
+        warnings.append(Text("the filter is not told of the tide, which is not in these figures"))
     random = Figures(floor.tilt_rad, floor.velocity_mps)
     return MethodBudget(method.name, "steady", Entry(random), sources, random, tuple(warnings))
 

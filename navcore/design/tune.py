@@ -182,7 +182,7 @@ def tune(
     search = Search(ships, varied, wanted, [*limits, *defaults], told, cancelled)
     start, before = _begin(search)
     if before == 0.0 and all(QUANTITIES[name].kind for name in wanted.names):
-        reason = "is 0 as it is: the scenario has no error that a setting could make smaller"
+        reason = Text("is 0 as it is: the scenario has no error that a setting could make smaller")
         raise InputError(Fault("", "--objective", wanted.text, reason))
     effort = ALONG if along else STEADY
     stopped = search.run(effort, start)
@@ -194,7 +194,9 @@ def tune(
     best = search.best
     if best is None or best[0] >= REFUSED:
         if stopped:
-            raise InputError(Fault("", "--vary", None, "the search was stopped before it found a setting"))
+            raise InputError(
+                Fault("", "--vary", None, Text("the search was stopped before it found a setting"))
+            )
         raise InputError(list(_no_method(search, ", ".join(vary))))
     if best[0] >= UNSTABLE:
         reason = Text("no setting within these ranges is stable: {unstable}", unstable=search.unstable)
@@ -236,19 +238,27 @@ def _check(ships: Sequence[Ship], varied: Sequence[Varied], objective: Objective
             try:
                 read_varied(ship.scenario, [f"{one.field}={one.low!r}:{one.high!r}"])
             except InputError as error:
-                reason = "; ".join(f"{fault.value} {fault.allowed}" for fault in error.faults)
+                reason = Text.joined(
+                    "; ",
+                    (
+                        Text("{value} {allowed}", value=fault.value, allowed=fault.allowed)
+                        for fault in error.faults
+                    ),
+                )
                 raise InputError(
                     Fault("", "--worst-of", Text("scenario {number}", number=number), reason)
                 ) from None
     noisy = any(QUANTITIES[name].kind for name in objective.names)
     if noisy and not ships[0].along_run and ships[0].model.silent:
-        reason = "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
+        reason = Text(
+            "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
+        )
         raise InputError(Fault("", "--objective", objective.text, reason))
 
 
 def _no_method(search: Search, vary: str) -> Iterator[Fault]:
     """Say why no value within the ranges can be run."""
-    yield Fault("", "--vary", vary, "no value within these ranges makes a method")
+    yield Fault("", "--vary", vary, Text("no value within these ranges makes a method"))
     if search.refused is not None:
         yield from search.refused.faults
 
@@ -372,11 +382,16 @@ def _nothing_meets(search: Search, effort: Effort, start: np.ndarray | None) -> 
             least = in_words(search.objective.text, without)
             left = Text("without it {text} comes to {least}", text=search.objective.text, least=least)
         else:
-            left = "without it the others are not met either"
+            left = Text("without it the others are not met either")
         reason = Text(
             "nothing within these ranges meets all requirements: alone {name} comes to", name=one.name
         )
-        yield Fault("", "--require", one.text, f"{reason} {in_words(one.name, reach)}; {left}")
+        yield Fault(
+            "",
+            "--require",
+            one.text,
+            Text("{reason} {in_words}; {left}", reason=reason, in_words=in_words(one.name, reach), left=left),
+        )
 
 
 def _reach(search: Search, one: Requirement, effort: Effort, start: np.ndarray | None) -> float:

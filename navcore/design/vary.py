@@ -94,7 +94,7 @@ def read_varied(scenario: Scenario, texts: Sequence[str], whole: bool = False) -
         No parameter, no number of a method, or ends that the field does not allow.
     """
     if not texts:
-        raise InputError(Fault("", "--vary", None, "is required: e.g. method.0.network.xi"))
+        raise InputError(Fault("", "--vary", None, Text("is required: e.g. method.0.network.xi")))
     choices, faults = [], []
     for text in texts:
         try:
@@ -106,10 +106,10 @@ def read_varied(scenario: Scenario, texts: Sequence[str], whole: bool = False) -
     methods = {varied.method for varied in choices}
     if len(methods) > 1:
         raise InputError(
-            Fault("", "--vary", ", ".join(texts), "must be parameters of one and the same method")
+            Fault("", "--vary", ", ".join(texts), Text("must be parameters of one and the same method"))
         )
     if len({varied.field for varied in choices}) < len(choices):
-        raise InputError(Fault("", "--vary", ", ".join(texts), "names a parameter twice"))
+        raise InputError(Fault("", "--vary", ", ".join(texts), Text("names a parameter twice")))
     return tuple(choices)
 
 
@@ -166,7 +166,7 @@ def _read_one(scenario: Scenario, text: str, whole: bool = False) -> Varied:
         return InputError(Fault("", "--vary", text, allowed))
 
     if len(names) < 4 or names[0] != "method" or not names[1].isdigit():
-        raise refuse("must not vary: must be a number of a method, such as method.0.network.xi")
+        raise refuse(Text("must not vary: must be a number of a method, such as method.0.network.xi"))
     index = int(names[1])
     if index >= len(scenario.method):
         raise refuse(
@@ -188,11 +188,11 @@ def _read_one(scenario: Scenario, text: str, whole: bool = False) -> Varied:
         numbers = ", ".join(name for name, one in fields.items() if _is_number(one))
         raise refuse(Text("is no field of this method; numbers there: {numbers}", numbers=numbers or "none"))
     if not _is_number(info):
-        raise refuse("must not vary: it is not a number")
+        raise refuse(Text("must not vary: it is not a number"))
     allowed = _allowed(info)
     low, high = _read_ends(text, ends, allowed) if equals else _own_ends(text, info, allowed, whole)
     if not low < high:
-        raise refuse("the lower end must be below the upper one")
+        raise refuse(Text("the lower end must be below the upper one"))
     log = low > 0.0 and (high / low >= _LOG_FROM or bool(extra_of(info).get("log")))
     return Varied(field, index, tuple(names[2:]), low, high, log)
 
@@ -212,7 +212,7 @@ def _read_ends(text: str, ends: str, allowed: tuple[float, float]) -> tuple[floa
     try:
         low, high = (float(part) for part in parts)
     except ValueError:
-        raise InputError(Fault("", "--vary", text, "must end in LOW:HIGH, two numbers")) from None
+        raise InputError(Fault("", "--vary", text, Text("must end in LOW:HIGH, two numbers"))) from None
     if not (math.isfinite(low) and math.isfinite(high)) or low < allowed[0] or high > allowed[1]:
         reason = Text(
             "its range must lie within {allowed:g} and {allowed_2:g}",
@@ -235,7 +235,9 @@ def _own_ends(text: str, info: FieldInfo, allowed: tuple[float, float], whole: b
             return 1e-3 * high, high
     if slider:
         return float(slider[0]), float(slider[1])
-    raise InputError(Fault("", "--vary", text, "has no range of its own: give one, as in FIELD=LOW:HIGH"))
+    raise InputError(
+        Fault("", "--vary", text, Text("has no range of its own: give one, as in FIELD=LOW:HIGH"))
+    )
 
 
 def changed(scenario: Scenario, varied: Sequence[Varied], values: Sequence[float]) -> Method:

@@ -9,6 +9,7 @@ from typing import Any
 from navcore.analysis.judged import JudgedLoop, loop_value
 from navcore.analysis.report import whole_system_report
 from navcore.engine.run import MethodRun, Run, Span
+from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.foundation.version import __version__
 from navcore.quantities import KINDS, NAMES, QUANTITIES, Quantity, limit_unit
@@ -146,7 +147,7 @@ def _method(run: MethodRun) -> dict[str, Any]:
         "status": run.status,
         "warnings": list(run.warnings),
         "loop": _loop(run),
-        "law": {"computed_on": "output rows", **asdict(run.law_in_force)},
+        "law": {"computed_on": Text("output rows"), **asdict(run.law_in_force)},
         "errors": {
             name: {key: _finite(value) for key, value in statistics.items()}
             for name, statistics in run.errors.items()

@@ -89,7 +89,7 @@ def recorded_imu(scenario: Scenario, start_utc: float | None = None) -> Recorded
     """
     imu, aligned = scenario.imu, scenario.alignment.kind == "compass"
     record: ImuRecord = kept(
-        ("imu record", file_state(imu.file), imu.axes),
+        (Text("imu record"), file_state(imu.file), imu.axes),
         lambda: guarded.call("imu.file", read_imu, imu.file or "", imu.axes),
     )
     rates = sampling(scenario.run, scenario.reference, record.rate_hz)
@@ -203,8 +203,13 @@ def _parked_notices(scenario: Scenario, record: ImuRecord, site: Site) -> Iterat
         )
     if scenario.alignment.kind == "compass":
         yield (
-            "the true attitude of a recorded IMU is not known: that of the alignment's end stands for it, "
-            "φ tells what has changed since"
+            Text(
+                "the true attitude of a recorded IMU is not known: that of the alignment's end "
+                "stands for it, "
+                "φ tells what has changed since"
+            )
         )
     else:
-        yield "the attitude of the recorded IMU is taken from motion.pitch_deg, roll_deg and heading_deg"
+        yield Text(
+            "the attitude of the recorded IMU is taken from motion.pitch_deg, roll_deg and heading_deg"
+        )

@@ -41,7 +41,7 @@ def require_replaceable(folder: str | os.PathLike[str]) -> None:
         if not folder.exists() and not folder.is_symlink():
             return
         if not folder.is_dir():
-            raise _refused(folder, "exists and is not a folder")
+            raise _refused(folder, Text("exists and is not a folder"))
         entries = list(os.scandir(folder))
         files = {entry.name for entry in entries if entry.is_file()}
         a_runs = files >= {SCENARIO_FILE, METRICS_FILE} and _exchangeable(folder.resolve())

@@ -20,6 +20,8 @@ from navcore.scenario.sampling import Sampling
 
 _DAMPED, _XI = 1, 2
 Status = Literal["ok", "diverged", "stopped"]
+ENDINGS: dict[Status, str] = {"diverged": Text("diverged"), "stopped": Text("stopped")}
+"""How a method ended that did not reach the end, in words."""
 
 
 @dataclass(frozen=True)

@@ -84,7 +84,7 @@ def strapdown_environment(scenario: Scenario) -> StrapdownEnvironment:
     start_utc = None if window is None else window.start_s
     seed = scenario.run.seed
     files = file_state(getattr(scenario.motion, "file", None)), file_state(scenario.reference.file)
-    truth_key = ("strapdown truth", scenario.motion, files, scenario.site, rates, scenario.earth.name)
+    truth_key = (Text("strapdown truth"), scenario.motion, files, scenario.site, rates, scenario.earth.name)
     try:
         imu = ImuSimulation(
             scenario.motion,
@@ -124,7 +124,7 @@ def strapdown_environment(scenario: Scenario) -> StrapdownEnvironment:
         start=start,
         errors=start_errors(start, truth.values[0]),
         reference=kept(
-            ("strapdown log", truth_key, scenario.reference, seed),
+            (Text("strapdown log"), truth_key, scenario.reference, seed),
             lambda: _reference_errors(scenario, rates, truth, start_utc),
         ),
         warnings=tuple(warnings),

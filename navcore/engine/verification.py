@@ -87,12 +87,14 @@ class Verification:
 def why_not(scenario: Scenario) -> str:
     """Say why a scenario cannot be verified; empty when it can."""
     if scenario.run.fidelity == "channel":
-        return (
+        return Text(
             'fidelity "channel" leaves the Earth\'s rotation and the heading out, which a strapdown run has: '
             'set run.fidelity to "error_model"'
         )
     if scenario.imu.file is not None:
-        return "a recorded IMU has errors that nobody knows, so that no linear model can be fed with them"
+        return Text(
+            "a recorded IMU has errors that nobody knows, so that no linear model can be fed with them"
+        )
     return ""
 
 
@@ -248,11 +250,11 @@ def _statements(
         )
     for (strapdown, linear_run), difference in zip(pairs, differences, strict=True):
         for text in _about_method(strapdown, linear_run, difference):
-            yield f"{strapdown.method.name}: {text}"
+            yield Text("{name}: {text}", name=strapdown.method.name, text=text)
 
 
 def _about_method(full: MethodRun, simple: MethodRun, differences: dict[str, Difference]) -> Iterator[str]:
-    for run, which in ((full, "the strapdown run"), (simple, "the linear model")):
+    for run, which in ((full, Text("the strapdown run")), (simple, Text("the linear model"))):
         if run.status == "diverged":
             yield Text("{which} diverged: {reason}.", which=which, reason=run.reason)
     tilt = max(full.errors[name]["max_abs"] for name in components(TILT)) / DEG

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from navcore.foundation.text import Text
+
 _LONGEST_VALUE = 200
 _LONGEST_ALLOWED = 3000
 
@@ -33,15 +35,20 @@ class Fault:
     def __str__(self) -> str:
         """One line: place, field, value, allowed range."""
         place = ": ".join(_cut(part) for part in (self.where, self.field) if part)
-        value_text = "" if self.value is None else f" = {_shorten(self.value)}"
-        return " ".join(f"{place}{value_text}: {_cut(self.allowed, _LONGEST_ALLOWED)}".split())
+        if self.value is not None:
+            place += f" = {_shorten(self.value)}"
+        allowed = (
+            self.allowed if len(self.allowed) <= _LONGEST_ALLOWED else _cut(self.allowed, _LONGEST_ALLOWED)
+        )
+        place = " ".join(place.split())
+        return Text("{place}: {allowed}", place=place, allowed=allowed) if place else allowed
 
 
 def _shorten(value: object) -> str:
     try:
         text = repr(value) if isinstance(value, str) else str(value)
     except ValueError:
-        text = "an integer of thousands of digits"  # Python refuses to write it
+        text = Text("an integer of thousands of digits")  # Python refuses to write it
     return _cut(text)
 
 

@@ -19,13 +19,13 @@ _MOST_ERRORS = 100
 """Errors that are told one by one: nobody reads more."""
 _LONGEST_NAME = 60
 _WANTED = {
-    "float": "must be a number",
-    "int": "must be a whole number",
-    "bool": "must be true or false",
-    "string": "must be text",
-    "dict": "must be a table of fields",
-    "model": "must be a table of fields",
-    "finite": "must be a finite number",
+    "float": Text("must be a number"),
+    "int": Text("must be a whole number"),
+    "bool": Text("must be true or false"),
+    "string": Text("must be text"),
+    "dict": Text("must be a table of fields"),
+    "model": Text("must be a table of fields"),
+    "finite": Text("must be a finite number"),
 }
 _NO_LIST = ("list_type", "tuple_type", "named_tuple_type")
 _BOUNDS = {"greater_than": ">", "greater_than_equal": ">=", "less_than": "<", "less_than_equal": "<="}
@@ -94,7 +94,7 @@ def _unfold(item: Any, model: Any, data: Any, where: str) -> list[Fault]:
         kind = "tuple_type"
     value = _lookup(data, path)
     if kind == "missing":
-        return [Fault(where, ".".join(path), None, _join("is required", _range(info)))]
+        return [Fault(where, ".".join(path), None, _join(Text("is required"), _range(info)))]
     allowed = _allowed(item, path, place, info) if kind == item["type"] else _list(path, place, info)
     return [Fault(where, ".".join(path), _shown(value, item.get("input")), allowed)]
 
@@ -116,7 +116,11 @@ def _range(info: FieldInfo | None) -> str:
 
 
 def _join(first: str, bounds: str) -> str:
-    return f"{first}, {bounds.removeprefix('must be ')}" if bounds else first
+    return (
+        Text("{first}, {removeprefix}", first=first, removeprefix=bounds.removeprefix("must be "))
+        if bounds
+        else first
+    )
 
 
 def _allowed(item: Any, path: list[str], place: Any, info: FieldInfo | None) -> str:
@@ -144,13 +148,13 @@ def _allowed(item: Any, path: list[str], place: Any, info: FieldInfo | None) -> 
         )
     wanted = _WANTED.get(kind.split("_")[0])
     if kind.startswith("model") and len(list(_members(place))) > 1:
-        wanted = "must be a name or a table of fields"
+        wanted = Text("must be a name or a table of fields")
     if wanted is not None:
         if kind.startswith(("float", "int")):
             wanted = comma_refused(item["input"]) or wanted
         return _join(wanted, _range(info))
     message = str(context["error"]) if "error" in context else item["msg"]
-    return _join(message.replace("Input should be", "must be", 1), _range(info))
+    return _join(message.replace(Text("Input should be"), Text("must be"), 1), _range(info))
 
 
 def _length(place: Any) -> int:
@@ -170,7 +174,7 @@ def _list(path: list[str], place: Any, info: FieldInfo | None) -> str:
         block = ".".join(part for part in path if not part.isdigit())
         return Text("must be a list of blocks, [[{block}]]", block=block)
     if str in members:
-        return "must be a list of texts"
+        return Text("must be a list of texts")
     if rows := [member for member in members if getattr(member, "_fields", ())]:
         fields = ", ".join(rows[0]._fields)
         return Text(
@@ -178,7 +182,7 @@ def _list(path: list[str], place: Any, info: FieldInfo | None) -> str:
         )
     if not count:
         numbers = float in members or any(map(_length, members))
-        return "must be a list of numbers" if numbers else "must be a list"
+        return Text("must be a list of numbers") if numbers else Text("must be a list")
     if not names:
         return Text("must be a list of {count} numbers", count=count)
     element = element_of(info) if info else None

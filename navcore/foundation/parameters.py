@@ -106,7 +106,9 @@ def quantity(
 
 def _file_name(text: str) -> str:
     if "\0" in text:
-        raise InputError(Fault("", "", text, "must be the path of a file: no path holds a null character"))
+        raise InputError(
+            Fault("", "", text, Text("must be the path of a file: no path holds a null character"))
+        )
     return text
 
 
@@ -198,11 +200,10 @@ def allowed_range(info: FieldInfo) -> str:
         if getattr(rule, name, None) is not None
     ]
     unit = unit_sign(extra_of(info).get("unit", ""))
-    return (
-        (Text("must be {parts}{unit}", parts=" and ".join(parts), unit=f" ({unit})" if unit else ""))
-        if parts
-        else ""
-    )
+    if not parts:
+        return ""
+    both = parts[0] if len(parts) == 1 else Text("{low} and {high}", low=parts[0], high=parts[1])
+    return Text("must be {both}{unit}", both=both, unit=f" ({unit})" if unit else "")
 
 
 def bounds_of(info: FieldInfo) -> tuple[float, float]:

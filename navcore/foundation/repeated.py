@@ -19,12 +19,14 @@ class Repeated(EitherUnit):
         ge=0.0,
         le=10000.0,
         slider=(0.0, 72.0),
-        label="begins",
-        help="Time at which it begins; where it is repeated, the first time.",
+        label=Text("begins"),
+        help=Text("Time at which it begins; where it is repeated, the first time."),
     )
-    duration_s: float = quantity(600.0, unit="s", gt=0.0, le=1e7, log=True, label="lasts", help="Its length.")
+    duration_s: float = quantity(
+        600.0, unit="s", gt=0.0, le=1e7, log=True, label=Text("lasts"), help=Text("Its length.")
+    )
     repeat: int = quantity(
-        1, unit="1", ge=1, le=10_000, slider=(1, 100), label="times", help="How often it occurs."
+        1, unit="1", ge=1, le=10_000, slider=(1, 100), label=Text("times"), help=Text("How often it occurs.")
     )
     every_h: float = quantity(
         1.0,
@@ -32,8 +34,8 @@ class Repeated(EitherUnit):
         gt=0.0,
         le=10000.0,
         slider=(0.1, 24.0),
-        label="every",
-        help="With repeat: time from one beginning to the next, at least duration_s.",
+        label=Text("every"),
+        help=Text("With repeat: time from one beginning to the next, at least duration_s."),
     )
 
     @model_validator(mode="after")

@@ -1,35 +1,48 @@
-"""Texts with named values: English where they are made, another language where somebody reads that."""
+"""Texts with named values: English as a string, in another language where a page is sent it."""
 
 from __future__ import annotations
 
-import threading
+from collections.abc import Iterable
+from html import escape
 from typing import Any
 
-_MOST_KEPT = 50_000
-_origins: dict[str, Text] = {}
-_keeping = threading.Lock()
-"""Texts are made in many threads: the oldest cannot be looked for while another one is added."""
+_WIDE = "\u3000"
+"""First of the letters that Chinese is written in."""
 
 
-class Text(str):
-    """A sentence with values in it, which is its English form and keeps what it is made of.
+class Words(str):
+    """A string that a template can quote, ``{name:html}``, or make a sentence, ``{name:sentence}``."""
 
-    A reader of another language is given the template's translation with the same values
-    (`app.languages.wording`). The sentence may be put into HTML, JSON or a plotly figure, whole: `origin_of`
-    returns the `Text` that a sentence was made as.
+    def __format__(self, spec: str) -> str:
+        """Format as `str` does; ``html`` quotes for HTML, ``sentence`` begins large and ends with a stop."""
+        if spec == "html":
+            return escape(str(self))
+        if spec == "sentence":
+            return f"{self[:1].upper()}{self[1:]}{'。' if max(self, default='') >= _WIDE else '.'}"
+        return super().__format__(spec)
+
+
+class Text(Words):
+    """A text in English, which keeps the template and the values that it consists of.
+
+    `app.languages.wording.Wording` looks the template up in a reader's language and fills the values in. A
+    text that is put into another one must be a value of that one: an f-string keeps only the English.
 
     Parameters
     ----------
     template : str
-        English, values in braces with a format if need be: ``"{count} runs in {time:.3g} s"``.
+        English, values in braces with a format if need be: ``"{count} runs in {time:.3g} s"``. It may hold
+        HTML; a value that is no HTML is then quoted, ``"<b>{name:html}</b>"``.
     **values
-        Values by name; one that is a `Text`, or a fixed text of the program, is translated too.
+        Values by name. A value that is a text, or a fixed text of the program, is translated too.
 
     Examples
     --------
     >>> text = Text("run {number}: {share:.0%}", number=3, share=0.25)
     >>> text, text.values["number"]
     ('run 3: 25%', 3)
+    >>> Text("<b>{name:html}</b>", name="a & b")
+    '<b>a &amp; b</b>'
     """
 
     forms: tuple[str, ...]
@@ -38,12 +51,8 @@ class Text(str):
     def __new__(cls, template: str, /, *many: str, **values: Any) -> Text:
         """Fill the values in; ``many`` is given by `plural` alone."""
         one = not many or values["count"] == 1
-        text = super().__new__(cls, (template if one else many[0]).format(**values))
+        text = super().__new__(cls, filled(template if one else many[0], values))
         text.forms, text.values = (template, *many), values
-        with _keeping:
-            _origins[" ".join(text.split())] = text
-            if len(_origins) > _MOST_KEPT:
-                del _origins[next(iter(_origins))]
         return text
 
     @classmethod
@@ -57,15 +66,43 @@ class Text(str):
         """
         return cls(one, many, count=count, **values)
 
+    @classmethod
+    def joined(cls, joint: str, parts: Iterable[str]) -> Text:
+        """Join texts, as `str.join` does.
+
+        Examples
+        --------
+        >>> Text.joined("; ", ["a", "b"])
+        'a; b'
+        """
+        values = {f"part{number}": part for number, part in enumerate(parts)}
+        literal = joint.replace("{", "{{").replace("}", "}}")
+        return cls(literal.join(f"{{{name}}}" for name in values), **values)
+
+    def __add__(self, other: str) -> Text:
+        """Join with what follows."""
+        return Text.joined("", (self, other))
+
+    def __radd__(self, other: str) -> Text:
+        """Join with what stands before."""
+        return Text.joined("", (other, self))
+
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle the template and the values, so that the text is known where it arrives."""
+        """Pickle the template and the values."""
         return _again, (self.forms, self.values)
+
+
+def quoted(text: str) -> Text:
+    """Quote a text that is put into HTML."""
+    return Text("{text:html}", text=text)
 
 
 def _again(forms: tuple[str, ...], values: dict[str, Any]) -> Text:
     return Text(*forms, **values)
 
 
-def origin_of(sentence: str) -> Text | None:
-    """Return the text that a sentence was made as; None for any other string."""
-    return _origins.get(" ".join(sentence.split()))
+def filled(template: str, values: dict[str, Any]) -> str:
+    """Fill values into a template; a string among them can be quoted for HTML."""
+    return template.format(
+        **{name: Words(value) if type(value) is str else value for name, value in values.items()}
+    )

@@ -50,7 +50,7 @@ def numbers(
             elif (degrees := _degrees(cell.strip())) is not None:
                 values[index] = degrees
             else:
-                hint = " (decimal comma?)" if "," in cell else ""
+                hint = Text(" (decimal comma?)") if "," in cell else ""
                 allowed = Text("is not a number{hint}", hint=hint)
                 faults.append(
                     Fault(Text("{where}, row {rows}", where=where, rows=rows[index]), name, cell, allowed)
@@ -117,7 +117,7 @@ def _written_times(
                     Text("{where}, row {rows}", where=where, rows=rows[index]),
                     name,
                     cell,
-                    "is not an ISO 8601 time",
+                    Text("is not an ISO 8601 time"),
                 )
             )
         else:
@@ -127,7 +127,7 @@ def _written_times(
     if dated.all():
         return seconds, True
     if dated.any():
-        allowed = "some rows have a date and some have none"
+        allowed = Text("some rows have a date and some have none")
         raise InputError(
             Fault(
                 Text("{where}, row {rows}", where=where, rows=rows[int(np.argmin(dated))]),

@@ -83,7 +83,7 @@ def require_columns(where: str, names: Sequence[str]) -> dict[str, Column]:
             )
     lowered = [name.strip().lower() for name in names]
     faults += [
-        Fault(where, "", column.name.lower(), "column given twice")
+        Fault(where, "", column.name.lower(), Text("column given twice"))
         for column in found.values()
         if lowered.count(column.name.lower()) > 1
     ]
@@ -204,14 +204,16 @@ def table_recording(table: Table) -> Recording:
         "attitude": series("pitch_deg+roll_deg", "pitch", "roll"),
     }
     if not any(quantities.values()):
-        raise InputError(Fault(table.where, "", None, "every cell of the columns that are used is empty"))
+        raise InputError(
+            Fault(table.where, "", None, Text("every cell of the columns that are used is empty"))
+        )
     return Recording(**quantities, sources=(_account(table),))
 
 
 def _account(table: Table) -> SourceReport:
     used = [table.columns[stem].name.lower() for stem in table.values]
     empty = {table.columns[s].name: int(np.count_nonzero(gone)) for s, gone in table.missing.items()}
-    counts = [f"{name} {count}" for name, count in empty.items() if count]
+    counts = [Text("{name} {count}", name=name, count=count) for name, count in empty.items() if count]
     warnings = [Text("empty cells, missing samples: {told}", told=", ".join(counts))] if counts else []
     report = stream_report("rows", table.time_s.size, True, table.time_s)
     return SourceReport(
@@ -295,7 +297,7 @@ def _order_faults(table: Table) -> list[Fault]:
         return []
     index = int(wrong[0])
     what = (
-        "is the same time as the row before"
+        Text("is the same time as the row before")
         if steps[index] == 0.0
         else Text("runs backwards by {steps:g} s", steps=-steps[index])
     )

@@ -26,7 +26,7 @@ from navcore.io.columns import (
 )
 from navcore.io.formats import Candidate
 from navcore.io.series import Recording
-from navcore.io.source import counted, read_text
+from navcore.io.source import read_text
 
 _COMMENTS = ("#", "%", "//")
 _SEPARATORS = ",;\t|"
@@ -69,7 +69,7 @@ def read(path: Path) -> Recording:
     content = read_text(path)
     rows = _rows(path.name, content.text)
     if not rows.numbers:
-        raise InputError(Fault(path.name, "", None, "a header but no rows"))
+        raise InputError(Fault(path.name, "", None, Text("a header but no rows")))
     warnings = (*content.warnings(), *rows.warnings, *column_warnings(rows.header, rows.columns))
     return table_recording(_table(path.name, rows, warnings))
 
@@ -137,7 +137,7 @@ def _rows(where: str, text: str) -> _Rows:
         for column in columns:
             rows.cells.setdefault(column.stem, []).append(row[column.index])
     if len(faults) == 1 and rows.numbers and "cells" in faults[0].allowed and _is_last(text, faults[0]):
-        rows.warnings.append("the last row is cut off: left out")
+        rows.warnings.append(Text("the last row is cut off: left out"))
         faults = []
     if faults:
         raise InputError(limited(where, faults))
@@ -187,7 +187,7 @@ def _fitted(row: list[str], width: int, separator: str, columns: dict[str, Colum
         return row[:width]
     if separator == " " and len(row) == width + 1 and UTC in columns:
         at = columns[UTC].index
-        return [*row[:at], f"{row[at]} {row[at + 1]}", *row[at + 2 :]]
+        return [*row[:at], Text("{row} {row2}", row=row[at], row2=row[at + 1]), *row[at + 2 :]]
     return row
 
 
@@ -235,9 +235,26 @@ def _table(where: str, rows: _Rows, warnings: tuple[str, ...]) -> Table:
     if faults or timing is None:
         raise InputError(faults)
     time_s, dated, clock = timing
-    notes = [Text("{counted} without a time left out", counted=counted(untimed, "row"))] if untimed else []
+    notes = (
+        [
+            Text.plural(
+                "{count} row without a time left out", "{count} rows without a time left out", count=untimed
+            )
+        ]
+        if untimed
+        else []
+    )
     return Table(
-        where, "CSV table", rows.columns, time_s, dated, clock, values, missing, numbered, (*warnings, *notes)
+        where,
+        Text("CSV table"),
+        rows.columns,
+        time_s,
+        dated,
+        clock,
+        values,
+        missing,
+        numbered,
+        (*warnings, *notes),
     )
 
 

@@ -14,7 +14,7 @@ from navcore.foundation.units import HOUR
 from navcore.io.nmea_clock import Clock
 from navcore.io.nmea_lines import OTHER_KINDS, Tally, intact_lines
 from navcore.io.nmea_sentences import KINDS, Reading, decode, is_used
-from navcore.io.source import counted, read_text
+from navcore.io.source import read_text
 
 MOST_BAD_CHECKSUMS = 0.2
 """A file is refused when more than this share of its sentences (or of one kind used) has a wrong checksum."""
@@ -136,7 +136,7 @@ def _refuse_unusable(path: Path, tally: Tally, readings: dict[Channel, list[tupl
         if is_used(address) and count > MOST_BAD_CHECKSUMS * (count + tally.intact[address])
     ]
     if bad > MOST_BAD_CHECKSUMS * total or worst:
-        detail = f" ({', '.join(worst)})" if worst else ""
+        detail = Text(" ({worst})", worst=", ".join(worst)) if worst else ""
         raise refuse(
             Text(
                 "{bad} of {total} sentences have a wrong checksum{detail}, the first in line "
@@ -151,7 +151,9 @@ def _refuse_unusable(path: Path, tally: Tally, readings: dict[Channel, list[tupl
     if used:
         return
     if tally.untimed:
-        raise refuse("no time: neither a time beside the sentences nor one with its own (RMC, GGA, ZDA)")
+        raise refuse(
+            Text("no time: neither a time beside the sentences nor one with its own (RMC, GGA, ZDA)")
+        )
     if not total:
         raise refuse(
             Text(
@@ -159,7 +161,7 @@ def _refuse_unusable(path: Path, tally: Tally, readings: dict[Channel, list[tupl
                 kinds=KINDS,
             )
         )
-    addresses = _named(sorted(tally.intact)) or "none intact"
+    addresses = _named(sorted(tally.intact)) or Text("none intact")
     raise refuse(
         Text(
             "no usable sentence among {total} (found: {found}); expected {kinds}",
@@ -179,11 +181,11 @@ def _warnings(tally: Tally) -> list[str]:
     """Say what was left out or looks odd."""
     words: list[str] = []
     if tally.bad:
-        left_out = counted(tally.bad.total(), "sentence")
         words.append(
-            Text(
-                "{left_out} with a wrong checksum left out (first: line {first_bad_line})",
-                left_out=left_out,
+            Text.plural(
+                "{count} sentence with a wrong checksum left out (first: line {first_bad_line})",
+                "{count} sentences with a wrong checksum left out (first: line {first_bad_line})",
+                count=tally.bad.total(),
                 first_bad_line=tally.first_bad_line,
             )
         )
@@ -213,9 +215,10 @@ def _warnings(tally: Tally) -> list[str]:
         )
     if tally.first_late is not None:
         words.append(
-            Text(
-                "{counted} whose time runs backwards left out (first: line {first_late})",
-                counted=counted(tally.late, "sentence"),
+            Text.plural(
+                "{count} sentence whose time runs backwards left out (first: line {first_late})",
+                "{count} sentences whose time runs backwards left out (first: line {first_late})",
+                count=tally.late,
                 first_late=tally.first_late[0],
             )
         )
@@ -226,7 +229,7 @@ def _warnings(tally: Tally) -> list[str]:
             )
         )
     if not tally.dated:
-        words.append("times of day without a date: it cannot be joined with a dated file")
+        words.append(Text("times of day without a date: it cannot be joined with a dated file"))
     if tally.local_time_s:
         ahead = tally.local_time_s / HOUR
         words.append(

@@ -12,6 +12,7 @@ from functools import reduce
 from operator import xor
 from typing import NamedTuple
 
+from navcore.foundation.text import Text
 from navcore.io.stamps import LONGEST_STAMP, Stamp, StampReader, day_comes_first
 
 LONGEST_LINE = 2048
@@ -25,7 +26,7 @@ _PLAIN = re.compile(r"[$!]([A-Z0-9]{3,10}),[^$!*]*\*([0-9A-Fa-f]{2})")
 """A line that holds a sentence and nothing else, as most do."""
 _SENTENCE_START = re.compile(r"[$!][A-Z]{2,9},")
 _SOURCE = re.compile(r"(?<![A-Za-z])[A-Za-z][A-Za-z_-]{1,30}\d{0,6}")
-_WEEKDAYS = frozenset("mon tue wed thu fri sat sun".split())
+_WEEKDAYS = frozenset(Text("mon tue wed thu fri sat sun").split())
 _QUOTES = " \t\"',;"
 _LINES_LOOKED_AT = 20_000
 

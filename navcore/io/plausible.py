@@ -37,12 +37,12 @@ def speed_warnings(recording: Recording) -> list[str]:
     if difference <= max(LARGEST_CURRENT_MPS, LARGEST_SHARE * max(through, ground)):
         return []
     ratio = through / ground if ground > 0.0 else np.inf
-    slips = {KNOT: "m/s taken for knots", 1.0 / KNOT: "knots taken for m/s"}
+    slips = {KNOT: Text("m/s taken for knots"), 1.0 / KNOT: Text("knots taken for m/s")}
     slip = next((words for size, words in slips.items() if abs(ratio / size - 1.0) < _KNOT_SLIP), "")
     reason = (
         Text("the ratio {ratio:.2f} suggests {slip}", ratio=ratio, slip=slip)
         if slip
-        else "a wrong unit or scale, or a log that fails"
+        else Text("a wrong unit or scale, or a log that fails")
     )
     return [
         Text(

@@ -19,7 +19,7 @@ from navcore.io.source import require_file
 
 PathLike = str | os.PathLike[str]
 _SLACK_S = 0.01
-_MIXED_DATES = "some files give times without a date and some with one: they cannot be joined"
+_MIXED_DATES = Text("some files give times without a date and some with one: they cannot be joined")
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ def file_keys(paths: PathLike | Sequence[PathLike], where: str = "", field: str 
     """State of each file; raises `InputError` when none is named or one cannot be read."""
     listed = [paths] if isinstance(paths, str | os.PathLike) else list(paths)
     if not listed or any(not str(path) for path in listed):
-        raise InputError(Fault(where, field, None, "name at least one file"))
+        raise InputError(Fault(where, field, None, Text("name at least one file")))
     keys: list[FileKey] = []
     faults: list[Fault] = []
     for path in listed:
@@ -142,7 +142,18 @@ def shared_window(series: Iterable[Series], field: str = "file") -> Window:
     ]
     start = min(epochs, default=math.inf)
     if not start < end:
-        spans = "; ".join(f"{s.source} {utc_text(s.time_s[0])} to {utc_text(s.time_s[-1])}" for s in streams)
+        spans = Text.joined(
+            "; ",
+            (
+                Text(
+                    "{source} {utc_text} to {utc_text2}",
+                    source=s.source,
+                    utc_text=utc_text(s.time_s[0]),
+                    utc_text2=utc_text(s.time_s[-1]),
+                )
+                for s in streams
+            ),
+        )
         raise InputError(Fault("", field, None, Text("the streams share no time: {spans}", spans=spans)))
     return Window(float(start), float(end), float(begin))
 

@@ -6,6 +6,8 @@ from datetime import UTC, datetime
 
 import numpy as np
 
+from navcore.foundation.text import Text
+
 GAP_FACTOR = 3.0
 """A gap is a distance of two samples beyond this many median intervals."""
 LONGEST_REACH_S = 2.0
@@ -48,7 +50,7 @@ class Series:
     @property
     def source(self) -> str:
         """File and sentences or columns."""
-        return f"{self.file} {self.what}"
+        return Text("{file} {what}", file=self.file, what=self.what)
 
     @property
     def interval_s(self) -> float:
@@ -210,7 +212,11 @@ class Recording:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Warnings of all files, each with the file's name."""
-        return tuple(f"{s.name}: {warning}" for s in self.sources for warning in s.warnings)
+        return tuple(
+            Text("{name}: {warning}", name=s.name, warning=warning)
+            for s in self.sources
+            for warning in s.warnings
+        )
 
 
 def utc_text(time_s: float) -> str:

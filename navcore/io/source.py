@@ -38,14 +38,14 @@ def require_file(path: str | os.PathLike[str], where: str = "", field: str = "")
         why = getattr(problem, "strerror", None) or type(problem).__name__
         raise refuse(Text("cannot be opened ({name})", name=why)) from problem
     if not present:
-        raise refuse("no such file")
+        raise refuse(Text("no such file"))
     if not regular:
-        raise refuse("is not a file")
+        raise refuse(Text("is not a file"))
     if not os.access(file, os.R_OK):
-        raise refuse("cannot be read (permissions)")
+        raise refuse(Text("cannot be read (permissions)"))
     size = file.stat().st_size
     if size == 0:
-        raise refuse("the file is empty")
+        raise refuse(Text("the file is empty"))
     if size > LARGEST_FILE_BYTES:
         raise refuse(
             Text(
@@ -75,12 +75,13 @@ class FileText(NamedTuple):
         """Say that lines were left out."""
         if not self.damaged_lines:
             return []
-        return [Text("{counted} with NUL bytes left out", counted=counted(self.damaged_lines, "line"))]
-
-
-def counted(count: int, noun: str) -> str:
-    """``1 line``, ``2 lines``."""
-    return f"{count} {noun}{'' if count == 1 else 's'}"
+        return [
+            Text.plural(
+                "{count} line with NUL bytes left out",
+                "{count} lines with NUL bytes left out",
+                count=self.damaged_lines,
+            )
+        ]
 
 
 def read_text(path: Path, field: str = "") -> FileText:
@@ -97,10 +98,10 @@ def read_text(path: Path, field: str = "") -> FileText:
     text = _utf8(raw)
     odd = len(raw.translate(None, _ASCII_TEXT if text is None else _ASCII_TEXT + _HIGH_BYTES))
     if odd > max(_MOST_ODD_BYTES * len(raw), _FEW_ODD_BYTES):
-        allowed = "binary content; expected a text file (NMEA 0183 or CSV)"
+        allowed = Text("binary content; expected a text file (NMEA 0183 or CSV)")
         raise InputError(Fault(path.name, field, None, allowed))
     if not raw.strip(b" \t\n\v\f\r\0"):
-        raise InputError(Fault(path.name, field, None, "the file is empty"))
+        raise InputError(Fault(path.name, field, None, Text("the file is empty")))
     text = text if text is not None else raw.decode("ascii", errors="replace")
     text = text.replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n")
     damaged = 0

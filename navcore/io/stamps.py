@@ -19,6 +19,8 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import lru_cache
 
+from navcore.foundation.text import Text
+
 LONGEST_STAMP = 160
 """Characters next to the sentence in which a stamp is looked for."""
 _TIME = (
@@ -26,7 +28,7 @@ _TIME = (
     r"(?P<half> ?[AaPp][Mm]\b)?(?P<zone> ?(?:Z|UTC|GMT)| ?[+-]\d\d:?\d\d(?!\d))?"
 )
 _GAP = r"[T ,;_\t:]{1,3}"
-_MONTHS = "jan feb mar apr may jun jul aug sep oct nov dec".split()
+_MONTHS = Text("jan feb mar apr may jun jul aug sep oct nov dec").split()
 _MONTH = r"(?P<name>[A-Za-z]{3})[a-z]{0,6}"
 _EARLIEST, _LATEST = 631152000.0, 4102444800.0
 """1990 and 2100: a number outside is no Unix time."""

@@ -33,7 +33,9 @@ MOST_UNPACKED_BYTES = 256 * 2**20
 """Of the columns that are used, by a Parquet file's own account."""
 _PARQUET = b"PAR1"
 _MAT = b"MATLAB 5.0 MAT-file"
-_MAT_NUMBERS = frozenset("double single int8 uint8 int16 uint16 int32 uint32 int64 uint64 logical".split())
+_MAT_NUMBERS = frozenset(
+    Text("double single int8 uint8 int16 uint16 int32 uint32 int64 uint64 logical").split()
+)
 _LONGEST_TIME = 64
 
 
@@ -67,7 +69,7 @@ def read(path: Path) -> Recording:
         ) from problem
     sizes = {values.size for values, _ in raw.values()}
     if sizes == {0} or len(sizes) != 1:
-        allowed = "has no rows" if sizes == {0} else "the columns differ in length"
+        allowed = Text("has no rows") if sizes == {0} else Text("the columns differ in length")
         raise InputError(Fault(path.name, "", None, allowed))
     clock = next(columns[stem] for stem in (UTC, UNIX, SECONDS) if stem in columns)
     rows = np.arange(1, sizes.pop() + 1)
@@ -89,7 +91,7 @@ def _needed(where: str, names: list[str]) -> dict[str, Column]:
     """Columns that are used; of the columns of time one is enough."""
     columns = require_columns(where, names)
     if DATE in columns:
-        allowed = "date and time in two columns: join them in one column utc"
+        allowed = Text("date and time in two columns: join them in one column utc")
         raise InputError(Fault(where, "", columns[DATE].name, allowed))
     clock = next(stem for stem in (UTC, UNIX, SECONDS) if stem in columns)
     return {stem: c for stem, c in columns.items() if stem in QUANTITIES or stem in (clock, CLOCK)}
@@ -122,7 +124,9 @@ def _numeric(where: str, column: Column, values: np.ndarray) -> np.ndarray:
     try:
         return values.astype(float)
     except (TypeError, ValueError):
-        raise InputError(Fault(where, column.name.lower(), None, "must be a column of numbers")) from None
+        raise InputError(
+            Fault(where, column.name.lower(), None, Text("must be a column of numbers"))
+        ) from None
 
 
 def _refuse_size(where: str, rows: int, columns: int, size: int = 0) -> None:
@@ -199,10 +203,10 @@ def _require_plain(where: str, column: Column, kind: pyarrow.DataType) -> None:
     if _is_number(kind):
         return
     if column.stem in QUANTITIES:
-        raise InputError(Fault(where, column.name.lower(), None, "must be a column of numbers"))
+        raise InputError(Fault(where, column.name.lower(), None, Text("must be a column of numbers")))
     text = types.is_string(kind) or types.is_large_string(kind) or types.is_dictionary(kind)
     if not (text or types.is_timestamp(kind) or types.is_date(kind)):
-        raise InputError(Fault(where, column.name, None, "must be a column of times"))
+        raise InputError(Fault(where, column.name, None, Text("must be a column of times")))
 
 
 def _values(column: pyarrow.ChunkedArray) -> Raw:

@@ -29,8 +29,8 @@ class Leg(EitherUnit):
         le=1e7,
         slider=(60.0, 36000.0),
         log=True,
-        label="duration",
-        help="Length of the leg; a change must end within it.",
+        label=Text("duration"),
+        help=Text("Length of the leg; a change must end within it."),
     )
     speed_mps: float | None = quantity(
         None,
@@ -38,9 +38,11 @@ class Leg(EitherUnit):
         ge=SLOWEST,
         le=FASTEST,
         slider=(0.0, 20.0),
-        label="speed",
-        help="First leg: the initial speed. Later legs: the speed to reach, at accel_mps2 (mean), else at a "
-        "mean of 0.1 m/s². Negative is astern. Not together with speed_kn.",
+        label=Text("speed"),
+        help=Text(
+            "First leg: the initial speed. Later legs: the speed to reach, at accel_mps2 (mean), else at a "
+            "mean of 0.1 m/s². Negative is astern. Not together with speed_kn."
+        ),
     )
     speed_kn: float | None = quantity(
         None,
@@ -48,8 +50,8 @@ class Leg(EitherUnit):
         ge=-97.0,
         le=970.0,
         slider=(0.0, 40.0),
-        label="speed",
-        help="The same in knots. Not together with speed_mps.",
+        label=Text("speed"),
+        help=Text("The same in knots. Not together with speed_mps."),
     )
     accel_mps2: float | None = quantity(
         None,
@@ -57,9 +59,12 @@ class Leg(EitherUnit):
         ge=-20.0,
         le=20.0,
         slider=(-0.5, 0.5),
-        label="acceleration",
-        help="With a speed to reach: the size of the mean acceleration. Alone, or in the first leg: the mean "
-        "acceleration over the whole leg. It rises and falls as a raised cosine, its peak is twice the mean.",
+        label=Text("acceleration"),
+        help=Text(
+            "With a speed to reach: the size of the mean acceleration. Alone, or in the first leg: the mean "
+            "acceleration over the whole leg. It rises and falls as a raised cosine, its peak is "
+            "twice the mean."
+        ),
     )
     turn_dps: float | None = quantity(
         None,
@@ -67,9 +72,12 @@ class Leg(EitherUnit):
         ge=-60.0,
         le=60.0,
         slider=(-3.0, 3.0),
-        label="turn rate",
-        help="With a heading to reach: the mean turn rate, whose sign chooses the side. Alone, or in the "
-        "first leg: the mean turn rate over the whole leg, starboard positive. Its peak is twice the mean.",
+        label=Text("turn rate"),
+        help=Text(
+            "With a heading to reach: the mean turn rate, whose sign chooses the side. Alone, or in the "
+            "first leg: the mean turn rate over the whole leg, starboard positive. Its peak is "
+            "twice the mean."
+        ),
     )
     heading_deg: float | None = quantity(
         None,
@@ -77,9 +85,11 @@ class Leg(EitherUnit):
         ge=-360.0,
         le=360.0,
         slider=(0.0, 360.0),
-        label="heading",
-        help="First leg: the initial heading, in place of that of the motion. Later legs: the heading to "
-        "reach, at turn_dps (mean) if given, else by the shorter way at a mean of 1 °/s.",
+        label=Text("heading"),
+        help=Text(
+            "First leg: the initial heading, in place of that of the motion. Later legs: the heading to "
+            "reach, at turn_dps (mean) if given, else by the shorter way at a mean of 1 °/s."
+        ),
     )
 
     depth_m: float | None = quantity(
@@ -88,9 +98,11 @@ class Leg(EitherUnit):
         ge=0.0,
         le=12000.0,
         slider=(0.0, 500.0),
-        label="depth",
-        help="First leg: the initial depth below the height of the site, 0 if it names none. Later legs: the "
-        "depth to reach, at dive_mps.",
+        label=Text("depth"),
+        help=Text(
+            "First leg: the initial depth below the height of the site, 0 if it names none. Later legs: the "
+            "depth to reach, at dive_mps."
+        ),
     )
     dive_mps: float | None = quantity(
         None,
@@ -98,8 +110,10 @@ class Leg(EitherUnit):
         gt=0.0,
         le=20.0,
         slider=(0.05, 3.0),
-        label="dive",
-        help="Mean vertical speed of a change of depth, up or down, else 0.5 m/s; its peak is twice that.",
+        label=Text("dive"),
+        help=Text(
+            "Mean vertical speed of a change of depth, up or down, else 0.5 m/s; its peak is twice that."
+        ),
     )
 
     @property
@@ -185,7 +199,7 @@ def _fitted(leg: Leg, amount: float, rate: float, what: str, field: str) -> Chan
     """Change at a mean rate, with a fault when it does not end within the leg."""
     if rate * leg.duration_s >= abs(amount) * (1.0 - 1e-9):
         return Change(amount, min(abs(amount) / rate, leg.duration_s))
-    takes = Text("takes {amount:.6g} s", amount=abs(amount) / rate) if rate else "never ends"
+    takes = Text("takes {amount:.6g} s", amount=abs(amount) / rate) if rate else Text("never ends")
     text = Text(
         "{what} {takes}, but the leg ends after {duration_s:g} s",
         what=what,

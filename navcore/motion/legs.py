@@ -68,19 +68,27 @@ class LegsMotion(SeagoingMotion):
     leg: tuple[Leg, ...] = Field(
         default=(Leg(),),
         max_length=1000,
-        description="The legs in their order, [[motion.leg]].",
+        description=Text("The legs in their order, [[motion.leg]]."),
     )
     repeat: int = quantity(
-        1, unit="1", ge=1, le=MOST_LEGS, slider=(1, 100), label="rounds", help="How often the legs are run."
+        1,
+        unit="1",
+        ge=1,
+        le=MOST_LEGS,
+        slider=(1, 100),
+        label=Text("rounds"),
+        help=Text("How often the legs are run."),
     )
     repeat_from: int = quantity(
         0,
         unit="1",
         ge=0,
         le=999,
-        label="rounds from leg",
-        help="With repeat: the leg at which each further round begins, counted from 0. The legs before "
-        "it are run once.",
+        label=Text("rounds from leg"),
+        help=Text(
+            "With repeat: the leg at which each further round begins, counted from 0. The legs before "
+            "it are run once."
+        ),
     )
     every_h: float | None = quantity(
         None,
@@ -88,9 +96,11 @@ class LegsMotion(SeagoingMotion):
         gt=0.0,
         le=10000.0,
         slider=(0.1, 24.0),
-        label="a round every",
-        help="With repeat: time from the beginning of one round to that of the next; after its last leg the "
-        "vehicle keeps speed and heading until then. Not given: the length of the legs.",
+        label=Text("a round every"),
+        help=Text(
+            "With repeat: time from the beginning of one round to that of the next; after its last leg the "
+            "vehicle keeps speed and heading until then. Not given: the length of the legs."
+        ),
     )
 
     @model_validator(mode="after")
@@ -103,14 +113,14 @@ class LegsMotion(SeagoingMotion):
     def faults(self) -> Iterator[Fault]:
         """Yield the faults: both speeds given, a change that does not fit, a speed out of range."""
         if not self.leg:
-            yield Fault("", "leg", None, "must hold at least one [[motion.leg]]")
+            yield Fault("", "leg", None, Text("must hold at least one [[motion.leg]]"))
             return
         twice = [
             i for i, leg in enumerate(self.leg) if leg.speed_mps is not None and leg.speed_kn is not None
         ]
         for number in twice:
             knots = self.leg[number].speed_kn
-            yield Fault("", f"leg.{number}.speed_kn", knots, "give speed_mps or speed_kn, not both")
+            yield Fault("", f"leg.{number}.speed_kn", knots, Text("give speed_mps or speed_kn, not both"))
         rounds = list(self._misplaced_rounds())
         yield from rounds
         if not twice and not rounds:

@@ -70,8 +70,8 @@ class Point(EitherUnit):
         ge=0.0,
         le=1e7,
         slider=(0.0, 86400.0),
-        label="time",
-        help="Time of the point; the first one is at 0, each later than the one before.",
+        label=Text("time"),
+        help=Text("Time of the point; the first one is at 0, each later than the one before."),
     )
     speed_mps: float | None = quantity(
         None,
@@ -79,12 +79,20 @@ class Point(EitherUnit):
         ge=SLOWEST,
         le=FASTEST,
         slider=(0.0, 20.0),
-        label="speed",
-        help="Speed along the course, negative is astern; 0 at the first point if it names none. "
-        "Not together with speed_kn.",
+        label=Text("speed"),
+        help=Text(
+            "Speed along the course, negative is astern; 0 at the first point if it names none. "
+            "Not together with speed_kn."
+        ),
     )
     speed_kn: float | None = quantity(
-        None, unit="kn", ge=-97.0, le=970.0, slider=(0.0, 40.0), label="speed", help="The same in knots."
+        None,
+        unit="kn",
+        ge=-97.0,
+        le=970.0,
+        slider=(0.0, 40.0),
+        label=Text("speed"),
+        help=Text("The same in knots."),
     )
     course_deg: float | None = quantity(
         None,
@@ -92,13 +100,15 @@ class Point(EitherUnit):
         ge=-360.0,
         le=360.0,
         slider=(0.0, 360.0),
-        label="course",
-        help="Direction of the velocity, clockwise from true north; reached by the shorter way.",
+        label=Text("course"),
+        help=Text("Direction of the velocity, clockwise from true north; reached by the shorter way."),
     )
     velocity_mps: tuple[_Component, _Component] | None = Field(
         default=None,
-        description="Velocity E, N in place of speed and course. At rest the course stays, that of the first "
-        "point is that of the point after it.",
+        description=Text(
+            "Velocity E, N in place of speed and course. At rest the course stays, that of the first "
+            "point is that of the point after it."
+        ),
         json_schema_extra={"unit": "m/s", "elements": ["E", "N"], "label": "velocity"},
     )
     heading_deg: float | None = quantity(
@@ -107,8 +117,8 @@ class Point(EitherUnit):
         ge=-360.0,
         le=360.0,
         slider=(0.0, 360.0),
-        label="heading",
-        help="Heading, reached by the shorter way; only when the bow does not follow the course.",
+        label=Text("heading"),
+        help=Text("Heading, reached by the shorter way; only when the bow does not follow the course."),
     )
     pitch_deg: float | None = quantity(
         None,
@@ -116,8 +126,8 @@ class Point(EitherUnit):
         ge=-89.0,
         le=89.0,
         slider=(-30.0, 30.0),
-        label="pitch",
-        help="Pitch, bow up positive.",
+        label=Text("pitch"),
+        help=Text("Pitch, bow up positive."),
     )
     roll_deg: float | None = quantity(
         None,
@@ -125,18 +135,18 @@ class Point(EitherUnit):
         ge=-180.0,
         le=180.0,
         slider=(-30.0, 30.0),
-        label="roll",
-        help="Roll, starboard down positive.",
+        label=Text("roll"),
+        help=Text("Roll, starboard down positive."),
     )
 
     def contradictions(self) -> Iterator[tuple[str, object, str]]:
         """Fields given twice over: name, value, what is allowed."""
         if self.speed_mps is not None and self.speed_kn is not None:
-            yield "speed_kn", self.speed_kn, "give speed_mps or speed_kn, not both"
+            yield "speed_kn", self.speed_kn, Text("give speed_mps or speed_kn, not both")
         polar = {"speed_mps": self.speed_mps, "speed_kn": self.speed_kn, "course_deg": self.course_deg}
         for name, value in polar.items():
             if self.velocity_mps is not None and value is not None:
-                yield name, value, "give velocity_mps, or speed and course, not both"
+                yield name, value, Text("give velocity_mps, or speed and course, not both")
         if self.velocity_mps is not None and math.hypot(*self.velocity_mps) > FASTEST:
             yield (
                 "velocity_mps",
@@ -187,19 +197,21 @@ class ProfileMotion(SeagoingMotion):
     kind: Literal["profile"] = "profile"
     shape: Literal["raised_cosine", "half_sine", "triangle"] = choice(
         "raised_cosine",
-        label="acceleration",
-        help="How the rate of every change rises from 0 and falls to 0 between two points: raised_cosine, "
-        "half_sine (values follow a cosine) or triangle.",
+        label=Text("acceleration"),
+        help=Text(
+            "How the rate of every change rises from 0 and falls to 0 between two points: raised_cosine, "
+            "half_sine (values follow a cosine) or triangle."
+        ),
     )
     bow: Literal["course", "heading"] = choice(
         "course",
-        label="bow",
-        help="course: the bow points along the course; heading: where heading_deg says.",
+        label=Text("bow"),
+        help=Text("course: the bow points along the course; heading: where heading_deg says."),
     )
     point: tuple[Point, ...] = Field(
         default=(Point(),),
         max_length=10_000,
-        description="The points in their order, [[motion.point]].",
+        description=Text("The points in their order, [[motion.point]]."),
     )
 
     @model_validator(mode="after")
@@ -212,9 +224,9 @@ class ProfileMotion(SeagoingMotion):
     def faults(self) -> Iterator[Fault]:
         """Yield the faults: times out of order, a quantity given twice over or without effect."""
         if not self.point:
-            yield Fault("", "point", None, "must hold at least one [[motion.point]]")
+            yield Fault("", "point", None, Text("must hold at least one [[motion.point]]"))
         elif self.point[0].t_s != 0.0:
-            yield Fault("", "point.0.t_s", self.point[0].t_s, "must be 0: the first point is the start")
+            yield Fault("", "point.0.t_s", self.point[0].t_s, Text("must be 0: the first point is the start"))
         for number, point in enumerate(self.point):
             if number and point.t_s <= self.point[number - 1].t_s:
                 text = Text(
@@ -224,7 +236,9 @@ class ProfileMotion(SeagoingMotion):
             for name, value, text in point.contradictions():
                 yield Fault("", f"point.{number}.{name}", value, text)
             if self.bow == "course" and point.heading_deg is not None:
-                text = 'has no effect when the bow follows the course: leave it out, or set bow = "heading"'
+                text = Text(
+                    'has no effect when the bow follows the course: leave it out, or set bow = "heading"'
+                )
                 yield Fault("", f"point.{number}.heading_deg", point.heading_deg, text)
 
     def table(self) -> tuple[np.ndarray, np.ndarray]:

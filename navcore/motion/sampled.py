@@ -115,9 +115,11 @@ class SampledMotion(MotionParameters):
         t = np.arange(-_BEYOND, last + _BEYOND + 1) * step
         values = self.path(t, site, earth)
         if not np.isfinite(values).all():
-            raise InputError(Fault("", "kind", self.kind, "gives positions or angles that are not finite"))
+            raise InputError(
+                Fault("", "kind", self.kind, Text("gives positions or angles that are not finite"))
+            )
         if np.abs(values[:, 0]).max() > _LARGEST_LATITUDE:
-            raise InputError(Fault("", "kind", self.kind, "must stay within +-89.5° of latitude"))
+            raise InputError(Fault("", "kind", self.kind, Text("must stay within +-89.5° of latitude")))
         spline = CubicSpline(t, values)
         return shared_pieces({column: (t, spline.c[:, :, j]) for j, column in enumerate(_QUANTITIES)}, {})
 

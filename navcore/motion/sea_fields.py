@@ -53,9 +53,11 @@ class SeaFields(Parameters):
 
     spectrum: Literal["bretschneider", "pierson_moskowitz"] = choice(
         "bretschneider",
-        label="spectrum",
-        help="bretschneider: height and peak period are free; pierson_moskowitz: a fully developed sea, "
-        "whose peak period follows from the height, 5.0 s x √(height in m).",
+        label=Text("spectrum"),
+        help=Text(
+            "bretschneider: height and peak period are free; pierson_moskowitz: a fully developed sea, "
+            "whose peak period follows from the height, 5.0 s x √(height in m)."
+        ),
     )
     height_m: float = quantity(
         2.5,
@@ -63,8 +65,8 @@ class SeaFields(Parameters):
         ge=0.0,
         le=20.0,
         slider=(0.0, 10.0),
-        label="wave height",
-        help="Significant wave height, four times the standard deviation of the surface.",
+        label=Text("wave height"),
+        help=Text("Significant wave height, four times the standard deviation of the surface."),
     )
     peak_period_s: float = quantity(
         8.0,
@@ -72,8 +74,8 @@ class SeaFields(Parameters):
         ge=2.0,
         le=30.0,
         slider=(4.0, 20.0),
-        label="peak period",
-        help="Period at the peak of the spectrum; bretschneider only.",
+        label=Text("peak period"),
+        help=Text("Period at the peak of the spectrum; bretschneider only."),
     )
     direction_deg: float = quantity(
         60.0,
@@ -81,8 +83,8 @@ class SeaFields(Parameters):
         ge=-360.0,
         le=360.0,
         slider=(0.0, 360.0),
-        label="waves from",
-        help="Direction the waves come from, clockwise from true north.",
+        label=Text("waves from"),
+        help=Text("Direction the waves come from, clockwise from true north."),
     )
     spread_deg: float = quantity(
         15.0,
@@ -90,8 +92,8 @@ class SeaFields(Parameters):
         ge=0.0,
         le=60.0,
         slider=(0.0, 45.0),
-        label="spread",
-        help="Standard deviation of the components' directions; 0 for a long-crested sea.",
+        label=Text("spread"),
+        help=Text("Standard deviation of the components' directions; 0 for a long-crested sea."),
     )
     components: int = quantity(
         32,
@@ -99,8 +101,8 @@ class SeaFields(Parameters):
         ge=8,
         le=200,
         slider=(8, 100),
-        label="components",
-        help="Number of sinusoids; their frequencies are irregular, so the motion does not repeat.",
+        label=Text("components"),
+        help=Text("Number of sinusoids; their frequencies are irregular, so the motion does not repeat."),
     )
     seed: int = quantity(
         1,
@@ -108,8 +110,8 @@ class SeaFields(Parameters):
         ge=0,
         le=2**31 - 1,
         slider=(0, 100),
-        label="sea",
-        help="Seed of the seaway: another number, another sea of the same spectrum.",
+        label=Text("sea"),
+        help=Text("Seed of the seaway: another number, another sea of the same spectrum."),
     )
 
     @property

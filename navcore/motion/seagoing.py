@@ -12,6 +12,7 @@ from pydantic import Field
 
 from navcore.foundation.earth import WGS84, Earth
 from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 from navcore.motion.base import MotionParameters
 from navcore.motion.course import COURSE_TIME, SPEED, SPEED_CHANGE, SPEED_TIME
 from navcore.motion.kinematics import FREQUENCY, Kinematics
@@ -40,7 +41,7 @@ class SeagoingMotion(AttitudeMotion):
         The seaway.
     """
 
-    waves: Waves = Field(default=Waves(height_m=0.0), description="The seaway; calm if left out.")
+    waves: Waves = Field(default=Waves(height_m=0.0), description=Text("The seaway; calm if left out."))
 
     @abstractmethod
     def calm_truth(self, count: int, step_s: float, site: Site, earth: Earth) -> Truth:

@@ -7,6 +7,7 @@ import numpy as np
 
 from navcore.foundation.earth import Earth
 from navcore.foundation.parameters import quantity
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.motion.base import MotionParameters
 from navcore.motion.kinematics import REST, Kinematics
@@ -22,8 +23,8 @@ class AttitudeMotion(MotionParameters):
         ge=-89.0,
         le=89.0,
         slider=(-30.0, 30.0),
-        label="pitch",
-        help="Pitch, bow up positive.",
+        label=Text("pitch"),
+        help=Text("Pitch, bow up positive."),
     )
     roll_deg: float = quantity(
         0.0,
@@ -31,8 +32,8 @@ class AttitudeMotion(MotionParameters):
         ge=-180.0,
         le=180.0,
         slider=(-30.0, 30.0),
-        label="roll",
-        help="Roll, starboard down positive.",
+        label=Text("roll"),
+        help=Text("Roll, starboard down positive."),
     )
     heading_deg: float = quantity(
         0.0,
@@ -40,8 +41,8 @@ class AttitudeMotion(MotionParameters):
         ge=-360.0,
         le=360.0,
         slider=(0.0, 360.0),
-        label="heading",
-        help="Heading, clockwise from true north.",
+        label=Text("heading"),
+        help=Text("Heading, clockwise from true north."),
     )
 
     def rest_row(self, site: Site) -> np.ndarray:

@@ -39,8 +39,8 @@ class Oscillation(Parameters):
         ge=0.0,
         le=90.0,
         slider=(0.0, 20.0),
-        label="amplitude",
-        help="Largest departure from the mean.",
+        label=Text("amplitude"),
+        help=Text("Largest departure from the mean."),
     )
     frequency_hz: float = quantity(
         0.1,
@@ -48,11 +48,17 @@ class Oscillation(Parameters):
         ge=0.0,
         le=100.0,
         slider=(0.01, 0.25),
-        label="frequency",
-        help="Swings a second; at most 1 / (4 x the step of the run): 0.25 Hz at 1 s.",
+        label=Text("frequency"),
+        help=Text("Swings a second; at most 1 / (4 x the step of the run): 0.25 Hz at 1 s."),
     )
     phase_deg: float = quantity(
-        0.0, unit="deg", ge=-360.0, le=360.0, slider=(-180.0, 180.0), label="phase", help="Phase at t = 0."
+        0.0,
+        unit="deg",
+        ge=-360.0,
+        le=360.0,
+        slider=(-180.0, 180.0),
+        label=Text("phase"),
+        help=Text("Phase at t = 0."),
     )
 
     @property
@@ -69,9 +75,9 @@ class SwingMotion(AttitudeMotion):
     """
 
     kind: Literal["swing"] = "swing"
-    pitch: Oscillation = Field(default=Oscillation(), description="Swing about the mean pitch.")
-    roll: Oscillation = Field(default=Oscillation(), description="Swing about the mean roll.")
-    heading: Oscillation = Field(default=Oscillation(), description="Swing about the mean heading.")
+    pitch: Oscillation = Field(default=Oscillation(), description=Text("Swing about the mean pitch."))
+    roll: Oscillation = Field(default=Oscillation(), description=Text("Swing about the mean roll."))
+    heading: Oscillation = Field(default=Oscillation(), description=Text("Swing about the mean heading."))
 
     @model_validator(mode="after")
     def _upright(self) -> SwingMotion:

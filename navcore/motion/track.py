@@ -64,10 +64,13 @@ class TrackMotion(MotionParameters):
     kind: Literal["track"] = "track"
     file: FileName | tuple[FileName, ...] | None = Field(
         default=None,
-        description="Recorded positions and heading: NMEA 0183 (RMC or GGA, HDT or VHW), CSV, Parquet or MAT "
-        "with lat_deg, lon_deg, heading_deg and utc or t_s. Several files are joined by UTC; each quantity "
-        "comes from the first that holds it.",
-        json_schema_extra={"label": "track files"},
+        description=Text(
+            "Recorded positions and heading: NMEA 0183 (RMC or GGA, HDT or VHW), CSV, Parquet or MAT "
+            "with lat_deg, lon_deg, heading_deg and utc or t_s. Several files are joined by UTC; "
+            "each quantity "
+            "comes from the first that holds it."
+        ),
+        json_schema_extra={"label": Text("track files")},
     )
     pitch_deg: float = quantity(
         0.0,
@@ -75,8 +78,8 @@ class TrackMotion(MotionParameters):
         ge=-80.0,
         le=80.0,
         slider=(-30.0, 30.0),
-        label="pitch",
-        help="Constant pitch, bow up positive; for recordings without pitch and roll.",
+        label=Text("pitch"),
+        help=Text("Constant pitch, bow up positive; for recordings without pitch and roll."),
     )
     roll_deg: float = quantity(
         0.0,
@@ -84,8 +87,8 @@ class TrackMotion(MotionParameters):
         ge=-180.0,
         le=180.0,
         slider=(-30.0, 30.0),
-        label="roll",
-        help="Constant roll, starboard down positive; for recordings without pitch and roll.",
+        label=Text("roll"),
+        help=Text("Constant roll, starboard down positive; for recordings without pitch and roll."),
     )
     smoothing_s: float = quantity(
         5.0,
@@ -93,8 +96,10 @@ class TrackMotion(MotionParameters):
         ge=0.0,
         le=600.0,
         slider=(0.0, 60.0),
-        label="smoothing",
-        help="Time constant of the smoothing of positions and angles: periods above 2π times this pass.",
+        label=Text("smoothing"),
+        help=Text(
+            "Time constant of the smoothing of positions and angles: periods above 2π times this pass."
+        ),
     )
 
     def recording(self) -> Recording:
@@ -119,7 +124,7 @@ class TrackMotion(MotionParameters):
                     longest=longest,
                 )
         if streams.attitude is not None and (self.pitch_deg or self.roll_deg):
-            yield "motion.pitch_deg and roll_deg are not used: the recording holds pitch and roll"
+            yield Text("motion.pitch_deg and roll_deg are not used: the recording holds pitch and roll")
 
     def window(self) -> Window:
         """Time that positions and heading share."""
@@ -161,7 +166,7 @@ class TrackMotion(MotionParameters):
     def _covering(self, span_s: float, start_utc: float | None) -> _Smoothed:
         track = self._smoothed()
         start = track.window.start_s if start_utc is None else start_utc
-        require_cover(track.window, start, span_s, "the track", self.file)
+        require_cover(track.window, start, span_s, Text("the track"), self.file)
         return track
 
     def _pieces(self, track: _Smoothed, start_utc: float | None) -> np.ndarray:
@@ -179,7 +184,7 @@ class TrackMotion(MotionParameters):
 
     def _smoothed(self) -> _Smoothed:
         files = (self.file,) if isinstance(self.file, str) else self.file or ()
-        key = "smoothed track", file_keys(files, "", "file"), self.smoothing_s
+        key = Text("smoothed track"), file_keys(files, "", "file"), self.smoothing_s
         return kept(key, lambda: _smooth(files, self.smoothing_s))
 
 
@@ -200,8 +205,8 @@ def _streams(recording: Recording, file: object) -> Streams:
                 "", "file", file, Text("holds no {what}: add a file with {remedy}", what=what, remedy=remedy)
             )
             for what, remedy, series in (
-                ("position", "RMC or GGA sentences or lat_deg and lon_deg", recording.position),
-                ("heading", "HDT or VHW sentences or heading_deg", recording.heading),
+                ("position", Text("RMC or GGA sentences or lat_deg and lon_deg"), recording.position),
+                ("heading", Text("HDT or VHW sentences or heading_deg"), recording.heading),
             )
             if series is None
         )

@@ -57,8 +57,8 @@ class _Way(Parameters):
         ge=0.0,
         le=50.0,
         slider=(0.0, 15.0),
-        label="speed",
-        help="Speed along the mean heading; it changes the frequency at which the waves are met.",
+        label=Text("speed"),
+        help=Text("Speed along the mean heading; it changes the frequency at which the waves are met."),
     )
 
 

@@ -182,7 +182,7 @@ class NetworkParameters(Entry):
     title: ClassVar[str] = ""
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = ()
     placeable: ClassVar[str] = ""
-    no_handle: ClassVar[str] = "its parameters set no pair"
+    no_handle: ClassVar[str] = Text("its parameters set no pair")
     id: Any  # a Literal in each subclass; str here would be narrowed against the rule for mutable fields
 
     def transfer(self, omega_s: float) -> LinearNetwork:
@@ -353,12 +353,14 @@ def linear_network(
         omega_s is not positive, H is zero, improper or of too high an order.
     """
     if not (math.isfinite(omega_s) and omega_s > 0.0):
-        raise refuse("omega_s", omega_s, "must be > 0 (rad/s)")
+        raise refuse("omega_s", omega_s, Text("must be > 0 (rad/s)"))
     num, den = leading(num_p), leading(den_p)
     if len(den) == 0 or len(num) == 0:
-        raise refuse("", None, "H(s) must have a numerator and a denominator that are not zero")
+        raise refuse("", None, Text("H(s) must have a numerator and a denominator that are not zero"))
     if len(num) > len(den):
-        raise refuse("", None, "H(s) must be proper: no more zeros than poles, or H(infinity) is not finite")
+        raise refuse(
+            "", None, Text("H(s) must be proper: no more zeros than poles, or H(infinity) is not finite")
+        )
     if len(den) - 1 > MAX_ORDER:
         raise refuse(
             "",

@@ -4,6 +4,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
+from navcore.foundation.text import Text
 from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network
 
 
@@ -15,9 +16,9 @@ def _from_roots(id: str, omega_s: float, zeros: list[float], poles: list[float])
 class Classic2Network(NetworkParameters):
     """H = (s+8.5e-4)(s+9.412e-2) / ((s+8.0e-3)(s+1.0e-2))."""
 
-    title: ClassVar[str] = "Classic, second order"
+    title: ClassVar[str] = Text("Classic, second order")
     source: ClassVar[str] = "Liu 2, Sun 5, Zha 2"
-    no_handle: ClassVar[str] = "its coefficients are fixed"
+    no_handle: ClassVar[str] = Text("its coefficients are fixed")
     id: Literal["classic2"] = "classic2"
 
     def transfer(self, omega_s: float) -> LinearNetwork:
@@ -28,9 +29,9 @@ class Classic2Network(NetworkParameters):
 class Classic3Network(NetworkParameters):
     """H = (s+8.8e-4)(s+1.97e-2)^2 / ((s+4.41e-3)(s+8.8e-3)^2)."""
 
-    title: ClassVar[str] = "Classic, third order"
+    title: ClassVar[str] = Text("Classic, third order")
     source: ClassVar[str] = "Liu 3, Sun 4"
-    no_handle: ClassVar[str] = "its coefficients are fixed"
+    no_handle: ClassVar[str] = Text("its coefficients are fixed")
     id: Literal["classic3"] = "classic3"
 
     def transfer(self, omega_s: float) -> LinearNetwork:

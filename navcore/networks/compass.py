@@ -28,11 +28,13 @@ class CompassNetwork(NetworkParameters):
     Give sigma and xi, or all of k1, k2, k3; not both.
     """
 
-    title: ClassVar[str] = "Compass"
+    title: ClassVar[str] = Text("Compass")
     source: ClassVar[str] = "Deng 1, 2; Zha 10"
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (_DESIGN, _GAINS)
     placeable: ClassVar[str] = "compass"
-    no_handle: ClassVar[str] = "its gains give three real poles; a click into the pole map places a pair"
+    no_handle: ClassVar[str] = Text(
+        "its gains give three real poles; a click into the pole map places a pair"
+    )
     id: Literal["compass"] = "compass"
     sigma: float | None = quantity(
         0.0088,
@@ -41,17 +43,19 @@ class CompassNetwork(NetworkParameters):
         le=1.0,
         slider=(5e-4, 0.2),
         log=True,
-        label="decay rate σ",
-        help="Decay rate of all three closed-loop poles (Deng 2, Zha 12): larger is faster, and lets more of "
-        "the log's noise through.",
+        label=Text("decay rate σ"),
+        help=Text(
+            "Decay rate of all three closed-loop poles (Deng 2, Zha 12): larger is faster, and lets more of "
+            "the log's noise through."
+        ),
     )
     xi: float | None = quantity(
         0.7,
         ge=0.01,
         le=10.0,
         slider=(0.05, 1.5),
-        label="damping ratio ζ",
-        help="Damping ratio of the closed-loop pair; Deng and Zha write ξ (Deng 2, Zha 14).",
+        label=Text("damping ratio ζ"),
+        help=Text("Damping ratio of the closed-loop pair; Deng and Zha write ξ (Deng 2, Zha 14)."),
     )
     k1: float | None = quantity(
         None,
@@ -61,7 +65,7 @@ class CompassNetwork(NetworkParameters):
         slider=(1e-3, 0.5),
         log=True,
         label="K₁",
-        help="Velocity feedback; 3σ (Deng 2).",
+        help=Text("Velocity feedback; 3σ (Deng 2)."),
     )
     k2: float | None = quantity(
         None,
@@ -70,7 +74,7 @@ class CompassNetwork(NetworkParameters):
         slider=(1.0, 5e4),
         log=True,
         label="K₂",
-        help="Extra proportional gain of the platform rate; σ² (2 + 1/ζ²)/ωₛ² - 1 (Deng 2).",
+        help=Text("Extra proportional gain of the platform rate; σ² (2 + 1/ζ²)/ωₛ² - 1 (Deng 2)."),
     )
     k3: float | None = quantity(
         None,
@@ -80,13 +84,15 @@ class CompassNetwork(NetworkParameters):
         slider=(1e-3, 1e3),
         log=True,
         label="K₃",
-        help="Integral gain of the platform rate; σ³/(ωₛ² ζ²) (Deng 2).",
+        help=Text("Integral gain of the platform rate; σ³/(ωₛ² ζ²) (Deng 2)."),
     )
     realisation: Literal["feedback", "network", "as_printed"] = choice(
         "feedback",
-        label="realisation",
-        help="External damping only: velocity feedback (theory.md 3.1), the network form, or Deng 4 as "
-        "printed, which lacks the transport rate of the reference.",
+        label=Text("realisation"),
+        help=Text(
+            "External damping only: velocity feedback (theory.md 3.1), the network form, or Deng 4 as "
+            "printed, which lacks the transport rate of the reference."
+        ),
     )
 
     @model_validator(mode="before")
@@ -130,13 +136,13 @@ class CompassNetwork(NetworkParameters):
         """Return H(s) = ((1+K2)s + K3)/(s + K1) for a Schuler frequency in rad/s."""
         k1, k2, k3 = self.gains(omega_s)
         if 1.0 + k2 == 0.0 and k3 == 0.0:
-            raise refuse("k2", k2, "must not be -1 while k3 = 0: H would be zero")
+            raise refuse("k2", k2, Text("must not be -1 while k3 = 0: H would be zero"))
         closed_loop, warnings = None, ()
         if self.sigma is not None and self.xi is not None:
             s = self.sigma / omega_s
             closed_loop = [complex(-s), *pair(self.xi, s / self.xi)]
         elif sigma_xi_from_gains(k1, k2, k3, omega_s) is None:
-            warnings = ("no (σ, ζ) gives these K",)
+            warnings = (Text("no (σ, ζ) gives these K"),)
         return linear_network(
             "compass",
             omega_s,

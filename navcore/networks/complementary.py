@@ -3,6 +3,7 @@
 from typing import ClassVar, Literal
 
 from navcore.foundation.parameters import quantity
+from navcore.foundation.text import Text
 from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network
 from navcore.networks.pair import MainPair, Placement, dampings, placement_at_omega_s
 from navcore.networks.roots import pair
@@ -12,8 +13,8 @@ from navcore.networks.tuning_codes import COMPLEMENTARY
 class ComplementaryNetwork(NetworkParameters):
     """H = N/D of fourth order; the loop has three pairs at omega_s with damping 0.5, eta and zeta."""
 
-    title: ClassVar[str] = "Complementary filter"
-    source: ClassVar[str] = "Liu 5, 11 (powers of ωₛ mended, theory.md 3.2)"
+    title: ClassVar[str] = Text("Complementary filter")
+    source: ClassVar[str] = Text("Liu 5, 11 (powers of ωₛ mended, theory.md 3.2)")
     placeable: ClassVar[str] = "complementary"
     id: Literal["complementary"] = "complementary"
     zeta: float = quantity(
@@ -21,16 +22,16 @@ class ComplementaryNetwork(NetworkParameters):
         gt=0.0,
         le=10.0,
         slider=(0.05, 2.0),
-        label="damping ratio ζ",
-        help="Damping ratio of one closed-loop pair; 1 - H is proportional to it at η = 0.5 (Liu 5).",
+        label=Text("damping ratio ζ"),
+        help=Text("Damping ratio of one closed-loop pair; 1 - H is proportional to it at η = 0.5 (Liu 5)."),
     )
     eta: float = quantity(
         0.5,
         gt=0.0,
         le=10.0,
         slider=(0.05, 2.0),
-        label="damping ratio η",
-        help="Damping ratio of another closed-loop pair; Liu's optimum is 0.5.",
+        label=Text("damping ratio η"),
+        help=Text("Damping ratio of another closed-loop pair; Liu's optimum is 0.5."),
     )
 
     def transfer(self, omega_s: float) -> LinearNetwork:

@@ -46,31 +46,39 @@ class CustomNetwork(NetworkParameters):
     A complex zero or pole is a pair [re, im] and comes with its conjugate; a real one is a number.
     """
 
-    title: ClassVar[str] = "Custom"
+    title: ClassVar[str] = Text("Custom")
     source: ClassVar[str] = "theory.md 3"
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (_ROOTS, _POLYNOMIALS)
-    no_handle: ClassVar[str] = "its zeros and poles are given one by one"
+    no_handle: ClassVar[str] = Text("its zeros and poles are given one by one")
     id: Literal["custom"] = "custom"
     zeros: _Roots | None = quantity(
         None,
         unit="rad/s",
-        label="zeros",
-        help="Zeros of H(s), each a number or [re, im]; none when left out.",
+        label=Text("zeros"),
+        help=Text("Zeros of H(s), each a number or [re, im]; none when left out."),
     )
     poles: _Roots | None = quantity(
         None,
         unit="rad/s",
-        label="poles",
-        help="Poles of H(s), each a number or [re, im]; none when left out.",
+        label=Text("poles"),
+        help=Text("Poles of H(s), each a number or [re, im]; none when left out."),
     )
     gain: float | None = quantity(
-        None, ge=-1e12, le=1e12, label="gain", help="Leading coefficient of the numerator; 1 when left out."
+        None,
+        ge=-1e12,
+        le=1e12,
+        label=Text("gain"),
+        help=Text("Leading coefficient of the numerator; 1 when left out."),
     )
     num: _Coefficients | None = quantity(
-        None, label="numerator", help="Coefficients of N(s) in descending powers of s (rad/s), with den."
+        None,
+        label=Text("numerator"),
+        help=Text("Coefficients of N(s) in descending powers of s (rad/s), with den."),
     )
     den: _Coefficients | None = quantity(
-        None, label="denominator", help="Coefficients of D(s) in descending powers of s (rad/s), with num."
+        None,
+        label=Text("denominator"),
+        help=Text("Coefficients of D(s) in descending powers of s (rad/s), with num."),
     )
 
     @model_validator(mode="before")
@@ -103,14 +111,14 @@ class CustomNetwork(NetworkParameters):
         _conjugate("poles", self.poles or ())
         _check_degrees("zeros", self.zeros, len(self.zeros or ()), "poles", self.poles, len(self.poles or ()))
         if self.gain == 0.0:
-            raise refuse("gain", self.gain, "must not be 0: H would be zero")
+            raise refuse("gain", self.gain, Text("must not be 0: H would be zero"))
         return self
 
     @staticmethod
     def _check_polynomials(num: tuple[float, ...], den: tuple[float, ...]) -> None:
         for name, coefficients in (("num", num), ("den", den)):
             if not any(coefficients):
-                raise refuse(name, list(coefficients), "must have a coefficient that is not 0")
+                raise refuse(name, list(coefficients), Text("must have a coefficient that is not 0"))
         degrees = [len(np.trim_zeros(np.array(c), "f")) - 1 for c in (num, den)]
         _check_degrees("num", num, degrees[0], "den", den, degrees[1])
 
@@ -127,7 +135,9 @@ class CustomNetwork(NetworkParameters):
         else:
             network = self._from_roots(omega_s)
         if not all(np.all(np.isfinite(c)) for c in (network.num_p, network.den_p, network.num, network.den)):
-            raise refuse("num" if self.num else "gain", None, "H(s) overflows: coefficients too far apart")
+            raise refuse(
+                "num" if self.num else "gain", None, Text("H(s) overflows: coefficients too far apart")
+            )
         return network
 
     def following(self, network: LinearNetwork) -> dict[str, Any]:
@@ -151,7 +161,7 @@ class CustomNetwork(NetworkParameters):
             den_p = den * omega_s ** np.arange(degree, -1, -1) / (den[0] * omega_s**degree)
             num_p = num * omega_s ** np.arange(len(num) - 1, -1, -1) / (den[0] * omega_s**degree)
         if not (np.all(np.isfinite(num_p)) and np.all(np.isfinite(den_p)) and num_p[0] != 0.0):
-            raise refuse("den", list(den), "H(s) overflows: coefficients too far apart")
+            raise refuse("den", list(den), Text("H(s) overflows: coefficients too far apart"))
         network = linear_network("custom", omega_s, num_p, den_p)
         if len(network.poles) and np.max(np.abs(network.poles)) > _LARGEST_RATE:
             raise refuse(
@@ -210,7 +220,7 @@ def _lonely(name: str, re: float, im: float) -> InputError:
 
 def _own_stability(poles_p: np.ndarray) -> tuple[str, ...]:
     if np.any(poles_p == 0.0):
-        return ("the network has a pole at zero: it has no steady state for a constant input",)
+        return (Text("the network has a pole at zero: it has no steady state for a constant input"),)
     if np.any(np.real(poles_p) >= 0.0):
-        return ("the network itself is unstable",)
+        return (Text("the network itself is unstable"),)
     return ()

@@ -73,7 +73,7 @@ class DiscreteNetwork:
         try:
             return np.linalg.solve(self.dA, -self.B * u)
         except np.linalg.LinAlgError:
-            reason = "a pole at zero leaves no steady state for a constant velocity"
+            reason = Text("a pole at zero leaves no steady state for a constant velocity")
             raise InputError(Fault("", "poles", None, reason)) from None
 
 

@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from navcore.foundation.text import Text
+
 DV, PHI, GYRO, ACCEL, LOG = range(5)
 _LEAST_NOISE = 1e-7
 """Density of a log without white noise, relative to that of its drift: the equation needs some noise."""
@@ -208,7 +210,7 @@ class Compensator:
         if len(self.B) <= order:
             return self
         if np.linalg.eigvals(self.A).real.max() >= -np.finfo(float).eps * np.abs(self.A).max():
-            raise np.linalg.LinAlgError("the compensator has a mode that does not decay")
+            raise np.linalg.LinAlgError(Text("the compensator has a mode that does not decay"))
         outputs = np.stack([self.C, self.E])
         reach = _root(solve_continuous_lyapunov(self.A, -np.outer(self.B, self.B)))
         watch = _root(solve_continuous_lyapunov(self.A.T, -outputs.T @ outputs))

@@ -34,7 +34,7 @@ FRAGILE = 0.5
 
 _ACCURACY = 1e-8
 """To which the running form must have the response of the network."""
-_UNSTABLE = "makes an unstable network with these figures: must be larger"
+_UNSTABLE = Text("makes an unstable network with these figures: must be larger")
 _FIELDS = {
     "gyro_arw_dpsh": ("gyro_white", DEG_PER_SQRT_HOUR),
     "gyro_instability_dph": ("gyro_drift", DEG_PER_HOUR),
@@ -68,9 +68,9 @@ class OptimalNetwork(NetworkParameters):
     scenario has no random errors either, those of an example ship.
     """
 
-    title: ClassVar[str] = "Optimal for the sensors (LQG)"
+    title: ClassVar[str] = Text("Optimal for the sensors (LQG)")
     source: ClassVar[str] = "theory.md 17"
-    no_handle: ClassVar[str] = "its poles follow from the sensors, ρ and q"
+    no_handle: ClassVar[str] = Text("its poles follow from the sensors, ρ and q")
     id: Literal["optimal"] = "optimal"
     rho: float = quantity(
         1e-2,
@@ -79,8 +79,10 @@ class OptimalNetwork(NetworkParameters):
         slider=(1e-5, 10.0),
         log=True,
         label="ρ",
-        help="Weight of the correction in φ² + q δV² + ρ u_c²: the smaller, the faster the loop and "
-        "the nearer the tilt to the floor, and the larger the velocity error (theory.md 17).",
+        help=Text(
+            "Weight of the correction in φ² + q δV² + ρ u_c²: the smaller, the faster the loop and "
+            "the nearer the tilt to the floor, and the larger the velocity error (theory.md 17)."
+        ),
     )
     q: float = quantity(
         0.0,
@@ -88,28 +90,36 @@ class OptimalNetwork(NetworkParameters):
         le=1e3,
         slider=(0.0, 5.0),
         label="q",
-        help="Weight of the velocity error beside that of the tilt (theory.md 17).",
+        help=Text("Weight of the velocity error beside that of the tilt (theory.md 17)."),
     )
     realisation: Literal["network", "feedback"] = choice(
         "network",
-        label="realisation",
-        help="network: the transport rate alone is corrected; feedback: the velocity too, as by K₁ of "
-        "compass, which brings tilt and velocity near the floor; external damping only (theory.md 17).",
+        label=Text("realisation"),
+        help=Text(
+            "network: the transport rate alone is corrected; feedback: the velocity too, as by K₁ of "
+            "compass, which brings tilt and velocity near the floor; external damping only (theory.md 17)."
+        ),
     )
-    gyro_arw_dpsh: float | None = _figure("deg/sqrt(h)", "angular random walk", (0.0, 0.05), le=10.0)
-    gyro_instability_dph: float | None = _figure("deg/h", "gyro instability", (0.0, 0.05), le=100.0)
+    gyro_arw_dpsh: float | None = _figure("deg/sqrt(h)", Text("angular random walk"), (0.0, 0.05), le=10.0)
+    gyro_instability_dph: float | None = _figure("deg/h", Text("gyro instability"), (0.0, 0.05), le=100.0)
     gyro_tau_s: float | None = _figure(
-        "s", "gyro correlation time", (10.0, 86400.0), ge=1.0, le=1e7, log=True
+        "s", Text("gyro correlation time"), (10.0, 86400.0), ge=1.0, le=1e7, log=True
     )
-    accel_vrw_ugpshz: float | None = _figure("ug/sqrt(Hz)", "velocity random walk", (0.0, 100.0), le=1e5)
-    accel_instability_ug: float | None = _figure("ug", "accelerometer instability", (0.0, 100.0), le=1e5)
+    accel_vrw_ugpshz: float | None = _figure(
+        "ug/sqrt(Hz)", Text("velocity random walk"), (0.0, 100.0), le=1e5
+    )
+    accel_instability_ug: float | None = _figure(
+        "ug", Text("accelerometer instability"), (0.0, 100.0), le=1e5
+    )
     accel_tau_s: float | None = _figure(
-        "s", "accelerometer correlation time", (10.0, 86400.0), ge=1.0, le=1e7, log=True
+        "s", Text("accelerometer correlation time"), (10.0, 86400.0), ge=1.0, le=1e7, log=True
     )
-    log_noise_mps: float | None = _figure("m/s", "log noise", (0.0, 1.0), le=50.0)
-    log_rate_hz: float | None = _figure("Hz", "log rate", (0.1, 10.0), ge=0.001, le=1000.0, log=True)
-    log_drift_mps: float | None = _figure("m/s", "log drift", (0.0, 1.0), le=50.0)
-    log_drift_tau_s: float | None = _figure("s", "log drift time", (10.0, 36000.0), ge=1.0, le=1e7, log=True)
+    log_noise_mps: float | None = _figure("m/s", Text("log noise"), (0.0, 1.0), le=50.0)
+    log_rate_hz: float | None = _figure("Hz", Text("log rate"), (0.1, 10.0), ge=0.001, le=1000.0, log=True)
+    log_drift_mps: float | None = _figure("m/s", Text("log drift"), (0.0, 1.0), le=50.0)
+    log_drift_tau_s: float | None = _figure(
+        "s", Text("log drift time"), (10.0, 36000.0), ge=1.0, le=1e7, log=True
+    )
     _sensors: SensorFigures | None = PrivateAttr(default=None)
 
     def with_sensors(self, figures: SensorFigures) -> OptimalNetwork:
@@ -133,7 +143,7 @@ class OptimalNetwork(NetworkParameters):
         }
         used = SensorFigures(**{**vars(base or EXAMPLE_SHIP), **given})
         for what, missing, prefixes in (
-            ("gyros and accelerometers", not used.inertial, ("gyro", "accel")),
+            (Text("gyros and accelerometers"), not used.inertial, ("gyro", "accel")),
             ("log", not used.log, ("log",)),
         ):
             if missing or (base is None and not any(name.startswith(prefixes) for name in given)):
@@ -160,7 +170,9 @@ class OptimalNetwork(NetworkParameters):
         try:
             law = _law(figures, self.rho, self.q, self.realisation == "feedback", omega_s)
         except np.linalg.LinAlgError:
-            raise refuse("rho", self.rho, "the Riccati equations of these figures have no solution") from None
+            raise refuse(
+                "rho", self.rho, Text("the Riccati equations of these figures have no solution")
+            ) from None
         poles = np.linalg.eigvals(law.A)
         zeros = np.linalg.eigvals(law.A + np.outer(law.B, law.C))
         network = linear_network(
@@ -210,7 +222,9 @@ class OptimalNetwork(NetworkParameters):
         states = _responses(p, systems[0].A, systems[0].B)
         numerators = [states @ system.C + system.D for system in systems]
         if any(np.max(np.abs(f - e) / np.abs(e)) > _ACCURACY for f, e in zip(numerators, exact, strict=True)):
-            allowed = "makes a network too fast for these figures to run in double precision: must be larger"
+            allowed = Text(
+                "makes a network too fast for these figures to run in double precision: must be larger"
+            )
             raise refuse("rho", self.rho, allowed)
 
 

@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from navcore.foundation.errors import InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.parameters import Parameters, bounds_of
+from navcore.foundation.text import Text
 
 LEAST_DAMPING, LARGEST_DAMPING = 0.01, 1.0
 """Damping ratios that a pair can be placed at: above 1 there is no pair."""
@@ -78,7 +79,7 @@ class MainPair:
         finite = [ends for ends in self.frequencies if ends[1] < math.inf]
         if finite:
             spans = " or ".join(f"{low / omega_s:g}…{high / omega_s:g}" for low, high in finite)
-            parts.append(f"ω = {spans} ωₛ")
+            parts.append(Text("ω = {spans} ωₛ", spans=spans))
         if self.rates[1] < math.inf:
             parts.append(f"ζ ω = {self.rates[0]:g}…{self.rates[1]:g} 1/s")
         return ", ".join(parts)
@@ -168,6 +169,6 @@ def placement_at_omega_s(
     """
     note = ""
     if not same_frequency(wanted, omega_s):
-        note = "this network's pair always lies at ωₛ: only the damping ratio is taken"
+        note = Text("this network's pair always lies at ωₛ: only the damping ratio is taken")
     data = parameters.model_dump(exclude_none=True) | changes
     return placement(type(parameters), data, damping_ratio, omega_s, note)

@@ -9,11 +9,12 @@ from pydantic import TypeAdapter, ValidationError
 from navcore.foundation.decimal_comma import refuse_comma
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
+from navcore.foundation.text import Text
 from navcore.networks.base import NetworkParameters
 from navcore.networks.catalogue import NETWORKS, Network
 
 _ADAPTER: TypeAdapter[Any] = TypeAdapter(Network)
-_EXAMPLE = 'must be fields such as: id = "compass", sigma = 0.0088, xi = 0.7'
+_EXAMPLE = Text('must be fields such as: id = "compass", sigma = 0.0088, xi = 0.7')
 
 
 def parse_network(text_or_mapping: str | Mapping[str, Any], where: str = "network") -> NetworkParameters:
@@ -53,5 +54,7 @@ def _table(text: str, where: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         refuse_comma(inside, "", where)
         reason = str(error).split(" (at line")[0]
-        raise InputError(Fault(where, "", text, f"{_EXAMPLE} ({reason})")) from None
+        raise InputError(
+            Fault(where, "", text, Text("{example} ({reason})", example=_EXAMPLE, reason=reason))
+        ) from None
     return document["network"]

@@ -22,18 +22,18 @@ class Pole2Network(NetworkParameters):
     n2 xi omega_s), but H(0) is not 1. ``as_printed`` (Sun 18) forces H(0) = 1, which moves the pair.
     """
 
-    title: ClassVar[str] = "Two poles (Sun)"
+    title: ClassVar[str] = Text("Two poles (Sun)")
     source: ClassVar[str] = "Sun 12-18"
     placeable: ClassVar[str] = "pole2 (exact)"
-    no_handle: ClassVar[str] = "the printed variant moves its pair away from where it is asked for"
+    no_handle: ClassVar[str] = Text("the printed variant moves its pair away from where it is asked for")
     id: Literal["pole2"] = "pole2"
     xi: float = quantity(
         0.5,
         ge=1e-6,
         le=5.0,
         slider=(0.02, 1.5),
-        label="damping ratio ζ",
-        help="Damping ratio asked of the closed-loop pair (Sun 14); Sun writes ξ, and his σ is -ζ ωₛ.",
+        label=Text("damping ratio ζ"),
+        help=Text("Damping ratio asked of the closed-loop pair (Sun 14); Sun writes ξ, and his σ is -ζ ωₛ."),
     )
     n1: float = quantity(
         14.0,
@@ -41,7 +41,7 @@ class Pole2Network(NetworkParameters):
         le=100.0,
         slider=(12.0, 30.0),
         label="n₁",
-        help="First real closed-loop pole at n₁ ζ ωₛ (Sun 14).",
+        help=Text("First real closed-loop pole at n₁ ζ ωₛ (Sun 14)."),
     )
     n2: float = quantity(
         5.0,
@@ -49,13 +49,15 @@ class Pole2Network(NetworkParameters):
         le=100.0,
         slider=(1.0, 6.0),
         label="n₂",
-        help="Second real closed-loop pole at n₂ ζ ωₛ (Sun 14).",
+        help=Text("Second real closed-loop pole at n₂ ζ ωₛ (Sun 14)."),
     )
     variant: Literal["exact", "as_printed"] = choice(
         "exact",
-        label="variant",
-        help="exact: poles where asked, H(0) below 1; as_printed: H(0) = 1, the pair less damped than asked "
-        "and unstable for small ζ (theory.md 3.3).",
+        label=Text("variant"),
+        help=Text(
+            "exact: poles where asked, H(0) below 1; as_printed: H(0) = 1, the pair less damped than asked "
+            "and unstable for small ζ (theory.md 3.3)."
+        ),
     )
 
     @model_validator(mode="after")

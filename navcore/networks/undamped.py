@@ -2,15 +2,16 @@
 
 from typing import ClassVar, Literal
 
+from navcore.foundation.text import Text
 from navcore.networks.base import LinearNetwork, NetworkParameters, linear_network
 
 
 class UndampedNetwork(NetworkParameters):
     """H = 1: the free Schuler loop."""
 
-    title: ClassVar[str] = "Undamped"
+    title: ClassVar[str] = Text("Undamped")
     source: ClassVar[str] = "theory.md 3"
-    no_handle: ClassVar[str] = "H = 1 has no parameter"
+    no_handle: ClassVar[str] = Text("H = 1 has no parameter")
     id: Literal["none"] = "none"
 
     def transfer(self, omega_s: float) -> LinearNetwork:

@@ -31,7 +31,7 @@ class Unity2Network(NetworkParameters):
     (theory.md 10).
     """
 
-    title: ClassVar[str] = "Unity gain, exact damping"
+    title: ClassVar[str] = Text("Unity gain, exact damping")
     source: ClassVar[str] = "theory.md 3.4"
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("zeta2",), ("alpha",))
     placeable: ClassVar[str] = "unity2"
@@ -41,8 +41,8 @@ class Unity2Network(NetworkParameters):
         gt=0.0,
         le=5.0,
         slider=(0.02, 1.5),
-        label="damping ratio ζ",
-        help="Damping ratio of the main closed-loop pair (theory.md 3.4).",
+        label=Text("damping ratio ζ"),
+        help=Text("Damping ratio of the main closed-loop pair (theory.md 3.4)."),
     )
     r: float = quantity(
         1.2,
@@ -50,16 +50,18 @@ class Unity2Network(NetworkParameters):
         le=10.0,
         slider=(0.5, 3.0),
         label="r",
-        help="Frequency of the main pair over ωₛ (theory.md 3.4); not within 0.99 to 1.01. Below 1 the "
-        "24 h mode decays (theory.md 10).",
+        help=Text(
+            "Frequency of the main pair over ωₛ (theory.md 3.4); not within 0.99 to 1.01. Below 1 the "
+            "24 h mode decays (theory.md 10)."
+        ),
     )
     zeta2: float | None = quantity(
         None,
         gt=0.0,
         le=5.0,
         slider=(0.1, 2.0),
-        label="damping ratio ζ₂",
-        help="Damping ratio of the second pair; max(0.7, ζ) when not given (theory.md 3.4).",
+        label=Text("damping ratio ζ₂"),
+        help=Text("Damping ratio of the second pair; max(0.7, ζ) when not given (theory.md 3.4)."),
     )
     alpha: float | None = quantity(
         None,
@@ -69,14 +71,16 @@ class Unity2Network(NetworkParameters):
         slider=(1e-4, 0.1),
         log=True,
         label="α",
-        help="Sum of the second pair's poles, instead of ζ₂ (theory.md 3.4).",
+        help=Text("Sum of the second pair's poles, instead of ζ₂ (theory.md 3.4)."),
     )
 
     @model_validator(mode="before")
     @classmethod
     def _one_way_only(cls, data: Any) -> Any:
         if len(given(data, ("zeta2", "alpha"))) == 2:
-            raise refuse("alpha", data["alpha"], "must not be given together with zeta2: each sets the other")
+            raise refuse(
+                "alpha", data["alpha"], Text("must not be given together with zeta2: each sets the other")
+            )
         return data
 
     @model_validator(mode="after")

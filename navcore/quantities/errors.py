@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
+from navcore.foundation.text import Text
 from navcore.foundation.units import UNITS
 
 
@@ -37,10 +38,10 @@ class Kind:
         return UNITS[self.unit]
 
 
-TILT = Kind("tilt", "Tilt", "tilt", "tilt_rad", "arcsec", "angle")
-VELOCITY = Kind("velocity", "Velocity", "velocity error", "velocity_mps", "m/s", "speed")
-HEADING = Kind("heading", "Heading", "heading error", "heading_rad", "arcmin", "angle")
-POSITION = Kind("position", "Position", "position error", "position_m", "m", "length")
+TILT = Kind("tilt", Text("Tilt"), Text("tilt"), "tilt_rad", "arcsec", "angle")
+VELOCITY = Kind("velocity", Text("Velocity"), Text("velocity error"), "velocity_mps", "m/s", "speed")
+HEADING = Kind("heading", Text("Heading"), Text("heading error"), "heading_rad", "arcmin", "angle")
+POSITION = Kind("position", Text("Position"), Text("position error"), "position_m", "m", "length")
 KINDS = (TILT, VELOCITY, HEADING, POSITION)
 """In the order of a budget."""
 
@@ -74,21 +75,23 @@ class RecordedError:
 
 
 ERRORS = (
-    RecordedError("phi_e_rad", "phi_e", "φE", "tilt φE", "Tilt about east φE", TILT),
-    RecordedError("phi_n_rad", "phi_n", "φN", "tilt φN", "Tilt about north φN", TILT),
-    RecordedError("phi_u_rad", "phi_u", "φU", "heading φU", "Heading error φU", HEADING),
-    RecordedError("dve_mps", "dve", "δVE", "velocity δVE", "Velocity error east δVE", VELOCITY),
-    RecordedError("dvn_mps", "dvn", "δVN", "velocity δVN", "Velocity error north δVN", VELOCITY),
-    RecordedError("dlat_m", "dlat", "δLat", "latitude", "Latitude error", POSITION),
-    RecordedError("dlon_m", "dlon", "δLon", "longitude", "Longitude error", POSITION),
-    RecordedError("position_m", "position", "position", "position", "Position error", POSITION),
+    RecordedError("phi_e_rad", "phi_e", "φE", Text("tilt φE"), Text("Tilt about east φE"), TILT),
+    RecordedError("phi_n_rad", "phi_n", "φN", Text("tilt φN"), Text("Tilt about north φN"), TILT),
+    RecordedError("phi_u_rad", "phi_u", "φU", Text("heading φU"), Text("Heading error φU"), HEADING),
+    RecordedError("dve_mps", "dve", "δVE", Text("velocity δVE"), Text("Velocity error east δVE"), VELOCITY),
+    RecordedError("dvn_mps", "dvn", "δVN", Text("velocity δVN"), Text("Velocity error north δVN"), VELOCITY),
+    RecordedError("dlat_m", "dlat", "δLat", "latitude", Text("Latitude error"), POSITION),
+    RecordedError("dlon_m", "dlon", "δLon", "longitude", Text("Longitude error"), POSITION),
+    RecordedError(
+        "position_m", "position", Text("position"), Text("position"), Text("Position error"), POSITION
+    ),
 )
 """In the order of the recorder's columns; the last is the distance that the two before it make."""
 NAMES = tuple(error.name for error in ERRORS)
 COMPONENTS = NAMES[:-1]
 """Errors that are states of the error model."""
 
-STATISTICS = {"rms": "rms", "max_abs": "max", "final": "final"}
+STATISTICS = {"rms": Text("rms"), "max_abs": Text("max"), "final": Text("final")}
 """Statistics of an error that tables show, and their short names."""
 
 

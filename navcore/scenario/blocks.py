@@ -20,8 +20,10 @@ class RunSettings(EitherUnit):
 
     fidelity: Literal["channel", "error_model", "strapdown"] = choice(
         "error_model",
-        help="channel: two decoupled level channels; error_model: the full linear model; strapdown: the full "
-        "nonlinear mechanization on simulated or recorded IMU samples.",
+        help=Text(
+            "channel: two decoupled level channels; error_model: the full linear model; strapdown: the full "
+            "nonlinear mechanization on simulated or recorded IMU samples."
+        ),
     )
     duration_h: float = quantity(
         10.0,
@@ -30,47 +32,62 @@ class RunSettings(EitherUnit):
         le=8760.0,
         slider=(0.5, 72.0),
         log=True,
-        label="duration",
-        help="Length of the run. At most 3,000,000 steps (833 h at 1 s, 8333 h at 10 s; in strapdown, "
-        "recorded states): truth, sensor errors and log are kept for every step, up to 0.5 kB a step. At "
-        "most 12 methods run side by side.",
+        label=Text("duration"),
+        help=Text(
+            "Length of the run. At most 3,000,000 steps (833 h at 1 s, 8333 h at 10 s; in strapdown, "
+            "recorded states): truth, sensor errors and log are kept for every step, up to 0.5 kB a step. At "
+            "most 12 methods run side by side."
+        ),
     )
     step_s: float = quantity(
         1.0,
         unit="s",
         ge=0.005,
         le=10.0,
-        label="step",
-        help="Integration step; the law runs at the same step. strapdown: interval of the recorded states, "
-        "and of the law unless a log is faster (rounded to whole samples).",
+        label=Text("step"),
+        help=Text(
+            "Integration step; the law runs at the same step. strapdown: interval of the recorded states, "
+            "and of the law unless a log is faster (rounded to whole samples)."
+        ),
     )
     rate_hz: float = quantity(
         100.0,
         unit="Hz",
         ge=10.0,
         le=1000.0,
-        label="IMU rate",
-        help="IMU rate of a strapdown run; a recorded IMU has its own.",
+        label=Text("IMU rate"),
+        help=Text("IMU rate of a strapdown run; a recorded IMU has its own."),
     )
     vertical: Literal["locked", "altimeter"] = choice(
         "locked",
-        help="Vertical channel of a strapdown run. locked: height held, no vertical velocity (a ship); "
-        "altimeter: damped by an altimeter without error (third order, 100 s).",
+        help=Text(
+            "Vertical channel of a strapdown run. locked: height held, no vertical velocity (a ship); "
+            "altimeter: damped by an altimeter without error (third order, 100 s)."
+        ),
     )
     compensation: bool = Field(
         default=True,
         strict=True,
-        description="Coning and sculling compensation of a strapdown run.",
-        json_schema_extra={"label": "coning and sculling compensation"},
+        description=Text("Coning and sculling compensation of a strapdown run."),
+        json_schema_extra={"label": Text("coning and sculling compensation")},
     )
     output_step_s: float = quantity(
-        10.0, unit="s", gt=0.0, le=86400.0, label="output step", help="Interval of the output rows."
+        10.0,
+        unit="s",
+        gt=0.0,
+        le=86400.0,
+        label=Text("output step"),
+        help=Text("Interval of the output rows."),
     )
     seed: int = Field(
-        default=1, strict=True, ge=0, le=2**31 - 1, description="Seed of every random number of the run."
+        default=1,
+        strict=True,
+        ge=0,
+        le=2**31 - 1,
+        description=Text("Seed of every random number of the run."),
     )
     earth: Literal["wgs84", "sphere"] = choice(
-        "wgs84", help="Earth model; the sphere is for textbook formulas."
+        "wgs84", help=Text("Earth model; the sphere is for textbook formulas.")
     )
 
 
@@ -83,12 +100,14 @@ class SiteSettings(Parameters):
         ge=-89.0,
         le=89.0,
         slider=(-80.0, 80.0),
-        label="latitude",
-        help="Geodetic latitude.",
+        label=Text("latitude"),
+        help=Text("Geodetic latitude."),
     )
-    lon_deg: float = quantity(118.8, unit="deg", ge=-180.0, le=180.0, label="longitude", help="Longitude.")
+    lon_deg: float = quantity(
+        118.8, unit="deg", ge=-180.0, le=180.0, label=Text("longitude"), help=Text("Longitude.")
+    )
     height_m: float = quantity(
-        0.0, unit="m", ge=-500.0, le=20000.0, label="height", help="Height above the ellipsoid."
+        0.0, unit="m", ge=-500.0, le=20000.0, label="height", help=Text("Height above the ellipsoid.")
     )
 
     def site(self) -> Site:
@@ -107,36 +126,42 @@ class Alignment(EitherUnit):
 
     kind: Literal["none", "compass"] = choice(
         "none",
-        help="none: navigation starts from initial_error at t = 0. compass: initial_error holds at the start "
-        "of an alignment before t = 0 (strapdown only; |latitude| <= 85°).",
+        help=Text(
+            "none: navigation starts from initial_error at t = 0. compass: initial_error holds at the start "
+            "of an alignment before t = 0 (strapdown only; |latitude| <= 85°)."
+        ),
     )
     duration_s: float = quantity(
-        600.0, unit="s", ge=10.0, le=86400.0, help="Length of the alignment, before t = 0."
+        600.0, unit="s", ge=10.0, le=86400.0, help=Text("Length of the alignment, before t = 0.")
     )
     level_s: float = quantity(
-        120.0, unit="s", gt=0.0, le=86400.0, help="Length of its first part, level channels only."
+        120.0, unit="s", gt=0.0, le=86400.0, help=Text("Length of its first part, level channels only.")
     )
     level_sigma: float = quantity(
         0.03,
         unit="1/s",
         gt=0.0,
         le=10.0,
-        label="level decay rate σ",
-        help="Decay rate of the level loops in the first part.",
+        label=Text("level decay rate σ"),
+        help=Text("Decay rate of the level loops in the first part."),
     )
     sigma: float = quantity(
         0.02,
         unit="1/s",
         gt=0.0,
         le=10.0,
-        label="decay rate σ",
-        help="Decay rate of level and azimuth loops in the second part.",
+        label=Text("decay rate σ"),
+        help=Text("Decay rate of level and azimuth loops in the second part."),
     )
-    xi: float = quantity(0.707, gt=0.0, le=5.0, label="damping ratio ζ", help="Damping ratio of the loops.")
+    xi: float = quantity(
+        0.707, gt=0.0, le=5.0, label=Text("damping ratio ζ"), help=Text("Damping ratio of the loops.")
+    )
     motion: tuple[AlignmentMotion, ...] = Field(
         default=(),
         max_length=100,
-        description="Small motions of the base in the record from which half-period averaging forecasts.",
+        description=Text(
+            "Small motions of the base in the record from which half-period averaging forecasts."
+        ),
     )
 
     def loop(self) -> CompassLoop:
@@ -169,5 +194,5 @@ class View(Parameters):
     """Block ``view``: where the dashboard opens."""
 
     focus: Literal["errors", "bode", "step"] = choice(
-        "errors", help="Which panel the dashboard brings to the front."
+        "errors", help=Text("Which panel the dashboard brings to the front.")
     )

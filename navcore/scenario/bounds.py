@@ -136,4 +136,4 @@ def require_bounded(data: dict[str, Any], where: str) -> None:
         elif isinstance(value, list):
             waiting += [(name, item, depth + 1) for item in value]
         elif isinstance(value, int) and abs(value) >= LARGEST_INTEGER:
-            raise InputError(Fault(where, name, None, "is an integer of more than 64 bits"))
+            raise InputError(Fault(where, name, None, Text("is an integer of more than 64 bits")))

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from navcore.foundation.earth import EARTHS, Earth
 from navcore.foundation.parameters import Parameters
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.motion import Motion, StaticMotion
 from navcore.networks.lqg import SensorFigures
@@ -24,9 +25,13 @@ SCHEMA = 1
 class ScenarioFields(Parameters):
     """Blocks of a scenario, each checked by itself."""
 
-    schema_version: Literal[1] = Field(default=SCHEMA, alias="schema", description="Version of this format.")
-    title: str = Field(default="", max_length=300, description="What the scenario shows, in one line.")
-    source: str = Field(default="", max_length=300, description="Where it is from: paper and figure, say.")
+    schema_version: Literal[1] = Field(
+        default=SCHEMA, alias="schema", description=Text("Version of this format.")
+    )
+    title: str = Field(default="", max_length=300, description=Text("What the scenario shows, in one line."))
+    source: str = Field(
+        default="", max_length=300, description=Text("Where it is from: paper and figure, say.")
+    )
     run: RunSettings = RunSettings()
     site: SiteSettings = SiteSettings()
     motion: Motion = Field(default_factory=StaticMotion)
@@ -36,7 +41,7 @@ class ScenarioFields(Parameters):
     reference: Reference = Reference()
     method: tuple[Method, ...] = (Method(name="free"),)
     requirement: tuple[Requirement, ...] = Field(
-        default=(), max_length=MOST, description="Limits that a design has to keep."
+        default=(), max_length=MOST, description=Text("Limits that a design has to keep.")
     )
     view: View = View()
 

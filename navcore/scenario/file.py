@@ -94,7 +94,7 @@ def read_toml(path: Path, where: str) -> dict[str, Any]:
     except OSError as error:
         raise InputError(Fault(where, "", None, _not_there(where, error))) from None
     except UnicodeDecodeError:
-        raise InputError(Fault(where, "", None, "is not UTF-8 text: no scenario")) from None
+        raise InputError(Fault(where, "", None, Text("is not UTF-8 text: no scenario"))) from None
     return parse_toml(text, where)
 
 
@@ -112,7 +112,7 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
     try:
         data = tomllib.loads(text)
     except RecursionError:
-        raise InputError(Fault(where, "", None, "is nested too deep: no scenario")) from None
+        raise InputError(Fault(where, "", None, Text("is nested too deep: no scenario"))) from None
     except ValueError as error:  # also what the reader does not call its own
         refuse_comma(text, str(error), where)
         raise InputError(
@@ -157,7 +157,9 @@ def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> None:
     for override in overrides:
         key, equals, text = override.partition("=")
         if not equals or not key.strip():
-            faults.append(Fault("--set", "", override, "must have the form KEY=VALUE, e.g. run.duration_h=2"))
+            faults.append(
+                Fault("--set", "", override, Text("must have the form KEY=VALUE, e.g. run.duration_h=2"))
+            )
             continue
         fault = _set(data, key.strip().split("."), _value(text.strip()))
         if fault:

@@ -3,6 +3,7 @@
 from typing import Annotated
 
 from navcore.foundation.parameters import Parameters, bounded, quantity, vector_quantity
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCMIN, ARCSEC
 
 _Tilt = Annotated[float, bounded(unit="arcmin", ge=-600.0, le=600.0)]
@@ -15,36 +16,39 @@ class InitialError(Parameters):
 
     attitude_arcmin: tuple[_Tilt, _Tilt, _Tilt] = vector_quantity(
         (0.0, 0.0, 0.0), unit="arcmin", elements=("φE", "φN", "φU"), slider=(-10.0, 10.0),
-        label="initial misalignment", help="Misalignment at t = 0.",
+        label=Text("initial misalignment"), help=Text("Misalignment at t = 0."),
     )  # fmt: skip
     velocity_mps: tuple[_Velocity, _Velocity] = vector_quantity(
         (0.0, 0.0), unit="m/s", elements=("E", "N"), slider=(-2.0, 2.0),
-        label="initial velocity error", help="Velocity error at t = 0.",
+        label=Text("initial velocity error"), help=Text("Velocity error at t = 0."),
     )  # fmt: skip
     position_arcsec: tuple[_Position, _Position] = vector_quantity(
         (0.0, 0.0), unit="arcsec", elements=("latitude", "longitude"), slider=(-60.0, 60.0),
-        label="initial position error", help="Position error at t = 0.",
+        label=Text("initial position error"), help=Text("Position error at t = 0."),
     )  # fmt: skip
 
     level_std_arcmin: float | None = quantity(
-        None, unit="arcmin", ge=0.0, le=600.0, slider=(0.0, 10.0), label="initial tilt, standard deviation",
-        help="Standard deviation of φE and φN at t = 0 in the error budget and the tuning. Not given: "
-        "the size of the numbers in attitude_arcmin.",
+        None, unit="arcmin", ge=0.0, le=600.0, slider=(0.0, 10.0), label=Text("initial tilt, "
+"standard deviation"),
+        help=Text("Standard deviation of φE and φN at t = 0 in the error budget and the tuning. Not given: "
+        "the size of the numbers in attitude_arcmin."),
     )  # fmt: skip
     heading_std_arcmin: float | None = quantity(
         None, unit="arcmin", ge=0.0, le=600.0, slider=(0.0, 60.0),
-        label="initial heading error, standard deviation",
-        help="The same for φU. Not given: the size of the third number in attitude_arcmin.",
+        label=Text("initial heading error, standard deviation"),
+        help=Text("The same for φU. Not given: the size of the third number in attitude_arcmin."),
     )  # fmt: skip
     velocity_std_mps: float | None = quantity(
         None, unit="m/s", ge=0.0, le=100.0, slider=(0.0, 2.0),
-        label="initial velocity error, standard deviation",
-        help="The same for the velocity, on each axis. Not given: the size of the numbers in velocity_mps.",
+        label=Text("initial velocity error, standard deviation"),
+        help=Text("The same for the velocity, on each axis. Not given: the size of the numbers "
+"in velocity_mps."),
     )  # fmt: skip
     position_std_arcsec: float | None = quantity(
         None, unit="arcsec", ge=0.0, le=36000.0, slider=(0.0, 60.0),
-        label="initial position error, standard deviation",
-        help="The same for latitude and longitude. Not given: the size of the numbers in position_arcsec.",
+        label=Text("initial position error, standard deviation"),
+        help=Text("The same for latitude and longitude. Not given: the size of the numbers in "
+"position_arcsec."),
     )  # fmt: skip
 
     def standard_deviations(self) -> list[float]:

@@ -7,6 +7,7 @@ from pydantic import Field, create_model
 from navcore.damping import KINDS
 from navcore.damping.base import Damping
 from navcore.foundation.parameters import Parameters
+from navcore.foundation.text import Text
 from navcore.law.policy import Policy
 from navcore.law.policy.constant import Constant
 from navcore.law.switching import Switching
@@ -23,11 +24,16 @@ else:
 
 class _Named(Parameters):
     name: str = Field(
-        default="", max_length=60, description="Name on plots and in files; made from the network when empty."
+        default="",
+        max_length=60,
+        description=Text("Name on plots and in files; made from the network when empty."),
     )
     damping: KindName = Field(
         default=next(iter(KINDS)),
-        description="; ".join(f"{kind.id}: {kind.help}" for kind in KINDS.values()) + ".",
+        description=Text.joined(
+            "; ", (Text("{id}: {help}", id=kind.id, help=kind.help) for kind in KINDS.values())
+        )
+        + ".",
     )
 
 
@@ -50,7 +56,7 @@ class Method(_Settled):
     event: tuple[LogEvent, ...] = Field(
         default=(),
         max_length=50,
-        description="Log events that only this method sees: several cases in one scenario.",
+        description=Text("Log events that only this method sees: several cases in one scenario."),
     )
 
     @property

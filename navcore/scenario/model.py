@@ -119,10 +119,10 @@ def _method_faults(scenario: ScenarioFields) -> Iterator[Fault]:
                 "",
                 f"{at}.policy.id",
                 method.policy.id,
-                'needs a reference velocity: reference.kind must not be "none"',
+                Text('needs a reference velocity: reference.kind must not be "none"'),
             )
         if method.event and scenario.reference.kind != "log":
-            yield Fault("", f"{at}.event", None, 'needs reference.kind = "log"')
+            yield Fault("", f"{at}.event", None, Text('needs reference.kind = "log"'))
         try:
             method.network.transfer(scenario.omega_s)
         except InputError as error:

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Literal
 
 from navcore.foundation.parameters import Parameters, choice
 from navcore.foundation.parameters import quantity as number
+from navcore.foundation.text import Text
 from navcore.quantities import LIMITED, QUANTITIES
 
 MOST = 20
@@ -20,12 +21,18 @@ class Requirement(Parameters):
 
     quantity: Limited = choice(
         LIMITED[0],
-        help="What is limited. Largest tilt and velocity error: length of the vector; root mean squares of "
-        "them: per axis; settling_s and growth_per_s: of the setting, whatever from_h is.",
+        help=Text(
+            "What is limited. Largest tilt and velocity error: length of the vector; root mean squares of "
+            "them: per axis; settling_s and growth_per_s: of the setting, whatever from_h is."
+        ),
     )
     at_most: float = number(
-        ..., ge=-1e9, le=1e9, label="limit", help="Largest value that meets it, in the unit of the name."
+        ...,
+        ge=-1e9,
+        le=1e9,
+        label=Text("limit"),
+        help=Text("Largest value that meets it, in the unit of the name."),
     )
     from_h: float = number(
-        0.0, unit="h", ge=0.0, le=8760.0, label="from", help="Time from which the errors count."
+        0.0, unit="h", ge=0.0, le=8760.0, label=Text("from"), help=Text("Time from which the errors count.")
     )

@@ -31,7 +31,9 @@ def strapdown_faults(scenario: ScenarioFields) -> Iterator[Fault]:
     yield from _recorded_faults(scenario)
     yield from _length_faults(scenario)
     if scenario.motion.dives and scenario.run.vertical == "locked" and scenario.imu.file is None:
-        allowed = 'must be "altimeter", a depth gauge say: the motion changes its depth (motion.leg.depth_m)'
+        allowed = Text(
+            'must be "altimeter", a depth gauge say: the motion changes its depth (motion.leg.depth_m)'
+        )
         yield Fault("", "run.vertical", "locked", allowed)
     if scenario.imu.file is None:
         yield from rate_faults(scenario.motion, scenario.run.rate_hz)
@@ -60,7 +62,7 @@ def _recorded_faults(scenario: ScenarioFields) -> Iterator[Fault]:
             "", "motion.kind", motion.kind, Text("must be {able} with a recorded IMU (imu.file)", able=able)
         )
     if imu.file is None and imu.begin_s > 0.0:
-        yield Fault("", "imu.begin_s", imu.begin_s, "needs a recorded IMU: imu.file")
+        yield Fault("", "imu.begin_s", imu.begin_s, Text("needs a recorded IMU: imu.file"))
 
 
 def _length_faults(scenario: ScenarioFields) -> Iterator[Fault]:

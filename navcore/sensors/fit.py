@@ -113,7 +113,7 @@ def log_along_track(reference: Reference, track: TrackMotion) -> LogAlongTrack:
     series, along_axes = log_series(reference, log_recording(reference))
     window = recorded_window(track, reference)
     if not along_axes or window is None:
-        allowed = "needs speeds along the ship's axes (VBW, VHW or speed columns)"
+        allowed = Text("needs speeds along the ship's axes (VBW, VHW or speed columns)")
         raise InputError(Fault("", "reference.file", reference.file, allowed))
     count = int(window.span_s / _GRID_STEP_S) + 1
     truth = track.truth(count, _GRID_STEP_S, Site(0.0, 0.0, 0.0), WGS84, start_utc=window.start_s)

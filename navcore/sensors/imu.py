@@ -10,6 +10,7 @@ from pydantic import Field, create_model
 
 from navcore.foundation.earth import Earth
 from navcore.foundation.parameters import FileName, choice, quantity
+from navcore.foundation.text import Text
 from navcore.motion.truth import Truth
 from navcore.sensors.base import SensorErrors
 from navcore.sensors.imu_errors import TERMS
@@ -40,17 +41,26 @@ class Imu(_Errors):
 
     file: FileName | None = Field(
         default=None,
-        description="Recorded IMU in place of the simulated one (strapdown): PSINS text, or CSV with t_s and "
-        "gx_rad_s, gy_rad_s, gz_rad_s, fx_mps2, fy_mps2, fz_mps2 (means), or dax_rad ... dvz_mps "
-        "(increments). Alignment and navigation take its samples one after the other.",
-        json_schema_extra={"label": "IMU file"},
+        description=Text(
+            "Recorded IMU in place of the simulated one (strapdown): PSINS text, or CSV with t_s and "
+            "gx_rad_s, gy_rad_s, gz_rad_s, fx_mps2, fy_mps2, fz_mps2 (means), or dax_rad ... dvz_mps "
+            "(increments). Alignment and navigation take its samples one after the other."
+        ),
+        json_schema_extra={"label": Text("IMU file")},
     )
     axes: Literal["rfu", "frd"] = choice(
         "rfu",
-        help="Axes of a recorded CSV: right, forward, up, or forward, right, down. PSINS files are rfu.",
+        help=Text(
+            "Axes of a recorded CSV: right, forward, up, or forward, right, down. PSINS files are rfu."
+        ),
     )
     begin_s: float = quantity(
-        0.0, unit="s", ge=0.0, le=1e7, label="skip", help="Time of the recorded IMU that is left out before."
+        0.0,
+        unit="s",
+        ge=0.0,
+        le=1e7,
+        label="skip",
+        help=Text("Time of the recorded IMU that is left out before."),
     )
 
     def all_parts(self) -> tuple[Part, ...]:

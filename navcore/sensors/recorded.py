@@ -48,7 +48,7 @@ def log_series(reference: Reference, recording: Recording) -> tuple[Series, bool
         return series, True
     if recording.velocity is not None:
         return recording.velocity, False
-    expected = "VBW, VHW, VTG or RMC sentences, or columns speed_mps, speed_kn or ve_mps and vn_mps"
+    expected = Text("VBW, VHW, VTG or RMC sentences, or columns speed_mps, speed_kn or ve_mps and vn_mps")
     allowed = Text("holds no speed: expected {expected}", expected=expected)
     raise InputError(Fault("", "file", reference.file, allowed))
 
@@ -127,7 +127,7 @@ def recorded_errors(
     series, along_axes = log_series(reference, recording)
     window = shared_window(_streams(reference))
     start = window.start_s if start_utc is None else start_utc
-    require_cover(window, start, duration_s, "the log", reference.file)
+    require_cover(window, start, duration_s, Text("the log"), reference.file)
     elapsed = series.time_s - start
     within = (elapsed >= 0.0) & (elapsed <= duration_s)
     time_s, values = elapsed[within], series.values[within]

@@ -88,7 +88,7 @@ def read_imu(path: str | os.PathLike[str], axes: Axes = "rfu") -> ImuRecord:
         text = file.read_text("utf-8")
     except (OSError, UnicodeDecodeError) as error:
         binary = isinstance(error, UnicodeDecodeError)
-        reason = "is not a text file" if binary else (error.strerror or "cannot be read")
+        reason = Text("is not a text file") if binary else (error.strerror or Text("cannot be read"))
         raise InputError(Fault(str(path), "imu.file", None, reason)) from None
     return _psins(text, str(path)) if is_psins(text) else _csv(text, str(path), axes)
 
@@ -170,14 +170,16 @@ def _psins(text: str, source: str) -> ImuRecord:
         if len(place) < 6 or len(scale) != 6:
             raise ValueError
     except ValueError:
-        expected = (
+        expected = Text(
             "needs three lines of numbers after the comments: attitude, velocity; place, interval; scales"
         )
         raise InputError(Fault(source, "imu.file", None, expected)) from None
     counts = _numbers(lines[3:], 6, source, first_line=4, separator=None)
     lat, lon, height, _, interval_ms = place[:5]
     if not interval_ms > 0.0:
-        raise InputError(Fault(source, "imu.file", interval_ms, "the sampling interval must be > 0 (ms)"))
+        raise InputError(
+            Fault(source, "imu.file", interval_ms, Text("the sampling interval must be > 0 (ms)"))
+        )
     factors = np.array(scale) * np.repeat([ARCSEC, 1e-6 * (place[5] or _PSINS_GRAVITY)], 3)
     return ImuRecord(counts * factors, 1000.0 / interval_ms, source, lat * DEG, lon * DEG, height)
 
@@ -207,7 +209,7 @@ def _numbers(
 ) -> np.ndarray:
     """Rows of numbers; names the first data line that is none."""
     if len(lines) < 2:
-        raise InputError(Fault(source, "imu.file", None, "holds fewer than two samples"))
+        raise InputError(Fault(source, "imu.file", None, Text("holds fewer than two samples")))
     try:
         table = np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2)
         if table.shape[1] != columns:

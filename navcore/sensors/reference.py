@@ -10,6 +10,7 @@ from pydantic import Field, create_model
 
 from navcore.foundation.parameters import FileName, Parameters, quantity
 from navcore.foundation.repeated import Repeated
+from navcore.foundation.text import Text
 from navcore.sensors.base import NO_DRIFT, modelled_drift
 from navcore.sensors.log_errors import TERMS
 from navcore.sensors.log_errors.base import LogPart
@@ -31,21 +32,24 @@ class Outage(Repeated):
         le=1e7,
         slider=(1.0, 36000.0),
         log=True,
-        label="lasts",
-        help="Length of the outage.",
+        label=Text("lasts"),
+        help=Text("Length of the outage."),
     )
 
 
 class _Kind(Parameters):
     kind: Literal["none", "log", "file"] = Field(
         default="none",
-        description="none: no reference; log: simulated; file: recorded.",
+        description=Text("none: no reference; log: simulated; file: recorded."),
         json_schema_extra={"label": "reference"},
     )
     frame: Literal["enu", "body"] = Field(
         default="enu",
-        description="enu: the log gives east and north. body: it gives starboard and forward (and so bias, "
-        "drift, noise and resolution count) and is turned by the computed heading: a heading error enters.",
+        description=Text(
+            "enu: the log gives east and north. body: it gives starboard and forward (and so bias, "
+            "drift, noise and resolution count) and is turned by the computed heading: a heading "
+            "error enters."
+        ),
         json_schema_extra={"label": "frame"},
     )
     rate_hz: float = quantity(
@@ -55,8 +59,8 @@ class _Kind(Parameters):
         le=1000.0,
         slider=(0.1, 10.0),
         log=True,
-        label="rate",
-        help="Samples a second.",
+        label=Text("rate"),
+        help=Text("Samples a second."),
     )
 
 
@@ -80,7 +84,7 @@ class Reference(_Errors):
     """
 
     outage: tuple[Outage, ...] = Field(
-        default=(), max_length=200, description="Times without log, [[reference.outage]]."
+        default=(), max_length=200, description=Text("Times without log, [[reference.outage]].")
     )
     min_speed_mps: float = quantity(
         0.0,
@@ -88,9 +92,11 @@ class Reference(_Errors):
         ge=0.0,
         le=50.0,
         slider=(0.0, 3.0),
-        label="valid from",
-        help="The log gives nothing while the ship is slower than this through the water (a recorded log: "
-        "while its reading is below this).",
+        label=Text("valid from"),
+        help=Text(
+            "The log gives nothing while the ship is slower than this through the water (a recorded log: "
+            "while its reading is below this)."
+        ),
     )
     zero_below_mps: float = quantity(
         0.0,
@@ -98,19 +104,25 @@ class Reference(_Errors):
         ge=0.0,
         le=5.0,
         slider=(0.0, 0.5),
-        label="moored below",
-        help="While the ship is slower than this over the ground, the reference is the velocity zero instead "
-        "of the log, whose errors and outages then do not count: a moored ship knows it. 0 for never.",
+        label=Text("moored below"),
+        help=Text(
+            "While the ship is slower than this over the ground, the reference is the velocity zero instead "
+            "of the log, whose errors and outages then do not count: a moored ship knows it. 0 for never."
+        ),
     )
     file: FileName | tuple[FileName, ...] | None = Field(
         default=None,
-        description="Recorded log: NMEA 0183 (VBW, VHW, VTG, RMC), CSV, Parquet or MAT; several files are "
-        "joined by UTC. Speeds along the ship's axes are preferred to course and speed over ground.",
-        json_schema_extra={"label": "log files"},
+        description=Text(
+            "Recorded log: NMEA 0183 (VBW, VHW, VTG, RMC), CSV, Parquet or MAT; several files are "
+            "joined by UTC. Speeds along the ship's axes are preferred to course and speed over ground."
+        ),
+        json_schema_extra={"label": Text("log files")},
     )
     speed: Literal["water", "ground"] = Field(
         default="water",
-        description="Which speed of a recorded VBW sentence is used; the other one when the log lacks this.",
+        description=Text(
+            "Which speed of a recorded VBW sentence is used; the other one when the log lacks this."
+        ),
         json_schema_extra={"label": "speed"},
     )
 

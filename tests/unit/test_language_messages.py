@@ -11,6 +11,7 @@ from websockets.datastructures import Headers
 from app.bridge.texts import Translator
 from app.http.running import language_of
 from app.languages.wording import Wording
+from navcore.foundation.text import Text
 
 WORDS = {
     "damping": "阻尼",
@@ -104,7 +105,7 @@ def test_texts_of_figures(page: Translator) -> None:
     }
     assert told["layout"] == {"title": {"text": "失准角"}, "meta": {"text": "Errors"}}
     update = messages.GuiUpdateMessage(
-        "u", {"series": ({"label": "time (h)"}, {"label": "Tilt", "stroke": "none"})}
+        "u", {"series": ({"label": Text("time ({name})", name="h")}, {"label": "Tilt", "stroke": "none"})}
     )
     sent: Any = page.message(update)
     assert sent.updates["series"] == (

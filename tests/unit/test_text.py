@@ -1,34 +1,86 @@
 """A text with named values: English as it stands, translated where its template is."""
 
 import pickle
-from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import pytest
 
 from app.languages.wording import Wording
-from navcore.foundation import text as texts
-from navcore.foundation.text import Text, origin_of
+from app.plots.plotly_data import PlotlyFigure
+from navcore.foundation.text import Text, quoted
+
+SAY = Wording(
+    {
+        "{count} run in {time:.1f} s": "{time:.1f} s 内 {count} 次运行",
+        "error": "误差",
+        "Run {number}": "第 {number} 次运行",
+        "See <b>this</b> and {what:html}": "参见 {what:html} 和<b>这</b>",
+        "must be > {bound:g}": "须大于 {bound:g}",
+    }
+)
+RUN = Text("Run {number}", number=3)
 
 
-def test_a_text_is_translated_by_its_template_or_stays_whole():
-    say = Wording({"{count} run in {time:.1f} s": "{time:.1f} s 内 {count} 次运行", "error": "误差"})
-    text = Text.plural("{count} run in {time:.1f} s", "{count} runs in {time:.1f} s", count=2, time=0.25)
-    assert text == "2 runs in 0.2 s" and say.text(f"<b>{text}</b>") == "<b>0.2 s 内 2 次运行</b>"
-    assert say.text(Text("Largest position error of every {what}", what="method")) == (
-        "Largest position error of every method"
-    )
+@pytest.mark.parametrize(
+    ("text", "english", "chinese"),
+    [
+        (
+            Text.plural("{count} run in {time:.1f} s", "{count} runs in {time:.1f} s", count=2, time=0.25),
+            "2 runs in 0.2 s",
+            "0.2 s 内 2 次运行",
+        ),
+        (Text("{run}: {what}", run=RUN, what="error"), "Run 3: error", "第 3 次运行：误差"),
+        (Text.joined(", ", [RUN, "error", "x"]), "Run 3, error, x", "第 3 次运行，误差，x"),
+        (RUN + " (" + "error" + ")", "Run 3 (error)", "第 3 次运行 (误差)"),
+        ("a " + RUN, "a Run 3", "a 第 3 次运行"),
+        # A text without a translation stays English whole, and so do the values in it.
+        (
+            Text("Largest {what} of every run", what="error"),
+            "Largest error of every run",
+            "Largest error of every run",
+        ),
+        (
+            Text("<b>{run}</b><p>Largest {what}</p>", run=RUN, what="error"),
+            "<b>Run 3</b><p>Largest error</p>",
+            "<b>第 3 次运行</b><p>Largest error</p>",
+        ),
+        (
+            Text(
+                '<p class="{look}" title="{run:html}">See <b>this</b> and {what:html}</p>',
+                look="error",
+                run=RUN,
+                what="a < b",
+            ),
+            '<p class="error" title="Run 3">See <b>this</b> and a &lt; b</p>',
+            '<p class="error" title="第 3 次运行">参见 a &lt; b 和<b>这</b></p>',
+        ),
+        (quoted("a <b>"), "a &lt;b&gt;", "a &lt;b&gt;"),
+        (
+            Text("{bound:sentence}", bound=Text("must be > {bound:g}", bound=1.5)),
+            "Must be > 1.5.",
+            "须大于 1.5。",
+        ),
+        (Text("{{x}} {run}", run=RUN), "{x} Run 3", "{x} 第 3 次运行"),
+    ],
+)
+def test_a_text_is_translated_by_its_template_or_stays_whole(text: Text, english: str, chinese: str) -> None:
+    assert (text, SAY.text(text)) == (english, chinese)
 
 
-def test_a_pickled_text_is_known_where_it_arrives():
-    text = pickle.loads(pickle.dumps(Text("chosen from {names}", names="a, b")))
-    assert (origin_of("chosen from  a, b"), text.values) == (text, {"names": "a, b"})
+def test_a_name_that_a_user_gave_is_no_text() -> None:
+    names = frozenset({"error"})
+    assert SAY.text("error", names) == "error" and SAY.text("error") == "误差"
+    assert SAY.text(Text("{run}: {name}", run=RUN, name="error"), names) == "第 3 次运行：error"
 
 
-def test_texts_made_in_many_threads_are_kept_up_to_a_bound(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(texts, "_origins", {})
-    monkeypatch.setattr(texts, "_MOST_KEPT", 100)
-    with ThreadPoolExecutor(8) as pool:
-        made = list(pool.map(lambda number: Text("text {number}", number=number), range(20_000)))
-    assert len(texts._origins) == 100
-    assert made[-1] == "text 19999"
-    assert all(origin_of(sentence) is kept for sentence, kept in texts._origins.items())
+def test_a_pickled_text_keeps_what_it_consists_of() -> None:
+    text: Any = pickle.loads(pickle.dumps(Text("{run}: {count}", run=RUN, count=2)))
+    assert (text, SAY.text(text)) == ("Run 3: 2", "第 3 次运行：2")
+
+
+def test_a_figure_keeps_its_texts() -> None:
+    json = PlotlyFigure(
+        data=[{"name": RUN, "x": [1.5]}], layout={"title": {"text": "error"}}, config={}
+    ).to_json()
+    assert json == '{"data":[{"name":"Run 3","x":[1.5]}],"layout":{"title":{"text":"error"}},"config":{}}'
+    assert json.texts == {"Run 3": RUN} and isinstance(json.texts["Run 3"], Text)

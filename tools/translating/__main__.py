@@ -5,19 +5,21 @@ with ``--missing`` nothing is written.
 """
 
 import json
+import re
 import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from babel.messages.catalog import Catalog
+from babel.messages.catalog import Catalog, Message
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
 
-from app.languages.wording import DOMAIN, FOLDER, positional
+from app.languages.wording import DOMAIN, FOLDER
 from app.views import load
 from tools.translating.extract import Text, script_texts, texts
 
+_NAMED = re.compile(r"\{[a-z][^{}]*\}")
 LANGUAGES = ("zh_CN",)
 _HEADER = """\
 # Texts of Schuler Bench for readers of {language}. Written by `make languages`; the translations are ours.
@@ -54,12 +56,26 @@ def updated(old: Catalog, found: list[Text], language: str) -> Catalog:
     new.revision_date = new.creation_date = old.creation_date
     for text in found:
         message = old.get(text.key)
-        said = "" if message is None else str(message.string)
+        said = "" if message is None else _said(message)
         if text.prose or said:
-            file, _, _ = text.where.partition(":")
-            where: Any = [(file, None)]  # a line number would change with every edit of the file
-            new.add(text.key, said, locations=where, flags=["python-brace-format"] * ("{" in text.key))
+            where: Any = [(text.where.partition(":")[0], None)]  # a line number would change with every edit
+            key, string = ((text.key, text.many), (said,)) if text.many else (text.key, said)
+            new.add(key, string, locations=where, flags=["python-brace-format"] * ("{" in text.key))
     return new
+
+
+def _said(message: Message) -> str:
+    """Translation of a message; Chinese has one form for any number."""
+    return message.string if isinstance(message.string, str) else (message.string or ("",))[0]
+
+
+def _key(message: Message) -> str:
+    return message.id if isinstance(message.id, str) else message.id[0]
+
+
+def translations(catalog: Catalog) -> dict[str, str]:
+    """Each text that has a translation, by its form for one, with the translation."""
+    return {_key(message): _said(message) for message in catalog if message.id and _said(message)}
 
 
 def script(catalog: Catalog, language: str) -> str:
@@ -70,12 +86,17 @@ def script(catalog: Catalog, language: str) -> str:
     """
     wanted = {kind.title for kind in load()} | {text.key for text in script_texts()}
     said = dict(
-        positional(str(message.id), str(message.string))
-        for message in catalog
-        if message.id and message.string and message.id != message.string and message.id in wanted
+        _positional(key, said) for key, said in translations(catalog).items() if key != said and key in wanted
     )
     words = json.dumps({language.replace("_", "-"): said}, ensure_ascii=False, indent=1)
     return f"// Written by `make languages` from {DOMAIN}.po.\nwindow.schuler.words = {words};\n"
+
+
+def _positional(key: str, said: str) -> tuple[str, str]:
+    """Number the values of a template, by which the page's script finds them in a text."""
+    for number, mark in enumerate(dict.fromkeys(_NAMED.findall(key))):
+        key, said = key.replace(mark, f"{{{number}}}"), said.replace(mark, f"{{{number}}}")
+    return key, said
 
 
 def missing(found: list[Text], said: Mapping[str, str]) -> list[str]:
@@ -88,7 +109,7 @@ def main() -> None:
     found = texts()
     for language in LANGUAGES:
         catalog = updated(read(language), found, language)
-        left = missing(found, {str(message.id): str(message.string) for message in catalog})
+        left = missing(found, translations(catalog))
         print("\n".join(left))
         if "--missing" in sys.argv:
             continue

@@ -5,11 +5,10 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
-from app.languages.markup import in_pieces
 from app.views import load
 from navcore.foundation.assets import asset_path
 from tools.translating import python, scripts
-from tools.translating.python import Text, is_prose, numbered
+from tools.translating.python import Text, pieces
 
 ROOT = Path(__file__).parents[2]
 _NOT_ON_THE_PAGE = tuple(
@@ -46,16 +45,17 @@ _OF_VISER = (
     "Adaptive",
 )
 """Texts of viser's own page."""
+_OF_SCRIPTS = ("play",)
+"""Words of our scripts that look like code."""
 _SYMBOLS = frozenset({"starboard"})
 """Element names that stay as they are."""
 
 
 def texts() -> list[Text]:
-    """Every text once, in a fixed order; prose before a mere word with the same key."""
+    """Every text once, in a fixed order."""
     found: dict[str, Text] = {}
     for text in (*_python(), *script_texts(), *_assets(), *_fields()):
-        old = found.get(text.key)
-        if old is None or (text.prose and not old.prose):
+        if text.key not in found or text.prose > found[text.key].prose:
             found[text.key] = text
     return list(found.values())
 
@@ -74,8 +74,8 @@ def script_texts() -> Iterator[Text]:
         name = path.relative_to(ROOT).as_posix()
         if not name.startswith("app/languages") and not name.endswith(".min.js"):
             yield from scripts.texts_in(path, name)
-    for key in _OF_VISER:
-        yield Text(key, "viser", True)
+    for key in (*_OF_VISER, *_OF_SCRIPTS):
+        yield Text(key, "viser")
     as_data = [*sorted((ROOT / "app" / "views" / "scene").glob("*.py")), ROOT / "app" / "plots" / "legend.py"]
     for path in as_data:
         yield from python.texts_in(path, path.relative_to(ROOT).as_posix())
@@ -87,27 +87,26 @@ def _assets() -> Iterator[Text]:
 
     for entry, fields in tomllib.loads(asset_path("explain.toml").read_text(encoding="utf-8")).items():
         for name in ("says", "source"):
-            if name in fields:
-                yield from _pieces(fields[name], f"explain.toml: {entry}")
+            yield from pieces(fields.get(name, ""), f"explain.toml: {entry}", prose=name == "says")
     for name in presets():
         scenario = load(name)
-        for text in (scenario.title, scenario.source):
-            yield from _pieces(text, f"presets/{name}.toml")
+        yield from pieces(scenario.title, f"presets/{name}.toml")
+        yield from pieces(scenario.source, f"presets/{name}.toml", prose=False)
     for lesson in lessons():
         where = f"lessons/{lesson.id}.md"
-        yield from _pieces(f"<p>{lesson.title}</p><p>{lesson.about}</p>", where)
+        yield from pieces(f"<p>{lesson.title}</p><p>{lesson.about}</p>", where)
         for name in ("title", "source"):
-            yield from _pieces(str(lesson.scenario.get(name, "")), where)
+            yield from pieces(str(lesson.scenario.get(name, "")), where, prose=False)
         for step in lesson.steps:
-            yield from _pieces(f"<p>{step.title}</p>{to_html(step.text, None)}", where)
+            yield from pieces(f"<p>{step.title}</p>{to_html(step.text, None)}", where)
             if step.question is not None:
                 asked = step.question
                 for text in (asked.ask, asked.why, *(choice.say for choice in asked.choices)):
-                    yield from _pieces(to_html(text, None), where)
+                    yield from pieces(to_html(text, None), where)
 
 
 def _fields() -> Iterator[Text]:
-    """Labels of the controls: of a field without a label its name; of a vector the names of its elements."""
+    """Labels of the controls, a field's own or its name, names of a vector's elements, and choices."""
     from app.editing import form
     from navcore.foundation.parameters import Parameters, extra_of
 
@@ -117,7 +116,9 @@ def _fields() -> Iterator[Text]:
             extra, where = extra_of(info), f"{kind.__module__}:{kind.__name__}"
             for label in (form.plain_label(name, info), *extra.get("elements", ())):
                 if re.search("[a-z]{3,}", label) and label not in _SYMBOLS:
-                    yield Text(label, where, re.search("[a-z]{4,}", label) is not None)
+                    yield Text(label, where, prose=re.search("[a-z]{4,}", label) is not None)
+            for choice in (*form.choices_of(info), name.replace("_", " ")):
+                yield Text(choice, where, prose=False)
 
 
 def _models(base: type) -> Iterator[type]:
@@ -126,10 +127,3 @@ def _models(base: type) -> Iterator[type]:
         if kind.__module__.startswith(("app.", "navcore.")):
             yield kind
         yield from _models(kind)
-
-
-def _pieces(html: str, where: str) -> Iterator[Text]:
-    for piece in in_pieces(html):
-        key = numbered(piece)
-        if re.search(r"[A-Za-z]{2,}", re.sub(r"\{\d+\}|<[^>]*>", "", key)):
-            yield Text(key, where, is_prose(key) or " " not in key)

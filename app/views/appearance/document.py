@@ -26,7 +26,7 @@ from app.views.compare.table import lines_of, pins_html
 from app.views.metrics.table import metrics_html, system_html
 from app.views.metrics.view import warnings_html
 from app.views.requirements.table import requirements_html
-from navcore.foundation.text import Text
+from navcore.foundation.text import Text, quoted
 from navcore.foundation.version import __version__
 from navcore.scenario.file import load, presets, to_toml
 
@@ -106,7 +106,7 @@ class Export:
         try:
             figures = view.figures(now, title)
         except LookupError as error:
-            notices.tell(self._client, "Nothing to save", [str(error)], "warning")
+            notices.tell(self._client, Text("Nothing to save"), [str(error)], "warning")
             return
         name = title.split(": ")[-1].split(" (")[0].replace(" ", "-").lower()
         if format == "CSV":
@@ -149,13 +149,13 @@ class Export:
 
     def tell_no_run(self) -> None:
         """There is nothing to save yet."""
-        notices.tell(self._client, "Nothing to save", ["there is no run yet"], "warning")
+        notices.tell(self._client, Text("Nothing to save"), [Text("there is no run yet")], "warning")
 
     def _exported(self, fault: str) -> None:
         """The page has saved its file, or says why not."""
         self._wanted.content = ""
         if fault:
-            notices.tell(self._client, "Not saved", [fault[:200]], "warning")
+            notices.tell(self._client, Text("Not saved"), [fault[:200]], "warning")
         self._client.flush()
 
 
@@ -219,16 +219,30 @@ def document(
         Translates HTML.
     """
     figures = (
-        f'<figure><figcaption>{escape(title)}</figcaption><img data-picture="{place}" alt="{escape(title)}">'
-        "</figure>"
+        Text(
+            '<figure><figcaption>{title:html}</figcaption><img data-picture="{place}" '
+            'alt="{title:html}"></figure>',
+            title=title,
+            place=place,
+        )
         for place, title in enumerate(pictures)
     )
+    plots = _section(Text("Plots"), *figures)
     body = say(
-        f"<header><h1>Schuler Bench: {escape(session.title)}</h1>{_about(session)}</header>"
-        f"{_warnings(session)}{_metrics(session)}{_requirements(session)}{_pins(session)}"
-        f"{_section('Plots', *figures)}{_scenario(session)}"
+        Text(
+            "<header><h1>Schuler Bench: {title:html}</h1>{about}</header>"
+            "{warnings}{metrics}{requirements}{pins}{plots}{scenario}",
+            title=session.title,
+            about=_about(session),
+            warnings=_warnings(session),
+            metrics=_metrics(session),
+            requirements=_requirements(session),
+            pins=_pins(session),
+            plots=plots,
+            scenario=_scenario(session),
+        )
     )
-    title = escape(session.title)
+    title = quoted(session.title)
     return _PAGE.substitute(language=escape(language), title=title, style=_CSS, body=body)
 
 
@@ -236,36 +250,41 @@ def command(session: Session) -> str:
     """Command that runs the scenario again: by its name while it is a preset, else from the file."""
     if session.origin in presets() and load(session.origin) == session.now.run.scenario:
         return Text("schuler run {origin}", origin=session.origin)
-    return "schuler run scenario.toml"
+    return Text("schuler run scenario.toml")
 
 
 def _about(session: Session) -> str:
     scenario = session.now.run.scenario
-    source = f"<p>{escape(scenario.source)}</p>" if scenario.source else ""
+    source = Text("<p>{source:html}</p>", source=scenario.source) if scenario.source else ""
     lines = {
-        "Scenario": escape(session.origin),
-        "Duration": f"{scenario.run.duration_h:g} h",
-        "Date": f"{session.date:%Y-%m-%d %H:%M %Z}",
-        "Program": Text("Schuler Bench {version}", version=__version__),
-        "SHA-256": f"<code>{session.now.run.scenario_sha256}</code>",
-        "Run it again": f'<code translate="no">{escape(command(session))}</code>',
+        Text("Scenario"): quoted(session.origin),
+        Text("Duration"): f"{scenario.run.duration_h:g} h",
+        Text("Date"): f"{session.date:%Y-%m-%d %H:%M %Z}",
+        Text("Program"): Text("Schuler Bench {version}", version=__version__),
+        "SHA-256": Text("<code>{scenario_sha256}</code>", scenario_sha256=session.now.run.scenario_sha256),
+        Text("Run it again"): Text('<code translate="no">{command:html}</code>', command=command(session)),
     }
-    rows = "".join(f"<dt>{name}</dt><dd>{value}</dd>" for name, value in lines.items())
-    return f"{source}<dl>{rows}</dl>"
+    rows = Text.joined(
+        "", (Text("<dt>{name}</dt><dd>{value}</dd>", name=name, value=value) for name, value in lines.items())
+    )
+    return Text("{source}<dl>{rows}</dl>", source=source, rows=rows)
 
 
 def _section(title: str, *content: str) -> str:
-    return f"<section><h2>{title}</h2>{''.join(content)}</section>"
+    return Text("<section><h2>{title}</h2>{content}</section>", title=title, content=Text.joined("", content))
 
 
 def _tables(count: int, make: Callable[[range], str]) -> str:
     """Tables that are about equally wide; ``make`` gives one of some of the methods."""
-    return "".join(f'<div class="table">{make(part)}</div>' for part in table.parts(count, _ABREAST))
+    return Text.joined(
+        "",
+        (Text('<div class="table">{make}</div>', make=make(part)) for part in table.parts(count, _ABREAST)),
+    )
 
 
 def _warnings(session: Session) -> str:
     warnings = warnings_html(session.now.run, session.now.verified)
-    return _section("Warnings about the run", warnings) if "sb-note" in warnings else ""
+    return _section(Text("Warnings about the run"), warnings) if "sb-note" in warnings else ""
 
 
 def _metrics(session: Session) -> str:
@@ -273,39 +292,45 @@ def _metrics(session: Session) -> str:
     window = window_of(run, display)
     note = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
     tables = _tables(len(run.methods), lambda part: metrics_html(window.run, part, display=display))
-    system = system_html(run).replace("<details ", "<details open ", 1)
-    return _section("Metrics", note, tables, f'<div class="table">{system}</div>')
+    system = system_html(run, folded=False)
+    return _section(Text("Metrics"), note, tables, Text('<div class="table">{system}</div>', system=system))
 
 
 def _requirements(session: Session) -> str:
     display = session.now.display
     if not display.requirements.limits:
-        return _section("Requirements", "<p>No requirement is set.</p>")
+        return _section(Text("Requirements"), Text("<p>No requirement is set.</p>"))
     run = window_of(session.now.run, display).run
     tables = _tables(
         len(run.methods), lambda part: requirements_html(run, display.requirements, methods=part)
     )
-    return _section("Requirements", tables)
+    return _section(Text("Requirements"), tables)
 
 
 def _pins(session: Session) -> str:
     run, display, baseline = session.now.run, session.now.display, session.now.baseline
     pins = titled(session.pins, run.scenario)
     if not pins:
-        return _section("Pins", "<p>No run is pinned.</p>")
+        return _section(Text("Pins"), Text("<p>No run is pinned.</p>"))
     lines = lines_of(window_of(run, display), session.now.selected, pins, display.requirements)
     by = None if baseline is None else baseline.id
     return _section(
-        "Pins", f'<div class="table">{pins_html(lines, display.pins_by, by, buttons=False)}</div>'
+        Text("Pins"),
+        Text(
+            '<div class="table">{pins_html}</div>',
+            pins_html=pins_html(lines, display.pins_by, by, buttons=False),
+        ),
     )
 
 
 def _scenario(session: Session) -> str:
     scenario = with_plain_names(session.now.run.scenario)
-    files = ", ".join(sorted(files_of(scenario)))
-    beside = f"<p>It needs these recordings beside it: {escape(files)}.</p>" if files else ""
-    how = "<p>To compute the run again, save this text as scenario.toml and give the command above.</p>"
-    return _section("Scenario", how, beside, f"<pre>{escape(to_toml(scenario))}</pre>")
+    files = Text.joined(", ", sorted(files_of(scenario)))
+    beside = Text("<p>It needs these recordings beside it: {files:html}.</p>", files=files) if files else ""
+    how = Text("<p>To compute the run again, save this text as scenario.toml and give the command above.</p>")
+    return _section(
+        Text("Scenario"), how, beside, Text("<pre>{to_toml:html}</pre>", to_toml=to_toml(scenario))
+    )
 
 
 class Sheet:
@@ -322,8 +347,8 @@ class Sheet:
     def __init__(self, frame: Frame, export: Export) -> None:
         self._frame, self._export = frame, export
         add = frame.commands.register
-        add("save-page", lambda _: self.save(PAGE), "Save the session as one page (HTML)", watcher=True)
-        overview = "Save all plots in one picture (PNG)"
+        add("save-page", lambda _: self.save(PAGE), Text("Save the session as one page (HTML)"), watcher=True)
+        overview = Text("Save all plots in one picture (PNG)")
         add("save-overview", lambda _: self.save(OVERVIEW), overview, watcher=True)
 
     def save(self, name: str) -> None:
@@ -347,7 +372,7 @@ class Sheet:
 def pictures_of(frame: Frame, now: Shown) -> list[Picture]:
     """3D view and plots of all views, in the order of their tabs, laid out alike whatever the window is."""
     layout = layout_for(*_WINDOW)
-    pictures = [Picture("Trajectory in 3D", None, 0.0)]
+    pictures = [Picture(Text("Trajectory in 3D"), None, 0.0)]
     for view in frame.views():
         if isinstance(view, PictureView) and not view.stands(now.run):
             continue

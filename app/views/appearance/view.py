@@ -20,7 +20,7 @@ from app.views.appearance.document import FORMATS, Export, Sheet
 from navcore.foundation.notation import unit_sign
 from navcore.foundation.text import Text
 
-DARK, PRESENTATION, LANGUAGE = "dark page", "presentation size", "language"
+DARK, PRESENTATION, LANGUAGE = Text("dark page"), Text("presentation size"), Text("language")
 """Labels; ``language`` is also the name of the command, its argument a language such as "zh-CN"."""
 _RULES = (Path(__file__).parent / "static" / "presentation.css").read_text(encoding="utf-8")
 _INVERT = 0.93
@@ -30,7 +30,7 @@ DARK_CSS = f"html{{background:#fff;filter:invert({_INVERT}) hue-rotate(180deg)}}
 
 The root's own filter leaves fixed elements where they are; those of other elements would not.
 """
-_ROW = (
+_ROW = Text(
     '<div class="sb-row sb-lecture" role="toolbar" aria-label="Presentation">'
     '<button class="sb-do" data-command="size" aria-pressed="true" '
     'title="Back to the page with all its controls (L)">Normal size</button>'
@@ -86,17 +86,19 @@ LOOKS = (
         "theme",
         ("light", "dark"),
         DARK,
-        "Dark: for a dim room. Light: for a projector and print. Key: D.",
-        ("theme", "Dark or light page", "D"),
+        Text("Dark: for a dim room. Light: for a projector and print. Key: D."),
+        ("theme", Text("Dark or light page"), "D"),
         dark_style,
     ),
     Look(
         "size",
         ("normal", "presentation"),
         PRESENTATION,
-        "Large type and wide lines on the whole page, for a projector, and only the controls of the "
-        "open lesson or of the selected method. Key: L.",
-        ("size", "Presentation size on or off", "L"),
+        Text(
+            "Large type and wide lines on the whole page, for a projector, and only the controls of the "
+            "open lesson or of the selected method. Key: L."
+        ),
+        ("size", Text("Presentation size on or off"), "L"),
         size_style,
     ),
 )
@@ -168,10 +170,10 @@ class PageLanguage:
     def build(self) -> None:
         """Make the chooser, in the present container."""
         gui = self._frame.gui
-        gui.add_html(notices.heading("Language"), order=28)
+        gui.add_html(notices.heading(Text("Language")), order=28)
         chooser = gui.add_dropdown(
             LANGUAGE, tuple(NAMES.values()), initial_value=self._now, order=29,
-            hint="Of this page alone: others on this session read their own. Your work stays as it is.",
+            hint=Text("Of this page alone: others on this session read their own. Your work stays as it is."),
         )  # fmt: skip
         by_name = {name: language for language, name in NAMES.items()}
         chooser.on_update(if_user(lambda: self._ask(by_name[chooser.value])))
@@ -182,40 +184,44 @@ class PageLanguage:
 
 
 _CHOICES = {
-    "angles in": ("angle", "Unit of tilts and headings in the plots over time, the spectrum and the table."),
-    "lengths in": ("length", "Unit of position errors."),
-    "velocities in": ("speed", "Unit of velocity errors."),
-    "times in": ("time", "Unit of the time axis, and of the spectrum's periods."),
-    "error axis": (
+    Text("angles in"): (
+        "angle",
+        Text("Unit of tilts and headings in the plots over time, the spectrum and the table."),
+    ),
+    Text("lengths in"): ("length", Text("Unit of position errors.")),
+    Text("velocities in"): ("speed", Text("Unit of velocity errors.")),
+    Text("times in"): ("time", Text("Unit of the time axis, and of the spectrum's periods.")),
+    Text("error axis"): (
         "scale",
-        "log: magnitudes of the errors, on an axis of decades. Linear: with their signs.",
+        Text("log: magnitudes of the errors, on an axis of decades. Linear: with their signs."),
     ),
 }
-BANDS = "bands"
+BANDS = Text("bands")
 _BANDS = {
-    "off": "none",
-    "±1σ by covariance": "covariance",
+    Text("off"): "none",
+    Text("±1σ by covariance"): "covariance",
     Text("{seeds} seeds, 5 to 95 %", seeds=SEEDS): "seeds",
 }
-EXPORT, FORMAT = "export plot", "export as"
-_PAGE_HINT = (
+EXPORT, FORMAT = Text("export plot"), Text("export as")
+_PAGE_HINT = Text(
     "Numbers, verdicts, pins, warnings, all plots and the scenario on one page: it needs no server, and "
     "prints on A4."
 )
-_OVERVIEW_HINT = "All plots side by side, also those whose tabs are not in front."
-_SESSION = (
-    '<div class="sb-export"><div class="sb-row">'
-    f'<button class="sb-do" data-command="save-page" title="{_PAGE_HINT}">Save as one page (HTML)</button>'
-    f'<button class="sb-do" data-command="save-overview" title="{_OVERVIEW_HINT}">Save all plots (PNG)'
-    "</button>"
-    '</div><div class="sb-making" role="status"></div></div>'
+_OVERVIEW_HINT = Text("All plots side by side, also those whose tabs are not in front.")
+_SESSION = Text(
+    '<div class="sb-export"><div class="sb-row"><button class="sb-do" '
+    'data-command="save-page" title="{page_hint}">Save as one page (HTML)</button><button '
+    'class="sb-do" data-command="save-overview" title="{overview_hint}">Save all plots '
+    '(PNG)</button></div><div class="sb-making" role="status"></div></div>',
+    page_hint=_PAGE_HINT,
+    overview_hint=_OVERVIEW_HINT,
 )
 
 
 class AppearanceView(View):
     """How the plots are read, and what is taken from them."""
 
-    title = "View"
+    title = Text("View")
     place = "edit"
 
     def __init__(self, frame: Frame) -> None:
@@ -229,31 +235,39 @@ class AppearanceView(View):
         self._looks, language = Looks(self.frame), PageLanguage(self.frame)
         self._choosers: dict[str, Any] = {}
         with tab:
-            gui.add_html(notices.heading("Units and axes"), order=0)
+            gui.add_html(notices.heading(Text("Units and axes")), order=0)
             for order, (label, (field, hint)) in enumerate(_CHOICES.items(), start=1):
                 self._choosers[field] = self._chooser(label, field, hint, order)
-            gui.add_html(notices.heading("Bands behind the error curves"), order=10)
+            gui.add_html(notices.heading(Text("Bands behind the error curves")), order=10)
             self._bands: Any = gui.add_dropdown(
-                BANDS, tuple(_BANDS), order=11,
-                hint=Text("Covariance: one standard deviation of all modelled errors together, for "
-"laws that do not look at the data. Seeds: runs the scenario with {seeds} "
-"other seeds, and fills where 90 % of them lie.", seeds=SEEDS),
-            )  # fmt: skip
+                BANDS,
+                tuple(_BANDS),
+                order=11,
+                hint=Text(
+                    "Covariance: one standard deviation of all modelled errors together, for "
+                    "laws that do not look at the data. Seeds: runs the scenario with {seeds} "
+                    "other seeds, and fills where 90 % of them lie.",
+                    seeds=SEEDS,
+                ),
+            )
             self._progress = gui.add_progress_bar(0.0, visible=False, order=12)
             self._words = gui.add_html("", visible=False, order=13)
-            gui.add_html(notices.heading("Export a plot"), order=20)
+            gui.add_html(notices.heading(Text("Export a plot")), order=20)
             plot: Any = gui.add_dropdown(
                 EXPORT,
                 export.plots,
                 order=21,
-                hint="Plot to save: as it is shown, with its units and curves.",
+                hint=Text("Plot to save: as it is shown, with its units and curves."),
             )
             format: Any = gui.add_button_group(
-                FORMAT, FORMATS, order=22, hint="CSV: the plotted numbers in full. SVG, PNG: the picture."
+                FORMAT,
+                FORMATS,
+                order=22,
+                hint=Text("CSV: the plotted numbers in full. SVG, PNG: the picture."),
             )
-            gui.add_html(notices.heading("Export the whole session"), order=23)
+            gui.add_html(notices.heading(Text("Export the whole session")), order=23)
             gui.add_html(_SESSION, order=24)
-            gui.add_html(notices.heading("Page"), order=30)
+            gui.add_html(notices.heading(Text("Page")), order=30)
             language.build()
             self._looks.build()
         self._bands.on_update(if_user(lambda: self.frame.show(envelope=_BANDS[self._bands.value])))

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape
 
 from app.plots import style
 from app.plots.table import cell, row, table
@@ -14,6 +13,7 @@ from app.session.shown import Window, edited
 from app.views.requirements.table import overall
 from navcore.engine.measures import measure
 from navcore.engine.run import Run
+from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES
 
 MEASURED = {
@@ -26,11 +26,14 @@ MEASURED = {
 COLUMNS: dict[str, str] = {
     "pinned": "run",
     "method": "method",
-    **{name: f"{quantity.label} ({quantity.shown})" for name, quantity in MEASURED.items()},
-    "verdict": "requirements",
+    **{
+        name: Text("{label} ({shown})", label=quantity.label, shown=quantity.shown)
+        for name, quantity in MEASURED.items()
+    },
+    "verdict": Text("requirements"),
 }
 """Columns by which the table can be sorted, and their headings."""
-PRESENT = "present run"
+PRESENT = Text("present run")
 _TEXTS = ("pinned", "method")
 
 
@@ -128,7 +131,7 @@ def pins_html(lines: Sequence[Line], by: str, baseline: int | None, *, buttons: 
             best[name] = min(finite)
     marks = {column: " ▾" if falling else " ▴"} if buttons else {}
     head = [_head(name, title, marks.get(name, ""), buttons) for name, title in COLUMNS.items()]
-    head.append(cell("note", tag="th"))
+    head.append(cell(Text("note"), tag="th"))
     rows = (_row(line, best, baseline) for line in ordered)
     return cell(table([row(head)], rows), "sb-pins sb-table", tag="div")
 
@@ -136,27 +139,31 @@ def pins_html(lines: Sequence[Line], by: str, baseline: int | None, *, buttons: 
 def _head(name: str, title: str, mark: str, buttons: bool) -> str:
     state = {" ▾": "descending", " ▴": "ascending"}.get(mark)
     if buttons:
-        button = f'<button class="sb-sort" data-command="sort-pins {name}" title="Sort by this column">'
-        title = f"{button}{title}{mark}</button>"
+        button = Text(
+            '<button class="sb-sort" data-command="sort-pins {name}" title="Sort by this column">', name=name
+        )
+        title = Text("{button}{title}{mark}</button>", button=button, title=title, mark=mark)
     return cell(title, "" if name in _TEXTS else "sb-n", tag="th", scope="col", aria_sort=state)
 
 
 def _row(line: Line, best: dict[str, float], baseline: int | None) -> str:
     pin = line.pin
     dash = "solid" if pin is None else "dashed"
-    name = f'<span class="sb-bar" style="border-top:3px {dash} {line.color}"></span>'
+    name = Text(
+        '<span class="sb-bar" style="border-top:3px {dash} {color}"></span>', dash=dash, color=line.color
+    )
     if pin is None:
-        name += f"<b>{PRESENT}</b>"
+        name += Text("<b>{present}</b>", present=PRESENT)
     else:
-        marks = (", baseline" if pin.id == baseline else "") + ("" if pin.shown else ", hidden")
-        name += f"<b>{escape(pin.name)}</b>{marks}"
+        marks = [Text("baseline")] * (pin.id == baseline) + [Text("hidden")] * (not pin.shown)
+        name += Text.joined(", ", [Text("<b>{name:html}</b>", name=pin.name), *marks])
     numbers = (
         [_cell(line, column, best) for column in list(COLUMNS)[2:]]
         if line.numbers
-        else [cell("being computed", colspan=len(COLUMNS) - 2)]
+        else [cell(Text("being computed"), colspan=len(COLUMNS) - 2)]
     )
-    note = cell("" if pin is None else escape(pin.note))
-    return row([cell(name, "sb-name"), cell(escape(line.method)), *numbers, note])
+    note = cell("" if pin is None else quoted(pin.note))
+    return row([cell(name, "sb-name"), cell(quoted(line.method)), *numbers, note])
 
 
 def _cell(line: Line, name: str, best: dict[str, float]) -> str:

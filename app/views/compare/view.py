@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Callable
-from html import escape
 from typing import Any
 
 from app.plots import style
@@ -16,13 +15,19 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.quantities import STATISTICS
 
-PIN, FLIP = "Pin this run", "Flip to the baseline"
-CHOSEN, NAME, NOTE, COLOR, SHOWN = "pin", "pin name", "pin note", "pin colour", "pin shown"
-BASELINE, DELTA = "compare with", "Δ of"
-BACK, REMOVE = "Go back to this pin", "Remove this pin"
-_FIRST = "the first pin"
+PIN, FLIP = Text("Pin this run"), Text("Flip to the baseline")
+CHOSEN, NAME, NOTE, COLOR, SHOWN = (
+    Text("pin"),
+    Text("pin name"),
+    Text("pin note"),
+    Text("pin colour"),
+    Text("pin shown"),
+)
+BASELINE, DELTA = Text("compare with"), Text("Δ of")
+BACK, REMOVE = Text("Go back to this pin"), Text("Remove this pin")
+_FIRST = Text("the first pin")
 _STATISTICS = {word: statistic for statistic, word in STATISTICS.items()}
-_EMPTY = (
+_EMPTY = Text(
     "Nothing is pinned yet. Pin the present run (key P), then move a slider: every plot keeps the pinned run "
     "as thin dashed curves, the table shows the difference, and B flips between the two."
 )
@@ -31,16 +36,16 @@ _EMPTY = (
 class CompareView(PictureView[str]):
     """Table of the pins, and controls of the one that is chosen."""
 
-    title = "Compare"
+    title = Text("Compare")
     place = "lower"
-    look_for = "Pinned runs beside the present one: a heading sorts, B flips."
+    look_for = Text("Pinned runs beside the present one: a heading sorts, B flips.")
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
         self._mark = frame.gui.add_html("", order=4)
         add = frame.commands.register
-        add("pin", lambda _: self._pin_run(), "Pin the present run", "P")
-        add("flip", lambda _: self._flip(), "Flip between this run and the baseline", "B")
+        add("pin", lambda _: self._pin_run(), Text("Pin the present run"), "P")
+        add("flip", lambda _: self._flip(), Text("Flip between this run and the baseline"), "B")
         add("sort-pins", self._sort)
 
     def build(self, tab: Tab) -> None:
@@ -49,34 +54,38 @@ class CompareView(PictureView[str]):
         self._options: dict[str, int] = {}
         with tab:
             gui.add_html('<div class="sb-compare"></div>', order=0)
-            pin = gui.add_button(PIN, hint="Keep the present run as a baseline. Key: P.", order=1)
+            pin = gui.add_button(PIN, hint=Text("Keep the present run as a baseline. Key: P."), order=1)
             flip = gui.add_button(
                 FLIP,
-                hint="All plots show the baseline in the place of this run. Key: B.",
+                hint=Text("All plots show the baseline in the place of this run. Key: B."),
                 order=2,
             )
             self._baseline: Any = gui.add_dropdown(
                 BASELINE,
                 (_FIRST,),
                 order=3,
-                hint="Baseline of the differences in the table, and of the flip.",
+                hint=Text("Baseline of the differences in the table, and of the flip."),
             )
             self._delta: Any = gui.add_dropdown(
                 DELTA,
                 tuple(_STATISTICS),
                 order=4,
-                hint="Number of each error that the table compares: rms, largest, last.",
+                hint=Text("Number of each error that the table compares: rms, largest, last."),
             )
             self._list = gui.add_html("", order=5)
-            self._chosen: Any = gui.add_dropdown(CHOSEN, ("",), order=6, hint="Pin that is edited here.")
-            self._name = gui.add_text(NAME, "", order=7, hint="Shown in every legend.")
-            self._color: Any = gui.add_dropdown(COLOR, tuple(COLORS), order=8, hint="Of its curves.")
-            self._shown = gui.add_checkbox(SHOWN, True, order=9, hint="Lay it over every plot.")
-            self._note = gui.add_text(NOTE, "", order=10, hint="What there is to say of it.")
-            back = gui.add_button(
-                BACK, order=11, hint="Its scenario becomes the present one; this can be undone."
+            self._chosen: Any = gui.add_dropdown(
+                CHOSEN, ("",), order=6, hint=Text("Pin that is edited here.")
             )
-            remove = gui.add_button(REMOVE, order=12, color="orange", hint="Its curves go from every plot.")
+            self._name = gui.add_text(NAME, "", order=7, hint=Text("Shown in every legend."))
+            self._color: Any = gui.add_dropdown(COLOR, tuple(COLORS), order=8, hint=Text("Of its curves."))
+            self._shown = gui.add_checkbox(SHOWN, True, order=9, hint=Text("Lay it over every plot."))
+            self._note = gui.add_text(NOTE, "", order=10, hint=Text("What there is to say of it."))
+            back = gui.add_button(
+                BACK, order=11, hint=Text("Its scenario becomes the present one; this can be undone.")
+            )
+            remove = gui.add_button(
+                REMOVE, order=12, color="orange", hint=Text("Its curves go from every plot.")
+            )
         self._details = [self._chosen, self._name, self._color, self._shown, self._note, back, remove]
         pin.on_click(lambda _: self._pin_run())
         flip.on_click(lambda _: self._flip())
@@ -106,7 +115,7 @@ class CompareView(PictureView[str]):
         session = self.session
         pins = titled(session.pins.all, found.run.scenario)
         if not pins:
-            return f'<div class="sb-no-pins">{notices.small(_EMPTY)}</div>'
+            return Text('<div class="sb-no-pins">{small}</div>', small=notices.small(_EMPTY))
         window = window_of(found.run, found.display)
         lines = lines_of(window, found.selected, pins, found.display.requirements)
         baseline = session.pins.baseline(found.display.baseline)
@@ -130,8 +139,8 @@ class CompareView(PictureView[str]):
             text = Text(
                 "Showing the pin “{name}”, not the present run. Key B flips back.", name=found.flipped.name
             )
-            role = f'<div id="sb-flip" role="status" hidden>{escape(text)}</div>'
-            content = f"{role}<style>{_frame(text, found.flipped.hex)}</style>"
+            role = Text('<div id="sb-flip" role="status" hidden>{text:html}</div>', text=text)
+            content = Text("{role}<style>{frame}</style>", role=role, frame=_frame(text, found.flipped.hex))
         if self._mark.content != content:
             self._mark.content = content
 
@@ -144,7 +153,7 @@ class CompareView(PictureView[str]):
         with session.lock:
             run, origin, place = session.run, session.origin, session.selected
         if run is None:
-            notices.tell(client, "Nothing to pin", ["there is no run yet"], "warning")
+            notices.tell(client, Text("Nothing to pin"), [Text("there is no run yet")], "warning")
             return
         try:
             edited = run.methods[min(place, len(run.methods) - 1)].method.name
@@ -156,13 +165,15 @@ class CompareView(PictureView[str]):
                     most_pins=MOST_PINS,
                 )
             ]
-            notices.tell(client, "Not pinned", lines, "warning")
+            notices.tell(client, Text("Not pinned"), lines, "warning")
 
     def _flip(self) -> None:
         """Show the baseline in the place of the present run, or the present run again."""
         session = self.session
         if not session.display.flipped and session.pins.baseline(session.display.baseline) is None:
-            notices.tell(self.frame.client, "Nothing to flip to", ["Pin a run first (key P)."], "warning")
+            notices.tell(
+                self.frame.client, Text("Nothing to flip to"), [Text("Pin a run first (key P).")], "warning"
+            )
             return
         session.show(None, flipped=not session.display.flipped)
 

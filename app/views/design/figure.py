@@ -13,20 +13,20 @@ from navcore.foundation.text import Text
 from navcore.quantities import Kind, budgeted
 
 SOURCES = {
-    "gyro_white": ("gyro white noise", "#1F5A91"),
-    "gyro_drift": ("gyro drift", "#5B9BD5"),
-    "gyro_bias": ("gyro bias", "#A9CCEA"),
-    "accel_white": ("accelerometer white noise", "#A03B4C"),
-    "accel_drift": ("accelerometer drift", "#D9788A"),
-    "accel_bias": ("accelerometer bias", "#F0BCC5"),
-    "log_white": ("log white noise", "#1E6B3A"),
-    "log_drift": ("log drift", "#5FAE6F"),
-    "log_bias": ("log bias", "#B5DDBB"),
+    "gyro_white": (Text("gyro white noise"), "#1F5A91"),
+    "gyro_drift": (Text("gyro drift"), "#5B9BD5"),
+    "gyro_bias": (Text("gyro bias"), "#A9CCEA"),
+    "accel_white": (Text("accelerometer white noise"), "#A03B4C"),
+    "accel_drift": (Text("accelerometer drift"), "#D9788A"),
+    "accel_bias": (Text("accelerometer bias"), "#F0BCC5"),
+    "log_white": (Text("log white noise"), "#1E6B3A"),
+    "log_drift": (Text("log drift"), "#5FAE6F"),
+    "log_bias": (Text("log bias"), "#B5DDBB"),
     "log_tide": ("tide", "#7A7A18"),
-    "initial_tilt": ("initial tilt", "#8A8F98"),
-    "initial_heading": ("initial heading", "#5B6169"),
-    "initial_velocity": ("initial velocity", "#B4B8BE"),
-    "initial_position": ("initial position", "#D5D8DC"),
+    "initial_tilt": (Text("initial tilt"), "#8A8F98"),
+    "initial_heading": (Text("initial heading"), "#5B6169"),
+    "initial_velocity": (Text("initial velocity"), "#B4B8BE"),
+    "initial_position": (Text("initial position"), "#D5D8DC"),
 }
 """A source of `navcore.design` in words, and its colour: blue the gyros, red the accelerometers, green the
 log, grey the start. Other sources are shown by their own name."""
@@ -46,9 +46,11 @@ _NOTE_PX = 26
 """Of the line about the whole figure above the panels, so that it stands clear of their titles."""
 _TICKS_PX, _LEGEND_ROW_PX = 46, 21
 NOTHING = {
-    True: "At rest, in the steady state, no sensor makes a random error here.<br>The budget of this run has "
-    "the constant errors and those of the start.",
-    False: "No source makes an error in this run.",
+    True: Text(
+        "At rest, in the steady state, no sensor makes a random error here.<br>The budget of this run has "
+        "the constant errors and those of the start."
+    ),
+    False: Text("No source makes an error in this run."),
 }
 """In place of the bars where there are none: of the steady budget, and of that of a run."""
 
@@ -203,13 +205,15 @@ def _ends(budget: Budget, kind: Kind, suffix: str, grid: _Grid) -> list[dict[str
         total = getattr(method.total.rms, kind.figure)
         times = budget.times_floor(method)[kind.name]
         if total is None:
-            text = "no steady state" if method.shown == "steady" else "not in this budget"
+            text = Text("no steady state") if method.shown == "steady" else Text("not in this budget")
         elif times is None:
             text = _short(total / kind.size)
         else:
             value, over = _short(total / kind.size), _short(times)
             text = (
-                Text("{value} = {over} × floor", value=value, over=over) if grid.long else f"{value}, {over}×"
+                Text("{value} = {over} × floor", value=value, over=over)
+                if grid.long
+                else Text("{value}, {over}×", value=value, over=over)
             )
         texts.append(
             style.text(
@@ -257,16 +261,16 @@ def _layout(
     note: str,
 ) -> dict[str, Any]:
     what = (
-        "standard deviation, steady state at rest"
+        Text("standard deviation, steady state at rest")
         if budget.steady
-        else "standard deviation, RMS over the run"
+        else Text("standard deviation, RMS over the run")
     )
     if budget.floor.rms.tilt_rad is not None:
         what = Text("{what}; the dashed line is the floor", what=what)
         if not grid.long:
             what = Text("{what}, × how many times it", what=what)
             if _NOTE_LETTER_PX * len(what) > width_px - _RIGHT_PX:
-                what = "the dashed line is the floor, × how many times it"
+                what = Text("the dashed line is the floor, × how many times it")
     layout = style.layout(
         meta={"aspect": aspect},
         barmode="stack",
@@ -309,7 +313,7 @@ def _layout(
         style.text(
             1.0,
             1.0,
-            f"{what}{f'; {note}' if note else ''}",
+            Text.joined("; ", filter(None, (what, note))),
             xref="paper",
             yref="paper",
             xanchor="right",

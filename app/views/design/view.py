@@ -13,8 +13,8 @@ from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
-BUDGET_OF = "budget of"
-CHOICES = {"steady": "the steady state, one level channel", "run": "this run, all sources"}
+BUDGET_OF = Text("budget of")
+CHOICES = {"steady": Text("the steady state, one level channel"), "run": Text("this run, all sources")}
 
 
 class DesignView(PlotlyView):
@@ -24,9 +24,9 @@ class DesignView(PlotlyView):
     once the scenario stands still, and the steady one is shown until then.
     """
 
-    title = "Design"
+    title = Text("Design")
     place = "lower"
-    look_for = "Which source the error comes from, and how far it is from the best possible."
+    look_for = Text("Which source the error comes from, and how far it is from the best possible.")
     plots = (title,)
 
     def __init__(self, frame: Frame) -> None:
@@ -40,9 +40,11 @@ class DesignView(PlotlyView):
             BUDGET_OF,
             tuple(CHOICES.values()),
             initial_value=CHOICES[self.session.display.budget],
-            hint="Which source each method's error is made of. Dashed: the floor, the least error that any "
-            "causal linear damping can reach with these sensors and this log; it does not bound methods "
-            "that do not use the log.",
+            hint=Text(
+                "Which source each method's error is made of. Dashed: the floor, the least error that any "
+                "causal linear damping can reach with these sensors and this log; it does not bound methods "
+                "that do not use the log."
+            ),
         )
         words = {word: key for key, word in CHOICES.items()}
         self._chooser.on_update(if_user(lambda: self.frame.show(budget=words[self._chooser.value])))
@@ -74,13 +76,12 @@ class DesignView(PlotlyView):
         if budget is None:
             budget = steady_budget(scenario)
             if found.display.budget == "run":
-                note = self._budgeter.words[0] if self._budgeter.words else "that of the run is under way"
+                note = (
+                    self._budgeter.words[0] if self._budgeter.words else Text("that of the run is under way")
+                )
         if budget.floor_reason:
-            note = Text(
-                "{note}no floor: {floor_reason}",
-                note=f"{note}; " * bool(note),
-                floor_reason=budget.floor_reason,
-            )
+            reason = Text("no floor: {floor_reason}", floor_reason=budget.floor_reason)
+            note = Text.joined("; ", filter(None, (note, reason)))
         return budget_figure(budget, self.aspect, width_px=self.width_px, note=note)
 
     def _ask(self, scenario: Scenario) -> None:

@@ -21,7 +21,7 @@ from app.plots.units import (
 )
 from app.plots.uplot import Curve, Dash, UplotFigure
 from app.session.display import Display
-from navcore.engine.run import MethodRun, PlotSeries, Run
+from navcore.engine.run import ENDINGS, MethodRun, PlotSeries, Run
 from navcore.engine.verification import Verification
 from navcore.foundation.text import Text
 from navcore.quantities import ERRORS, NAMES, Kind
@@ -29,7 +29,7 @@ from navcore.quantities import ERRORS, NAMES, Kind
 _CUT = 3.0
 """A diverged method is drawn up to this many times the largest value of the others."""
 _FEWEST_UNITS = 0.02
-STRAPDOWN = "full strapdown"
+STRAPDOWN = Text("full strapdown")
 _DASH: Dash = (7, 5)
 _FAINT = "66"
 """Opacity of curves that belong to an earlier scenario, as colours carry it."""
@@ -52,7 +52,7 @@ TITLES = {error.key: error.title for error in ERRORS}
 
 GROUPS: dict[str, tuple[str, ...]] = {
     "Overview": ("phi_e", "phi_n", "dve", "dvn", "position"),
-    "Attitude": ("phi_e", "phi_n", "phi_u"),
+    Text("Attitude"): ("phi_e", "phi_n", "phi_u"),
     "Velocity": ("dve", "dvn"),
     "Position": ("position", "dlat", "dlon"),
 }
@@ -170,7 +170,12 @@ def _lines(
     if overlay is not None:
         for line, method in zip(list(lines), overlay.run.methods, strict=True):
             name, color = legend_name(method), line.curve.color + (_FAINT if overlay.old else "")
-            curve = replace(line.curve, name=f"{name}: {STRAPDOWN}", color=color, dash=_DASH)
+            curve = replace(
+                line.curve,
+                name=Text("{name}: {strapdown}", name=name, strapdown=STRAPDOWN),
+                color=color,
+                dash=_DASH,
+            )
             lines.append(_Line(curve, method, _on_times(time_s, method.plot)))
     for pin in pinned_methods(pins):
         curve = Curve(pin.label, pin.color, none, pin.dash, PIN_WIDTH, display.state_of(pin.label))
@@ -200,7 +205,7 @@ def _with_band(
 def _with_limit(plot: UplotFigure, limit: float) -> UplotFigure:
     """Add a line at the largest allowed value, and at its negative where that can be reached."""
     lines = [
-        Curve("limit", style.DANGER, np.full(len(plot.time), value / plot.unit.si), _LIMIT_DASH, 1.0)
+        Curve(Text("limit"), style.DANGER, np.full(len(plot.time), value / plot.unit.si), _LIMIT_DASH, 1.0)
         for value in ((limit,) if plot.floor is not None else (limit, -limit))
     ]
     return replace(plot, curves=(*plot.curves, *lines))
@@ -288,7 +293,10 @@ def _on_times(time_s: np.ndarray, plot: PlotSeries) -> np.ndarray:
 
 def legend_name(method: MethodRun) -> str:
     """Name of a method, with how it ended if that was not well."""
-    return method.method.name + {"ok": "", "diverged": " (diverged)", "stopped": " (stopped)"}[method.status]
+    name = method.method.name
+    return (
+        name if method.status == "ok" else Text("{name} ({ending})", name=name, ending=ENDINGS[method.status])
+    )
 
 
 VERIFIED = ("phi_e", "dve", "position")

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape
 from itertools import accumulate
 
 from app.jobs.verifier import Verified
@@ -10,6 +9,7 @@ from app.plots import style
 from app.plots.envelope import Envelope
 from app.plots.legend import COMMAND, entry
 from app.plots.pinned import Pinned, pinned_methods
+from app.plots.table import cell
 from app.plots.uplot import LABEL_SIZE, Y_SIZE, Dash, UplotFigure, stack_heights
 from app.session.display import Display
 from app.session.requirements import error_limits
@@ -28,7 +28,7 @@ from app.views.errors.figure import (
     verification_plots,
 )
 from navcore.engine.run import Run
-from navcore.foundation.text import Text
+from navcore.foundation.text import Text, quoted
 
 
 def legend_html(
@@ -50,19 +50,25 @@ def legend_html(
         for i, method in enumerate(run.methods)
     ]
     if overlay is not None:
-        old = " of an earlier scenario" if overlay.old else ""
-        items.append(_legend_item(f"{STRAPDOWN}{old}", f"border-top:3px dashed {style.MUTED}"))
+        old = Text(" of an earlier scenario") if overlay.old else ""
+        items.append(
+            _legend_item(
+                Text("{strapdown}{old}", strapdown=STRAPDOWN, old=old),
+                f"border-top:3px dashed {style.MUTED}",
+            )
+        )
     items += [
         entry(pin.label, pin.label, css_dash(pin.dash, pin.color), state_of(pin.label))
         for pin in pinned_methods(pins)
     ]
     if envelope is not None:
         bar = f"height:10px;background:{style.MUTED}{'22' if envelope.old else '55'}"
-        items.append(_legend_item(envelope.label, bar, " ".join(envelope.details)))
-    return (
-        '<div class="sb-legend" role="group" aria-label="legend" '
-        f'style="padding-left:{Y_SIZE + LABEL_SIZE}px">'
-        f"{''.join(items)}</div>"
+        items.append(_legend_item(envelope.label, bar, Text.joined(" ", envelope.details)))
+    return Text(
+        '<div class="sb-legend" role="group" aria-label="legend" style="padding-left:{y_size}px">'
+        "{items}</div>",
+        y_size=Y_SIZE + LABEL_SIZE,
+        items=Text.joined("", items),
     )
 
 
@@ -75,14 +81,15 @@ def css_dash(dash: Dash, color: str) -> str:
 
 
 def _legend_item(name: str, bar: str, title: str = "") -> str:
-    more = f' title="{escape(title)}"' if title else ""
-    return f'<span class="sb-entry"{more}><span class="sb-line" style="{bar}"></span>{escape(name)}</span>'
+    return cell(
+        cell("", "sb-line", tag="span", style=bar) + quoted(name), "sb-entry", tag="span", title=title
+    )
 
 
-OVERVIEW = "Overview"
-VERIFICATION = "Verification"
-NOT_VERIFIED = 'There is nothing to compare yet: press "Verify with full strapdown".'
-OWN_NOISE = (
+OVERVIEW = Text("Overview")
+VERIFICATION = Text("Verification")
+NOT_VERIFIED = Text('There is nothing to compare yet: press "Verify with full strapdown".')
+OWN_NOISE = Text(
     "Left: the linear model (solid) and the full strapdown (dashed) on the noise of the verification, "
     "which is another draw than the run's. Right: strapdown minus linear model."
 )
@@ -90,10 +97,12 @@ _OVERVIEW_KEYS = ("phi_e", "dve", "phi_n", "dvn", "phi_u", "position")
 """Two abreast: attitude left, velocity and position right."""
 _TWO = '<div class="sb-two"></div>'
 _KEYS: dict[str, str] = {Text("Errors: {title}", title=title): key for key, title in TITLES.items()}
-_VERIFIED_KEYS = {
-    f"{VERIFICATION}: {TITLES[key]}{part}": f"{which}_{key}"
+_VERIFIED_KEYS: dict[str, str] = {
+    Text("{verification}: {titles}{part}", verification=VERIFICATION, titles=TITLES[key], part=part): Text(
+        "{which}_{key}", which=which, key=key
+    )
     for key in VERIFIED
-    for which, part in (("both", ""), ("difference", ", difference"))
+    for which, part in (("both", ""), ("difference", Text(", difference")))
 }
 
 
@@ -119,9 +128,11 @@ class ErrorCurves:
 class ErrorsView(PictureView[ErrorCurves]):
     """Chooser of the quantities, legend and plots."""
 
-    title = "Errors"
+    title = Text("Errors")
     place = "lower"
-    look_for = "Look for curves that stay small, and for what the switch-on and the manoeuvres leave behind."
+    look_for = Text(
+        "Look for curves that stay small, and for what the switch-on and the manoeuvres leave behind."
+    )
     focus = "errors"
     plots = (*_KEYS, *_VERIFIED_KEYS)
 
@@ -140,10 +151,13 @@ class ErrorsView(PictureView[ErrorCurves]):
         with tab:
             groups = (OVERVIEW, *(name for name in GROUPS if name != OVERVIEW), VERIFICATION)
             self._group = gui.add_dropdown(
-                "curves",
+                Text("curves"),
                 groups,
-                hint="Overview: one small plot for each quantity. Attitude, Velocity, Position: larger plots "
-                "of a few. Verification: the full strapdown beside the linear model, and their difference.",
+                hint=Text(
+                    "Overview: one small plot for each quantity. Attitude, Velocity, Position: larger plots "
+                    "of a few. Verification: the full strapdown beside the linear model, and "
+                    "their difference."
+                ),
                 order=0,
             )
             self._legend = gui.add_html("", order=1)

@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import lru_cache
-from html import escape
 
 from app.bridge.controls import control_with
 from app.editing.form import FieldSpec, Path
@@ -19,6 +18,7 @@ from app.views.learn.lessons import formula_html
 from navcore.damping import KINDS
 from navcore.foundation.assets import asset_path
 from navcore.foundation.parameters import Parameters, extra_of
+from navcore.foundation.text import Text
 from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
 from navcore.motion import MOTIONS
@@ -113,19 +113,24 @@ def explain_html(spec: FieldSpec, scenario: Scenario) -> str:
 
 def told_html(label: str, hint: str, more: Explanation | None = None) -> str:
     """HTML of an explanation: heading, words, equation, source."""
-    parts = [f"<h2>{escape(label)}</h2>", f"<p>{escape(hint)}</p>" if hint else ""]
+    parts = [
+        Text("<h2>{label:html}</h2>", label=label),
+        Text("<p>{hint:html}</p>", hint=hint) if hint else "",
+    ]
     if more is not None:
         parts += [
-            f"<p>{escape(more.says)}</p>" if more.says else "",
+            Text("<p>{says:html}</p>", says=more.says) if more.says else "",
             *(formula_html(part, block=True) for part in more.latex.split(r"\qquad") if part.strip()),
-            f'<p class="sb-source">Source: {escape(more.source)}</p>' if more.source else "",
+            Text('<p class="sb-source">Source: {source:html}</p>', source=more.source) if more.source else "",
         ]
-    return "".join(parts)
+    return Text.joined("", parts)
 
 
 COMMAND = "explain"
 """``explain ID``: the control with that id in the page."""
-_NONE_YET = "Point at a control, or put the focus on it, and press E or F1, or press the ? beside its name."
+_NONE_YET = Text(
+    "Point at a control, or put the focus on it, and press E or F1, or press the ? beside its name."
+)
 
 
 class ExplainView(View):
@@ -134,7 +139,7 @@ class ExplainView(View):
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
         self._count = 0
-        title = "Explain the control under the pointer"
+        title = Text("Explain the control under the pointer")
         frame.commands.register(COMMAND, self.explain, title, "E", watcher=True)
 
     def build(self, tab: Tab) -> None:
@@ -148,8 +153,10 @@ class ExplainView(View):
             content = self._content(id.strip())
             self._count += 1
             # No div: what a hidden div holds is for scripts, and stays English (app.languages.markup).
-            self._html.content = (
-                f'<section id="sb-explained" hidden data-count="{self._count}">{content}</section>'
+            self._html.content = Text(
+                '<section id="sb-explained" hidden data-count="{count}">{content}</section>',
+                count=self._count,
+                content=content,
             )
 
     def _content(self, id: str) -> str:
@@ -159,8 +166,8 @@ class ExplainView(View):
         handle = control_with(self.frame.gui, id)
         label = getattr(handle, "label", None)
         if label is None:
-            return told_html("Explain", _NONE_YET)
-        return told_html(str(label), str(getattr(handle, "hint", None) or "Press it and see."))
+            return told_html(Text("Explain"), _NONE_YET)
+        return told_html(str(label), str(getattr(handle, "hint", None) or Text("Press it and see.")))
 
 
 VIEW = ExplainView

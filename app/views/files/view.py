@@ -1,7 +1,5 @@
 """Tab "Files": upload of recordings and scenarios, download of the scenario and its numbers."""
 
-from html import escape
-
 from app.plots import style
 from app.session.uploads import LARGEST_FILE, MIB, Upload
 from app.shell import notices
@@ -13,22 +11,22 @@ from navcore.foundation.text import Text
 class FilesView(View):
     """Upload and download."""
 
-    title = "Files"
+    title = Text("Files")
     place = "edit"
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
         add, opening = frame.commands.register, frame.opening
-        add("save", lambda _: opening.give_file(SCENARIO), "Save the scenario (TOML)", "Ctrl+S")
-        add("save-numbers", lambda _: opening.give_file(METRICS), "Save the numbers (JSON)")
-        upload = "Open a scenario or a recording"
+        add("save", lambda _: opening.give_file(SCENARIO), Text("Save the scenario (TOML)"), "Ctrl+S")
+        add("save-numbers", lambda _: opening.give_file(METRICS), Text("Save the numbers (JSON)"))
+        upload = Text("Open a scenario or a recording")
         add("open", lambda _: frame.commands.ask_page("upload", ""), upload, "Ctrl+O")
 
     def build(self, tab: Tab) -> None:
         """Make the widgets."""
         gui, opening = self.frame.gui, self.frame.opening
         with tab:
-            gui.add_html(notices.heading("Run on recordings"), order=0)
+            gui.add_html(notices.heading(Text("Run on recordings")), order=0)
             kinds = Text(
                 "Speed log, track and heading: NMEA 0183, CSV, Parquet or MAT, one file "
                 "after the other, at most {largest_file:.0f} MiB each. A recorded IMU (PSINS "
@@ -36,11 +34,11 @@ class FilesView(View):
                 largest_file=LARGEST_FILE / MIB,
             )
             gui.add_html(notices.small(kinds), order=1)
-            upload = gui.add_upload_button("Upload a file", hint=kinds, order=2)
+            upload = gui.add_upload_button(Text("Upload a file"), hint=kinds, order=2)
             self._list = gui.add_html("", order=3)
-            self._use = gui.add_button("Run on these files", order=4, visible=False)
-            self._forget = gui.add_button("Remove the files", color="gray", order=5, visible=False)
-            gui.add_html(notices.heading("Save"), order=10)
+            self._use = gui.add_button(Text("Run on these files"), order=4, visible=False)
+            self._forget = gui.add_button(Text("Remove the files"), color="gray", order=5, visible=False)
+            gui.add_html(notices.heading(Text("Save")), order=10)
             save = [
                 gui.add_button(Text("Download {name}", name=name), color="gray", order=11)
                 for name in (SCENARIO, METRICS)
@@ -54,18 +52,25 @@ class FilesView(View):
     def follow_scenario(self) -> None:
         """List the uploaded files and what they hold."""
         uploads = self.session.uploads
-        self._list.content = "".join(_entry(name, upload) for name, upload in uploads.files.items())
+        self._list.content = Text.joined("", (_entry(name, upload) for name, upload in uploads.files.items()))
         self._use.visible = self._forget.visible = bool(uploads.files)
 
 
 def _entry(name: str, upload: Upload) -> str:
     text = "\n".join(line.removeprefix("  ") for line in upload.text)
-    return (
-        f'<details class="sb-file" style="margin:0 10px 8px;font-size:12.5px;color:{style.INK}"><summary>'
-        f"<b>{escape(name)}</b> <span style='color:{style.MUTED}'>{escape(upload.kind)}: "
-        f"{escape(', '.join(sorted(upload.quantities)))}</span></summary>"
-        f'<div style="white-space:pre-wrap;margin-top:4px;color:{style.MUTED}">{escape(text)}</div>'
-        f"{notices.note(upload.warnings, 'warning')}</details>"
+    return Text(
+        '<details class="sb-file" style="margin:0 10px 8px;font-size:12.5px;color:{ink}">'
+        "<summary><b>{name:html}</b> <span style='color:{muted}'>{kind:html}: "
+        "{sorted:html}</span></summary><div "
+        'style="white-space:pre-wrap;margin-top:4px;color:{muted}">{text:html}</div>'
+        "{note}</details>",
+        ink=style.INK,
+        name=name,
+        muted=style.MUTED,
+        kind=upload.kind,
+        sorted=", ".join(sorted(upload.quantities)),
+        text=text,
+        note=notices.note(upload.warnings, "warning"),
     )
 
 

@@ -81,11 +81,13 @@ def optimal_reference(scenario: Scenario) -> Reference:
 @lru_cache(maxsize=16)
 def _reference(figures: SensorFigures, log: str, omega_s: float) -> Reference:
     if log == "none":
-        return Reference("no optimal H: the scenario has no log")
+        return Reference(Text("no optimal H: the scenario has no log"))
     known = {"gyros and accelerometers": figures.inertial, "log": figures.log}
     missing = [sensors for sensors, there in known.items() if not there]
     if missing:
-        return Reference(Text("no optimal H: no random error of {missing}", missing=" and ".join(missing)))
+        return Reference(
+            Text("no optimal H: no random error of {missing}", missing=Text.joined(" and ", missing))
+        )
     try:
         optimal = OptimalNetwork().with_sensors(figures)
         network = optimal.transfer(omega_s)
@@ -154,7 +156,7 @@ def level_axis(title: str, curves: list[np.ndarray]) -> dict[str, Any]:
 
 def phase_axis(curves: list[np.ndarray]) -> dict[str, Any]:
     """Axis of phases in degrees."""
-    return _even_axis("phase (°)", curves, 1800.0, 40.0, (15.0, 30.0, 45.0, 90.0, 180.0, 360.0))
+    return _even_axis(Text("phase (°)"), curves, 1800.0, 40.0, (15.0, 30.0, 45.0, 90.0, 180.0, 360.0))
 
 
 def _even_axis(

@@ -45,7 +45,7 @@ _BOLD_PX = 7.8
 """Mean width of a letter in a title."""
 _LONGEST_SILENCE = 22
 _LEAST_COLUMN_PX, _SMALL_COLUMN_PX, _SMALLEST_COLUMN_PX = 240.0, 200.0, 160.0
-_OMEGA_TITLES = ("frequency ω (rad/s) and period", "ω (rad/s)")
+_OMEGA_TITLES = (Text("frequency ω (rad/s) and period"), "ω (rad/s)")
 _LETTER_PX, _BESIDE_PX = 6.0, 32.0
 """Mean width of a letter of an axis title, and how much wider than its column it may be."""
 _REFERENCE = style.lines("", 0) | {
@@ -57,7 +57,7 @@ _MUTED_FONT = {"size": style.FONT_SIZE, "color": style.MUTED}
 
 def natural_frequencies(run: Run) -> dict[str, float]:
     """Schuler, Foucault and Earth frequencies at the site, rad/s; Foucault only where the axis reaches it."""
-    frequencies = {"24 h": EARTH_RATE, "Schuler": run.scenario.omega_s}
+    frequencies = {"24 h": EARTH_RATE, Text("Schuler"): run.scenario.omega_s}
     foucault = EARTH_RATE * abs(math.sin(run.scenario.site.lat_deg * DEG))
     if foucault > OMEGA_MIN:
         frequencies["Foucault"] = foucault
@@ -177,7 +177,7 @@ def _discrete_dots(run: Run, method: MethodRun, index: int) -> list[dict[str, An
     dots = style.marks(Text("{name} measured", name=method.method.name), index, "circle", 8, ring)
     dots |= {"x": packed(omega), "xaxis": "x", "marker": dots["marker"] | {"color": "white"}}
     return [
-        dots | {"y": packed(decibel(gain)), "yaxis": "y", "hovertemplate": "%{y:.3f} dB measured"},
+        dots | {"y": packed(decibel(gain)), "yaxis": "y", "hovertemplate": Text("%{{y:.3f}} dB measured")},
         dots | {"y": packed(angle), "yaxis": "y2", "hovertemplate": "%{y:.2f}° measured"},
     ]
 
@@ -198,13 +198,15 @@ def _layout(
     share = style.column(width_px - 84.0)
     column_px = share * (width_px - 84.0)
     annotations = [
-        style.heading("<b>Damping network H(jω)</b>", 48, "x domain"),
+        style.heading(Text("<b>Damping network H(jω)</b>"), 48, "x domain"),
         style.heading(_transfer_title(view, silent, column_px), 48, "x2 domain"),
         *(note for axis in ("x", "x2") for note in _marker_labels(run, axis, column_px)),
     ]
     if len(silent) == len(run.methods):
         annotations.append(
-            style.text(0.5, 0.5, "no method reacts", xref="x2 domain", yref="y3 domain", font=_MUTED_FONT)
+            style.text(
+                0.5, 0.5, Text("no method reacts"), xref="x2 domain", yref="y3 domain", font=_MUTED_FONT
+            )
         )
     upper, lower = {"domain": [0.53, 1.0]}, {"domain": [0.0, 0.47]}
     size_axis = level_axis if _in_decibel(view) else log_axis
@@ -239,9 +241,12 @@ def _omega_axis(anchor: str, domain: list[float], column_px: float) -> dict[str,
         ticks="",
         range=[math.log10(OMEGA_MIN), math.log10(OMEGA_MAX)],
         tickvals=[10.0**k for k in decades],
-        ticktext=[f"10<sup>{k}</sup><br>{duration(2.0 * math.pi / 10.0**k)}" for k in decades],
+        ticktext=[
+            Text("10<sup>{k}</sup><br>{duration}", k=k, duration=duration(2.0 * math.pi / 10.0**k))
+            for k in decades
+        ],
         minor={"showgrid": True, "dtick": "D1", "gridcolor": style.GRID_FINE},
-        unifiedhovertitle={"text": "ω = %{x:.3e} rad/s"},
+        unifiedhovertitle={"text": Text("ω = %{{x:.3e}} rad/s")},
     )
 
 
@@ -251,12 +256,18 @@ def _marker_labels(run: Run, axis: str, column_px: float) -> list[dict[str, Any]
     for name, omega in natural_frequencies(run).items():
         if name == "24 h" and column_px < _SMALL_COLUMN_PX:
             continue  # no room between the two others
-        anchor, shift = {"24 h": ("left", 1), "Foucault": ("right", -1), "Schuler": ("center", 0)}[name]
+        anchor, shift = {
+            "24 h": ("left", 1),
+            Text("Foucault"): ("right", -1),
+            Text("Schuler"): ("center", 0),
+        }[name]
         notes.append(
             style.text(
                 math.log10(omega),
                 1.0,
-                name if name == "24 h" else f"{name}<br>{duration(2.0 * math.pi / omega)}",
+                name
+                if name == "24 h"
+                else Text("{name}<br>{duration}", name=name, duration=duration(2.0 * math.pi / omega)),
                 xref=axis,
                 yref="paper",
                 xanchor=anchor,
@@ -272,12 +283,14 @@ def _marker_labels(run: Run, axis: str, column_px: float) -> list[dict[str, Any]
 def _transfer_title(view: TransferView, silent: list[str], column_px: float) -> str:
     """Title of the right column, as much as there is room for; it also says which methods have no curve."""
     room = column_px / _BOLD_PX
-    full = f"{view.symbol}: {view.title}"
+    full = Text("{symbol}: {title}", symbol=view.symbol, title=view.title)
     letters = len(view.symbol.replace("<sub>", "").replace("</sub>", "")) + 2 + len(view.title)
-    title = f"<b>{full}</b>" if letters <= room else f"<b>{view.symbol}</b>"
+    title = (
+        Text("<b>{full}</b>", full=full) if letters <= room else Text("<b>{symbol}</b>", symbol=view.symbol)
+    )
     if not silent:
         return title
-    who = ", ".join(silent)
+    who = Text.joined(", ", silent)
     who = style.plain(who) if len(who) <= _LONGEST_SILENCE else Text("{silent} methods", silent=len(silent))
     note = (
         Text("(no log in: {who})", who=who)
@@ -285,4 +298,8 @@ def _transfer_title(view: TransferView, silent: list[str], column_px: float) -> 
         else Text("(no own acceleration in: {who})", who=who)
     )
     fits = letters + len(note) <= room
-    return f'{title} <span style="color:{style.MUTED}">{note}</span>' if fits else title
+    return (
+        Text('{title} <span style="color:{muted}">{note}</span>', title=title, muted=style.MUTED, note=note)
+        if fits
+        else title
+    )

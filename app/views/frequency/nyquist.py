@@ -84,7 +84,11 @@ def nyquist(run: Run, aspect: float = 0.46, *, width_px: float = 940.0) -> Plotl
 def margin_words(method: MethodRun, margin: Margins | None) -> str:
     """Margins in one line, or why there are none."""
     if margin is None:
-        return "unstable" if not method.loop.stable and not method.method.undamped else "no margin: undamped"
+        return (
+            Text("unstable")
+            if not method.loop.stable and not method.method.undamped
+            else Text("no margin: undamped")
+        )
     parts = []
     if margin.phase_rad is not None:
         parts.append(Text("phase {phase_rad}°", phase_rad=number(math.degrees(margin.phase_rad), 3)))
@@ -100,7 +104,7 @@ def margin_words(method: MethodRun, margin: Margins | None) -> str:
         )
     if margin.delay_s is not None:
         parts.append(Text("delay {delay_s}", delay_s=duration(margin.delay_s)))
-    return ", ".join(parts)
+    return Text.joined(", ", parts)
 
 
 def _curves(
@@ -120,8 +124,11 @@ def _curves(
             "xaxis": "x2",
             "yaxis": "y3",
             "customdata": x,
-            "hovertemplate": f"<b>{common['name']}</b><br>ω = %{{customdata:.3g}} ω<sub>s</sub><br>"
-            "L = %{x:.3g} %{y:+.3g}j<extra></extra>",
+            "hovertemplate": Text(
+                "<b>{common}</b><br>ω = %{{customdata:.3g}} ω<sub>s</sub><br>L = %{{x:.3g}} "
+                "%{{y:+.3g}}j<extra></extra>",
+                common=common["name"],
+            ),
         },
     ]
 
@@ -138,7 +145,9 @@ def _marks(method: MethodRun, index: int, margin: Margins | None, words: str) ->
             degrees = math.degrees(margin.phase_rad) - 180.0
             unit = [-math.cos(margin.phase_rad)], [-math.sin(margin.phase_rad)]
             dots = [([ratio], [0.0]), ([ratio], [degrees]), unit]
-    hover = {"hovertemplate": f"<b>{style.plain(name)}</b><br>{words}<extra></extra>"}
+    hover = {
+        "hovertemplate": Text("<b>{name}</b><br>{words}<extra></extra>", name=style.plain(name), words=words)
+    }
     dot = style.marks(Text("{name} margin", name=name), index, "circle", 9, ring) | hover
     diamond = style.marks(Text("{name} gain margin", name=name), index, "diamond", 10, ring) | hover
     axes = ("x", "y"), ("x", "y2"), ("x2", "y3")
@@ -160,7 +169,7 @@ def _axes(run: Run, top: float, width_px: float, height_px: float) -> dict[str, 
     right = max(_RIGHT_EDGE * wide, 1.08)
     return {
         "xaxis": style.axis(
-            "frequency ω/ω<sub>s</sub> and period",
+            Text("frequency ω/ω<sub>s</sub> and period"),
             type="log",
             domain=[0.0, _COLUMN],
             anchor="y2",
@@ -168,18 +177,31 @@ def _axes(run: Run, top: float, width_px: float, height_px: float) -> dict[str, 
             ticks="",
             range=[math.log10(LOW), math.log10(HIGH)],
             tickvals=[10.0**k for k in decades],
-            ticktext=[f"{10.0**k:g}<br>{duration(period / 10.0**k)}" for k in decades],
+            ticktext=[
+                Text("{k:g}<br>{duration}", k=10.0**k, duration=duration(period / 10.0**k)) for k in decades
+            ],
             minor={"showgrid": True, "dtick": "D1", "gridcolor": style.GRID_FINE},
         ),
         "yaxis": style.axis(
             "|L|  (dB)", domain=[0.53, 1.0], anchor="x", range=[-80.0, top + 5.0], dtick=20.0
         ),
-        "yaxis2": style.axis("phase (°)", domain=[0.0, 0.47], anchor="x", range=[-270.0, -90.0], dtick=45.0),
+        "yaxis2": style.axis(
+            Text("phase (°)"), domain=[0.0, 0.47], anchor="x", range=[-270.0, -90.0], dtick=45.0
+        ),
         "xaxis2": style.axis(
-            "Re L", domain=[1.0 - _COLUMN, 1.0], anchor="y3", range=[right - wide, right], showgrid=False
+            Text("Re L"),
+            domain=[1.0 - _COLUMN, 1.0],
+            anchor="y3",
+            range=[right - wide, right],
+            showgrid=False,
         ),
         "yaxis3": style.axis(
-            "Im L", domain=[0.0, 1.0], anchor="x2", range=[-half, half], scaleanchor="x2", showgrid=False
+            Text("Im L"),
+            domain=[0.0, 1.0],
+            anchor="x2",
+            range=[-half, half],
+            scaleanchor="x2",
+            showgrid=False,
         ),
     }
 
@@ -199,8 +221,8 @@ def _shapes() -> list[dict[str, Any]]:
 
 def _notes(run: Run, words: list[str], column_px: float) -> list[dict[str, Any]]:
     return [
-        style.heading("<b>Open loop L(jω) = ω<sub>s</sub>² H/s²</b>", 16, "x domain"),
-        style.heading("<b>Nyquist plot near −1 (✚)</b>", 16, "x2 domain"),
+        style.heading(Text("<b>Open loop L(jω) = ω<sub>s</sub>² H/s²</b>"), 16, "x domain"),
+        style.heading(Text("<b>Nyquist plot near −1 (✚)</b>"), 16, "x2 domain"),
         style.text(-1.0, 0.0, "✚", xref="x2", yref="y3", font={"size": 20, "color": style.DANGER}, yshift=0),
         *_listed(run, words, column_px),
     ]
@@ -211,13 +233,15 @@ def _listed(run: Run, words: list[str], column_px: float) -> list[dict[str, Any]
     notes: list[dict[str, Any]] = []
     above = 0
     for index, (method, content) in enumerate(zip(run.methods, words, strict=True)):
-        lines = wrapped(f"{method.method.name}: {content}", int(column_px / _LETTER_PX))
+        lines = wrapped(
+            Text("{name}: {content}", name=method.method.name, content=content), int(column_px / _LETTER_PX)
+        )
         if above + len(lines) > _MOST_LINES:
             break
         note = style.text(
             0.0,
             1.0,
-            "<br>".join(style.plain(line) for line in lines),
+            Text.joined("<br>", (style.plain(line) for line in lines)),
             xref="x2 domain",
             yref="y3 domain",
             xanchor="left",
@@ -240,7 +264,7 @@ def wrapped(text: str, most: int) -> list[str]:
     lines: list[str] = []
     for part in text.split(", "):
         if lines and len(lines[-1]) + len(part) + 2 <= most:
-            lines[-1] += f", {part}"
+            lines[-1] += Text(", {part}", part=part)
         else:
             lines.append(part)
     return lines

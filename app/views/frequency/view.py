@@ -10,17 +10,18 @@ from app.shell.view import Frame, if_user
 from app.views.frequency.curves import optimal_reference
 from app.views.frequency.figure import HANDLE_PANEL, frequency_view
 from navcore.engine.run import Run
+from navcore.foundation.text import Text
 
-DISCRETE, OPTIMAL = "measured filter", "optimal H"
+DISCRETE, OPTIMAL = Text("measured filter"), Text("optimal H")
 _IDS = {label: id for id, label in SHOWN.items()}
 
 
 class FrequencyView(PlotlyView):
     """Chooser of the transfer and switch for the measured filter above the plots."""
 
-    title = "Frequency"
+    title = Text("Frequency")
     place = "upper"
-    look_for = (
+    look_for = Text(
         "Below 0 dB an error is damped, above it is amplified. Handle: across frequency, up less damping."
     )
     focus = "bode"
@@ -35,18 +36,18 @@ class FrequencyView(PlotlyView):
         gui, display = self.frame.gui, self.session.display
         self._handle.build()
         self._transfer = gui.add_dropdown(
-            "transfer", tuple(_IDS), initial_value=SHOWN[display.transfer],
-            hint="Shown at the right, beside the network H; or the open loop with its margins.",
+            Text("transfer"), tuple(_IDS), initial_value=SHOWN[display.transfer],
+            hint=Text("Shown at the right, beside the network H; or the open loop with its margins."),
         )  # fmt: skip
         gui.add_html(TOOLS)
         self._discrete = gui.add_checkbox(
             DISCRETE, display.discrete,
-            hint="Dots on H: gain (dB) and phase (°) of the filter that runs, at the step of the run, "
-            "measured by driving it with sines. Gains that act as velocity feedback have no filter.",
+            hint=Text("Dots on H: gain (dB) and phase (°) of the filter that runs, at the step of the run, "
+            "measured by driving it with sines. Gains that act as velocity feedback have no filter."),
         )  # fmt: skip
         self._optimal = gui.add_checkbox(
             OPTIMAL, display.optimal,
-            hint="Dashed: the network that is best for the sensors and the log of this scenario (LQG).",
+            hint=Text("Dashed: the network that is best for the sensors and the log of this scenario (LQG)."),
         )  # fmt: skip
         self._transfer.on_update(if_user(lambda: self.frame.show(transfer=_IDS[self._transfer.value])))
         self._discrete.on_update(if_user(lambda: self.frame.show(discrete=self._discrete.value)))

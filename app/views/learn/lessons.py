@@ -24,7 +24,6 @@ from collections.abc import Callable
 from contextlib import suppress
 from copy import deepcopy
 from functools import lru_cache
-from html import escape
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -51,7 +50,7 @@ _SIGNS: dict[str, Callable[[float, float], bool]] = {
     ">": operator.gt,
     ">=": operator.ge,
 }
-MISSING = "(press Show me)"
+MISSING = Text("(press Show me)")
 """Stands where the present run has no such number."""
 
 
@@ -169,10 +168,12 @@ def read_lesson(id: str, text: str) -> Lesson:
     """
     match = _FRONT.match(text)
     if match is None:
-        raise InputError(Fault(id, "", None, "must begin with TOML between two lines +++"))
+        raise InputError(Fault(id, "", None, Text("must begin with TOML between two lines +++")))
     heading, *parts = re.split(r"^## (.+)$", match.group(2), flags=re.MULTILINE)
     if heading.strip() or not parts:
-        raise InputError(Fault(id, "", None, 'must have its text in steps, each under a heading "## ..."'))
+        raise InputError(
+            Fault(id, "", None, Text('must have its text in steps, each under a heading "## ..."'))
+        )
     steps = [_step(id, title, body) for title, body in zip(parts[::2], parts[1::2], strict=True)]
     front = _toml(id, "", match.group(1))
     return _checked(id, "", lambda: Lesson(id=id, steps=tuple(steps), **front))
@@ -182,7 +183,7 @@ def _step(id: str, title: str, body: str) -> Step:
     blocks: dict[str, Any] = {}
     for kind, toml in _FENCE.findall(body):
         if kind in blocks:
-            raise InputError(Fault(id, title, kind, "must stand once in a step"))
+            raise InputError(Fault(id, title, kind, Text("must stand once in a step")))
         blocks[kind] = _toml(id, title, toml)
     text = _FENCE.sub("", body).strip()
     return _checked(id, title, lambda: Step(title=title.strip(), text=text, **blocks))
@@ -241,7 +242,7 @@ def formula_html(latex: str, *, block: bool = False) -> str:
 
     if not block:
         return convert(latex.strip(), display="inline")
-    return f'<span class="sb-formula">{convert(latex.strip(), display="block")}</span>'
+    return Text('<span class="sb-formula">{convert}</span>', convert=convert(latex.strip(), display="block"))
 
 
 def _number_html(name: str, run: Run | None) -> str:
@@ -249,7 +250,9 @@ def _number_html(name: str, run: Run | None) -> str:
     if run is not None:
         with suppress(KeyError):
             number = named(name, run).text
-    return f'<span class="sb-live" data-name="{escape(name)}">{escape(number)}</span>'
+    return Text(
+        '<span class="sb-live" data-name="{name:html}">{number:html}</span>', name=name, number=number
+    )
 
 
 # ------------------------------------------------------------ answers

@@ -37,6 +37,7 @@ from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.errors import InputError
 from navcore.foundation.notation import with_unit
 from navcore.foundation.parameters import extra_of
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG, HOUR
 from navcore.quantities import ERRORS, TILT, VELOCITY, Kind
 
@@ -58,7 +59,7 @@ class Named(NamedTuple):
     def text(self) -> str:
         """Number and unit, to be read in a sentence."""
         if not math.isfinite(self.value):
-            return "no number"
+            return Text("no number")
         value = 0.0 if abs(self.value) < 1e-12 else self.value
         text = f"{value:.{self.digits}g}"
         if "e" in text and abs(value) < 1e6:

@@ -22,13 +22,13 @@ from navcore.scenario.model import Scenario
 COMMAND = "lesson"
 """Command with which the panel's HTML asks: ``lesson open 2``, ``step 1``, ``next``, ``back``, ``list``,
 ``show``, ``answer TEXT``."""
-_UNREADABLE = "Type a number, such as 84.4."
+_UNREADABLE = Text("Type a number, such as 84.4.")
 
 
 class LearnView(View):
     """Shows lessons and carries out what they ask for."""
 
-    title = "Learn"
+    title = Text("Learn")
     place = "edit"
 
     def __init__(self, frame: Frame) -> None:
@@ -100,7 +100,7 @@ class LearnView(View):
             session.show(None, **action.display)
         self._asked += 1
         data = f'data-count="{self._asked}" data-tabs="{escape("|".join(action.tabs))}"'
-        self._front.content = f'<div id="sb-front" hidden {data}></div>'
+        self._front.content = Text('<div id="sb-front" hidden {data}></div>', data=data)
 
     def _answer(self, given: str) -> None:
         if self._lesson is not None and given and len(given) < 40:
@@ -157,25 +157,44 @@ class LearnView(View):
 
     def _step_html(self, lesson: Lesson, scenario: Scenario, run: Run | None) -> str:
         step = lesson.steps[self._step]
-        dots = "".join(
-            f'<button class="sb-dot{" sb-here" * (i == self._step)}" data-command="{COMMAND} step {i}" '
-            f'aria-label="Step {i + 1} of {len(lesson.steps)}: {escape(s.title)}"'
-            f"{' aria-current=step' * (i == self._step)}></button>"
-            for i, s in enumerate(lesson.steps)
+        dots = Text.joined(
+            "",
+            (
+                Text(
+                    '<button class="sb-dot{value}" data-command="{command} step {i}" aria-label="Step {i2} '
+                    'of {len}: {title:html}"{value2}></button>',
+                    value=" sb-here" * (i == self._step),
+                    command=COMMAND,
+                    i=i,
+                    i2=i + 1,
+                    len=len(lesson.steps),
+                    title=s.title,
+                    value2=" aria-current=step" * (i == self._step),
+                )
+                for i, s in enumerate(lesson.steps)
+            ),
         )
         button = ""
         if step.action is not None:
             fresh = scenario == self._scenario()
-            button = (
-                f'<button class="sb-button{" sb-quiet" * fresh}" data-command="{COMMAND} show">'
-                f"{'Show me again' if fresh else 'Show me'}</button>"
+            label = Text("Show me again") if fresh else Text("Show me")
+            button = Text(
+                '<button class="sb-button{quiet}" data-command="{command} show">{label}</button>',
+                quiet=" sb-quiet" * fresh,
+                command=COMMAND,
+                label=label,
             )
-        return (
-            f'<section class="sb-lesson" aria-label="Lesson"><div class="sb-crumb">'
-            f'<button class="sb-link" data-command="{COMMAND} list">All lessons</button>'
-            f'<nav class="sb-dots" aria-label="Steps">{dots}</nav></div>'
-            f'<h2>{escape(lesson.title)}</h2><div aria-live="polite"><h3>{escape(step.title)}</h3>'
-            f"{to_html(step.text, self._spoken_of(lesson, run))}</div>{button}</section>"
+        return Text(
+            '<section class="sb-lesson" aria-label="Lesson"><div class="sb-crumb"><button '
+            'class="sb-link" data-command="{command} list">All lessons</button><nav class="sb-dots" '
+            'aria-label="Steps">{dots}</nav></div><h2>{title:html}</h2><div aria-live="polite"><h3>'
+            "{title2:html}</h3>{to_html}</div>{button}</section>",
+            command=COMMAND,
+            dots=dots,
+            title=lesson.title,
+            title2=step.title,
+            to_html=to_html(step.text, self._spoken_of(lesson, run)),
+            button=button,
         )
 
     def _question_html(self, lesson: Lesson) -> str:
@@ -185,21 +204,39 @@ class LearnView(View):
         given = self._given.get((self._lesson or 0, self._step))
         verdict, right = ("", False) if given is None else self._verdict(question, given)
         if question.choices:
-            answers = "".join(
-                f'<button class="sb-choice{" sb-chosen" * (given == str(i))}" '
-                f'aria-pressed="{str(given == str(i)).lower()}" data-command="{COMMAND} answer {i}">'
-                f"{to_html(choice.say, None).removeprefix('<p>').removesuffix('</p>' + chr(10))}</button>"
-                for i, choice in enumerate(question.choices)
+            answers = Text.joined(
+                "",
+                (
+                    Text(
+                        '<button class="sb-choice{value}" aria-pressed="{lower}" '
+                        'data-command="{command} answer '
+                        '{i}">{removesuffix}</button>',
+                        value=" sb-chosen" * (given == str(i)),
+                        lower=str(given == str(i)).lower(),
+                        command=COMMAND,
+                        i=i,
+                        removesuffix=to_html(choice.say, None)
+                        .removeprefix("<p>")
+                        .removesuffix("</p>" + chr(10)),
+                    )
+                    for i, choice in enumerate(question.choices)
+                ),
             )
         else:
-            answers = (
-                f'<form class="sb-number" data-answer="{COMMAND}"><input type="text" inputmode="decimal" '
-                f'aria-label="Your answer" value="{escape(given or "")}" autocomplete="off">'
-                '<button class="sb-button">Check</button></form>'
+            answers = Text(
+                '<form class="sb-number" data-answer="{command}"><input type="text" inputmode="decimal" '
+                'aria-label="Your answer" value="{value:html}" autocomplete="off"><button '
+                'class="sb-button">Check</button></form>',
+                command=COMMAND,
+                value=given or "",
             )
-        return (
-            f'<section class="sb-lesson sb-question" aria-label="Question" data-right="{str(right).lower()}">'
-            f'{to_html(question.ask, None)}{answers}<div role="status">{verdict}</div></section>'
+        return Text(
+            '<section class="sb-lesson sb-question" aria-label="Question" data-right="{lower}">'
+            '{to_html}{answers}<div role="status">{verdict}</div></section>',
+            lower=str(right).lower(),
+            to_html=to_html(question.ask, None),
+            answers=answers,
+            verdict=verdict,
         )
 
     def _verdict(self, question: Question, given: str) -> tuple[str, bool]:
@@ -207,14 +244,14 @@ class LearnView(View):
         try:
             right = is_right(question, given, run)
         except ValueError:
-            return f'<p class="sb-wrong"><b>{_UNREADABLE}</b></p>', False
+            return Text('<p class="sb-wrong"><b>{unreadable}</b></p>', unreadable=_UNREADABLE), False
         if right:
             why = to_html(question.why, run).removeprefix("<p>")
-            return f'<p class="sb-right"><b>&#10003; Right.</b><br>{why}', True
-        advice = "Look again: press Show me if the pictures are of something else."
+            return Text('<p class="sb-right"><b>&#10003; Right.</b><br>{why}', why=why), True
+        advice = Text("Look again: press Show me if the pictures are of something else.")
         if not question.choices:
             advice += Text(" Within {tolerance:g} % counts as right.", tolerance=100.0 * question.tolerance)
-        return f'<p class="sb-wrong"><b>&#10007; Not so.</b> {advice}</p>', False
+        return Text('<p class="sb-wrong"><b>&#10007; Not so.</b> {advice}</p>', advice=advice), False
 
     def _run_of(self, scenario: Scenario) -> Run:
         """Run of the step's own scenario: that on the page, or one made for the answer."""
@@ -229,18 +266,28 @@ class LearnView(View):
 
     def _below_html(self, lesson: Lesson) -> str:
         following = (self._lesson or 0) + 1
-        forward = f"{COMMAND} next", "Next"
+        forward = f"{COMMAND} next", Text("Next")
         if self._step == len(lesson.steps) - 1:
             more = following < len(lessons())
-            forward = (f"{COMMAND} open {following}", "Next lesson") if more else (f"{COMMAND} list", "Done")
+            forward = (
+                (f"{COMMAND} open {following}", Text("Next lesson"))
+                if more
+                else (f"{COMMAND} list", Text("Done"))
+            )
         back = (
-            f'<button class="sb-button sb-quiet" data-command="{COMMAND} back">Back</button>'
+            Text(
+                '<button class="sb-button sb-quiet" data-command="{command} back">Back</button>',
+                command=COMMAND,
+            )
             if self._step
             else "<span></span>"
         )
-        return (
-            f'<nav class="sb-lesson sb-below" aria-label="Lesson">{back}'
-            f'<button class="sb-button sb-quiet" data-command="{forward[0]}">{forward[1]}</button></nav>'
+        return Text(
+            '<nav class="sb-lesson sb-below" aria-label="Lesson">{back}<button class="sb-button '
+            'sb-quiet" data-command="{forward}">{forward2}</button></nav>',
+            back=back,
+            forward=forward[0],
+            forward2=forward[1],
         )
 
 
@@ -273,16 +320,25 @@ def spec_at(scenario: Scenario, dotted: str) -> list[FieldSpec]:
 
 
 def _list_html() -> str:
-    entries = "".join(
-        f'<li><button class="sb-choice" data-command="{COMMAND} open {i}"><b>{escape(lesson.title)}</b>'
-        f"<br>{escape(lesson.about)}</button></li>"
-        for i, lesson in enumerate(lessons())
+    entries = Text.joined(
+        "",
+        (
+            Text(
+                '<li><button class="sb-choice" data-command="{command} open {i}"><b>{title:html}</b><br>'
+                "{about:html}</button></li>",
+                command=COMMAND,
+                i=i,
+                title=lesson.title,
+                about=lesson.about,
+            )
+            for i, lesson in enumerate(lessons())
+        ),
     )
-    return (
-        '<section class="sb-lesson" aria-label="Lessons"><h2>Lessons</h2>'
-        "<p>Each takes five minutes and sets the page up as it goes. Your own scenario comes back with "
-        "Undo.</p>"
-        f"<ol>{entries}</ol></section>"
+    return Text(
+        '<section class="sb-lesson" aria-label="Lessons"><h2>Lessons</h2><p>Each takes five '
+        "minutes and sets the page up as it goes. Your own scenario comes back with Undo.</p><ol>"
+        "{entries}</ol></section>",
+        entries=entries,
     )
 
 

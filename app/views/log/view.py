@@ -8,6 +8,7 @@ from app.session.log_fit import can_fit, fit_of, told, with_fitted_log
 from app.shell import notices
 from app.shell.palette import COPY_LOG, PASTE
 from app.shell.view import FieldsView, Tab, if_user
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from navcore.sensors.log_errors.events import LogEvent
 from navcore.sensors.reference import Outage, Reference
@@ -15,12 +16,14 @@ from navcore.sensors.reference import Outage, Reference
 if TYPE_CHECKING:
     from navcore.sensors.fit import LogErrorFit
 
-ADD_EVENT, REMOVE_EVENT = "add event", "remove event"
-ADD_OUTAGE, REMOVE_OUTAGE = "add outage", "remove outage"
-COPY_TEXT, PASTE_TEXT = "copy as TOML", "paste TOML"
-FIT, USE_FIT = "Fit this log's error", "Simulate a log with this error"
-_FIT_TOLD = "Compares the recorded log with the recorded track: delay, bias, noise and drift of its error."
-_USE_TOLD = (
+ADD_EVENT, REMOVE_EVENT = Text("add event"), Text("remove event")
+ADD_OUTAGE, REMOVE_OUTAGE = Text("add outage"), Text("remove outage")
+COPY_TEXT, PASTE_TEXT = Text("copy as TOML"), Text("paste TOML")
+FIT, USE_FIT = Text("Fit this log's error"), Text("Simulate a log with this error")
+_FIT_TOLD = Text(
+    "Compares the recorded log with the recorded track: delay, bias, noise and drift of its error."
+)
+_USE_TOLD = Text(
     "Replaces the recorded log by a simulated one with the fitted error, of any length. Undo brings it back."
 )
 _FIRST = 7
@@ -31,7 +34,7 @@ _KINDS = {"event": LogEvent, "outage": Outage}
 class LogView(FieldsView):
     """The reference velocity, its errors, events and outages."""
 
-    title = "Log"
+    title = Text("Log")
     place = "edit"
     places = {"kind": 0.0, "first": 1.0, "more": 30.0, "event": 61.0, "outage": 201.0}
 
@@ -42,25 +45,30 @@ class LogView(FieldsView):
         self._specs = form.fields(Reference, ("reference",))
         with tab:
             self._all = gui.add_checkbox(
-                "all log errors", False, hint="Scale, delay, resolution, current and tide too.", order=29
+                Text("all log errors"),
+                False,
+                hint=Text("Scale, delay, resolution, current and tide too."),
+                order=29,
             )
             self._buttons = gui.add_button_group(
-                "events",
+                Text("events"),
                 (ADD_EVENT, REMOVE_EVENT),
-                hint="A passing disturbance: its acceleration is integrated into the log's velocity.",
+                hint=Text("A passing disturbance: its acceleration is integrated into the log's velocity."),
                 order=60,
             )
             self._outages = gui.add_button_group(
-                "outages",
+                Text("outages"),
                 (ADD_OUTAGE, REMOVE_OUTAGE),
-                hint="A time in which the log gives nothing: undamped meanwhile.",
+                hint=Text("A time in which the log gives nothing: undamped meanwhile."),
                 order=200,
             )
             self._clipboard = gui.add_button_group(
-                "events as text",
+                Text("events as text"),
                 (COPY_TEXT, PASTE_TEXT),
-                hint="Copy all events, outages and currents as TOML, or paste such a list in their place. "
-                "Ctrl+V pastes too.",
+                hint=Text(
+                    "Copy all events, outages and currents as TOML, or paste such a list in their place. "
+                    "Ctrl+V pastes too."
+                ),
                 order=59,
             )
             self._fit = gui.add_button(FIT, hint=_FIT_TOLD, order=20, visible=False)
@@ -82,7 +90,7 @@ class LogView(FieldsView):
     def _arrange(self, what: str) -> None:
         """Add or remove an event or outage of the log."""
         session = self.session
-        with session.lock, notices.told(self.frame.client, "Not possible", self.frame.refresh):
+        with session.lock, notices.told(self.frame.client, Text("Not possible"), self.frame.refresh):
             block = "event" if what in (ADD_EVENT, REMOVE_EVENT) else "outage"
             change = edits.with_block if what in (ADD_EVENT, ADD_OUTAGE) else edits.without_block
             session.change(change(session.scenario, ("reference", block)), None)
@@ -91,14 +99,14 @@ class LogView(FieldsView):
         """Fit the recorded log's error, and show it beside the button."""
         with self.session.lock:
             scenario = self.session.scenario
-        with notices.told(self.frame.client, "The log's error cannot be fitted", self.frame.refresh):
+        with notices.told(self.frame.client, Text("The log's error cannot be fitted"), self.frame.refresh):
             self._last_fit = scenario, fit_of(scenario)
             self.frame.refresh()
 
     def _use_fit(self) -> None:
         """Run on a simulated log with the fitted error in the place of the recorded one."""
         session = self.session
-        with session.lock, notices.told(self.frame.client, "Not possible", self.frame.refresh):
+        with session.lock, notices.told(self.frame.client, Text("Not possible"), self.frame.refresh):
             if self._last_fit is not None:
                 session.change(with_fitted_log(session.scenario, self._last_fit[1]), None)
 
@@ -139,7 +147,9 @@ def _blocks(scenario: Scenario, name: str) -> list[FieldSpec]:
     return [
         spec
         for i in range(len(getattr(scenario.reference, name)))
-        for spec in form.fields(_KINDS[name], ("reference", name, i), prefix=f"{name} {i + 1}")
+        for spec in form.fields(
+            _KINDS[name], ("reference", name, i), prefix=Text("{name} {i}", name=name, i=i + 1)
+        )
     ]
 
 

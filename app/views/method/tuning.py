@@ -17,13 +17,14 @@ from app.views.method.tuned import table_html
 from navcore.design.sun_settings import TuningSettings
 from navcore.foundation.errors import InputError
 from navcore.foundation.faults import faults_from
+from navcore.foundation.text import Text
 from navcore.scenario.method import Method
 
-FIND, STOP, USE = "Find the table for this scenario", "Stop the search", "Use this table"
-_TITLE = "Table by Sun's double loop"
+FIND, STOP, USE = Text("Find the table for this scenario"), Text("Stop the search"), Text("Use this table")
+_TITLE = Text("Table by Sun's double loop")
 _SHOWN = ("smallest", "largest", "step", "error", "drift_tau_s", "realisations")
-_LABELS = {"step": "coefficient step", "realisations": "drifts averaged"}
-_TOLD = (
+_LABELS = {"step": Text("coefficient step"), "realisations": Text("drifts averaged")}
+_TOLD = Text(
     "Runs this scenario with every damping ratio, and takes for each velocity difference the one with "
     "the least integral of the squared velocity errors (Sun 8)."
 )
@@ -55,7 +56,9 @@ class TuningPanel:
             gui.add_html(notices.small(_TOLD), order=-1.0)
             self._controls = SearchControls(gui, self._tuner, self._find, (FIND, STOP), _TOLD, order=20.0)
             self._found = gui.add_html("", visible=False, order=23.0)
-            self._use = gui.add_button(USE, visible=False, order=24.0, hint="One step of undo takes it back.")
+            self._use = gui.add_button(
+                USE, visible=False, order=24.0, hint=Text("One step of undo takes it back.")
+            )
         self._use.on_click(lambda _: self._take())
 
     def show(self) -> None:
@@ -75,7 +78,9 @@ class TuningPanel:
         html = notices.note(tuner.words, "warning")
         if result is not None and tuner.asked is not None:
             if tuner.asked.scenario != scenario:
-                html += notices.note(["Found for the scenario as it was before: find it anew."], "warning")
+                html += notices.note(
+                    [Text("Found for the scenario as it was before: find it anew.")], "warning"
+                )
             html += table_html(result, style.method_color(index))
         show_html(self._found, html)
 
@@ -99,9 +104,9 @@ class TuningPanel:
                 return
             try:
                 changed = with_table(session.scenario, result, session.selected)
-                session.change(changed, None, name="damping table found")
+                session.change(changed, None, name=Text("damping table found"))
             except InputError as error:
-                notices.tell(self._client, "The table cannot be used", notices.fault_lines(error))
+                notices.tell(self._client, Text("The table cannot be used"), notices.fault_lines(error))
 
     def _edit(self, control: Control, by_slider: bool) -> None:
         name, value = str(control.spec.path[-1]), control.take(by_slider)

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from html import escape
 from typing import Any
 
 from app.editing import edits, form
@@ -27,9 +26,9 @@ from navcore.networks import NETWORKS
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 
-ADD, COPY, REMOVE = "add", "copy", "remove"
-COPY_TEXT, PASTE_TEXT = "copy as TOML", "paste TOML"
-NO_DESIGN = "no (σ, ζ) gives these K"
+ADD, COPY, REMOVE = Text("add"), Text("copy"), Text("remove")
+COPY_TEXT, PASTE_TEXT = Text("copy as TOML"), Text("paste TOML")
+NO_DESIGN = Text("no (σ, ζ) gives these K")
 _CATALOGUES: Mapping[str, tuple[Mapping[str, type], str]] = {
     "network": (NETWORKS, "network"),
     "policy": (POLICIES, "policy"),
@@ -40,16 +39,16 @@ _CATALOGUES: Mapping[str, tuple[Mapping[str, type], str]] = {
 class MethodView(View):
     """Controls of the selected method."""
 
-    title = "Method"
+    title = Text("Method")
     place = "edit"
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
         self._names: tuple[str, ...] = ()
         add = frame.commands.register
-        add("method-add", lambda _: self._arrange(ADD), "Add a method")
-        add("method-copy", lambda _: self._arrange(COPY), "Copy the method")
-        add("method-remove", lambda _: self._arrange(REMOVE), "Remove the method")
+        add("method-add", lambda _: self._arrange(ADD), Text("Add a method"))
+        add("method-copy", lambda _: self._arrange(COPY), Text("Copy the method"))
+        add("method-remove", lambda _: self._arrange(REMOVE), Text("Remove the method"))
 
     def build(self, tab: Tab) -> None:
         """Make the chooser, the buttons and the places for controls and notes."""
@@ -58,22 +57,26 @@ class MethodView(View):
             self._chooser: Any = gui.add_dropdown(
                 "method",
                 ("",),
-                hint="The controls below belong to this method.",
+                hint=Text("The controls below belong to this method."),
                 order=0,
             )
             self._chip = gui.add_html("", order=0.5)
             buttons = gui.add_button_group(
-                "methods",
+                Text("methods"),
                 (ADD, COPY, REMOVE),
-                hint="Add a method, copy the present one to vary it, or remove it. All methods run on the "
-                "same truth, sensors and log.",
+                hint=Text(
+                    "Add a method, copy the present one to vary it, or remove it. All methods run on the "
+                    "same truth, sensors and log."
+                ),
                 order=1,
             )
             clipboard = gui.add_button_group(
-                "as text",
+                Text("as text"),
                 (COPY_TEXT, PASTE_TEXT),
-                hint="Copy the method as TOML, or paste one that was copied, from this session or another. "
-                "Ctrl+V pastes too.",
+                hint=Text(
+                    "Copy the method as TOML, or paste one that was copied, from this session or another. "
+                    "Ctrl+V pastes too."
+                ),
                 order=1.5,
             )
             self._unused = gui.add_html("", order=19, visible=False)
@@ -114,7 +117,7 @@ class MethodView(View):
     def _arrange(self, what: str) -> None:
         """Add, copy or remove a method."""
         session = self.session
-        with session.lock, notices.told(self.frame.client, "Not possible", self.frame.refresh):
+        with session.lock, notices.told(self.frame.client, Text("Not possible"), self.frame.refresh):
             at = session.selected
             if what in (ADD, COPY):
                 changed, at = edits.with_method(session.scenario, at if what == COPY else None)
@@ -200,9 +203,12 @@ def described(spec: FieldSpec, method: Method) -> FieldSpec:
 
 def _catalogue(part: str, path: Path) -> FieldSpec:
     members, label = _CATALOGUES[part]
-    titles = (f"{key}: {getattr(m, 'title', '') or first_line(m)}" for key, m in members.items())
+    titles = (
+        Text("{key}: {value}", key=key, value=getattr(m, "title", "") or first_line(m))
+        for key, m in members.items()
+    )
     return FieldSpec(
-        (*path, part, "id"), label, "; ".join(titles), "choice", next(iter(members)), tuple(members)
+        (*path, part, "id"), label, Text.joined("; ", titles), "choice", next(iter(members)), tuple(members)
     )
 
 
@@ -212,7 +218,7 @@ def loop_text(method: MethodRun, lat_deg: float) -> str:
     if not loop.stable:
         return ""
     settles = (
-        "never settles"
+        Text("never settles")
         if loop.settling_s is None
         else Text("settles to 2 % in {settling}", settling=settling(loop.settling_s))
     )
@@ -249,9 +255,10 @@ def _shown(value: Any) -> Any:
 
 
 def _chip(index: int) -> str:
-    return (
-        f'<div style="height:4px;margin:-4px 10px 8px calc(8.4rem + 10px);border-radius:2px;'
-        f'background:{escape(style.method_color(index))}"></div>'
+    return Text(
+        '<div style="height:4px;margin:-4px 10px 8px calc(8.4rem + '
+        '10px);border-radius:2px;background:{method_color:html}"></div>',
+        method_color=style.method_color(index),
     )
 
 

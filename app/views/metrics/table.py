@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from html import escape
 from typing import TYPE_CHECKING
 
 from app.plots import style
@@ -24,14 +23,14 @@ from app.plots.units import (
 from app.session.display import Display
 from navcore.engine.measures import measure
 from navcore.engine.run import LawInForce, Run
-from navcore.foundation.text import Text
+from navcore.foundation.text import Text, quoted
 from navcore.quantities import ERRORS, QUANTITIES, STATISTICS, RecordedError
 
 if TYPE_CHECKING:
     from navcore.engine.verification import Difference, Verification
 
 
-_OF_THE_DIFFERENCE = {"rms": "Δ rms", "max_abs": "Δ max", "final": "Δ final"}
+_OF_THE_DIFFERENCE = {"rms": Text("Δ rms"), "max_abs": Text("Δ max"), "final": Text("Δ final")}
 # The units are fixed: numbers of two runs can be compared at a glance.
 _UNITS = (*((error, NAMED[error.kind.unit]) for error in ERRORS), (ERRORS[-1], NAMED["nmi"]))
 
@@ -96,7 +95,7 @@ def _delta_texts(run: Run, baseline: Run, name: str, statistic: str, unit: Unit)
     old = {method.method.name: method.errors[name][statistic] for method in baseline.methods}
     new = {method.method.name: method.errors[name][statistic] for method in run.methods}
     return tuple(
-        difference_text(value, old[method], unit) if method in old else "not in it"
+        difference_text(value, old[method], unit) if method in old else Text("not in it")
         for method, value in new.items()
     )
 
@@ -115,7 +114,7 @@ def difference_rows(verification: Verification) -> tuple[Row, ...]:
 
 def _difference(difference: Difference | None, unit: Unit) -> str:
     if difference is None:
-        return "not known"
+        return Text("not known")
     part = "" if difference.of_peak is None else f" ({number(100.0 * difference.of_peak, 2)} %)"
     return f"{number(difference.peak / unit.si, 3)}{part}"
 
@@ -129,7 +128,7 @@ def verdict(verification: Verification) -> str:
         if (difference := differences.get(error.name)) is not None and difference.of_peak is not None
     ]
     if not worst:
-        return "The two models could not be compared."
+        return Text("The two models could not be compared.")
     part, label, name = max(worst)
     return Text(
         "Largest difference: {part} % of the peak ({label}, {name}).",
@@ -146,7 +145,9 @@ def _loop_rows(run: Run) -> list[Row]:
         values = [measure(method, key) for method in run.methods]
         texts = [text(value) for value in values]
         if key == "settling_s":
-            texts = [t if m.loop.stable else "unstable" for m, t in zip(run.methods, texts, strict=True)]
+            texts = [
+                t if m.loop.stable else Text("unstable") for m, t in zip(run.methods, texts, strict=True)
+            ]
         best = _best([[value] for value in values]) if key == "settling_s" else ()
         rows.append(Row(QUANTITIES[key].label, "", tuple((text,) for text in texts), best=best))
     return rows
@@ -161,9 +162,15 @@ def _best(sizes: Sequence[Sequence[float]]) -> tuple[tuple[bool, ...], ...]:
     return tuple(zip(*marks, strict=True))
 
 
-def system_html(run: Run) -> str:
+def system_html(run: Run, *, folded: bool = True) -> str:
     """Table with a line a method: whole system, law in force, and the steady errors over the floor."""
-    heads = "", "24 h mode", "time damped", "damping ratio in force", "tilt, velocity: times the floor"
+    heads = (
+        "",
+        Text("24 h mode"),
+        Text("time damped"),
+        Text("damping ratio in force"),
+        Text("tilt, velocity: times the floor"),
+    )
     floors, lines = times_the_floor(run.scenario), []
     for i, (method, floor) in enumerate(zip(run.methods, floors, strict=True)):
         law = method.law_in_force
@@ -174,11 +181,13 @@ def system_html(run: Run) -> str:
             _coefficient(law),
             floor,
         )
-        lines.append(row((cell(escape(text)) for text in texts), style=f"color:{style.method_color(i)}"))
+        lines.append(row((cell(quoted(text)) for text in texts), style=f"color:{style.method_color(i)}"))
     head = row(cell(text, "sb-m", tag="th") for text in heads)
-    return (
-        '<details class="sb-system"><summary>Whole system, law in force, floor</summary>'
-        f"{table([head], lines)}</details>"
+    return Text(
+        '<details{state} class="sb-system"><summary>Whole system, law in force, floor</summary>'
+        "{table}</details>",
+        state="" if folded else " open",
+        table=table([head], lines),
     )
 
 
@@ -187,7 +196,7 @@ def _coefficient(law: LawInForce) -> str:
     if law.xi_min is None or law.xi_max is None:
         return "none"
     low, high = number(law.xi_min, 3), number(law.xi_max, 3)
-    return low if low == high else f"{low} to {high}"
+    return low if low == high else Text("{low} to {high}", low=low, high=high)
 
 
 def _error_row(run: Run, error: RecordedError, unit: Unit) -> Row:
@@ -233,20 +242,22 @@ def metrics_html(
     below = [cell(name, "sb-n sb-m", tag="th") for name in headings] * len(places)
     head = [
         row([cell(), cell(), *(_method_head(run, i, columns) for i in places)]),
-        row([cell(), cell("unit", "sb-m", tag="th"), *below]),
+        row([cell(), cell(Text("unit"), "sb-m", tag="th"), *below]),
     ]
     rows = metrics_rows(run, display, baseline)
     decimals = _decimals(rows)
     body = [_html_row(_part(each, places), columns, decimals) for each in rows]
     if baseline is not None and compares:
-        foot = (
-            f'Δ: this run minus <b style="color:{baseline.hex}">{escape(baseline.name)}</b>, the method of '
-            "the same name; in the unit of the line, and as a part of the baseline's number"
+        foot = Text(
+            'Δ: this run minus <b style="color:{hex}">{name:html}</b>, the method of the same name; '
+            "in the unit of the line, and as a part of the baseline's number",
+            hex=baseline.hex,
+            name=baseline.name,
         )
         body.append(row([cell(foot, "sb-foot", colspan=width)]))
     if verification is not None:
-        title = "Full strapdown minus linear model: largest difference (part of the strapdown's peak)"
-        title += "; of an earlier scenario" if old else ""
+        title = Text("Full strapdown minus linear model: largest difference (part of the strapdown's peak)")
+        title += Text("; of an earlier scenario") if old else ""
         look = "sb-old" if old else ""
         body.append(row([cell(title, "sb-title", colspan=width)], f"sb-difference {look}".rstrip()))
         body += [_html_row(_part(each, places), columns, look=look) for each in difference_rows(verification)]
@@ -254,7 +265,7 @@ def metrics_html(
 
 
 def _method_head(run: Run, index: int, columns: int) -> str:
-    name = f"<span>{escape(run.methods[index].method.name)}</span>"
+    name = Text("<span>{name:html}</span>", name=run.methods[index].method.name)
     return cell(name, "sb-h", tag="th", colspan=columns, style=f"color:{style.method_color(index)}")
 
 
@@ -293,20 +304,20 @@ def method_px(rows: Sequence[Row], letter_px: float, padding_px: float) -> float
 
 
 def _html_row(line: Row, columns: int, decimals: int = 0, look: str = "") -> str:
-    cells = [cell(escape(line.label)), cell(escape(line.unit), "sb-m")]
+    cells = [cell(quoted(line.label)), cell(quoted(line.unit), "sb-m")]
     for place, texts in enumerate(line.cells):
         best = line.best[place] if line.best else (False,) * len(texts)
         marked = [
-            cell(escape(text), "sb-best", tag="span", title=style.BEST) if mark else escape(text)
+            cell(quoted(text), "sb-best", tag="span", title=style.BEST) if mark else quoted(text)
             for text, mark in zip(texts, best, strict=True)
         ]
         if len(texts) == 1:
             cells.append(cell(marked[0], "sb-c", colspan=columns))
             continue
         filled = [_filled(text, decimals) for text in texts]
-        cells += [cell("".join(parts), "sb-n") for parts in zip(marked, filled, strict=True)]
+        cells += [cell(Text.joined("", parts), "sb-n") for parts in zip(marked, filled, strict=True)]
         if line.deltas:
-            cells.append(cell(escape(line.deltas[place]), "sb-n sb-delta"))
+            cells.append(cell(quoted(line.deltas[place]), "sb-n sb-delta"))
     return row(cells, look)
 
 

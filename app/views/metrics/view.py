@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 from app.jobs.verifier import Verified
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
     from navcore.engine.run import Run
 
 
-_WAITS = "What dominates this result is computed once the controls rest."
+_WAITS = Text("What dominates this result is computed once the controls rest.")
 
 
 def why_html(explainer: Explainer, run: Run, selected: int = 0, *, folded: bool = False) -> str:
@@ -47,9 +46,11 @@ def why_html(explainer: Explainer, run: Run, selected: int = 0, *, folded: bool 
     result, fits = explainer.result, explainer.asked is run
     if fits and result is not None:
         name, causes = result.methods[min(selected, len(result.methods) - 1)]
-        return _box(_lines(result), "", f"{name}: {_told(causes, result)}", folded=folded)
+        return _box(
+            _lines(result), "", Text("{name}: {told}", name=name, told=_told(causes, result)), folded=folded
+        )
     if explainer.words:
-        return _box("", "What dominates this result could not be found.", "", folded=folded)
+        return _box("", Text("What dominates this result could not be found."), "", folded=folded)
     state = _WAITS
     if explainer.fraction is not None:
         state = Text(
@@ -57,34 +58,51 @@ def why_html(explainer: Explainer, run: Run, selected: int = 0, *, folded: bool 
         )
     if result is None or len(result.methods) != len(run.methods):
         return _box("", state, "", folded=folded)
-    old = f'<div class="sb-old">{_lines(result)}</div>'
+    old = Text('<div class="sb-old">{lines}</div>', lines=_lines(result))
     return _box(old, Text("{state} Below: of an earlier run.", state=state), "", folded=folded)
 
 
 def _box(lines: str, state: str, short: str, *, folded: bool) -> str:
-    status = f'<span role="status" class="sb-muted">{escape(state)}</span>' if state else ""
+    status = Text('<span role="status" class="sb-muted">{state:html}</span>', state=state) if state else ""
     which = f'id="sb-why" data-fits="{int(not state)}"'
     if not folded:
-        return f"<div {which}><b>Why</b> {status}{lines}</div>"
-    return f"<details {which}><summary><b>Why</b> {status}{escape(short)}</summary>{lines}</details>"
+        return Text("<div {which}><b>Why</b> {status}{lines}</div>", which=which, status=status, lines=lines)
+    return Text(
+        "<details {which}><summary><b>Why</b> {status}{short:html}</summary>{lines}</details>",
+        which=which,
+        status=status,
+        short=short,
+        lines=lines,
+    )
 
 
 def _words(causes: tuple[Cause, ...], result: Why, *kinds: Kind) -> str:
-    return "; ".join(cause_text(cause, result) for cause in causes if cause.quantity in kinds)
+    return Text.joined("; ", (cause_text(cause, result) for cause in causes if cause.quantity in kinds))
 
 
 def _told(causes: tuple[Cause, ...], result: Why) -> str:
     """Position and tilt in words; the heading stands in the tooltip."""
-    return _words(causes, result, POSITION, TILT) or "neither position error nor tilt"
+    return _words(causes, result, POSITION, TILT) or Text("neither position error nor tilt")
 
 
 def _lines(result: Why) -> str:
-    rows = "".join(
-        f'<div title="{escape(_words(causes, result, HEADING))}"><span class="sb-swatch" style="background:'
-        f'{style.method_color(index)}"></span><b>{escape(name)}</b>: {escape(_told(causes, result))}.</div>'
-        for index, (name, causes) in enumerate(result.methods)
+    rows = Text.joined(
+        "",
+        (
+            Text(
+                '<div title="{words:html}"><span class="sb-swatch" style="background:{method_color}">'
+                "</span><b>{name:html}</b>: {told:html}.</div>",
+                words=_words(causes, result, HEADING),
+                method_color=style.method_color(index),
+                name=name,
+                told=_told(causes, result),
+            )
+            for index, (name, causes) in enumerate(result.methods)
+        ),
     )
-    return rows + "".join(f'<div class="sb-muted">{escape(text)}</div>' for text in result.remarks)
+    return rows + Text.joined(
+        "", (Text('<div class="sb-muted">{text:html}</div>', text=text) for text in result.remarks)
+    )
 
 
 def cause_text(cause: Cause, result: Why) -> str:
@@ -94,7 +112,7 @@ def cause_text(cause: Cause, result: Why) -> str:
     """
     period = _period(cause, result)
     if not cause.source:
-        return f"{cause.quantity.label} {period}"
+        return Text("{label} {period}", label=cause.quantity.label, period=period)
     if cause.share > 0.995:
         return Text(
             "{quantity} all from {source}, {period}",
@@ -130,10 +148,10 @@ def _period(cause: Cause, result: Why) -> str:
             "at the Schuler period ({schuler_s}){beat}", schuler_s=duration(result.schuler_s), beat=beat
         )
     return {
-        "constant": "as a constant",
-        "drift": "as a slow drift",
-        "earth": "at the 24 h period",
-        "other": "without a natural period",
+        "constant": Text("as a constant"),
+        "drift": Text("as a slow drift"),
+        "earth": Text("at the 24 h period"),
+        "other": Text("without a natural period"),
     }[largest]
 
 
@@ -142,26 +160,28 @@ _LETTER_PX, _PADDING_PX = {True: 7.3, False: 6.7}, {True: 16, False: 8}
 _DELTA_PX = {True: 150, False: 125}
 _ROW_NAME_PX = 120
 _MARGINS_PX = 20
-OVER = "errors over"
-_WINDOWS = {"the whole run": "whole", "after settling": "settled", "chosen hours": "hours"}
+OVER = Text("errors over")
+_WINDOWS = {Text("the whole run"): "whole", Text("after settling"): "settled", Text("chosen hours"): "hours"}
 _ENDS = {
-    "window_from_h": ("measured from (h)", "Begin of the part of the run that is measured."),
-    "window_to_h": ("measured to (h)", "End of the part of the run that is measured."),
+    "window_from_h": (Text("measured from (h)"), Text("Begin of the part of the run that is measured.")),
+    "window_to_h": (Text("measured to (h)"), Text("End of the part of the run that is measured.")),
 }
 
 
 class MetricsView(PictureView[tuple[str, str]]):
     """Table and warnings, and between them which error source dominates."""
 
-    title = "Metrics"
+    title = Text("Metrics")
     place = "lower"
-    look_for = "The best number of each row is marked; below, which error source it comes from."
+    look_for = Text("The best number of each row is marked; below, which error source it comes from.")
 
     def build(self, tab: Tab) -> None:
         """Make the places of the texts."""
         with tab:
             self._over: Any = self.frame.gui.add_dropdown(
-                OVER, tuple(_WINDOWS), hint="Part of the run over which errors and requirements are measured."
+                OVER,
+                tuple(_WINDOWS),
+                hint=Text("Part of the run over which errors and requirements are measured."),
             )
             self._ends = {
                 field: Widget(
@@ -216,7 +236,9 @@ class MetricsView(PictureView[tuple[str, str]]):
         """Show table and warnings; what dominates the run is looked for only now that they are in front."""
         table, warnings = picture
         narrow = "" if self.frame.layout().wide else " sb-narrow"
-        self._table.content = f'<div class="sb-table{narrow}" style="padding:4px 10px">{table}</div>'
+        self._table.content = Text(
+            '<div class="sb-table{narrow}" style="padding:4px 10px">{table}</div>', narrow=narrow, table=table
+        )
         self._warnings.content = warnings
         if self.session.run is not None:
             self.session.searches.explain(self.session.run)
@@ -233,11 +255,15 @@ class MetricsView(PictureView[tuple[str, str]]):
         beside = None if verified is None else verified.verification
         old = verified is not None and verified.old
         note = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
-        tables = "".join(
-            '<div style="margin-bottom:2px">'
-            + metrics_html(run, part, beside, old=old, display=now.display, baseline=baseline)
-            + "</div>"
-            for part in parts(len(run.methods), most)
+        tables = Text.joined(
+            "",
+            (
+                Text(
+                    '<div style="margin-bottom:2px">{metrics}</div>',
+                    metrics=metrics_html(run, part, beside, old=old, display=now.display, baseline=baseline),
+                )
+                for part in parts(len(run.methods), most)
+            ),
         )
         return note + tables + system_html(now.run)
 
@@ -250,8 +276,15 @@ def warnings_html(run: Run, verified: Verified | None = None) -> str:
         notes.append(notices.note(verified.verification.statements, "warning"))
     for index, texts in warnings_for(run).items():
         name = run.methods[index].method.name
-        notes.append(notices.note([f"{name}: {text}" for text in texts], severity(run, index) or "warning"))
-    return f'<div style="padding-top:3px;color:{style.INK}">{"".join(notes)}</div>'
+        notes.append(
+            notices.note(
+                [Text("{name}: {text}", name=name, text=text) for text in texts],
+                severity(run, index) or "warning",
+            )
+        )
+    return Text(
+        '<div style="padding-top:3px;color:{ink}">{notes}</div>', ink=style.INK, notes=Text.joined("", notes)
+    )
 
 
 VIEW = MetricsView

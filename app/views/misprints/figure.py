@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from html import escape
 from itertools import repeat
 from typing import Any, Literal, get_args
 
@@ -14,12 +13,13 @@ from app.plots.plotly_data import PlotlyFigure, figure, packed
 from app.plots.table import cell, row, table
 from app.plots.units import Unit, angle_unit, length_unit, number, speed_unit
 from navcore.foundation.notation import with_unit
+from navcore.foundation.text import Text, quoted
 from navcore.foundation.units import HOUR, MINUTE
 
 Shown = Literal["both", "as printed", "corrected"]
 SHOWN: tuple[Shown, ...] = get_args(Shown)
-FORMS: dict[Shown, tuple[str, ...]] = {
-    "both": ("printed", "corrected"),
+FORMS: dict[str, tuple[str, ...]] = {
+    Text("both"): ("printed", "corrected"),
     "as printed": ("printed",),
     "corrected": ("corrected",),
 }
@@ -64,7 +64,7 @@ def comparison_plot(
     if not y_axis.log and high > low:
         pad = 0.06 * (high - low)
         layout["yaxis"]["range"] = [(low - pad) / y_unit.si, (high + pad) / y_unit.si]
-    layout["annotations"] = [style.panel_title("The printed form leaves the plot")] if leaves else []
+    layout["annotations"] = [style.panel_title(Text("The printed form leaves the plot"))] if leaves else []
     return figure(_traces(curves, packed(comparison.x / x_unit.si), y_unit), layout)
 
 
@@ -119,12 +119,9 @@ def _decades(values: Sequence[np.ndarray]) -> int:
 
 
 def _axis(axis: Axis, unit: Unit, decades: int, room_px: float = math.inf) -> dict[str, Any]:
-    words = (axis.label + (f" ({unit.name})" if unit.name else "")).split(" ")
-    if len(" ".join(words)) * _LETTER_PX > room_px:  # in two lines of about the same length
-        breaks = range(1, len(words))
-        at = min(breaks, key=lambda n: max(len(" ".join(words[:n])), len(" ".join(words[n:]))), default=1)
-        words = [*words[: at - 1], "\n".join(words[at - 1 : at + 1]), *words[at + 1 :]]
-    title = style.plain(" ".join(words)).replace("\n", "<br>")
+    parts = [axis.label, *([f"({unit.name})"] if unit.name else [])]
+    long = len(" ".join(parts)) * _LETTER_PX > room_px
+    title = Text.joined("<br>" if long else " ", map(style.plain, parts))
     if not axis.log:
         return style.axis(title)
     small = {"size": style.FONT_SIZE - 2, "color": style.MUTED}
@@ -145,27 +142,37 @@ def words_html(misprint: Misprint, comparison: Comparison) -> str:
     """Write what is printed, what is right, what follows, and the numbers of both forms side by side."""
     printed, corrected = _COLORS["printed"], _COLORS["corrected"]
     sentences = (
-        ("printed", misprint.printed, printed),
-        ("right", misprint.right, corrected),
-        ("so", comparison.words or misprint.consequence, style.INK),
+        (Text("printed"), misprint.printed, printed),
+        (Text("right"), misprint.right, corrected),
+        (Text("so"), comparison.words or misprint.consequence, style.INK),
     )
-    lines = "".join(
-        f'<div><b style="color:{color}"><span>{name}:</span></b> {escape(text)}</div>'
-        for name, text, color in sentences
-        if text
+    lines = Text.joined(
+        "",
+        (
+            Text(
+                '<div><b style="color:{color}"><span>{name}:</span></b> {text:html}</div>',
+                color=color,
+                name=name,
+                text=text,
+            )
+            for name, text, color in sentences
+            if text
+        ),
     )
     head = row(
         [
             cell(),
-            cell("as printed", "sb-n", tag="th", style=f"border-color:{printed}"),
+            cell(Text("as printed"), "sb-n", tag="th", style=f"border-color:{printed}"),
             cell("corrected", "sb-n", tag="th", style=f"border-color:{corrected}"),
         ]
     )
     rows = (
-        row([cell(escape(n.name), "sb-m"), *(cell(_number(n, v), "sb-n") for v in (n.printed, n.corrected))])
+        row([cell(quoted(n.name), "sb-m"), *(cell(_number(n, v), "sb-n") for v in (n.printed, n.corrected))])
         for n in comparison.numbers
     )
-    return f'<div class="sb-misprint"><div>{lines}</div>{table([head], rows)}</div>'
+    return Text(
+        '<div class="sb-misprint"><div>{lines}</div>{table}</div>', lines=lines, table=table([head], rows)
+    )
 
 
 def _number(of: Number, value: float | None) -> str:
@@ -173,4 +180,4 @@ def _number(of: Number, value: float | None) -> str:
         return "none"
     # each in its own unit: 0.03 s beside 84 min reads better than 0.0005 min
     unit = _unit(of, abs(value))
-    return escape(with_unit(number(value / unit.si, 4), unit.name))
+    return quoted(with_unit(number(value / unit.si, 4), unit.name))

@@ -9,12 +9,16 @@ from app.plots.plotly_data import enlarged
 from app.shell.layout import CHOOSER_PX
 from app.shell.view import Frame, Tab, View, if_user
 from app.views.misprints.figure import SHOWN, Shown, comparison_plot, words_html
+from navcore.foundation.text import Text
 
 _WORDS_PX = {True: 96, False: 186}
 """Height of the words and numbers above the plot, in a wide window and in a narrow one: a first estimate."""
 _BETWEEN_PX = 8
-_MISPRINT, _SWITCH = "misprint", "form shown"
-_TITLES = {f"{m.paper}, {m.where}: {m.consequence}": id for id, m in MISPRINTS.items()}
+_MISPRINT, _SWITCH = Text("misprint"), Text("form shown")
+_TITLES = {
+    Text("{paper}, {where}: {consequence}", paper=m.paper, where=m.where, consequence=m.consequence): id
+    for id, m in MISPRINTS.items()
+}
 
 
 @lru_cache(maxsize=32)
@@ -26,9 +30,9 @@ def _computed(id: str) -> Comparison:
 class MisprintsView(View):
     """Choose a misprint, and which of its forms is drawn."""
 
-    title = "Misprints"
+    title = Text("Misprints")
     place = "upper"
-    look_for = "What a paper prints beside what its text and figures say: look where the curves part."
+    look_for = Text("What a paper prints beside what its text and figures say: look where the curves part.")
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
@@ -42,11 +46,15 @@ class MisprintsView(View):
             self._plot: Any = None
             self._drawn: tuple[str, Shown] | None = None
             self._chooser: Any = gui.add_dropdown(
-                _MISPRINT, tuple(_TITLES), order=0,
-                hint="Errors in the papers that change a result; both forms are computed by the same code.",
-            )  # fmt: skip
+                _MISPRINT,
+                tuple(_TITLES),
+                order=0,
+                hint=Text(
+                    "Errors in the papers that change a result; both forms are computed by the same code."
+                ),
+            )
             self._switch: Any = gui.add_dropdown(
-                _SWITCH, SHOWN, order=1, hint="Draw the form as printed, the corrected one, or both."
+                _SWITCH, SHOWN, order=1, hint=Text("Draw the form as printed, the corrected one, or both.")
             )
             self._words = gui.add_html("", order=2)
         for handle in (self._chooser, self._switch):
@@ -64,7 +72,7 @@ class MisprintsView(View):
         layout, comparison = self.frame.layout(), _computed(id)
         words = _WORDS_PX[layout.wide]
         html = words_html(MISPRINTS[id], comparison)
-        self._words.content = f'<div style="max-height:26vh;overflow-y:auto">{html}</div>'
+        self._words.content = Text('<div style="max-height:26vh;overflow-y:auto">{html}</div>', html=html)
         aspect = layout.aspect(2 * CHOOSER_PX + words + _BETWEEN_PX)
         figure = comparison_plot(comparison, form, aspect, width_px=layout.text_px)
         figure["layout"]["meta"] |= {"misprint": id, "shown": form}

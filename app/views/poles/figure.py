@@ -40,11 +40,11 @@ _INSIDE = 0.955
 """Part of a panel's width within which the labels of the rays lie."""
 _RAY_PX = 27.0, 18.0
 """Room of the label of a ray, across and up."""
-_KEYS = {"closed-loop pole": ("x-thin", 2.6), "zero of H": ("circle-open", 2.0)}
+_KEYS = {Text("closed-loop pole"): ("x-thin", 2.6), Text("zero of H"): ("circle-open", 2.0)}
 """Legend entries that say what the two marks mean."""
 _TITLES = {
-    "": ("All closed-loop poles (┊ settling time)", "All closed-loop poles", "All poles"),
-    "2": ("Near the Schuler frequency", "Near Schuler"),
+    "": (Text("All closed-loop poles (┊ settling time)"), Text("All closed-loop poles"), Text("All poles")),
+    "2": (Text("Near the Schuler frequency"), Text("Near Schuler")),
 }
 """Title of each panel, then shorter ones for smaller panels."""
 
@@ -99,13 +99,10 @@ def poles(
         for i, (method, (roots, zeros)) in enumerate(zip(run.methods, marks, strict=True)):
             data += _method_marks(method, i, roots, zeros, suffix)
         layout |= _axes(suffix, re, im, domain)
-        title = f"<b>{style.fitting(_TITLES[suffix], panel_px)}</b>"
+        title = Text("<b>{titles}</b>", titles=style.fitting(_TITLES[suffix], panel_px))
         if suffix and note:  # in plain letters: those of a parameter's ends take more room
-            title = f'<b><span style="font-weight:400">{note}</span></b>'
-        notes.append(
-            style.heading(title, 13.0, Text("x{suffix} domain", suffix=suffix))
-            | {"yref": Text("y{suffix} domain", suffix=suffix)}
-        )
+            title = Text('<b><span style="font-weight:400">{note}</span></b>', note=note)
+        notes.append(style.heading(title, 13.0, f"x{suffix} domain") | {"yref": f"y{suffix} domain"})
         notes += _panel_labels(suffix, re, im, panel_px)
         notes += settling_labels(suffix, re, omega_s, panel_px)
         shapes += _boundary(suffix)
@@ -152,7 +149,7 @@ def _method_marks(
         "x": packed(np.real(roots)),
         "y": packed(np.imag(roots)),
         "text": [_about_pole(complex(root), method.network.omega_s) for root in roots],
-        "hovertemplate": f"<b>{plain}</b><br>%{{text}}<extra></extra>",
+        "hovertemplate": Text("<b>{plain}</b><br>%{{text}}<extra></extra>", plain=plain),
         "showlegend": suffix == "",
     }
     if not len(zeros):
@@ -164,7 +161,9 @@ def _method_marks(
     ring |= {
         "x": packed(np.real(zeros)),
         "y": packed(np.imag(zeros)),
-        "hovertemplate": f"<b>{plain}</b><br>zero of H: %{{x:.4g}} %{{y:+.4g}}j ω<sub>s</sub><extra></extra>",
+        "hovertemplate": Text(
+            "<b>{plain}</b><br>zero of H: %{{x:.4g}} %{{y:+.4g}}j ω<sub>s</sub><extra></extra>", plain=plain
+        ),
     }
     return [cross, ring]
 
@@ -184,7 +183,7 @@ def _about_pole(root: complex, omega_s: float) -> str:
             if root.real < 0.0
             else Text("grows e-fold in {folding}", folding=folding)
         )
-    return "<br>".join(lines)
+    return Text.joined("<br>", lines)
 
 
 def _axes(suffix: str, re: Interval, im: Interval, domain: list[float]) -> dict[str, Any]:
@@ -193,19 +192,19 @@ def _axes(suffix: str, re: Interval, im: Interval, domain: list[float]) -> dict[
     across = {"domain": domain, "anchor": f"y{suffix}", "range": list(re), "tickangle": 0}
     up = {"anchor": f"x{suffix}", "range": list(im), "scaleanchor": f"x{suffix}"}
     return {
-        f"xaxis{suffix}": style.axis("Re s / ω<sub>s</sub>", **common, **across),
-        f"yaxis{suffix}": style.axis("Im s / ω<sub>s</sub>", **common, **up),
+        f"xaxis{suffix}": style.axis(Text("Re s / ω<sub>s</sub>"), **common, **across),
+        f"yaxis{suffix}": style.axis(Text("Im s / ω<sub>s</sub>"), **common, **up),
     }
 
 
 def _boundary(suffix: str) -> list[dict[str, Any]]:
     """Imaginary axis, real axis and the shaded right half plane."""
-    axes = f"x{suffix}", Text("y{suffix} domain", suffix=suffix)
+    axes = f"x{suffix}", f"y{suffix} domain"
     unstable = {"type": "rect", "x1": 1e6, "line": {"width": 0}, "fillcolor": "rgba(180,35,24,0.07)"}
     return [
         style.upright(0.0, *axes) | unstable,
         style.upright(0.0, *axes, color=style.DANGER, width=1.4, dash="solid"),
-        style.across(0.0, f"y{suffix}", Text("x{suffix} domain", suffix=suffix), width=1, dash="solid"),
+        style.across(0.0, f"y{suffix}", f"x{suffix} domain", width=1, dash="solid"),
     ]
 
 
@@ -217,9 +216,9 @@ def _panel_labels(suffix: str, re: Interval, im: Interval, width_px: float) -> l
         style.text(
             1.0,
             0.0,
-            "unstable",
-            xref=Text("x{suffix} domain", suffix=suffix),
-            yref=Text("y{suffix} domain", suffix=suffix),
+            Text("unstable"),
+            xref=f"x{suffix} domain",
+            yref=f"y{suffix} domain",
             xanchor="right",
             yanchor="bottom",
             xshift=-3,

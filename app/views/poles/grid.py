@@ -84,7 +84,11 @@ def locus_traces(run: Run, index: int, field: str, suffix: str) -> list[dict[str
         "xaxis": f"x{suffix}",
         "yaxis": f"y{suffix}",
         "showlegend": False,
-        "hovertemplate": f"<b>{style.plain(name)}</b><br>{label} = %{{customdata:.4g}}<extra></extra>",
+        "hovertemplate": Text(
+            "<b>{name}</b><br>{label} = %{{customdata:.4g}}<extra></extra>",
+            name=style.plain(name),
+            label=label,
+        ),
     }
     branches = style.lines(Text("{name} locus", name=name), index) | common
     branches |= {
@@ -213,9 +217,7 @@ def settling_lines(left: float, omega_s: float, width_px: float, span: float) ->
 def settling_shapes(suffix: str, re: Interval, omega_s: float, width_px: float) -> list[dict[str, Any]]:
     """Draw the lines of `settling_lines` upright through one panel."""
     return [
-        style.upright(
-            at, f"x{suffix}", Text("y{suffix} domain", suffix=suffix), color="#CBD5E0", width=1, dash="dash"
-        )
+        style.upright(at, f"x{suffix}", f"y{suffix} domain", color="#CBD5E0", width=1, dash="dash")
         for at in settling_lines(re[0], omega_s, width_px, re[1] - re[0]).values()
     ]
 
@@ -229,7 +231,7 @@ def settling_labels(suffix: str, re: Interval, omega_s: float, width_px: float) 
             0.0,
             Text("{minutes:g} min", minutes=minutes) if minutes < 120.0 else f"{minutes / 60.0:g} h",
             xref=f"x{suffix}",
-            yref=Text("y{suffix} domain", suffix=suffix),
+            yref=f"y{suffix} domain",
             xanchor="right",
             yanchor="bottom",
             xshift=-1,

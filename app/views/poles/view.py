@@ -20,20 +20,20 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.method import Method
 
-LOCUS = "locus"
+LOCUS = Text("locus")
 DECAYS = "H'(0) ≤ 0"
-PAIR_XI, PAIR_OMEGA, PLACE = "pair ζ", "pair ω/ωₛ", "Place"
-POLES_OF = "poles of"
+PAIR_XI, PAIR_OMEGA, PLACE = Text("pair ζ"), Text("pair ω/ωₛ"), Text("Place")
+POLES_OF = Text("poles of")
 SYSTEMS = {"channel": "channel", "system": "whole"}
-_NONE = "nothing"
+_NONE = Text("nothing")
 
 
 class PolesView(PlotlyView):
     """Chooser of the locus and boxes of the pair, above the pole map."""
 
-    title = "Poles"
+    title = Text("Poles")
     place = "upper"
-    look_for = (
+    look_for = Text(
         "The farther left a pole, the faster it dies away; the steeper, the more it swings. "
         "Drag the handle to move it."
     )
@@ -52,34 +52,55 @@ class PolesView(PlotlyView):
         gui.add_html(TOOLS)
         self._handle.build()
         self._system: Any = gui.add_dropdown(
-            POLES_OF, tuple(SYSTEMS), initial_value=_system(display),
-            hint="Channel: the closed loop of one level channel. System: the whole one, both channels with "
-            "heading and latitude, whose 24 h mode most networks let grow, and its growth over latitude.",
-        )  # fmt: skip
+            POLES_OF,
+            tuple(SYSTEMS),
+            initial_value=_system(display),
+            hint=Text(
+                "Channel: the closed loop of one level channel. System: the whole one, "
+                "both channels with "
+                "heading and latitude, whose 24 h mode most networks let grow, and its growth over latitude."
+            ),
+        )
         self._system.on_update(if_user(lambda: self.frame.show(poles=SYSTEMS[self._system.value])))
         self._locus: Any = gui.add_dropdown(
-            LOCUS, tuple(self._fields), initial_value=_chosen(self._fields, display),
-            hint="Draws how the poles of the selected method move while one parameter of its network goes "
-            "through the range of its slider; the crosses are at the present value.",
-        )  # fmt: skip
+            LOCUS,
+            tuple(self._fields),
+            initial_value=_chosen(self._fields, display),
+            hint=Text(
+                "Draws how the poles of the selected method move while one parameter of "
+                "its network goes "
+                "through the range of its slider; the crosses are at the present value."
+            ),
+        )
         self._xi = gui.add_number(
-            PAIR_XI, 0.5, step=0.01,
-            hint="Damping ratio (no unit, 0.01 to 1) wanted of the selected method's closed-loop pair. Or "
-            "click into the pole map.",
-        )  # fmt: skip
+            PAIR_XI,
+            0.5,
+            step=0.01,
+            hint=Text(
+                "Damping ratio (no unit, 0.01 to 1) wanted of the selected method's "
+                "closed-loop pair. Or "
+                "click into the pole map."
+            ),
+        )
         self._ratio = gui.add_number(
             PAIR_OMEGA, 1.2, step=0.1,
-            hint="Frequency wanted of the pair, in units of the Schuler frequency (above 0).",
+            hint=Text("Frequency wanted of the pair, in units of the Schuler frequency (above 0)."),
         )  # fmt: skip
         self._decays: Any = gui.add_checkbox(
-            DECAYS, _decays(display),
-            hint="A pair is only placed when H(0) = 1 and the slope H'(0) is at most 0, so that the 24 h "
-            "mode of the whole system does not grow. The same limit as H'(0) in the tab Requirements.",
-        )  # fmt: skip
+            DECAYS,
+            _decays(display),
+            hint=Text(
+                "A pair is only placed when H(0) = 1 and the slope H'(0) is at most 0, so "
+                "that the 24 h "
+                "mode of the whole system does not grow. The same limit as H'(0) in the tab Requirements."
+            ),
+        )
         self._decays.on_update(if_user(self._limit_slope))
         button = gui.add_button(
             PLACE,
-            hint="Sets the parameters of the selected method's network that give this pair, where it can.",
+            hint=Text(
+                "Sets the parameters of the selected method's network that give this pair, where it can."
+            ),
         )
         self._locus.on_update(
             if_user(lambda: self.frame.show(locus=self._fields.get(self._locus.value, NO_LOCUS)))
@@ -95,14 +116,14 @@ class PolesView(PlotlyView):
                 limit = session.display.requirements.h_slope_s
                 placed = with_pair(session.scenario, session.selected, *wanted(), limit)
             except InputError as error:
-                notices.tell(client, "The pair was not placed", notices.fault_lines(error), "warning")
+                notices.tell(client, Text("The pair was not placed"), notices.fault_lines(error), "warning")
                 return
             name = session.scenario.method[session.selected].name
             session.change(placed.scenario, None, name=Text("placing the pair of {name}", name=name))
         if placed.note:
-            notices.tell(client, "Placed in part", [placed.words, placed.note], "warning")
+            notices.tell(client, Text("Placed in part"), [placed.words, placed.note], "warning")
         else:
-            notices.tell(client, "Placed", [placed.words], "info")
+            notices.tell(client, Text("Placed"), [placed.words], "info")
 
     @property
     def _method(self) -> Method:

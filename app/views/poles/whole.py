@@ -61,10 +61,10 @@ def whole_system_figure(run: Run, aspect: float = 0.46, *, width_px: float = 940
         width_px,
         {"l": 58, "r": 16, "t": 32, "b": 56},
         hovermode="closest",
-        xaxis=style.axis("Re s / ω<sub>s</sub>", domain=[0.0, half], range=[-2.2, 0.5], anchor="y"),
-        yaxis=style.axis("Im s / ω<sub>s</sub>", range=[-0.09, 1.75], anchor="x"),
-        xaxis2=style.axis("latitude (°)", domain=[1.0 - half, 1.0], range=[0.0, 90.0], anchor="y2"),
-        yaxis2=style.axis("growth, 1/day", anchor="x2", range=[low - pad, high + pad]),
+        xaxis=style.axis(Text("Re s / ω<sub>s</sub>"), domain=[0.0, half], range=[-2.2, 0.5], anchor="y"),
+        yaxis=style.axis(Text("Im s / ω<sub>s</sub>"), range=[-0.09, 1.75], anchor="x"),
+        xaxis2=style.axis(Text("latitude (°)"), domain=[1.0 - half, 1.0], range=[0.0, 90.0], anchor="y2"),
+        yaxis2=style.axis(Text("growth, 1/day"), anchor="x2", range=[low - pad, high + pad]),
         shapes=[
             style.upright(0.0, "x", "y domain", **danger),
             style.across(0.0, "y2", "x2 domain", **danger),
@@ -78,7 +78,7 @@ def whole_system_figure(run: Run, aspect: float = 0.46, *, width_px: float = 940
                 ),
                 "",
             ),
-            style.panel_title("Growth of the 24 h mode", "2"),
+            style.panel_title(Text("Growth of the 24 h mode"), "2"),
         ],
     )
     return figure(data, layout)
@@ -94,13 +94,15 @@ def _marks(method: MethodRun, index: int) -> list[dict[str, Any]]:
         # The 24 h modes of all methods lie next to each other: the later ones are smaller.
         size = max(15 - 4 * index, 5) if kind == EARTH_MODE else 11
         traces.append(
-            style.marks(name if main else f"{name} {kind}", index, symbol, size, edge)
+            style.marks(
+                name if main else Text("{name} {kind}", name=name, kind=kind), index, symbol, size, edge
+            )
             | {
                 "showlegend": main,
                 "x": packed(np.real(at)),
                 "y": packed(np.imag(at)),
                 "text": [_about(mode) for mode in modes],
-                "hovertemplate": f"<b>{style.plain(name)}</b><br>%{{text}}<extra></extra>",
+                "hovertemplate": Text("<b>{name}</b><br>%{{text}}<extra></extra>", name=style.plain(name)),
             }
         )
     return traces
@@ -118,7 +120,7 @@ def _about(mode: Mode) -> str:
         )
     if abs(mode.growth) > 1e-12:
         lines.append(earth_mode_text(mode.growth))
-    return "<br>".join(lines)
+    return Text.joined("<br>", lines)
 
 
 def _growth(run: Run, method: MethodRun, index: int, rates: np.ndarray) -> list[dict[str, Any]]:
@@ -134,13 +136,15 @@ def _growth(run: Run, method: MethodRun, index: int, rates: np.ndarray) -> list[
             "x": packed(LATITUDES),
             "y": packed(rates),
             "line": {"color": style.method_color(index), "width": 2},
-            "hovertemplate": f"<b>{plain}</b><br>%{{x:.0f}}°: %{{y:+.3f}} a day<extra></extra>",
+            "hovertemplate": Text(
+                "<b>{plain}</b><br>%{{x:.0f}}°: %{{y:+.3f}} a day<extra></extra>", plain=plain
+            ),
         },
         site
         | {
             "x": [abs(run.scenario.site.lat_deg)],
             "y": [here * _DAY],
             "text": [Text("24 h mode {earth_mode_text}", earth_mode_text=earth_mode_text(here))],
-            "hovertemplate": f"<b>{plain}</b> at the site<br>%{{text}}<extra></extra>",
+            "hovertemplate": Text("<b>{plain}</b> at the site<br>%{{text}}<extra></extra>", plain=plain),
         },
     ]

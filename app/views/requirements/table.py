@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from html import escape
 
 from app.plots import style
 from app.plots.pinned import Pinned, pinned_methods, together
@@ -10,7 +9,7 @@ from app.plots.table import cell, row, table
 from app.plots.units import number, rounded
 from app.session.requirements import ROWS, SIGNS, Requirements, Verdict, verdicts
 from navcore.engine.run import Run
-from navcore.foundation.text import Text
+from navcore.foundation.text import Text, quoted
 
 _DIGITS = 4
 
@@ -42,26 +41,34 @@ def requirements_html(
     ]
     lines += [Text("dashed {color}", color=pinned.color) for pinned in pinned_methods(pins)]
     heads = (
-        cell(escape(judged.methods[i].method.name), "sb-h", tag="th", style=f"border-bottom:3px {lines[i]}")
+        cell(quoted(judged.methods[i].method.name), "sb-h", tag="th", style=f"border-bottom:3px {lines[i]}")
         for i in shown
     )
-    head = row([cell("requirement", tag="th"), cell("limit", "sb-n", tag="th"), *heads])
+    head = row([cell(Text("requirement"), tag="th"), cell(Text("limit"), "sb-n", tag="th"), *heads])
     asked = any(verdict.limit is not None for verdict in judged_all)
     foot = row(
-        [cell("all together", "sb-all"), cell(), *(cell(_overall(judged_all, i), "sb-n") for i in shown)],
+        [
+            cell(Text("all together"), "sb-all"),
+            cell(),
+            *(cell(_overall(judged_all, i), "sb-n") for i in shown),
+        ],
     )
     return table([head], [*(_row(verdict, shown, asked=asked) for verdict in judged_all), foot])
 
 
 def _row(verdict: Verdict, shown: Sequence[int], *, asked: bool) -> str:
     quantity = ROWS[verdict.name]
-    unit = f' <span class="sb-muted">({escape(quantity.shown)})</span>' if quantity.shown else ""
+    unit = (
+        Text(' <span class="sb-muted">({shown:html})</span>', shown=quantity.shown) if quantity.shown else ""
+    )
     limit = (
-        "no limit" if verdict.limit is None else f"{SIGNS[quantity.sense]} {number(verdict.limit, _DIGITS)}"
+        Text("no limit")
+        if verdict.limit is None
+        else f"{SIGNS[quantity.sense]} {number(verdict.limit, _DIGITS)}"
     )
     cells = (
         cell(
-            f"{_measured(value)}{_mark(verdict, ok) if asked else ''}",
+            Text("{measured}{mark}", measured=_measured(value), mark=_mark(verdict, ok) if asked else ""),
             "sb-n",
             data_measure=verdict.name,
             data_value=_number(value),
@@ -69,7 +76,7 @@ def _row(verdict: Verdict, shown: Sequence[int], *, asked: bool) -> str:
         )
         for value, ok in ((verdict.measured[i], verdict.passed[i]) for i in shown)
     )
-    named = cell(f"{escape(quantity.label)}{unit}")
+    named = cell(Text("{label:html}{unit}", label=quantity.label, unit=unit))
     return row([named, cell(limit, "sb-n"), *cells], title=quantity.help)
 
 
@@ -79,16 +86,16 @@ def _number(value: float) -> str:
 
 
 def _measured(value: float) -> str:
-    return "never" if math.isinf(value) else rounded(value)
+    return Text("never") if math.isinf(value) else rounded(value)
 
 
 def _word(verdict: Verdict, passed: bool) -> str:
-    return "" if verdict.limit is None else "met" if passed else "missed"
+    return "" if verdict.limit is None else Text("met") if passed else Text("missed")
 
 
 def _mark(verdict: Verdict, passed: bool) -> str:
     """Word beside the value, of one width, so that the values stand below each other."""
-    word = "" if verdict.limit is None else _badge("✓ met" if passed else "✗ missed", passed)
+    word = "" if verdict.limit is None else _badge(Text("✓ met") if passed else Text("✗ missed"), passed)
     return cell(word, "sb-word", tag="span")
 
 
@@ -100,12 +107,10 @@ def _overall(judged: tuple[Verdict, ...], index: int) -> str:
 def overall(missed: int, asked: int) -> str:
     """Badge that says how many of the limits a method misses."""
     if not asked:
-        return cell("nothing asked", "sb-muted", tag="span")
+        return cell(Text("nothing asked"), "sb-muted", tag="span")
     if missed:
         return _badge(Text("✗ misses {missed} of {asked}", missed=missed, asked=asked), False)
-    return _badge(
-        Text("✓ meets {asked}", asked="it" if asked == 1 else Text("all {asked}", asked=asked)), True
-    )
+    return _badge(Text("✓ meets all {asked}", asked=asked) if asked > 1 else Text("✓ meets it"), True)
 
 
 def _badge(text: str, passed: bool) -> str:

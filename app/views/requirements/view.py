@@ -21,9 +21,9 @@ _UNFINISHED_S = 1.2
 class RequirementsView(PictureView[str]):
     """Boxes for the limits above the table of verdicts."""
 
-    title = "Requirements"
+    title = Text("Requirements")
     place = "lower"
-    look_for = "Give limits in the boxes: the table says who meets them, and the plots show the limits."
+    look_for = Text("Give limits in the boxes: the table says who meets them, and the plots show the limits.")
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
@@ -65,8 +65,10 @@ class RequirementsView(PictureView[str]):
     def show(self, picture: str) -> None:
         """Show the verdicts."""
         narrow = "" if self.frame.layout().wide else " sb-narrow"
-        self._table.content = (
-            f'<div class="sb-table sb-verdicts{narrow}" style="padding:4px 10px">{picture}</div>'
+        self._table.content = Text(
+            '<div class="sb-table sb-verdicts{narrow}" style="padding:4px 10px">{picture}</div>',
+            narrow=narrow,
+            picture=picture,
         )
 
     def _typed(self, name: str) -> None:
@@ -91,8 +93,11 @@ class RequirementsView(PictureView[str]):
             if self._doubts.pop(name, None) is None or self._boxes[name].handle.value != text:
                 return
             self._boxes[name].show(_text(getattr(self._held, name)))
-            kept = _text(getattr(self._held, name)) or "no requirement"
-            lines = [f"{label_of(name)}: {notices.refusal(fault, kept)}" for fault in error.faults]
+            kept = _text(getattr(self._held, name)) or Text("no requirement")
+            lines = [
+                Text("{label_of}: {refusal}", label_of=label_of(name), refusal=notices.refusal(fault, kept))
+                for fault in error.faults
+            ]
             self._note.content = notices.note(lines, "error")
 
 

@@ -12,7 +12,7 @@ from navcore.scenario.initial_error import InitialError
 from navcore.scenario.model import Scenario
 
 _RATE, _STRAPDOWN_ONLY = "rate_hz", ("vertical", "compensation")
-_STRAPDOWN_TOLD = (
+_STRAPDOWN_TOLD = Text(
     'Used by "Verify with full strapdown", and where the fidelity is strapdown. A long strapdown run does '
     "not follow every move of a control: it is started by a button at the top."
 )
@@ -21,7 +21,7 @@ _STRAPDOWN_TOLD = (
 class RunView(FieldsView):
     """Duration, site, motion, initial errors, seed."""
 
-    title = "Run"
+    title = Text("Run")
     place = "edit"
     places = {"run": 1.0, "site": 20.0, "motion": 31.0, "initial": 71.0, "strapdown": 92.0}
 
@@ -30,18 +30,24 @@ class RunView(FieldsView):
         super().build(tab)
         gui = self.frame.gui
         with tab:
-            gui.add_html(notices.heading("Run and site"), order=0)
-            gui.add_html(notices.heading("Motion"), order=30)
+            gui.add_html(notices.heading(Text("Run and site")), order=0)
+            gui.add_html(notices.heading(Text("Motion")), order=30)
             self._about = gui.add_html("", order=69, visible=False)
-            gui.add_html(notices.heading("Errors at the start"), order=70)
-            gui.add_html(notices.heading("Full strapdown"), order=90)
+            gui.add_html(notices.heading(Text("Errors at the start")), order=70)
+            gui.add_html(notices.heading(Text("Full strapdown")), order=90)
             gui.add_html(notices.small(_STRAPDOWN_TOLD), order=91)
 
     def follow_scenario(self) -> None:
         """Show the scenario's values."""
         scenario, settings = self.session.scenario, form.fields(RunSettings, ("run",))
         motion = scenario.motion
-        about = "; ".join(f"{key}: {(m.__doc__ or '').strip().splitlines()[0]}" for key, m in MOTIONS.items())
+        about = Text.joined(
+            "; ",
+            (
+                Text("{key}: {splitlines}", key=key, splitlines=(m.__doc__ or "").strip().splitlines()[0])
+                for key, m in MOTIONS.items()
+            ),
+        )
         kind = FieldSpec(("motion", "kind"), "motion", about, "choice", "static", tuple(MOTIONS))
         self.show_fields(
             {
@@ -70,7 +76,7 @@ def _strapdown_only(scenario: Scenario) -> list[FieldSpec]:
         return record if averaged else []
     settings = [spec for spec in form.fields(RunSettings, ("run",)) if spec.path[-1] in _STRAPDOWN_ONLY]
     fields = more if scenario.alignment.kind != "none" else record if averaged else []
-    return [*settings, form.choice(Alignment, "kind", path, label="alignment"), *fields]
+    return [*settings, form.choice(Alignment, "kind", path, label=Text("alignment")), *fields]
 
 
 def _inner_blocks(scenario: Scenario) -> list[FieldSpec]:
@@ -80,7 +86,9 @@ def _inner_blocks(scenario: Scenario) -> list[FieldSpec]:
         for block, fields in blocks_of(type(scenario.motion)).items()
         for name, many in fields
         if not many
-        for spec in form.fields(block, ("motion", name), prefix=f"{name} {scenario.motion.kind}")
+        for spec in form.fields(
+            block, ("motion", name), prefix=Text("{name} {kind}", name=name, kind=scenario.motion.kind)
+        )
     ]
 
 

@@ -1,18 +1,17 @@
 """Tab "Scenario": the scenario of the run as TOML, as it can be saved."""
 
-from html import escape
-
 from app.session.shown import Shown
 from app.session.uploads import with_plain_names
 from app.shell.view import PictureView, Tab
+from navcore.foundation.text import Text
 
 
 class ScenarioTextView(PictureView[str]):
     """The text alone."""
 
-    title = "Scenario"
+    title = Text("Scenario")
     place = "lower"
-    look_for = "The scenario as a file: what the command line and a colleague need to repeat this run."
+    look_for = Text("The scenario as a file: what the command line and a colleague need to repeat this run.")
 
     def build(self, tab: Tab) -> None:
         """Make the place of the text."""
@@ -23,9 +22,10 @@ class ScenarioTextView(PictureView[str]):
         """Write the scenario, HTML."""
         from navcore.scenario.file import to_toml
 
-        return (
+        return Text(
             '<pre style="margin:4px 12px;font-size:12.5px;line-height:1.4;white-space:pre-wrap">'
-            f"{escape(to_toml(with_plain_names(found.run.scenario)))}</pre>"
+            "{to_toml:html}</pre>",
+            to_toml=to_toml(with_plain_names(found.run.scenario)),
         )
 
     def show(self, picture: str) -> None:

@@ -9,7 +9,6 @@ factor.
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from html import escape
 from typing import NamedTuple
 
 import numpy as np
@@ -46,7 +45,7 @@ _ROD = 98.0
 _PLAN = (222.0, 76.0)
 _PLAN_HALF = 52.0
 _TRAIL_POINTS = 48
-_POINTS = "N NNE NE ENE E ESE SE SSE S SSW SW WSW W WNW NW NNW".split()
+_POINTS = Text("N NNE NE ENE E ESE SE SSE S SSW SW WSW W WNW NW NNW").split()
 _TRUE = "#6B7A89"
 
 
@@ -127,16 +126,22 @@ def pendulum_svg(now: Pendulum) -> str:
     parts += [_swing(bob, now.factor, now.plane) for bob in now.bobs]
     parts += [_way(bob, now.factor) for bob in now.bobs]
     caption = caption_of(now)
-    return (
-        f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" role="img" '
-        f'aria-label="Schuler pendulum: platform {caption}" data-factor="{now.factor:g}" '
-        f'font-family="{style.FONT_FAMILY.replace(chr(34), chr(39))}">{"".join(parts)}</svg>'
+    return Text(
+        '<svg viewBox="0 0 {width} {height}" width="{width}" height="{height}" role="img" '
+        'aria-label="Schuler pendulum: platform {caption}" data-factor="{factor:g}" '
+        'font-family="{replace}">{parts}</svg>',
+        width=WIDTH,
+        height=HEIGHT,
+        caption=caption,
+        factor=now.factor,
+        replace=style.FONT_FAMILY.replace(chr(34), chr(39)),
+        parts=Text.joined("", parts),
     )
 
 
 def caption_of(now: Pendulum) -> str:
     """Describe the picture in words."""
-    larger = "to scale" if now.factor == 1.0 else f"x {number(now.factor)}"
+    larger = Text("to scale") if now.factor == 1.0 else f"x {number(now.factor)}"
     return Text("tilt {larger}; length R, period {period_s}", larger=larger, period_s=duration(now.period_s))
 
 
@@ -146,15 +151,36 @@ _SMALL = f'font-size="12" fill="{style.MUTED}"'
 @lru_cache(maxsize=1)
 def _background() -> str:
     (x, y), (px, py), half = _PIVOT, _PLAN, _PLAN_HALF
-    return (
-        f'<path d="M8 {y + 8} Q{x} {y - 8} 140 {y + 8}" fill="none" stroke="#7FB2DC" stroke-width="2"/>'
-        f'<path d="M{x - 11} {y - 4} h22 l-4 5 h-14 z M{x - 5} {y - 4} v-5 h9 v5 z" fill="{style.INK}"/>'
-        f'<line x1="{x}" y1="{y}" x2="{x}" y2="{y + _ROD + 12}" stroke="{_TRUE}" stroke-dasharray="4 4"/>'
-        f'<circle cx="{px}" cy="{py}" r="{half}" fill="none" stroke="{style.GRID}"/>'
-        f'<circle cx="{px}" cy="{py}" r="{half / 2}" fill="none" stroke="{style.GRID}"/>'
-        f'<path d="M{px - half} {py} h{2 * half} M{px} {py - half} v{2 * half}" stroke="{style.GRID}"/>'
-        f'<text x="{px}" y="{py - half - 6}" text-anchor="middle" {_SMALL}>N</text>'
-        f'<text x="{px + half + 5}" y="{py + 4}" {_SMALL}>E</text>'
+    return Text(
+        '<path d="M8 {y} Q{x} {y2} 140 {y}" fill="none" stroke="#7FB2DC" stroke-width="2"/><path '
+        'd="M{x2} {y3} h22 l-4 5 h-14 z M{x3} {y3} v-5 h9 v5 z" fill="{ink}"/><line x1="{x}" '
+        'y1="{y4}" x2="{x}" y2="{y5}" stroke="{true}" stroke-dasharray="4 4"/><circle cx="{px}" '
+        'cy="{py}" r="{half}" fill="none" stroke="{grid}"/><circle cx="{px}" cy="{py}" '
+        'r="{half2}" fill="none" stroke="{grid}"/><path d="M{px2} {py} h{half3} M{px} {py2} '
+        'v{half3}" stroke="{grid}"/><text x="{px}" y="{py3}" text-anchor="middle" {small}>'
+        'N</text><text x="{px3}" y="{py4}" {small}>E</text>',
+        y=y + 8,
+        x=x,
+        y2=y - 8,
+        x2=x - 11,
+        y3=y - 4,
+        x3=x - 5,
+        ink=style.INK,
+        y4=y,
+        y5=y + _ROD + 12,
+        true=_TRUE,
+        px=px,
+        py=py,
+        half=half,
+        grid=style.GRID,
+        half2=half / 2,
+        px2=px - half,
+        half3=2 * half,
+        py2=py - half,
+        py3=py - half - 6,
+        small=_SMALL,
+        px3=px + half + 5,
+        py4=py + 4,
     )
 
 
@@ -163,8 +189,14 @@ def _plane_marks(plane: tuple[float, float]) -> tuple[str, str]:
     left, right = plane_ends(plane)
     (px, py), (east, north) = _PLAN, (_PLAN_HALF * part for part in plane)
     return (
-        f'<text x="2" y="{HEIGHT - 4}" {_SMALL}>{left}</text>'
-        f'<text x="146" y="{HEIGHT - 4}" text-anchor="end" {_SMALL}>{right}</text>',
+        Text(
+            '<text x="2" y="{height}" {small}>{left}</text><text x="146" y="{height}" '
+            'text-anchor="end" {small}>{right}</text>',
+            height=HEIGHT - 4,
+            small=_SMALL,
+            left=left,
+            right=right,
+        ),
         f'<path d="M{px - east:.1f} {py + north:.1f} L{px + east:.1f} {py - north:.1f}" '
         f'stroke="{_TRUE}" stroke-dasharray="4 4"/>',
     )
@@ -316,15 +348,30 @@ def readout_html(now: Moment, selected: int, display: Display = _AS_IT_FITS) -> 
     faster, off = computed.speed - true.speed, float(method.errors[POSITION])
     rows.append(("speed", a, b, _signed(faster, wanted_unit(display.speed, abs(faster), speed_unit))))
     rows.append(("position", "", "", _signed(off, wanted_unit(display.length, off, length_unit)).lstrip("+")))
-    cells = "".join(
-        f"<tr><th scope='row'>{name}</th><td>{a}</td><td>{b}</td><td>{c}</td></tr>" for name, a, b, c in rows
+    cells = Text.joined(
+        "",
+        (
+            Text(
+                "<tr><th scope='row'>{name}</th><td>{a}</td><td>{b}</td><td>{c}</td></tr>",
+                name=name,
+                a=a,
+                b=b,
+                c=c,
+            )
+            for name, a, b, c in rows
+        ),
     )
-    ended = " (ended)" if method.ended else ""
-    return (
-        f"<table data-t='{now.t_s:.3f}'><thead><tr><th scope='col'>{duration(now.t_s)}</th>"
-        f"<th scope='col'>true</th><th scope='col'><span class='sb-name' style='border-color:{method.color}'>"
-        f"{escape(method.name)}{ended}</span></th><th scope='col'>error</th></tr></thead>"
-        f"<tbody>{cells}</tbody></table>"
+    name = Text("{name} (ended)", name=method.name) if method.ended else method.name
+    return Text(
+        "<table data-t='{t_s:.3f}'><thead><tr><th scope='col'>{duration}</th><th scope='col'>"
+        "true</th><th scope='col'><span class='sb-name' style='border-color:{color}'>"
+        "{name:html}</span></th><th scope='col'>error</th></tr></thead><tbody>"
+        "{cells}</tbody></table>",
+        t_s=now.t_s,
+        duration=duration(now.t_s),
+        color=method.color,
+        name=name,
+        cells=cells,
     )
 
 

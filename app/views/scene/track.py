@@ -347,9 +347,9 @@ def _scene(points_m: np.ndarray, middle: np.ndarray, metres_per_unit: float, lif
 def _caption(factor: float, static: bool) -> str:
     if static:
         return (
-            "position errors to scale"
+            Text("position errors to scale")
             if factor == 1.0
             else Text("position errors x {factor}", factor=number(factor))
         )
-    how = "to scale" if factor == 1.0 else Text("drawn x {factor}", factor=number(factor))
+    how = Text("to scale") if factor == 1.0 else Text("drawn x {factor}", factor=number(factor))
     return Text("position errors {how}; ship not to scale", how=how)

@@ -11,7 +11,6 @@ import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,8 +30,8 @@ if TYPE_CHECKING:
     import viser
 
 
-MAP, FOLLOW, TOP, SIDE = CAMERAS = ("map", "follow", "top", "side")
-_TILT = {MAP: (78.0, 72.0, 66.0, 58.0, 50.0), TOP: (90.0,), SIDE: (22.0,)}
+MAP, FOLLOW, TOP, SIDE = CAMERAS = (Text("map"), Text("follow"), Text("top"), Text("side"))
+_TILT: dict[str, tuple[float, ...]] = {MAP: (78.0, 72.0, 66.0, 58.0, 50.0), TOP: (90.0,), SIDE: (22.0,)}
 """Elevation of the camera above the map, deg: the first at which the map's width fills the view."""
 _ROOM = 1.1
 """Scene units east and west of the map for its labels."""
@@ -189,14 +188,18 @@ def bar_html(
         "caption": "" if drawn is None else drawn.caption,
         "key": key,
     }
-    return (
-        f'<div id="sb-playback" hidden data-now="{escape(json.dumps(now))}">'
-        f'<div data-part="pendulum">{pendulum_svg(swung)}<p>{escape(caption_of(swung))}</p></div>'
-        f'<div data-part="readout">{readout_html(moment(run, state.time_s), selected, display)}</div></div>'
+    return Text(
+        '<div id="sb-playback" hidden data-now="{dumps:html}"><div data-part="pendulum">'
+        '{pendulum_svg}<p>{caption_of:html}</p></div><div data-part="readout">'
+        "{readout_html}</div></div>",
+        dumps=json.dumps(now),
+        pendulum_svg=pendulum_svg(swung),
+        caption_of=caption_of(swung),
+        readout_html=readout_html(moment(run, state.time_s), selected, display),
     )
 
 
-_FIT = "as needed"
+_FIT = Text("as needed")
 # What stands over the view (playback.css, playback.js), px.
 _PENDULUM_PX, _READOUT_PX, _LOW_PX, _TALL_PX = 195, 285, 560, 900
 _BAR_PX, _BAR_TEXT_PX = {False: 88, True: 122}, 305
@@ -232,15 +235,15 @@ class SceneView(View):
         gui = self.frame.gui
         with tab:
             self._factor = gui.add_dropdown(
-                "enlarge errors in 3D", _FACTORS, order=18,
-                hint="Factor by which the 3D view enlarges the position errors; as needed: chosen so "
-                "that they show.",
+                Text("enlarge errors in 3D"), _FACTORS, order=18,
+                hint=Text("Factor by which the 3D view enlarges the position errors; as needed: chosen so "
+                "that they show."),
             )  # fmt: skip
             self._bar = gui.add_html("", order=3)
         self._factor.on_update(if_user(self._enlarge))
         add, playback = self.frame.commands.register, self.playback
         add("shown", _number(lambda count: playback.heard(self._count - int(count))), watcher=True)
-        add("play", lambda _: playback.toggle(), "Play or pause", "Space", watcher=True)
+        add("play", lambda _: playback.toggle(), Text("Play or pause"), Text("Space"), watcher=True)
         add("seek", _number(playback.seek), watcher=True)
         add("speed", _number(playback.set_speed), watcher=True)
         add("loop", lambda text: playback.set_loop(text == "on"), watcher=True)

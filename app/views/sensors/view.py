@@ -5,18 +5,18 @@ from pathlib import Path
 from app.editing import edits, form
 from app.shell import notices
 from app.shell.view import FieldsView, Tab, if_user
+from navcore.foundation.text import Text
 from navcore.sensors.imu import Imu
 
 _FIRST = 8
 """Fields of the IMU model, in its order, that are shown without asking."""
 _RECORDED_ONLY = ("axes", "begin_s")
-_RECORDED_TOLD = "The run is on the recorded IMU {}: it brings its own errors."
 
 
 class SensorsView(FieldsView):
     """Errors of gyros and accelerometers."""
 
-    title = "Sensors"
+    title = Text("Sensors")
     place = "edit"
     places = {"first": 1.0, "more": 100.0}
 
@@ -27,18 +27,24 @@ class SensorsView(FieldsView):
         self._specs = form.fields(Imu, ("imu",))
         with tab:
             gui.add_html(
-                notices.small("Measured minus true, body axes x starboard, y forward, z up."), order=0
+                notices.small(Text("Measured minus true, body axes x starboard, y forward, z up.")), order=0
             )
             self._file = gui.add_html("", order=0.5, visible=False)
             self._all = gui.add_checkbox(
-                "all errors", False, hint="Drift, scale factor, misalignment and quantisation too.", order=99
+                Text("all errors"),
+                False,
+                hint=Text("Drift, scale factor, misalignment and quantisation too."),
+                order=99,
             )
         self._all.on_update(if_user(self.frame.refresh))
 
     def follow_scenario(self) -> None:
         """Show the scenario's values; errors that it sets are always shown."""
         scenario, file = self.session.scenario, self.session.scenario.imu.file
-        self._file.content = notices.small(_RECORDED_TOLD.format(Path(file).name)) if file else ""
+        told = Text(
+            "The run is on the recorded IMU {name}: it brings its own errors.", name=Path(file or "").name
+        )
+        self._file.content = notices.small(told) if file else ""
         self._file.visible, self._all.visible = bool(file), not file
         recorded = [spec for spec in self._specs if spec.path[-1] in _RECORDED_ONLY]
         simulated = [spec for spec in self._specs if spec not in recorded]

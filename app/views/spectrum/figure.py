@@ -60,8 +60,11 @@ def spectrum(
         peaks.append(float(size.max()))
         shortest = min(shortest, float(period_s.min()))
         trace = style.lines(method.method.name, index, style.CURVE_WIDTH)
-        hover = (
-            f"<b>{trace['name']}</b><br>%{{x:.4g}} {period_unit.name}: %{{y:.4g}} {unit.name}<extra></extra>"
+        hover = Text(
+            "<b>{trace}</b><br>%{{x:.4g}} {name}: %{{y:.4g}} {name2}<extra></extra>",
+            trace=trace["name"],
+            name=period_unit.name,
+            name2=unit.name,
         )
         data.append(
             trace | {"x": packed(period_s / period_unit.si), "y": packed(size), "hovertemplate": hover}
@@ -79,7 +82,7 @@ def spectrum(
         xaxis=_period_axis(period_unit, max(shortest, 60.0) if data else 60.0, longest_s),
         yaxis=_amplitude_axis(unit, peaks),
         annotations=[
-            style.heading(f"<b>{plot.title}: amplitude</b>", 34),
+            style.heading(Text("<b>{title}: amplitude</b>", title=plot.title), 34),
             *(_marker_label(name, period_s, period_unit) for name, period_s in markers.items()),
         ],
         shapes=[style.upright(period_s / period_unit.si) for period_s in markers.values()],
@@ -165,7 +168,7 @@ def _marker_label(name: str, period_s: float, unit: Unit) -> dict[str, Any]:
     return style.text(
         math.log10(period_s / unit.si),
         1.0,
-        name if name == "24 h" else f"{name} {duration(period_s)}",
+        name if name == "24 h" else Text("{name} {duration}", name=name, duration=duration(period_s)),
         xref="x",
         yref="paper",
         xanchor={"24 h": "left", "Foucault": "right", "Schuler": "center"}[name],

@@ -9,24 +9,25 @@ from app.shell.view import if_user
 from app.views.errors.figure import TITLES
 from app.views.spectrum.figure import spectrum
 from navcore.engine.run import Run
+from navcore.foundation.text import Text
 
-SPECTRUM_OF = "spectrum of"
+SPECTRUM_OF = Text("spectrum of")
 _KEYS = {title: key for key, title in TITLES.items()}
 
 
 class SpectrumView(PlotlyView):
     """Chooser of the quantity above the plot."""
 
-    title = "Spectrum"
+    title = Text("Spectrum")
     place = "lower"
-    look_for = "Peaks at 84 min (Schuler), 24 h and the Foucault period: damping takes the first away."
+    look_for = Text("Peaks at 84 min (Schuler), 24 h and the Foucault period: damping takes the first away.")
     plots = (title,)
 
     def build_tools(self) -> None:
         """Make the chooser."""
         self._chooser: Any = self.frame.gui.add_dropdown(
             SPECTRUM_OF, tuple(_KEYS), initial_value=TITLES[self.session.display.spectrum],
-            hint="Amplitude over period: a sine shows as a peak of its amplitude.",
+            hint=Text("Amplitude over period: a sine shows as a peak of its amplitude."),
         )  # fmt: skip
         self._chooser.on_update(if_user(lambda: self.frame.show(spectrum=_KEYS[self._chooser.value])))
 

@@ -3,9 +3,9 @@
 ``python -m app.views.start.cards`` makes those of the presets anew.
 """
 
+import re
 from dataclasses import dataclass
 from functools import lru_cache
-from html import escape
 from pathlib import Path
 
 import numpy as np
@@ -74,10 +74,12 @@ def _trade(network: LinearNetwork, gain_db: np.ndarray) -> str:
     loop = analyse(network)
     tilt = loop_value("log_tilt", JudgedLoop(network, loop, True)) / ARCSEC
     if loop.settling_s is None:
-        return "Does not damp: an oscillation goes on for ever. The log has no influence on the tilt."
+        return Text("Does not damp: an oscillation goes on for ever. The log has no influence on the tilt.")
     peak = float(np.max(gain_db))
     gain = (
-        Text("|H| rises to {peak} dB", peak=rounded(peak, 2)) if peak > 0.1 else "|H| stays at or below 0 dB"
+        Text("|H| rises to {peak} dB", peak=rounded(peak, 2))
+        if peak > 0.1
+        else Text("|H| stays at or below 0 dB")
     )
     return Text(
         "Settles to 2 % in {settling}, least damping ratio {damping}. {gain}; a step "
@@ -97,17 +99,27 @@ def _svg(power: np.ndarray, gain_db: np.ndarray) -> str:
         _HIGH * _HIGH_DB / (_HIGH_DB - _LOW_DB),
         _WIDE * (0.0 - _FIRST) / (_LAST - _FIRST),
     )
-    return (
-        f'<svg viewBox="0 0 {_WIDE} {_HIGH}" role="img"><title>|H| from {_LOW_DB:g} to {_HIGH_DB:g} dB '
-        f"over the frequency; the dashed line is the Schuler frequency</title>"
-        f'<path d="M0 {zero:.1f}H{_WIDE}" '
-        f'stroke="{style.GRID}"/><path d="M{schuler:.1f} 0V{_HIGH}" stroke="{style.REFERENCE}" '
-        f'stroke-dasharray="3 3"/><polyline points="{points}" fill="none" '
-        f'stroke="{style.METHOD_COLORS[0]}" stroke-width="1.8"/></svg>'
+    return Text(
+        '<svg viewBox="0 0 {wide} {high}" role="img"><title>|H| from {low_db:g} to {high_db:g} '
+        'dB over the frequency; the dashed line is the Schuler frequency</title><path d="M0 '
+        '{zero:.1f}H{wide}" stroke="{grid}"/><path d="M{schuler:.1f} 0V{high}" '
+        'stroke="{reference}" stroke-dasharray="3 3"/><polyline points="{points}" fill="none" '
+        'stroke="{method_colors}" stroke-width="1.8"/></svg>',
+        wide=_WIDE,
+        high=_HIGH,
+        low_db=_LOW_DB,
+        high_db=_HIGH_DB,
+        zero=zero,
+        grid=style.GRID,
+        schuler=schuler,
+        reference=style.REFERENCE,
+        points=points,
+        method_colors=style.METHOD_COLORS[0],
     )
 
 
 WIDTH, HEIGHT = 240, 84
+_TITLE = re.compile("<title ([^<>/]*+)/>")
 _BINS = 80
 _EDGE = 3.0
 
@@ -145,18 +157,25 @@ def card_svg(run: Run, of: str) -> str:
         f'stroke="{style.method_color(i)}"/>'
         for i, m in enumerate(run.methods)
     )
-    words = Text(
-        "Velocity error {symbol} of {count} methods, up to {peak} m/s in {span}",
-        symbol=symbol,
-        count=len(run.methods),
-        peak=rounded(peak),
-        span=duration(span),
-    )
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" data-of="{of}">'
-        f'<title>{escape(words)}</title><path d="M0 {HEIGHT / 2:g}H{WIDTH}" stroke="{style.GRID}"/>'
+        f'<title data-symbol="{symbol}" data-count="{len(run.methods)}" data-peak="{rounded(peak)}" '
+        f'data-span="{duration(span)}"/><path d="M0 {HEIGHT / 2:g}H{WIDTH}" stroke="{style.GRID}"/>'
         f'<g fill="none" stroke-width="1.4" stroke-linejoin="round">{lines}</g></svg>\n'
     )
+
+
+def card(name: str) -> str:
+    """HTML of a preset's picture with its title; empty where there is none."""
+    path = card_path(name)
+    if not path.exists():
+        return ""
+    before, values, after = _TITLE.split(path.read_text(encoding="utf-8"))
+    words = Text(
+        "Velocity error {symbol} of {count} methods, up to {peak} m/s in {span}",
+        **dict(re.findall(r'data-(\w+)="([^"]*)"', values)),
+    )
+    return Text("{before}<title>{words:html}</title>{after}", before=before, words=words, after=after)
 
 
 def _points(at: np.ndarray, values: np.ndarray) -> str:

@@ -38,12 +38,21 @@ class _Disturbance(NamedTuple):
     short: tuple[str, str]
 
 
-_LOG = _Disturbance("dv_r", 1.0, "a log step of 1 m/s", ("Velocity error, log step", "Tilt, log step"))
-_GYRO = _Disturbance(
-    "eps", 0.01 * DEG_PER_HOUR, "a gyro step of 0.01 °/h", ("Velocity error, gyro step", "Tilt, gyro step")
+_LOG = _Disturbance(
+    "dv_r", 1.0, Text("a log step of 1 m/s"), (Text("Velocity error, log step"), Text("Tilt, log step"))
 )
-_TILT = "Tilt after an initial tilt (◆ settled to 2 %)", "Tilt (◆ settled to 2 %)", "Tilt (◆ settled)"
-_NETWORK = "Step response of H itself", "Step response of H"
+_GYRO = _Disturbance(
+    "eps",
+    0.01 * DEG_PER_HOUR,
+    Text("a gyro step of 0.01 °/h"),
+    (Text("Velocity error, gyro step"), Text("Tilt, gyro step")),
+)
+_TILT = (
+    Text("Tilt after an initial tilt (◆ settled to 2 %)"),
+    Text("Tilt (◆ settled to 2 %)"),
+    Text("Tilt (◆ settled)"),
+)
+_NETWORK = Text("Step response of H itself"), Text("Step response of H")
 """Titles, shorter ones for smaller panels."""
 
 
@@ -92,7 +101,7 @@ def step(
     of_tilt = Text("Tilt after {words}", words=cause.words), cause.short[1]
     panels = (
         _Panel("", loop_s, tilt, _NO_UNIT, _TILT, "φ/φ<sub>0</sub>"),
-        _Panel("2", network_s, network, _NO_UNIT, _NETWORK, "output / step"),
+        _Panel("2", network_s, network, _NO_UNIT, _NETWORK, Text("output / step")),
         _Panel("3", loop_s, velocity, speed, of_velocity, f"δV ({speed.name})"),
         _Panel("4", loop_s, caused_tilt, angle, of_tilt, f"φ ({angle.name})"),
     )
@@ -170,7 +179,7 @@ def _settled_mark(method: MethodRun, index: int, tilt: np.ndarray | None, span_s
         x, y = [settles / MINUTE], [float(np.interp(settles, time_grid(span_s, POINTS), tilt))]
     edge = {"width": 1.5, "color": "white"}
     mark = style.marks(Text("{name} settled", name=method.method.name), index, "diamond", 11, edge)
-    hover = "settled to 2 % at %{x:.4g} min<extra></extra>"
+    hover = Text("settled to 2 % at %{{x:.4g}} min<extra></extra>")
     return mark | {"x": x, "y": y, "xaxis": "x", "yaxis": "y", "hovertemplate": hover}
 
 
@@ -188,13 +197,13 @@ def _layout(
     for panel, (column, row) in zip(panels, domains, strict=True):
         suffix, span_min = panel.suffix, panel.span_s / MINUTE
         layout[f"xaxis{suffix}"] = style.axis(
-            "time (min)",
+            Text("time (min)"),
             domain=column,
             anchor=f"y{suffix}",
             range=[0.0, span_min],
             tickangle=0,
             dtick=_tick(span_min, share * (width_px - 86)),
-            unifiedhovertitle={"text": "%{x:.1f} min"},
+            unifiedhovertitle={"text": Text("%{{x:.1f}} min")},
         )
         layout[f"yaxis{suffix}"] = style.axis(
             panel.y_title,
@@ -231,7 +240,7 @@ def _forbidden(
         boxes += [("settling", "", at, LEVEL, far), ("settling", "", at, -far, -LEVEL)]
     if "log_tilt" in limits and cause is _LOG:
         size = limits["log_tilt"] / unit.si
-        boxes += [("log tilt", "4", 0.0, size, far), ("log tilt", "4", 0.0, -far, -size)]
+        boxes += [(Text("log tilt"), "4", 0.0, size, far), (Text("log tilt"), "4", 0.0, -far, -size)]
     return [
         {
             "type": "rect",

@@ -5,14 +5,15 @@ from app.session.shown import Shown
 from app.shell.plotly_view import PlotlyView
 from app.views.step.figure import step
 from navcore.engine.run import Run
+from navcore.foundation.text import Text
 
 
 class StepView(PlotlyView):
     """The plots alone."""
 
-    title = "Step"
+    title = Text("Step")
     place = "upper"
-    look_for = (
+    look_for = Text(
         "How long a step of an error is felt: look for the settling time and the swing to the other side."
     )
     focus = "step"

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from html import escape
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +13,7 @@ from navcore.engine.in_force import damping_in_force
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.notation import unit_sign, with_unit
 from navcore.foundation.parameters import extra_of
+from navcore.foundation.text import Text
 from navcore.law.policy.base import Limit, Measure
 
 MOST_POINTS = 2000
@@ -22,8 +22,8 @@ _WANTED, _DAMPED, _XI, _MEASURE, _MARGIN = range(5)
 _LANE = 1.4
 """Height of one method's on and off above the next one's."""
 _NUMBERS = {
-    _XI: (XI, "Damping ratio in force", "ζ"),
-    _MARGIN: (MARGIN, "Least damping ratio of the closed-loop poles in force", "least ζ"),
+    _XI: (XI, Text("Damping ratio in force"), "ζ"),
+    _MARGIN: (MARGIN, Text("Least damping ratio of the closed-loop poles in force"), Text("least ζ")),
 }
 """Column -> key, title and symbol of the plots of a number without unit."""
 _WANTED_DASH: Dash = (3, 4)
@@ -163,19 +163,22 @@ def _state_plot(pairs: list[_Pair], axis: dict[str, Any]) -> UplotFigure:
     lanes = list(zip(pairs, lows, strict=True))
     wanted = [_curve(pair, _WANTED, above=low) for pair, low in lanes]
     if len(lows) == 1:
-        ticks = (lows[0], "off"), (lows[0] + 1.0, "on")
+        ticks = (lows[0], Text("off")), (lows[0] + 1.0, "on")
     else:  # each lane's on, as far as there is room for words
         word = "on" if len(lows) <= _WORDED_LANES else ""
         ticks = tuple((low + 1.0, word) for low in reversed(lows))
     return UplotFigure(
         key=STATE,
         quantity=STATE,
-        title="Wanted and actual state",
-        symbol="damped",
+        title=Text("Wanted and actual state"),
+        symbol=Text("damped"),
         unit=_WORDS,
         curves=(
             *(_curve(pair, _DAMPED, above=low) for pair, low in lanes),
-            *(replace(c, name=f"{c.name}, wanted", color=style.INK, dash=_WANTED_DASH) for c in wanted),
+            *(
+                replace(c, name=Text("{name}, wanted", name=c.name), color=style.INK, dash=_WANTED_DASH)
+                for c in wanted
+            ),
         ),
         floor=-0.15,
         ticks=ticks,
@@ -227,14 +230,25 @@ def _on_axis(rows: np.ndarray, count: int) -> np.ndarray:
 
 def switching_legend(run: Run) -> str:
     """Names of the methods that switch, their thresholds, and what the dashes mean."""
-    items = "".join(
-        f'<span style="display:inline-flex;align-items:center;gap:6px">'
-        f'<span style="flex:none;width:18px;{bar}"></span>{escape(name)}</span>'
-        for name, bar in _legend(run)
+    items = Text.joined(
+        "",
+        (
+            Text(
+                '<span style="display:inline-flex;align-items:center;gap:6px"><span '
+                'style="flex:none;width:18px;{bar}"></span>{name:html}</span>',
+                bar=bar,
+                name=name,
+            )
+            for name, bar in _legend(run)
+        ),
     )
-    return (
-        f'<div style="display:flex;flex-wrap:wrap;gap:2px 18px;padding:2px 8px 2px {Y_SIZE + LABEL_SIZE}px;'
-        f'font-size:{style.FONT_SIZE}px;color:{style.INK}">{items}</div>'
+    return Text(
+        '<div style="display:flex;flex-wrap:wrap;gap:2px 18px;padding:2px 8px 2px '
+        '{y_size}px;font-size:{font_size}px;color:{ink}">{items}</div>',
+        y_size=Y_SIZE + LABEL_SIZE,
+        font_size=style.FONT_SIZE,
+        ink=style.INK,
+        items=items,
     )
 
 
@@ -247,10 +261,15 @@ def _legend(run: Run) -> list[tuple[str, str]]:
     for place, kind in enumerate(_kinds(methods)):
         mine = [m for m in methods if m.measure == kind]
         if len(kind.label) > _LONGEST:
-            items.append((f"{_symbol(place, kind)} {kind.label}", "display:none"))
+            items.append(
+                (Text("{symbol} {label}", symbol=_symbol(place, kind), label=kind.label), "display:none")
+            )
         for name, value, color in shared_limits(mine):
             items.append(
-                (f"{name} = {with_unit(number(value, 4), kind.unit)}", f"border-top:2px dashed {color}")
+                (
+                    Text("{name} = {with_unit}", name=name, with_unit=with_unit(number(value, 4), kind.unit)),
+                    f"border-top:2px dashed {color}",
+                )
             )
-    items.append(("wanted state", f"border-top:2px dotted {style.INK}"))
-    return [*items, ("least ζ: of the poles in force", "display:none")]
+    items.append((Text("wanted state"), f"border-top:2px dotted {style.INK}"))
+    return [*items, (Text("least ζ: of the poles in force"), "display:none")]

@@ -10,6 +10,7 @@ from app.shell.view import Figures, Frame, PictureView, Tab, if_user
 from app.views.errors.view import error_curves
 from app.views.switching.figure import switched_methods, switching_legend, switching_plots
 from navcore.engine.run import Run
+from navcore.foundation.text import Text
 
 _FIRST_ABOVE = "dve"
 _LEAST_PX = 64
@@ -37,9 +38,9 @@ class Switching:
 class SwitchingView(PictureView[Switching]):
     """Chooser of the error curve, legend and plots; the tab is there while a method switches."""
 
-    title = "Switching"
+    title = Text("Switching")
     place = "lower"
-    look_for = "When each method damps, and what its measure says; look for jumps of the error above."
+    look_for = Text("When each method damps, and what its measure says; look for jumps of the error above.")
     plots = (title,)
     always = False
 
@@ -54,7 +55,7 @@ class SwitchingView(PictureView[Switching]):
         self._titles = {}
         with tab:
             self._above: Any = gui.add_dropdown(
-                "curve above", ("",), order=0, hint="Error curve over the states and thresholds."
+                Text("curve above"), ("",), order=0, hint=Text("Error curve over the states and thresholds.")
             )
             self._legend = gui.add_html("", order=1)
         self._above.on_update(if_user(self.frame.redraw))
@@ -85,7 +86,7 @@ class SwitchingView(PictureView[Switching]):
         """Make the plots below the error curve."""
         del plot
         if not self.stands(found.run):
-            raise LookupError("No method of this scenario switches.")
+            raise LookupError(Text("No method of this scenario switches."))
         return None, list(self.picture(found).plots)
 
 

@@ -6,6 +6,7 @@ from app.editing.edits import with_network
 from app.shell import notices
 from app.shell.view import Frame
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 
 
 def change_network(frame: Frame, index: int, network: dict[str, Any], name: str) -> bool:
@@ -28,6 +29,6 @@ def change_network(frame: Frame, index: int, network: dict[str, Any], name: str)
             changed = with_network(session.scenario, index, network)
             session.change(changed, None, name=name, selected=index)
         except InputError as error:
-            notices.tell(frame.client, "The proposal cannot be used", notices.fault_lines(error))
+            notices.tell(frame.client, Text("The proposal cannot be used"), notices.fault_lines(error))
             return False
     return True

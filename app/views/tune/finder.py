@@ -16,9 +16,9 @@ from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES
 
 ACROSS, UP = "across", "up"
-FIND, STOP = "Find the fronts", "Stop finding"
-_OLD = "of an earlier scenario: find the fronts again"
-_CLICK = "Click a point to put it into the method; undo takes it back."
+FIND, STOP = Text("Find the fronts"), Text("Stop finding")
+_OLD = Text("of an earlier scenario: find the fronts again")
+_CLICK = Text("Click a point to put it into the method; undo takes it back.")
 
 
 class FrontsPanel:
@@ -39,14 +39,14 @@ class FrontsPanel:
         """Make the controls."""
         gui, words = self.frame.gui, {QUANTITIES[name].label: name for name in AXES}
         self._axes: dict[str, Any] = {
-            "front_x": gui.add_dropdown(ACROSS, tuple(words), hint="Objective on the horizontal axis."),
-            "front_y": gui.add_dropdown(UP, tuple(words), hint="Objective on the vertical axis."),
+            "front_x": gui.add_dropdown(ACROSS, tuple(words), hint=Text("Objective on the horizontal axis.")),
+            "front_y": gui.add_dropdown(UP, tuple(words), hint=Text("Objective on the vertical axis.")),
         }
         for field, box in self._axes.items():
             box.on_update(
                 if_user(lambda field=field, box=box: self.frame.show(**{field: words[str(box.value)]}))
             )
-        hint = "Searches all networks in place of that of the selected method, in the steady state."
+        hint = Text("Searches all networks in place of that of the selected method, in the steady state.")
         self._controls = SearchControls(gui, self._fronts, self.begin, (FIND, STOP), hint)
         self._words = gui.add_html("", visible=False)
 
@@ -86,7 +86,9 @@ class FrontsPanel:
         html = notices.note(self._fronts.words, "warning")
         if not html and self.found is not None:
             html = notices.small(_CLICK)
-        show_html(self._words, f'<div class="sb-wide">{html}</div>' if chosen and html else "")
+        show_html(
+            self._words, Text('<div class="sb-wide">{html}</div>', html=html) if chosen and html else ""
+        )
         reveal(*((box, chosen) for box in self._axes.values()))
 
     def begin(self) -> None:
@@ -95,7 +97,7 @@ class FrontsPanel:
         if self.objectives[0] == self.objectives[1]:
             axes = QUANTITIES[self.objectives[0]].label
             lines = [Text("{axes} is on both axes: choose two objectives.", axes=axes)]
-            notices.tell(self.frame.client, "Nothing to weigh", lines)
+            notices.tell(self.frame.client, Text("Nothing to weigh"), lines)
             return
         with session.lock:
             task = FrontsTask(session.scenario, session.selected, self.objectives)
@@ -124,7 +126,7 @@ def read_place(text: str) -> tuple[float, float]:
     try:
         x, y = (float(word) for word in words)
     except ValueError:
-        raise InputError(Fault("", "point", text[:60], "must be two numbers")) from None
+        raise InputError(Fault("", "point", text[:60], Text("must be two numbers"))) from None
     if not (0.0 < x < math.inf and 0.0 < y < math.inf):
-        raise InputError(Fault("", "point", text[:60], "must be two positive numbers"))
+        raise InputError(Fault("", "point", text[:60], Text("must be two positive numbers")))
     return x, y

@@ -20,8 +20,8 @@ _NEAR = 0.05
 """A click takes the nearest point within this part of both axes."""
 _PAD = 0.06
 _LEFT_PX, _RIGHT_PX, _TOP_PX, _TICKS_PX, _LEGEND_ROW_PX = 66, 14, 44, 48, 21
-_EMPTY = "Find the fronts: the best of every network in place of this one."
-_OFF = "The present design is not shown: an objective of 0 has no place on a logarithmic axis."
+_EMPTY = Text("Find the fronts: the best of every network in place of this one.")
+_OFF = Text("The present design is not shown: an objective of 0 has no place on a logarithmic axis.")
 _FEW_TICKS, _MANY_TICKS = (1.0, 2.0, 5.0), (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 _FINEST_DECADES = 0.12
 """Below this range plotly's own, even ticks are finer."""
@@ -40,8 +40,12 @@ def setting_text(network: dict[str, Any]) -> str:
     >>> setting_text({"id": "compass", "sigma": 0.002945, "xi": 2.79, "realisation": "network"})
     'σ = 0.002945, ζ = 2.79'
     """
-    numbers = (f"{symbol(k)} = {number(v, 4)}" for k, v in network.items() if isinstance(v, int | float))
-    return ", ".join(numbers) or "no parameter"
+    numbers = (
+        Text("{symbol} = {v}", symbol=symbol(k), v=number(v, 4))
+        for k, v in network.items()
+        if isinstance(v, int | float)
+    )
+    return Text.joined(", ", numbers) or Text("no parameter")
 
 
 def fronts_figure(
@@ -92,8 +96,8 @@ def fronts_figure(
         margin={"l": _LEFT_PX, "r": _RIGHT_PX, "t": _TOP_PX, "b": _TICKS_PX + legend_px},
         legend=style.legend(traceorder="normal"),
         showlegend=True,
-        xaxis=_axis(f"{across.label} ({across.shown})", ranges[0]),
-        yaxis=_axis(f"{up.label} ({up.shown})", ranges[1]),
+        xaxis=_axis(Text("{label} ({shown})", label=across.label, shown=across.shown), ranges[0]),
+        yaxis=_axis(Text("{label} ({shown})", label=up.label, shown=up.shown), ranges[1]),
         annotations=[_above(note)] if note else [],
         shapes=[],
     )
@@ -128,7 +132,7 @@ def nearest(found: Pareto, x: float, y: float) -> tuple[str, Point]:
             if best is None or away < best[0]:
                 best = away, name, point
     if best is None or best[0] > _NEAR:
-        raise InputError(Fault("", "point", f"{x:.4g} {y:.4g}", "must be near a point of a front"))
+        raise InputError(Fault("", "point", f"{x:.4g} {y:.4g}", Text("must be near a point of a front")))
     return best[1], best[2]
 
 
@@ -142,7 +146,12 @@ def _front(name: str, points: tuple[Point, ...], index: int, sizes: Pair) -> dic
         "x": [point.values[0] / sizes[0] for point in points],
         "y": [point.values[1] / sizes[1] for point in points],
         "text": [
-            f"{name}: {setting_text(point.network)}<br>24 h mode {earth_mode_text(point.earth_growth)}"
+            Text(
+                "{name}: {setting_text}<br>24 h mode {earth_mode_text}",
+                name=name,
+                setting_text=setting_text(point.network),
+                earth_mode_text=earth_mode_text(point.earth_growth),
+            )
             for point in points
         ],
         "hovertemplate": "%{text}<br>%{x:.4g}, %{y:.4g}<extra></extra>",
@@ -162,7 +171,7 @@ def _present(name: str, present: Pair, sizes: Pair) -> dict[str, Any]:
         "name": name,
         "x": [present[0] / sizes[0]],
         "y": [present[1] / sizes[1]],
-        "hovertemplate": f"{name}<br>%{{x:.4g}}, %{{y:.4g}}<extra></extra>",
+        "hovertemplate": Text("{name}<br>%{{x:.4g}}, %{{y:.4g}}<extra></extra>", name=name),
         "marker": {
             "color": "white",
             "size": 17,
@@ -216,7 +225,7 @@ def _add_floor(layout: dict[str, Any], found: Pareto, ranges: tuple[Pair, Pair],
             {
                 "type": "rect",
                 **{f"{name}ref": name, f"{name}0": ranges[axis][0] / 10.0, f"{name}1": level},
-                **{f"{other}ref": Text("{other} domain", other=other), f"{other}0": 0.0, f"{other}1": 1.0},
+                **{f"{other}ref": f"{other} domain", f"{other}0": 0.0, f"{other}1": 1.0},
                 "fillcolor": style.GRID,
                 "line": {"width": 0},
                 "layer": "below",
@@ -224,7 +233,7 @@ def _add_floor(layout: dict[str, Any], found: Pareto, ranges: tuple[Pair, Pair],
             {
                 "type": "line",
                 **{f"{name}ref": name, f"{name}0": level, f"{name}1": level},
-                **{f"{other}ref": Text("{other} domain", other=other), f"{other}0": 0.0, f"{other}1": 1.0},
+                **{f"{other}ref": f"{other} domain", f"{other}0": 0.0, f"{other}1": 1.0},
                 "line": {"color": style.INK, "width": 1.5, "dash": "dash"},
                 "layer": "below",
             },
@@ -234,14 +243,14 @@ def _add_floor(layout: dict[str, Any], found: Pareto, ranges: tuple[Pair, Pair],
 def _add_key(layout: dict[str, Any], found: Pareto) -> None:
     """Say above the plot what the open marks and the grey stand for."""
     points = [point for front in found.fronts.values() for point in front]
-    said = ["open mark: its 24 h mode grows"] if any(p.earth_growth > 0.0 for p in points) else []
+    said = [Text("open mark: its 24 h mode grows")] if any(p.earth_growth > 0.0 for p in points) else []
     if any(found.floor):
-        said.append("grey: below the floor, out of reach of any causal linear damping with the log")
+        said.append(Text("grey: below the floor, out of reach of any causal linear damping with the log"))
     if said:
         layout["annotations"].append(
             style.text(
-                1.0, 1.0, "<br>".join(said), xref="x domain", yref="paper", xanchor="right", yanchor="bottom",
-                align="right", font={"size": style.FONT_SIZE - 1, "color": style.MUTED},
+                1.0, 1.0, Text.joined("<br>", said), xref="x domain", yref="paper", xanchor="right",
+                yanchor="bottom", align="right", font={"size": style.FONT_SIZE - 1, "color": style.MUTED},
             )
         )  # fmt: skip
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from html import escape
 from typing import TYPE_CHECKING
 
 from app.plots.table import cell, row, table
@@ -13,7 +12,7 @@ from app.session.requirements import SIGNS
 from navcore.design.measures import read_requirement
 from navcore.design.vary import present, read_varied
 from navcore.foundation.notation import symbol
-from navcore.foundation.text import Text
+from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES
 
 if TYPE_CHECKING:
@@ -32,23 +31,32 @@ def proposal_html(task: TuningTask, tuned: Tuned) -> str:
         rows.append(
             (
                 symbol(field.rsplit(".", 1)[-1]),
-                "default" if math.isnan(before) else number(before, 4),
+                Text("default") if math.isnan(before) else number(before, 4),
                 number(value, 4),
-                f"{number(low, 3)} to {number(high, 3)}",
+                Text("{low} to {high}", low=number(low, 3), high=number(high, 3)),
             )
         )
     objective = [
-        f"{label} ({quantity.shown})",
+        Text("{label} ({shown})", label=label, shown=quantity.shown),
         "none" if tuned.before is None else number(tuned.before / size, 4),
         number(tuned.objective / size, 4),
         "" if tuned.floor is None else Text("floor {floor}", floor=number(tuned.floor / size, 4)),
     ]
     method = task.scenario.method[int(task.vary[0].split(".")[1])].name
-    head = (Text("Proposal for {method}", method=method), "now", "proposed", "range within 5 % of the best")
+    head = (
+        Text("Proposal for {method}", method=method),
+        Text("now"),
+        Text("proposed"),
+        Text("range within 5 % of the best"),
+    )
     settings = table([_row(head, "th")], [_row(cells) for cells in (*rows, objective)])
-    sentences = "".join(f"<li>{escape(text)}</li>" for text in sentences_about(task, tuned))
-    listed = f"<ul>{sentences}</ul>" if sentences else ""
-    return f'<div class="sb-table sb-proposal">{settings}{listed}</div>'
+    sentences = Text.joined(
+        "", (Text("<li>{text:html}</li>", text=text) for text in sentences_about(task, tuned))
+    )
+    listed = Text("<ul>{sentences}</ul>", sentences=sentences) if sentences else ""
+    return Text(
+        '<div class="sb-table sb-proposal">{settings}{listed}</div>', settings=settings, listed=listed
+    )
 
 
 def sentences_about(task: TuningTask, tuned: Tuned) -> list[str]:
@@ -56,7 +64,7 @@ def sentences_about(task: TuningTask, tuned: Tuned) -> list[str]:
     unit, size = QUANTITIES[task.objective].shown, QUANTITIES[task.objective].size
     sentences = []
     if tuned.stopped:
-        sentences.append("The search was stopped: this is the best setting it had seen.")
+        sentences.append(Text("The search was stopped: this is the best setting it had seen."))
     if tuned.floor:
         times = number(tuned.objective / tuned.floor, 3)
         sentences.append(Text("The proposed setting is {times} times the floor.", times=times))
@@ -100,8 +108,14 @@ def limit_words(key: str, limit: float) -> str:
     """Limit (SI) of a quantity as the tab Requirements has it."""
     quantity = QUANTITIES[key]
     value = number(limit / quantity.size, 4)
-    return f"{quantity.label} {SIGNS[quantity.sense]} {value} {quantity.shown}".rstrip()
+    return Text(
+        "{label} {signs} {value} {shown}",
+        label=quantity.label,
+        signs=SIGNS[quantity.sense],
+        value=value,
+        shown=quantity.shown,
+    ).rstrip()
 
 
 def _row(cells: Sequence[str], tag: str = "td") -> str:
-    return row(cell(escape(text), "sb-n" if k else "", tag=tag) for k, text in enumerate(cells))
+    return row(cell(quoted(text), "sb-n" if k else "", tag=tag) for k, text in enumerate(cells))

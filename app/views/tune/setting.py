@@ -16,9 +16,9 @@ from navcore.quantities import QUANTITIES, searched
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 
-OBJECTIVE, VARY, TUNE, STOP = "tune for", "what may vary", "Tune", "Stop tuning"
-ACCEPT, DISCARD = "Accept the proposal", "Discard"
-ALL = "all parameters"
+OBJECTIVE, VARY, TUNE, STOP = Text("tune for"), Text("what may vary"), Text("Tune"), Text("Stop tuning")
+ACCEPT, DISCARD = Text("Accept the proposal"), Text("Discard")
+ALL = Text("all parameters")
 
 
 class SettingPanel:
@@ -40,16 +40,16 @@ class SettingPanel:
         gui = self.frame.gui
         self._fields = {}
         self._objective: Any = gui.add_dropdown(
-            OBJECTIVE, tuple(QUANTITIES[name].label for name in OBJECTIVES), hint="What is to be least."
+            OBJECTIVE, tuple(QUANTITIES[name].label for name in OBJECTIVES), hint=Text("What is to be least.")
         )
         self._vary: Any = gui.add_dropdown(
-            VARY, (ALL,), hint="Fields of the selected method that the search may move."
+            VARY, (ALL,), hint=Text("Fields of the selected method that the search may move.")
         )
-        hint = "Searches for the setting that makes the objective least and keeps the requirements."
+        hint = Text("Searches for the setting that makes the objective least and keeps the requirements.")
         self._controls = SearchControls(gui, self._designer, self.begin, (TUNE, STOP), hint)
         self._told = gui.add_html("", visible=False)
         self._found = gui.add_html("", visible=False)
-        self._accept = gui.add_button(ACCEPT, visible=False, hint="One step of undo takes it back.")
+        self._accept = gui.add_button(ACCEPT, visible=False, hint=Text("One step of undo takes it back."))
         self._discard = gui.add_button(DISCARD, color="gray", visible=False)
         words = {QUANTITIES[name].label: name for name in OBJECTIVES}
         self._objective.on_update(if_user(lambda: self.frame.show(objective=words[self._objective.value])))
@@ -68,12 +68,16 @@ class SettingPanel:
         html = notices.note(designer.words, "warning")
         if proposed and result is not None and task is not None:
             if task.scenario != scenario:
-                html += notices.note(["The scenario has changed since this proposal was made."], "warning")
+                html += notices.note(
+                    [Text("The scenario has changed since this proposal was made.")], "warning"
+                )
             html += proposal_html(task, result)
         said = notices.small(requirements_told(self.session.display.requirements))
         said += left_out_html(scenario.method[self.session.selected])
-        show_html(self._told, f'<div class="sb-wide">{said}</div>' if chosen else "")
-        show_html(self._found, f'<div class="sb-wide">{html}</div>' if chosen and html else "")
+        show_html(self._told, Text('<div class="sb-wide">{said}</div>', said=said) if chosen else "")
+        show_html(
+            self._found, Text('<div class="sb-wide">{html}</div>', html=html) if chosen and html else ""
+        )
         reveal(
             (self._objective, chosen),
             (self._vary, chosen),
@@ -98,8 +102,8 @@ class SettingPanel:
             fields = self._fields.get(self._vary.value, ())
         if not fields:
             reason = network_not_in_force(scenario.method[session.selected])
-            lines = [reason or "The network of this method has no parameter to vary."]
-            notices.tell(self.frame.client, "Nothing to tune", lines)
+            lines = [reason or Text("The network of this method has no parameter to vary.")]
+            notices.tell(self.frame.client, Text("Nothing to tune"), lines)
             return
         self._designer.begin(
             TuningTask(scenario, display.objective, fields, requirements_as_text(display.requirements))
@@ -112,7 +116,7 @@ class SettingPanel:
             return
         index = int(task.vary[0].split(".")[1])
         network = result.scenario.method[index].network.model_dump(mode="json", exclude_none=True)
-        if change_network(self.frame, index, network, "proposal of Tune"):
+        if change_network(self.frame, index, network, Text("proposal of Tune")):
             self._designer.discard()
 
 
@@ -139,12 +143,12 @@ def requirements_told(requirements: Requirements) -> str:
     kept = [requirement_words(text) for text in requirements_as_text(requirements)]
     other = [limit_words(key, limit) for key, limit in requirements.limits.items() if searched(key) is None]
     text = (
-        Text("Requirements that are kept: {kept}.", kept=", ".join(kept))
+        Text("Requirements that are kept: {kept}.", kept=Text.joined(", ", kept))
         if kept
-        else "No requirement is to be kept."
+        else Text("No requirement is to be kept.")
     )
     return (
-        Text("{text} Not measured by a search: {other}.", text=text, other=", ".join(other))
+        Text("{text} Not measured by a search: {other}.", text=text, other=Text.joined(", ", other))
         if other
         else text
     )

@@ -12,18 +12,19 @@ from app.views.tune.fronts import fronts_figure
 from app.views.tune.setting import SettingPanel
 from navcore.design.pareto import Pareto, measured
 from navcore.engine.run import Run
+from navcore.foundation.text import Text
 
-SEARCH_FOR = "search for"
-SEARCHES = {"the best setting": "setting", "Pareto fronts": "fronts"}
+SEARCH_FOR = Text("search for")
+SEARCHES = {Text("the best setting"): "setting", Text("Pareto fronts"): "fronts"}
 _NOTE_PX = 26
 
 
 class TuneView(PlotlyView):
     """Chooser of what is searched for; below it the controls of that search, and its proposal or picture."""
 
-    title = "Tune"
+    title = Text("Tune")
     place = "lower"
-    look_for = "Let the program search the best setting; accept or discard what it proposes."
+    look_for = Text("Let the program search the best setting; accept or discard what it proposes.")
     plots = (title,)
     above_px = 2 * CHOOSER_PX + _NOTE_PX
 
@@ -31,7 +32,7 @@ class TuneView(PlotlyView):
         super().__init__(frame)
         self._setting, self._finder = SettingPanel(frame), FrontsPanel(frame)
         self._drawn: Pareto | None = None
-        frame.commands.register("tune", lambda _: self._setting.begin(), "Tune the selected method")
+        frame.commands.register("tune", lambda _: self._setting.begin(), Text("Tune the selected method"))
 
     def build_tools(self) -> None:
         """Make the controls of both searches."""
@@ -39,8 +40,8 @@ class TuneView(PlotlyView):
         gui.add_html(TOOLS)
         self._search: Any = gui.add_dropdown(
             SEARCH_FOR, tuple(SEARCHES),
-            hint="The best setting: of the selected method, for one objective. Pareto fronts: what two "
-            "objectives cost each other, with every network in place of that method's own.",
+            hint=Text("The best setting: of the selected method, for one objective. Pareto fronts: what two "
+            "objectives cost each other, with every network in place of that method's own."),
         )  # fmt: skip
         self._search.on_update(if_user(lambda: self.frame.show(search=SEARCHES[self._search.value])))
         self._setting.build()
@@ -104,7 +105,7 @@ class TuneView(PlotlyView):
     def figures(self, found: Shown, plot: str) -> Figures:
         """Make the fronts, to be saved; raises LookupError while none have been found."""
         if found.display.search != "fronts" or self._finder.found is None:
-            raise LookupError("No Pareto fronts have been found yet.")
+            raise LookupError(Text("No Pareto fronts have been found yet."))
         return super().figures(found, plot)
 
     def show(self, picture: PlotlyFigure) -> None:

@@ -1,7 +1,5 @@
 """Above the tabs: verify the scenario with the full strapdown, progress, stop, and what came out."""
 
-from html import escape
-
 from app.jobs.verifier import Verifier
 from app.shell import notices
 from app.shell.searching import reveal, show_html
@@ -10,15 +8,15 @@ from app.views.metrics.table import verdict
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 
-VERIFY, STOP = "Verify with full strapdown", "Stop verifying"
+VERIFY, STOP = Text("Verify with full strapdown"), Text("Stop verifying")
 _ORDER = 13.5
 """Place in the left column: below the state of the run."""
-_TOLD = (
+_TOLD = Text(
     "Runs the scenario as full nonlinear strapdown, and the linear model on the same noise. The run's own "
     'curves stay. The tab Errors draws both models and their difference (curves "Verification"), and the tab '
     "Metrics shows the largest differences."
 )
-_WHERE = 'Tab Errors, curves "Verification": both models and their difference.'
+_WHERE = Text('Tab Errors, curves "Verification": both models and their difference.')
 
 
 class VerificationView(View):
@@ -26,7 +24,7 @@ class VerificationView(View):
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
-        frame.commands.register("verify", lambda _: self._verify(), "Verify with the strapdown")
+        frame.commands.register("verify", lambda _: self._verify(), Text("Verify with the strapdown"))
 
     def build(self, tab: Tab) -> None:
         """Make the widgets."""
@@ -34,8 +32,12 @@ class VerificationView(View):
         with tab:
             # A small one, as those at the top: it is not the first thing to press.
             self._start = gui.add_html(
-                '<div class="sb-row"><button class="sb-do" data-command="verify" '
-                f'title="{escape(_TOLD)}">{VERIFY}</button></div>',
+                Text(
+                    '<div class="sb-row"><button class="sb-do" data-command="verify" title="{told:html}">'
+                    "{verify}</button></div>",
+                    told=_TOLD,
+                    verify=VERIFY,
+                ),
                 order=_ORDER,
             )
             self._progress = gui.add_progress_bar(0.0, visible=False, order=_ORDER + 0.1)
@@ -61,7 +63,9 @@ class VerificationView(View):
 
 def _html(verifier: Verifier, scenario: Scenario) -> str:
     if verifier.fraction is not None:
-        progress = notices.note(["Verifying: the full strapdown and the linear model on its noise."], "info")
+        progress = notices.note(
+            [Text("Verifying: the full strapdown and the linear model on its noise.")], "info"
+        )
         return progress + notices.note(verifier.words, "warning")
     if verifier.words:
         return notices.note(verifier.words, "warning")
@@ -69,9 +73,11 @@ def _html(verifier: Verifier, scenario: Scenario) -> str:
     if result is None:
         return ""
     if verifier.asked != scenario:
-        return notices.note(["The verification is of an earlier scenario: verify again."], "warning")
+        return notices.note([Text("The verification is of an earlier scenario: verify again.")], "warning")
     trusted = notices.note([Text("Verified. {verdict}", verdict=verdict(result)), _WHERE], "info")
-    against = ["The linear model is not to be trusted here:", *result.statements] if result.statements else []
+    against = (
+        [Text("The linear model is not to be trusted here:"), *result.statements] if result.statements else []
+    )
     return notices.note(against, "warning") + trusted
 
 

@@ -23,7 +23,7 @@ from navcore.sensors.log_errors.events import event_velocity
 
 Progress = Callable[[float], None]
 Cancelled = Callable[[], bool]
-STOPPED = "stopped by the user"
+STOPPED = Text("stopped by the user")
 
 
 def network_of(scenario: Scenario, method: Method) -> LinearNetwork:

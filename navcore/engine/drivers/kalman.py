@@ -11,6 +11,7 @@ import numpy as np
 from navcore.engine.drivers.common import law_of, network_of, seen_by
 from navcore.engine.environment import Environment
 from navcore.foundation.earth import Earth, attitude_matrix
+from navcore.foundation.text import Text
 from navcore.mechanization.kalman.error_model import FilteredErrorModel
 from navcore.mechanization.kalman.filter import ACCEL, GYRO, LOG, FilterModel, FilterState, filter_state
 from navcore.mechanization.recorder import make_recorder
@@ -42,7 +43,9 @@ class Gains:
 
 LEAST_NOISE_MPS = 1e-5
 """Standard deviation of a sample that counts as free of noise, m/s: the gain needs some."""
-NOTHING_RANDOM = "the scenario gives sensors and start no error that the filter knows of: it corrects nothing"
+NOTHING_RANDOM = Text(
+    "the scenario gives sensors and start no error that the filter knows of: it corrects nothing"
+)
 
 
 def filter_model(

@@ -25,6 +25,7 @@ from navcore.engine.drivers.common import (
 from navcore.engine.drivers.kalman import Gains, filtered_linear, own_sigma
 from navcore.engine.environment import Environment, environment
 from navcore.engine.run import MethodRun, Run, Status
+from navcore.foundation.text import Text
 from navcore.mechanization.error_model import ErrorModelRun
 from navcore.mechanization.kalman.error_model import FilteredErrorModel
 from navcore.mechanization.recorder import make_recorder, output_steps
@@ -217,6 +218,6 @@ def _carry_out(run: _Started, report: Progress, cancelled: Cancelled | None) -> 
     if run.diverged:
         return (
             "diverged",
-            "the error left the range of the linear model (tilt 1 rad, velocity 1e5 m/s)",
+            Text("the error left the range of the linear model (tilt 1 rad, velocity 1e5 m/s)"),
         )
     return "ok", ""

@@ -7,6 +7,7 @@ import numpy as np
 from navcore.foundation.compiled import inlined
 from navcore.foundation.parameters import quantity
 from navcore.foundation.records import COUNT, REAL, record_type
+from navcore.foundation.text import Text
 from navcore.law.history import USE_ACCELERATION, auxiliary, slide
 from navcore.law.policy.base import Limit, Measure, PolicyParameters, calls
 
@@ -40,9 +41,11 @@ class Acceleration(PolicyParameters):
         le=100.0,
         slider=(0.001, 1.0),
         log=True,
-        label="acceleration limit",
-        help="Undamped while the mean of |a| exceeds this (Sun 2017, 1); |a| is the rate of change of the"
-        " computed velocity.",
+        label=Text("acceleration limit"),
+        help=Text(
+            "Undamped while the mean of |a| exceeds this (Sun 2017, 1); |a| is the rate of change of the"
+            " computed velocity."
+        ),
     )
     mean_s: float = quantity(
         20.0,
@@ -51,8 +54,8 @@ class Acceleration(PolicyParameters):
         le=3600.0,
         slider=(1.0, 300.0),
         log=True,
-        label="averaged over",
-        help="Time over which |a| is averaged.",
+        label=Text("averaged over"),
+        help=Text("Time over which |a| is averaged."),
     )
 
     def packed(self, law_step_s: float) -> dict[str, Any]:

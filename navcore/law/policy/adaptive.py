@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     _Retuned: TypeAlias = Unity2Network | Pole2Network
 else:
     _Retuned = any_of({"unity2": Unity2Network, "pole2": Pole2Network}, "id")
-_ADAPTABLE = "pole2 or unity2, in network or policy.network"
+_ADAPTABLE = Text("pole2 or unity2, in network or policy.network")
 
 
 class TableRow(NamedTuple):
@@ -129,21 +129,23 @@ class Adaptive(PolicyParameters):
     needs_reference: ClassVar[bool] = True
     keeps_time: ClassVar[bool] = True
     tunes: ClassVar[bool] = True
-    measure: ClassVar[Measure | None] = Measure("|low-passed V_r - V_c|", "kn", KNOT)
+    measure: ClassVar[Measure | None] = Measure(Text("|low-passed V_r - V_c|"), "kn", KNOT)
     id: Literal["adaptive"] = "adaptive"
     law: Literal["table", "quadratic"] = choice(
         "table",
-        label="law",
-        help="table: Sun's Table 1 or your own; quadratic: Sun 9 with its sign mended, clamped.",
+        label=Text("law"),
+        help=Text("table: Sun's Table 1 or your own; quadratic: Sun 9 with its sign mended, clamped."),
     )
     table: tuple[TableRow, ...] = Field(
         default=SUN_TABLE,
-        description="Pairs [difference in kn, damping ratio], in any order (Sun 2017, Table 1).",
+        description=Text("Pairs [difference in kn, damping ratio], in any order (Sun 2017, Table 1)."),
     )
     network: _Retuned | None = Field(
         default=None,
-        description="Network that is re-tuned: unity2 or pole2, a name or a block. When not given, that of "
-        "the method, and unity2 where the method has none.",
+        description=Text(
+            "Network that is re-tuned: unity2 or pole2, a name or a block. When not given, that of "
+            "the method, and unity2 where the method has none."
+        ),
     )
     lowpass_s: float = quantity(
         100.0,
@@ -152,9 +154,11 @@ class Adaptive(PolicyParameters):
         le=1e5,
         slider=(1.0, 1000.0),
         log=True,
-        label="low-pass",
-        help="Time constant of the low-pass on each component of the difference: above waves, below 806 s = "
-        "1/ωₛ.",
+        label=Text("low-pass"),
+        help=Text(
+            "Time constant of the low-pass on each component of the difference: above waves, below 806 s = "
+            "1/ωₛ."
+        ),
     )
 
     @model_validator(mode="after")
@@ -213,8 +217,10 @@ class Adaptive(PolicyParameters):
         texts = []
         if self.law == "quadratic":
             texts.append(
-                "adaptive: the quadratic is negative between 0.95 and 2.77 kn (held at 0.04 there), and "
-                "beyond it rises again: use the table"
+                Text(
+                    "adaptive: the quadratic is negative between 0.95 and 2.77 kn (held at 0.04 there), and "
+                    "beyond it rises again: use the table"
+                )
             )
         least = self.network_in_force(network).least_coefficient()
         if least > LOWEST:

@@ -31,7 +31,7 @@ def _gains(default: tuple[float, float, float], label: str, help: str) -> Any:
 _FROM: dict[str, Any] = {
     "from": (
         tuple[_Gain, _Gain, _Gain],
-        _gains((0.0264, 156.063, 0.904), "from", "Gains at each start of the damping (Zha 2019, 4.2)."),
+        _gains((0.0264, 156.063, 0.904), "from", Text("Gains at each start of the damping (Zha 2019, 4.2).")),
     )
 }
 _From = create_model("_From", __base__=PolicyParameters, **_FROM)
@@ -91,7 +91,7 @@ class Schedule(EitherUnit, _From):
     keeps_time: ClassVar[bool] = True
     id: Literal["schedule"] = "schedule"
     to: tuple[_Gain, _Gain, _Gain] = _gains(
-        (7.68e-3, 6.68, 7.68e-3), "to", "Gains after that time (Zha 2019, 4.2)."
+        (7.68e-3, 6.68, 7.68e-3), "to", Text("Gains after that time (Zha 2019, 4.2).")
     )
     duration_s: float = quantity(
         60.0,
@@ -100,8 +100,8 @@ class Schedule(EitherUnit, _From):
         le=1e6,
         slider=(1.0, 3600.0),
         log=True,
-        label="passage",
-        help="Time of the passage from the one to the other.",
+        label=Text("passage"),
+        help=Text("Time of the passage from the one to the other."),
     )
 
     @model_validator(mode="after")
@@ -115,7 +115,7 @@ class Schedule(EitherUnit, _From):
                     Text("K₁ must be >= -{largest_k1:g} and <= {largest_k1:g} (1/s)", largest_k1=_LARGEST_K1),
                 )
             if 1.0 + k2 == 0.0 and k3 == 0.0:
-                raise refuse(f"{name}.1", k2, "K₂ must not be -1 while K₃ = 0: H would be zero")
+                raise refuse(f"{name}.1", k2, Text("K₂ must not be -1 while K₃ = 0: H would be zero"))
         return self
 
     def packed(self, law_step_s: float) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import numpy as np
 from navcore.foundation.compiled import inlined
 from navcore.foundation.parameters import quantity
 from navcore.foundation.records import REAL, record_type
+from navcore.foundation.text import Text
 from navcore.law.policy.base import Limit, Measure, PolicyParameters
 from navcore.law.records import E, N
 
@@ -36,8 +37,8 @@ class Threshold(PolicyParameters):
         le=1000.0,
         slider=(0.01, 10.0),
         log=True,
-        label="threshold",
-        help="Undamped while |V_r - V_c| exceeds this (Liu 2021, 3.2).",
+        label=Text("threshold"),
+        help=Text("Undamped while |V_r - V_c| exceeds this (Liu 2021, 3.2)."),
     )
 
     def packed(self, law_step_s: float) -> dict[str, Any]:

@@ -100,25 +100,30 @@ class Variation(PolicyParameters):
     decide: ClassVar[Any] = _decide
     needs_reference: ClassVar[bool] = True
     keeps_time: ClassVar[bool] = True
-    measure: ClassVar[Measure | None] = Measure("variation s", "m/s", 1.0)
+    measure: ClassVar[Measure | None] = Measure(Text("variation s"), "m/s", 1.0)
     id: Literal["variation"] = "variation"
-    n_s: float = _time(20.0, "mean n", "Time over which the difference is averaged (Liu 15).")
-    t0_s: float = _time(80.0, "window t0", "Age of the mean compared with (Liu 15).")
-    a: float = _speed(0.25, "small up to a", "Damped while s is at most this (Liu 16).")
+    n_s: float = _time(20.0, Text("mean n"), Text("Time over which the difference is averaged (Liu 15)."))
+    t0_s: float = _time(80.0, Text("window t0"), Text("Age of the mean compared with (Liu 15)."))
+    a: float = _speed(0.25, Text("small up to a"), Text("Damped while s is at most this (Liu 16)."))
     b: float = _speed(
         0.35,
-        "medium at b",
-        "Peak of Liu's membership 'medium' (fig. 8): a line in the switching view. It changes no decision,"
-        " because the state is kept everywhere between a and c (Liu 16).",
+        Text("medium at b"),
+        Text(
+            "Peak of Liu's membership 'medium' (fig. 8): a line in the switching view. It "
+            "changes no decision,"
+            " because the state is kept everywhere between a and c (Liu 16)."
+        ),
     )
-    c: float = _speed(0.45, "large from c", "Undamped while s is at least this (Liu 16).")
+    c: float = _speed(0.45, Text("large from c"), Text("Undamped while s is at least this (Liu 16)."))
     count: int = quantity(
         20,
         ge=1,
         le=100_000,
         slider=(1, 200),
-        label="count",
-        help="Calls in a row, one a law step, for which the wish must differ from the state (Liu, fig. 9).",
+        label=Text("count"),
+        help=Text(
+            "Calls in a row, one a law step, for which the wish must differ from the state (Liu, fig. 9)."
+        ),
     )
 
     @model_validator(mode="after")

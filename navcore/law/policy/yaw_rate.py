@@ -7,6 +7,7 @@ import numpy as np
 from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.parameters import quantity
 from navcore.foundation.records import COUNT, REAL, record_type
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.law.history import USE_HEADING, row_of_age
 from navcore.law.policy.base import Limit, Measure, PolicyParameters, calls
@@ -34,7 +35,7 @@ class YawRate(PolicyParameters):
     decide: ClassVar[Any] = _decide
     remembers: ClassVar[int] = USE_HEADING
     keeps_time: ClassVar[bool] = True
-    measure: ClassVar[Measure | None] = Measure("heading change", "°", DEG)
+    measure: ClassVar[Measure | None] = Measure(Text("heading change"), "°", DEG)
     id: Literal["yaw_rate"] = "yaw_rate"
     window_s: float = quantity(
         60.0,
@@ -43,8 +44,8 @@ class YawRate(PolicyParameters):
         le=3600.0,
         slider=(5.0, 600.0),
         log=True,
-        label="window",
-        help="Time over which the heading change is taken.",
+        label=Text("window"),
+        help=Text("Time over which the heading change is taken."),
     )
     limit_deg: float = quantity(
         5.0,
@@ -53,8 +54,8 @@ class YawRate(PolicyParameters):
         le=3600.0,
         slider=(0.5, 90.0),
         log=True,
-        label="heading limit",
-        help="Undamped while the heading changed by more than this over the window (Liu 2021, 3.2).",
+        label=Text("heading limit"),
+        help=Text("Undamped while the heading changed by more than this over the window (Liu 2021, 3.2)."),
     )
 
     def packed(self, law_step_s: float) -> dict[str, Any]:

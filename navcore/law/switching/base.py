@@ -12,7 +12,7 @@ from navcore.foundation.text import Text
 from navcore.law.policy.base import PolicyParameters
 from navcore.networks.base import NetworkParameters
 
-_RETUNABLE = "complementary, pole2 or unity2"
+_RETUNABLE = Text("complementary, pole2 or unity2")
 
 
 class SwitchingParameters(Parameters):

@@ -212,7 +212,7 @@ class Bridge(SwitchingParameters):
     and takes up the log again when its old level has come back, or its new one has stayed for 15 min.
     """
 
-    needs_log: ClassVar[str] = 'estimates the error of a log: needs damping = "external"'
+    needs_log: ClassVar[str] = Text('estimates the error of a log: needs damping = "external"')
     numbers: ClassVar[np.dtype] = record_type(
         cos=REAL,  # of omega_s T
         sin=REAL,
@@ -243,9 +243,11 @@ class Bridge(SwitchingParameters):
     id: Literal["bridge"] = "bridge"
     output: Literal["computed", "corrected"] = choice(
         "computed",
-        label="velocity given out",
-        help="computed: that of the mechanization, V_c; corrected: V_c - a v^, less the oscillation that the "
-        "filter sees (theory.md 12).",
+        label=Text("velocity given out"),
+        help=Text(
+            "computed: that of the mechanization, V_c; corrected: V_c - a v^, less the oscillation that the "
+            "filter sees (theory.md 12)."
+        ),
     )
     memory_s: float = quantity(
         110.0,
@@ -254,8 +256,10 @@ class Bridge(SwitchingParameters):
         le=3600.0,
         slider=(1.0, 1200.0),
         log=True,
-        label="memory",
-        help="How far before the switch the estimate is taken up: window, mean and count of the policy.",
+        label=Text("memory"),
+        help=Text(
+            "How far before the switch the estimate is taken up: window, mean and count of the policy."
+        ),
     )
     log_noise_mps: float = quantity(
         0.15,
@@ -264,8 +268,10 @@ class Bridge(SwitchingParameters):
         le=100.0,
         slider=(0.001, 2.0),
         log=True,
-        label="log noise",
-        help="Noise of one difference that the filter assumes, half as much again as it is (theory.md 12).",
+        label=Text("log noise"),
+        help=Text(
+            "Noise of one difference that the filter assumes, half as much again as it is (theory.md 12)."
+        ),
     )
     drive_mpsrth: float = quantity(
         0.03,
@@ -274,8 +280,10 @@ class Bridge(SwitchingParameters):
         le=100.0,
         slider=(0.001, 1.0),
         log=True,
-        label="drive",
-        help="Growth of the Schuler oscillation by the inertial sensors' noise that the filter assumes.",
+        label=Text("drive"),
+        help=Text(
+            "Growth of the Schuler oscillation by the inertial sensors' noise that the filter assumes."
+        ),
     )
     log_walk_mpsrth: float = quantity(
         0.02,
@@ -284,8 +292,8 @@ class Bridge(SwitchingParameters):
         le=100.0,
         slider=(0.001, 1.0),
         log=True,
-        label="log walk",
-        help="Random walk of the log's error that the filter assumes.",
+        label=Text("log walk"),
+        help=Text("Random walk of the log's error that the filter assumes."),
     )
 
     def packed(self, law_step_s: float, omega_s: float) -> dict[str, Any]:

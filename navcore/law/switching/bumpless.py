@@ -95,8 +95,8 @@ class Bumpless(SwitchingParameters):
         le=3600.0,
         slider=(1.0, 300.0),
         log=True,
-        label="bumpless mean",
-        help="Time over which the difference is averaged, before the event and on re-engagement.",
+        label=Text("bumpless mean"),
+        help=Text("Time over which the difference is averaged, before the event and on re-engagement."),
     )
     memory_s: float = quantity(
         110.0,
@@ -105,8 +105,10 @@ class Bumpless(SwitchingParameters):
         le=3600.0,
         slider=(1.0, 1200.0),
         log=True,
-        label="memory",
-        help="How far before the switch state and mean are taken: window, mean and count of the policy.",
+        label=Text("memory"),
+        help=Text(
+            "How far before the switch state and mean are taken: window, mean and count of the policy."
+        ),
     )
 
     def packed(self, law_step_s: float, omega_s: float) -> dict[str, Any]:
@@ -124,7 +126,7 @@ class Bumpless(SwitchingParameters):
         except InputError:
             return ()
         if abs(h0 - 1.0) > H0_TOLERANCE:
-            return ("bumpless: H(0) differs from 1, so a change of the log acts for good",)
+            return (Text("bumpless: H(0) differs from 1, so a change of the log acts for good"),)
         return ()
 
     def network_faults(

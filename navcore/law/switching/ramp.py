@@ -62,15 +62,19 @@ class Ramp(EitherUnit, SwitchingParameters):
         le=3600.0,
         slider=(1.0, 600.0),
         log=True,
-        label="ramp",
-        help="The coefficient is ζ e^-(duration - 1 - m) m seconds after re-engagement (Liu 2021, fig. 10).",
+        label=Text("ramp"),
+        help=Text(
+            "The coefficient is ζ e^-(duration - 1 - m) m seconds after re-engagement (Liu 2021, fig. 10)."
+        ),
     )
     form: Literal["state", "as_printed"] = choice(
         "state",
-        label="ramp form",
-        help="state: the filter's states are cleared and the present difference arrives as a step; "
-        "as_printed: Liu 19's recursion, which sees differences of its input only, so that what stands "
-        "during the ramp is never seen.",
+        label=Text("ramp form"),
+        help=Text(
+            "state: the filter's states are cleared and the present difference arrives as a step; "
+            "as_printed: Liu 19's recursion, which sees differences of its input only, so that what stands "
+            "during the ramp is never seen."
+        ),
     )
 
     def packed(self, law_step_s: float, omega_s: float) -> dict[str, Any]:

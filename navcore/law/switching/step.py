@@ -7,6 +7,7 @@ import numpy as np
 from navcore.foundation.compiled import inlined
 from navcore.foundation.parameters import quantity
 from navcore.foundation.records import REAL, record_type
+from navcore.foundation.text import Text
 from navcore.law.records import CLEAR, EXTERNAL
 from navcore.law.switching.base import SwitchingParameters
 
@@ -57,8 +58,8 @@ class Step(SwitchingParameters):
         le=5.0,
         slider=(0.01, 1.0),
         log=True,
-        label="step size",
-        help="Largest change of the damping ratio at a time (Sun 2017, 4.2).",
+        label=Text("step size"),
+        help=Text("Largest change of the damping ratio at a time (Sun 2017, 4.2)."),
     )
     every_s: float = quantity(
         120.0,
@@ -67,8 +68,8 @@ class Step(SwitchingParameters):
         le=3600.0,
         slider=(1.0, 1200.0),
         log=True,
-        label="every",
-        help="Time between two changes (Sun 2017, 4.2).",
+        label=Text("every"),
+        help=Text("Time between two changes (Sun 2017, 4.2)."),
     )
 
     def packed(self, law_step_s: float, omega_s: float) -> dict[str, Any]:

@@ -9,6 +9,7 @@ import numpy as np
 from navcore.foundation.compiled import plain
 from navcore.foundation.earth import Earth
 from navcore.foundation.records import new_record
+from navcore.foundation.text import Text
 from navcore.law.law import Law
 from navcore.mechanization.recorder import QUANTITIES, Recorder, make_recorder
 from navcore.mechanization.strapdown import records as at
@@ -183,8 +184,8 @@ class StrapdownRun:
     def reason(self) -> str:
         """Why the run ended early; empty otherwise."""
         if self.code == at.DIVERGED:
-            return "the errors left the range of navigation (tilt 1 rad, velocity 1e4 m/s)"
-        return "the computed latitude passed 89.9°" if self.code == at.POLE else ""
+            return Text("the errors left the range of navigation (tilt 1 rad, velocity 1e4 m/s)")
+        return Text("the computed latitude passed 89.9°") if self.code == at.POLE else ""
 
     def advance(self, increments: np.ndarray) -> bool:
         """Integrate a chunk; return True when the run is complete or has diverged.

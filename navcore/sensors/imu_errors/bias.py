@@ -6,6 +6,7 @@ from typing import Annotated
 import numpy as np
 
 from navcore.foundation.parameters import bounded, quantity, vector_quantity
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG_PER_HOUR, MICRO_G
 from navcore.sensors.imu_errors.base import ImuTerm, Part
 
@@ -22,9 +23,11 @@ class BiasDeviation(ImuTerm):
         ge=0.0,
         le=1e5,
         slider=(0.0, 0.1),
-        label="gyro bias, standard deviation",
-        help="Standard deviation of each gyro's bias in the error budget and the tuning, which know the bias "
-        "by its size only. Not given: the size of each gyro_bias_dph counts as its standard deviation.",
+        label=Text("gyro bias, standard deviation"),
+        help=Text(
+            "Standard deviation of each gyro's bias in the error budget and the tuning, which know the bias "
+            "by its size only. Not given: the size of each gyro_bias_dph counts as its standard deviation."
+        ),
     )
     accel_bias_std_ug: float | None = quantity(
         None,
@@ -32,8 +35,8 @@ class BiasDeviation(ImuTerm):
         ge=0.0,
         le=1e6,
         slider=(0.0, 200.0),
-        label="accelerometer bias, standard deviation",
-        help="The same for the accelerometers. Not given: the size of each accel_bias_ug.",
+        label=Text("accelerometer bias, standard deviation"),
+        help=Text("The same for the accelerometers. Not given: the size of each accel_bias_ug."),
     )
 
     def parts(self) -> Iterator[Part]:
@@ -48,15 +51,15 @@ class Bias(ImuTerm):
         (0.0, 0.0, 0.0),
         unit="deg/h",
         slider=(-0.1, 0.1),
-        label="gyro bias",
-        help="Constant error of each gyro.",
+        label=Text("gyro bias"),
+        help=Text("Constant error of each gyro."),
     )
     accel_bias_ug: tuple[_AccelBias, _AccelBias, _AccelBias] = vector_quantity(
         (0.0, 0.0, 0.0),
         unit="ug",
         slider=(-200.0, 200.0),
-        label="accelerometer bias",
-        help="Constant error of each accelerometer; 1 µg = 9.80665e-6 m/s².",
+        label=Text("accelerometer bias"),
+        help=Text("Constant error of each accelerometer; 1 µg = 9.80665e-6 m/s²."),
     )
 
     def parts(self) -> Iterator[Part]:
@@ -71,14 +74,14 @@ class Bias(ImuTerm):
         yield Part(
             ("gyro_bias_dph",),
             "gyro_bias",
-            "gyro bias",
+            Text("gyro bias"),
             constant=gyro * DEG_PER_HOUR,
             deviation=gyro_std * DEG_PER_HOUR,
         )
         yield Part(
             ("accel_bias_ug",),
             "accel_bias",
-            "accelerometer bias",
+            Text("accelerometer bias"),
             constant=accel * MICRO_G,
             deviation=accel_std * MICRO_G,
         )

@@ -6,6 +6,7 @@ from typing import Annotated
 import numpy as np
 
 from navcore.foundation.parameters import bounded, vector_quantity
+from navcore.foundation.text import Text
 from navcore.sensors.imu_errors.base import ImuTerm, Part
 
 _GyroLsb = Annotated[float, bounded(unit="rad", ge=0.0, le=0.01)]
@@ -18,17 +19,19 @@ class Counts(ImuTerm):
     gyro_lsb: tuple[_GyroLsb, _GyroLsb, _GyroLsb] = vector_quantity(
         (0.0, 0.0, 0.0),
         unit="rad",
-        label="gyro count",
-        help="Angle of one count of each gyro; 0 for no quantisation.",
+        label=Text("gyro count"),
+        help=Text("Angle of one count of each gyro; 0 for no quantisation."),
     )
     accel_lsb: tuple[_AccelLsb, _AccelLsb, _AccelLsb] = vector_quantity(
         (0.0, 0.0, 0.0),
         unit="m/s",
-        label="accelerometer count",
-        help="Velocity of one count of each accelerometer; 0 for no quantisation.",
+        label=Text("accelerometer count"),
+        help=Text("Velocity of one count of each accelerometer; 0 for no quantisation."),
     )
 
     def parts(self) -> Iterator[Part]:
         """Yield the counts of both."""
-        yield Part(("gyro_lsb",), "gyro_counts", "IMU quantisation", lsb=np.array(self.gyro_lsb, float))
-        yield Part(("accel_lsb",), "accel_counts", "IMU quantisation", lsb=np.array(self.accel_lsb, float))
+        yield Part(("gyro_lsb",), "gyro_counts", Text("IMU quantisation"), lsb=np.array(self.gyro_lsb, float))
+        yield Part(
+            ("accel_lsb",), "accel_counts", Text("IMU quantisation"), lsb=np.array(self.accel_lsb, float)
+        )

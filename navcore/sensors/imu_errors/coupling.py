@@ -6,6 +6,7 @@ from typing import Annotated, TypeAlias
 import numpy as np
 
 from navcore.foundation.parameters import bounded, vector_quantity
+from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, PPM
 from navcore.sensors.imu_errors.base import ImuTerm, Part
 
@@ -13,7 +14,7 @@ _Scale = Annotated[float, bounded(unit="ppm", ge=-1e5, le=1e5)]
 _Angle = Annotated[float, bounded(unit="arcsec", ge=-36000.0, le=36000.0)]
 _SixAngles: TypeAlias = tuple[_Angle, _Angle, _Angle, _Angle, _Angle, _Angle]
 _PAIRS = ("xy", "xz", "yx", "yz", "zx", "zy")
-_MISALIGNMENT_HELP = (
+_MISALIGNMENT_HELP = Text(
     "Rows of the error matrix without its diagonal: xy is what the x sensor feels of the y axis."
 )
 
@@ -25,22 +26,22 @@ class Coupling(ImuTerm):
         (0.0, 0.0, 0.0),
         unit="ppm",
         slider=(-100.0, 100.0),
-        label="gyro scale factor",
-        help="Scale factor error of each gyro.",
+        label=Text("gyro scale factor"),
+        help=Text("Scale factor error of each gyro."),
     )
     accel_scale_ppm: tuple[_Scale, _Scale, _Scale] = vector_quantity(
         (0.0, 0.0, 0.0),
         unit="ppm",
         slider=(-200.0, 200.0),
-        label="accelerometer scale factor",
-        help="Scale factor error of each accelerometer.",
+        label=Text("accelerometer scale factor"),
+        help=Text("Scale factor error of each accelerometer."),
     )
     gyro_misalignment_arcsec: _SixAngles = vector_quantity(
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         unit="arcsec",
         elements=_PAIRS,
         slider=(-60.0, 60.0),
-        label="gyro misalignment",
+        label=Text("gyro misalignment"),
         help=_MISALIGNMENT_HELP,
     )
     accel_misalignment_arcsec: _SixAngles = vector_quantity(
@@ -48,15 +49,15 @@ class Coupling(ImuTerm):
         unit="arcsec",
         elements=_PAIRS,
         slider=(-60.0, 60.0),
-        label="accelerometer misalignment",
+        label=Text("accelerometer misalignment"),
         help=_MISALIGNMENT_HELP,
     )
 
     def parts(self) -> Iterator[Part]:
         """Yield scale factors and misalignments of both."""
         labels = {
-            "gyro": "gyro scale factor and misalignment",
-            "accel": "accelerometer scale factor and misalignment",
+            "gyro": Text("gyro scale factor and misalignment"),
+            "accel": Text("accelerometer scale factor and misalignment"),
         }
         for sensor, label in labels.items():
             scale, misalignment = f"{sensor}_scale_ppm", f"{sensor}_misalignment_arcsec"

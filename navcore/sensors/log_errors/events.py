@@ -9,6 +9,7 @@ from pydantic import Field
 
 from navcore.foundation.parameters import bounded, quantity, vector_quantity
 from navcore.foundation.repeated import Repeated
+from navcore.foundation.text import Text
 from navcore.sensors.log_errors.base import LogPart, LogTerm
 
 _Acceleration = Annotated[float, bounded(unit="m/s2", ge=-50.0, le=50.0)]
@@ -24,17 +25,19 @@ class LogEvent(Repeated):
         le=1e7,
         slider=(1.0, 7200.0),
         log=True,
-        label="lasts",
-        help="Length of the event.",
+        label=Text("lasts"),
+        help=Text("Length of the event."),
     )
     accel_mps2: tuple[_Acceleration, _Acceleration] = vector_quantity(
         (0.0, 0.0),
         unit="m/s2",
         elements=("E", "N"),
         slider=(-0.1, 0.1),
-        label="acceleration of δVr",
-        help="East, north (Liu 2021, fig. 4). Its integral stays after the event; events add up, and so do "
-        "the repetitions of one.",
+        label=Text("acceleration of δVr"),
+        help=Text(
+            "East, north (Liu 2021, fig. 4). Its integral stays after the event; events add up, and so do "
+            "the repetitions of one."
+        ),
     )
     sine_hz: float = quantity(
         0.0,
@@ -42,8 +45,8 @@ class LogEvent(Repeated):
         ge=0.0,
         le=10.0,
         slider=(0.0, 0.1),
-        label="frequency",
-        help="0: constant acceleration; else the acceleration is a sin(2π f (t - t_h)).",
+        label=Text("frequency"),
+        help=Text("0: constant acceleration; else the acceleration is a sin(2π f (t - t_h))."),
     )
 
 
@@ -89,10 +92,10 @@ class LogEvents(LogTerm):
     """Events of the log."""
 
     event: tuple[LogEvent, ...] = Field(
-        default=(), max_length=200, description="Disturbances of the log, [[reference.event]]."
+        default=(), max_length=200, description=Text("Disturbances of the log, [[reference.event]].")
     )
 
     def parts(self) -> Iterator[LogPart]:
         """Yield all events as one part."""
         after = partial(event_velocity, self.event) if self.event else None
-        yield LogPart(("event",), "log_events", "log events", after=after)
+        yield LogPart(("event",), "log_events", Text("log events"), after=after)

@@ -6,6 +6,7 @@ from typing import Annotated
 import numpy as np
 
 from navcore.foundation.parameters import bounded, quantity, vector_quantity
+from navcore.foundation.text import Text
 from navcore.sensors.log_errors.base import LogPart, LogTerm
 
 _Speed = Annotated[float, bounded(unit="m/s", ge=-50.0, le=50.0)]
@@ -19,8 +20,8 @@ class LogBias(LogTerm):
         unit="m/s",
         elements=("E / starboard", "N / forward"),
         slider=(-2.0, 2.0),
-        label="bias",
-        help="Constant error: east, north; with frame = body starboard, forward.",
+        label=Text("bias"),
+        help=Text("Constant error: east, north; with frame = body starboard, forward."),
     )
     bias_std_mps: float | None = quantity(
         None,
@@ -28,16 +29,18 @@ class LogBias(LogTerm):
         ge=0.0,
         le=50.0,
         slider=(0.0, 2.0),
-        label="bias, standard deviation",
-        help="Standard deviation of the bias on each axis, in the error budget and the tuning. Not given: "
-        "the size of each bias_mps.",
+        label=Text("bias, standard deviation"),
+        help=Text(
+            "Standard deviation of the bias on each axis, in the error budget and the tuning. Not given: "
+            "the size of each bias_mps."
+        ),
     )
 
     def parts(self) -> Iterator[LogPart]:
         """Yield the bias."""
         bias = np.array(self.bias_mps, dtype=float)
         deviation = np.abs(bias) if self.bias_std_mps is None else np.full(2, self.bias_std_mps)
-        yield LogPart(("bias_mps",), "log_bias", "log bias", constant=bias, deviation=deviation)
+        yield LogPart(("bias_mps",), "log_bias", Text("log bias"), constant=bias, deviation=deviation)
 
 
 class LogNoise(LogTerm):
@@ -49,14 +52,16 @@ class LogNoise(LogTerm):
         ge=0.0,
         le=50.0,
         slider=(0.0, 1.0),
-        label="noise",
-        help="Standard deviation of one sample, on each axis. At rates above one sample a step the samples "
-        "of a step are averaged.",
+        label=Text("noise"),
+        help=Text(
+            "Standard deviation of one sample, on each axis. At rates above one sample a step the samples "
+            "of a step are averaged."
+        ),
     )
 
     def parts(self) -> Iterator[LogPart]:
         """Yield the noise."""
-        yield LogPart(("noise_mps",), "log_white", "log noise", white=self.noise_mps)
+        yield LogPart(("noise_mps",), "log_white", Text("log noise"), white=self.noise_mps)
 
 
 class LogDrift(LogTerm):
@@ -68,8 +73,8 @@ class LogDrift(LogTerm):
         ge=0.0,
         le=50.0,
         slider=(0.0, 1.0),
-        label="drift",
-        help="Standard deviation of a slow error, on each axis (first-order Gauss-Markov).",
+        label=Text("drift"),
+        help=Text("Standard deviation of a slow error, on each axis (first-order Gauss-Markov)."),
     )
     drift_tau_s: float = quantity(
         600.0,
@@ -78,10 +83,12 @@ class LogDrift(LogTerm):
         le=1e7,
         slider=(10.0, 36000.0),
         log=True,
-        label="drift time",
-        help="Correlation time of the drift.",
+        label=Text("drift time"),
+        help=Text("Correlation time of the drift."),
     )
 
     def parts(self) -> Iterator[LogPart]:
         """Yield the drift."""
-        yield LogPart(("drift_mps",), "log_drift", "log drift", markov=(self.drift_mps, self.drift_tau_s))
+        yield LogPart(
+            ("drift_mps",), "log_drift", Text("log drift"), markov=(self.drift_mps, self.drift_tau_s)
+        )

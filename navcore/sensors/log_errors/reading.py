@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from navcore.foundation.parameters import quantity
+from navcore.foundation.text import Text
 from navcore.foundation.units import PPM
 from navcore.sensors.log_errors.base import LogPart, LogTerm
 
@@ -16,8 +17,8 @@ class LogReading(LogTerm):
         ge=-500000.0,
         le=500000.0,
         slider=(-20000.0, 20000.0),
-        label="scale error",
-        help="Relative error of the measured velocity.",
+        label=Text("scale error"),
+        help=Text("Relative error of the measured velocity."),
     )
     delay_s: float = quantity(
         0.0,
@@ -25,8 +26,8 @@ class LogReading(LogTerm):
         ge=0.0,
         le=3600.0,
         slider=(0.0, 60.0),
-        label="delay",
-        help="The sample at t is the velocity at t - delay (before t = 0: that at t = 0).",
+        label=Text("delay"),
+        help=Text("The sample at t is the velocity at t - delay (before t = 0: that at t = 0)."),
     )
     lsb_mps: float = quantity(
         0.0,
@@ -34,12 +35,12 @@ class LogReading(LogTerm):
         ge=0.0,
         le=10.0,
         slider=(0.0, 0.2),
-        label="resolution",
-        help="Readings are rounded to this.",
+        label=Text("resolution"),
+        help=Text("Readings are rounded to this."),
     )
 
     def parts(self) -> Iterator[LogPart]:
         """Yield all three."""
-        yield LogPart(("scale_ppm",), "log_scale", "log bias", scale=self.scale_ppm * PPM)
-        yield LogPart(("delay_s",), "log_delay", "log delay and resolution", delay_s=self.delay_s)
-        yield LogPart(("lsb_mps",), "log_resolution", "log delay and resolution", lsb=self.lsb_mps)
+        yield LogPart(("scale_ppm",), "log_scale", Text("log bias"), scale=self.scale_ppm * PPM)
+        yield LogPart(("delay_s",), "log_delay", Text("log delay and resolution"), delay_s=self.delay_s)
+        yield LogPart(("lsb_mps",), "log_resolution", Text("log delay and resolution"), lsb=self.lsb_mps)

@@ -10,6 +10,7 @@ from pydantic import Field
 
 from navcore.foundation.parameters import bounded, quantity, vector_quantity
 from navcore.foundation.repeated import Repeated
+from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.sensors.log_errors.base import LogPart, LogTerm
 
@@ -26,16 +27,16 @@ class Current(Repeated):
         le=1e7,
         slider=(60.0, 36000.0),
         log=True,
-        label="lasts",
-        help="Time within the current: that of the leg.",
+        label=Text("lasts"),
+        help=Text("Time within the current: that of the leg."),
     )
     current_mps: tuple[_Speed, _Speed] = vector_quantity(
         (0.0, 0.0),
         unit="m/s",
         elements=("E", "N"),
         slider=(-2.0, 2.0),
-        label="current",
-        help="Velocity of the water over the ground, east, north, added to reference.current_mps.",
+        label=Text("current"),
+        help=Text("Velocity of the water over the ground, east, north, added to reference.current_mps."),
     )
 
 
@@ -55,21 +56,21 @@ class Water(LogTerm):
         unit="m/s",
         elements=("E", "N"),
         slider=(-2.0, 2.0),
-        label="current",
-        help="Velocity of the water over the ground, east, north; the log misses it: δVr = -current.",
+        label=Text("current"),
+        help=Text("Velocity of the water over the ground, east, north; the log misses it: δVr = -current."),
     )
     current: tuple[Current, ...] = Field(
         default=(),
         max_length=200,
-        description="Currents that hold for a time, on a leg say, [[reference.current]]; they add up.",
+        description=Text("Currents that hold for a time, on a leg say, [[reference.current]]; they add up."),
     )
     tide_mps: tuple[_Speed, _Speed] = vector_quantity(
         (0.0, 0.0),
         unit="m/s",
         elements=("E", "N"),
         slider=(-2.0, 2.0),
-        label="tide",
-        help="Amplitude of the tidal stream, east, north: tide sin(2π t / period + phase) is added.",
+        label=Text("tide"),
+        help=Text("Amplitude of the tidal stream, east, north: tide sin(2π t / period + phase) is added."),
     )
     tide_period_h: float = quantity(
         12.42,
@@ -77,8 +78,8 @@ class Water(LogTerm):
         ge=0.01,
         le=10000.0,
         slider=(1.0, 48.0),
-        label="tide period",
-        help="12.42 h: the principal lunar tide.",
+        label=Text("tide period"),
+        help=Text("12.42 h: the principal lunar tide."),
     )
     tide_phase_deg: float = quantity(
         0.0,
@@ -86,16 +87,16 @@ class Water(LogTerm):
         ge=-360.0,
         le=360.0,
         slider=(-180.0, 180.0),
-        label="tide phase",
-        help="Phase at t = 0.",
+        label=Text("tide phase"),
+        help=Text("Phase at t = 0."),
     )
 
     def parts(self) -> Iterator[LogPart]:
         """Yield all; of the tide the phase is unknown beforehand: a sine and a cosine share its square."""
-        current = LogPart(("current_mps",), "log_current", "current and tide")
+        current = LogPart(("current_mps",), "log_current", Text("current and tide"))
         if any(self.current_mps):
             current = replace(current, water=lambda time_s: np.array([self.current_mps]))
-        tide = LogPart(("tide_mps",), "log_tide", "current and tide")
+        tide = LogPart(("tide_mps",), "log_tide", Text("current and tide"))
         if any(self.tide_mps):
             phases = 0.0, 0.5 * np.pi
             tide = replace(
@@ -106,7 +107,7 @@ class Water(LogTerm):
                     for phase in phases
                 ),
             )
-        passing = LogPart(("current",), "log_current", "current and tide")
+        passing = LogPart(("current",), "log_current", Text("current and tide"))
         if any(any(current.current_mps) for current in self.current):
             passing = replace(passing, water=partial(current_velocity, self.current))
         yield from (current, passing, tide)

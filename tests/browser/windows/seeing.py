@@ -15,7 +15,7 @@ from tests.browser.driver import Bench
 CHINESE = re.compile("[\u4e00-\u9fff]")
 PATIENCE_S = 20.0
 WORD = re.compile(r"[A-Za-z]{3,}")
-KEY = re.compile(r"\b[a-z]+(?:[._][a-z0-9]+)+\b|\b[a-z_]+ = \"[a-z0-9_]+\"")
+KEY = re.compile(r"\b[a-z]+(?:[._][a-z0-9]+)+\b|\b[a-z_]+ = (?:\"[a-z0-9_]+\"|[0-9.]+)")
 """A field of the scenario file, alone or with its value, a column, a file."""
 SYMBOLS = frozenset(
     "Schuler Bench CSV SVG PNG TOML JSON HTML NMEA Parquet MAT PSINS arcsec arcmin min nmi MiB sin per "
@@ -39,9 +39,7 @@ def as_written() -> frozenset[str]:
             words |= set(re.findall(r"[A-Za-z]+", method.name))
     for kind in models(Parameters):
         for info in kind.model_fields.values():
-            words |= {
-                part for one in form._literals(info.annotation) for part in re.findall("[A-Za-z]+", one)
-            }
+            words |= {part for one in form.choices_of(info) for part in re.findall("[A-Za-z]+", one)}
             words |= set(re.findall("[A-Za-z]+", str((info.json_schema_extra or {}).get("unit", ""))))
     return frozenset(words)
 
