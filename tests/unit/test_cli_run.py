@@ -42,6 +42,7 @@ LOOP_KEYS = [
     "earth_mode_growth_per_s",
     "h_slope_s",
     "whole_system_stable",
+    "growth_per_s",
 ]
 
 
