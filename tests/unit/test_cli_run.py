@@ -74,6 +74,7 @@ def test_json_is_one_document_with_the_contracts_keys(capsys):
         "earth_mode_growth_per_s": 0.0,
         "h_slope_s": 0.0,
         "whole_system_stable": True,
+        "growth_per_s": 0.0,
     }
     assert "undamped" in free["warnings"]
 
