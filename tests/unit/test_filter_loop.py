@@ -30,7 +30,7 @@ def test_settling_is_that_of_the_estimators_response() -> None:
     t = np.linspace(0.0, 3.0 * loop.settling_s, 30001)
     tilt = np.exp(np.outer(t * scenario.omega_s, values)) @ (vectors[PHI] * shares)
     assert t[np.flatnonzero(np.abs(tilt) > 0.02)[-1]] == pytest.approx(loop.settling_s, abs=2.0 * t[1])
-    assert sorted(loop.poles.real) == pytest.approx(sorted(values.real * scenario.omega_s))
+    assert sorted(loop.poles.real) == pytest.approx(sorted(np.real(values) * scenario.omega_s))
     assert math.isnan(loop.h0) and 0.0 < loop.damping_ratio < 1.0
 
 
