@@ -70,8 +70,7 @@ class Search(Generic[Asked, Found]):
         self._tell, self._compute, self._complete = tell, compute, complete
         self._stopped, self._name = stopped, name
         self._lock = threading.Lock()
-        self._load = load or _heavy
-        self._worker: Worker[Asked] = Worker(self._work, visitor=name, load=self._load, still_s=still_s)
+        self._worker: Worker[Asked] = Worker(self._work, visitor=name, load=load or _heavy, still_s=still_s)
         self.under_way: Asked | None = None
         self.fraction: float | None = None
         self.result: Found | None = None
@@ -84,7 +83,7 @@ class Search(Generic[Asked, Found]):
         self._tell()
 
     def _submit(self, asked: Asked, fraction: float | None) -> None:
-        note = self._load(asked).note
+        note = self._worker.note(asked)
         self._set(fraction, (note,) if note else (), asked)
         self._worker.submit(asked)
 

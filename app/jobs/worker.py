@@ -143,6 +143,10 @@ class Worker(Generic[Job]):
         with self._changed:
             return self._changed.wait_for(lambda: not self._slot and self._watch is None, timeout_s)
 
+    def note(self, item: Job) -> str:
+        """What the load of an item says to who waits for it."""
+        return self._load(item).note
+
     def _stand_in_line(self) -> None:
         """Wait for a turn with the job in the slot; a job of the same lane keeps the place it has."""
         load, due_s = self._load(self._slot[0]), time.monotonic() + self._still_s

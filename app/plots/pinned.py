@@ -64,7 +64,7 @@ def pinned_methods(pins: Sequence[Pinned]) -> tuple[PinnedMethod, ...]:
     """All methods of all pins whose runs are known."""
     return tuple(
         PinnedMethod(
-            Text("{name}: {name2}", name=pin.name, name2=method.method.name),
+            Text("{pin}: {method}", pin=pin.name, method=method.method.name),
             pin.hex,
             _DASHES[place % len(_DASHES)],
             _PLOTLY_DASHES[place % len(_PLOTLY_DASHES)],

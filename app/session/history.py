@@ -219,14 +219,14 @@ def change_name(before: State, after: State) -> str:
     if len(changes) == 1:
         field, old, new = changes[0]
         return Text(
-            "{named}: {short} → {short2}",
-            named=_named(field, after.scenario),
-            short=_short(old),
-            short2=_short(new),
+            "{field}: {before} → {after}",
+            field=_named(field, after.scenario),
+            before=_short(old),
+            after=_short(new),
         )
     blocks = {field.rpartition(".")[0] or field for field, _, _ in changes}
     if len(blocks) == 1:
-        return Text("change of {pop}", pop=blocks.pop())
+        return Text("change of {block}", block=blocks.pop())
     return Text("change of {fields} fields", fields=len(changes))
 
 

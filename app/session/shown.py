@@ -184,7 +184,7 @@ def _differing(old: BaseModel, new: BaseModel) -> list[str]:
 def _words(path: str, value: Any) -> str:
     block, _, name = path.rpartition(".")
     if name.isdigit():
-        name = Text("{rpartition} {name}", rpartition=block.rpartition(".")[2], name=name)
+        name = Text("{block} {name}", block=block.rpartition(".")[2], name=name)
     if name in _KINDS:
         return str(value)
     name = symbol(name)

@@ -14,6 +14,7 @@ from navcore.design.seeds import SEEDS, no_covariance, seed_variance
 from navcore.design.ship import Ship
 from navcore.design.steady import instability, loops_of, steady_budget
 from navcore.design.unmodelled import unmodelled_warnings
+from navcore.design.untold import untold_squares
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.method import Method
@@ -71,10 +72,10 @@ def budget(
     def one(index: int, least: Future[Series | None]) -> MethodBudget:
         method = scenario.method[index]
         reason = no_covariance(scenario, method)
-        own = least.result() if method.kind.covering == "filter" and not untold else None
+        own = least.result() if method.kind.covering == "filter" else None
         if own is not None:
-            note = Text("its own covariance, which is the floor: it is told of every error of this scenario")
-            result = _of_series(method, "covariance", own, (note, *left_out))
+            series, note = _of_filter(scenario, method, own, untold)
+            result = _of_series(method, "covariance", series, (note, *left_out))
         elif reason:
             result = _from_seeds(scenario, method, reason, seeds, lambda f: report(index, f), cancelled)
         else:
@@ -97,6 +98,18 @@ def budget(
         reason = steady_floor(ship.model, scenario.omega_s).reason
         return Budget(False, Entry(Figures(), Figures()), reason, None, methods)
     return with_floor(False, entry_of(floor.t_s, floor.total), "", floor, methods)
+
+
+def _of_filter(scenario: Scenario, method: Method, own: Series, untold: bool) -> tuple[Series, str]:
+    """Covariance of truth and estimate: the filter's own, and what errors do that it is not told of."""
+    if not untold:
+        return own, Text("its own covariance, which is the floor: it is told of every error of this scenario")
+    sources = {name: values for name, values in untold_squares(scenario, method, own.t_s).items()}
+    total = own.total + sum(sources.values())
+    note = Text(
+        "its own covariance, and what it is not told of: {sources}", sources=", ".join(sources) or "nothing"
+    )
+    return Series(own.t_s, {"told": own.total, **sources}, total), note
 
 
 def _warnings(scenario: Scenario) -> tuple[str, ...]:

@@ -6,7 +6,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from navcore.analysis import Loop, analyse
+from navcore.analysis.filter_loop import filter_loop
 from navcore.analysis.held_log import held_log
 from navcore.analysis.judged import JudgedLoop, loop_value
 from navcore.analysis.whole_system import WholeSystem, whole_system
@@ -54,7 +57,9 @@ class Setting:
 
     @cached_property
     def loop(self) -> Loop:
-        """Closed loop of one channel."""
+        """Closed loop of one channel; of a Kalman filter its steady estimator."""
+        if self.method.kind.covering == "filter":
+            return self._filter or analyse(self.network)
         return analyse(self.network)
 
     @cached_property
@@ -68,11 +73,17 @@ class Setting:
     def growth_per_s(self) -> float:
         """Fastest growth of the whole system as the law is sampled, 1/s; nan where it cannot run."""
         scenario, timing = self.ship.scenario, timing_of(self.ship.scenario)
+        if self.method.kind.covering == "filter":
+            return math.nan if self._filter is None else float(np.max(self._filter.poles.real))
         if not self.method.kind.uses_network:
             return 0.0
         period_s = timing.step_s * (timing.hold if self.method.kind.referenced else 1)
         place = scenario.site.lat_deg * DEG, scenario.earth, scenario.run.fidelity != "channel"
         return held_log(self.method.kind.acting(self.network), period_s, timing.step_s, *place).growth_per_s
+
+    @property
+    def _filter(self) -> Loop | None:
+        return filter_loop(self.ship.model.figures, self.ship.scenario.omega_s)
 
     @cached_property
     def instability(self) -> str:

@@ -1,14 +1,15 @@
 """A bounded global search with a local finish over the parameters of a method, by scipy (theory.md 18)."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from navcore.design.measures import Objective, Requirement, Setting, Ship
 from navcore.design.vary import Varied, changed
-from navcore.foundation.errors import InputError
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
 
 MISSED = 1e12
 """Cost of a setting that misses a requirement, above every one that meets all."""
@@ -166,3 +167,10 @@ class Search:
         except _Stopped:
             return True
         return False
+
+
+def no_method(search: Search, vary: str) -> Iterator[Fault]:
+    """Say why no value within the ranges can be run."""
+    yield Fault("", "--vary", vary, Text("no value within these ranges makes a method"))
+    if search.refused is not None:
+        yield from search.refused.faults

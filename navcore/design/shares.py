@@ -106,7 +106,7 @@ def wilson(met: int, count: int) -> tuple[float, float]:
     Examples
     --------
     >>> [round(end, 4) for end in wilson(150, 200)]
-    [0.6858, 0.8049]
+    [0.6857, 0.8049]
     """
     share, square = met / count, _Z * _Z
     middle = share + square / (2.0 * count)

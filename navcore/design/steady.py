@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from navcore.analysis.transfers import RADIUS
 from navcore.analysis.whole_system import duration
 from navcore.damping.base import Covering
 from navcore.design.figures import Entry, Figures, total_of
@@ -72,16 +73,37 @@ def _no_steady_state(
 def _steady_filter(
     scenario: Scenario, method: Method, model: StochasticModel, floor: Floor, unmodelled: tuple[str, ...]
 ) -> MethodBudget:
-    """Steady state of the Kalman filter: the floor itself."""
-    del scenario, unmodelled
+    """Steady state of the Kalman filter: the floor itself, and what biases leave."""
+    del unmodelled
     if floor.tilt_rad is None:
         return MethodBudget(method.name, "none", Entry(Figures()), {}, warnings=(floor.reason,))
     sources = {name: Entry(Figures(*floor.sources.get(name, (0.0, 0.0)))) for name in RANDOM_SOURCES}
-    warnings = [Text("the steady state of the Kalman filter is the floor itself")]
+    warnings = [Text("the steady state of the Kalman filter is the floor itself, and what biases leave")]
     if model.tide.any():
         warnings.append(Text("the filter is not told of the tide, which is not in these figures"))
     random = Figures(floor.tilt_rad, floor.velocity_mps)
-    return MethodBudget(method.name, "steady", Entry(random), sources, random, tuple(warnings))
+    sources |= _left_by_filter(model, scenario.omega_s)
+    total = Entry(total_of(sources.values()))
+    return MethodBudget(method.name, "steady", total, sources, random, tuple(warnings))
+
+
+def _left_by_filter(model: StochasticModel, omega_s: float) -> dict[str, Entry]:
+    """What biases leave that the filter is told of.
+
+    It sees the velocity R eps of a gyro's bias with the log's bias on top, and parts the two by their
+    standard deviations; the tilt nabla / g of an accelerometer it cannot see.
+    """
+    gyro, accel, log = (
+        float(np.sqrt(np.mean(values**2)))
+        for values in (model.gyro_bias[:2], model.accel_bias[:2], model.log_bias)
+    )
+    speed = RADIUS * gyro
+    share = speed**2 / (speed**2 + log**2) if speed or log else 0.0
+    return {
+        "gyro_bias": Entry(Figures(0.0, (1.0 - share) * speed)),
+        "accel_bias": Entry(Figures(accel / (omega_s**2 * RADIUS), 0.0)),
+        "log_bias": Entry(Figures(0.0, share * log)),
+    }
 
 
 _STEADY: dict[

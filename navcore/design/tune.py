@@ -32,6 +32,7 @@ from navcore.design.search import (
     UNSTABLE,
     Effort,
     Search,
+    no_method,
 )
 from navcore.design.unmodelled import unmodelled_warnings
 from navcore.design.vary import Varied, present, read_varied
@@ -197,7 +198,7 @@ def tune(
             raise InputError(
                 Fault("", "--vary", None, Text("the search was stopped before it found a setting"))
             )
-        raise InputError(list(_no_method(search, ", ".join(vary))))
+        raise InputError(list(no_method(search, ", ".join(vary))))
     if best[0] >= UNSTABLE:
         reason = Text("no setting within these ranges is stable: {unstable}", unstable=search.unstable)
         raise UnstableError(Fault("", "--vary", ", ".join(vary), reason))
@@ -238,13 +239,8 @@ def _check(ships: Sequence[Ship], varied: Sequence[Varied], objective: Objective
             try:
                 read_varied(ship.scenario, [f"{one.field}={one.low!r}:{one.high!r}"])
             except InputError as error:
-                reason = Text.joined(
-                    "; ",
-                    (
-                        Text("{value} {allowed}", value=fault.value, allowed=fault.allowed)
-                        for fault in error.faults
-                    ),
-                )
+                faults = (Text("{value} {allowed}", value=f.value, allowed=f.allowed) for f in error.faults)
+                reason = Text.joined("; ", faults)
                 raise InputError(
                     Fault("", "--worst-of", Text("scenario {number}", number=number), reason)
                 ) from None
@@ -254,13 +250,6 @@ def _check(ships: Sequence[Ship], varied: Sequence[Varied], objective: Objective
             "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
         )
         raise InputError(Fault("", "--objective", objective.text, reason))
-
-
-def _no_method(search: Search, vary: str) -> Iterator[Fault]:
-    """Say why no value within the ranges can be run."""
-    yield Fault("", "--vary", vary, Text("no value within these ranges makes a method"))
-    if search.refused is not None:
-        yield from search.refused.faults
 
 
 def _begin(search: Search) -> tuple[np.ndarray | None, float | None]:

@@ -116,11 +116,7 @@ def _range(info: FieldInfo | None) -> str:
 
 
 def _join(first: str, bounds: str) -> str:
-    return (
-        Text("{first}, {removeprefix}", first=first, removeprefix=bounds.removeprefix("must be "))
-        if bounds
-        else first
-    )
+    return Text("{first}, {bounds}", first=first, bounds=bounds.removeprefix("must be ")) if bounds else first
 
 
 def _allowed(item: Any, path: list[str], place: Any, info: FieldInfo | None) -> str:

@@ -26,7 +26,6 @@ from viser.infra._async_message_buffer import AsyncMessageBuffer
 from app.bridge import controls, mends, program, server, texts
 from app.bridge.pool import FairPool
 from app.http.page import FIRST_SCRIPTS, PLOTLY, build_page
-from app.languages.names import NONE, Names
 from navcore.foundation.errors import InputError
 from tests.attack.conftest import Bench, eventually
 from tests.attack.wire import Visitor, visit
@@ -237,7 +236,7 @@ class _Loud:
 
     name = "loud"
 
-    def text(self, text: str, names: Names = NONE) -> str:
+    def text(self, text: str, names: frozenset[str] = frozenset()) -> str:
         del names
         return text.upper()
 

@@ -303,6 +303,20 @@ look.torn = () => [...document.querySelectorAll('label[for]')].filter(label => {
   return new Set([...unit.getClientRects()].map(box => Math.round(box.top))).size > 1;
 }).map(label => label.textContent);
 
+// Words in view within an element that go on in a further line.
+look.broken = within => {
+  const walker = document.createTreeWalker(document.querySelector(within), NodeFilter.SHOW_TEXT);
+  const found = [], word = document.createRange();
+  while (walker.nextNode()) {
+    for (const {0: letters, index} of walker.currentNode.data.matchAll(/\p{L}+/gu)) {
+      word.setStart(walker.currentNode, index);
+      word.setEnd(walker.currentNode, index + letters.length);
+      if (new Set([...word.getClientRects()].map(box => Math.round(box.top))).size > 1) found.push(letters);
+    }
+  }
+  return found;
+};
+
 // Rows in which the tabs of each panel stand.
 look.rows = () => [...document.querySelectorAll('[role=tablist]')].map(list => {
   const boxes = [...list.querySelectorAll('[role=tab]')].map(tab => tab.getBoundingClientRect());

@@ -22,6 +22,8 @@ from tools.chromium import FLAGS
 from tools.fonts import FONTS, WIDE, one_font
 
 TABLET = touch.WIDTH, touch.HEIGHT
+TABLETS = TABLET, (1024, 768), (768, 1024)
+SMALL = 1024, 576
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +43,7 @@ def lettered(request: pytest.FixtureRequest, wide: Browser, dashboard: Served) -
     size, zoom = request.param
     width, height = (round(px / zoom) for px in size)
     context = wide.new_context(
-        viewport={"width": width, "height": height}, device_scale_factor=zoom, has_touch=size == TABLET
+        viewport={"width": width, "height": height}, device_scale_factor=zoom, has_touch=size in TABLETS
     )
     bench = Bench(context.new_page(), dashboard[0].url, dashboard[1].sessions).open()
     bench.size = width, height
@@ -78,3 +80,16 @@ def test_rows_and_tables_have_room_for_their_texts(lettered: Bench) -> None:
 @in_windows((TABLET, 1.0))
 def test_fingers_have_room(lettered: Bench) -> None:
     touch.test_fingers_have_room_and_nothing_is_cut(lettered)
+
+
+@in_windows(*((size, 1.0) for size in (*TABLETS[1:], SMALL)))
+def test_a_narrow_window_cuts_no_text_and_breaks_no_word(lettered: Bench) -> None:
+    lettered.tab("Compare")
+    lettered.button("Pin this run").click()
+    lettered.page.locator(".sb-pins tbody tr").nth(1).wait_for(state="attached")
+    for tab in ("Compare", "Method", "Log", "Tune"):
+        lettered.tab(tab)
+        layout.wait_until_it_fits(lettered, tab, scrolls=tab != "Tune")
+        assert lettered.page.evaluate("look.clipped") == [], tab
+        if tab == "Compare":
+            assert lettered.page.evaluate("look.broken", ".sb-pins") == []

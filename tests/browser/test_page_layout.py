@@ -42,6 +42,8 @@ def test_every_tab_fits_its_panel(sized: Bench) -> None:
         sized.tab(tab)
         if tab == "Misprints":  # computed only now; a plot that goes while it is drawn is plotly's fault
             page.wait_for_function("look.misprintDrawn")
+        if tab == "Metrics":  # its last lines come later than the run
+            page.wait_for_function("look.why", arg="1")
         wait_until_it_fits(sized, tab, scrolls=tab == "Scenario" or (small and tab == "Metrics"))
         assert page.evaluate("look.clipped") == [], tab
         if tab in ("Frequency", "Poles", "Step"):
@@ -61,6 +63,29 @@ def test_every_tab_fits_its_panel(sized: Bench) -> None:
     assert filled and min(filled) >= 0.75 * size["height"] / (2 if size["width"] >= WIDE_FROM_PX else 1) - 60
     assert page.locator(".sb-table").first.inner_text()
     assert "schema = 1" in page.locator("pre").first.inner_text()
+
+
+def test_why_folds_where_its_panel_is_too_small_and_as_the_user_likes(moving: Bench) -> None:
+    page, why = moving.page, moving.page.locator("#sb-why")
+    line = why.locator("div").first
+
+    def look(height: int) -> bool:
+        moving.resize((1920, height))
+        moving.tab("Metrics")
+        page.wait_for_function("look.why", arg="1")
+        return line.is_visible()
+
+    assert look(1400) and why.locator(".sb-short").is_hidden()
+    assert not look(900)
+    assert "complementary: position error mostly" in why.inner_text()
+    why.locator("summary").click()
+    line.wait_for()
+    moving.press("network.zeta")
+    page.wait_for_function("look.why", arg="1")
+    assert line.is_visible(), "what is opened by hand stays open"
+    why.locator("summary").click()
+    line.wait_for(state="hidden")
+    assert not look(1400)
 
 
 def test_tabs_tools_and_boxes_stand_in_one_row(sized: Bench) -> None:

@@ -166,7 +166,7 @@ def test_no_kernel_is_compiled_for_a_scenario_that_check_understands(tmp_path):
     errors = ("gyro_bias_dph=[0.005,0.0,0.0]", "gyro_arw_dpsh=0.001", "gyro_lsb=[1e-7,1e-7,1e-7]")
     motions = {
         "static": 'kind = "static"',
-        "legs": 'kind = "legs"\nleg = [{duration_s = 600.0}, {duration_s = 60.0, heading_deg = 90.0}]',
+        "legs": 'kind = "legs"\nleg = [{duration_s = 600.0}, {duration_s = 120.0, heading_deg = 90.0}]',
     }
     compile_once()
     with Uncached() as compiled:

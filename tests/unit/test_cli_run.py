@@ -44,6 +44,7 @@ LOOP_KEYS = [
     "earth_mode_growth_per_s",
     "h_slope_s",
     "whole_system_stable",
+    "growth_per_s",
 ]
 
 
@@ -75,6 +76,7 @@ def test_json_is_one_document_with_the_contracts_keys(capsys):
         "earth_mode_growth_per_s": 0.0,
         "h_slope_s": 0.0,
         "whole_system_stable": True,
+        "growth_per_s": 0.0,
     }
     assert "undamped" in free["warnings"]
 

@@ -48,7 +48,7 @@ def scenario(method: dict[str, Any], **run: Any) -> Scenario:
         ),
         (
             {"policy": {"id": "adaptive", "network": "classic2"}},
-            "policy.network = 'classic2': must be unity2 or pole2, or a block with one of them as id",
+            "policy.network = 'classic2': must be one of unity2, pole2",
         ),
         (
             {"policy": {"id": "adaptive", "table": [[0.0, 0.5]]}},

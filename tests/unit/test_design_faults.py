@@ -123,7 +123,7 @@ def test_what_is_in_reach_is_told_however_large_it_is() -> None:
 def test_a_requirement_that_is_met_by_chance_is_not_called_active() -> None:
     """Settling holds the optimum back here; the velocity comes near its own limit with it."""
     found = tune(
-        ship(), "tilt_rms", [f"{SIGMA}=1e-5:1", f"{XI}=0.01:5"], ["velocity_rms<=0.1", "settling_s<=3600"]
+        ship(), "tilt_rms", [f"{SIGMA}=1e-3:1", f"{XI}=0.01:5"], ["velocity_rms<=0.1025", "settling_s<=3600"]
     )
     assert found.active == ("settling_s<=3600",)
     assert list(found.cost) == ["settling_s<=3600"]
@@ -257,7 +257,7 @@ def test_an_optimum_at_the_end_of_a_range_is_told_on_the_command_line(
 
 
 def test_the_kalman_filter_is_its_own_floor() -> None:
-    """Steady with its sources, and along the run; an error that it is not told of is shown by seeds."""
+    """Steady with its sources, and along the run; an error that it is not told of adds its response."""
     kalman = {"damping": "kalman"}
     steady = budget(ship(kalman), steady=True)
     method = steady.methods[0]
@@ -270,4 +270,5 @@ def test_the_kalman_filter_is_its_own_floor() -> None:
     assert along.methods[0].shown == "covariance"
     assert along.times_floor(along.methods[0])["position"] == 1.0
     misled = ship(kalman, reference={**SET_A["reference"], "current_mps": [0.3, 0.0]})
-    assert budget(misled, seeds=2).methods[0].shown == "seeds"
+    untold = budget(misled).methods[0]
+    assert untold.shown == "covariance" and "current" in str(untold.warnings)

@@ -180,9 +180,9 @@ def test_networks_are_tuned_for_the_largest_share() -> None:
     names = {share.method.name for share in found.methods}
     assert {"compass", "complementary", "unity2", "optimal", "classic2", "kalman"} <= names
     shares = {share.method.name: share.met for share in found.methods}
-    default = Method.model_validate({"name": "x", "damping": "external", "network": {"id": "complementary"}})
+    default = Method.model_validate({"name": "x", "damping": "external", "network": {"id": "compass"}})
     as_set = designs(scenario.model_copy(update={"method": (default,)}), 40, as_set=True)
-    assert shares["complementary"] > as_set.methods[0].met + 0.05
+    assert shares["compass"] > as_set.methods[0].met + 0.1
     assert progress[-1] == pytest.approx(1.0) and sorted(progress)[0] > 0.0
 
 

@@ -66,7 +66,14 @@ def test_choices_whole_numbers_flags_and_tables_have_controls_of_their_own() -> 
     assert spec(RunSettings, "coning and sculling compensation").kind == "flag"
     (table,) = (field for field in FIELDS[POLICIES["adaptive"]] if field.kind == "pairs")
     assert typed.read_pairs(typed.write_pairs(table.default)) == [list(row) for row in table.default]
-    assert {field.path[-1] for field in FIELDS[MOTIONS["legs"]]} == {"pitch_deg", "roll_deg", "heading_deg"}
+    assert {field.path[-1] for field in FIELDS[MOTIONS["legs"]]} == {
+        "pitch_deg",
+        "roll_deg",
+        "heading_deg",
+        "repeat",
+        "repeat_from",
+        "every_h",
+    }
 
 
 @pytest.mark.parametrize("slider", dict.fromkeys(field.slider for field in SLIDER_FIELDS), ids=str)

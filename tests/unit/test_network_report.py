@@ -28,6 +28,7 @@ KEYS = [
     "earth_mode_growth_per_s",
     "h_slope_s",
     "whole_system_stable",
+    "growth_per_s",
     "warnings",
 ]
 

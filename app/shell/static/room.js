@@ -1,19 +1,36 @@
 // Gives room by what the page's texts take, in whatever font and size. The plots of a panel fill what the rest of it
-// leaves: the server's heights are a first estimate (app/shell/layout.py). And the tabs of a panel stand in as few rows as
-// they can, their type as large as those rows allow (page.css).
+// leaves: the server's heights are a first estimate (app/shell/layout.py). Lines that may fold (`data-sb-folds`) do so where
+// their panel is too small for them. And the tabs of a panel stand in as few rows as they can, their type as large as
+// those rows allow (page.css).
 (() => {
   const SPARE_PX = 6; // so much may stay empty before the plots are drawn anew
   const FAR = 0.06; // off the height that the server took: then it is told, and makes the figure anew
   const LEAST_PX = { plotly: 160, chart: 84 };
   const VIEWPORT = ".mantine-ScrollArea-viewport";
   const TABS = [[13.6, 0.6], [13.6, 0.4], [13, 0.4], [12, 0.4], [12, 0.25], [11, 0.3], [11, 0.17]]; // type (px), padding (em)
+  const FOLDS = "details[data-sb-folds]";
   const waiting = new Set();
+  const chosen = new Map(); // id of what folds -> whether the user has opened it
   let titles = "";
 
   // Leans on viser's handles of its charts, as cursor.js does.
   const charts = () => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({ chart }) => chart);
 
+  function fold(viewport) {
+    for (const lines of viewport.querySelectorAll(FOLDS)) {
+      if (lines.getClientRects().length === 0) continue;
+      lines.open = true;
+      lines.open = chosen.get(lines.id) ?? viewport.scrollHeight <= viewport.clientHeight;
+    }
+  }
+
+  addEventListener("click", ({ target }) => {
+    const lines = target instanceof Element && target.closest("summary")?.closest(FOLDS);
+    if (lines) chosen.set(lines.id, !lines.open);
+  }, true);
+
   function fill(viewport) {
+    fold(viewport);
     const frame = viewport.getBoundingClientRect();
     const seen = (plot) => viewport.contains(plot) && plot.getClientRects().length > 0;
     const figures = [...viewport.querySelectorAll(".js-plotly-plot")].filter((plot) => plot._fullLayout && seen(plot));
@@ -80,6 +97,7 @@
       strips.forEach(fit);
     }
     for (const viewport of document.querySelectorAll(`[data-dock-column] ${VIEWPORT}`)) {
+      fold(viewport);
       for (const element of [viewport, viewport.firstElementChild]) sizes.observe(element);
     }
     strips.forEach((strip) => sizes.observe(strip));

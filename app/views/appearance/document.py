@@ -278,7 +278,7 @@ def _tables(count: int, make: Callable[[range], str]) -> str:
     """Tables that are about equally wide; ``make`` gives one of some of the methods."""
     return Text.joined(
         "",
-        (Text('<div class="table">{make}</div>', make=make(part)) for part in table.parts(count, _ABREAST)),
+        (Text('<div class="table">{table}</div>', table=make(part)) for part in table.parts(count, _ABREAST)),
     )
 
 
@@ -317,8 +317,8 @@ def _pins(session: Session) -> str:
     return _section(
         Text("Pins"),
         Text(
-            '<div class="table">{pins_html}</div>',
-            pins_html=pins_html(lines, display.pins_by, by, buttons=False),
+            '<div class="table">{pins}</div>',
+            pins=pins_html(lines, display.pins_by, by, buttons=False),
         ),
     )
 

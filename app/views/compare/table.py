@@ -133,7 +133,8 @@ def pins_html(lines: Sequence[Line], by: str, baseline: int | None, *, buttons: 
     head = [_head(name, title, marks.get(name, ""), buttons) for name, title in COLUMNS.items()]
     head.append(cell(Text("note"), tag="th"))
     rows = (_row(line, best, baseline) for line in ordered)
-    return cell(table([row(head)], rows), "sb-pins sb-table", tag="div")
+    look = {"tag": "div", "style": f"--sb-cells:{len(head)}"}
+    return cell(table([row(head)], rows), "sb-pins sb-table", **look)
 
 
 def _head(name: str, title: str, mark: str, buttons: bool) -> str:

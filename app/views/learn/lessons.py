@@ -242,7 +242,7 @@ def formula_html(latex: str, *, block: bool = False) -> str:
 
     if not block:
         return convert(latex.strip(), display="inline")
-    return Text('<span class="sb-formula">{convert}</span>', convert=convert(latex.strip(), display="block"))
+    return Text('<span class="sb-formula">{formula}</span>', formula=convert(latex.strip(), display="block"))
 
 
 def _number_html(name: str, run: Run | None) -> str:

@@ -161,15 +161,15 @@ class LearnView(View):
             "",
             (
                 Text(
-                    '<button class="sb-dot{value}" data-command="{command} step {i}" aria-label="Step {i2} '
-                    'of {len}: {title:html}"{value2}></button>',
-                    value=" sb-here" * (i == self._step),
+                    '<button class="sb-dot{here}" data-command="{command} step {i}" '
+                    'aria-label="Step {number} of {count}: {title:html}"{current}></button>',
+                    here=" sb-here" * (i == self._step),
                     command=COMMAND,
                     i=i,
-                    i2=i + 1,
-                    len=len(lesson.steps),
+                    number=i + 1,
+                    count=len(lesson.steps),
                     title=s.title,
-                    value2=" aria-current=step" * (i == self._step),
+                    current=" aria-current=step" * (i == self._step),
                 )
                 for i, s in enumerate(lesson.steps)
             ),
@@ -188,12 +188,12 @@ class LearnView(View):
             '<section class="sb-lesson" aria-label="Lesson"><div class="sb-crumb"><button '
             'class="sb-link" data-command="{command} list">All lessons</button><nav class="sb-dots" '
             'aria-label="Steps">{dots}</nav></div><h2>{title:html}</h2><div aria-live="polite"><h3>'
-            "{title2:html}</h3>{to_html}</div>{button}</section>",
+            "{step:html}</h3>{text}</div>{button}</section>",
             command=COMMAND,
             dots=dots,
             title=lesson.title,
-            title2=step.title,
-            to_html=to_html(step.text, self._spoken_of(lesson, run)),
+            step=step.title,
+            text=to_html(step.text, self._spoken_of(lesson, run)),
             button=button,
         )
 
@@ -210,14 +210,12 @@ class LearnView(View):
                     Text(
                         '<button class="sb-choice{value}" aria-pressed="{lower}" '
                         'data-command="{command} answer '
-                        '{i}">{removesuffix}</button>',
+                        '{i}">{words}</button>',
                         value=" sb-chosen" * (given == str(i)),
                         lower=str(given == str(i)).lower(),
                         command=COMMAND,
                         i=i,
-                        removesuffix=to_html(choice.say, None)
-                        .removeprefix("<p>")
-                        .removesuffix("</p>" + chr(10)),
+                        words=to_html(choice.say, None).removeprefix("<p>").removesuffix("</p>" + chr(10)),
                     )
                     for i, choice in enumerate(question.choices)
                 ),
@@ -232,9 +230,9 @@ class LearnView(View):
             )
         return Text(
             '<section class="sb-lesson sb-question" aria-label="Question" data-right="{lower}">'
-            '{to_html}{answers}<div role="status">{verdict}</div></section>',
+            '{text}{answers}<div role="status">{verdict}</div></section>',
             lower=str(right).lower(),
-            to_html=to_html(question.ask, None),
+            text=to_html(question.ask, None),
             answers=answers,
             verdict=verdict,
         )
@@ -284,10 +282,10 @@ class LearnView(View):
         )
         return Text(
             '<nav class="sb-lesson sb-below" aria-label="Lesson">{back}<button class="sb-button '
-            'sb-quiet" data-command="{forward}">{forward2}</button></nav>',
+            'sb-quiet" data-command="{next_command}">{label}</button></nav>',
             back=back,
-            forward=forward[0],
-            forward2=forward[1],
+            next_command=forward[0],
+            label=forward[1],
         )
 
 

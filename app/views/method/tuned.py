@@ -30,92 +30,58 @@ def table_svg(tuning: Tuning, color: str) -> str:
 
     def line(points: list[tuple[float, ...]], stroke: str, dash: str = "none") -> str:
         drawn = " ".join(f"{x:.1f},{y:.1f}" for x, y in (at(kn, xi) for kn, xi in points))
-        return Text(
-            '<polyline points="{drawn}" fill="none" stroke="{stroke}" stroke-width="2" '
-            'stroke-dasharray="{dash}"/>',
-            drawn=drawn,
-            stroke=stroke,
-            dash=dash,
+        return (
+            f'<polyline points="{drawn}" fill="none" stroke="{stroke}" stroke-width="2" '
+            f'stroke-dasharray="{dash}"/>'
         )
 
-    dots = Text.joined(
-        "",
-        (
-            Text(
-                '<circle class="sb-found" cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{color}"/>',
-                x=x,
-                y=y,
-                color=color,
-            )
-            for x, y in (at(kn, xi) for kn, xi in rows)
-        ),
+    dots = "".join(
+        f'<circle class="sb-found" cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{color}"/>'
+        for x, y in (at(kn, xi) for kn, xi in rows)
     )
     sun = [tuple(row) for row in SUN_TABLE]
+    parts = (
+        _axes(across, high, at),
+        line(sun, style.MUTED, dash="6 4") + line(rows, color) + dots,
+        f'<line x1="{_LEFT + 60}" y1="10" x2="{_LEFT + 82}" y2="10" stroke="{color}" stroke-width="2"/>',
+        _label(_LEFT + 87, 14, Text("found")),
+        f'<line x1="{_LEFT + 140}" y1="10" x2="{_LEFT + 162}" y2="10" stroke="{style.MUTED}" '
+        'stroke-width="1.6" stroke-dasharray="6 4"/>',
+        _label(_LEFT + 167, 14, Text("Sun, Table 1")),
+    )
     return Text(
         '<svg viewBox="0 0 {width} {height}" width="{width}" height="{height}" role="img" '
-        'style="max-width:100%" aria-label="damping ratio over velocity difference, found and '
-        'Sun\'s" font-family="{replace}" font-size="12.5" fill="{ink}">'
-        '{axes}{line}{line2}{dots}<line x1="{left}" y1="10" x2="{left2}" y2="10" '
-        'stroke="{color}" stroke-width="2"/><text x="{left3}" y="14">found</text><line '
-        'x1="{left4}" y1="10" x2="{left5}" y2="10" stroke="{muted}" stroke-width="1.6" '
-        'stroke-dasharray="6 4"/><text x="{left6}" y="14">Sun, Table 1</text></svg>',
+        'style="max-width:100%" aria-label="damping ratio over velocity difference, found and Sun\'s" '
+        'font-family="{font}" font-size="12.5" fill="{ink}">{parts}</svg>',
         width=WIDTH,
         height=HEIGHT,
-        replace=style.FONT_FAMILY.replace(chr(34), chr(39)),
+        font=style.FONT_FAMILY.replace(chr(34), chr(39)),
         ink=style.INK,
-        axes=_axes(across, high, at),
-        line=line(sun, style.MUTED, dash="6 4"),
-        line2=line(rows, color),
-        dots=dots,
-        left=_LEFT + 60,
-        left2=_LEFT + 82,
-        color=color,
-        left3=_LEFT + 87,
-        left4=_LEFT + 140,
-        left5=_LEFT + 162,
-        muted=style.MUTED,
-        left6=_LEFT + 167,
+        parts=Text.joined("", parts),
+    )
+
+
+def _label(x: float, y: float, words: str, anchor: str = "start") -> str:
+    return Text(
+        '<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{words}</text>',
+        x=x,
+        y=y,
+        words=words,
+        anchor=anchor,
     )
 
 
 def _axes(across: float, high: float, at) -> str:
     (x0, y0), (x1, y1) = at(0.0, 0.0), at(across, high)
-    parts = [
-        Text(
-            '<path d="M{x0} {y1} V{y0} H{x1}" fill="none" stroke="{reference}"/>',
-            x0=x0,
-            y1=y1,
-            y0=y0,
-            x1=x1,
-            reference=style.REFERENCE,
-        )
-    ]
+    parts = [f'<path d="M{x0} {y1} V{y0} H{x1}" fill="none" stroke="{style.REFERENCE}"/>']
     for part in (0.0, 0.5, 1.0):
         x, y = at(part * across, part * high)
-        parts.append(
-            Text(
-                '<text x="{x:.1f}" y="{y0:.1f}" text-anchor="middle">{part}</text><text x="{x0:.1f}" '
-                'y="{y:.1f}" text-anchor="end">{part2}</text>',
-                x=x,
-                y0=y0 + 15,
-                part=number(part * across, 3),
-                x0=x0 - 5,
-                y=y + 4,
-                part2=number(part * high, 3),
-            )
-        )
+        parts.append(_label(x, y0 + 15, number(part * across, 3), "middle"))
+        parts.append(_label(x0 - 5, y + 4, number(part * high, 3), "end"))
         if part:
-            parts.append(
-                Text('<path d="M{x0} {y:.1f} H{x1}" stroke="{grid}"/>', x0=x0, y=y, x1=x1, grid=style.GRID)
-            )
-    parts.append(
-        Text(
-            '<text x="{x0:.1f}" y="{height}" text-anchor="middle">velocity difference (kn)</text>'
-            '<text x="4" y="14">ζ (–)</text>',
-            x0=0.5 * (x0 + x1),
-            height=HEIGHT - 4,
-        )
-    )
+            parts.append(f'<path d="M{x0} {y:.1f} H{x1}" stroke="{style.GRID}"/>')
+    parts.append(_label(0.5 * (x0 + x1), HEIGHT - 4, Text("velocity difference (kn)"), "middle"))
+    parts.append(_label(4, 14, "ζ (–)"))
     return Text.joined("", parts)
 
 

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 _WAITS = Text("What dominates this result is computed once the controls rest.")
 
 
-def why_html(explainer: Explainer, run: Run, selected: int = 0, *, folded: bool = False) -> str:
-    """A line for each method; a mark while it is of an earlier run.
+def why_html(explainer: Explainer, run: Run, selected: int = 0) -> str:
+    """A line for each method; a mark while it is of an earlier run. Its panel folds them (static/room.js).
 
     Parameters
     ----------
@@ -39,36 +39,34 @@ def why_html(explainer: Explainer, run: Run, selected: int = 0, *, folded: bool 
     run : Run
         That is shown.
     selected : int
-        Method that ``folded`` tells about.
-    folded : bool
-        One line in the place of all, which opens: there is little room.
+        Method whose line stands for all while they are folded.
     """
     result, fits = explainer.result, explainer.asked is run
     if fits and result is not None:
         name, causes = result.methods[min(selected, len(result.methods) - 1)]
-        return _box(
-            _lines(result), "", Text("{name}: {told}", name=name, told=_told(causes, result)), folded=folded
-        )
+        return _box(_lines(result), "", Text("{name}: {told}", name=name, told=_told(causes, result)))
     if explainer.words:
-        return _box("", Text("What dominates this result could not be found."), "", folded=folded)
+        return _box("", Text("What dominates this result could not be found."))
     state = _WAITS
     if explainer.fraction is not None:
         state = Text(
             "Computing what dominates this result: {fraction:.0f} %.", fraction=100.0 * explainer.fraction
         )
     if result is None or len(result.methods) != len(run.methods):
-        return _box("", state, "", folded=folded)
+        return _box("", state)
     old = Text('<div class="sb-old">{lines}</div>', lines=_lines(result))
-    return _box(old, Text("{state} Below: of an earlier run.", state=state), "", folded=folded)
+    return _box(old, Text("{state} Below: of an earlier run.", state=state))
 
 
-def _box(lines: str, state: str, short: str, *, folded: bool) -> str:
+def _box(lines: str, state: str, short: str = "") -> str:
+    """HTML of the lines below a heading; ``short`` is shown while they are folded."""
     status = Text('<span role="status" class="sb-muted">{state:html}</span>', state=state) if state else ""
     which = f'id="sb-why" data-fits="{int(not state)}"'
-    if not folded:
-        return Text("<div {which}><b>Why</b> {status}{lines}</div>", which=which, status=status, lines=lines)
+    if not lines:
+        return Text("<div {which}><b>Why</b> {status}</div>", which=which, status=status)
     return Text(
-        "<details {which}><summary><b>Why</b> {status}{short:html}</summary>{lines}</details>",
+        '<details {which} data-sb-folds open><summary><b>Why</b> {status}<span class="sb-short">{short:html}'
+        "</span></summary>{lines}</details>",
         which=which,
         status=status,
         short=short,
@@ -223,8 +221,7 @@ class MetricsView(PictureView[tuple[str, str]]):
         run, session = self.session.run, self.session
         if run is None:
             return
-        folded = not self.frame.layout().wide
-        html = why_html(session.searches.explainer, run, session.selected, folded=folded)
+        html = why_html(session.searches.explainer, run, session.selected)
         if self._why.content != html:
             self._why.content = html
 

@@ -44,7 +44,7 @@ class RunView(FieldsView):
         about = Text.joined(
             "; ",
             (
-                Text("{key}: {splitlines}", key=key, splitlines=(m.__doc__ or "").strip().splitlines()[0])
+                Text("{key}: {summary}", key=key, summary=(m.__doc__ or "").strip().splitlines()[0])
                 for key, m in MOTIONS.items()
             ),
         )

@@ -129,12 +129,12 @@ def pendulum_svg(now: Pendulum) -> str:
     return Text(
         '<svg viewBox="0 0 {width} {height}" width="{width}" height="{height}" role="img" '
         'aria-label="Schuler pendulum: platform {caption}" data-factor="{factor:g}" '
-        'font-family="{replace}">{parts}</svg>',
+        'font-family="{font}">{parts}</svg>',
         width=WIDTH,
         height=HEIGHT,
         caption=caption,
         factor=now.factor,
-        replace=style.FONT_FAMILY.replace(chr(34), chr(39)),
+        font=style.FONT_FAMILY.replace(chr(34), chr(39)),
         parts=Text.joined("", parts),
     )
 
@@ -151,36 +151,15 @@ _SMALL = f'font-size="12" fill="{style.MUTED}"'
 @lru_cache(maxsize=1)
 def _background() -> str:
     (x, y), (px, py), half = _PIVOT, _PLAN, _PLAN_HALF
-    return Text(
-        '<path d="M8 {y} Q{x} {y2} 140 {y}" fill="none" stroke="#7FB2DC" stroke-width="2"/><path '
-        'd="M{x2} {y3} h22 l-4 5 h-14 z M{x3} {y3} v-5 h9 v5 z" fill="{ink}"/><line x1="{x}" '
-        'y1="{y4}" x2="{x}" y2="{y5}" stroke="{true}" stroke-dasharray="4 4"/><circle cx="{px}" '
-        'cy="{py}" r="{half}" fill="none" stroke="{grid}"/><circle cx="{px}" cy="{py}" '
-        'r="{half2}" fill="none" stroke="{grid}"/><path d="M{px2} {py} h{half3} M{px} {py2} '
-        'v{half3}" stroke="{grid}"/><text x="{px}" y="{py3}" text-anchor="middle" {small}>'
-        'N</text><text x="{px3}" y="{py4}" {small}>E</text>',
-        y=y + 8,
-        x=x,
-        y2=y - 8,
-        x2=x - 11,
-        y3=y - 4,
-        x3=x - 5,
-        ink=style.INK,
-        y4=y,
-        y5=y + _ROD + 12,
-        true=_TRUE,
-        px=px,
-        py=py,
-        half=half,
-        grid=style.GRID,
-        half2=half / 2,
-        px2=px - half,
-        half3=2 * half,
-        py2=py - half,
-        py3=py - half - 6,
-        small=_SMALL,
-        px3=px + half + 5,
-        py4=py + 4,
+    return (
+        f'<path d="M8 {y + 8} Q{x} {y - 8} 140 {y + 8}" fill="none" stroke="#7FB2DC" stroke-width="2"/>'
+        f'<path d="M{x - 11} {y - 4} h22 l-4 5 h-14 z M{x - 5} {y - 4} v-5 h9 v5 z" fill="{style.INK}"/>'
+        f'<line x1="{x}" y1="{y}" x2="{x}" y2="{y + _ROD + 12}" stroke="{_TRUE}" stroke-dasharray="4 4"/>'
+        f'<circle cx="{px}" cy="{py}" r="{half}" fill="none" stroke="{style.GRID}"/>'
+        f'<circle cx="{px}" cy="{py}" r="{half / 2}" fill="none" stroke="{style.GRID}"/>'
+        f'<path d="M{px - half} {py} h{2 * half} M{px} {py - half} v{2 * half}" stroke="{style.GRID}"/>'
+        f'<text x="{px}" y="{py - half - 6}" text-anchor="middle" {_SMALL}>N</text>'
+        f'<text x="{px + half + 5}" y="{py + 4}" {_SMALL}>E</text>'
     )
 
 

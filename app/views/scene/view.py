@@ -189,10 +189,10 @@ def bar_html(
         "key": key,
     }
     return Text(
-        '<div id="sb-playback" hidden data-now="{dumps:html}"><div data-part="pendulum">'
+        '<div id="sb-playback" hidden data-now="{state:html}"><div data-part="pendulum">'
         '{pendulum_svg}<p>{caption_of:html}</p></div><div data-part="readout">'
         "{readout_html}</div></div>",
-        dumps=json.dumps(now),
+        state=json.dumps(now),
         pendulum_svg=pendulum_svg(swung),
         caption_of=caption_of(swung),
         readout_html=readout_html(moment(run, state.time_s), selected, display),

@@ -61,10 +61,10 @@ def spectrum(
         shortest = min(shortest, float(period_s.min()))
         trace = style.lines(method.method.name, index, style.CURVE_WIDTH)
         hover = Text(
-            "<b>{trace}</b><br>%{{x:.4g}} {name}: %{{y:.4g}} {name2}<extra></extra>",
-            trace=trace["name"],
-            name=period_unit.name,
-            name2=unit.name,
+            "<b>{method}</b><br>%{{x:.4g}} {period}: %{{y:.4g}} {unit}<extra></extra>",
+            method=trace["name"],
+            period=period_unit.name,
+            unit=unit.name,
         )
         data.append(
             trace | {"x": packed(period_s / period_unit.si), "y": packed(size), "hovertemplate": hover}

@@ -138,14 +138,14 @@ class StartView(View):
                 "",
                 (
                     Text(
-                        '<div data-step="{number}" data-tab="{get:html}" title="{get2:html}" '
-                        'data-find="{get3:html}"><h2>{step:html}</h2><p>{step2:html}</p></div>',
+                        '<div data-step="{number}" data-tab="{tab:html}" title="{label:html}" '
+                        'data-find="{find:html}"><h2>{title:html}</h2><p>{text:html}</p></div>',
                         number=number,
-                        get=step.get("tab", ""),
-                        get2=step.get("label", ""),
-                        get3=step.get("find", ""),
-                        step=step["title"],
-                        step2=step["text"],
+                        tab=step.get("tab", ""),
+                        label=step.get("label", ""),
+                        find=step.get("find", ""),
+                        title=step["title"],
+                        text=step["text"],
                     )
                     for number, step in enumerate(_STEPS)
                 ),

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from navcore.analysis import Loop, analyse
+from navcore.analysis.filter_loop import filter_loop
 from navcore.analysis.held_log import held_log
 from navcore.analysis.whole_system import WholeSystem, whole_system
 from navcore.engine.run import MethodRun, Status, plot_series, spans, statistics
@@ -100,7 +101,8 @@ def stability_of(
     acting = kind.acting(network)
     loop, whole = analyse(network), whole_system(acting, lat, scenario.earth, scenario.site.height_m)
     if kind.no_loop:
-        return Stability(loop, whole, ())
+        own = filter_loop(scenario.figures(), scenario.omega_s) if kind.covering == "filter" else None
+        return Stability(own or loop, whole, (), None if own is None else float(np.max(own.poles.real)))
     warnings = loop.warnings if scenario.run.fidelity == "channel" else (*loop.warnings, *whole.warnings)
     growth = 0.0
     if kind.uses_network:

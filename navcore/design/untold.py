@@ -1,0 +1,57 @@
+"""Errors that a Kalman filter is not told of: its response to each, along a run (theory.md 16).
+
+On the linear model the filter's gains depend on the truth and on what it is told, not on the errors. Its true
+error is therefore that of its own covariance and the response to each further error, which is a run with this
+error alone, from a start without error.
+"""
+
+import numpy as np
+
+from navcore.design.seeds import alone
+from navcore.design.sources import only
+from navcore.engine.drivers.kalman import Gains
+from navcore.engine.drivers.linear import carried_out
+from navcore.engine.environment import environment
+from navcore.foundation.text import Text
+from navcore.mechanization.recorder import QUANTITIES
+from navcore.quantities import COMPONENTS
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
+
+
+def untold_squares(scenario: Scenario, method: Method, t_s: np.ndarray) -> dict[str, np.ndarray]:
+    """Squares of the filter's response to each error of a known shape, by source.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Complete and checked; of a strapdown one the error model along its motion.
+    method : Method
+        With a Kalman filter.
+    t_s : ndarray, shape (m,)
+        Times, s.
+
+    Returns
+    -------
+    dict of ndarray, shape (m, 7)
+        For `navcore.quantities.COMPONENTS`, squared.
+    """
+    told = alone(scenario, method)
+    step_s = told.run.step_s
+    every = told.run.model_copy(update={"output_step_s": step_s})
+    told = told.model_copy(update={"run": every})
+    parts = [part for part in (*told.imu.all_parts(), *told.reference.all_parts()) if part.has_shape]
+    labels = {part.label: part.source for part in parts}
+    if method.event:
+        labels.setdefault(Text("log events"), "log_events")
+    gains, squares = Gains(), {}
+    for label, source in labels.items():
+        quiet = only(told, label)
+        env = environment(quiet)
+        run, *_ = carried_out(
+            told, quiet.method[0], env, np.zeros(len(COMPONENTS)), lambda _: None, None, gains
+        )
+        rows = run.recorder.rows[: int(run.recorder.cursor["row"]), :QUANTITIES]
+        at = np.minimum(np.rint(t_s / step_s).astype(int), len(rows) - 1)
+        squares[source] = rows[at, : len(COMPONENTS)] ** 2
+    return squares
