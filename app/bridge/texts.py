@@ -88,7 +88,7 @@ class Translator:
     def meant(self, uuid: str, value: object) -> object:
         """Return the English option behind what was chosen on the page; any other value as it is."""
         options = self._meant.get(uuid)
-        return options.get(value, value) if options is not None and isinstance(value, str) else value
+        return str(options.get(value, value)) if options is not None and isinstance(value, str) else value
 
     def _shown(self, uuid: str, value: str) -> str:
         return next((shown for shown, meant in self._meant.get(uuid, {}).items() if meant == value), value)

@@ -16,7 +16,7 @@ def without_folders(text: str) -> str:
     >>> without_folders("reference.file = '/var/lib/x/log.csv': no such file, 3 m/s")
     "reference.file = 'log.csv': no such file, 3 m/s"
     """
-    return _FOLDERS.sub("", text)
+    return text if _FOLDERS.search(text) is None else _FOLDERS.sub("", text)
 
 
 def what_failed(error: BaseException) -> str:

@@ -9,7 +9,7 @@ from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.motion.sea import Answer, Seaway, fully_developed_peak_period, make_seaway
 
-ANSWERS = ("pitch", "roll", "heading", "heave")
+ANSWERS = ("pitch", "roll", "heading", Text("heave"))
 
 
 def _gain(default: float, what: str, unit: str = "deg/deg") -> float:

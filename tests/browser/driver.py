@@ -21,6 +21,7 @@ from app.session.session import Session
 from app.session.sessions import Sessions
 from app.shell.layout import WIDE_FROM_PX, layout_for
 from app.shell.page import Page as OpenPage
+from navcore.foundation.text import Text
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from tests.browser.fields import box_labels, slider_labels
@@ -110,6 +111,11 @@ class Bench:
         language = wording(self.language)
         if language is None:
             return text
+        label, sign, unit = re.fullmatch(r"(.+?)( [≤≥])?(?: \(([^()]*)\))?", text).groups()  # pyright: ignore
+        if sign:
+            return f"{self.said(label)}{sign} ({unit})"
+        if unit:
+            text = Text("{label} ({unit})", label=label, unit=unit)
         return (
             language.text(text) if self.sessions is None else language.text(text, GivenNames(self.session)())
         )
