@@ -128,11 +128,11 @@ def test_a_velocity_is_required(window: Bench) -> None:
     window.tab("Requirements")
     wait_for(window, "settling_min", ["", "", ""])
     limits = {
-        "velocity RMS of this run ≤ (m/s)": "0.1",
+        "velocity RMS per axis of this run ≤ (m/s)": "0.1",
         "settling ≤ (min)": "90",
         "position RMS of this run ≤ (m)": "1",
     }
-    see(window, box(window, "velocity RMS of this run ≤ (m/s)"))
+    see(window, box(window, "velocity RMS per axis of this run ≤ (m/s)"))
     for label, text in limits.items():
         ask(window, label, text)
     wanted = Requirements(velocity_rms_mps=0.1, settling_min=90.0, position_rms_m=1.0)
