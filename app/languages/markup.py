@@ -13,8 +13,6 @@ from string import Formatter
 
 OPEN, CLOSE = "\ue000", "\ue001"
 """Around the number of a value while a text is looked up; no text has these letters."""
-
-
 HIDDEN = re.compile(f"{OPEN}([^{CLOSE}]*){CLOSE}")
 """A value; a number or a name with a format."""
 

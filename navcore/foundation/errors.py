@@ -37,9 +37,7 @@ class Fault:
         place = ": ".join(_cut(part) for part in (self.where, self.field) if part)
         if self.value is not None:
             place += f" = {_shorten(self.value)}"
-        allowed = (
-            self.allowed if len(self.allowed) <= _LONGEST_ALLOWED else _cut(self.allowed, _LONGEST_ALLOWED)
-        )
+        allowed = _cut(self.allowed, _LONGEST_ALLOWED)
         place = " ".join(place.split())
         return Text("{place}: {allowed}", place=place, allowed=allowed) if place else allowed
 
