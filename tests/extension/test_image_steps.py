@@ -30,6 +30,7 @@ def top() -> Iterator[Path]:
 def script(stages: list[list[Instruction]], repo: Path, top: Path) -> str:
     """Shell script that carries out all instructions, then serves and asks for the health."""
     lines = ["set -e", f"mount -t tmpfs -o mode=755 none {top}"]
+    root, variables = top, dict[str, str]()
     for number, stage in enumerate(stages):
         layer = top / str(number)
         root, place = layer / "root", "/"
