@@ -10,7 +10,7 @@ import pytest
 from app.jobs.envelopes import SEEDS, Envelopes, with_seed
 from app.plots import style
 from app.plots.envelope import Envelope, envelope
-from app.plots.plotly_data import enlarged, enlarged_time_plot, figure, packed, unpacked, values_of
+from app.plots.plotly_data import enlarged, enlarged_time_plot, figure, packed, values_of
 from app.plots.saved import plotly_csv, time_csv, time_figure
 from app.session.display import Display
 from app.shell.layout import layout_for
@@ -22,6 +22,7 @@ from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.mechanization.recorder import DV_E
 from navcore.scenario.model import Scenario
+from tests.traces import unpacked
 from tests.unit.figures_runs import THREE, diverging, run_of, scenario, static_run, texts_of
 from tests.unit.test_figures_switching import switching_run
 
