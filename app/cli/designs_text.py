@@ -5,10 +5,10 @@ from navcore.design.designs import Designs
 from navcore.design.shares import Share
 
 
-def designs_text(found: Designs) -> list[str]:
+def designs_text(designs: Designs) -> list[str]:
     """Lines: a row a method with its share, its setting and the limit that is missed most often."""
     rows = [["method", "met %", "95 % interval", "missed most often", "median", "limit"]]
-    for share in found.methods:
+    for share in designs.methods:
         worst = min(share.limits, key=lambda limit: limit.met)
         missed = ["-", "", ""]
         if worst.met < 1.0:
@@ -16,11 +16,11 @@ def designs_text(found: Designs) -> list[str]:
             missed = [requirement.quantity, number(worst.median), number(requirement.at_most)]
         interval = f"{number(100.0 * share.low, 3)} to {number(100.0 * share.high, 3)}"
         rows.append([share.method.label(), number(100.0 * share.met, 3), interval, *missed])
-    lines = [f"{found.seeds} seeds, each with its own noise and constants", "", *columns(rows), ""]
-    lines += [f"{share.method.label()}: {_setting(share)}" for share in found.methods]
-    lines += [f"{name}: left out: {reason}" for name, reason in found.left_out]
-    if found.assumed_zero:
-        lines.append(f"note: 0 is assumed for {', '.join(found.assumed_zero)}")
+    lines = [f"{designs.seeds} seeds, each with its own noise and constants", "", *columns(rows), ""]
+    lines += [f"{share.method.label()}: {_setting(share)}" for share in designs.methods]
+    lines += [f"{name}: left out: {reason}" for name, reason in designs.left_out]
+    if designs.assumed_zero:
+        lines.append(f"note: 0 is assumed for {', '.join(designs.assumed_zero)}")
     return lines
 
 

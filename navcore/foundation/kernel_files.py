@@ -118,11 +118,11 @@ def copy(source: Path, target: Path) -> bool:
             return False
         make_folder(target.parent)
         with tempfile.TemporaryDirectory(dir=target.parent) as folder:
-            made = Path(folder) / "copy"
-            shutil.copytree(source, made, ignore=shutil.ignore_patterns(".*", "lock"))
-            for path in (made, *made.rglob("*")):
+            copied = Path(folder) / "copy"
+            shutil.copytree(source, copied, ignore=shutil.ignore_patterns(".*", "lock"))
+            for path in (copied, *copied.rglob("*")):
                 path.chmod(_FOLDER if path.is_dir() else _FILE)
-            made.rename(target)
+            copied.rename(target)
     except OSError:
         return target.is_dir()
     return True

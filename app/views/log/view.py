@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from app.editing import edits, form
 from app.editing.form import FieldSpec
-from app.session.log_fit import can_fit, fit_of, told, with_fitted_log
+from app.session.log_fit import can_fit, fit_lines, fit_of, with_fitted_log
 from app.shell import notices
 from app.shell.palette import COPY_LOG, PASTE
 from app.shell.view import FieldsView, Tab, if_user
@@ -117,7 +117,9 @@ class LogView(FieldsView):
             of = self._last_fit[0]
             if (of.reference, of.motion) != (scenario.reference, scenario.motion):
                 self._last_fit = None
-        self._fitted.content = "" if self._last_fit is None else notices.note(told(self._last_fit[1]), "info")
+        self._fitted.content = (
+            "" if self._last_fit is None else notices.note(fit_lines(self._last_fit[1]), "info")
+        )
         self._use.visible = self._last_fit is not None
 
     def follow_scenario(self) -> None:
