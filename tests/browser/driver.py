@@ -28,6 +28,7 @@ from tests.browser.fields import box_labels, slider_labels
 from tests.browser.patience import GONE, PATIENCE_MS, SLOW, THROTTLE_MS
 
 T = TypeVar("T")
+_LABEL = re.compile(r"(.+?)( [≤≥])? \(([^()]*)\)")
 
 SIZES = [(1920, 1080), (1366, 768), (1280, 720)]
 """Windows in which the page is looked at; most tests run in the first."""
@@ -107,18 +108,18 @@ class Bench:
     # Tests name what is on the page in English, whatever its language is.
 
     def said(self, text: str) -> str:
-        """What an English text of the page is called in the page's language."""
+        """What an English text of the page is called in the page's language; a label may end in a unit."""
         language = wording(self.language)
         if language is None:
             return text
-        label, sign, unit = re.fullmatch(r"(.+?)( [≤≥])?(?: \(([^()]*)\))?", text).groups()  # pyright: ignore
+        names = frozenset[str]() if self.sessions is None else GivenNames(self.session)()
+        whole, parts = language.text(text, names), _LABEL.fullmatch(text)
+        if isinstance(text, Text) or whole != text or parts is None:
+            return whole
+        label, sign, unit = parts.groups("")
         if sign:
             return f"{self.said(label)}{sign} ({unit})"
-        if unit:
-            text = Text("{label} ({unit})", label=label, unit=unit)
-        return (
-            language.text(text) if self.sessions is None else language.text(text, GivenNames(self.session)())
-        )
+        return language.text(Text("{label} ({unit})", label=label, unit=unit), names)
 
     def button(self, name: str) -> Locator:
         """The button of this name."""
