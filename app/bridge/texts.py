@@ -192,7 +192,7 @@ def language_of(client: Any) -> str:
 def figure_said(client: Any, figure: str) -> str:
     """Return a plotly figure (JSON) in a page's language, where it stands in HTML of ours."""
     translator = _translator(client)
-    return figure if translator is None else translator.figure(figure)
+    return str(figure) if translator is None else translator.figure(figure)
 
 
 def text_said(client: Any, text: str) -> str:
