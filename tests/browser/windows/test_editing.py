@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.editing import edits
 from navcore.analysis import analyse
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import edits
 from tests.browser.driver import SIZES, Bench
 from tests.browser.patience import THROTTLE_MS
 from tests.browser.placing import NEAR, centre, drag, pair, place, pole, ring_at, spot
