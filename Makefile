@@ -142,8 +142,12 @@ $(STAMPS)/packages: requirements/run.lock requirements/build.lock $(STAMPS)/pyth
 	echo "== installed in $$((`date +%s` - start)) s" && echo $$((`date +%s` - start)) > $@
 
 # The version is in navcore/foundation/version.py, the command in pyproject.toml.
-$(STAMPS)/project: pyproject.toml navcore/foundation/version.py $(STAMPS)/packages
+$(STAMPS)/project: pyproject.toml navcore/foundation/version.py $(STAMPS)/packages | schuler_bench
 	@$(PIP) install --no-deps --no-build-isolation --no-index --editable . && touch $@
+
+# The folder app by the name under which it is imported; git holds this link, the source distribution does not.
+schuler_bench:
+	@ln -s app $@
 
 $(STAMPS)/kernels: $(STAMPS)/project $(KERNEL_SOURCES)
 	@echo '== compiling the kernels'; start=`date +%s`; \
@@ -172,7 +176,7 @@ papers: setup $(STAMPS)/test
 	@$(BIN)/python -m tools.papers
 
 cards: $(STAMPS)/project
-	@$(BIN)/python -m app.views.start.cards
+	@$(BIN)/python -m schuler_bench.views.start.cards
 
 guide: $(STAMPS)/project
 	@$(BIN)/python -m navcore.scenario.guide

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.runs import day
 from navcore.design.measures import Setting, Ship
 from navcore.design.tune import tune
 from navcore.design.vary import changed, read_varied
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
 from navcore.scenario.model import Scenario
+from schuler_bench.bench.runs import day
 from tests.acceptance.test_design_values import set_a
 
 GRID = 60

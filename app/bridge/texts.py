@@ -1,7 +1,7 @@
 """The texts in viser's messages: each page is sent them in its language, and what it chooses is read back.
 
 The program writes English and knows nothing of a page's language. viser has no hook for what it sends; a
-page's queue of messages is ours (`app.bridge.mends`), and every message of the page passes it.
+page's queue of messages is ours (`schuler_bench.bridge.mends`), and every message of the page passes it.
 """
 
 import dataclasses

@@ -1,6 +1,5 @@
 """Budgets, best settings and fronts as tables for people."""
 
-from app.cli.table import columns, number
 from navcore.analysis.whole_system import duration
 from navcore.design.confirm import Confirmed
 from navcore.design.figures import Figures
@@ -9,6 +8,7 @@ from navcore.design.pareto import Pareto
 from navcore.design.result import Budget
 from navcore.design.tune import Tuned
 from navcore.quantities import TILT, TUNED, VELOCITY, Kind, budgeted
+from schuler_bench.cli.table import columns, number
 
 
 def budget_text(budget: Budget) -> list[str]:

@@ -1,8 +1,8 @@
 """Shares of seeds that meet all limits as a table for people."""
 
-from app.cli.table import columns, number
 from navcore.design.designs import Designs
 from navcore.design.shares import Share
+from schuler_bench.cli.table import columns, number
 
 
 def designs_text(found: Designs) -> list[str]:

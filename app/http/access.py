@@ -11,12 +11,12 @@ from dataclasses import dataclass, field
 from http import HTTPStatus
 from typing import Protocol
 
-from app.http.address import LOOPBACK_NAMES, authority
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.version import __version__
+from schuler_bench.http.address import LOOPBACK_NAMES, authority
 
 SHORTEST_TOKEN = 8
-"""Characters of a token beyond this machine: guesses are throttled, see `app.http.access`."""
+"""Characters of a token beyond this machine: guesses are throttled, see `schuler_bench.http.access`."""
 
 
 class RequestHeaders(Protocol):
@@ -105,7 +105,7 @@ def access_rules(
     token : str or None
         What a visitor must know; compulsory when others can reach the server.
     origins : frozenset of str
-        Further origins, see `app.http.address.parse_origins`.
+        Further origins, see `schuler_bench.http.address.parse_origins`.
 
     Raises
     ------

@@ -4,9 +4,9 @@ import logging
 import threading
 from collections.abc import Callable
 
-from app.jobs.designer import Budgeter, Designer, Fronts, Tuner
-from app.jobs.why import Explainer
 from navcore.engine.run import Run
+from schuler_bench.jobs.designer import Budgeter, Designer, Fronts, Tuner
+from schuler_bench.jobs.why import Explainer
 
 _log = logging.getLogger("schuler.searches")
 

@@ -129,7 +129,7 @@ def verdicts(run: Run, requirements: Requirements) -> tuple[Verdict, ...]:
 
 
 def error_limits(requirements: Requirements, run: Run) -> dict[str, float]:
-    """Limits to draw in the error plots, SI: key of `app.views.errors.figure.error_plots` -> value.
+    """Limits to draw in the error plots, SI: key of `schuler_bench.views.errors.figure.error_plots` -> value.
 
     One that lies far above all curves is left out: it would press them flat.
     """

@@ -17,11 +17,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO, Any
 
-from app.http.ids import log_name
-from app.jobs.words import without_folders
-from app.session.content import Contents, link_files
-from app.session.database import Database, parsed
 from navcore.foundation.text import Text
+from schuler_bench.http.ids import log_name
+from schuler_bench.jobs.words import without_folders
+from schuler_bench.session.content import Contents, link_files
+from schuler_bench.session.database import Database, parsed
 
 WRITE_AFTER_S = 0.5
 """Between a change and the file: changes that follow each other are written once."""

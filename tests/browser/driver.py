@@ -13,17 +13,17 @@ import pytest
 from playwright.sync_api import Error as PlaywrightError
 from playwright.sync_api import Locator, Page
 
-from app.bridge.mends import pool_of
-from app.languages.wording import wording
-from app.session.display import Display
-from app.session.names import GivenNames
-from app.session.session import Session
-from app.session.sessions import Sessions
-from app.shell.layout import WIDE_FROM_PX, layout_for
-from app.shell.page import Page as OpenPage
 from navcore.foundation.text import Text
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.bridge.mends import pool_of
+from schuler_bench.languages.wording import wording
+from schuler_bench.session.display import Display
+from schuler_bench.session.names import GivenNames
+from schuler_bench.session.session import Session
+from schuler_bench.session.sessions import Sessions
+from schuler_bench.shell.layout import WIDE_FROM_PX, layout_for
+from schuler_bench.shell.page import Page as OpenPage
 from tests.browser.fields import box_labels, slider_labels
 from tests.browser.patience import GONE, PATIENCE_MS, SLOW, THROTTLE_MS
 

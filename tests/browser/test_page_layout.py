@@ -6,12 +6,12 @@ from typing import Any, Literal
 import pytest
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
-from app.misprints import MISPRINTS
-from app.shell.layout import WIDE_FROM_PX
-from app.views import load
-from app.views.poles.figure import ZOOM
 from navcore.scenario.file import load as load_preset
 from navcore.scenario.model import Scenario
+from schuler_bench.misprints import MISPRINTS
+from schuler_bench.shell.layout import WIDE_FROM_PX
+from schuler_bench.views import load
+from schuler_bench.views.poles.figure import ZOOM
 from tests.browser.conftest import Another
 from tests.browser.driver import SIZES, SWEEP, Bench
 from tests.browser.placing import place

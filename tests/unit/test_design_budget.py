@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.cli import main
 from navcore.design.budget import budget
 from navcore.design.course import course
 from navcore.design.seeds import no_covariance
@@ -15,6 +14,7 @@ from navcore.engine.simulation import simulate
 from navcore.foundation.units import ARCMIN, DEG_PER_HOUR, MICRO_G
 from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import RANDOM_SOURCES, stochastic_model
+from schuler_bench.cli import main
 
 IMU = {
     "gyro_arw_dpsh": 0.003,

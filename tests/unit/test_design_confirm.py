@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.cli import main
 from navcore.design.confirm import confirmed
 from navcore.design.measures import Setting
 from navcore.design.ship import Ship
@@ -19,6 +18,7 @@ from navcore.foundation.errors import UnstableError
 from navcore.scenario.file import to_toml
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from schuler_bench.cli import main
 
 SHIP: dict[str, Any] = {
     "run": {"duration_h": 3.0},

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.cli import main
 from navcore.design.designs import assumed_zero, designs
 from navcore.design.shares import wilson
 from navcore.engine.ensemble import drawn, outcomes
@@ -19,6 +18,7 @@ from navcore.foundation.units import ARCMIN, ARCSEC
 from navcore.scenario.file import to_toml
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from schuler_bench.cli import main
 
 SHIP: dict[str, Any] = {
     "run": {"duration_h": 2.0, "seed": 7},

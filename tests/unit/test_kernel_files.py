@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from app.bench.process import environment
 from navcore.foundation import kernel_cache, kernel_files
 from navcore.foundation.errors import InputError
+from schuler_bench.bench.process import environment
 
 KERNEL = """
 import os

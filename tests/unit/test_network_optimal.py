@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.cli import main
 from navcore.analysis import analyse
 from navcore.analysis.held_log import held_log
 from navcore.analysis.locus import root_locus
@@ -20,6 +19,7 @@ from navcore.networks.lqg import Compensator, compensator, plant
 from navcore.networks.optimal import EXAMPLE_SHIP, modulus_margin
 from navcore.scenario.file import parse_toml, to_toml
 from navcore.scenario.model import Scenario
+from schuler_bench.cli import main
 
 OMEGA_S = 1.24e-3
 IMU = {"gyro_arw_dpsh": 0.01, "accel_vrw_ugpshz": 20.0, "gyro_instability_dph": 0.01, "gyro_tau_s": 900.0}

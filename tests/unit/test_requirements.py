@@ -11,8 +11,13 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from app.session.display import Display
-from app.session.requirements import (
+from navcore.design.measures import read_requirement
+from navcore.engine.run import Run
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import ARCSEC
+from navcore.quantities import NAMES
+from schuler_bench.session.display import Display
+from schuler_bench.session.requirements import (
     ROWS,
     Requirements,
     error_limits,
@@ -20,15 +25,10 @@ from app.session.requirements import (
     read_limit,
     verdicts,
 )
-from app.session.shown import window_of
-from app.views.requirements.table import requirements_html
-from app.views.requirements.view import RequirementsView
-from app.views.tune.setting import requirements_as_text
-from navcore.design.measures import read_requirement
-from navcore.engine.run import Run
-from navcore.foundation.errors import InputError
-from navcore.foundation.units import ARCSEC
-from navcore.quantities import NAMES
+from schuler_bench.session.shown import window_of
+from schuler_bench.views.requirements.table import requirements_html
+from schuler_bench.views.requirements.view import RequirementsView
+from schuler_bench.views.tune.setting import requirements_as_text
 from tests.unit.figures_runs import INTERNAL, THREE, UNSTABLE, diverging, run_of, static_run
 
 

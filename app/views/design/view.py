@@ -2,16 +2,16 @@
 
 from typing import Any
 
-from app.plots.budgets import steady_budget
-from app.plots.plotly_data import PlotlyFigure
-from app.session.shown import Shown
-from app.shell.plotly_view import PlotlyView
-from app.shell.view import Frame, if_user
-from app.views.design.figure import budget_figure
 from navcore.design.budget import Budget
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.plots.budgets import steady_budget
+from schuler_bench.plots.plotly_data import PlotlyFigure
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell.plotly_view import PlotlyView
+from schuler_bench.shell.view import Frame, if_user
+from schuler_bench.views.design.figure import budget_figure
 
 BUDGET_OF = Text("budget of")
 CHOICES = {"steady": Text("the steady state, one level channel"), "run": Text("this run, all sources")}

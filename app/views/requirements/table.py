@@ -3,13 +3,13 @@
 import math
 from collections.abc import Sequence
 
-from app.plots import style
-from app.plots.pinned import Pinned, pinned_methods, together
-from app.plots.table import cell, row, table
-from app.plots.units import number, rounded
-from app.session.requirements import ROWS, SIGNS, Requirements, Verdict, verdicts
 from navcore.engine.run import Run
 from navcore.foundation.text import Text, quoted
+from schuler_bench.plots import style
+from schuler_bench.plots.pinned import Pinned, pinned_methods, together
+from schuler_bench.plots.table import cell, row, table
+from schuler_bench.plots.units import number, rounded
+from schuler_bench.session.requirements import ROWS, SIGNS, Requirements, Verdict, verdicts
 
 _DIGITS = 4
 

@@ -3,15 +3,15 @@
 import threading
 from dataclasses import replace
 
-from app.session.requirements import Requirements, label_of, read_limit
-from app.session.shown import Shown, window_of
-from app.shell import notices
-from app.shell.control import Widget
-from app.shell.view import Frame, PictureView, Tab, if_user
-from app.views.requirements.table import requirements_html
 from navcore.foundation.errors import InputError
 from navcore.foundation.parameters import allowed_range
 from navcore.foundation.text import Text
+from schuler_bench.session.requirements import Requirements, label_of, read_limit
+from schuler_bench.session.shown import Shown, window_of
+from schuler_bench.shell import notices
+from schuler_bench.shell.control import Widget
+from schuler_bench.shell.view import Frame, PictureView, Tab, if_user
+from schuler_bench.views.requirements.table import requirements_html
 
 _GRID = '<div class="sb-limits"></div>'
 _UNFINISHED_S = 1.2

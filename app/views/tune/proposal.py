@@ -6,18 +6,18 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from app.plots.table import cell, row, table
-from app.plots.units import number
-from app.session.requirements import SIGNS
 from navcore.design.measures import read_requirement
 from navcore.design.vary import present, read_varied
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES
+from schuler_bench.plots.table import cell, row, table
+from schuler_bench.plots.units import number
+from schuler_bench.session.requirements import SIGNS
 
 if TYPE_CHECKING:
-    from app.jobs.designer import TuningTask
     from navcore.design.tune import Tuned
+    from schuler_bench.jobs.designer import TuningTask
 
 
 def proposal_html(task: TuningTask, tuned: Tuned) -> str:

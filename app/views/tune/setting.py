@@ -2,19 +2,19 @@
 
 from typing import Any
 
-from app.jobs.designer import TuningTask
-from app.session.display import OBJECTIVES
-from app.session.requirements import Requirements
-from app.shell import notices
-from app.shell.searching import SearchControls, reveal, show_html
-from app.shell.view import Frame, if_user
-from app.views.tune.change import change_network
-from app.views.tune.proposal import limit_words, proposal_html, requirement_words
 from navcore.design.vary import network_not_in_force, tunable_fields
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES, searched
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs.designer import TuningTask
+from schuler_bench.session.display import OBJECTIVES
+from schuler_bench.session.requirements import Requirements
+from schuler_bench.shell import notices
+from schuler_bench.shell.searching import SearchControls, reveal, show_html
+from schuler_bench.shell.view import Frame, if_user
+from schuler_bench.views.tune.change import change_network
+from schuler_bench.views.tune.proposal import limit_words, proposal_html, requirement_words
 
 OBJECTIVE, VARY, TUNE, STOP = Text("tune for"), Text("what may vary"), Text("Tune"), Text("Stop tuning")
 ACCEPT, DISCARD = Text("Accept the proposal"), Text("Discard")

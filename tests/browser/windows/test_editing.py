@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.editing import edits
-from app.shell.control import EXACT
 from navcore.analysis import analyse
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import edits
+from schuler_bench.shell.control import EXACT
 from tests.browser.driver import SIZES, Bench
 from tests.browser.patience import THROTTLE_MS
 from tests.browser.placing import NEAR, centre, drag, pair, place, pole, ring_at, spot

@@ -6,14 +6,14 @@ from typing import Any
 
 import pytest
 
-from app.session.requirements import Requirements, verdicts
-from app.session.shown import window_of
-from app.views.errors.view import OWN_NOISE
-from app.views.learn.lessons import MISSING, lessons
-from app.views.metrics.table import verdict
-from app.views.verification.view import VERIFY
 from navcore.foundation.text import Text
 from navcore.scenario.file import load
+from schuler_bench.session.requirements import Requirements, verdicts
+from schuler_bench.session.shown import window_of
+from schuler_bench.views.errors.view import OWN_NOISE
+from schuler_bench.views.learn.lessons import MISSING, lessons
+from schuler_bench.views.metrics.table import verdict
+from schuler_bench.views.verification.view import VERIFY
 from tests.browser import test_page_lessons as learning
 from tests.browser import test_page_scene as playing
 from tests.browser.driver import Bench
