@@ -26,7 +26,15 @@ from app.jobs.elsewhere import leave_cluster, use_cluster
 from app.jobs.scheduler import WORKERS
 from app.logs import begin_logging
 from app.memory import bound_arenas
-from app.session.store import CLAIMED, NO_HOME, claim, default_folder, session_key, share_claim
+from app.session.store import (
+    CLAIMED,
+    NO_HOME,
+    checked_folder,
+    claim,
+    default_folder,
+    session_key,
+    share_claim,
+)
 from navcore.foundation.errors import Fault, InputError
 
 if TYPE_CHECKING:
@@ -203,7 +211,7 @@ async def _serve(front: Front, listener: socket.socket, told: str) -> None:
 
 @contextmanager
 def _claimed_folder(count: int) -> Iterator[None]:
-    folder = default_folder()
+    folder = checked_folder()
     if folder is None:  # workers must sign the addresses of sessions with the same key
         raise InputError([Fault("serve", "--workers", count, NO_HOME)])
     session_key(folder)

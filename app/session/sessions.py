@@ -15,8 +15,8 @@ from weakref import WeakKeyDictionary
 from pydantic import ValidationError
 
 from app.http.ids import copied_from, log_name, new_shared_id
-from app.session.content import link_files
 from app.session.display import Display
+from app.session.folder import link_files, remove_files
 from app.session.history import History, State
 from app.session.session import Session
 from app.session.store import Store
@@ -179,7 +179,7 @@ class Sessions:
             self._shared[id] = document
             while len(self._shared) > MOST_SHARED:
                 old, _ = self._shared.popitem(last=False)
-                shutil.rmtree(self._files_folder(old), ignore_errors=True)
+                remove_files(self._files_folder(old))
         return id
 
     def _files_folder(self, id: str) -> Path:
