@@ -248,7 +248,7 @@ def work() -> None:
         frame_origins=settings.framers,
         state=default_folder(),
         inner=Inner(socket.socket(fileno=settings.descriptor), settings.loopback),
-        limits=Limits(visitors=max(_FEWEST_PLACES, _PLACES // settings.workers)),
+        limits=Limits(visitors=max(_FEWEST_PLACES, _PLACES // settings.workers)).shared_by(settings.workers),
     )
 
     use_cluster(settings.cluster)

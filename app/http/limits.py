@@ -1,6 +1,6 @@
 """How much one visitor, and all of them together, may take."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 MIB = 1 << 20
 
@@ -42,6 +42,10 @@ class Limits:
         Wrong tokens of one address that are judged at once.
     token_refill_s : float
         So long it takes until one more is.
+    all_guesses : int
+        Tokens of all addresses that are judged at once.
+    all_refill_s : float
+        Time between two more.
     ping_s : float
         A page that answers no ping for twice this long is dropped, and with it all that waits to be sent.
     close_s : float
@@ -63,5 +67,17 @@ class Limits:
     frames_per_second: int = 100
     token_guesses: int = 30
     token_refill_s: float = 1.0
+    all_guesses: int = 300
+    all_refill_s: float = 0.05
     ping_s: float = 20.0
     close_s: float = 1.0
+
+    def shared_by(self, workers: int) -> "Limits":
+        """Limits of one of several processes that judge tokens: all together keep these."""
+        return replace(
+            self,
+            token_guesses=max(1, self.token_guesses // workers),
+            token_refill_s=self.token_refill_s * workers,
+            all_guesses=max(1, self.all_guesses // workers),
+            all_refill_s=self.all_refill_s * workers,
+        )
