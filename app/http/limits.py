@@ -38,6 +38,11 @@ class Limits:
         Longest text a control accepts.
     frames_per_second : int
         A browser that sends more is read more slowly; nothing is lost. A page of ours sends at most about 60.
+    frames_at_once : int
+        Frames that may arrive in a second, read or unread; a ping or a fragment counts as five. More end the
+        connection.
+    fragments : int
+        Parts in which one message may come. Browsers send large ones in parts of 64 KiB.
     token_guesses : int
         Wrong tokens of one address that are judged at once.
     token_refill_s : float
@@ -65,6 +70,8 @@ class Limits:
     upload_stall_s: float = 30.0
     text_characters: int = 20_000
     frames_per_second: int = 100
+    frames_at_once: int = 5000
+    fragments: int = 300
     token_guesses: int = 30
     token_refill_s: float = 1.0
     all_guesses: int = 300

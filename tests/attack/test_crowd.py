@@ -12,7 +12,7 @@ import pytest
 
 from app.http.limits import MIB, Limits
 from tests.attack.conftest import TOKEN, Bench, eventually, running
-from tests.attack.wire import SESSION, UPGRADE, ask, shake_hands, statuses, upload, visit
+from tests.attack.wire import SESSION, ask, raw, shake_hands, statuses, upload, visit
 
 pytestmark = pytest.mark.attack
 
@@ -187,10 +187,7 @@ def test_guesses_of_all_addresses_together_are_slowed_down_and_nobody_is_locked_
 
 def test_a_page_that_never_reads_is_dropped() -> None:
     with crowded(ping_s=0.3) as (bench, crowd):
-        head = {"Host": f"127.0.0.1:{bench.port}"} | UPGRADE
-        lines = [f"GET /s/{SESSION} HTTP/1.1", *(f"{name}: {value}" for name, value in head.items())]
-        deaf = crowd.enter_context(socket.create_connection(("127.0.0.1", bench.port)))
-        deaf.sendall("\r\n".join([*lines, "", ""]).encode())
+        crowd.enter_context(raw(bench.port, SESSION))
         places = bench.server.viser._websock_server._live_connections
         eventually(lambda: len(places) == 1)
         for _ in range(50):
