@@ -271,16 +271,17 @@ def serve(
     Raises
     ------
     InputError
-        The address cannot be served; that of the cluster is none, or the extra it needs is not installed.
+        The address cannot be served; that of the cluster is none, or the extra it needs is not installed;
+        something else is in the place of something of ours in the state folder.
     """
     from schuler_bench.jobs.cluster import check_address
     from schuler_bench.jobs.elsewhere import leave_cluster, use_cluster
-    from schuler_bench.session.store import default_folder
+    from schuler_bench.session.store import checked_folder
 
     begin_logging()
     check_address(cluster)
     bound_arenas()
-    state = default_folder()
+    state = checked_folder()
     server, dashboard = open_dashboard(
         host, port, token=token, allow_origins=allow_origins, frame_origins=frame_origins, state=state
     )

@@ -27,7 +27,15 @@ from schuler_bench.jobs.elsewhere import leave_cluster, use_cluster
 from schuler_bench.jobs.scheduler import WORKERS
 from schuler_bench.logs import begin_logging
 from schuler_bench.memory import bound_arenas
-from schuler_bench.session.store import CLAIMED, NO_HOME, claim, default_folder, session_key, share_claim
+from schuler_bench.session.store import (
+    CLAIMED,
+    NO_HOME,
+    checked_folder,
+    claim,
+    default_folder,
+    session_key,
+    share_claim,
+)
 
 if TYPE_CHECKING:
     from schuler_bench.http.front import Front
@@ -203,7 +211,7 @@ async def _serve(front: Front, listener: socket.socket, told: str) -> None:
 
 @contextmanager
 def _claimed_folder(count: int) -> Iterator[None]:
-    folder = default_folder()
+    folder = checked_folder()
     if folder is None:  # workers must sign the addresses of sessions with the same key
         raise InputError([Fault("serve", "--workers", count, NO_HOME)])
     session_key(folder)
@@ -240,7 +248,7 @@ def work() -> None:
         frame_origins=settings.framers,
         state=default_folder(),
         inner=Inner(socket.socket(fileno=settings.descriptor), settings.loopback),
-        limits=Limits(visitors=max(_FEWEST_PLACES, _PLACES // settings.workers)),
+        limits=Limits(visitors=max(_FEWEST_PLACES, _PLACES // settings.workers)).shared_by(settings.workers),
     )
 
     use_cluster(settings.cluster)

@@ -79,7 +79,9 @@ class Running:
             ids=session_ids or SessionIds(),
             places=self._places,
             forwarded=forwarded,
-            throttle=Throttle(limits.token_guesses, limits.token_refill_s),
+            throttle=Throttle(
+                limits.token_guesses, limits.token_refill_s, limits.all_guesses, limits.all_refill_s
+            ),
             load_page=lambda: build_page([*FIRST_SCRIPTS, *page_scripts], [PLOTLY], _TITLE),
         )
         self.viser = bridge.make_server(self._serve, _TITLE)

@@ -163,7 +163,8 @@ def start(
         bound_port = listener.getsockname()[1] if inner is None else port
         loopback = is_loopback(listener) if inner is None else inner.loopback
         access = access_rules(host, bound_port, loopback=loopback, token=token, origins=origins)
-        access = replace(access, framed_by=framed_by)
+        key = {} if session_ids is None else {"cookie_key": session_ids.key}
+        access = replace(access, framed_by=framed_by, **key)
         # Only now: what is refused above is refused without the half second that importing viser takes.
         from schuler_bench.http.running import Running
 

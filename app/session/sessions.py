@@ -18,8 +18,8 @@ from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
 from navcore.scenario.model import Scenario
 from schuler_bench.http.ids import copied_from, log_name, new_shared_id
-from schuler_bench.session.content import link_files
 from schuler_bench.session.display import Display
+from schuler_bench.session.folder import link_files, remove_files
 from schuler_bench.session.history import History, State
 from schuler_bench.session.session import Session
 from schuler_bench.session.store import Store
@@ -179,7 +179,7 @@ class Sessions:
             self._shared[id] = document
             while len(self._shared) > MOST_SHARED:
                 old, _ = self._shared.popitem(last=False)
-                shutil.rmtree(self._files_folder(old), ignore_errors=True)
+                remove_files(self._files_folder(old))
         return id
 
     def _files_folder(self, id: str) -> Path:
