@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from app.cli.terminal import finish, prepare_streams, say
-from navcore.foundation.errors import InputError, UnstableError
+from navcore.foundation.errors import InputError, StoppedError, UnstableError
 
 DONE, WRONG_INPUT, STOPPED = 0, 2, 3
 
@@ -35,7 +35,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         for fault in error.faults:
             say(str(fault))
-        code = STOPPED if isinstance(error, UnstableError) else WRONG_INPUT
+        code = STOPPED if isinstance(error, UnstableError | StoppedError) else WRONG_INPUT
     except KeyboardInterrupt:
         say("stopped")
         code = STOPPED

@@ -9,7 +9,7 @@ from navcore.design.shares import Share, require_limits, share_of
 from navcore.design.ship import Ship
 from navcore.design.tuned_designs import kalman, tuned_methods
 from navcore.engine.ensemble import outcomes
-from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.errors import Fault, InputError, StoppedError
 from navcore.foundation.text import Text
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
@@ -116,7 +116,7 @@ def designs(
     found = outcomes(scenario, methods, range(seeds), report(share, 1.0 - share), cancelled)
     stopped = cancelled is not None and cancelled()
     if not found:
-        raise InputError(
+        raise StoppedError(
             Fault("", "--seeds", seeds, Text("the command was stopped before a seed was completed"))
         )
     shares = _judged(scenario, methods, found)
