@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from navcore.analysis.whole_system import duration
 from navcore.design.confirm import Confirmed, confirmed
 from navcore.design.default_limits import limits_by_default, own_limits, without_defaults
 from navcore.design.limits_cost import flat_ranges, nothing_meets, without_limits
@@ -17,6 +16,7 @@ from navcore.design.measures import (
     Requirement,
     Setting,
     Ship,
+    growing,
     measure,
     over_run,
     read_objective,
@@ -366,11 +366,5 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
 
 def _unseen(setting: Setting) -> Iterator[str]:
     """Whole system and unmodelled errors, of which a measure of one channel says nothing."""
-    growth = setting.growth_per_s
-    if growth > 0.0 and setting.whole.stable:
-        every = duration(1.0 / growth)
-        yield Text("whole system: it grows as it is sampled, by e every {every}", every=every)
-    yield from (
-        *setting.whole.warnings,
-        *unmodelled_warnings(setting.ship.scenario, not setting.ship.along_run),
-    )
+    yield from growing(setting)
+    yield from unmodelled_warnings(setting.ship.scenario, not setting.ship.along_run)
