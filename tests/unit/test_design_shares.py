@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from app.cli import main
-from navcore.design.designs import assumed_zero, designs
+from navcore.design.designs import designs
 from navcore.design.shares import wilson
+from navcore.design.stated import assumed_zero
 from navcore.engine.ensemble import drawn, outcomes
 from navcore.engine.measures import judged
 from navcore.engine.simulation import simulate
