@@ -6,7 +6,7 @@ Exit codes: 0 done; 2 the input is wrong (one line per fault on stderr); 3 the r
 import sys
 from collections.abc import Sequence
 
-from navcore.foundation.errors import InputError, UnstableError
+from navcore.foundation.errors import InputError, StoppedError, UnstableError
 from schuler_bench.cli.terminal import finish, prepare_streams, say
 
 DONE, WRONG_INPUT, STOPPED = 0, 2, 3
@@ -35,7 +35,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         for fault in error.faults:
             say(str(fault))
-        code = STOPPED if isinstance(error, UnstableError) else WRONG_INPUT
+        code = STOPPED if isinstance(error, UnstableError | StoppedError) else WRONG_INPUT
     except KeyboardInterrupt:
         say("stopped")
         code = STOPPED

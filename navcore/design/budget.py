@@ -9,6 +9,7 @@ import numpy as np
 from navcore.design.constants import TOLD
 from navcore.design.figures import Entry, Figures, Series, entry_of
 from navcore.design.floor import steady_floor
+from navcore.design.measures import Setting, growing
 from navcore.design.result import Budget, MethodBudget, Shown, with_floor
 from navcore.design.seeds import SEEDS, no_covariance, seed_variance
 from navcore.design.ship import Ship
@@ -59,7 +60,13 @@ def budget(
     """
     ship = Ship(scenario)
     if steady:
-        return steady_budget(scenario, ship.model)
+        found = steady_budget(scenario, ship.model)
+        return replace(
+            found,
+            methods=tuple(
+                _with_growth(ship, one, of) for one, of in zip(found.methods, scenario.method, strict=True)
+            ),
+        )
     left_out = _warnings(scenario)
     untold = any(column.source not in TOLD for column in ship.columns)
     done = [0.0] * (len(scenario.method) + 1)
@@ -87,7 +94,7 @@ def budget(
                 series = Series(variances.t_s, variances.variance, variances.total)
                 result = _of_series(method, "covariance", series, left_out)
         report(index, 1.0)
-        return replace(result, reads_log=method.reads_log)
+        return replace(_with_growth(ship, result, method), reads_log=method.reads_log)
 
     with ThreadPoolExecutor(2) as pool:
         least = pool.submit(lambda: ship.floor_series)
@@ -98,6 +105,13 @@ def budget(
         reason = steady_floor(ship.model, scenario.omega_s).reason
         return Budget(False, Entry(Figures(), Figures()), reason, None, methods)
     return with_floor(False, entry_of(floor.t_s, floor.total), "", floor, methods)
+
+
+def _with_growth(ship: Ship, budget: MethodBudget, method: Method) -> MethodBudget:
+    """Add what one level channel does not see: modes of the whole system that grow."""
+    if budget.diverged or not method.kind.uses_network or method.policy.tunes:
+        return budget
+    return replace(budget, warnings=(*budget.warnings, *growing(Setting(ship, method))))
 
 
 def _of_filter(scenario: Scenario, method: Method, own: Series, untold: bool) -> tuple[Series, str]:

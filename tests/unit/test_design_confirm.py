@@ -99,6 +99,16 @@ def test_command_confirms_unless_told_otherwise(tmp_path: Path, capsys: pytest.C
     assert "run, 32 seeds" in capsys.readouterr().out
 
 
+def test_a_proposal_that_runs_refute_gives_way_to_one_over_the_run() -> None:
+    """On a ship with biases and little noise the steady state prefers damping under which 24 h modes grow."""
+    day, vary = ship(run={"duration_h": 24.0, "step_s": 2.0}), [f"{ZETA}=0.05:10", f"{ETA}=0.05:10"]
+    found, steady = (tune(day, "velocity_rms", vary, confirm=confirm) for confirm in (True, False))
+    refuted = confirmed(day, day.method[0], steady.scenario.method[0])
+    assert refuted is not None and refuted.verdict("velocity_rms")
+    assert found.confirmed is not None and not found.confirmed.verdict("velocity_rms")
+    assert found.judged == "ensemble" and "no better in the runs" in found.warnings[0]
+
+
 def test_the_damping_is_not_tuned_away() -> None:
     """Without limits a slow log makes the best setting one that hardly settles; by default it settles."""
     noisy = ship(imu={"gyro_arw_dpsh": 1e-5}, reference={"kind": "log", "noise_mps": 5.0, "drift_mps": 1.0})

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.design.designs import assumed_zero, designs
+from navcore.design.designs import designs
 from navcore.design.shares import wilson
+from navcore.design.stated import assumed_zero
 from navcore.engine.ensemble import drawn, outcomes
 from navcore.engine.measures import judged
 from navcore.engine.simulation import simulate

@@ -74,7 +74,7 @@ def test_closed_loop_poles_are_those_of_filter_and_feedback(rho: float) -> None:
     """Separation principle, on the network that runs."""
     system = plant(EXAMPLE_SHIP, OMEGA_S)
     full = compensator(system, rho, 0.0, feedback=False)
-    network = parse_network({"id": "optimal", "rho": rho}).transfer(OMEGA_S)
+    network = parse_network({"id": "optimal", "rho": rho, "q": 0.0}).transfer(OMEGA_S)
     assert network.order <= MAX_ORDER
     loop = analyse(network)
     assert loop.stable
@@ -87,7 +87,9 @@ def test_closed_loop_poles_are_those_of_filter_and_feedback(rho: float) -> None:
 
 def test_a_smaller_rho_is_a_faster_and_no_less_robust_loop() -> None:
     """Modulus margin and H(0) over rho."""
-    networks = [parse_network({"id": "optimal", "rho": rho}).transfer(OMEGA_S) for rho in (1.0, 1e-2, 1e-4)]
+    networks = [
+        parse_network({"id": "optimal", "rho": rho, "q": 0.0}).transfer(OMEGA_S) for rho in (1.0, 1e-2, 1e-4)
+    ]
     margins = [modulus_margin(network) for network in networks]
     assert margins == sorted(margins)
     gains = [network.h0 for network in networks]
