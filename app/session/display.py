@@ -79,6 +79,10 @@ class Display(BaseModel):
         The error budget shown: of the steady state of one level channel, or of the whole run.
     objective : str
         What a method is tuned for: one of `OBJECTIVES`.
+    default_limits : bool
+        The search keeps limits on settling and growth where none are given.
+    beyond_sliders : bool
+        The search goes beyond the sliders, to all that the fields allow.
     search : str
         What the tab "Tune" looks for: the best setting of one method, or the Pareto fronts of all networks.
     front_x, front_y : str
@@ -115,6 +119,8 @@ class Display(BaseModel):
     size: Literal["normal", "presentation"] = "normal"
     budget: Literal["steady", "run"] = "steady"
     objective: Annotated[str, _one_of(OBJECTIVES)] = "tilt_rms"
+    default_limits: bool = True
+    beyond_sliders: bool = False
     search: Literal["setting", "fronts"] = "setting"
     front_x: Annotated[str, _one_of(AXES)] = "tilt_rms"
     front_y: Annotated[str, _one_of(AXES)] = "velocity_rms"

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from pydantic import BaseModel, ConfigDict
 
+from app.plots.limits import SIGNS
 from navcore.engine.measures import measure
 from navcore.engine.run import Run
 from navcore.foundation.errors import Fault, InputError
@@ -11,7 +12,6 @@ from navcore.foundation.parameters import allowed_range, extra_of, quantity
 from navcore.foundation.text import Text
 from navcore.quantities import ERRORS, QUANTITIES
 
-SIGNS = {"<=": "≤", ">=": "≥"}
 _IN_SIGHT = 3.0
 
 

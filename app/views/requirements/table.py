@@ -4,10 +4,11 @@ import math
 from collections.abc import Sequence
 
 from app.plots import style
+from app.plots.limits import SIGNS
 from app.plots.pinned import Pinned, pinned_methods, together
 from app.plots.table import cell, row, table
 from app.plots.units import number, rounded
-from app.session.requirements import ROWS, SIGNS, Requirements, Verdict, verdicts
+from app.session.requirements import ROWS, Requirements, Verdict, verdicts
 from navcore.engine.run import Run
 from navcore.foundation.text import Text, quoted
 
