@@ -10,7 +10,6 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from app.plots.effective import SHOWN
 from app.plots.envelope import BandKind
 from app.plots.legend import State, after
-from app.session.requirements import Requirements
 from navcore.quantities import ERRORS, STATISTICS
 
 FIRST_TRANSFER = "phi/dv_r"
@@ -44,8 +43,6 @@ class Display(BaseModel):
         Whose poles the tab "Poles" shows: one level channel's, or the whole system's.
     locus : str
         Parameter of the selected method's network over which the root locus is drawn; "": none.
-    requirements : Requirements
-        What the designs have to meet.
     exaggeration : float or None
         Of the errors in 3D; None: chosen to fit.
     angle, length, speed, time : str
@@ -65,7 +62,7 @@ class Display(BaseModel):
     delta : str
         Which number of each error is compared with the baseline's.
     window : str
-        What the errors in the table and in the requirements are measured over: the whole run, what follows
+        What the errors in the table are measured over: the whole run, what follows
         the settling, or some hours.
     window_from_h, window_to_h : float
         Those hours; None: to the end.
@@ -96,7 +93,6 @@ class Display(BaseModel):
     optimal: bool = False
     poles: Literal["channel", "whole"] = "channel"
     locus: Annotated[str, Field(max_length=40)] = ""
-    requirements: Requirements = Requirements()
     exaggeration: Annotated[float | None, Field(gt=0.0, le=1e6)] = None
     angle: Literal["auto", "arcsec", "arcmin", "deg"] = "auto"
     length: Literal["auto", "m", "km", "nmi"] = "auto"

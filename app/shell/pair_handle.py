@@ -6,6 +6,7 @@ from typing import Any, Literal
 from app.bridge.controls import id_of
 from app.editing.placing import handle_of, read_drag, with_nearest_pair
 from app.plots import style
+from app.session.requirements import limits_of
 from app.session.shown import Shown
 from app.shell import notices
 from app.shell.view import Frame
@@ -66,7 +67,7 @@ class PairHandle:
             if drag.method != session.selected:
                 return
             try:
-                limit = session.display.requirements.h_slope_s
+                limit = limits_of(session.scenario.requirement).get("h_slope_s")
                 placed = with_nearest_pair(
                     session.scenario, drag.method, drag.damping_ratio, drag.ratio, limit
                 )

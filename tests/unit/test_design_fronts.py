@@ -9,7 +9,6 @@ import pytest
 from app.editing.edits import with_network
 from app.jobs.designer import FrontsTask
 from app.plots.plotly_data import values_of
-from app.session.requirements import Requirements
 from app.views.frequency.curves import optimal_reference
 from app.views.frequency.figure import bode
 from app.views.tune.finder import read_place
@@ -22,6 +21,7 @@ from navcore.foundation.units import ARCSEC
 from navcore.networks.optimal import OptimalNetwork
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from tests.limits import limits
 
 OBJECTIVES = ("tilt_rms", "velocity_rms")
 
@@ -101,12 +101,12 @@ def test_a_point_changes_one_network_and_the_fronts_still_fit(ship: Scenario, fo
 
 
 def test_it_is_told_which_requirements_a_search_keeps() -> None:
-    told = requirements_told(Requirements(settling_min=60.0, position_rms_m=100.0, tilt_max_arcsec=20.0))
+    told = requirements_told(limits(settling_s=60.0, position_rms_m=100.0, tilt_max_arcsec=20.0))
     assert told == (
         "Requirements that are kept: settling ≤ 60 min, ensemble position RMS ≤ 100 m. "
-        "Not measured by a search: largest tilt of this run ≤ 20 arcsec."
+        "Judged by runs alone: largest tilt of this run ≤ 20 arcsec."
     )
-    assert requirements_told(Requirements()) == "No requirement is to be kept."
+    assert requirements_told(()) == "No requirement is to be kept."
 
 
 def test_the_optimal_network_is_a_dashed_reference_or_it_is_said_why_not(ship: Scenario) -> None:

@@ -8,7 +8,6 @@ import pytest
 from app.jobs.designer import Budgeter, Designer, TuningTask
 from app.jobs.refusals import refusals
 from app.plots.budgets import steady_budget
-from app.session.requirements import Requirements
 from app.views.design.figure import NOTHING, budget_figure, parts
 from app.views.tune.proposal import proposal_html, sentences_about
 from app.views.tune.setting import requirements_as_text
@@ -21,6 +20,7 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from tests.limits import limits
 
 
 @pytest.fixture(scope="module")
@@ -103,9 +103,9 @@ def test_only_numbers_of_the_network_that_are_given_may_vary(ship, compass):
 
 
 def test_requirements_reach_the_search_in_si():
-    asked = Requirements(settling_min=60.0, damping_ratio=0.4, log_tilt_arcsec=3.0, position_rms_m=100.0)
-    limits = {one.name: one.limit for one in map(read_requirement, requirements_as_text(asked))}
-    assert limits == {
+    asked = limits(settling_s=60.0, damping_ratio=0.4, log_tilt=3.0, position_rms_m=100.0)
+    found = {one.name: one.limit for one in map(read_requirement, requirements_as_text(asked))}
+    assert found == {
         "settling_s": 3600.0,
         "damping_ratio": 0.4,
         "log_tilt": pytest.approx(3.0 * math.pi / 648000.0),

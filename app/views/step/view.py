@@ -1,6 +1,7 @@
 """Tab "Step": responses of tilt and velocity error to steps of log, gyro and accelerometer errors."""
 
 from app.plots.plotly_data import PlotlyFigure
+from app.session.requirements import limits_of
 from app.session.shown import Shown
 from app.shell.plotly_view import PlotlyView
 from app.views.step.figure import step
@@ -22,7 +23,7 @@ class StepView(PlotlyView):
 
     def figure(self, both: Run, found: Shown) -> PlotlyFigure:
         """Step responses."""
-        limits = found.display.requirements.limits
+        limits = limits_of(found.run.scenario.requirement)
         return step(both, self.aspect, width_px=self.width_px, limits=limits)
 
 

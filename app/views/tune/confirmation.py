@@ -43,7 +43,7 @@ def confirmation_html(task: TuningTask, tuned: Tuned) -> str:
 def _runs(task: TuningTask, tuned: Tuned) -> Iterator[str]:
     if tuned.confirmed is None:
         return
-    limits = {one.quantity: one.at_most for one in task.scenario.requirement}
+    limits = {one.quantity: one.limit for one in task.scenario.requirement}
     for key, change in tuned.confirmed.changes.items():
         quantity = QUANTITIES[key]
         size = quantity.size / (limit_unit(key) if key in limits else 1.0)

@@ -16,6 +16,7 @@ from navcore.quantities import QUANTITIES
 COMMAND = "front-point"
 """Command with which a click asks for a point: ``front-point x y``, in the units of the axes."""
 _SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "pentagon", "hexagon", "triangle-down")
+_STANDS = Text("does not grow")
 _NEAR = 0.05
 """A click takes the nearest point within this part of both axes."""
 _PAD = 0.06
@@ -159,7 +160,7 @@ def _front(name: str, points: tuple[Point, ...], index: int, sizes: Pair) -> dic
                 name=name,
                 setting_text=setting_text(point.network),
                 earth_mode_text=earth_mode_text(point.earth_growth),
-                growth=growth_text(point.growth_per_s) or Text("does not grow"),
+                growth=growth_text(point.growth_per_s) or _STANDS,
             )
             for point in points
         ],

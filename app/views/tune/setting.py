@@ -1,12 +1,12 @@
 """Search for the best setting of the selected method, and accept or discard what comes out."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from app.jobs.designer import TuningTask
 from app.jobs.refusals import OBJECTIVE, VARY
 from app.plots.limits import limit_words, requirement_words
 from app.session.display import OBJECTIVES, Display
-from app.session.requirements import Requirements
 from app.shell import notices
 from app.shell.searching import SearchControls, reveal, show_html
 from app.shell.view import Frame, if_user
@@ -19,6 +19,7 @@ from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES, searched
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from navcore.scenario.requirement import Requirement
 
 TUNE, STOP = Text("Tune"), Text("Stop tuning")
 ACCEPT, DISCARD, UNDO = Text("Accept the proposal"), Text("Discard"), Text("Undo the proposal")
@@ -107,7 +108,9 @@ class SettingPanel:
                 )
             html += notices.note(doubts(task, result), "warning")
             html += proposal_html(task, result, accepted=accepted)
-        said = notices.small(limits_told(display)) + left_out_html(scenario.method[self.session.selected])
+        said = notices.small(limits_told(scenario, display)) + left_out_html(
+            scenario.method[self.session.selected]
+        )
         show_html(self._told, Text('<div class="sb-wide">{said}</div>', said=said) if chosen else "")
         show_html(
             self._found, Text('<div class="sb-wide">{html}</div>', html=html) if chosen and html else ""
@@ -147,7 +150,7 @@ class SettingPanel:
                 scenario,
                 display.objective,
                 fields,
-                requirements_as_text(display.requirements),
+                requirements_as_text(scenario.requirement),
                 display.default_limits,
                 display.beyond_sliders,
             )
@@ -173,22 +176,22 @@ def left_out_html(method: Method) -> str:
     return notices.note([Text("Not to be varied: {reason}.", reason=reason)] if reason else [], "info")
 
 
-def requirements_as_text(requirements: Requirements) -> tuple[str, ...]:
-    """Limits of the tab Requirements as `navcore.design.measures.read_requirement` reads them, SI.
+def requirements_as_text(requirements: Sequence[Requirement]) -> tuple[str, ...]:
+    """Limits of a scenario as `navcore.design.measures.read_requirement` reads them, SI.
 
     A limit of one run is kept as that of the ensemble, where there is one.
     """
     return tuple(
-        f"{row.key}{row.sense}{limit:.12g}"
-        for key, limit in requirements.limits.items()
-        if (row := searched(key)) is not None
+        f"{row.key}{one.sense}{one.limit_si:.12g}"
+        for one in requirements
+        if (row := searched(one.quantity)) is not None
     )
 
 
-def limits_told(display: Display) -> str:
+def limits_told(scenario: Scenario, display: Display) -> str:
     """Which limits a search keeps by requirement and by default, and which it cannot."""
-    told = requirements_told(display.requirements)
-    own = [read_requirement(text) for text in requirements_as_text(display.requirements)]
+    told = requirements_told(scenario.requirement)
+    own = [read_requirement(text) for text in requirements_as_text(scenario.requirement)]
     defaults = limits_by_default(read_objective(display.objective), own) if display.default_limits else []
     if not defaults:
         return told
@@ -196,17 +199,19 @@ def limits_told(display: Display) -> str:
     return Text("{told} Kept by default: {kept}.", told=told, kept=kept)
 
 
-def requirements_told(requirements: Requirements) -> str:
+def requirements_told(requirements: Sequence[Requirement]) -> str:
     """Which limits a search keeps, and which of the tab Requirements it cannot."""
     kept = [requirement_words(text) for text in requirements_as_text(requirements)]
-    other = [limit_words(key, limit) for key, limit in requirements.limits.items() if searched(key) is None]
+    other = [
+        limit_words(one.quantity, one.limit_si) for one in requirements if searched(one.quantity) is None
+    ]
     text = (
         Text("Requirements that are kept: {kept}.", kept=Text.joined(", ", kept))
         if kept
         else Text("No requirement is to be kept.")
     )
     return (
-        Text("{text} Not measured by a search: {other}.", text=text, other=Text.joined(", ", other))
+        Text("{text} Judged by runs alone: {other}.", text=text, other=Text.joined(", ", other))
         if other
         else text
     )
