@@ -14,7 +14,7 @@ def designs_text(found: Designs) -> list[str]:
         missed = ["-", "", ""]
         if worst.met < 1.0:
             requirement = worst.requirement
-            missed = [requirement.quantity, number(worst.median), number(requirement.at_most)]
+            missed = [requirement.quantity, number(worst.median), number(requirement.limit)]
         interval = f"{number(100.0 * share.low, 3)} to {number(100.0 * share.high, 3)}"
         rows.append([share.method.label(), number(100.0 * share.met, 3), interval, *missed])
     lines = [f"{found.seeds} seeds, each with its own noise and constants", "", *columns(rows), ""]

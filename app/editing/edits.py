@@ -166,6 +166,8 @@ def with_network(scenario: Scenario, index: int, network: dict[str, Any]) -> Sce
         raise InputError(Fault("", f"method.{index}", None, Text("is no method with a network any more")))
     data = scenario.canonical()
     data["method"][index]["network"] = dict(network)
+    if network.get("id") != scenario.method[index].network.id:
+        _forget_made_name(scenario, data, index)
     return Scenario.parse(data)
 
 

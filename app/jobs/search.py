@@ -120,6 +120,10 @@ class Search(Generic[Asked, Found]):
     def _carry_out(self, asked: Asked, progress: Callable[[float], None], watch: Watch) -> Found | None:
         return carried_out(self._compute, asked, progress, watch)
 
+    def _refused(self, error: InputError) -> tuple[str, ...]:
+        """Say why it is refused."""
+        return tuple(str(fault) for fault in for_a_page(error).faults)
+
     def _ended(self) -> None:
         """Tell that there is a new result."""
         self._tell()
@@ -148,7 +152,7 @@ class Search(Generic[Asked, Found]):
             self._tell()
             raise
         except InputError as error:
-            words = tuple(str(fault) for fault in for_a_page(error).faults)
+            words = self._refused(error)
         except Exception as error:
             _log.exception("%s failed", self._name)
             name, _, why = what_failed(error).partition(": ")

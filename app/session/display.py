@@ -11,7 +11,6 @@ from navcore.quantities import ERRORS, STATISTICS
 from schuler_bench.plots.effective import SHOWN
 from schuler_bench.plots.envelope import BandKind
 from schuler_bench.plots.legend import State, after
-from schuler_bench.session.requirements import Requirements
 
 FIRST_TRANSFER = "phi/dv_r"
 OBJECTIVES = ("tilt_rms", "velocity_rms", "position_rms", "heading_rms", "settling_s")
@@ -44,8 +43,6 @@ class Display(BaseModel):
         Whose poles the tab "Poles" shows: one level channel's, or the whole system's.
     locus : str
         Parameter of the selected method's network over which the root locus is drawn; "": none.
-    requirements : Requirements
-        What the designs have to meet.
     exaggeration : float or None
         Of the errors in 3D; None: chosen to fit.
     angle, length, speed, time : str
@@ -65,7 +62,7 @@ class Display(BaseModel):
     delta : str
         Which number of each error is compared with the baseline's.
     window : str
-        What the errors in the table and in the requirements are measured over: the whole run, what follows
+        What the errors in the table are measured over: the whole run, what follows
         the settling, or some hours.
     window_from_h, window_to_h : float
         Those hours; None: to the end.
@@ -79,6 +76,10 @@ class Display(BaseModel):
         The error budget shown: of the steady state of one level channel, or of the whole run.
     objective : str
         What a method is tuned for: one of `OBJECTIVES`.
+    default_limits : bool
+        The search keeps limits on settling and growth where none are given.
+    beyond_sliders : bool
+        The search goes beyond the sliders, to all that the fields allow.
     search : str
         What the tab "Tune" looks for: the best setting of one method, or the Pareto fronts of all networks.
     front_x, front_y : str
@@ -92,7 +93,6 @@ class Display(BaseModel):
     optimal: bool = False
     poles: Literal["channel", "whole"] = "channel"
     locus: Annotated[str, Field(max_length=40)] = ""
-    requirements: Requirements = Requirements()
     exaggeration: Annotated[float | None, Field(gt=0.0, le=1e6)] = None
     angle: Literal["auto", "arcsec", "arcmin", "deg"] = "auto"
     length: Literal["auto", "m", "km", "nmi"] = "auto"
@@ -115,6 +115,8 @@ class Display(BaseModel):
     size: Literal["normal", "presentation"] = "normal"
     budget: Literal["steady", "run"] = "steady"
     objective: Annotated[str, _one_of(OBJECTIVES)] = "tilt_rms"
+    default_limits: bool = True
+    beyond_sliders: bool = False
     search: Literal["setting", "fronts"] = "setting"
     front_x: Annotated[str, _one_of(AXES)] = "tilt_rms"
     front_y: Annotated[str, _one_of(AXES)] = "velocity_rms"

@@ -241,7 +241,10 @@ def in_words(name: str, value: float) -> str:
     if not math.isfinite(value):
         return Text("no finite value")
     in_unit, unit = in_display_unit(name, value)
-    return f"{in_unit:.4g} {unit}".rstrip()
+    if name not in QUANTITIES:
+        return f"{in_unit:.4g}"
+    template = "{in_unit:.4g} {unit}" if unit else "{in_unit:.4g}"
+    return Text(template, in_unit=in_unit, unit=unit, quantity=name, si=value)
 
 
 def read_objective(text: str) -> Objective:

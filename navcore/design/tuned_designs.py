@@ -34,6 +34,8 @@ _INTERVALS = 96
 _EFFORT = Effort(5, 5, 40)
 _PEAK = 1.6
 """Largest length of a vector over the root of its largest mean square, about, in the middle of the seeds."""
+_SIGNED = {"growth_per_s": 1.0 / 86400.0, "h_slope_s": 100.0}
+"""Size of an excess that counts like the limit itself, where a value may be negative."""
 _AXES = {TILT: (0, 1), VELOCITY: (3, 4), HEADING: (2,), POSITION: (5, 6)}
 """Components of each kind among `navcore.quantities.COMPONENTS`."""
 
@@ -149,11 +151,11 @@ def _largest_ratio(setting: Setting) -> float:
 
 
 def _over(value: float, one: Requirement) -> float:
-    """Value over the limit; where the limit has a sign, 1 at the limit and the excess in days beyond."""
-    limit = one.at_most * limit_unit(one.quantity)
+    """Value over the limit; where that may be negative, 1 at the limit and more beyond."""
+    unit = limit_unit(one.quantity)
     if QUANTITIES[one.quantity].signed:
-        return 1.0 + 86400.0 * (value - limit)
-    return value / limit if limit > 0.0 else (0.0 if value <= limit else math.inf)
+        return 1.0 + (value / unit - one.limit) / _SIGNED.get(one.quantity, 1.0)
+    return one.times(value / unit)
 
 
 def foretold(quantity: Quantity, t_s: np.ndarray, variance: np.ndarray, from_s: float) -> float:

@@ -13,7 +13,7 @@ from schuler_bench.jobs.verifier import STOPPED
 from schuler_bench.views.appearance.view import BANDS
 from schuler_bench.views.design.view import BUDGET_OF, CHOICES
 from schuler_bench.views.tune import finder
-from schuler_bench.views.tune.setting import ACCEPT, DISCARD, TUNE
+from schuler_bench.views.tune.setting import ACCEPT, DISCARD, TUNE, UNDO
 from schuler_bench.views.tune.view import SEARCH_FOR
 from tests.browser.driver import SWEEP, Bench
 
@@ -254,12 +254,17 @@ def test_a_proposal_is_accepted_and_undone_or_discarded(moving: Bench) -> None:
     moving.tab("Tune")
     moving.button(TUNE).click()
     accept.wait_for(timeout=120_000)
-    assert "times the floor" in page.locator(".sb-proposal").inner_text()
+    told = page.locator(".sb-proposal")
+    # the runs come before Accept
+    assert "times the floor" in told.inner_text() and "Mean of 32 runs" in told.inner_text()
     assert session.scenario == before
     accept.click()
     accept.wait_for(state="hidden")
     assert session.scenario.method[2].network != before.method[2].network
-    assert session.undo() and session.scenario == before
+    told.get_by_text("Accepted for complementary").wait_for()
+    moving.button(UNDO).click()
+    accept.wait_for()
+    assert session.scenario == before
     moving.button(TUNE).click()
     moving.button(DISCARD).wait_for(timeout=120_000)
     moving.button(DISCARD).click()

@@ -154,6 +154,9 @@ def test_the_best_of_each_row_is_marked_and_points_stand_below_each_other() -> N
     rows = {row.label: row for row in metrics_rows(run)}
     peaks = [method.errors["phi_e_rad"]["max_abs"] for method in run.methods]
     assert [marks[1] for marks in rows["tilt φE"].best] == [peak == min(peaks) for peak in peaks]
+    assert not any(marks[2] for marks in rows["tilt φE"].best), (
+        "an error passes through 0: final marks no best"
+    )
     assert not rows["settling"].best[0][0]
     alone = metrics_rows(run_of(method=[THREE[1]]))
     assert not any(mark for row in alone for marks in row.best for mark in marks)

@@ -297,13 +297,10 @@ def _metrics(session: Session) -> str:
 
 
 def _requirements(session: Session) -> str:
-    display = session.now.display
-    if not display.requirements.limits:
+    run = session.now.run
+    if not run.scenario.requirement:
         return _section(Text("Requirements"), Text("<p>No requirement is set.</p>"))
-    run = window_of(session.now.run, display).run
-    tables = _tables(
-        len(run.methods), lambda part: requirements_html(run, display.requirements, methods=part)
-    )
+    tables = _tables(len(run.methods), lambda part: requirements_html(run, methods=part))
     return _section(Text("Requirements"), tables)
 
 
@@ -312,7 +309,7 @@ def _pins(session: Session) -> str:
     pins = titled(session.pins, run.scenario)
     if not pins:
         return _section(Text("Pins"), Text("<p>No run is pinned.</p>"))
-    lines = lines_of(window_of(run, display), session.now.selected, pins, display.requirements)
+    lines = lines_of(window_of(run, display), run, session.now.selected, pins)
     by = None if baseline is None else baseline.id
     return _section(
         Text("Pins"),

@@ -117,7 +117,7 @@ class CompareView(PictureView[str]):
         if not pins:
             return Text('<div class="sb-no-pins">{small}</div>', small=notices.small(_EMPTY))
         window = window_of(found.run, found.display)
-        lines = lines_of(window, found.selected, pins, found.display.requirements)
+        lines = lines_of(window, found.run, found.selected, pins)
         baseline = session.pins.baseline(found.display.baseline)
         note = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
         return note + pins_html(lines, found.display.pins_by, None if baseline is None else baseline.id)

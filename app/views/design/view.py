@@ -82,7 +82,8 @@ class DesignView(PlotlyView):
         if budget.floor_reason:
             reason = Text("no floor: {floor_reason}", floor_reason=budget.floor_reason)
             note = Text.joined("; ", filter(None, (note, reason)))
-        return budget_figure(budget, self.aspect, width_px=self.width_px, note=note)
+        growth = [method.growth_per_s for method in found.run.methods]
+        return budget_figure(budget, self.aspect, width_px=self.width_px, note=note, growth=growth)
 
     def _ask(self, scenario: Scenario) -> None:
         if self.session.display.budget != "run" or self._budgeter.beside(scenario) is not None:

@@ -208,7 +208,7 @@ def error_curves(found: Shown, keys: Sequence[str] = tuple(TITLES), two_abreast:
         display=found.display,
         pins=found.pins,
         envelope=found.envelope,
-        limits=error_limits(found.display.requirements, found.run),
+        limits=error_limits(found.run.scenario.requirement, found.run),
     )
     legend = legend_html(found.run, None, found.pins, found.envelope, found.display)
     return ErrorCurves({key: plots[key] for key in keys}, legend, two_abreast)

@@ -202,7 +202,10 @@ def _coefficient(law: LawInForce) -> str:
 def _error_row(run: Run, error: RecordedError, unit: Unit) -> Row:
     values = [[method.errors[error.name][statistic] for statistic in STATISTICS] for method in run.methods]
     cells = tuple(tuple(rounded(value / unit.si) for value in row) for row in values)
-    sizes = [[abs(value) for value in row] for row in values]
+    # an error passes through 0: the last value says nothing of a method
+    sizes = [
+        [math.nan if s == "final" else abs(v) for s, v in zip(STATISTICS, row, strict=True)] for row in values
+    ]
     return Row(error.label, unit.name, cells, best=_best(sizes))
 
 

@@ -179,7 +179,7 @@ class MetricsView(PictureView[tuple[str, str]]):
             self._over: Any = self.frame.gui.add_dropdown(
                 OVER,
                 tuple(_WINDOWS),
-                hint=Text("Part of the run over which errors and requirements are measured."),
+                hint=Text("Part of the run over which errors are measured."),
             )
             self._ends = {
                 field: Widget(

@@ -96,6 +96,7 @@ class TuneView(PlotlyView):
             self.aspect,
             width_px=self.width_px,
             note=self._finder.note,
+            growth=found.run.methods[min(index, len(found.run.methods) - 1)].growth_per_s,
         )
 
     def picture(self, found: Shown) -> PlotlyFigure:
