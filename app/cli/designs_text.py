@@ -1,5 +1,6 @@
 """Shares of seeds that meet all limits as a table for people."""
 
+from app.cli.design_text import unstated
 from app.cli.table import columns, number
 from navcore.design.designs import Designs
 from navcore.design.needed import MOST
@@ -22,9 +23,7 @@ def designs_text(found: Designs) -> list[str]:
         lines += [*_alone(found), *_needed(found), ""]
     lines += [f"{share.method.label()}: {_setting(share)}" for share in found.methods]
     lines += [f"{name}: left out: {reason}" for name, reason in found.left_out]
-    if found.assumed_zero:
-        lines.append(f"note: 0 is assumed for {', '.join(found.assumed_zero)}")
-    return lines
+    return [*lines, *unstated(found.assumed_zero)]
 
 
 def _alone(found: Designs) -> list[str]:
