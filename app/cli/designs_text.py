@@ -3,6 +3,7 @@
 from navcore.design.designs import Designs
 from navcore.design.needed import MOST
 from navcore.design.shares import Share
+from schuler_bench.cli.design_text import unstated
 from schuler_bench.cli.table import columns, number
 
 
@@ -22,9 +23,7 @@ def designs_text(found: Designs) -> list[str]:
         lines += [*_alone(found), *_needed(found), ""]
     lines += [f"{share.method.label()}: {_setting(share)}" for share in found.methods]
     lines += [f"{name}: left out: {reason}" for name, reason in found.left_out]
-    if found.assumed_zero:
-        lines.append(f"note: 0 is assumed for {', '.join(found.assumed_zero)}")
-    return lines
+    return [*lines, *unstated(found.assumed_zero)]
 
 
 def _alone(found: Designs) -> list[str]:

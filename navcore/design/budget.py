@@ -13,6 +13,7 @@ from navcore.design.measures import Setting, growing
 from navcore.design.result import Budget, MethodBudget, Shown, with_floor
 from navcore.design.seeds import SEEDS, no_covariance, seed_variance
 from navcore.design.ship import Ship
+from navcore.design.stated import assumed_zero
 from navcore.design.steady import instability, loops_of, steady_budget
 from navcore.design.unmodelled import unmodelled_warnings
 from navcore.design.untold import untold_squares
@@ -59,14 +60,12 @@ def budget(
     True
     """
     ship = Ship(scenario)
+    unstated = assumed_zero(scenario, steady)
     if steady:
         found = steady_budget(scenario, ship.model)
-        return replace(
-            found,
-            methods=tuple(
-                _with_growth(ship, one, of) for one, of in zip(found.methods, scenario.method, strict=True)
-            ),
-        )
+        pairs = zip(found.methods, scenario.method, strict=True)
+        methods = tuple(_with_growth(ship, result, method) for result, method in pairs)
+        return replace(found, methods=methods, assumed_zero=unstated)
     left_out = _warnings(scenario)
     untold = any(column.source not in TOLD for column in ship.columns)
     done = [0.0] * (len(scenario.method) + 1)
@@ -103,8 +102,9 @@ def budget(
     report(len(scenario.method), 1.0)
     if floor is None:
         reason = steady_floor(ship.model, scenario.omega_s).reason
-        return Budget(False, Entry(Figures(), Figures()), reason, None, methods)
-    return with_floor(False, entry_of(floor.t_s, floor.total), "", floor, methods)
+        return Budget(False, Entry(Figures(), Figures()), reason, None, methods, unstated)
+    found = with_floor(False, entry_of(floor.t_s, floor.total), "", floor, methods)
+    return replace(found, assumed_zero=unstated)
 
 
 def _with_growth(ship: Ship, budget: MethodBudget, method: Method) -> MethodBudget:

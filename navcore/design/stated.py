@@ -24,12 +24,23 @@ _SOURCES = (
 """Sources of the error budget in the same order."""
 
 
-def assumed_zero(scenario: Scenario) -> tuple[str, ...]:
-    """Fields of standard deviations that the scenario states in no way, so that 0 is assumed."""
+def assumed_zero(scenario: Scenario, steady: bool = False) -> tuple[str, ...]:
+    """Fields of standard deviations that the scenario states in no way, so that 0 is assumed.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Complete and checked.
+    steady : bool
+        True for the steady state, which no initial error reaches.
+    """
     fields = []
     for block, deviation, number in _STATED:
         settings = getattr(scenario, block)
-        if block == "reference" and settings.kind != "log":
+        recorded = block == "imu" and settings.file is not None
+        if recorded or (block == "reference" and settings.kind != "log"):
+            continue
+        if steady and block == "initial_error":
             continue
         if getattr(settings, deviation) is None and number not in settings.model_fields_set:
             fields.append(f"{block}.{deviation}")

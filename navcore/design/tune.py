@@ -33,6 +33,7 @@ from navcore.design.search import (
     Search,
     no_method,
 )
+from navcore.design.stated import assumed_zero
 from navcore.design.unmodelled import unmodelled_warnings
 from navcore.design.vary import Varied, present, read_varied
 from navcore.foundation.errors import Fault, InputError, StoppedError, UnstableError
@@ -75,6 +76,8 @@ class Tuned:
         What root mean squares are of.
     default_limits : tuple of str
         Limits that were kept because none of their quantity was given.
+    assumed_zero : tuple of str
+        Standard deviations of constants that the scenario states in no way, so that 0 is assumed.
     confirmed : Confirmed or None
         Both settings in runs; None where that was not asked for.
     scenario : Scenario
@@ -94,6 +97,7 @@ class Tuned:
     judged: Judged
     default_limits: tuple[str, ...]
     scenario: Scenario = field(repr=False)
+    assumed_zero: tuple[str, ...] = ()
     confirmed: Confirmed | None = None
 
     def as_dict(self) -> dict[str, Any]:
@@ -109,6 +113,7 @@ class Tuned:
             "flat": {name: list(ends) for name, ends in self.flat.items()},
             "stopped": self.stopped,
             "default_limits": list(self.default_limits),
+            "assumed_zero": list(self.assumed_zero),
             "warnings": list(self.warnings),
             **({} if self.confirmed is None else {"confirmed": self.confirmed.as_dict()}),
         }
@@ -361,6 +366,7 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
         judged="ensemble" if search.ships[0].along_run else "steady",
         default_limits=(),
         scenario=scenario.model_copy(update={"method": methods}),
+        assumed_zero=assumed_zero(scenario, not search.ships[0].along_run),
     )
 
 
