@@ -24,6 +24,7 @@ NO_LIMITS = Text(
     "This scenario has no limits yet. Give what the ship needs, such as the largest tilt, in the tab "
     "Requirements; this table then says which methods meet it, and with what probability."
 )
+_TAKE, _TAKE_HINT = Text("Take"), Text("Put it into the method that is edited; undo takes it back.")
 _UNDER_WAY = Text("runs are under way")
 _HEADS = (
     Text("method"),
@@ -90,7 +91,8 @@ def designs_html(
         body += [_title(title), *map(_line, designs)]
     limits = limits_of(run.scenario.requirement)
     asked = Text.joined(", ", (_words(key, limit) for key, limit in limits.items()))
-    told = Text('<p class="sb-asked-limits">{asked:html}</p>', asked=Text("Limits: {asked}.", asked=asked))
+    said = Text("Limits: {asked}.", asked=asked)
+    told = Text('<p class="sb-asked-limits">{asked:html}</p>', asked=said)
     return note + told + table([head], body, "sb-designs")
 
 
@@ -109,7 +111,8 @@ def _in_run(run: Run) -> list[str]:
     said = []
     for k in range(len(run.methods)):
         missed = [short_label(verdict.quantity.key) for verdict in asked if not verdict.passed[k]]
-        word = Text("✗ misses {missed}", missed=Text.joined(", ", missed)) if missed else Text("✓ meets all")
+        names = Text.joined(", ", missed)
+        word = Text("✗ misses {missed}", missed=names) if missed else Text("✓ meets all")
         said.append(cell(quoted(word), "sb-missed" if missed else "sb-met", tag="span"))
     return said
 
@@ -134,8 +137,8 @@ def _line(line: Line) -> str:
             "{take:html}</button>",
             command=TAKE_DESIGN,
             place=line.place,
-            hint=Text("Put it into the method that is edited; undo takes it back."),
-            take=Text("Take"),
+            hint=_TAKE_HINT,
+            take=_TAKE,
         )
     cells = (
         cell(quoted(method.label()), "sb-all"),
