@@ -171,6 +171,24 @@ def with_network(scenario: Scenario, index: int, network: dict[str, Any]) -> Sce
     return Scenario.parse(data)
 
 
+def with_design(scenario: Scenario, index: int, method: Method) -> tuple[Scenario, int]:
+    """Put a method in the place of another, or behind one that is not damped; also return its index.
+
+    Raises
+    ------
+    InputError
+        There are too many methods, or it does not go with the scenario.
+    """
+    data = scenario.canonical()
+    behind = index >= len(scenario.method) or scenario.method[index].undamped
+    others = [m["name"] for i, m in enumerate(data["method"]) if behind or i != index]
+    block = method.model_dump(mode="json", by_alias=True, exclude_none=True)
+    block["name"] = free_name(method.label(), others)
+    at = index + behind
+    data["method"][at : at + (not behind)] = [block]
+    return Scenario.parse(data), at
+
+
 def files_of(scenario: Scenario) -> set[str]:
     """Paths of the recordings that the scenario runs on."""
     blocks = (scenario.motion, scenario.reference, scenario.imu)

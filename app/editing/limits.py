@@ -18,9 +18,8 @@ FROM = Text("errors count from (h)")
 def label_of(key: str) -> str:
     """Label of a limit's box: what, sense and unit, e.g. ``settling ≤ (min)``."""
     row = QUANTITIES[key]
-    if not row.shown:
-        return Text("{label} {sign}", label=row.label, sign=SIGNS[row.sense])
-    return Text("{label} {sign} ({unit})", label=row.label, sign=SIGNS[row.sense], unit=row.shown)
+    unit = Text(" ({shown})", shown=row.shown) if row.shown else ""
+    return Text("{label} {signs}{unit}", label=row.label, signs=SIGNS[row.sense], unit=unit)
 
 
 def shown_limit(one: Requirement) -> float:

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs.judge import without_methods
 from schuler_bench.jobs.refusals import refusals
 from schuler_bench.jobs.search import Search
 
 if TYPE_CHECKING:
     from navcore.design.budget import Budget
+    from navcore.design.designs import Designs
     from navcore.design.pareto import Pareto
     from navcore.design.sun import Tuning, TuningSettings
     from navcore.design.tune import Tuned
@@ -163,6 +165,24 @@ class Fronts(Search[FrontsTask, "Pareto"]):
         super().__init__(
             tell, _fronts, lambda found: not found.stopped, Text("Stopped: no fronts were found."), name
         )
+
+
+class Limits(Search[Scenario, "Designs"]):
+    """Tunes every network for the limits of one scenario at a time; ``tell`` and ``name`` as of `Search`."""
+
+    def __init__(self, tell: Callable[[], None], name: str = "limits") -> None:
+        super().__init__(tell, _designs, lambda found: not found.stopped, Text("Stopped: no design."), name)
+
+    def beside(self, scenario: Scenario) -> Designs | None:
+        """Designs for the same ship and limits; None when there are none."""
+        same = self.asked is not None and without_methods(self.asked) == without_methods(scenario)
+        return self.result if same else None
+
+
+def _designs(scenario: Scenario, progress: Progress, cancelled: Cancelled) -> Designs:
+    from navcore.design.designs import designs
+
+    return designs(scenario, progress=progress, cancelled=cancelled)
 
 
 def _budget(scenario: Scenario, progress: Progress, cancelled: Cancelled) -> Budget:

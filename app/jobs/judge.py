@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from navcore.engine.load import estimated_seconds
 from navcore.scenario.method import Method
@@ -81,7 +81,8 @@ class Judge(Search[Asked, "Designs"]):
             load=lambda asked: heavy_load(asked.scenario),
             still_s=still_s,
         )
-        self.known: Mapping[Method, Odds] = {}
+        # methods are frozen, and so hashable, which their type does not say
+        self.known: Mapping[Any, Odds] = {}
         self._base: Scenario | None = None
         self._wanted: Scenario | None = None
 
@@ -91,7 +92,7 @@ class Judge(Search[Asked, "Designs"]):
             self._wanted = None
             self.cancel()
             return
-        base = _without_methods(scenario)
+        base = without_methods(scenario)
         with self._lock:
             if base != self._base:
                 self._base, self.known = base, {}
@@ -101,7 +102,13 @@ class Judge(Search[Asked, "Designs"]):
     def odds(self, scenario: Scenario, method: Method) -> Odds | None:
         """Give the share of a method in a scenario; None where it is not known."""
         with self._lock:
-            return self.known.get(method) if _without_methods(scenario) == self._base else None
+            return self.known.get(method) if without_methods(scenario) == self._base else None
+
+    def learn(self, scenario: Scenario, method: Any, odds: Odds) -> None:
+        """Take over what other runs have said of a method."""
+        with self._lock:
+            if without_methods(scenario) == self._base:
+                self.known = {**self.known, method: odds}
 
     def _go_on(self) -> None:
         with self._lock:
@@ -109,20 +116,21 @@ class Judge(Search[Asked, "Designs"]):
             if scenario is None:
                 return
             most = _seeds(scenario)
-            seen = {method: self.known[method].seeds for method in scenario.method if method in self.known}
-        fresh = tuple(method for method in scenario.method if method not in seen)
-        few = tuple(method for method in scenario.method if seen.get(method, most) < most)
-        methods, seeds = (fresh, min(FEW, most)) if fresh else (few, most)
-        asked = Asked(scenario.model_copy(update={"method": methods}), seeds)
-        if methods and asked != self.under_way:
+            methods: tuple[Any, ...] = scenario.method
+            seen = {method: self.known[method].seeds for method in methods if method in self.known}
+        fresh = tuple(method for method in methods if method not in seen)
+        few = tuple(method for method in methods if seen.get(method, most) < most)
+        chosen, seeds = (fresh, min(FEW, most)) if fresh else (few, most)
+        asked = Asked(scenario.model_copy(update={"method": chosen}), seeds)
+        if chosen and asked != self.under_way:
             self._submit(asked, 0.0)
-        elif not methods:
+        elif not chosen:
             self.cancel()
 
     def _ended(self) -> None:
         with self._lock:
             found, asked = self.result, self.asked
-            if found is not None and asked is not None and _without_methods(asked.scenario) == self._base:
+            if found is not None and asked is not None and without_methods(asked.scenario) == self._base:
                 more = {share.method: Odds(share, found.seeds) for share in found.methods}
                 self.known = {**self.known, **more}
         self._tell()
@@ -134,7 +142,8 @@ def _seeds(scenario: Scenario) -> int:
     return max(8, min(SEEDS, int(_LONGEST_S / max(estimated_seconds(scenario), 1e-3))))
 
 
-def _without_methods(scenario: Scenario) -> Scenario:
+def without_methods(scenario: Scenario) -> Scenario:
+    """Ship and limits of a scenario: two that are equal judge a method alike."""
     plain = type(scenario.view)()
     return scenario.model_copy(update={"method": (), "title": "", "source": "", "view": plain})
 

@@ -5,7 +5,7 @@ import threading
 from collections.abc import Callable
 
 from navcore.engine.run import Run
-from schuler_bench.jobs.designer import Budgeter, Designer, Fronts, Tuner
+from schuler_bench.jobs.designer import Budgeter, Designer, Fronts, Limits, Tuner
 from schuler_bench.jobs.judge import Judge
 from schuler_bench.jobs.why import Explainer
 
@@ -32,6 +32,8 @@ class Searches:
         Best setting of a method.
     fronts : Fronts
         Pareto fronts of all networks.
+    limits : Limits
+        Every network tuned for the limits.
     judge : Judge
         Shares of seeds that meet the limits.
     """
@@ -44,8 +46,17 @@ class Searches:
         self.budgeter = Budgeter(self._tell, name)
         self.designer = Designer(self._tell, name)
         self.fronts = Fronts(self._tell, name)
+        self.limits = Limits(self._tell, name)
         self.judge = Judge(self._tell, name)
-        self._all = (self.explainer, self.tuner, self.budgeter, self.designer, self.fronts, self.judge)
+        self._all = (
+            self.explainer,
+            self.tuner,
+            self.budgeter,
+            self.designer,
+            self.fronts,
+            self.limits,
+            self.judge,
+        )
 
     def watch(self, changed: Callable[[], None]) -> None:
         """Tell an open page whenever there is something new."""

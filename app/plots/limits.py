@@ -8,6 +8,31 @@ from schuler_bench.plots.units import number
 SIGNS = {"<=": "≤", ">=": "≥"}
 
 
+_KINDS = {
+    "tilt": Text("tilt"),
+    "velocity": Text("velocity error"),
+    "heading": Text("heading error"),
+    "position": Text("position error"),
+}
+
+
+def short_label(key: str) -> str:
+    """Name of a limited quantity without what it is judged of: over seeds it is not of one run.
+
+    Examples
+    --------
+    >>> short_label("tilt_max_arcsec"), short_label("settling_s")
+    ('largest tilt', 'settling')
+    """
+    row = QUANTITIES[key]
+    if row.kind is None:
+        return row.label
+    what = _KINDS[row.kind.name]
+    if row.statistic == "max_abs":
+        return Text("largest {what}", what=what)
+    return Text("{what} at the end", what=what) if row.statistic == "final" else Text("{what} RMS", what=what)
+
+
 def requirement_words(text: str) -> str:
     """Limit of a search as the tab Requirements has it.
 

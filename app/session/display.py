@@ -73,7 +73,8 @@ class Display(BaseModel):
     size : str
         Of type and lines; "presentation": readable from the back of a room, with few controls.
     budget : str
-        The error budget shown: of the steady state of one level channel, or of the whole run.
+        What the tab "Design" shows: the methods that meet the limits, or the error budget, of the steady
+        state of one level channel or of the whole run.
     objective : str
         What a method is tuned for: one of `OBJECTIVES`.
     default_limits : bool
@@ -113,7 +114,7 @@ class Display(BaseModel):
     flipped: bool = False
     theme: Literal["light", "dark"] = "light"
     size: Literal["normal", "presentation"] = "normal"
-    budget: Literal["steady", "run"] = "steady"
+    budget: Literal["limits", "steady", "run"] = "limits"
     objective: Annotated[str, _one_of(OBJECTIVES)] = "tilt_rms"
     default_limits: bool = True
     beyond_sliders: bool = False

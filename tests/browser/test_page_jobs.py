@@ -240,6 +240,7 @@ def designing(request: pytest.FixtureRequest, moving: Bench) -> Bench:
 
 def test_the_bars_follow_a_slider_and_the_run_has_four_panels(designing: Bench) -> None:
     page = designing.page
+    designing.choose(BUDGET_OF, CHOICES["steady"])
     page.wait_for_function("() => look.bars() > 0")
     before = page.evaluate("look.bars")
     designing.press("network.zeta")

@@ -146,7 +146,7 @@ def test_a_velocity_is_required(window: Bench) -> None:
     # the share of seeds stands beside the tick
     share = window.page.locator(".sb-share").first
     share.wait_for(timeout=120_000)
-    assert " % (" in share.inner_text()
+    assert " %" in share.inner_text()
     # in words, not by colour alone
     assert "✗" in cells(window, "position_rms_m")[0][2]
     for place in range(3):
