@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from app.misprints import Axis, Comparison, Curve, Misprint, Number
-from app.views.misprints.figure import comparison_plot, words_html
+from schuler_bench.misprints import Axis, Comparison, Curve, Misprint, Number
+from schuler_bench.views.misprints.figure import comparison_plot, words_html
 from tests.traces import unpacked
 
 T = np.linspace(0.0, 7200.0, 50)
