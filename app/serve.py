@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
+from app.jobs import helper
 from app.jobs.words import what_failed
 from app.languages import LANGUAGE_SCRIPTS
 from app.logs import begin_logging
@@ -177,6 +178,7 @@ class Dashboard:
 
     def close(self) -> None:
         """End all sessions and remove what was uploaded and is not kept."""
+        helper.stop()
         if "sessions" in self.__dict__:  # made with the first page
             self.sessions.close()
 
@@ -214,6 +216,7 @@ def open_dashboard(
     from app.session.store import session_key
 
     guarded.start(_READERS)
+    helper.start()
     dashboard = Dashboard(state, views)
     server = start(
         host,

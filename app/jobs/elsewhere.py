@@ -1,7 +1,8 @@
-"""Where heavy jobs are computed: on the Dask cluster of this process, if it has one that answers, or here."""
+"""Where heavy jobs are computed: on the Dask cluster if one answers, else by a helper, or in this process."""
 
 from collections.abc import Callable, Sequence
 
+from app.jobs import helper
 from app.jobs.cluster import Cluster, Compute, Found, Item
 from app.jobs.scheduler import Lane
 from app.jobs.worker import ElsewhereLost, Watch
@@ -82,12 +83,14 @@ def carried_out(
 def carried_out_all(
     function: Compute[Item, Found], items: Sequence[Item], progress: Callable[[float], None], watch: Watch
 ) -> list[Found] | None:
-    """The same for several items; on the cluster side by side, here one after the other."""
+    """The same for several items; on the cluster side by side, else one after the other."""
     if watch.lane is Lane.CLUSTER:
         there = cluster()
         if there is None:
             raise ElsewhereLost
         return there.compute(function, items, progress, watch.unwanted)
+    if helper.helps(function):
+        return helper.compute(function, items, progress, watch.unwanted)
     results = []
     for number, item in enumerate(items):
 
