@@ -237,7 +237,7 @@ def work() -> None:
     from app.http.server import Inner
     from app.serve import open_dashboard
 
-    begin_logging()
+    begin_logging(to_file=False)
     bound_arenas()
     settings = Settings(**json.loads(sys.stdin.readline()))
     server, dashboard = open_dashboard(

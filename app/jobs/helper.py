@@ -30,7 +30,7 @@ _LOOK_S, _END_S = 0.25, 3.0
 """Between two looks at a helper that asks nothing; so long one may take to end a job that nobody wants."""
 _IDLE_S = 300.0
 """A helper without a job for so long ends, and gives its memory back."""
-_NICE = 5
+_NICE = 10
 _log = logging.getLogger("schuler.helper")
 
 
