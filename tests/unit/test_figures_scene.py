@@ -16,7 +16,7 @@ from app.plots.units import round_down, round_up
 from app.session.pins import Pin
 from app.views.scene.drawer import ShipPart, ship_parts
 from app.views.scene.graticule import LocalMap, angle_text, dashes, graticule, needed, scale_bar, segments
-from app.views.scene.track import HALF_WIDTH, LINE_WIDTH, attitude_quaternions, track
+from app.views.scene.track import HALF_WIDTH, LINE_WIDTH, attitude_quaternions, error_texts, track
 from app.views.scene.view import CAMERAS, FOLLOW, SIDE, Cameras, Window
 from navcore.foundation.earth import WGS84, attitude_matrix
 from navcore.foundation.units import ARCSEC, DEG
@@ -124,7 +124,11 @@ class TestStatic:
         names = [label.text for label in scene.graticule.labels]
         assert 4 <= len(names) == len(set(names)) <= 20
         assert all(np.isfinite(m.points).all() for m in scene.methods)
-        assert "e" not in scene.methods[2].error_text(5)
+        texts = error_texts(scene.methods, 5)
+        assert all("e" not in text for text in texts)
+        assert len({text.split()[1] for text in texts}) == 1, (
+            "one legend, one unit: it was 3.4 km beside 120 m"
+        )
 
 
 class TestGraticule:
