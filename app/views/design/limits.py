@@ -2,8 +2,11 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 from app.jobs.judge import Odds
+from app.plots.effective import growth_text
 from app.plots.limits import SIGNS, amount, short_label
 from app.plots.table import cell, row, table
 from app.plots.units import number
@@ -11,7 +14,9 @@ from app.session.requirements import limits_of, verdicts
 from app.views.requirements.shares import share_text
 from app.views.tune.fronts import setting_text
 from navcore.design.designs import Designs
+from navcore.design.measures import Setting
 from navcore.design.shares import Limit
+from navcore.design.ship import Ship
 from navcore.engine.run import Run
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text, quoted
@@ -49,12 +54,15 @@ class Line:
         What it makes of the limits in the run that is shown; empty for a method that is not in it.
     place : int or None
         Of a design that can be taken.
+    growth : float or None
+        Of the whole system, 1/s.
     """
 
     method: Method
     odds: Odds | None
     run: str = ""
     place: int | None = None
+    growth: float | None = None
 
 
 def designs_html(
@@ -77,14 +85,14 @@ def designs_html(
         link = Text('<button class="sb-sort" data-command="tab Requirements">Requirements</button>')
         return Text('<p class="sb-none">{words:html} {link}</p>', words=NO_LIMITS, link=link)
     own = [
-        Line(method.method, odds(method.method), said)
+        Line(method.method, odds(method.method), said, growth=method.growth_per_s)
         for method, said in zip(run.methods, _in_run(run), strict=True)
     ]
     head = row(cell(quoted(text), tag="th") for text in _HEADS)
     body = [_title(Text("Methods of this scenario")), *map(_line, own)]
     if found is not None:
         designs = [
-            Line(share.method, Odds(share, found.seeds), "", place)
+            Line(share.method, Odds(share, found.seeds), "", place, growth_of(run.scenario, share.method))
             for place, share in enumerate(found.methods)
         ]
         title = Text("Every network, tuned for these limits, and a Kalman filter")
@@ -125,7 +133,7 @@ def _line(line: Line) -> str:
         one = odds.share
         share = cell(
             quoted(share_text(one.met, one.low, one.high)),
-            "sb-met" if one.met >= 0.5 else "sb-missed",
+            "sb-odds sb-met" if one.met >= 0.5 else "sb-odds sb-missed",
             tag="span",
             title=Text("{seeds} seeds, each with its own noise and constants", seeds=odds.seeds),
         )
@@ -140,14 +148,27 @@ def _line(line: Line) -> str:
             hint=_TAKE_HINT,
             take=_TAKE,
         )
+    grows = growth_text(line.growth)
+    mark = cell(Text("↗ {grows}", grows=grows), "sb-muted", tag="div") if grows else ""
     cells = (
         cell(quoted(method.label()), "sb-all"),
-        cell(quoted(design_text(method))),
+        cell(quoted(design_text(method)) + mark),
         cell(share),
         cell(quoted(worst), "sb-w"),
         cell(line.run or button, "sb-w"),
     )
     return row(cells, data_design=method.label(), data_met="" if odds is None else f"{odds.share.met:g}")
+
+
+def growth_of(scenario: Any, method: Any) -> float:
+    """Growth of the whole system with a method as the law is sampled, 1/s; computed once."""
+    # both are frozen, and so hashable, which their types do not say
+    return _growth(scenario.model_copy(update={"method": ()}), method)
+
+
+@lru_cache(maxsize=64)
+def _growth(scenario: Any, method: Any) -> float:
+    return Setting(Ship(scenario), method).growth_per_s
 
 
 def design_text(method: Method) -> str:
