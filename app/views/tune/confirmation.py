@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from app.plots.limits import SIGNS
+from app.plots.limits import SIGNS, short_label
 from app.plots.table import cell, row, table
 from app.plots.units import number
 from navcore.design.measures import Setting, measure, read_requirement
@@ -54,7 +54,9 @@ def _runs(task: TuningTask, tuned: Tuned) -> Iterator[str]:
         ]
         met = None if limit is None or change.after is None else change.after <= limit
         asked = None if limit is None else Text("≤ {limit}", limit=number(limit / size, 4))
-        yield _row(quantity, quantity.names.get("ensemble", quantity.label), texts, _side(change), asked, met)
+        yield _row(
+            quantity, quantity.names.get("ensemble") or short_label(key), texts, _side(change), asked, met
+        )
 
 
 def _loops(task: TuningTask, tuned: Tuned) -> Iterator[str]:
