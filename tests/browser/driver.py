@@ -112,6 +112,9 @@ class Bench:
         language = wording(self.language)
         if language is None:
             return text
+        whole = language.text(text)
+        if whole != text:
+            return whole
         label, sign, unit = re.fullmatch(r"(.+?)( [≤≥])?(?: \(([^()]*)\))?", text).groups()  # pyright: ignore
         if sign:
             return f"{self.said(label)}{sign} ({unit})"
