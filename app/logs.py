@@ -37,4 +37,5 @@ def begin_logging(how: str | None = None) -> None:
     handler.setFormatter(_Lines() if how == "json" else logging.Formatter("%(name)s: %(message)s"))
     log = logging.getLogger("schuler")
     log.handlers = [handler]
+    log.setLevel(logging.INFO)  # removals are told
     log.propagate = False

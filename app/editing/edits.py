@@ -7,7 +7,6 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from app.editing.form import Path
 from navcore.damping import KINDS
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
@@ -17,6 +16,7 @@ from navcore.scenario.bounds import MAX_METHODS
 from navcore.scenario.file import blocks_to_toml, parse_toml
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from schuler_bench.editing.form import Path
 
 _STRAPDOWN_ONLY: dict[str, tuple[str, ...]] = {
     "run": ("vertical", "compensation"),

@@ -3,12 +3,12 @@
 import math
 from typing import Any
 
-from app.plots.limits import SIGNS
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.quantities import LIMITED, QUANTITIES, limit_unit
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING, Requirement
+from schuler_bench.plots.limits import SIGNS
 
 BOXES = (*OF_THE_SETTING, *(key for key in LIMITED if key not in OF_THE_SETTING))
 """Quantities with a box, in order."""

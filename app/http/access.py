@@ -4,19 +4,20 @@ import email.utils
 import hashlib
 import hmac
 import json
+import secrets
 import time
 from collections import OrderedDict
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 from http import HTTPStatus
 from typing import Protocol
 
-from app.http.address import LOOPBACK_NAMES, authority
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.version import __version__
+from schuler_bench.http.address import LOOPBACK_NAMES, authority
 
 SHORTEST_TOKEN = 8
-"""Characters of a token beyond this machine: guesses are throttled, see `app.http.access`."""
+"""Characters of a token, also on this machine: a reverse proxy may stand before it. Guesses are throttled."""
 
 
 class RequestHeaders(Protocol):
@@ -61,6 +62,8 @@ class Access:
         Carries the port: cookies are shared by all ports of a host.
     framed_by : frozenset of str
         Origins whose pages may show a single view in a frame.
+    cookie_key : bytes
+        Of this server: without it a cookie cannot be made from a token, nor guessed.
     """
 
     hosts: frozenset[str]
@@ -69,19 +72,18 @@ class Access:
     token: str | None
     cookie_name: str
     framed_by: frozenset[str] = frozenset()
+    cookie_key: bytes = field(default_factory=lambda: secrets.token_bytes(32), repr=False)
 
-    def token_is_right(self, offered: str) -> bool:
-        """Compare in constant time."""
-        return self.token is not None and _same(offered, self.token)
+    @property
+    def cookie(self) -> str:
+        """Value of the cookie of who has shown the token; another service of the same host may see it."""
+        token = (self.token or "").encode("utf-8", "surrogateescape")
+        return hmac.new(self.cookie_key, b"schuler bench cookie " + token, hashlib.sha256).hexdigest()
 
     def cookie_header(self, host: str) -> str:
-        """Return the Set-Cookie value for a visitor who showed the token.
-
-        The cookie is derived from the token, so that another service of the same host name, which gets to see
-        the cookie too, does not learn the token.
-        """
+        """Return the Set-Cookie value for a visitor who showed the token."""
         secure = "; Secure" if f"https://{host}" in self.origins else ""
-        return f"{self.cookie_name}={_derived(self.token or '')}; Path=/; HttpOnly; SameSite=Strict{secure}"
+        return f"{self.cookie_name}={self.cookie}; Path=/; HttpOnly; SameSite=Strict{secure}"
 
 
 def access_rules(
@@ -105,12 +107,12 @@ def access_rules(
     token : str or None
         What a visitor must know; compulsory when others can reach the server.
     origins : frozenset of str
-        Further origins, see `app.http.address.parse_origins`.
+        Further origins, see `schuler_bench.http.address.parse_origins`.
 
     Raises
     ------
     InputError
-        The token is missing although others can reach the server, is then too short, or is empty.
+        The token is missing although others can reach the server, is too short, or is empty.
     """
     if token is not None and not token.strip():
         raise InputError([Fault("serve", "--token", token, "must not be empty")])
@@ -120,8 +122,8 @@ def access_rules(
             "--generate-token to have one made and printed, or use --host 127.0.0.1"
         )
         raise InputError([Fault("serve", "--host", host, how)])
-    if token is not None and not loopback and len(token.strip()) < SHORTEST_TOKEN:
-        allowed = f"must have at least {SHORTEST_TOKEN} characters where others can reach the server"
+    if token is not None and len(token.strip()) < SHORTEST_TOKEN:
+        allowed = f"must have at least {SHORTEST_TOKEN} characters, a shorter one is soon guessed"
         raise InputError([Fault("serve", "--token", "*" * len(token), allowed)])
     own = {authority(name, port) for name in (*LOOPBACK_NAMES, host)}
     return Access(
@@ -156,25 +158,53 @@ def refuse_address(access: Access, headers: RequestHeaders) -> Refusal | None:
     return None
 
 
-def refuse_unknown(access: Access, headers: RequestHeaders) -> Refusal | None:
-    """Judge the token, shown by cookie or ``Authorization: Bearer``; None lets the request pass."""
-    if access.token is None:
-        return None
-    offered = [value.strip() for value in cookies(headers, access.cookie_name)]
-    derived = _derived(access.token)
-    authorizations = headers.get_all("Authorization")
-    bearer = [value[7:].strip() for value in authorizations if value[:7].lower() == "bearer "]
-    # A list, not a generator: all are compared, so that the time does not depend on which one fits.
-    fits = [_same(value, derived) for value in offered] + [_same(value, access.token) for value in bearer]
-    if any(fits):
-        return None
-    how = "This bench needs its token: open its address with ?token=... at the end."
-    return Refusal(HTTPStatus.UNAUTHORIZED, how)
+@dataclass(frozen=True)
+class Shown:
+    """What a request shows for the token.
+
+    Attributes
+    ----------
+    by_cookie : bool
+        It is a cookie, which nobody can guess, or one of another token.
+    right : bool
+        It fits.
+    reason : str
+        Why not.
+    """
+
+    by_cookie: bool
+    right: bool
+    reason: str = "Wrong token: open this address with ?token=... at the end."
 
 
-def offers_token(headers: RequestHeaders) -> bool:
-    """Whether the request shows a token itself, which a stranger may be guessing."""
-    return any(value[:7].lower() == "bearer " for value in headers.get_all("Authorization"))
+def shown(access: Access, headers: RequestHeaders, in_query: Sequence[str] = ()) -> Shown | None:
+    """Judge the token of a request, by one comparison in constant time.
+
+    The first of these counts: ``?token=``, the cookie, ``Authorization: Bearer``.
+
+    Parameters
+    ----------
+    access : Access
+        Its token is not None.
+    headers : RequestHeaders
+        Of the request.
+    in_query : sequence of str
+        Tokens in its address.
+
+    Returns
+    -------
+    Shown or None
+        None: the request shows nothing.
+    """
+    kept = [] if in_query else [value.strip() for value in cookies(headers, access.cookie_name)]
+    lines = headers.get_all("Authorization")
+    bearer = [value[7:].strip() for value in lines if value[:7].lower() == "bearer "]
+    values = list(in_query) or kept or bearer
+    if not values:
+        return None
+    if len(values) > 1:
+        return Shown(bool(kept), False, "Show one token, once.")
+    return Shown(bool(kept), _same(values[0], access.cookie if kept else access.token or ""))
 
 
 def cookies(headers: RequestHeaders, name: str) -> list[str]:
@@ -182,11 +212,6 @@ def cookies(headers: RequestHeaders, name: str) -> list[str]:
     # Not http.cookies: it drops everything after a cookie it cannot read, and other services share this host.
     pairs = (part.partition("=") for line in headers.get_all("Cookie") for part in line.split(";"))
     return [value for key, _, value in pairs if key.strip() == name]
-
-
-def _derived(token: str) -> str:
-    key = token.encode("utf-8", "surrogateescape")
-    return hmac.new(key, b"schuler bench cookie", hashlib.sha256).hexdigest()
 
 
 def _same(offered: str, right: str) -> bool:
@@ -257,14 +282,18 @@ _MOST_ADDRESSES = 4096
 
 @dataclass
 class Throttle:
-    """A bucket of guesses for each address; an empty one is refilled slowly.
+    """Of guesses: a bucket for each address, which is refilled slowly, and turns for all together.
 
     Attributes
     ----------
     burst : int
-        Wrong guesses that are judged at once.
+        Wrong guesses of an address that are judged at once.
     refill_s : float
         So long it takes until one more is.
+    all_burst : int
+        Guesses of all addresses that are judged at once.
+    all_refill_s : float
+        Time between two more; they wait for their turn.
     clock : callable
         Seconds, monotonic.
     guesses : int
@@ -273,18 +302,43 @@ class Throttle:
 
     burst: int = 10
     refill_s: float = 2.0
+    all_burst: int = 300
+    all_refill_s: float = 0.05
     clock: Callable[[], float] = time.monotonic
     guesses: int = 0
     _spent: OrderedDict[str, tuple[float, float]] = field(default_factory=OrderedDict)
+    _all_until_s: float = 0.0
 
-    def wait_s(self, address: str) -> float:
-        """Seconds until a guess of this address is judged again; 0: now."""
-        return max(0.0, (self._level(address) - self.burst + 1.0) * self.refill_s)
+    def wait_s(self, address: str, *, by_cookie: bool = False) -> float:
+        """Seconds until a guess of this address is judged again; 0: now.
+
+        Cookies of an earlier token, which open pages go on showing, take four fifths of the bucket at most:
+        the right token can still be shown.
+        """
+        burst = 0.8 * self.burst if by_cookie else self.burst
+        return max(0.0, (self._level(address) - burst + 1.0) * self.refill_s)
+
+    def turn_s(self, most_s: float) -> float | None:
+        """Seconds until it is the turn of one more guess, which then takes it; None: more than ``most_s``."""
+        now_s = self.clock()
+        until_s = max(self._all_until_s, now_s - self.all_burst * self.all_refill_s) + self.all_refill_s
+        if until_s - now_s > most_s:
+            return None
+        self._all_until_s = until_s
+        return max(0.0, until_s - now_s)
 
     def failed(self, address: str) -> None:
         """Note a wrong guess."""
         self.guesses += 1
-        level = self._level(address) + 1.0
+        self._add(address, 1.0)
+
+    def forgive(self, address: str) -> None:
+        """Take a guess back that was noted before it was judged, and was right."""
+        self.guesses -= 1
+        self._add(address, -1.0)
+
+    def _add(self, address: str, guesses: float) -> None:
+        level = self._level(address) + guesses
         self._spent.pop(address, None)
         self._spent[address] = (level, self.clock())
         while len(self._spent) > _MOST_ADDRESSES:

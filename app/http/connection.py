@@ -8,15 +8,19 @@ from array import array
 from typing import Any
 
 from websockets.asyncio.server import ServerConnection
-from websockets.frames import CloseCode
+from websockets.exceptions import ProtocolError
+from websockets.frames import DATA_OPCODES, CloseCode, Frame, Opcode
 
-from app.http.frames import BadFrame, Gate
-from app.http.limits import Limits
-from app.http.places import Door, Places
 from navcore.foundation.text import Text
+from schuler_bench.http.frames import BadFrame, Gate
+from schuler_bench.http.limits import Limits
+from schuler_bench.http.places import Door, Places
 
 GAVE_UP_PLACE = Text("This page was idle and gave up its place.")
 """Reason with which an idle page is closed."""
+_COST_OF_PART = 5
+"""A ping, a pong or a fragment counts as so many whole messages: a page sends hardly any."""
+_ABORT_S = 0.3
 
 
 class Connection(ServerConnection):
@@ -56,6 +60,10 @@ class Connection(ServerConnection):
         self._dismissed = False
         self._window_start_s = 0.0
         self._frames_in_window = 0
+        # websockets answers pings and collects fragments as it parses them: they are counted there.
+        self._take_frame = self.protocol.recv_frame
+        self.protocol.recv_frame = self._count_frame
+        self._second, self._counted, self._fragments = 0, 0, 0
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Register the connection; another one may have to go."""
@@ -119,6 +127,21 @@ class Connection(ServerConnection):
                 continue
             if accepted is not None:
                 return accepted
+
+    def _count_frame(self, frame: Frame) -> None:
+        """Take a frame of any kind; too many end the connection, by a `ProtocolError` while it is parsed."""
+        whole = frame.fin and frame.opcode in (Opcode.TEXT, Opcode.BINARY)
+        if int(self.loop.time()) != self._second:
+            self._second, self._counted = int(self.loop.time()), 0
+        self._counted += 1 if whole else _COST_OF_PART
+        if frame.opcode in DATA_OPCODES:
+            self._fragments = 0 if frame.fin else self._fragments + 1
+        limits = self._limits
+        if self._counted > limits.frames_at_once or self._fragments > limits.fragments:
+            self._dismissed = True
+            self.loop.call_later(_ABORT_S, self.transport.abort)  # it may go on sending, and read nothing
+            raise ProtocolError("too many frames")
+        self._take_frame(frame)
 
     async def _pace(self) -> None:
         now_s = time.monotonic()

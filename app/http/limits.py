@@ -1,6 +1,6 @@
 """How much one visitor, and all of them together, may take."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 MIB = 1 << 20
 
@@ -38,10 +38,19 @@ class Limits:
         Longest text a control accepts.
     frames_per_second : int
         A browser that sends more is read more slowly; nothing is lost. A page of ours sends at most about 60.
+    frames_at_once : int
+        Frames that may arrive in a second, read or unread; a ping or a fragment counts as five. More end the
+        connection.
+    fragments : int
+        Parts in which one message may come. Browsers send large ones in parts of 64 KiB.
     token_guesses : int
         Wrong tokens of one address that are judged at once.
     token_refill_s : float
         So long it takes until one more is.
+    all_guesses : int
+        Tokens of all addresses that are judged at once.
+    all_refill_s : float
+        Time between two more.
     ping_s : float
         A page that answers no ping for twice this long is dropped, and with it all that waits to be sent.
     close_s : float
@@ -61,7 +70,21 @@ class Limits:
     upload_stall_s: float = 30.0
     text_characters: int = 20_000
     frames_per_second: int = 100
+    frames_at_once: int = 5000
+    fragments: int = 300
     token_guesses: int = 30
     token_refill_s: float = 1.0
+    all_guesses: int = 300
+    all_refill_s: float = 0.05
     ping_s: float = 20.0
     close_s: float = 1.0
+
+    def shared_by(self, workers: int) -> "Limits":
+        """Limits of one of several processes that judge tokens: all together keep these."""
+        return replace(
+            self,
+            token_guesses=max(1, self.token_guesses // workers),
+            token_refill_s=self.token_refill_s * workers,
+            all_guesses=max(1, self.all_guesses // workers),
+            all_refill_s=self.all_refill_s * workers,
+        )

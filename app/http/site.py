@@ -5,7 +5,7 @@ import html
 import math
 import re
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from http import HTTPStatus
 from urllib.parse import parse_qsl, urlencode
@@ -13,26 +13,27 @@ from urllib.parse import parse_qsl, urlencode
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
-from app.http.access import (
+from schuler_bench.http.access import (
     Access,
     Refusal,
     Throttle,
     answer_headers,
     health,
-    offers_token,
     refuse_address,
-    refuse_unknown,
     security_headers,
+    shown,
 )
-from app.http.address import FORWARDED
-from app.http.connection import Connection
-from app.http.ids import SessionIds, is_shared
-from app.http.page import File, Page
-from app.http.places import Places
+from schuler_bench.http.address import FORWARDED
+from schuler_bench.http.connection import Connection
+from schuler_bench.http.ids import SessionIds, is_shared
+from schuler_bench.http.page import File, Page
+from schuler_bench.http.places import Places
 
 _SESSION_PATH = re.compile(r"/s/([A-Za-z0-9_-]{8,64})(/?)")
 _PLACE_PATH = re.compile(r"/s/([A-Za-z0-9_-]{8,64})/place")
 _FULL = "All places are taken; try again later."
+_LONGEST_TURN_S = 5.0
+"""So long a token waits for its turn, when very many are guessed."""
 _METRICS = "text/plain; version=1.0.0; charset=utf-8"
 _FOR_EVER = "private, max-age=31536000, immutable"
 
@@ -89,32 +90,45 @@ class Site:
             status = HTTPStatus.SERVICE_UNAVAILABLE if self.fault else HTTPStatus.OK
             return _respond(status, health(self.fault), "application/json")
         websocket = any("websocket" in value.lower() for value in headers.get_all("Upgrade"))
-        if not websocket and "token" in dict(parse_qsl(query)) and self.access.token is not None:
-            return self._guarded(connection, lambda: self._exchange_token(path, query, headers))
-
-        def ask_token() -> Response | None:
-            refusal = refuse_unknown(self.access, headers)
-            return None if refusal is None else _refuse(refusal)
-
-        refused = self._guarded(connection, ask_token) if offers_token(headers) else ask_token()
-        if refused is not None:
-            return refused
+        pairs = parse_qsl(query, keep_blank_values=True)
+        tokens = [] if websocket else [value for name, value in pairs if name == "token"]
+        if self.access.token is not None:
+            refused = await self._refuse_unknown(connection, headers, tokens)
+            if refused is not None:
+                return refused
+            if tokens:
+                return self._exchange_token(path, pairs, headers)
         return (
             self._open(connection, path) if websocket else await self._get(connection, path, query, headers)
         )
 
-    def _guarded(self, connection: Connection, judge: Callable[[], Response | None]) -> Response | None:
-        """Judge a token, unless this address has guessed too often: then right and wrong ones wait alike."""
-        wait_s = self.throttle.wait_s(connection.address)
-        if wait_s > 0.0:
-            extra = {"Retry-After": str(math.ceil(wait_s))}
+    async def _refuse_unknown(
+        self, connection: Connection, headers: Headers, in_query: Sequence[str]
+    ) -> Response | None:
+        """Judge what is shown for the token; None lets the request pass.
+
+        An address that has guessed too often waits, with a right token too: it would be told from a wrong one
+        otherwise. Only the right cookie always passes, since it cannot be guessed.
+        """
+        given, address = shown(self.access, headers, in_query), connection.address
+        if given is None:
+            how = "This bench needs its token: open its address with ?token=... at the end."
+            return _refuse(Refusal(HTTPStatus.UNAUTHORIZED, how))
+        if given.by_cookie and given.right:
+            return None
+        wait_s = self.throttle.wait_s(address, by_cookie=given.by_cookie)
+        turn_s = None if wait_s > 0.0 else self.throttle.turn_s(0.0 if given.by_cookie else _LONGEST_TURN_S)
+        if turn_s is None:
+            extra = {"Retry-After": str(math.ceil(wait_s) or 1)}
             return _respond(
                 HTTPStatus.TOO_MANY_REQUESTS, "Too many wrong tokens; try again later.", extra=extra
             )
-        answer = judge()
-        if answer is not None and answer.status_code == HTTPStatus.UNAUTHORIZED:
-            self.throttle.failed(connection.address)
-        return answer
+        self.throttle.failed(address)  # before it waits: of many at once, no more are judged
+        await asyncio.sleep(turn_s)
+        if not given.right:
+            return _refuse(Refusal(HTTPStatus.UNAUTHORIZED, given.reason))
+        self.throttle.forgive(address)
+        return None
 
     def process_response(self, connection: Connection, request: Request, response: Response) -> None:
         """Add the security headers to whatever is answered, the library's own refusals included."""
@@ -183,10 +197,7 @@ class Site:
                 self._page = await asyncio.to_thread(self.load_page)
             return self._page
 
-    def _exchange_token(self, path: str, query: str, headers: Headers) -> Response:
-        pairs = parse_qsl(query, keep_blank_values=True)
-        if not all(self.access.token_is_right(value) for name, value in pairs if name == "token"):
-            return _refuse(Refusal(HTTPStatus.UNAUTHORIZED, "Wrong token."))
+    def _exchange_token(self, path: str, pairs: list[tuple[str, str]], headers: Headers) -> Response:
         if path != "/" and _SESSION_PATH.fullmatch(path) is None:
             return _not_found()
         # Relative to the last part of the path, whatever a reverse proxy has put before it.

@@ -6,12 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.jobs.judge import without_methods
-from app.jobs.refusals import refusals
-from app.jobs.search import Search
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs.judge import without_methods
+from schuler_bench.jobs.refusals import refusals
+from schuler_bench.jobs.search import Search
 
 if TYPE_CHECKING:
     from navcore.design.budget import Budget

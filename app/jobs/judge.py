@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from app.jobs.load import heavy_load
-from app.jobs.search import Search
 from navcore.engine.load import estimated_seconds
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs.load import heavy_load
+from schuler_bench.jobs.search import Search
 
 if TYPE_CHECKING:
     from navcore.design.designs import Designs

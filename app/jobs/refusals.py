@@ -1,10 +1,10 @@
 """Why a search has no proposal: boxes and names of the page in place of options and keys."""
 
-from app.jobs.words import for_a_page
-from app.plots.limits import amount, requirement_words
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES
+from schuler_bench.jobs.words import for_a_page
+from schuler_bench.plots.limits import amount, requirement_words
 
 OBJECTIVE, VARY = Text("tune for"), Text("what may vary")
 _BOXES = {"--objective": OBJECTIVE, "--vary": VARY}

@@ -5,13 +5,13 @@ import threading
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
-from app.jobs.elsewhere import LOST, carried_out
-from app.jobs.load import heavy_load
-from app.jobs.scheduler import Load
-from app.jobs.words import for_a_page, what_failed
-from app.jobs.worker import ElsewhereLost, Watch, Worker
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
+from schuler_bench.jobs.elsewhere import LOST, carried_out
+from schuler_bench.jobs.load import heavy_load
+from schuler_bench.jobs.scheduler import Load
+from schuler_bench.jobs.words import for_a_page, what_failed
+from schuler_bench.jobs.worker import ElsewhereLost, Watch, Worker
 
 Asked = TypeVar("Asked")
 Found = TypeVar("Found")

@@ -4,10 +4,10 @@ import logging
 import threading
 from collections.abc import Callable
 
-from app.jobs.designer import Budgeter, Designer, Fronts, Limits, Tuner
-from app.jobs.judge import Judge
-from app.jobs.why import Explainer
 from navcore.engine.run import Run
+from schuler_bench.jobs.designer import Budgeter, Designer, Fronts, Limits, Tuner
+from schuler_bench.jobs.judge import Judge
+from schuler_bench.jobs.why import Explainer
 
 _log = logging.getLogger("schuler.searches")
 

@@ -1,9 +1,9 @@
 """Limits in words, as the page writes them: label, sign, value and unit."""
 
-from app.plots.units import number
 from navcore.design.measures import read_requirement
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES
+from schuler_bench.plots.units import number
 
 SIGNS = {"<=": "≤", ">=": "≥"}
 

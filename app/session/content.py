@@ -2,14 +2,12 @@
 
 import hashlib
 import os
-import re
-import shutil
-import stat
 import time
 from pathlib import Path
 
+from schuler_bench.session.folder import CONTENT, opened, temporary_name
+
 _UNLINKED_S = 3600.0
-_CONTENT = re.compile(r"[0-9a-f]{64}")
 
 
 class Contents:
@@ -29,27 +27,26 @@ class Contents:
 
     def keep_once(self, path: Path) -> None:
         """Let a file share its content with every equal one; where links cannot be made it stays as it is."""
-        with path.open("rb") as file:
-            content = self.folder / hashlib.file_digest(file, "sha256").hexdigest()
         try:
-            self.folder.mkdir(mode=0o700, exist_ok=True)
-            if not content.exists():
-                os.link(path, content)
-                return
-            if os.path.samefile(path, content):
-                return
-            fresh = path.with_name(f".{path.name}.link")
-            fresh.unlink(missing_ok=True)
-            os.link(content, fresh)
-            fresh.replace(path)
+            with opened(path.parent) as own, opened(self.folder, make=True) as kept:
+                with own.read(path.name) as file:
+                    content, state = hashlib.file_digest(file, "sha256").hexdigest(), os.fstat(file.fileno())
+                there = kept.file(content)
+                if there is None:
+                    own.link(path.name, kept, content)
+                elif not os.path.samestat(state, there):
+                    fresh = temporary_name()
+                    kept.link(content, own, fresh)
+                    own.place(fresh, path.name)
         except OSError:
             return
 
     def bytes(self) -> int:
         """Room that all contents take."""
         try:
-            return sum(entry.stat().st_size for entry in os.scandir(self.folder) if entry.is_file())
-        except FileNotFoundError:
+            with opened(self.folder) as kept:
+                return sum(state.st_size for state in kept.files().values())
+        except OSError:
             return 0
 
     def remove_unused(self) -> None:
@@ -61,30 +58,9 @@ class Contents:
             The folder is a link, or cannot be read.
         """
         try:
-            folder = os.open(self.folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+            with opened(self.folder) as kept:
+                for name, state in kept.files(CONTENT.fullmatch).items():
+                    if state.st_nlink == 1 and time.time() - state.st_ctime > _UNLINKED_S:
+                        kept.remove(name, f"content {name}, which no session uses any more")
         except FileNotFoundError:
             return
-        try:
-            for name in filter(_CONTENT.fullmatch, os.listdir(folder)):
-                state = os.stat(name, dir_fd=folder, follow_symlinks=False)
-                unused = stat.S_ISREG(state.st_mode) and state.st_nlink == 1
-                if unused and time.time() - state.st_ctime > _UNLINKED_S:
-                    os.unlink(name, dir_fd=folder)
-        finally:
-            os.close(folder)
-
-
-def link_files(source: Path, target: Path) -> None:
-    """Give a session the files of another one without copying their contents, where the system can."""
-    if not source.is_dir():
-        return
-    target.mkdir(mode=0o700, parents=True, exist_ok=True)
-    for path in source.iterdir():
-        if path.name.startswith(".") or path.is_symlink() or not path.is_file():
-            continue
-        there = target / path.name
-        there.unlink(missing_ok=True)
-        try:
-            os.link(path, there)
-        except OSError:
-            shutil.copy2(path, there)

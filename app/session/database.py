@@ -1,11 +1,9 @@
 """The documents of sessions and shared states in one SQLite file, and what may be in it."""
 
-import contextlib
 import json
 import logging
 import os
 import sqlite3
-import stat
 import threading
 import time
 from collections.abc import Iterator
@@ -13,7 +11,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from schuler_bench.session.folder import opened
+
 NAME = "sessions.sqlite"
+_ENDINGS = ("-wal", "-shm", "-journal")
+"""Of the files that SQLite keeps beside it."""
 _SCHEMA = 1
 _BUSY_S = 5.0
 _TABLES = """
@@ -118,11 +120,12 @@ class Database:
             yield self._connection
 
     def _open(self) -> sqlite3.Connection:
-        # sqlite would wait for ever at a FIFO of that name.
-        if self.path.is_symlink() or (self.path.exists() and not stat.S_ISREG(self.path.stat().st_mode)):
-            raise OSError(None, f"{NAME} is no file")
-        with contextlib.suppress(FileExistsError):
-            os.close(os.open(self.path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600))
+        # SQLite would follow a link of that name, wait for ever at a FIFO, and remove what bears the others.
+        with opened(self.path.parent) as folder:
+            os.close(folder.open(NAME, os.O_RDWR | os.O_CREAT))
+            for name in (f"{NAME}{ending}" for ending in _ENDINGS):
+                if folder.state(name) is not None and folder.file(name) is None:
+                    raise OSError(None, f"{name} is no file of ours")
         connection = sqlite3.connect(self.path, timeout=_BUSY_S, check_same_thread=False)
         try:
             connection.execute("PRAGMA journal_mode = WAL")

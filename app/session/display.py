@@ -7,10 +7,10 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from app.plots.effective import SHOWN
-from app.plots.envelope import BandKind
-from app.plots.legend import State, after
 from navcore.quantities import ERRORS, STATISTICS
+from schuler_bench.plots.effective import SHOWN
+from schuler_bench.plots.envelope import BandKind
+from schuler_bench.plots.legend import State, after
 
 FIRST_TRANSFER = "phi/dv_r"
 OBJECTIVES = ("tilt_rms", "velocity_rms", "position_rms", "heading_rms", "settling_s")
@@ -34,7 +34,7 @@ class Display(BaseModel):
     Attributes
     ----------
     transfer : str
-        What the frequency side shows: a key of `app.plots.effective.SHOWN`.
+        What the frequency side shows: a key of `schuler_bench.plots.effective.SHOWN`.
     discrete : bool
         The measured gain and phase of the running filters are drawn on H.
     optimal : bool

@@ -4,11 +4,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.editing.limits import BOXES, shown_limit
 from navcore.engine.measures import begins_s, judged, measure
 from navcore.engine.run import MethodRun, Run
 from navcore.quantities import ERRORS, POSITION, QUANTITIES, Quantity, limit_unit
 from navcore.scenario.requirement import Requirement
+from schuler_bench.editing.limits import BOXES, shown_limit
 
 _IN_SIGHT = 3.0
 _WATCHED_S = 60.0
@@ -83,7 +83,7 @@ def _drawn(row: Quantity) -> bool:
 
 
 def error_limits(requirements: Sequence[Requirement], run: Run) -> dict[str, float]:
-    """Limits to draw in the error plots, SI: key of `app.views.errors.figure.error_plots` -> value.
+    """Limits to draw in the error plots, SI: key of `schuler_bench.views.errors.figure.error_plots` -> value.
 
     One that lies far above all curves is left out: it would press them flat.
     """

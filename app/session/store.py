@@ -7,8 +7,6 @@ import logging
 import os
 import re
 import secrets
-import shutil
-import stat
 import sys
 import tempfile
 import threading
@@ -17,11 +15,21 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO, Any
 
-from app.http.ids import log_name
-from app.jobs.words import without_folders
-from app.session.content import Contents, link_files
-from app.session.database import Database, parsed
 from navcore.foundation.text import Text
+from schuler_bench.http.ids import log_name
+from schuler_bench.jobs.words import without_folders
+from schuler_bench.session.content import Contents
+from schuler_bench.session.database import Database, parsed
+from schuler_bench.session.folder import (
+    FILES,
+    TEMPORARY,
+    Folder,
+    link_files,
+    opened,
+    refuse_others,
+    remove_files,
+    temporary_name,
+)
 
 WRITE_AFTER_S = 0.5
 """Between a change and the file: changes that follow each other are written once."""
@@ -39,7 +47,7 @@ _UPKEEP_EVERY_S = 600.0
 _ORPHAN_S = 86_400.0
 NO_HOME = Text("there is no home folder: set XDG_STATE_HOME")
 _ID = re.compile(r"[A-Za-z0-9_-]{1,64}")
-_KEY_BYTES = 32
+_KEY, _KEY_BYTES = "session.key", 32
 _log = logging.getLogger("schuler.store")
 
 
@@ -61,13 +69,26 @@ def default_folder() -> Path | None:
     return base / "schuler-bench" / "sessions"
 
 
+def checked_folder() -> Path | None:
+    """Return the `default_folder`, in which nothing else is in the place of something of ours.
+
+    Raises
+    ------
+    InputError
+        As `refuse_others`.
+    """
+    folder = default_folder()
+    if folder is not None:
+        refuse_others(folder)
+    return folder
+
+
 def open_store(folder: Path) -> Store | None:
     """Open a folder of documents, made if need be; None, with a line in the log, if it cannot be used."""
     try:
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        if hasattr(os, "getuid") and folder.stat().st_uid != os.getuid():
-            raise PermissionError(Text("it belongs to another user"))
-        folder.chmod(0o700)
+        folder.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with opened(folder, make=True) as ours:
+            os.fchmod(ours.handle, 0o700)
         with tempfile.TemporaryFile(dir=folder):
             pass
         return Store(folder, claim(folder, shared=bool(os.environ.get(CLAIMED))))
@@ -91,13 +112,12 @@ def claim(folder: Path, *, shared: bool = False) -> IO[bytes]:
     OSError
         Another server holds it.
     """
-    careful = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
-    handle = os.open(folder / "lock", os.O_RDWR | os.O_CREAT | careful, 0o600)
-    file = os.fdopen(handle, "r+b")
+    with opened(folder) as ours:
+        file = os.fdopen(ours.open("lock", os.O_RDWR | os.O_CREAT), "r+b")
     try:
         import fcntl
 
-        fcntl.flock(handle, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+        fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
     except ImportError:  # not on this platform
         return file
     except OSError:
@@ -295,21 +315,23 @@ class Store:
         now = time.time()
         try:
             for id in self.database.remove_old(now - OLDEST_S, now - 10.0 * OLDEST_S, MOST_KEPT):
-                shutil.rmtree(self.files_folder(id), ignore_errors=True)
+                _log.info("removed session %s: not used for long, or one too many", log_name(id))
+                remove_files(self.files_folder(id))
             self._remove_orphans(now)
             self.contents.remove_unused()
         except OSError as error:
             _log.warning("old sessions cannot be removed: %s", error.strerror or error)
 
     def _remove_orphans(self, now: float) -> None:
-        for path in self.folder.iterdir():
-            with contextlib.suppress(OSError):
-                if now - path.lstat().st_mtime < _ORPHAN_S:
+        with opened(self.folder) as ours:
+            for name in ours.names():
+                state = ours.state(name)
+                if state is None or now - state.st_mtime < _ORPHAN_S:
                     continue
-                if path.suffix == ".tmp" and path.name.startswith("."):
-                    path.unlink(missing_ok=True)
-                elif path.suffix == ".files" and not self.has(path.stem):
-                    shutil.rmtree(path, ignore_errors=True)
+                if TEMPORARY.fullmatch(name) and ours.file(name):
+                    ours.remove(name, f"{name}, which was never put in its place")
+                elif FILES.fullmatch(name) and not self.has(Path(name).stem):
+                    remove_files(self.folder / name)
 
 
 def _checked(id: str) -> str:
@@ -329,30 +351,25 @@ def session_key(folder: Path | None) -> bytes:
     made = secrets.token_bytes(_KEY_BYTES)
     if folder is None:
         return made
-    path = folder / "session.key"
     with contextlib.suppress(OSError):
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        if not path.exists():
-            _place(made, path)
-        # A FIFO of that name must not hold up the start.
-        handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOFOLLOW", 0))
-        with os.fdopen(handle, "rb") as file:
-            kept = file.read(_KEY_BYTES + 1) if stat.S_ISREG(os.fstat(handle).st_mode) else b""
+        folder.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with opened(folder, make=True) as ours:
+            if ours.state(_KEY) is None:
+                _place(made, ours)
+            with ours.read(_KEY) as file:
+                kept = file.read(_KEY_BYTES + 1)
         if len(kept) == _KEY_BYTES:
             return kept
     return made
 
 
-def _place(key: bytes, path: Path) -> None:
+def _place(key: bytes, folder: Folder) -> None:
     """Link a key into its place whole; when two servers start at once, the first one's stays."""
-    fresh = path.with_name(f".{secrets.token_hex(8)}.tmp")
+    fresh = temporary_name()
     try:
-        with os.fdopen(os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "wb") as file:
+        with folder.create(fresh) as file:
             file.write(key)
         with contextlib.suppress(FileExistsError):
-            os.link(fresh, path)
+            folder.link(fresh, folder, _KEY)
     finally:
-        fresh.unlink(missing_ok=True)
-
-
-# ------------------------------------------------------------ uploaded files
+        folder.discard(fresh)

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import math
-import shutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.http.limits import MIB, Limits
 from navcore.foundation import guarded
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
@@ -17,6 +15,8 @@ from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.motion.truth import LAT, LON
 from navcore.scenario.model import Scenario
+from schuler_bench.http.limits import MIB, Limits
+from schuler_bench.session.folder import TEMPORARY, opened, remove_files, temporary_name
 
 if TYPE_CHECKING:
     from navcore.checks.file import FileReport
@@ -99,24 +99,22 @@ class Uploads:
         InputError
             Too large, too many, or not understood (one fault for each thing wrong); nothing is kept then.
         """
-        from app.http.frames import safe_file_name
+        from schuler_bench.http.frames import safe_file_name
 
         name = safe_file_name(name)
         self._refuse_excess(name, len(content))
-        self.folder.mkdir(parents=True, exist_ok=True)
-        path = self.folder / name
-        fresh = path.with_name(f".{name}.new")
-        fresh.write_bytes(content)
-        try:
-            report = guarded.call(name, check_recording, fresh)
-            if not report.ok:
-                raise InputError(Fault(name, f.field, f.value, f.allowed) for f in report.faults)
-        except InputError:
-            fresh.unlink()
-            raise
-        self.keep_once(fresh)
-        fresh.replace(path)
-        fresh.unlink(missing_ok=True)  # two names of one content: to replace one by the other does nothing
+        path, fresh = self.folder / name, temporary_name()
+        with opened(self.folder, make=True) as folder:
+            try:
+                with folder.create(fresh) as file:
+                    file.write(content)
+                report = guarded.call(name, check_recording, self.folder / fresh)
+                if not report.ok:
+                    raise InputError(Fault(name, f.field, f.value, f.allowed) for f in report.faults)
+                self.keep_once(self.folder / fresh)
+                folder.place(fresh, name)
+            finally:
+                folder.discard(fresh)
         self.files[name] = _understood(path, report)
         return self.files[name]
 
@@ -152,12 +150,14 @@ class Uploads:
 
     def reopen(self) -> None:
         """Take over the files that lie in the folder, from before the server was started; others are left."""
-        from app.http.frames import safe_file_name
+        from schuler_bench.http.frames import safe_file_name
 
-        found = sorted(self.folder.iterdir(), key=lambda path: path.stat().st_mtime)
-        for path in found[:MOST_FILES]:
-            if path.is_symlink() or not path.is_file() or safe_file_name(path.name) != path.name:
-                continue
+        with opened(self.folder) as folder:
+            for name in folder.files(TEMPORARY.fullmatch):
+                folder.remove(name, "an upload that was not finished")
+            found = folder.files(lambda name: safe_file_name(name) == name)
+        for name in sorted(found, key=lambda name: found[name].st_mtime)[:MOST_FILES]:
+            path = self.folder / name
             try:
                 report = guarded.call(path.name, check_recording, path)
             except InputError:
@@ -168,7 +168,7 @@ class Uploads:
     def clear(self) -> None:
         """Remove all files and the folder."""
         self.files.clear()
-        shutil.rmtree(self.folder, ignore_errors=True)
+        remove_files(self.folder)
 
     def holding(self, *quantities: str) -> list[str]:
         """Paths of the files that hold any of these quantities, in the order in which they came."""

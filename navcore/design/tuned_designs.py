@@ -106,7 +106,7 @@ def _candidates(
     stable = {method.network: method for method in present if not Setting(ship, method).instability}
     if not stable:
         return [], Setting(ship, default).instability
-    ranked = sorted(stable.values(), key=lambda method: _foretold(Setting(ship, method)))
+    ranked = sorted(stable.values(), key=lambda method: _largest_ratio(Setting(ship, method)))
     return ranked[:_CANDIDATES], ""
 
 
@@ -128,10 +128,10 @@ class _ByLimits(Search):
         super().__init__([Ship(scenario, True, _INTERVALS)], varied, read_objective("tilt_rms"), ())
 
     def value(self, settings: Sequence[Setting]) -> float:
-        return _foretold(settings[0])
+        return _largest_ratio(settings[0])
 
 
-def _foretold(setting: Setting) -> float:
+def _largest_ratio(setting: Setting) -> float:
     """Largest quantity over its limit, by the covariance along the run; infinite where there is none."""
     requirements = setting.ship.scenario.requirement
     series = None
@@ -146,7 +146,7 @@ def _foretold(setting: Setting) -> float:
                 return math.inf
             variances = setting.ship.along(setting.method)
             series = variances.t_s, variances.total
-        ratios.append(_over(_of_series(quantity, *series, begins_s(one)), one))
+        ratios.append(_over(foretold(quantity, *series, begins_s(one)), one))
     return max(ratios)
 
 
@@ -158,7 +158,8 @@ def _over(value: float, one: Requirement) -> float:
     return one.times(value / unit)
 
 
-def _of_series(quantity: Quantity, t_s: np.ndarray, variance: np.ndarray, from_s: float) -> float:
+def foretold(quantity: Quantity, t_s: np.ndarray, variance: np.ndarray, from_s: float) -> float:
+    """Value of a quantity of errors, SI, by variances along the run of shape (m, 7)."""
     assert quantity.kind is not None
     axes = _AXES[quantity.kind]
     square = variance[t_s >= from_s - 1e-6][:, axes].sum(axis=1)

@@ -1,5 +1,7 @@
 """serving 15: too many visitors, sockets, uploads, guesses; a page that never reads, one that floods."""
 
+import hashlib
+import hmac
 import socket
 import threading
 import time
@@ -8,9 +10,9 @@ from contextlib import ExitStack, contextmanager
 
 import pytest
 
-from app.http.limits import MIB, Limits
+from schuler_bench.http.limits import MIB, Limits
 from tests.attack.conftest import TOKEN, Bench, eventually, running
-from tests.attack.wire import SESSION, UPGRADE, ask, shake_hands, statuses, upload, visit
+from tests.attack.wire import SESSION, ask, raw, shake_hands, statuses, upload, visit
 
 pytestmark = pytest.mark.attack
 
@@ -146,12 +148,46 @@ def test_wrong_tokens_are_slowed_down() -> None:
         eventually(lambda: ask(bench.port, f"/?token={TOKEN}").status == 302)
 
 
+def test_cookies_and_bearers_are_counted_with_the_tokens() -> None:
+    with running(token=TOKEN, limits=Limits(token_guesses=20, token_refill_s=60.0)) as bench:
+        cookie = ask(bench.port, f"/?token={TOKEN}").headers["Set-Cookie"].partition(";")[0]
+        name, _, value = cookie.partition("=")
+        # It is no function of the token alone: who guesses tokens cannot try them as cookies.
+        old_way = hmac.new(TOKEN.encode(), b"schuler bench cookie", hashlib.sha256).hexdigest()
+        assert old_way != value
+
+        def tried(**headers: str | list[str]) -> int:
+            return ask(bench.port, "/", {key: given for key, given in headers.items()}).status
+
+        seen = [tried(Cookie=f"{name}={old_way}{number}") for number in range(30)]
+        assert seen == [401] * 16 + [429] * 14
+        # Many in one request are one guess, and none of them is compared.
+        many = "; ".join([*(f"{name}={number}" for number in range(100)), cookie])
+        assert tried(Cookie=many) == 429
+        # Pages that go on showing a cookie of an earlier token leave room for the right token.
+        assert ask(bench.port, f"/?token={TOKEN}").status == 302
+        refused = ask(
+            bench.port, "/", {"Authorization": [f"Bearer {n}" for n in range(99)] + [f"Bearer {TOKEN}"]}
+        )
+        assert refused.status == 401 and b"Show one token, once." in refused.body
+        assert [tried(Authorization="Bearer wrong") for _ in range(5)] == [401] * 3 + [429] * 2
+        assert ask(bench.port, f"/?token={TOKEN}").status == tried(Authorization=f"Bearer {TOKEN}") == 429
+        assert shake_hands(bench.port, Cookie=f"{name}=wrong").status == 429
+        assert (tried(Cookie=cookie), shake_hands(bench.port, Cookie=cookie).status) == (302, 101)
+
+
+def test_guesses_of_all_addresses_together_are_slowed_down_and_nobody_is_locked_out() -> None:
+    limits = Limits(token_guesses=10_000, all_guesses=10, all_refill_s=0.02)
+    with running(token=TOKEN, limits=limits) as bench:
+        began = time.monotonic()
+        assert {ask(bench.port, f"/?token=guess-{number}").status for number in range(60)} == {401}
+        assert time.monotonic() - began >= 0.9  # 50 turns of 0.02 s: a machine that is slow takes longer
+        assert ask(bench.port, f"/?token={TOKEN}").status == 302
+
+
 def test_a_page_that_never_reads_is_dropped() -> None:
     with crowded(ping_s=0.3) as (bench, crowd):
-        head = {"Host": f"127.0.0.1:{bench.port}"} | UPGRADE
-        lines = [f"GET /s/{SESSION} HTTP/1.1", *(f"{name}: {value}" for name, value in head.items())]
-        deaf = crowd.enter_context(socket.create_connection(("127.0.0.1", bench.port)))
-        deaf.sendall("\r\n".join([*lines, "", ""]).encode())
+        crowd.enter_context(raw(bench.port, SESSION))
         places = bench.server.viser._websock_server._live_connections
         eventually(lambda: len(places) == 1)
         for _ in range(50):

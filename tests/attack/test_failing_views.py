@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from app.bench.visitor import PAGE_STATE, Visitor
-from app.serve import open_dashboard
-from app.shell.page import Page
-from app.shell.view import PictureView, View
-from app.views import load
 from navcore.scenario.file import load as load_scenario
 from navcore.scenario.model import Scenario
+from schuler_bench.bench.visitor import PAGE_STATE, Visitor
+from schuler_bench.serve import open_dashboard
+from schuler_bench.shell.page import Page
+from schuler_bench.shell.view import PictureView, View
+from schuler_bench.views import load
 from tests.attack.wire import ask
 from tests.browser.fields import label_of
 
 if TYPE_CHECKING:
-    from app.serve import Dashboard
+    from schuler_bench.serve import Dashboard
 
 pytestmark = pytest.mark.attack
 
@@ -127,15 +127,17 @@ def test_fronts_of_a_design_without_an_objective_brick_no_session(
         assert newest(served).session is session and faults(newest(served)) == {}
 
 
+@pytest.mark.parametrize(("box", "field"), [("from", "window_from_h"), ("to", "window_to_h")])
 @pytest.mark.parametrize("hours", [-1.0, 100000.5, 2.0**53, 1e300])
 def test_hours_out_of_range_are_refused_by_name_and_the_box_returns(
-    dashboard: tuple[int, Dashboard], hours: float
+    dashboard: tuple[int, Dashboard], box: str, field: str, hours: float
 ) -> None:
     """Sent by websocket, as no page would."""
-    with Visitor(dashboard[0], "hours-out-of-range") as visitor:
+    with Visitor(dashboard[0], f"hours-{box}-out-of-range") as visitor:
         visitor.set(PAGE_STATE, "1920x1080|Method|Frequency|Metrics")
         visitor.wait_for_run(1)
-        visitor.set("measured from (h)", hours)
+        before = visitor.held(f"measured {box} (h)")
+        visitor.set(f"measured {box} (h)", hours)
         visitor.wait(lambda: visitor.notices != [], "a notice")
-        assert "window_from_h" in visitor.notices[0][1] and ">= 0 and <= 100000" in visitor.notices[0][1]
-        visitor.wait(lambda: visitor.held("measured from (h)") == 0.0, "the value before")
+        assert field in visitor.notices[0][1] and ">= 0 and <= 100000" in visitor.notices[0][1]
+        visitor.wait(lambda: visitor.held(f"measured {box} (h)") == before, "the value before")

@@ -3,6 +3,8 @@
 import contextlib
 import math
 import threading
+import time
+from collections.abc import Callable
 from typing import Any
 
 import msgspec
@@ -10,10 +12,10 @@ import pytest
 import viser._viser
 from websockets.exceptions import ConnectionClosed
 
-from app.bridge.controls import lock_controls
-from app.http.limits import MIB
+from schuler_bench.bridge.controls import lock_controls
+from schuler_bench.http.limits import MIB
 from tests.attack.conftest import Bench, eventually
-from tests.attack.wire import CAMERA, upload, visit
+from tests.attack.wire import CAMERA, raw, upload, visit
 
 pytestmark = pytest.mark.attack
 
@@ -200,3 +202,77 @@ class TestUpload:
             visitor.send(type="FileTransferPart", **other, part_index=1, content=b"def")
             assert visitor.closed_with() == 1008
             assert bench.of("cross-writer")["gain"].value == 0.5
+
+
+# ---------------------------------------------------------------- frames beneath the messages
+
+MASKED = b"\x80\x00\x00\x00\x00"
+"""Length 0 and a mask of zeros."""
+FLOODS = {
+    "empty fragments that never end": (b"\x02" + MASKED, b"\x00" + MASKED),
+    "fragments of a byte": (b"\x02" + MASKED, b"\x00\x81\x00\x00\x00\x00x"),
+    "pings": (b"", b"\x89" + MASKED),
+    "pongs": (b"", b"\x8a" + MASKED),
+}
+
+
+@pytest.mark.parametrize("flood", FLOODS)
+def test_a_flood_of_fragments_or_pings_ends_its_connection_within_a_second(
+    bench: Bench, flood: str, record_property: Callable[[str, object], None]
+) -> None:
+    first, frame = FLOODS[flood]
+    name = f"flood-of-{flood.replace(' ', '-')}"
+    with visit(bench.port, "beside-the-flood") as other, raw(bench.port, name) as attacker:
+        gain = other.control("gain")
+        attacker.sendall(first)
+        began, ended = time.monotonic(), threading.Event()
+
+        def attack() -> None:
+            with contextlib.suppress(OSError):
+                while time.monotonic() < began + 10.0:
+                    attacker.sendall(frame * 10_000)
+            ended.set()
+
+        thread = threading.Thread(target=attack)
+        thread.start()
+        other.set(gain, 0.8)
+        eventually(lambda: bench.of("beside-the-flood")["gain"].value == 0.8)
+        thread.join()
+        assert ended.is_set()
+        took_s = time.monotonic() - began
+        record_property("flood_ended_s", took_s)
+        assert took_s < 1.0
+        eventually(lambda: len(bench.server.viser._websock_server._live_connections) == 1, 1.0)
+    still_served(bench)
+
+
+def test_a_large_message_may_come_in_parts_and_pages_may_ping(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As browsers send it: in parts of 64 KiB."""
+    content = [b"x" * (512 << 10)] * 8
+    with visit(bench.port, "in-parts") as visitor:
+        whole = visitor.socket.send
+
+        def in_parts(message: bytes) -> None:
+            whole(message[start : start + (64 << 10)] for start in range(0, len(message), 64 << 10))
+
+        monkeypatch.setattr(visitor.socket, "send", in_parts)
+        upload(visitor, "log", "large", content)
+        for _ in range(20):
+            visitor.socket.ping()
+        eventually(lambda: getattr(bench.of("in-parts")["log"].value, "content", b"") == b"".join(content))
+
+
+def test_an_unfinished_message_in_very_many_parts_is_not_collected(bench: Bench) -> None:
+    """However slowly they come."""
+    with raw(bench.port, "in-many-parts") as attacker:
+        attacker.sendall(b"\x02" + MASKED)
+        with pytest.raises(OSError):
+            for _ in range(400):
+                attacker.sendall(b"\x00" + MASKED)
+                time.sleep(0.003)
+            time.sleep(0.5)
+            attacker.sendall(b"\x00" + MASKED)
+            time.sleep(0.1)
+            attacker.sendall(b"\x00" + MASKED)

@@ -1,6 +1,7 @@
 """A hostile (or plain) client: HTTP and websocket requests as no browser would make them."""
 
 import http.client
+import socket
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
@@ -10,7 +11,7 @@ from typing import Any
 import msgspec
 from websockets.sync.client import ClientConnection, connect
 
-from app.bench.visitor import CAMERA, decoded
+from schuler_bench.bench.visitor import CAMERA, decoded
 
 SESSION = "session-of-a-test"
 UPGRADE = {
@@ -125,3 +126,14 @@ def visit(port: int, session: str = SESSION, camera: bool = True, **options: Any
         if camera:
             visitor.send(**CAMERA)
         yield visitor
+
+
+@contextmanager
+def raw(port: int, session: str) -> Iterator[socket.socket]:
+    """An open page's websocket without a library: to send what none would."""
+    head = {"Host": f"127.0.0.1:{port}"} | UPGRADE
+    lines = [f"GET /s/{session} HTTP/1.1", *(f"{name}: {value}" for name, value in head.items())]
+    with socket.create_connection(("127.0.0.1", port), timeout=10) as opened:
+        opened.sendall("\r\n".join([*lines, "", ""]).encode())
+        assert opened.recv(12) == b"HTTP/1.1 101"
+        yield opened

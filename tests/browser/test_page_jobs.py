@@ -5,16 +5,16 @@ from typing import Any
 
 import pytest
 
-from app.editing import edits
-from app.jobs.designer import FrontsTask
-from app.jobs.verifier import STOPPED
-from app.views.appearance.view import BANDS
-from app.views.design.view import BUDGET_OF, CHOICES
-from app.views.tune import finder
-from app.views.tune.setting import ACCEPT, DISCARD, TUNE, UNDO
-from app.views.tune.view import SEARCH_FOR
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import edits
+from schuler_bench.jobs.designer import FrontsTask
+from schuler_bench.jobs.verifier import STOPPED
+from schuler_bench.views.appearance.view import BANDS
+from schuler_bench.views.design.view import BUDGET_OF, CHOICES
+from schuler_bench.views.tune import finder
+from schuler_bench.views.tune.setting import ACCEPT, DISCARD, TUNE, UNDO
+from schuler_bench.views.tune.view import SEARCH_FOR
 from tests.browser.driver import SWEEP, Bench
 
 VERIFY, STOP_VERIFYING = "Verify with full strapdown", "Stop verifying"

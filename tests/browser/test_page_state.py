@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-from app.editing import edits
-from app.session.session import Session
 from navcore.scenario.file import load
+from schuler_bench.editing import edits
+from schuler_bench.session.session import Session
 from tests.browser.conftest import Another
 from tests.browser.driver import Bench
 from tests.browser.fields import label_of

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.editing.limits import with_limit
-from app.plots.effective import earth_mode_text
-from app.views.frequency.nyquist import margins_of
-from app.views.poles.whole import LATITUDES
 from navcore.analysis import analyse
 from navcore.analysis.whole_system import growth_over_latitude
 from navcore.foundation.units import DEG
 from navcore.scenario.model import Scenario
+from schuler_bench.editing.limits import with_limit
+from schuler_bench.plots.effective import earth_mode_text
+from schuler_bench.views.frequency.nyquist import margins_of
+from schuler_bench.views.poles.whole import LATITUDES
 from tests.browser.driver import SIZES, Bench
 from tests.browser.fields import label_of
 from tests.browser.placing import NEAR, place, placing_scenario, spot

@@ -4,9 +4,9 @@ from contextlib import nullcontext
 from types import SimpleNamespace
 from typing import Any
 
-from app.editing.form import fields
-from app.shell.control import Section
 from navcore.sensors.imu import Imu
+from schuler_bench.editing.form import fields
+from schuler_bench.shell.control import Section
 
 
 def gui() -> Any:

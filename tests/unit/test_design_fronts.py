@@ -6,14 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.editing.edits import with_network
-from app.jobs.designer import FrontsTask
-from app.plots.plotly_data import values_of
-from app.views.frequency.curves import optimal_reference
-from app.views.frequency.figure import bode
-from app.views.tune.finder import read_place
-from app.views.tune.fronts import fronts_figure, nearest
-from app.views.tune.setting import requirements_told
 from navcore.design.pareto import Pareto, measured, pareto
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
@@ -21,6 +13,14 @@ from navcore.foundation.units import ARCSEC
 from navcore.networks.optimal import OptimalNetwork
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.editing.edits import with_network
+from schuler_bench.jobs.designer import FrontsTask
+from schuler_bench.plots.plotly_data import values_of
+from schuler_bench.views.frequency.curves import optimal_reference
+from schuler_bench.views.frequency.figure import bode
+from schuler_bench.views.tune.finder import read_place
+from schuler_bench.views.tune.fronts import fronts_figure, nearest
+from schuler_bench.views.tune.setting import requirements_told
 from tests.limits import limits
 
 OBJECTIVES = ("tilt_rms", "velocity_rms")

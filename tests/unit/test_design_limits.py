@@ -6,18 +6,18 @@ from typing import Any
 
 import pytest
 
-from app.editing.edits import with_design, with_value
-from app.editing.limits import with_limit
-from app.jobs import judge
-from app.jobs.designer import Limits
-from app.jobs.judge import Judge, Odds
-from app.views.design.limits import designs_html
 from navcore.design.designs import Designs, designs
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.scenario.file import load
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from schuler_bench.editing.edits import with_design, with_value
+from schuler_bench.editing.limits import with_limit
+from schuler_bench.jobs import judge
+from schuler_bench.jobs.designer import Limits
+from schuler_bench.jobs.judge import Judge, Odds
+from schuler_bench.views.design.limits import designs_html
 
 
 @pytest.fixture(scope="module")

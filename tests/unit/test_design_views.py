@@ -5,12 +5,6 @@ from dataclasses import replace
 
 import pytest
 
-from app.jobs.designer import Budgeter, Designer, TuningTask
-from app.jobs.refusals import refusals
-from app.plots.budgets import steady_budget
-from app.views.design.figure import NOTHING, budget_figure, parts
-from app.views.tune.proposal import proposal_html, sentences_about
-from app.views.tune.setting import requirements_as_text
 from navcore.design.budget import budget
 from navcore.design.measures import read_requirement
 from navcore.design.tune import tune
@@ -20,6 +14,12 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs.designer import Budgeter, Designer, TuningTask
+from schuler_bench.jobs.refusals import refusals
+from schuler_bench.plots.budgets import steady_budget
+from schuler_bench.views.design.figure import NOTHING, budget_figure, parts
+from schuler_bench.views.tune.proposal import proposal_html, sentences_about
+from schuler_bench.views.tune.setting import requirements_as_text
 from tests.limits import limits
 
 

@@ -9,14 +9,6 @@ from typing import get_args
 
 import pytest
 
-from app.cli import main
-from app.plots.units import NAMED
-from app.session import display
-from app.session.requirements import verdicts
-from app.session.shown import window_of
-from app.views.compare.table import MEASURED, lines_of
-from app.views.errors.figure import GROUPS, VERIFIED
-from app.views.metrics.table import metrics_rows
 from navcore.analysis import judged
 from navcore.design.figures import Figures
 from navcore.design.measures import Setting, Ship
@@ -42,6 +34,14 @@ from navcore.quantities import (
     searched,
 )
 from navcore.scenario.file import load
+from schuler_bench.cli import main
+from schuler_bench.plots.units import NAMED
+from schuler_bench.session import display
+from schuler_bench.session.requirements import verdicts
+from schuler_bench.session.shown import window_of
+from schuler_bench.views.compare.table import MEASURED, lines_of
+from schuler_bench.views.errors.figure import GROUPS, VERIFIED
+from schuler_bench.views.metrics.table import metrics_rows
 
 ROOT = Path(__file__).parents[2]
 TABLE = ROOT / "navcore" / "quantities"

@@ -11,13 +11,6 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from app.editing.limits import BOXES, FROM, from_text, label_of, limit_text, with_begin, with_limit
-from app.session.display import Display
-from app.session.requirements import error_limits, limits_of, verdicts
-from app.session.shown import window_of
-from app.views.requirements.table import requirements_html
-from app.views.requirements.view import RequirementsView
-from app.views.tune.setting import requirements_as_text
 from navcore.design.measures import read_requirement
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
@@ -26,6 +19,13 @@ from navcore.foundation.units import ARCSEC
 from navcore.quantities import LIMITED, NAMES
 from navcore.scenario.file import to_toml
 from navcore.scenario.model import Scenario
+from schuler_bench.editing.limits import BOXES, FROM, from_text, label_of, limit_text, with_begin, with_limit
+from schuler_bench.session.display import Display
+from schuler_bench.session.requirements import error_limits, limits_of, verdicts
+from schuler_bench.session.shown import window_of
+from schuler_bench.views.requirements.table import requirements_html
+from schuler_bench.views.requirements.view import RequirementsView
+from schuler_bench.views.tune.setting import requirements_as_text
 from tests.limits import limits, under
 from tests.unit.figures_runs import INTERNAL, THREE, UNSTABLE, diverging, run_of, static_run
 

@@ -7,16 +7,16 @@ from html import unescape
 
 import pytest
 
-from app.languages.wording import wording
-from app.plots.units import rounded
-from app.session.display import Display
-from app.session.pins import Pins
-from app.session.shown import Shown
-from app.views.appearance.document import Session, command, document
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.scenario.file import load, scenario_hash
 from navcore.scenario.model import Scenario
+from schuler_bench.languages.wording import wording
+from schuler_bench.plots.units import rounded
+from schuler_bench.session.display import Display
+from schuler_bench.session.pins import Pins
+from schuler_bench.session.shown import Shown
+from schuler_bench.views.appearance.document import Session, command, document
 from tests.limits import under
 from tests.unit.figures_runs import THREE, UNSTABLE, run_of, static_run
 

@@ -17,11 +17,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from app.bench.visitor import PAGE_COMMAND, PAGE_PAINTED, PAGE_STATE, Visitor
 from navcore.engine.measures import metrics as measured
 from navcore.engine.simulation import simulate
 from navcore.scenario.file import load, parse_toml
 from navcore.scenario.model import Scenario
+from schuler_bench.bench.visitor import PAGE_COMMAND, PAGE_PAINTED, PAGE_STATE, Visitor
 from tests.browser.fields import box_labels, label_of
 
 if TYPE_CHECKING:

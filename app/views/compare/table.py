@@ -4,18 +4,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.plots import style
-from app.plots.table import cell, row, table
-from app.plots.units import rounded
-from app.session.pins import Pin
-from app.session.requirements import verdicts
-from app.session.shown import Window, edited
-from app.views.requirements.table import overall
 from navcore.engine.measures import measure
 from navcore.engine.run import Run
 from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES
 from navcore.scenario.requirement import Requirement
+from schuler_bench.plots import style
+from schuler_bench.plots.table import cell, row, table
+from schuler_bench.plots.units import rounded
+from schuler_bench.session.pins import Pin
+from schuler_bench.session.requirements import verdicts
+from schuler_bench.session.shown import Window, edited
+from schuler_bench.views.requirements.table import overall
 
 MEASURED = {
     "settling": QUANTITIES["settling_s"],

@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from app.plots import style
-from app.plots.plotly_data import PlotlyFigure, figure
-from app.plots.units import number
 from navcore.analysis.whole_system import duration
 from navcore.design.budget import Budget, MethodBudget
 from navcore.foundation.text import Text
 from navcore.quantities import Kind, budgeted
+from schuler_bench.plots import style
+from schuler_bench.plots.plotly_data import PlotlyFigure, figure
+from schuler_bench.plots.units import number
 
 SOURCES = {
     "gyro_white": (Text("gyro white noise"), "#1F5A91"),

@@ -5,14 +5,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from app.jobs.judge import Odds
-from app.plots.effective import growth_text
-from app.plots.limits import SIGNS, amount, short_label
-from app.plots.table import cell, row, table
-from app.plots.units import number
-from app.session.requirements import limits_of, verdicts
-from app.views.requirements.shares import share_text
-from app.views.tune.fronts import setting_text
 from navcore.design.designs import Designs
 from navcore.design.measures import Setting
 from navcore.design.shares import Limit
@@ -22,6 +14,14 @@ from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES, limit_unit
 from navcore.scenario.method import Method
+from schuler_bench.jobs.judge import Odds
+from schuler_bench.plots.effective import growth_text
+from schuler_bench.plots.limits import SIGNS, amount, short_label
+from schuler_bench.plots.table import cell, row, table
+from schuler_bench.plots.units import number
+from schuler_bench.session.requirements import limits_of, verdicts
+from schuler_bench.views.requirements.shares import share_text
+from schuler_bench.views.tune.fronts import setting_text
 
 TAKE_DESIGN = "take-design"
 """Command that puts a design into the method that is edited: ``take-design 3``, its place."""

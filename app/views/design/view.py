@@ -2,22 +2,22 @@
 
 from typing import Any
 
-from app.editing import edits
-from app.jobs.judge import Odds
-from app.plots.budgets import steady_budget
-from app.plots.plotly_data import PlotlyFigure
-from app.session.shown import Shown
-from app.shell import notices
-from app.shell.layout import TOOLS
-from app.shell.plotly_view import PlotlyView
-from app.shell.searching import SearchControls, show_html
-from app.shell.view import Figures, Frame, if_user
-from app.views.design.figure import budget_figure
-from app.views.design.limits import TAKE_DESIGN, designs_html
 from navcore.design.budget import Budget
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import edits
+from schuler_bench.jobs.judge import Odds
+from schuler_bench.plots.budgets import steady_budget
+from schuler_bench.plots.plotly_data import PlotlyFigure
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell import notices
+from schuler_bench.shell.layout import TOOLS
+from schuler_bench.shell.plotly_view import PlotlyView
+from schuler_bench.shell.searching import SearchControls, show_html
+from schuler_bench.shell.view import Figures, Frame, if_user
+from schuler_bench.views.design.figure import budget_figure
+from schuler_bench.views.design.limits import TAKE_DESIGN, designs_html
 
 BUDGET_OF = Text("show")
 CHOICES = {

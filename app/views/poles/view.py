@@ -3,25 +3,25 @@
 from collections.abc import Callable
 from typing import Any
 
-from app.editing.limits import with_limit
-from app.editing.placing import COMMAND, pair_at, read_point, typed_pair, with_pair
-from app.plots.plotly_data import PlotlyFigure
-from app.session.display import Display
-from app.session.requirements import limits_of
-from app.session.shown import Shown
-from app.shell import notices
-from app.shell.layout import CHOOSER_PX, TOOLS
-from app.shell.pair_handle import PairHandle
-from app.shell.plotly_view import PlotlyView
-from app.shell.view import Frame, if_user
-from app.views.poles.figure import PANELS, poles
-from app.views.poles.grid import NO_LOCUS, locus_fields
-from app.views.poles.whole import whole_system_figure
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from schuler_bench.editing.limits import with_limit
+from schuler_bench.editing.placing import COMMAND, pair_at, read_point, typed_pair, with_pair
+from schuler_bench.plots.plotly_data import PlotlyFigure
+from schuler_bench.session.display import Display
+from schuler_bench.session.requirements import limits_of
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell import notices
+from schuler_bench.shell.layout import CHOOSER_PX, TOOLS
+from schuler_bench.shell.pair_handle import PairHandle
+from schuler_bench.shell.plotly_view import PlotlyView
+from schuler_bench.shell.view import Frame, if_user
+from schuler_bench.views.poles.figure import PANELS, poles
+from schuler_bench.views.poles.grid import NO_LOCUS, locus_fields
+from schuler_bench.views.poles.whole import whole_system_figure
 
 LOCUS = Text("locus")
 DECAYS = "H'(0) ≤ 0"

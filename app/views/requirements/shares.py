@@ -1,10 +1,10 @@
 """Shares of seeds beside a tick: how often a method meets a limit, and all of them."""
 
-from app.jobs.judge import Odds
-from app.plots.table import cell
-from app.plots.units import number
 from navcore.design.shares import wilson
 from navcore.foundation.text import Text
+from schuler_bench.jobs.judge import Odds
+from schuler_bench.plots.table import cell
+from schuler_bench.plots.units import number
 
 
 def share_text(met: float, low: float, high: float) -> str:

@@ -3,16 +3,16 @@
 import math
 from collections.abc import Sequence
 
-from app.jobs.judge import Odds
-from app.plots import style
-from app.plots.limits import SIGNS
-from app.plots.pinned import Pinned, pinned_methods, together
-from app.plots.table import cell, row, table
-from app.plots.units import number, rounded
-from app.session.requirements import Verdict, verdicts
-from app.views.requirements.shares import odds_html
 from navcore.engine.run import Run
 from navcore.foundation.text import Text, quoted
+from schuler_bench.jobs.judge import Odds
+from schuler_bench.plots import style
+from schuler_bench.plots.limits import SIGNS
+from schuler_bench.plots.pinned import Pinned, pinned_methods, together
+from schuler_bench.plots.table import cell, row, table
+from schuler_bench.plots.units import number, rounded
+from schuler_bench.session.requirements import Verdict, verdicts
+from schuler_bench.views.requirements.shares import odds_html
 
 _DIGITS = 4
 

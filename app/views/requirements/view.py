@@ -4,16 +4,16 @@ import threading
 from collections.abc import Callable
 from dataclasses import replace
 
-from app.editing.limits import BOXES, FROM, from_text, label_of, limit_text, with_begin, with_limit
-from app.session.shown import Shown
-from app.shell import notices
-from app.shell.control import Widget
-from app.shell.view import Frame, PictureView, Tab, if_user
-from app.views.requirements.table import requirements_html
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES
 from navcore.scenario.model import Scenario
+from schuler_bench.editing.limits import BOXES, FROM, from_text, label_of, limit_text, with_begin, with_limit
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell import notices
+from schuler_bench.shell.control import Widget
+from schuler_bench.shell.view import Frame, PictureView, Tab, if_user
+from schuler_bench.views.requirements.table import requirements_html
 
 _GRID = '<div class="sb-limits"></div>'
 _UNFINISHED_S = 1.2

@@ -6,18 +6,18 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from app.plots.limits import SIGNS, short_label
-from app.plots.table import cell, row, table
-from app.plots.units import number
 from navcore.design.measures import Setting, measure, read_requirement
 from navcore.design.ship import Ship
 from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES, Quantity, limit_unit
+from schuler_bench.plots.limits import SIGNS, short_label
+from schuler_bench.plots.table import cell, row, table
+from schuler_bench.plots.units import number
 
 if TYPE_CHECKING:
-    from app.jobs.designer import TuningTask
     from navcore.design.confirm import Change
     from navcore.design.tune import Tuned
+    from schuler_bench.jobs.designer import TuningTask
 
 _OF_THE_LOOP = ("settling_s", "growth_per_s")
 _SMALLER, _LARGER, _ALIKE = (

@@ -3,15 +3,15 @@
 import math
 from typing import Any
 
-from app.plots import style
-from app.plots.effective import earth_mode_text, growth_text
-from app.plots.plotly_data import PlotlyFigure, figure
-from app.plots.units import number
 from navcore.design.pareto import Pareto, Point
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES
+from schuler_bench.plots import style
+from schuler_bench.plots.effective import earth_mode_text, growth_text
+from schuler_bench.plots.plotly_data import PlotlyFigure, figure
+from schuler_bench.plots.units import number
 
 COMMAND = "front-point"
 """Command with which a click asks for a point: ``front-point x y``, in the units of the axes."""

@@ -6,19 +6,19 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from app.jobs.refusals import spoken
-from app.plots.limits import requirement_words
-from app.plots.table import cell, row, table
-from app.plots.units import number
-from app.views.tune.confirmation import confirmation_html
 from navcore.design.vary import present, read_varied
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES
+from schuler_bench.jobs.refusals import spoken
+from schuler_bench.plots.limits import requirement_words
+from schuler_bench.plots.table import cell, row, table
+from schuler_bench.plots.units import number
+from schuler_bench.views.tune.confirmation import confirmation_html
 
 if TYPE_CHECKING:
-    from app.jobs.designer import TuningTask
     from navcore.design.tune import Tuned
+    from schuler_bench.jobs.designer import TuningTask
 
 
 def proposal_html(task: TuningTask, tuned: Tuned, *, accepted: bool = False) -> str:

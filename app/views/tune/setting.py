@@ -3,15 +3,6 @@
 from collections.abc import Sequence
 from typing import Any
 
-from app.jobs.designer import TuningTask
-from app.jobs.refusals import OBJECTIVE, VARY
-from app.plots.limits import limit_words, requirement_words
-from app.session.display import OBJECTIVES, Display
-from app.shell import notices
-from app.shell.searching import SearchControls, reveal, show_html
-from app.shell.view import Frame, if_user
-from app.views.tune.change import change_network
-from app.views.tune.proposal import doubts, proposal_html
 from navcore.design.default_limits import limits_by_default
 from navcore.design.measures import read_objective, read_requirement
 from navcore.design.vary import network_not_in_force, tunable_fields
@@ -20,6 +11,15 @@ from navcore.quantities import QUANTITIES, searched
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import Requirement
+from schuler_bench.jobs.designer import TuningTask
+from schuler_bench.jobs.refusals import OBJECTIVE, VARY
+from schuler_bench.plots.limits import limit_words, requirement_words
+from schuler_bench.session.display import OBJECTIVES, Display
+from schuler_bench.shell import notices
+from schuler_bench.shell.searching import SearchControls, reveal, show_html
+from schuler_bench.shell.view import Frame, if_user
+from schuler_bench.views.tune.change import change_network
+from schuler_bench.views.tune.proposal import doubts, proposal_html
 
 TUNE, STOP = Text("Tune"), Text("Stop tuning")
 ACCEPT, DISCARD, UNDO = Text("Accept the proposal"), Text("Discard"), Text("Undo the proposal")

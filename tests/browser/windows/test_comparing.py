@@ -5,9 +5,9 @@ from itertools import combinations
 
 import pytest
 
-from app.editing import edits
-from app.session.pins import MOST_PINS
-from app.shell.layout import layout_for
+from schuler_bench.editing import edits
+from schuler_bench.session.pins import MOST_PINS
+from schuler_bench.shell.layout import layout_for
 from tests.browser.driver import SIZES, Bench
 from tests.browser.fields import label_of
 from tests.browser.test_page_layout import wait_until_it_fits

@@ -6,13 +6,14 @@ from typing import Any
 
 import pytest
 
-from app.session.requirements import verdicts
-from app.session.shown import window_of
-from app.views.errors.view import OWN_NOISE
-from app.views.learn.lessons import MISSING, lessons
-from app.views.metrics.table import verdict
-from app.views.verification.view import VERIFY
+from navcore.foundation.text import Text
 from navcore.scenario.file import load
+from schuler_bench.session.requirements import verdicts
+from schuler_bench.session.shown import window_of
+from schuler_bench.views.errors.view import OWN_NOISE
+from schuler_bench.views.learn.lessons import MISSING, lessons
+from schuler_bench.views.metrics.table import verdict
+from schuler_bench.views.verification.view import VERIFY
 from tests.browser import test_page_lessons as learning
 from tests.browser import test_page_scene as playing
 from tests.browser.driver import Bench
@@ -60,8 +61,8 @@ def test_a_verification_leaves_the_curves_of_the_run(window: Bench) -> None:
     before, number = window.curves(), window.run
     see(window, window.button(VERIFY)).click()
     window.wait_until(lambda: verifier.result is not None, 120.0)
-    told = window.said(f"Verified. {verdict(verifier.result)}")
-    read(window, page.locator(".sb-note:visible", has_text=told))
+    verified = Text("Verified. {verdict}", verdict=verdict(verifier.result))
+    read(window, page.locator(".sb-note:visible", has_text=window.said(verified)))
     assert (window.curves(), window.run) == (before, number) and not any(page.evaluate("look.dashed"))
     window.choose("curves", "Verification")
     page.wait_for_function("() => look.dashed().some(lines => lines.length === 3)")
