@@ -19,7 +19,7 @@ from schuler_bench.plots.effective import growth_text
 from schuler_bench.plots.limits import SIGNS, amount, short_label
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import number
-from schuler_bench.session.requirements import limits_of, verdicts
+from schuler_bench.session.requirements import asked, limits_of
 from schuler_bench.views.requirements.shares import share_text
 from schuler_bench.views.tune.fronts import setting_text
 
@@ -98,8 +98,8 @@ def designs_html(
         title = Text("Every network, tuned for these limits, and a Kalman filter")
         body += [_title(title), *map(_line, designs)]
     limits = limits_of(run.scenario.requirement)
-    asked = Text.joined(", ", (_words(key, limit) for key, limit in limits.items()))
-    said = Text("Limits: {asked}.", asked=asked)
+    words = Text.joined(", ", (_words(key, limit) for key, limit in limits.items()))
+    said = Text("Limits: {asked}.", asked=words)
     told = Text('<p class="sb-asked-limits">{asked:html}</p>', asked=said)
     return note + told + table([head], body, "sb-designs")
 
@@ -115,10 +115,10 @@ def _title(text: str) -> str:
 
 def _in_run(run: Run) -> list[str]:
     """What the run makes of the limits, a method: its answer to a slider, before any seed is run."""
-    asked = [verdict for verdict in verdicts(run, run.scenario.requirement) if verdict.limit is not None]
+    judged = asked(run, run.scenario.requirement)
     said = []
     for k in range(len(run.methods)):
-        missed = [short_label(verdict.quantity.key) for verdict in asked if not verdict.passed[k]]
+        missed = [short_label(verdict.quantity.key) for verdict in judged if not verdict.passed[k]]
         names = Text.joined(", ", missed)
         word = Text("✗ misses {missed}", missed=names) if missed else Text("✓ meets all")
         said.append(cell(quoted(word), "sb-missed" if missed else "sb-met", tag="span"))
