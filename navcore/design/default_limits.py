@@ -10,7 +10,7 @@ from navcore.scenario.requirement import OF_THE_SETTING
 
 DEFAULT_LIMITS = {
     "settling_s<=4h": ("settling_s", "damping_ratio"),
-    "growth_per_s<=1.2e-5": ("growth_per_s", "earth_mode_growth_per_s", "h_slope_s"),
+    "growth_per_s<=1.2e-5": ("growth_per_s",),
 }
 """Limits, each unless one of the quantities beside it is limited or made small.
 
