@@ -3,13 +3,14 @@
 from collections.abc import Sequence
 
 from navcore.design.measures import Objective, Requirement, read_requirement
+from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from navcore.scenario.requirement import OF_THE_SETTING
 
 DEFAULT_LIMITS = {
     "settling_s<=4h": ("settling_s", "damping_ratio"),
-    "growth_per_s<=1.2e-5": ("growth_per_s", "earth_mode_growth_per_s", "h_slope_s"),
+    "growth_per_s<=1.2e-5": ("growth_per_s",),
 }
 """Limits, each unless one of the quantities beside it is limited or made small.
 
@@ -22,6 +23,16 @@ def own_limits(scenario: Scenario, given: Sequence[Requirement]) -> list[Require
     known = {*OF_THE_SETTING} - {one.name for one in given}
     own = [one for one in scenario.requirement if one.quantity in known]
     return [read_requirement(f"{one.quantity}{one.sense}{one.limit_si!r}") for one in own]
+
+
+def require_consistent(limits: Sequence[Requirement]) -> None:
+    """Refuse two limits of one quantity that no value keeps; raises `InputError`."""
+    for upper in limits:
+        for lower in limits:
+            opposed = upper.name == lower.name and (upper.sense, lower.sense) == ("<=", ">=")
+            if opposed and lower.limit > upper.limit:
+                reason = Text("contradicts {other}: leave one of the two out", other=upper.text)
+                raise InputError(Fault("", "--require", lower.text, reason))
 
 
 def limits_by_default(objective: Objective, limits: Sequence[Requirement]) -> list[Requirement]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from navcore.design.confirm import Confirmed, confirmed
-from navcore.design.default_limits import limits_by_default, own_limits, without_defaults
+from navcore.design.default_limits import limits_by_default, own_limits, require_consistent, without_defaults
 from navcore.design.limits_cost import flat_ranges, nothing_meets, without_limits
 from navcore.design.measures import (
     TUNING_INTERVALS,
@@ -174,6 +174,7 @@ def tune(
     """
     wanted, limits = read_objective(objective), [read_requirement(text) for text in require]
     limits += own_limits(scenario, limits)
+    require_consistent(limits)
     varied = read_varied(scenario, vary)
     index = varied[0].method
     along = along or over_run((*wanted.names, *(one.name for one in limits)))
@@ -301,9 +302,12 @@ def _check(ships: Sequence[Ship], varied: Sequence[Varied], objective: Objective
                     Fault("", "--worst-of", Text("scenario {number}", number=number), reason)
                 ) from None
     noisy = any(QUANTITIES[name].kind for name in objective.names)
-    if noisy and not ships[0].along_run and ships[0].model.silent:
+    model = ships[0].model
+    constant = any(np.any(bias) for bias in (model.gyro_bias, model.accel_bias, model.log_bias))
+    if noisy and not ships[0].along_run and model.silent and not constant:
         reason = Text(
-            "imu and reference have no random error, so every setting gives 0: ask for the run (along)"
+            "imu and reference have no random error and no bias, so every setting gives 0: "
+            "ask for the run (along)"
         )
         raise InputError(Fault("", "--objective", objective.text, reason))
 

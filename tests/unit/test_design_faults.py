@@ -272,3 +272,20 @@ def test_the_kalman_filter_is_its_own_floor() -> None:
     misled = ship(kalman, reference={**SET_A["reference"], "current_mps": [0.3, 0.0]})
     untold = budget(misled).methods[0]
     assert untold.shown == "covariance" and "current" in str(untold.warnings)
+
+
+def test_limits_that_contradict_each_other_are_refused_before_a_search(
+    saved: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One line that names both."""
+    limits = ["--require", "settling_s<=1h", "--require", "settling_s>=2h"]
+    assert main(["tune", saved(ship()), "--objective", "tilt_rms", "--vary", SIGMA, *limits]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "settling_s>=2h" in line and "contradicts settling_s<=1h" in line
+
+
+def test_biases_alone_can_be_tuned_for() -> None:
+    """The steady objective is the sum of noise and constants."""
+    damped = {"damping": "external", "network": {"id": "complementary"}}
+    biased = ship(damped, imu={"gyro_bias_std_dph": 0.01}, reference=QUIET_LOG)
+    assert tune(biased, "velocity_rms", ["method.0.network.zeta"], default_limits=False).before
