@@ -1,1 +1,1 @@
-"""app: the dashboard and the command ``schuler``, on top of `navcore`."""
+"""schuler_bench: the dashboard and the command ``schuler``, on top of `navcore`. Its folder is ``app``."""

@@ -1,8 +1,8 @@
-"""``python -m app`` is the command ``schuler``."""
+"""``python -m schuler_bench`` is the command ``schuler``; in a checkout ``python -m app`` is too."""
 
 import sys
 
-from app.cli import main
+from schuler_bench.cli import main
 
 if __name__ == "__main__":
     sys.exit(main())

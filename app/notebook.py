@@ -6,17 +6,6 @@ from collections.abc import Callable
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from app.cli.design_text import budget_text
-from app.cli.run_text import run_text
-from app.plots.plotly_data import Packed, PlotlyFigure
-from app.plots.saved import time_figure
-from app.views.design.figure import budget_figure
-from app.views.errors.figure import GROUPS, error_plots
-from app.views.frequency.figure import bode, nyquist
-from app.views.poles.figure import poles
-from app.views.spectrum.figure import spectrum
-from app.views.step.figure import step
-from app.views.switching.figure import switching_plots
 from navcore.design.budget import Budget
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
@@ -24,6 +13,17 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.networks.base import NetworkParameters
 from navcore.scenario.model import Scenario
+from schuler_bench.cli.design_text import budget_text
+from schuler_bench.cli.run_text import run_text
+from schuler_bench.plots.plotly_data import Packed, PlotlyFigure
+from schuler_bench.plots.saved import time_figure
+from schuler_bench.views.design.figure import budget_figure
+from schuler_bench.views.errors.figure import GROUPS, error_plots
+from schuler_bench.views.frequency.figure import bode, nyquist
+from schuler_bench.views.poles.figure import poles
+from schuler_bench.views.spectrum.figure import spectrum
+from schuler_bench.views.step.figure import step
+from schuler_bench.views.switching.figure import switching_plots
 
 if TYPE_CHECKING:
     from plotly.graph_objects import Figure

@@ -10,23 +10,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
-from app.jobs import helper
-from app.jobs.words import what_failed
-from app.languages import LANGUAGE_SCRIPTS
-from app.logs import begin_logging
-from app.memory import GiveBack, bound_arenas, collect_seldom
-from app.views import VIEWS, load, scripts
 from navcore.foundation import guarded
 from navcore.foundation.errors import InputError
+from schuler_bench.jobs import helper
+from schuler_bench.jobs.words import what_failed
+from schuler_bench.languages import LANGUAGE_SCRIPTS
+from schuler_bench.logs import begin_logging
+from schuler_bench.memory import GiveBack, bound_arenas, collect_seldom
+from schuler_bench.views import VIEWS, load, scripts
 
 if TYPE_CHECKING:
     import viser
 
-    from app.http.limits import Limits
-    from app.http.metrics import Metrics
-    from app.http.server import DashboardServer, Inner
-    from app.session.sessions import Sessions
-    from app.shell.page import Page
+    from schuler_bench.http.limits import Limits
+    from schuler_bench.http.metrics import Metrics
+    from schuler_bench.http.server import DashboardServer, Inner
+    from schuler_bench.session.sessions import Sessions
+    from schuler_bench.shell.page import Page
 
 _STATIC = Path(__file__).parent / "shell" / "static"
 _SCRIPTS = (
@@ -54,7 +54,7 @@ _SCRIPTS = (
 )
 _log = logging.getLogger("schuler.serve")
 _READERS = (
-    "app.session.uploads",
+    "schuler_bench.session.uploads",
     "navcore.checks.file",
     "navcore.checks.imu",
     "navcore.io.csv",
@@ -68,7 +68,7 @@ _READERS = (
 
 
 class Dashboard:
-    """Gives every browser that opens the page its `app.shell.page.Page`.
+    """Gives every browser that opens the page its `schuler_bench.shell.page.Page`.
 
     Parameters
     ----------
@@ -87,8 +87,8 @@ class Dashboard:
     @cached_property
     def sessions(self) -> Sessions:
         """All sessions; made with the first page."""
-        from app.session.sessions import Sessions
-        from app.session.store import open_store
+        from schuler_bench.session.sessions import Sessions
+        from schuler_bench.session.store import open_store
 
         store = None if self._state is None else open_store(self._state)
         return Sessions(store=store, on_answer=lambda seconds: self.metrics.answers.observe(seconds))
@@ -96,9 +96,9 @@ class Dashboard:
     @cached_property
     def metrics(self) -> Metrics:
         """Figures of the server, for ``/metrics``."""
-        from app.http.metrics import Metrics
-        from app.jobs.elsewhere import cluster_figures
-        from app.jobs.scheduler import scheduler
+        from schuler_bench.http.metrics import Metrics
+        from schuler_bench.jobs.elsewhere import cluster_figures
+        from schuler_bench.jobs.scheduler import scheduler
 
         metrics = Metrics()
         metrics.sources += [lambda: scheduler().figures(), cluster_figures, self._figures]
@@ -128,10 +128,10 @@ class Dashboard:
     def _warm_up(self, prepare: Callable[[], None], failed: Callable[[str], None]) -> None:
         try:
             prepare()
-            import app.shell.page  # noqa: F401
-            from app.session.sessions import first_scenario
+            import schuler_bench.shell.page  # noqa: F401
             from navcore.engine.simulation import simulate
             from navcore.foundation.kernel_cache import cache_folder
+            from schuler_bench.session.sessions import first_scenario
 
             load(self._views)
             cache_folder()  # nothing can be shown without it
@@ -149,7 +149,7 @@ class Dashboard:
 
     def on_connect(self, client: viser.ClientHandle, session_id: str) -> None:
         """Build the page of a browser."""
-        from app.shell.page import Page
+        from schuler_bench.shell.page import Page
 
         with self._lock:
             sessions = self.sessions
@@ -200,20 +200,20 @@ def open_dashboard(
     Parameters
     ----------
     host, port, token, allow_origins, frame_origins
-        See `app.http.server.start`.
+        See `schuler_bench.http.server.start`.
     inner, limits
-        See `app.http.server.start`.
+        See `schuler_bench.http.server.start`.
     state, views
         See `Dashboard`.
 
     Raises
     ------
     InputError
-        See `app.http.server.start`.
+        See `schuler_bench.http.server.start`.
     """
-    from app.http.ids import SessionIds
-    from app.http.server import start
-    from app.session.store import session_key
+    from schuler_bench.http.ids import SessionIds
+    from schuler_bench.http.server import start
+    from schuler_bench.session.store import session_key
 
     guarded.start(_READERS)
     helper.start()
@@ -263,7 +263,7 @@ def serve(
     Parameters
     ----------
     host, port, token, allow_origins, frame_origins
-        See `app.http.server.start`.
+        See `schuler_bench.http.server.start`.
     show_token : bool
         Print the address with the token in it, once: it was generated, and nobody knows it yet.
     open_browser : bool
@@ -277,9 +277,9 @@ def serve(
         The address cannot be served; that of the cluster is none, or the extra it needs is not installed;
         something else is in the place of something of ours in the state folder.
     """
-    from app.jobs.cluster import check_address
-    from app.jobs.elsewhere import leave_cluster, use_cluster
-    from app.session.store import checked_folder
+    from schuler_bench.jobs.cluster import check_address
+    from schuler_bench.jobs.elsewhere import leave_cluster, use_cluster
+    from schuler_bench.session.store import checked_folder
 
     begin_logging()
     check_address(cluster)

@@ -18,15 +18,16 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.http.access import access_rules
-from app.http.address import authority, is_loopback, listen, parse_origins
-from app.http.limits import Limits
-from app.jobs.cluster import check_address
-from app.jobs.elsewhere import leave_cluster, use_cluster
-from app.jobs.scheduler import WORKERS
-from app.logs import begin_logging
-from app.memory import bound_arenas
-from app.session.store import (
+from navcore.foundation.errors import Fault, InputError
+from schuler_bench.http.access import access_rules
+from schuler_bench.http.address import authority, is_loopback, listen, parse_origins
+from schuler_bench.http.limits import Limits
+from schuler_bench.jobs.cluster import check_address
+from schuler_bench.jobs.elsewhere import leave_cluster, use_cluster
+from schuler_bench.jobs.scheduler import WORKERS
+from schuler_bench.logs import begin_logging
+from schuler_bench.memory import bound_arenas
+from schuler_bench.session.store import (
     CLAIMED,
     NO_HOME,
     checked_folder,
@@ -35,10 +36,9 @@ from app.session.store import (
     session_key,
     share_claim,
 )
-from navcore.foundation.errors import Fault, InputError
 
 if TYPE_CHECKING:
-    from app.http.front import Front
+    from schuler_bench.http.front import Front
 
 MOST_WORKERS = 64
 _LOOK_S = 0.2
@@ -62,13 +62,13 @@ class Settings:
     descriptor : int
         Of the socket the worker listens on.
     token : str or None
-        As of `app.http.server.start`.
+        As of `schuler_bench.http.server.start`.
     origins, framers : list of str
-        As of `app.http.server.start`.
+        As of `schuler_bench.http.server.start`.
     workers : int
         How many share the places.
     cluster : str or None
-        See `app.serve.serve`.
+        See `schuler_bench.serve.serve`.
     """
 
     host: str
@@ -126,7 +126,7 @@ class Crew:
     def _start(self, number: int) -> subprocess.Popen[bytes]:
         settings = self._settings[number]
         process = subprocess.Popen(
-            [sys.executable, "-m", "app.workers"],
+            [sys.executable, "-m", "schuler_bench.workers"],
             stdin=subprocess.PIPE,
             pass_fds=[settings.descriptor],
             env={**os.environ, CLAIMED: "1", WORKERS: str(settings.workers)},
@@ -165,20 +165,20 @@ def serve_with_workers(
     Parameters
     ----------
     host, port, token, allow_origins, frame_origins
-        See `app.http.server.start`.
+        See `schuler_bench.http.server.start`.
     count : int
         Of workers.
     show_token, cluster
-        See `app.serve.serve`.
+        See `schuler_bench.serve.serve`.
 
     Raises
     ------
     InputError
-        As `app.http.server.start`; there are too many or too few workers, or another server keeps its
-        sessions in the same folder.
+        As `schuler_bench.http.server.start`; there are too many or too few workers, or another server keeps
+        its sessions in the same folder.
     """
-    from app.http.front import Front
-    from app.serve import link_with
+    from schuler_bench.http.front import Front
+    from schuler_bench.serve import link_with
 
     begin_logging()
     if not 1 <= count <= MOST_WORKERS:
@@ -234,8 +234,8 @@ def _inner_socket() -> socket.socket:
 
 def work() -> None:
     """One worker: serves on the socket it was given until it is told to end, or its door has gone."""
-    from app.http.server import Inner
-    from app.serve import open_dashboard
+    from schuler_bench.http.server import Inner
+    from schuler_bench.serve import open_dashboard
 
     begin_logging(to_file=False)
     bound_arenas()

@@ -2,9 +2,9 @@
 
 import re
 
-from app.views.learn.lessons import Question, right_choice
-from app.views.learn.names import named
 from navcore.engine.run import Run
+from schuler_bench.views.learn.lessons import Question, right_choice
+from schuler_bench.views.learn.names import named
 
 
 def names_in(text: str) -> list[str]:

@@ -8,8 +8,8 @@ becomes is computed here with the browser's own matrices (CSS Filter Effects 1).
 import math
 from typing import Literal
 
-from app.plots.style import rgb
-from app.views.appearance.view import _INVERT
+from schuler_bench.plots.style import rgb
+from schuler_bench.views.appearance.view import _INVERT
 
 Theme = Literal["light", "dark"]
 HUE_DEG = 180.0

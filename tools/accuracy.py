@@ -142,7 +142,7 @@ def design() -> Iterator[Row]:
     cases: list[tuple[dict[str, object], float, float | None]] = [
         *((network, tilt, velocity) for network, _, tilt, velocity in TABLE),
         *((network, tilt, None) for network, tilt in OPTIMA),
-        *(({"id": "optimal", "rho": rho}, tilt, velocity) for rho, tilt, velocity in OPTIMAL),
+        *(({"id": "optimal", "rho": rho, "q": 0.0}, tilt, velocity) for rho, tilt, velocity in OPTIMAL),
     ]
     for network, tilt, velocity in cases:
         found = budget(set_a(network), steady=True)

@@ -23,7 +23,7 @@ from tools.fonts import provide_fonts
 
 ROOT = Path(__file__).resolve().parent.parent
 STAMPS = ROOT / ".venv" / ".stamps"
-CODE = ["tests", "app", "navcore", "tools"]
+CODE = ["tests", "schuler_bench", "navcore", "tools"]
 
 
 @dataclass(frozen=True)

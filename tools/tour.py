@@ -12,7 +12,7 @@ from pathlib import Path
 from PIL import Image, ImageDraw, ImageFont
 from playwright.sync_api import Page
 
-from app.serve import open_dashboard
+from schuler_bench.serve import open_dashboard
 from tests.browser.driver import Bench
 from tests.browser.patience import THROTTLE_MS
 from tools.chromium import launched

@@ -19,8 +19,8 @@ def bench(tell: Callable[[str], None] = lambda _: None) -> dict[str, float]:
         law at the IMU's rate, the batch with noise at every sample, and a day (``strapdown_24h_100hz_s``,
         ``_mb``, with the Kalman filter ``_kalman_s``); the slider with the tab Design in front
         (``slider_design_ms_p50``, ``_p95``) and with every tab. With a yardstick
-        (`app.bench.strapdown.YARDSTICK`) its time and the ratios to it. Medians of at least five repeats: ns,
-        ms, s and MiB.
+        (`schuler_bench.bench.strapdown.YARDSTICK`) its time and the ratios to it. Medians of at least five
+        repeats: ns, ms, s and MiB.
 
     Raises
     ------
@@ -29,9 +29,9 @@ def bench(tell: Callable[[str], None] = lambda _: None) -> dict[str, float]:
     RuntimeError, TimeoutError
         The dashboard does not start or does not answer.
     """
-    from app.bench import runs
-    from app.bench.dashboard import measure_dashboard
-    from app.bench.strapdown import measure_strapdown
+    from schuler_bench.bench import runs
+    from schuler_bench.bench.dashboard import measure_dashboard
+    from schuler_bench.bench.strapdown import measure_strapdown
 
     numbers: dict[str, float] = {}
     for what, measure in (

@@ -2,10 +2,10 @@
 
 import statistics
 
-from app.bench.process import Server
-from app.bench.visitor import PAGE_STATE, Visitor
-from app.editing import form
 from navcore.networks.complementary import ComplementaryNetwork
+from schuler_bench.bench.process import Server
+from schuler_bench.bench.visitor import PAGE_STATE, Visitor
+from schuler_bench.editing import form
 
 STARTS = 5
 STEPS = 40

@@ -50,7 +50,7 @@ class Server:
         self.startup_s = 0.0
 
     def __enter__(self) -> Self:
-        words = [sys.executable, "-m", "app", "serve", "--port", str(self.port)]
+        words = [sys.executable, "-m", "schuler_bench", "serve", "--port", str(self.port)]
         words += ["--workers", str(self._workers)] if self._workers > 1 else []
         began = time.perf_counter()
         # What the timed visitor did is not kept among the user's sessions.

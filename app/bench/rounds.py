@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from app.bench.process import environment
+from schuler_bench.bench.process import environment
 
 Timed = Callable[[], float]
 """Makes ready, does the work and returns the seconds of the work alone."""

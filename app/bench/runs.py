@@ -1,7 +1,7 @@
 """Time and memory of runs: 24 h of the error model, a day of the strapdown, error budgets.
 
-``python -m app.bench.runs memory`` and ``python -m app.bench.runs day`` measure in a process of their own,
-whose memory is theirs.
+``python -m schuler_bench.bench.runs memory`` and ``python -m schuler_bench.bench.runs day`` measure in a
+process of their own, whose memory is theirs.
 """
 
 import json
@@ -11,9 +11,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from app.bench.rounds import in_own_process, median_s
 from navcore.engine.simulation import simulate
 from navcore.scenario.model import Scenario
+from schuler_bench.bench.rounds import in_own_process, median_s
 
 REPEATS, REPEATS_IN_OWN_PROCESS = 7, 5
 _SWING = {"amplitude_deg": 5.0, "frequency_hz": 0.125}
@@ -90,7 +90,7 @@ def measure_error_model() -> dict[str, float]:
 
 def measure_memory() -> dict[str, float]:
     """Highest memory after a 24 h run of three methods, above that after a short run of the same, MiB."""
-    peaks = [in_own_process("app.bench.runs", "memory") for _ in range(REPEATS_IN_OWN_PROCESS)]
+    peaks = [in_own_process("schuler_bench.bench.runs", "memory") for _ in range(REPEATS_IN_OWN_PROCESS)]
     return {"run_24h_memory_mb": statistics.median(peaks)}
 
 
@@ -99,7 +99,7 @@ def measure_strapdown_day() -> dict[str, float]:
 
     With two networks, and with the Kalman filter as the only method.
     """
-    return in_own_process("app.bench.runs", "day")
+    return in_own_process("schuler_bench.bench.runs", "day")
 
 
 def measure_budgets() -> dict[str, float]:

@@ -1,8 +1,8 @@
-"""Which way one step of a slider takes through the code: ``python -m app.bench.step [--list]``.
+"""Which way one step of a slider takes through the code: ``python -m schuler_bench.bench.step [--list]``.
 
 A dashboard in this process, a visitor by websocket, and a profile function in every thread: the files of
-`app` and `navcore` between the slider's message and its figures, their functions and their calls. Compiled
-kernels are not seen.
+`schuler_bench` and `navcore` between the slider's message and its figures, their functions and their calls.
+Compiled kernels are not seen.
 """
 
 import sys
@@ -12,9 +12,9 @@ from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any
 
-from app.bench.dashboard import ZETA
-from app.bench.visitor import PAGE_PAINTED, PAGE_STATE, Visitor
-from app.serve import open_dashboard
+from schuler_bench.bench.dashboard import ZETA
+from schuler_bench.bench.visitor import PAGE_PAINTED, PAGE_STATE, Visitor
+from schuler_bench.serve import open_dashboard
 
 _ROOT = Path(__file__).resolve().parents[2]
 _STEPS = 5
@@ -39,7 +39,8 @@ def trace_step(*, moving: bool) -> dict[CodeType, str]:
     Returns
     -------
     dict
-        Functions of `app` and `navcore` that were called, measuring itself left out, and the file of each.
+        Functions of `schuler_bench` and `navcore` that were called, without those of measuring, and the file
+        of each.
     """
     _calls.clear()
     server, dashboard = open_dashboard(port=0)
@@ -72,7 +73,7 @@ def trace_step(*, moving: bool) -> dict[CodeType, str]:
     return {
         code: name
         for code, name in names.items()
-        if name.startswith(("app/", "navcore/")) and not name.startswith("app/bench")
+        if name.startswith(("schuler_bench/", "navcore/")) and not name.startswith("schuler_bench/bench")
     }
 
 

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from app.bench.rounds import Timed, median_ratio, seconds_of, timed_rounds
 from navcore.foundation.earth import WGS84
 from navcore.foundation.units import DEG
 from navcore.law.law import Law, prepare_law
@@ -26,6 +25,7 @@ from navcore.networks.complementary import ComplementaryNetwork
 from navcore.networks.undamped import UndampedNetwork
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
+from schuler_bench.bench.rounds import Timed, median_ratio, seconds_of, timed_rounds
 
 ROUNDS = 7
 RATE_HZ = 200.0

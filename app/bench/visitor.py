@@ -30,7 +30,7 @@ CAMERA = {
 }
 PAGE_PAINTED, PAGE_COMMAND = "page painted", "page command"
 PAGE_STATE = "page state"
-"""Label of the control through which a browser reports its size and front tabs (app.shell.page)."""
+"""Label of the control through which a browser reports its size and front tabs (schuler_bench.shell.page)."""
 
 
 class Visitor:

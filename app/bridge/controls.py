@@ -13,7 +13,7 @@ import viser
 from viser import _gui_api as viser_gui
 from viser import _messages as messages
 
-from app.bridge import texts
+from schuler_bench.bridge import texts
 
 _NOTICE_EVERY_S = 1.0
 _FREE, _GREYED = "_schuler_free", "_schuler_greyed"

@@ -22,9 +22,9 @@ from viser._assignable_props_api import AssignablePropsBase
 from viser.infra import _infra
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
-from app.bridge.controls import same_numbers
-from app.bridge.pool import FairPool
-from app.bridge.texts import Translator
+from schuler_bench.bridge.controls import same_numbers
+from schuler_bench.bridge.pool import FairPool
+from schuler_bench.bridge.texts import Translator
 
 _CALLBACK_THREADS = 16
 _CAST = "_schuler_cast"

@@ -17,8 +17,8 @@ import numpy as np
 import viser
 import zstandard
 
-from app.bridge.mends import MendedBuffer, left_out, plain_viser
 from navcore.foundation.errors import Fault, InputError
+from schuler_bench.bridge.mends import MendedBuffer, left_out, plain_viser
 
 _DIGITS = "".join(chr(code) for code in range(0x21, 0x7F) if chr(code) not in "\"&<>'`")
 _LARGEST = 1 << 25
@@ -27,8 +27,8 @@ _WORKER = (b"type:`set_server`", b"type:`send`", b"{type:`message_batch`,message
 
 SCRIPTS = tuple(Path(__file__).parent / f"{name}.js" for name in ("socket", "curves", "fill"))
 """Scripts for the page, to run before viser's program, which sends through ``schuler.send(message)`` and
-changes HTML by ``schuler.fill(element, html)``; the second puts in the curves that `app.bridge.mends` leaves
-out."""
+changes HTML by ``schuler.fill(element, html)``; the second puts in the curves that
+`schuler_bench.bridge.mends` leaves out."""
 
 
 class Mend(NamedTuple):

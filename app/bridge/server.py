@@ -1,7 +1,7 @@
 """The viser server and its connections: every use of what viser keeps to itself.
 
 Each entry says why the public interface does not do; `tests/attack/test_viser_insides.py` fails when an
-inside changes. Controls are in `app.bridge.controls`.
+inside changes. Controls are in `schuler_bench.bridge.controls`.
 """
 
 import re
@@ -18,8 +18,8 @@ import websockets.asyncio.server
 from viser import _messages as messages
 from viser.infra import _infra
 
-from app.bridge.mends import mend_queues, share_hints, share_threads_fairly
 from navcore.foundation.errors import Fault, InputError
+from schuler_bench.bridge.mends import mend_queues, share_hints, share_threads_fairly
 
 KNOWN = "1.1.1"
 """The version whose insides were read."""

@@ -1,7 +1,7 @@
 """The texts in viser's messages: each page is sent them in its language, and what it chooses is read back.
 
 The program writes English and knows nothing of a page's language. viser has no hook for what it sends; a
-page's queue of messages is ours (`app.bridge.mends`), and every message of the page passes it.
+page's queue of messages is ours (`schuler_bench.bridge.mends`), and every message of the page passes it.
 """
 
 import dataclasses
@@ -192,7 +192,7 @@ def language_of(client: Any) -> str:
 def figure_said(client: Any, figure: str) -> str:
     """Return a plotly figure (JSON) in a page's language, where it stands in HTML of ours."""
     translator = _translator(client)
-    return figure if translator is None else translator.figure(figure)
+    return str(figure) if translator is None else translator.figure(figure)
 
 
 def text_said(client: Any, text: str) -> str:

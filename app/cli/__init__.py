@@ -6,8 +6,8 @@ Exit codes: 0 done; 2 the input is wrong (one line per fault on stderr); 3 the r
 import sys
 from collections.abc import Sequence
 
-from app.cli.terminal import finish, prepare_streams, say
-from navcore.foundation.errors import InputError, UnstableError
+from navcore.foundation.errors import InputError, StoppedError, UnstableError
+from schuler_bench.cli.terminal import finish, prepare_streams, say
 
 DONE, WRONG_INPUT, STOPPED = 0, 2, 3
 
@@ -28,14 +28,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     prepare_streams()
     try:
         # Only now: a Ctrl-C while the commands are imported is no traceback either.
-        from app.cli.parse import parse
+        from schuler_bench.cli.parse import parse
 
         command = parse(sys.argv[1:] if arguments is None else arguments)
         code = DONE if command is None else command.execute()
     except InputError as error:
         for fault in error.faults:
             say(str(fault))
-        code = STOPPED if isinstance(error, UnstableError) else WRONG_INPUT
+        code = STOPPED if isinstance(error, UnstableError | StoppedError) else WRONG_INPUT
     except KeyboardInterrupt:
         say("stopped")
         code = STOPPED

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from app.cli.terminal import emit_result, on_terminal, say
+from schuler_bench.cli.terminal import emit_result, on_terminal, say
 
 
 @dataclass(frozen=True)
@@ -19,8 +19,8 @@ class BenchCommand:
 
     def execute(self) -> int:
         """Measure and print; 3 when the dashboard does not answer."""
-        from app.bench import bench
-        from app.cli.bench_text import bench_text
+        from schuler_bench.bench import bench
+        from schuler_bench.cli.bench_text import bench_text
 
         def tell(what: str) -> None:
             if on_terminal():

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from tyro.conf import Positional, UseAppendAction, arg
 
-from app.cli.terminal import emit_result, say
+from schuler_bench.cli.terminal import emit_result, say
 
 
 @dataclass(frozen=True)
@@ -34,10 +34,10 @@ class BudgetCommand:
 
     def execute(self) -> int:
         """Compute and print; 3 when it was stopped or a method diverged."""
-        from app.cli.design_text import budget_text
-        from app.cli.progress import working
         from navcore.design.budget import budget
         from navcore.scenario.file import load
+        from schuler_bench.cli.design_text import budget_text
+        from schuler_bench.cli.progress import working
 
         scenario = load(self.scenario, self.set)
         with working("budget", self.quiet, self.scenario) as (progress, stopped):

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Annotated
 
 from tyro.conf import Positional, arg
 
-from app.cli.terminal import emit_result, say
+from schuler_bench.cli.terminal import emit_result, say
 
 if TYPE_CHECKING:
     from navcore.checks.file import FileReport
 
 
 _READERS = (
-    "app.cli.check_scenario", "navcore.checks.file", "navcore.checks.imu", "navcore.io.csv",
+    "schuler_bench.cli.check_scenario", "navcore.checks.file", "navcore.checks.imu", "navcore.io.csv",
     "navcore.io.nmea_recording", "navcore.io.tables", "navcore.scenario.file",
 )  # fmt: skip
 _BY_ENDING = {".parquet": ("pyarrow.parquet",), ".mat": ("scipy.io",)}
@@ -79,11 +79,11 @@ def check(file: str) -> FileReport:
     """Check a file, or a preset by its name, in this process."""
     from pathlib import Path
 
-    from app.cli.check_scenario import SCENARIO_CHECKER, check_scenario
     from navcore.checks.file import FileReport, check_file
     from navcore.checks.imu import IMU_CHECKER
     from navcore.foundation.errors import InputError
     from navcore.scenario.file import presets
+    from schuler_bench.cli.check_scenario import SCENARIO_CHECKER, check_scenario
 
     if file in presets() and not Path(file).exists():
         try:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from tyro.conf import Positional, UseAppendAction, arg
 
-from app.cli.terminal import emit_result, say
 from navcore.foundation.errors import Fault, InputError
+from schuler_bench.cli.terminal import emit_result, say
 
 if TYPE_CHECKING:
     from navcore.design.designs import Designs
@@ -49,10 +49,10 @@ class DesignCommand:
 
     def execute(self) -> int:
         """Search, run and print; 3 when it was stopped."""
-        from app.cli.designs_text import designs_text
-        from app.cli.progress import working
         from navcore.design.designs import designs
         from navcore.scenario.file import load
+        from schuler_bench.cli.designs_text import designs_text
+        from schuler_bench.cli.progress import working
 
         if self.out is not None:
             _require_own(self.out)

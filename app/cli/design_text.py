@@ -1,6 +1,7 @@
 """Budgets, best settings and fronts as tables for people."""
 
-from app.cli.table import columns, number
+from collections.abc import Sequence
+
 from navcore.analysis.whole_system import duration
 from navcore.design.confirm import Confirmed
 from navcore.design.figures import Figures
@@ -9,6 +10,7 @@ from navcore.design.pareto import Pareto
 from navcore.design.result import Budget
 from navcore.design.tune import Tuned
 from navcore.quantities import TILT, TUNED, VELOCITY, Kind, budgeted
+from schuler_bench.cli.table import columns, number
 
 
 def budget_text(budget: Budget) -> list[str]:
@@ -39,7 +41,12 @@ def budget_text(budget: Budget) -> list[str]:
             if entry.growth is not None
         ]
         lines += [f"warning: {method.name}: {text}" for text in method.warnings]
-    return lines
+    return [*lines, *unstated(budget.assumed_zero)]
+
+
+def unstated(fields: Sequence[str]) -> list[str]:
+    """Note on what is assumed of constants that the scenario does not state."""
+    return [f"note: 0 is assumed for {', '.join(fields)}"] if fields else []
 
 
 def _floor(budget: Budget) -> list[str]:
@@ -98,7 +105,7 @@ def tune_text(objective: str, tuned: Tuned) -> list[str]:
         cost = tuned.cost.get(text)
         without = " ".join(_in_unit(objective, cost)).rstrip()
         lines.append(f"active: {text}" + ("" if cost is None else f"; without it {without}"))
-    return [*lines, *(f"warning: {text}" for text in tuned.warnings)]
+    return [*lines, *(f"warning: {text}" for text in tuned.warnings), *unstated(tuned.assumed_zero)]
 
 
 def _confirmed(confirmed: Confirmed) -> list[str]:

@@ -6,8 +6,8 @@ from typing import Annotated, Any
 
 from tyro.conf import Positional, arg
 
-from app.cli.table import columns, number
-from app.cli.terminal import emit_result
+from schuler_bench.cli.table import columns, number
+from schuler_bench.cli.terminal import emit_result
 
 
 @dataclass(frozen=True)

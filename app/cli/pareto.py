@@ -5,8 +5,8 @@ from typing import Annotated
 
 from tyro.conf import Positional, UseAppendAction, arg
 
-from app.cli.terminal import emit_result, say
 from navcore.quantities import WEIGHED
+from schuler_bench.cli.terminal import emit_result, say
 
 _OBJECTIVE = f"One of the two objectives, of {', '.join(WEIGHED)}."
 
@@ -47,10 +47,10 @@ class ParetoCommand:
 
     def execute(self) -> int:
         """Search and print; 3 when it was stopped."""
-        from app.cli.design_text import pareto_text
-        from app.cli.progress import working
         from navcore.design.pareto import pareto
         from navcore.scenario.file import load
+        from schuler_bench.cli.design_text import pareto_text
+        from schuler_bench.cli.progress import working
 
         scenario = load(self.scenario, self.set)
         with working("pareto", self.quiet) as (progress, stopped):

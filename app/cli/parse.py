@@ -8,18 +8,18 @@ from dataclasses import fields
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Annotated, Any, Protocol, Union
 
-from app.cli.bench import BenchCommand
-from app.cli.budget import BudgetCommand
-from app.cli.check import CheckCommand
-from app.cli.design import DesignCommand
-from app.cli.network import NetworkCommand
-from app.cli.pareto import ParetoCommand
-from app.cli.presets import PresetsCommand
-from app.cli.run import RunCommand
-from app.cli.serve import ServeCommand
-from app.cli.terminal import emit, lost
-from app.cli.tune import TuneCommand
 from navcore.foundation.errors import Fault, InputError
+from schuler_bench.cli.bench import BenchCommand
+from schuler_bench.cli.budget import BudgetCommand
+from schuler_bench.cli.check import CheckCommand
+from schuler_bench.cli.design import DesignCommand
+from schuler_bench.cli.network import NetworkCommand
+from schuler_bench.cli.pareto import ParetoCommand
+from schuler_bench.cli.presets import PresetsCommand
+from schuler_bench.cli.run import RunCommand
+from schuler_bench.cli.serve import ServeCommand
+from schuler_bench.cli.terminal import emit, lost
+from schuler_bench.cli.tune import TuneCommand
 
 if TYPE_CHECKING:
     from tyro._arguments import ArgumentDefinition

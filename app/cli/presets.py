@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from app.cli.terminal import emit_result
+from schuler_bench.cli.terminal import emit_result
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ from contextlib import contextmanager
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
-from app.cli.stop import stop_on_signal
-from app.cli.terminal import on_terminal
 from navcore.foundation.compiled import COMPILATION
 from navcore.foundation.errors import InputError
+from schuler_bench.cli.stop import stop_on_signal
+from schuler_bench.cli.terminal import on_terminal
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID

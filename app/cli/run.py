@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from tyro.conf import Positional, UseAppendAction, arg
 
-from app.cli.terminal import emit_result, say
+from schuler_bench.cli.terminal import emit_result, say
 
 
 @dataclass(frozen=True)
@@ -38,12 +38,12 @@ class RunCommand:
 
     def execute(self) -> int:
         """Run, write, print; 0 when every method went through, else 3."""
-        from app.cli.progress import working
-        from app.cli.run_text import run_text
         from navcore.engine.measures import metrics
         from navcore.engine.results import require_replaceable, write_results
         from navcore.engine.simulation import simulate
         from navcore.scenario.file import load
+        from schuler_bench.cli.progress import working
+        from schuler_bench.cli.run_text import run_text
 
         if self.out is not None:
             require_replaceable(self.out)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from app.cli.table import columns, number
 from navcore.analysis.whole_system import duration
 from navcore.quantities import ERRORS, POSITION, components
+from schuler_bench.cli.table import columns, number
 
 if TYPE_CHECKING:
     from navcore.engine.run import LawInForce, MethodRun, Run

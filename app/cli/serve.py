@@ -54,10 +54,10 @@ class ServeCommand:
 
     def execute(self) -> int:
         """Serve; 0 when asked to end."""
-        from app.http.address import find_token
-        from app.jobs.elsewhere import CLUSTER
-        from app.serve import serve
-        from app.workers import serve_with_workers
+        from schuler_bench.http.address import find_token
+        from schuler_bench.jobs.elsewhere import CLUSTER
+        from schuler_bench.serve import serve
+        from schuler_bench.workers import serve_with_workers
 
         token = find_token(self.token, self.token_file, self.generate_token, os.environ)
         named = os.environ.get("SCHULER_ALLOW_ORIGIN", "").replace(",", " ").split()

@@ -6,8 +6,8 @@ from typing import Annotated
 
 from tyro.conf import Positional, UseAppendAction, arg
 
-from app.cli.terminal import emit_result, say
 from navcore.quantities import OBJECTIVES, TUNED
+from schuler_bench.cli.terminal import emit_result, say
 
 
 @dataclass(frozen=True)
@@ -69,11 +69,11 @@ class TuneCommand:
 
     def execute(self) -> int:
         """Search and print; 3 when it was stopped."""
-        from app.cli.design_text import tune_text
-        from app.cli.progress import working
         from navcore.design.tune import tune
         from navcore.foundation.errors import Fault, InputError
         from navcore.scenario.file import load, to_toml
+        from schuler_bench.cli.design_text import tune_text
+        from schuler_bench.cli.progress import working
 
         scenario = load(self.scenario, self.set)
         others = [load(other) for other in self.worst_of]

@@ -7,7 +7,6 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from app.editing.form import Path
 from navcore.damping import KINDS
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
@@ -17,6 +16,7 @@ from navcore.scenario.bounds import MAX_METHODS
 from navcore.scenario.file import blocks_to_toml, parse_toml
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from schuler_bench.editing.form import Path
 
 _STRAPDOWN_ONLY: dict[str, tuple[str, ...]] = {
     "run": ("vertical", "compensation"),
@@ -166,7 +166,27 @@ def with_network(scenario: Scenario, index: int, network: dict[str, Any]) -> Sce
         raise InputError(Fault("", f"method.{index}", None, Text("is no method with a network any more")))
     data = scenario.canonical()
     data["method"][index]["network"] = dict(network)
+    if network.get("id") != scenario.method[index].network.id:
+        _forget_made_name(scenario, data, index)
     return Scenario.parse(data)
+
+
+def with_design(scenario: Scenario, index: int, method: Method) -> tuple[Scenario, int]:
+    """Put a method in the place of another, or behind one that is not damped; also return its index.
+
+    Raises
+    ------
+    InputError
+        There are too many methods, or it does not go with the scenario.
+    """
+    data = scenario.canonical()
+    behind = index >= len(scenario.method) or scenario.method[index].undamped
+    others = [m["name"] for i, m in enumerate(data["method"]) if behind or i != index]
+    block = method.model_dump(mode="json", by_alias=True, exclude_none=True)
+    block["name"] = free_name(method.label(), others)
+    at = index + behind
+    data["method"][at : at + (not behind)] = [block]
+    return Scenario.parse(data), at
 
 
 def files_of(scenario: Scenario) -> set[str]:

@@ -5,8 +5,6 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from app.editing.edits import with_network
-from app.plots.units import number
 from navcore.analysis import analyse
 from navcore.analysis.placement import LEAST_DAMPING, place, placeable
 from navcore.foundation.errors import Fault, InputError
@@ -14,6 +12,8 @@ from navcore.foundation.text import Text
 from navcore.networks.pair import MainPair
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from schuler_bench.editing.edits import with_network
+from schuler_bench.plots.units import number
 
 COMMAND = "place"
 _FARTHEST = 1e6

@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 from http import HTTPStatus
 from typing import Protocol
 
-from app.http.address import LOOPBACK_NAMES, authority
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.version import __version__
+from schuler_bench.http.address import LOOPBACK_NAMES, authority
 
 SHORTEST_TOKEN = 8
 """Characters of a token, also on this machine: a reverse proxy may stand before it. Guesses are throttled."""
@@ -107,7 +107,7 @@ def access_rules(
     token : str or None
         What a visitor must know; compulsory when others can reach the server.
     origins : frozenset of str
-        Further origins, see `app.http.address.parse_origins`.
+        Further origins, see `schuler_bench.http.address.parse_origins`.
 
     Raises
     ------

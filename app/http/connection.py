@@ -11,10 +11,10 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ProtocolError
 from websockets.frames import DATA_OPCODES, CloseCode, Frame, Opcode
 
-from app.http.frames import BadFrame, Gate
-from app.http.limits import Limits
-from app.http.places import Door, Places
 from navcore.foundation.text import Text
+from schuler_bench.http.frames import BadFrame, Gate
+from schuler_bench.http.limits import Limits
+from schuler_bench.http.places import Door, Places
 
 GAVE_UP_PLACE = Text("This page was idle and gave up its place.")
 """Reason with which an idle page is closed."""

@@ -18,10 +18,10 @@ from typing import Any
 
 import msgspec
 
-from app.bridge.controls import Control, Guest
-from app.bridge.server import FRAME_TYPES, IGNORED_FRAMES
-from app.http.limits import MIB, Limits
 from navcore.foundation.text import Text
+from schuler_bench.bridge.controls import Control, Guest
+from schuler_bench.bridge.server import FRAME_TYPES, IGNORED_FRAMES
+from schuler_bench.http.limits import MIB, Limits
 
 _LONGEST_FILE_NAME = 120
 

@@ -12,10 +12,10 @@ import time
 import zlib
 from collections.abc import Callable, Sequence
 
-from app.http.access import answer_headers, security_headers
-from app.http.address import FORWARDED
-from app.http.limits import Limits
-from app.http.places import Door
+from schuler_bench.http.access import answer_headers, security_headers
+from schuler_bench.http.address import FORWARDED
+from schuler_bench.http.limits import Limits
+from schuler_bench.http.places import Door
 
 _SESSION = re.compile(rb"^[A-Z]+ /s/([A-Za-z0-9_-]{8,64})[/? ]")
 _HEAD_BYTES = 16 * 1024

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from app.bridge.program import SCRIPTS, viser_program
+from schuler_bench.bridge.program import SCRIPTS, viser_program
 
 _STATIC = Path(__file__).parent / "static"
 FIRST_SCRIPTS = (*SCRIPTS, _STATIC / "first.js", _STATIC / "plotly.js")

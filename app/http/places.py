@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from app.http.limits import Limits
+from schuler_bench.http.limits import Limits
 
 _INVITED_S = 60.0
 _MOST_INVITED = 4096

@@ -15,24 +15,24 @@ from typing import TYPE_CHECKING, Any
 import viser
 import websockets.asyncio.server
 
-from app.bridge import server as bridge
-from app.bridge.controls import Guest
-from app.bridge.mends import forget_callbacks, pool_of
-from app.bridge.texts import speak
-from app.http.access import Access, RequestHeaders, Throttle, cookies
-from app.http.connection import Connection
-from app.http.frames import Gate, Uploading
-from app.http.ids import SessionIds
-from app.http.limits import Limits
-from app.http.page import FIRST_SCRIPTS, PLOTLY, build_page
-from app.http.places import Door, Places
-from app.http.site import Site
-from app.jobs.words import what_failed
-from app.languages.wording import NAMES, wording
 from navcore.foundation.text import Text
+from schuler_bench.bridge import server as bridge
+from schuler_bench.bridge.controls import Guest
+from schuler_bench.bridge.mends import forget_callbacks, pool_of
+from schuler_bench.bridge.texts import speak
+from schuler_bench.http.access import Access, RequestHeaders, Throttle, cookies
+from schuler_bench.http.connection import Connection
+from schuler_bench.http.frames import Gate, Uploading
+from schuler_bench.http.ids import SessionIds
+from schuler_bench.http.limits import Limits
+from schuler_bench.http.page import FIRST_SCRIPTS, PLOTLY, build_page
+from schuler_bench.http.places import Door, Places
+from schuler_bench.http.site import Site
+from schuler_bench.jobs.words import what_failed
+from schuler_bench.languages.wording import NAMES, wording
 
 if TYPE_CHECKING:
-    from app.http.metrics import Metrics
+    from schuler_bench.http.metrics import Metrics
 
 SessionCallback = Callable[[viser.ClientHandle, str], None]
 
@@ -50,7 +50,7 @@ class Running:
     Parameters
     ----------
     listener, access, limits, session_ids, page_scripts, metrics, forwarded
-        See `app.http.server.start`.
+        See `schuler_bench.http.server.start`.
 
     Attributes
     ----------
@@ -204,7 +204,7 @@ def _one_line(record: logging.LogRecord) -> bool:
 
 
 def language_of(headers: RequestHeaders) -> str:
-    """Language for a request: one of `app.languages.wording.NAMES`."""
+    """Language for a request: one of `schuler_bench.languages.wording.NAMES`."""
     chosen = cookies(headers, COOKIE)
     if chosen:
         return _known(chosen[-1:])

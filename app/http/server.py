@@ -12,15 +12,15 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.http.access import access_rules
-from app.http.address import authority, is_loopback, listen, parse_origins
-from app.http.limits import Limits
+from schuler_bench.http.access import access_rules
+from schuler_bench.http.address import authority, is_loopback, listen, parse_origins
+from schuler_bench.http.limits import Limits
 
 if TYPE_CHECKING:
     import viser
 
-    from app.http.ids import SessionIds
-    from app.http.metrics import Metrics
+    from schuler_bench.http.ids import SessionIds
+    from schuler_bench.http.metrics import Metrics
 
 SessionCallback = Callable[["viser.ClientHandle", str], None]
 
@@ -29,7 +29,7 @@ _EXIT_WITHIN_S = 3.0
 
 @dataclass(frozen=True)
 class Inner:
-    """Settings of a server behind a door that other processes share (`app.workers`).
+    """Settings of a server behind a door that other processes share (`schuler_bench.workers`).
 
     Attributes
     ----------
@@ -166,7 +166,7 @@ def start(
         key = {} if session_ids is None else {"cookie_key": session_ids.key}
         access = replace(access, framed_by=framed_by, **key)
         # Only now: what is refused above is refused without the half second that importing viser takes.
-        from app.http.running import Running
+        from schuler_bench.http.running import Running
 
         forwarded, limits = inner is not None, limits or Limits()
         running = Running(listener, access, limits, session_ids, page_scripts, metrics, forwarded=forwarded)

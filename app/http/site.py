@@ -13,7 +13,7 @@ from urllib.parse import parse_qsl, urlencode
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
-from app.http.access import (
+from schuler_bench.http.access import (
     Access,
     Refusal,
     Throttle,
@@ -23,11 +23,11 @@ from app.http.access import (
     security_headers,
     shown,
 )
-from app.http.address import FORWARDED
-from app.http.connection import Connection
-from app.http.ids import SessionIds, is_shared
-from app.http.page import File, Page
-from app.http.places import Places
+from schuler_bench.http.address import FORWARDED
+from schuler_bench.http.connection import Connection
+from schuler_bench.http.ids import SessionIds, is_shared
+from schuler_bench.http.page import File, Page
+from schuler_bench.http.places import Places
 
 _SESSION_PATH = re.compile(r"/s/([A-Za-z0-9_-]{8,64})(/?)")
 _PLACE_PATH = re.compile(r"/s/([A-Za-z0-9_-]{8,64})/place")

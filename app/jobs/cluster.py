@@ -1,7 +1,7 @@
 """Heavy jobs on a Dask cluster: sent there, watched, called back. What the cluster does not do is done here.
 
-Jobs go to the workers that give the same numbers as this process (`app.jobs.remote.program`). The others are
-passed over and named in the log.
+Jobs go to the workers that give the same numbers as this process (`schuler_bench.jobs.remote.program`). The
+others are passed over and named in the log.
 
 The package ``distributed`` is an extra, ``schuler-bench[cluster]``, imported only when an address is given.
 """
@@ -18,9 +18,9 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from app.jobs.remote import NO_PROGRAM, Outcome, carry_out, misfit, program
-from app.jobs.worker import ElsewhereLost
 from navcore.foundation.errors import Fault, InputError
+from schuler_bench.jobs.remote import NO_PROGRAM, Outcome, carry_out, misfit, program
+from schuler_bench.jobs.worker import ElsewhereLost
 
 if TYPE_CHECKING:
     from distributed import Client

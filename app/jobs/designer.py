@@ -6,12 +6,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.jobs.search import Search
+from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs.judge import without_methods
+from schuler_bench.jobs.refusals import refusals
+from schuler_bench.jobs.search import Search
 
 if TYPE_CHECKING:
     from navcore.design.budget import Budget
+    from navcore.design.designs import Designs
     from navcore.design.pareto import Pareto
     from navcore.design.sun import Tuning, TuningSettings
     from navcore.design.tune import Tuned
@@ -34,12 +38,23 @@ class TuningTask:
         Fields, ``method.1.network.sigma``.
     require : tuple of str
         Limits, ``settling_s<=3600``.
+    default_limits : bool
+        Keep `navcore.design.default_limits.DEFAULT_LIMITS` of what nothing limits.
+    whole : bool
+        Search all that the fields allow, not only what their sliders reach.
     """
 
     scenario: Scenario
     objective: str
     vary: tuple[str, ...]
     require: tuple[str, ...]
+    default_limits: bool = True
+    whole: bool = False
+
+    @property
+    def method(self) -> int:
+        """Index of the method."""
+        return int(self.vary[0].split(".")[1])
 
 
 @dataclass(frozen=True)
@@ -80,11 +95,11 @@ class FrontsTask:
     networks: tuple[str, ...] | None = None
 
     def fits(self, scenario: Scenario) -> bool:
-        """Whether the fronts are those of a scenario: all but the networks of its methods is the same."""
+        """Whether the fronts are those of a scenario: all but its method's network and name is the same."""
         if not 0 <= self.method < min(len(scenario.method), len(self.scenario.method)):
             return False
         own, other = self.scenario.method[self.method], scenario.method[self.method]
-        same = own.model_copy(update={"network": other.network})
+        same = own.model_copy(update={"network": other.network, "name": other.name})
         return self.scenario.model_copy(update={"method": (same,)}) == scenario.model_copy(
             update={"method": (other,)}
         )
@@ -107,10 +122,31 @@ class Designer(Search[TuningTask, "Tuned"]):
     def __init__(self, tell: Callable[[], None], name: str = "designer") -> None:
         super().__init__(tell, _tune, stopped=Text("Stopped: there is no proposal."), name=name)
 
+    accepted: Scenario | None = None
+    """The scenario with the proposal in place, once it was accepted."""
+
+    def accept(self, scenario: Scenario) -> None:
+        """Note that the proposal has been put into this scenario."""
+        self.accepted = scenario
+        self._tell()
+
+    def forget(self) -> None:
+        """Drop the proposal."""
+        self.accepted = None
+        super().forget()
+
+    def begin(self, asked: TuningTask) -> None:
+        """Search for another proposal."""
+        self.forget()
+        super().begin(asked)
+
     def discard(self) -> None:
-        """Forget the proposal."""
+        """Forget the proposal, and let the pages know."""
         self.forget()
         self._tell()
+
+    def _refused(self, error: InputError) -> tuple[str, ...]:
+        return refusals(error)
 
 
 class Tuner(Search[TableTask, "Tuning"]):
@@ -131,6 +167,24 @@ class Fronts(Search[FrontsTask, "Pareto"]):
         )
 
 
+class Limits(Search[Scenario, "Designs"]):
+    """Tunes every network for the limits of one scenario at a time; ``tell`` and ``name`` as of `Search`."""
+
+    def __init__(self, tell: Callable[[], None], name: str = "limits") -> None:
+        super().__init__(tell, _designs, lambda found: not found.stopped, Text("Stopped: no design."), name)
+
+    def beside(self, scenario: Scenario) -> Designs | None:
+        """Designs for the same ship and limits; None when there are none."""
+        same = self.asked is not None and without_methods(self.asked) == without_methods(scenario)
+        return self.result if same else None
+
+
+def _designs(scenario: Scenario, progress: Progress, cancelled: Cancelled) -> Designs:
+    from navcore.design.designs import designs
+
+    return designs(scenario, progress=progress, cancelled=cancelled)
+
+
 def _budget(scenario: Scenario, progress: Progress, cancelled: Cancelled) -> Budget:
     from navcore.design.budget import budget
 
@@ -139,9 +193,21 @@ def _budget(scenario: Scenario, progress: Progress, cancelled: Cancelled) -> Bud
 
 def _tune(task: TuningTask, progress: Progress, cancelled: Cancelled) -> Tuned:
     from navcore.design.tune import tune
+    from navcore.design.vary import read_varied
+    from navcore.scenario.stochastic import stochastic_model
 
+    varied = read_varied(task.scenario, task.vary, task.whole)
     return tune(
-        task.scenario, task.objective, task.vary, task.require, progress=progress, cancelled=cancelled
+        task.scenario,
+        task.objective,
+        [f"{one.field}={one.low!r}:{one.high!r}" for one in varied],
+        task.require,
+        # without a random error every setting is alike in the steady state
+        along=stochastic_model(task.scenario).silent,
+        default_limits=task.default_limits,
+        confirm=True,
+        progress=progress,
+        cancelled=cancelled,
     )
 
 

@@ -2,11 +2,11 @@
 
 from collections.abc import Callable, Sequence
 
-from app.jobs import helper
-from app.jobs.cluster import Cluster, Compute, Found, Item
-from app.jobs.scheduler import Lane
-from app.jobs.worker import ElsewhereLost, Watch
 from navcore.foundation.text import Text
+from schuler_bench.jobs import helper
+from schuler_bench.jobs.cluster import Cluster, Compute, Found, Item
+from schuler_bench.jobs.scheduler import Lane
+from schuler_bench.jobs.worker import ElsewhereLost, Watch
 
 CLUSTER = "SCHULER_CLUSTER"
 """In the environment: address of the scheduler of a Dask cluster."""

@@ -3,16 +3,16 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from app.jobs.elsewhere import carried_out_all
-from app.jobs.helper import helps
-from app.jobs.rows import few_rows
-from app.jobs.scheduler import Lane
-from app.jobs.search import Search
-from app.jobs.worker import Watch
-from app.plots.envelope import BandKind, Envelope, covariance_envelope, envelope
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs.elsewhere import carried_out_all
+from schuler_bench.jobs.helper import helps
+from schuler_bench.jobs.rows import few_rows
+from schuler_bench.jobs.scheduler import Lane
+from schuler_bench.jobs.search import Search
+from schuler_bench.jobs.worker import Watch
+from schuler_bench.plots.envelope import BandKind, Envelope, covariance_envelope, envelope
 
 SEEDS = 20
 STILL_S = 0.7

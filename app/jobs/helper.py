@@ -1,10 +1,10 @@
 """Heavy jobs in processes of their own: they take neither the interpreter nor, beside an answer, a core.
 
 A job in the server's own process shares its interpreter with the answers to all visitors: whatever it does
-between two looks at `app.jobs.worker.Watch.unwanted` delays them. Once `start` has been called (a server
-does; a person's own command line need not), jobs are handed to helpers: child processes of a lower priority
-that stay for the next job. A helper asks now and then whether it may go on, so that it stands still, and
-ends, as a job in the server does.
+between two looks at `schuler_bench.jobs.worker.Watch.unwanted` delays them. Once `start` has been called (a
+server does; a person's own command line need not), jobs are handed to helpers: child processes of a lower
+priority that stay for the next job. A helper asks now and then whether it may go on, so that it stands still,
+and ends, as a job in the server does.
 """
 
 import logging
@@ -20,9 +20,9 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any
 
-from app.jobs.remote import Compute, Outcome
 from navcore.foundation.stage_cache import keep_only, working_for
 from navcore.foundation.text import Text
+from schuler_bench.jobs.remote import Compute, Outcome
 
 _ASK_S, _REPORT_S = 0.05, 0.1
 """Between two questions whether to go on, and between two reports of progress."""

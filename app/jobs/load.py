@@ -2,14 +2,14 @@
 
 from dataclasses import replace
 
-from app.jobs.elsewhere import cluster, note_of
-from app.jobs.scheduler import GIB, Lane, Load, largest_run_bytes
 from navcore.engine.load import estimated_bytes, estimated_seconds
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.scenario.file import names_files
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs.elsewhere import cluster, note_of
+from schuler_bench.jobs.scheduler import GIB, Lane, Load, largest_run_bytes
 
 LONG_S = 0.6
 """Processor time beyond which a run is no answer to a control any more."""

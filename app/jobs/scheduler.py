@@ -8,8 +8,8 @@ searches, pins after a restart) goes on only while nothing else does. A job stan
 whether it is cancelled; so that none stands still for ever under lasting load, each gets a short turn after a
 while all the same. All jobs together are admitted by their estimated memory.
 
-A fourth lane is for heavy jobs that a Dask cluster computes (`app.jobs.cluster`): they take turns among
-themselves, and neither cores nor memory of this machine.
+A fourth lane is for heavy jobs that a Dask cluster computes (`schuler_bench.jobs.cluster`): they take turns
+among themselves, and neither cores nor memory of this machine.
 """
 
 import os

@@ -5,13 +5,13 @@ import threading
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
-from app.jobs.elsewhere import LOST, carried_out
-from app.jobs.load import heavy_load
-from app.jobs.scheduler import Load
-from app.jobs.words import for_a_page, what_failed
-from app.jobs.worker import ElsewhereLost, Watch, Worker
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
+from schuler_bench.jobs.elsewhere import LOST, carried_out
+from schuler_bench.jobs.load import heavy_load
+from schuler_bench.jobs.scheduler import Load
+from schuler_bench.jobs.words import for_a_page, what_failed
+from schuler_bench.jobs.worker import ElsewhereLost, Watch, Worker
 
 Asked = TypeVar("Asked")
 Found = TypeVar("Found")
@@ -120,6 +120,10 @@ class Search(Generic[Asked, Found]):
     def _carry_out(self, asked: Asked, progress: Callable[[float], None], watch: Watch) -> Found | None:
         return carried_out(self._compute, asked, progress, watch)
 
+    def _refused(self, error: InputError) -> tuple[str, ...]:
+        """Say why it is refused."""
+        return tuple(str(fault) for fault in for_a_page(error).faults)
+
     def _ended(self) -> None:
         """Tell that there is a new result."""
         self._tell()
@@ -148,7 +152,7 @@ class Search(Generic[Asked, Found]):
             self._tell()
             raise
         except InputError as error:
-            words = tuple(str(fault) for fault in for_a_page(error).faults)
+            words = self._refused(error)
         except Exception as error:
             _log.exception("%s failed", self._name)
             name, _, why = what_failed(error).partition(": ")

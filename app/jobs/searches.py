@@ -4,9 +4,10 @@ import logging
 import threading
 from collections.abc import Callable
 
-from app.jobs.designer import Budgeter, Designer, Fronts, Tuner
-from app.jobs.why import Explainer
 from navcore.engine.run import Run
+from schuler_bench.jobs.designer import Budgeter, Designer, Fronts, Limits, Tuner
+from schuler_bench.jobs.judge import Judge
+from schuler_bench.jobs.why import Explainer
 
 _log = logging.getLogger("schuler.searches")
 
@@ -31,6 +32,10 @@ class Searches:
         Best setting of a method.
     fronts : Fronts
         Pareto fronts of all networks.
+    limits : Limits
+        Every network tuned for the limits.
+    judge : Judge
+        Shares of seeds that meet the limits.
     """
 
     def __init__(self, name: str) -> None:
@@ -41,7 +46,17 @@ class Searches:
         self.budgeter = Budgeter(self._tell, name)
         self.designer = Designer(self._tell, name)
         self.fronts = Fronts(self._tell, name)
-        self._all = (self.explainer, self.tuner, self.budgeter, self.designer, self.fronts)
+        self.limits = Limits(self._tell, name)
+        self.judge = Judge(self._tell, name)
+        self._all = (
+            self.explainer,
+            self.tuner,
+            self.budgeter,
+            self.designer,
+            self.fronts,
+            self.limits,
+            self.judge,
+        )
 
     def watch(self, changed: Callable[[], None]) -> None:
         """Tell an open page whenever there is something new."""
@@ -60,6 +75,7 @@ class Searches:
     def changed(self) -> None:
         """The scenario has changed: the processors belong to its run."""
         self.explainer.cancel()
+        self.judge.cancel()
 
     def explain(self, run: Run) -> None:
         """Compute what dominates a run: a view that says so is in front and shows the run."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from app.jobs.load import spare_load
-from app.jobs.search import Search
 from navcore.engine.run import Run
+from schuler_bench.jobs.load import spare_load
+from schuler_bench.jobs.search import Search
 
 if TYPE_CHECKING:
     from navcore.design.dominance import Why

@@ -6,8 +6,8 @@ import time
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-from app.jobs.scheduler import Lane, Load, Scheduler, Ticket, scheduler
 from navcore.foundation.stage_cache import working_for
+from schuler_bench.jobs.scheduler import Lane, Load, Scheduler, Ticket, scheduler
 
 Job = TypeVar("Job")
 

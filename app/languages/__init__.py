@@ -1,8 +1,8 @@
 """The page in other languages: English is written in the code, a gettext catalogue holds what others read.
 
 A text of the page is a `navcore.foundation.text.Text`. ``make languages`` writes them into
-``<language>/LC_MESSAGES/schuler.po`` and compiles that, and `app.bridge.texts` translates what goes to a page
-on its way there (`app.languages.wording`).
+``<language>/LC_MESSAGES/schuler.po`` and compiles that, and `schuler_bench.bridge.texts` translates what goes
+to a page on its way there (`schuler_bench.languages.wording`).
 """
 
 from pathlib import Path

@@ -1,8 +1,8 @@
 """One language: its catalogue, and how a text of the page is put into it.
 
 A text is looked up by its template and its values are filled in, each translated as well. A text in HTML is
-looked up piece by piece (`app.languages.markup`). What has no translation stays English, the values in it
-included.
+looked up piece by piece (`schuler_bench.languages.markup`). What has no translation stays English, the
+values in it included.
 """
 
 import gettext
@@ -11,9 +11,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from app.languages import markup
-from app.languages.markup import CLOSE, OPEN
 from navcore.foundation.text import Text, Words, filled
+from schuler_bench.languages import markup
+from schuler_bench.languages.markup import CLOSE, OPEN
 
 FOLDER = Path(__file__).parent
 DOMAIN = "schuler"

@@ -4,7 +4,12 @@ import math
 
 import numpy as np
 
-from app.misprints.base import (
+from navcore.foundation.earth import EARTH_RATE, SEMI_MAJOR_AXIS
+from navcore.foundation.text import Text
+from navcore.foundation.units import ARCSEC, DEG, DEG_PER_HOUR, HOUR, MICRO_G, MINUTE
+from navcore.mechanization.recorder import PHI_N, PHI_U
+from navcore.networks.compass import CompassNetwork, gains_from_sigma_xi
+from schuler_bench.misprints.base import (
     OMEGA_S,
     TIME,
     Axis,
@@ -15,13 +20,8 @@ from app.misprints.base import (
     as_network,
     run_scenario,
 )
-from app.misprints.two_loops import TwoLoops
-from app.plots.units import number
-from navcore.foundation.earth import EARTH_RATE, SEMI_MAJOR_AXIS
-from navcore.foundation.text import Text
-from navcore.foundation.units import ARCSEC, DEG, DEG_PER_HOUR, HOUR, MICRO_G, MINUTE
-from navcore.mechanization.recorder import PHI_N, PHI_U
-from navcore.networks.compass import CompassNetwork, gains_from_sigma_xi
+from schuler_bench.misprints.two_loops import TwoLoops
+from schuler_bench.plots.units import number
 
 _SIGMA, _XI = 0.0088, 0.7
 _COMPASS = CompassNetwork(sigma=_SIGMA, xi=_XI)

@@ -9,9 +9,9 @@ from math import comb
 
 import numpy as np
 
-from app.misprints.base import OMEGA_S
 from navcore.networks.base import LinearNetwork
 from navcore.networks.discrete import discretise
+from schuler_bench.misprints.base import OMEGA_S
 
 _OMEGA = np.geomspace(1e-2, 1e2, 200) * OMEGA_S
 

@@ -2,7 +2,12 @@
 
 import numpy as np
 
-from app.misprints.base import (
+from navcore.analysis import RADIUS, frequency_response
+from navcore.foundation.text import Text
+from navcore.foundation.units import MINUTE
+from navcore.mechanization.recorder import DV_E
+from navcore.networks.complementary import ComplementaryNetwork
+from schuler_bench.misprints.base import (
     OMEGA_S,
     TIME,
     Axis,
@@ -13,14 +18,9 @@ from app.misprints.base import (
     as_network,
     run_scenario,
 )
-from app.misprints.direct_form import direct_form_error, direct_form_growth, state_space_error
-from app.misprints.two_loops import TwoLoops
-from app.plots.units import number
-from navcore.analysis import RADIUS, frequency_response
-from navcore.foundation.text import Text
-from navcore.foundation.units import MINUTE
-from navcore.mechanization.recorder import DV_E
-from navcore.networks.complementary import ComplementaryNetwork
+from schuler_bench.misprints.direct_form import direct_form_error, direct_form_growth, state_space_error
+from schuler_bench.misprints.two_loops import TwoLoops
+from schuler_bench.plots.units import number
 
 _ZETA = 0.7
 

@@ -2,17 +2,6 @@
 
 import numpy as np
 
-from app.misprints.base import (
-    OMEGA_S,
-    Axis,
-    Comparison,
-    Curve,
-    Misprint,
-    Number,
-    as_network,
-)
-from app.misprints.two_loops import TwoLoops
-from app.plots.units import number
 from navcore.analysis import RADIUS, analyse, frequency_response
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR, KNOT, MINUTE
@@ -21,6 +10,17 @@ from navcore.networks.base import LinearNetwork
 from navcore.networks.classic import Classic3Network
 from navcore.networks.pole2 import Pole2Network
 from navcore.networks.unity2 import Unity2Network
+from schuler_bench.misprints.base import (
+    OMEGA_S,
+    Axis,
+    Comparison,
+    Curve,
+    Misprint,
+    Number,
+    as_network,
+)
+from schuler_bench.misprints.two_loops import TwoLoops
+from schuler_bench.plots.units import number
 
 _DIFFERENCE = Axis("|V − Vᵣ|", "m/s")
 _PRINTED = (QUADRATIC[0], -QUADRATIC[1], QUADRATIC[2])

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from app.misprints.base import TILT, TIME, Comparison, Curve, Number, growth_time
 from navcore.analysis import analyse, initial_tilt_response
 from navcore.foundation.text import Text
 from navcore.networks.base import LinearNetwork
+from schuler_bench.misprints.base import TILT, TIME, Comparison, Curve, Number, growth_time
 
 
 class TwoLoops:

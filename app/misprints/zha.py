@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
-from app.misprints.base import OMEGA_S, TILT, TIME, Comparison, Curve, Misprint, Number
 from navcore.analysis import analyse, initial_tilt_response
 from navcore.foundation.text import Text
 from navcore.foundation.units import MINUTE
 from navcore.networks.compass import CompassNetwork, gains_from_sigma_xi
+from schuler_bench.misprints.base import OMEGA_S, TILT, TIME, Comparison, Curve, Misprint, Number
 
 _SIGMA, _XI = 0.0088, 0.7
 PRINTED_K2 = 156.063

@@ -4,7 +4,13 @@ import math
 
 import numpy as np
 
-from app.misprints.base import (
+from navcore.analysis.response import free_states, matrix_exponential
+from navcore.foundation.earth import EARTH_RATE, SEMI_MAJOR_AXIS, SPHERE_GRAVITY
+from navcore.foundation.text import Text
+from navcore.foundation.units import ARCMIN, ARCSEC, DEG, DEG_PER_HOUR, MINUTE
+from navcore.mechanization.error_model import system_matrix
+from navcore.mechanization.recorder import DV_E
+from schuler_bench.misprints.base import (
     OMEGA_S,
     TIME,
     Axis,
@@ -15,12 +21,6 @@ from app.misprints.base import (
     growth_time,
     run_scenario,
 )
-from navcore.analysis.response import free_states, matrix_exponential
-from navcore.foundation.earth import EARTH_RATE, SEMI_MAJOR_AXIS, SPHERE_GRAVITY
-from navcore.foundation.text import Text
-from navcore.foundation.units import ARCMIN, ARCSEC, DEG, DEG_PER_HOUR, MINUTE
-from navcore.mechanization.error_model import system_matrix
-from navcore.mechanization.recorder import DV_E
 
 _LAT = 45.7796 * DEG
 # Zhao 5.1.1: dV_E, dV_N, dL, dlambda, phi_E, phi_N, phi_U

@@ -4,11 +4,11 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
-from app.plots.units import number
 from navcore.design.budget import Budget, budget
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.plots.units import number
 
 
 def steady_budget(scenario: Scenario) -> Budget:

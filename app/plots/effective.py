@@ -130,6 +130,13 @@ SHOWN: dict[str, str] = TRANSFERS | {OPEN_LOOP: Text("open loop: Nyquist plot an
 """All that the chooser of the frequency side offers: id -> label."""
 
 
+def growth_text(growth: float | None) -> str:
+    """Time in which the whole system grows by e; empty where it does not; ``growth`` in 1/s."""
+    if growth is None or not growth > 0.0:
+        return ""
+    return Text("grows by e in {every}", every=duration(1.0 / growth))
+
+
 def earth_mode_text(growth: float) -> str:
     """How the 24 h mode behaves, e.g. "grows, e-folding 3.1 days"; ``growth`` in 1/s."""
     if growth == 0.0:

@@ -74,7 +74,7 @@ def entry(key: str, name: str, bar: str, state: State) -> str:
     Parameters
     ----------
     key : str
-        Of the curve, in `app.session.display.Display.legend`.
+        Of the curve, in `schuler_bench.session.display.Display.legend`.
     name : str
         As written.
     bar : str

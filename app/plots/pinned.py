@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from app.plots.plotly_data import PlotlyFigure
-from app.plots.units import Unit, number
-from app.plots.uplot import Dash
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
+from schuler_bench.plots.plotly_data import PlotlyFigure
+from schuler_bench.plots.units import Unit, number
+from schuler_bench.plots.uplot import Dash
 
 PIN_WIDTH = 1.0
 """Curves of pins are thinner than those of the present run."""
@@ -17,7 +17,7 @@ _PLOTLY_DASHES = ("dash", "dot", "dashdot", "longdash", "2px,6px", "longdashdot"
 
 
 class Pinned(Protocol):
-    """Pin as figures need it; `app.session.pins.Pin` is one."""
+    """Pin as figures need it; `schuler_bench.session.pins.Pin` is one."""
 
     @property
     def name(self) -> str:

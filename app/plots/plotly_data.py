@@ -43,7 +43,7 @@ def enlarged(figure: PlotlyFigure, scale: float) -> PlotlyFigure:
 
 
 def enlarged_time_plot(arguments: dict[str, Any], scale: float) -> dict[str, Any]:
-    """Return the same of what `app.plots.uplot.UplotFigure.kwargs` gives."""
+    """Return the same of what `schuler_bench.plots.uplot.UplotFigure.kwargs` gives."""
     if scale == 1.0:
         return arguments
     larger = {

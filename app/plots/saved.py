@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from app.plots import style
-from app.plots.legend import counts
-from app.plots.plotly_data import PlotlyFigure, figure, packed, values_of
-from app.plots.uplot import Curve, UplotFigure
 from navcore.foundation.text import Text
+from schuler_bench.plots import style
+from schuler_bench.plots.legend import counts
+from schuler_bench.plots.plotly_data import PlotlyFigure, figure, packed, values_of
+from schuler_bench.plots.uplot import Curve, UplotFigure
 
 WIDTH_PX = 900.0
 _PANEL_PX, _ONLY_PANEL_PX = 150.0, 300.0

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from app.plots import style
-from app.plots.legend import FAINT, State
-from app.plots.units import Unit
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
+from schuler_bench.plots import style
+from schuler_bench.plots.legend import FAINT, State
+from schuler_bench.plots.units import Unit
 
 SYNC_KEY = "schuler-time"
 """All time plots share their cursor under this key."""
@@ -53,7 +53,7 @@ class Curve:
     width : float
         px.
     state : State
-        How it is shown (`app.plots.legend`).
+        How it is shown (`schuler_bench.plots.legend`).
     """
 
     name: str

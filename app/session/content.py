@@ -5,7 +5,7 @@ import os
 import time
 from pathlib import Path
 
-from app.session.folder import CONTENT, opened, temporary_name
+from schuler_bench.session.folder import CONTENT, opened, temporary_name
 
 _UNLINKED_S = 3600.0
 

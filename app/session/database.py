@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from app.session.folder import opened
+from schuler_bench.session.folder import opened
 
 NAME = "sessions.sqlite"
 _ENDINGS = ("-wal", "-shm", "-journal")

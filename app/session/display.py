@@ -7,11 +7,10 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from app.plots.effective import SHOWN
-from app.plots.envelope import BandKind
-from app.plots.legend import State, after
-from app.session.requirements import Requirements
 from navcore.quantities import ERRORS, STATISTICS
+from schuler_bench.plots.effective import SHOWN
+from schuler_bench.plots.envelope import BandKind
+from schuler_bench.plots.legend import State, after
 
 FIRST_TRANSFER = "phi/dv_r"
 OBJECTIVES = ("tilt_rms", "velocity_rms", "position_rms", "heading_rms", "settling_s")
@@ -35,7 +34,7 @@ class Display(BaseModel):
     Attributes
     ----------
     transfer : str
-        What the frequency side shows: a key of `app.plots.effective.SHOWN`.
+        What the frequency side shows: a key of `schuler_bench.plots.effective.SHOWN`.
     discrete : bool
         The measured gain and phase of the running filters are drawn on H.
     optimal : bool
@@ -44,8 +43,6 @@ class Display(BaseModel):
         Whose poles the tab "Poles" shows: one level channel's, or the whole system's.
     locus : str
         Parameter of the selected method's network over which the root locus is drawn; "": none.
-    requirements : Requirements
-        What the designs have to meet.
     exaggeration : float or None
         Of the errors in 3D; None: chosen to fit.
     angle, length, speed, time : str
@@ -65,7 +62,7 @@ class Display(BaseModel):
     delta : str
         Which number of each error is compared with the baseline's.
     window : str
-        What the errors in the table and in the requirements are measured over: the whole run, what follows
+        What the errors in the table are measured over: the whole run, what follows
         the settling, or some hours.
     window_from_h, window_to_h : float
         Those hours; None: to the end.
@@ -76,9 +73,14 @@ class Display(BaseModel):
     size : str
         Of type and lines; "presentation": readable from the back of a room, with few controls.
     budget : str
-        The error budget shown: of the steady state of one level channel, or of the whole run.
+        What the tab "Design" shows: the methods that meet the limits, or the error budget, of the steady
+        state of one level channel or of the whole run.
     objective : str
         What a method is tuned for: one of `OBJECTIVES`.
+    default_limits : bool
+        The search keeps limits on settling and growth where none are given.
+    beyond_sliders : bool
+        The search goes beyond the sliders, to all that the fields allow.
     search : str
         What the tab "Tune" looks for: the best setting of one method, or the Pareto fronts of all networks.
     front_x, front_y : str
@@ -92,7 +94,6 @@ class Display(BaseModel):
     optimal: bool = False
     poles: Literal["channel", "whole"] = "channel"
     locus: Annotated[str, Field(max_length=40)] = ""
-    requirements: Requirements = Requirements()
     exaggeration: Annotated[float | None, Field(gt=0.0, le=1e6)] = None
     angle: Literal["auto", "arcsec", "arcmin", "deg"] = "auto"
     length: Literal["auto", "m", "km", "nmi"] = "auto"
@@ -113,8 +114,10 @@ class Display(BaseModel):
     flipped: bool = False
     theme: Literal["light", "dark"] = "light"
     size: Literal["normal", "presentation"] = "normal"
-    budget: Literal["steady", "run"] = "steady"
+    budget: Literal["limits", "steady", "run"] = "limits"
     objective: Annotated[str, _one_of(OBJECTIVES)] = "tilt_rms"
+    default_limits: bool = True
+    beyond_sliders: bool = False
     search: Literal["setting", "fronts"] = "setting"
     front_x: Annotated[str, _one_of(AXES)] = "tilt_rms"
     front_y: Annotated[str, _one_of(AXES)] = "velocity_rms"

@@ -12,8 +12,8 @@ from contextlib import contextmanager, suppress
 from io import BufferedReader, BufferedWriter
 from pathlib import Path
 
-from app.http.ids import log_name
 from navcore.foundation.errors import Fault, InputError
+from schuler_bench.http.ids import log_name
 
 _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW
 TEMPORARY = re.compile(r"\.[0-9a-f]{16}\.tmp")

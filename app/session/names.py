@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from app.session.session import Session
+    from schuler_bench.session.session import Session
 
 _MOST_KEPT = 200
 

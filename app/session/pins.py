@@ -6,15 +6,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from app.jobs.envelopes import Simulate
-from app.jobs.load import spare_load
-from app.jobs.rows import few_rows
-from app.jobs.scheduler import Lane, Load
-from app.jobs.worker import Watch, Worker
 from navcore.engine.run import Run
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs.envelopes import Simulate
+from schuler_bench.jobs.load import spare_load
+from schuler_bench.jobs.rows import few_rows
+from schuler_bench.jobs.scheduler import Lane, Load
+from schuler_bench.jobs.worker import Watch, Worker
 
 MOST_PINS = 8
 LONGEST_NAME, LONGEST_NOTE = 40, 400
@@ -68,7 +68,7 @@ class Pin:
 
     @property
     def unnamed(self) -> bool:
-        """Whether the user has given it no name: it is called by what differs (`app.session.shown`)."""
+        """Whether the user has given it no name: what differs names it (`schuler_bench.session.shown`)."""
         return self.name == _made_name(self.id)
 
     @property

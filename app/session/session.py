@@ -6,22 +6,22 @@ import time
 from collections.abc import Callable, Set
 from pathlib import Path
 
-from app.http.ids import log_name
-from app.jobs.envelopes import Envelopes, Simulate
-from app.jobs.load import refuse_too_large, run_load, runs_on_demand
-from app.jobs.searches import Searches
-from app.jobs.verifier import Verifier, Verify
-from app.jobs.words import for_a_page
-from app.jobs.worker import Watch, Worker
-from app.session.display import Display
-from app.session.history import History, State, first_editable
-from app.session.pins import Pins
-from app.session.uploads import Uploads
-from app.session.view import View
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.http.ids import log_name
+from schuler_bench.jobs.envelopes import Envelopes, Simulate
+from schuler_bench.jobs.load import refuse_too_large, run_load, runs_on_demand
+from schuler_bench.jobs.searches import Searches
+from schuler_bench.jobs.verifier import Verifier, Verify
+from schuler_bench.jobs.words import for_a_page
+from schuler_bench.jobs.worker import Watch, Worker
+from schuler_bench.session.display import Display
+from schuler_bench.session.history import History, State, first_editable
+from schuler_bench.session.pins import Pins
+from schuler_bench.session.uploads import Uploads
+from schuler_bench.session.view import View
 
 _REPORT_EVERY_S = 0.1
 _log = logging.getLogger("schuler.session")

@@ -14,16 +14,16 @@ from weakref import WeakKeyDictionary
 
 from pydantic import ValidationError
 
-from app.http.ids import copied_from, log_name, new_shared_id
-from app.session.display import Display
-from app.session.folder import link_files, remove_files
-from app.session.history import History, State
-from app.session.session import Session
-from app.session.store import Store
-from app.session.uploads import plain_names, shared_files
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
 from navcore.scenario.model import Scenario
+from schuler_bench.http.ids import copied_from, log_name, new_shared_id
+from schuler_bench.session.display import Display
+from schuler_bench.session.folder import link_files, remove_files
+from schuler_bench.session.history import History, State
+from schuler_bench.session.session import Session
+from schuler_bench.session.store import Store
+from schuler_bench.session.uploads import plain_names, shared_files
 
 MOST_SESSIONS = 64
 """Sessions held without an open page; with one they are always held."""
@@ -101,7 +101,7 @@ class Sessions:
 
     @property
     def names_with_pages(self) -> set[str]:
-        """Names (`app.http.ids.log_name`) of the sessions that are open in a browser."""
+        """Names (`schuler_bench.http.ids.log_name`) of the sessions that are open in a browser."""
         with self._lock:
             return {log_name(id) for id, session in self._by_id.items() if session.open_pages}
 

@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pydantic import BaseModel
 
-from app.jobs.verifier import Verified
-from app.plots.envelope import Envelope
-from app.session.display import Display
-from app.session.history import differences
-from app.session.pins import LONGEST_NAME, Pin
 from navcore.engine.run import MethodRun, Run, span_of
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.quantities import NAMES
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs.verifier import Verified
+from schuler_bench.plots.envelope import Envelope
+from schuler_bench.session.display import Display
+from schuler_bench.session.history import differences
+from schuler_bench.session.pins import LONGEST_NAME, Pin
 
 if TYPE_CHECKING:
-    from app.session.session import Session
+    from schuler_bench.session.session import Session
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Shown:
     display : Display
         How it is shown.
     pins : tuple of Pin
-        Laid over it, named by what differs from it, with the methods that do (`app.session.shown`).
+        Laid over it, named by what differs from it, with the methods that do (`schuler_bench.session.shown`).
     baseline : Pin or None
         What the table's numbers are compared with.
     flipped : Pin or None

@@ -15,11 +15,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO, Any
 
-from app.http.ids import log_name
-from app.jobs.words import without_folders
-from app.session.content import Contents
-from app.session.database import Database, parsed
-from app.session.folder import (
+from navcore.foundation.text import Text
+from schuler_bench.http.ids import log_name
+from schuler_bench.jobs.words import without_folders
+from schuler_bench.session.content import Contents
+from schuler_bench.session.database import Database, parsed
+from schuler_bench.session.folder import (
     FILES,
     TEMPORARY,
     Folder,
@@ -29,7 +30,6 @@ from app.session.folder import (
     remove_files,
     temporary_name,
 )
-from navcore.foundation.text import Text
 
 WRITE_AFTER_S = 0.5
 """Between a change and the file: changes that follow each other are written once."""

@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.http.limits import MIB, Limits
-from app.session.folder import TEMPORARY, opened, remove_files, temporary_name
 from navcore.foundation import guarded
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
@@ -17,6 +15,8 @@ from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.motion.truth import LAT, LON
 from navcore.scenario.model import Scenario
+from schuler_bench.http.limits import MIB, Limits
+from schuler_bench.session.folder import TEMPORARY, opened, remove_files, temporary_name
 
 if TYPE_CHECKING:
     from navcore.checks.file import FileReport
@@ -99,7 +99,7 @@ class Uploads:
         InputError
             Too large, too many, or not understood (one fault for each thing wrong); nothing is kept then.
         """
-        from app.http.frames import safe_file_name
+        from schuler_bench.http.frames import safe_file_name
 
         name = safe_file_name(name)
         self._refuse_excess(name, len(content))
@@ -150,7 +150,7 @@ class Uploads:
 
     def reopen(self) -> None:
         """Take over the files that lie in the folder, from before the server was started; others are left."""
-        from app.http.frames import safe_file_name
+        from schuler_bench.http.frames import safe_file_name
 
         with opened(self.folder) as folder:
             for name in folder.files(TEMPORARY.fullmatch):

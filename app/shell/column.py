@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence, Set
 from typing import TYPE_CHECKING, Any
 
-from app.session.shown import Shown
-from app.shell.layout import Layout
-from app.shell.view import PictureView, View
-from app.shell.view_faults import ViewFaults
 from navcore.foundation.text import Text, quoted
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell.layout import Layout
+from schuler_bench.shell.view import PictureView, View
+from schuler_bench.shell.view_faults import ViewFaults
 
 if TYPE_CHECKING:
     import viser

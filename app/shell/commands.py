@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from app.bridge.controls import id_of
+from schuler_bench.bridge.controls import id_of
 
 if TYPE_CHECKING:
     import viser

@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
-from app.bridge.controls import id_of, set_slider_range
-from app.editing import form, typed
-from app.editing.form import FieldSpec, Path, Slider
-from app.shell import notices
+from schuler_bench.bridge.controls import id_of, set_slider_range
+from schuler_bench.editing import form, typed
+from schuler_bench.editing.form import FieldSpec, Path, Slider
+from schuler_bench.shell import notices
 
 if TYPE_CHECKING:
     import viser

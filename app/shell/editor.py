@@ -6,15 +6,15 @@ import threading
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from app.editing import edits
-from app.editing.form import Path
-from app.session.session import Session
-from app.shell import notices
-from app.shell.control import Control
-from app.shell.pace import timer
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import edits
+from schuler_bench.editing.form import Path
+from schuler_bench.session.session import Session
+from schuler_bench.shell import notices
+from schuler_bench.shell.control import Control
+from schuler_bench.shell.pace import timer
 
 if TYPE_CHECKING:
     import viser

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from app.plots import style
-from app.plots.units import duration
-from app.session.session import Session
-from app.shell import notices
-from app.shell.opening import Opening
-from app.shell.view import if_user
 from navcore.engine.run import ENDINGS, Run
 from navcore.foundation.text import Text, quoted
 from navcore.foundation.units import HOUR
 from navcore.scenario.model import Scenario
+from schuler_bench.plots import style
+from schuler_bench.plots.units import duration
+from schuler_bench.session.session import Session
+from schuler_bench.shell import notices
+from schuler_bench.shell.opening import Opening
+from schuler_bench.shell.view import if_user
 
 if TYPE_CHECKING:
     import viser

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal
 
-from app.jobs.words import for_a_page, without_folders
-from app.plots import style
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text, quoted
+from schuler_bench.jobs.words import for_a_page, without_folders
+from schuler_bench.plots import style
 
 if TYPE_CHECKING:
     import viser

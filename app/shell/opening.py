@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from app.editing import edits
-from app.session.history import first_editable
-from app.session.session import Session
-from app.session.uploads import opened_scenario, recorded_scenario, with_plain_names
-from app.shell import notices
 from navcore.engine.measures import metrics
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.file import load, presets, to_toml
+from schuler_bench.editing import edits
+from schuler_bench.session.history import first_editable
+from schuler_bench.session.session import Session
+from schuler_bench.session.uploads import opened_scenario, recorded_scenario, with_plain_names
+from schuler_bench.shell import notices
 
 if TYPE_CHECKING:
     import viser

@@ -13,26 +13,26 @@ from contextlib import nullcontext
 from html import escape
 from typing import TYPE_CHECKING
 
-from app.bridge.server import leaving_is_no_fault
-from app.bridge.texts import keep_names
-from app.jobs.words import what_failed
-from app.session.names import GivenNames
-from app.session.session import Session
-from app.session.shown import shown
-from app.shell import notices
-from app.shell.column import Column
-from app.shell.commands import Commands
-from app.shell.editor import Editor
-from app.shell.header import HeaderPanel
-from app.shell.layout import Layout, Window, layout_for
-from app.shell.opening import Opening
-from app.shell.pace import Pace
-from app.shell.palette import Palette
-from app.shell.reports import Reports, run_element, views_element
-from app.shell.view import Frame, View, page_styles
-from app.shell.view_faults import ViewFaults
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
+from schuler_bench.bridge.server import leaving_is_no_fault
+from schuler_bench.bridge.texts import keep_names
+from schuler_bench.jobs.words import what_failed
+from schuler_bench.session.names import GivenNames
+from schuler_bench.session.session import Session
+from schuler_bench.session.shown import shown
+from schuler_bench.shell import notices
+from schuler_bench.shell.column import Column
+from schuler_bench.shell.commands import Commands
+from schuler_bench.shell.editor import Editor
+from schuler_bench.shell.header import HeaderPanel
+from schuler_bench.shell.layout import Layout, Window, layout_for
+from schuler_bench.shell.opening import Opening
+from schuler_bench.shell.pace import Pace
+from schuler_bench.shell.palette import Palette
+from schuler_bench.shell.reports import Reports, run_element, views_element
+from schuler_bench.shell.view import Frame, View, page_styles
+from schuler_bench.shell.view_faults import ViewFaults
 
 if TYPE_CHECKING:
     import viser
@@ -42,7 +42,7 @@ _SAY_AGAIN_S = 120.0
 
 
 class Page:
-    """A browser page on a session (`app.session.session.View`).
+    """A browser page on a session (`schuler_bench.session.session.View`).
 
     Parameters
     ----------

@@ -3,14 +3,15 @@
 from collections.abc import Sequence
 from typing import Any, Literal
 
-from app.bridge.controls import id_of
-from app.editing.placing import handle_of, read_drag, with_nearest_pair
-from app.plots import style
-from app.session.shown import Shown
-from app.shell import notices
-from app.shell.view import Frame
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
+from schuler_bench.bridge.controls import id_of
+from schuler_bench.editing.placing import handle_of, read_drag, with_nearest_pair
+from schuler_bench.plots import style
+from schuler_bench.session.requirements import limits_of
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell import notices
+from schuler_bench.shell.view import Frame
 
 PAIR_HANDLE = "pair handle"
 """Label of the hidden control that is told where the handle is (static/handle.js)."""
@@ -66,7 +67,7 @@ class PairHandle:
             if drag.method != session.selected:
                 return
             try:
-                limit = session.display.requirements.h_slope_s
+                limit = limits_of(session.scenario.requirement).get("h_slope_s")
                 placed = with_nearest_pair(
                     session.scenario, drag.method, drag.damping_ratio, drag.ratio, limit
                 )

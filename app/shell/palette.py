@@ -6,23 +6,23 @@ import operator
 from functools import lru_cache
 from typing import Any
 
-from app.bridge.controls import lock_controls
-from app.editing.edits import disturbances_toml, method_toml, paste
-from app.editing.typed import read_typed, unit_of
-from app.jobs.words import without_folders
-from app.session.history import changed_fields
-from app.session.view import View
-from app.shell import notices
-from app.shell.commands import LONGEST_TEXT, Command
-from app.shell.control import Control
-from app.shell.opening import Opening
-from app.shell.reports import view_names
-from app.shell.reset import Resets
-from app.shell.toolbar import PRESENT, REDO, RESET_ALL, SHARE, UNDO, Toolbar
-from app.shell.view import Frame
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.scenario.file import load, presets
+from schuler_bench.bridge.controls import lock_controls
+from schuler_bench.editing.edits import disturbances_toml, method_toml, paste
+from schuler_bench.editing.typed import read_typed, unit_of
+from schuler_bench.jobs.words import without_folders
+from schuler_bench.session.history import changed_fields
+from schuler_bench.session.view import View
+from schuler_bench.shell import notices
+from schuler_bench.shell.commands import LONGEST_TEXT, Command
+from schuler_bench.shell.control import Control
+from schuler_bench.shell.opening import Opening
+from schuler_bench.shell.reports import view_names
+from schuler_bench.shell.reset import Resets
+from schuler_bench.shell.toolbar import PRESENT, REDO, RESET_ALL, SHARE, UNDO, Toolbar
+from schuler_bench.shell.view import Frame
 
 COPY_METHOD, COPY_LOG, PASTE = "copy-method-text", "copy-log-text", "paste-text"
 _LONGEST_UNDO = 48

@@ -2,12 +2,12 @@
 
 from typing import Any, ClassVar
 
-from app.plots.pinned import restyled, together
-from app.plots.plotly_data import PlotlyFigure, enlarged
-from app.session.shown import Shown
-from app.shell.layout import CHOOSER_PX
-from app.shell.view import Figures, Frame, PictureView, Tab
 from navcore.engine.run import Run
+from schuler_bench.plots.pinned import restyled, together
+from schuler_bench.plots.plotly_data import PlotlyFigure, enlarged
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell.layout import CHOOSER_PX
+from schuler_bench.shell.view import Figures, Frame, PictureView, Tab
 
 
 class PlotlyView(PictureView[PlotlyFigure]):

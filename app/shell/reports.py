@@ -10,12 +10,12 @@ from collections.abc import Callable, Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
-from app.bridge.controls import id_of
-from app.shell.layout import Window, read_state
-from app.shell.opening import as_json
-from app.shell.view import View
 from navcore.engine.measures import metrics
 from navcore.engine.run import Run
+from schuler_bench.bridge.controls import id_of
+from schuler_bench.shell.layout import Window, read_state
+from schuler_bench.shell.opening import as_json
+from schuler_bench.shell.view import View
 
 if TYPE_CHECKING:
     import viser

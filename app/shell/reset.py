@@ -7,14 +7,14 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from app.editing import edits
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import edits
 
 if TYPE_CHECKING:
-    from app.editing.form import FieldSpec, Path
-    from app.shell.commands import Commands
-    from app.shell.control import Control
+    from schuler_bench.editing.form import FieldSpec, Path
+    from schuler_bench.shell.commands import Commands
+    from schuler_bench.shell.control import Control
 
 RESET_FIELD = "reset-field"
 _SAME = 1e-9

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from app.jobs.search import Search
-from app.shell.view import if_user
+from schuler_bench.jobs.search import Search
+from schuler_bench.shell.view import if_user
 
 
 def reveal(*wanted: tuple[Any, bool]) -> None:

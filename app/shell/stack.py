@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from app.bridge.controls import in_single, show_numbers
-from app.plots.plotly_data import enlarged_time_plot
-from app.plots.uplot import UplotFigure
-from app.shell.layout import CHOOSER_PX, Layout
-from app.shell.view import Tab
+from schuler_bench.bridge.controls import in_single, show_numbers
+from schuler_bench.plots.plotly_data import enlarged_time_plot
+from schuler_bench.plots.uplot import UplotFigure
+from schuler_bench.shell.layout import CHOOSER_PX, Layout
+from schuler_bench.shell.view import Tab
 
 if TYPE_CHECKING:
     import viser

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from app.session.history import History
-from app.shell.reset import RESET_FIELD
 from navcore.foundation.text import Text
+from schuler_bench.session.history import History
+from schuler_bench.shell.reset import RESET_FIELD
 
 if TYPE_CHECKING:
     import viser

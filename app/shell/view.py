@@ -11,24 +11,24 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
 
 from pydantic import ValidationError
 
-from app.editing import edits
-from app.editing.form import FieldSpec
-from app.plots import style, table
-from app.plots.plotly_data import PlotlyFigure
-from app.plots.uplot import UplotFigure
-from app.session.display import Display
-from app.session.session import Session
-from app.session.shown import Shown
-from app.shell import notices
-from app.shell.commands import Commands
-from app.shell.control import Control, Section
-from app.shell.editor import Editor
-from app.shell.layout import Layout
-from app.shell.opening import Opening
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.text import Text
+from schuler_bench.editing import edits
+from schuler_bench.editing.form import FieldSpec
+from schuler_bench.plots import style, table
+from schuler_bench.plots.plotly_data import PlotlyFigure
+from schuler_bench.plots.uplot import UplotFigure
+from schuler_bench.session.display import Display
+from schuler_bench.session.session import Session
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell import notices
+from schuler_bench.shell.commands import Commands
+from schuler_bench.shell.control import Control, Section
+from schuler_bench.shell.editor import Editor
+from schuler_bench.shell.layout import Layout
+from schuler_bench.shell.opening import Opening
 
 if TYPE_CHECKING:
     import viser

@@ -6,14 +6,14 @@ import logging
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
-from app.jobs.words import what_failed
-from app.shell import notices
 from navcore.foundation.text import Text
+from schuler_bench.jobs.words import what_failed
+from schuler_bench.shell import notices
 
 if TYPE_CHECKING:
     import viser
 
-    from app.shell.view import View
+    from schuler_bench.shell.view import View
 
 log = logging.getLogger(__name__)
 P = ParamSpec("P")

@@ -1,7 +1,7 @@
 """Views: one folder a tab or view, with its figure, its widgets, its scripts and styles.
 
 A folder is registered by one line in `VIEWS`. Its module ``view`` names the class in ``VIEW`` (a
-`app.shell.view.View`); ``*.js`` and ``*.css`` in the folder are given to the browser.
+`schuler_bench.shell.view.View`); ``*.js`` and ``*.css`` in the folder are given to the browser.
 """
 
 from __future__ import annotations
@@ -13,33 +13,33 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from app.shell.view import View
+    from schuler_bench.shell.view import View
 
 VIEWS: tuple[str, ...] = (
-    "app.views.scene",
-    "app.views.start",
-    "app.views.verification",
-    "app.views.explain",
-    "app.views.method",
-    "app.views.sensors",
-    "app.views.log",
-    "app.views.run",
-    "app.views.files",
-    "app.views.appearance",
-    "app.views.learn",
-    "app.views.frequency",
-    "app.views.poles",
-    "app.views.step",
-    "app.views.misprints",
-    "app.views.errors",
-    "app.views.switching",
-    "app.views.metrics",
-    "app.views.compare",
-    "app.views.spectrum",
-    "app.views.requirements",
-    "app.views.design",
-    "app.views.tune",
-    "app.views.scenario_text",
+    "schuler_bench.views.scene",
+    "schuler_bench.views.start",
+    "schuler_bench.views.verification",
+    "schuler_bench.views.explain",
+    "schuler_bench.views.method",
+    "schuler_bench.views.sensors",
+    "schuler_bench.views.log",
+    "schuler_bench.views.run",
+    "schuler_bench.views.files",
+    "schuler_bench.views.appearance",
+    "schuler_bench.views.learn",
+    "schuler_bench.views.frequency",
+    "schuler_bench.views.poles",
+    "schuler_bench.views.step",
+    "schuler_bench.views.misprints",
+    "schuler_bench.views.errors",
+    "schuler_bench.views.switching",
+    "schuler_bench.views.metrics",
+    "schuler_bench.views.compare",
+    "schuler_bench.views.spectrum",
+    "schuler_bench.views.requirements",
+    "schuler_bench.views.design",
+    "schuler_bench.views.tune",
+    "schuler_bench.views.scenario_text",
 )
 """Packages of the views, in the order of their tabs."""
 
@@ -54,7 +54,7 @@ def load(names: Sequence[str] = VIEWS) -> tuple[type[View], ...]:
     TypeError
         A folder's ``VIEW`` is no view.
     """
-    from app.shell.view import View
+    from schuler_bench.shell.view import View
 
     kinds = tuple(import_module(f"{name}.view").VIEW for name in names)
     for name, kind in zip(names, kinds, strict=True):

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-from app.views.learn.lessons import Lesson, Question, Step, lessons, right_choice
-from app.views.learn.names import named
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.scenario.model import Scenario
+from schuler_bench.views.learn.lessons import Lesson, Question, Step, lessons, right_choice
+from schuler_bench.views.learn.names import named
 
 _NAME = re.compile(r"\{\{\s*([^}]+?)\s*\}\}")
 

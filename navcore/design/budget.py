@@ -9,9 +9,11 @@ import numpy as np
 from navcore.design.constants import TOLD
 from navcore.design.figures import Entry, Figures, Series, entry_of
 from navcore.design.floor import steady_floor
+from navcore.design.measures import Setting, growing
 from navcore.design.result import Budget, MethodBudget, Shown, with_floor
 from navcore.design.seeds import SEEDS, no_covariance, seed_variance
 from navcore.design.ship import Ship
+from navcore.design.stated import assumed_zero
 from navcore.design.steady import instability, loops_of, steady_budget
 from navcore.design.unmodelled import unmodelled_warnings
 from navcore.design.untold import untold_squares
@@ -58,8 +60,12 @@ def budget(
     True
     """
     ship = Ship(scenario)
+    unstated = assumed_zero(scenario, steady)
     if steady:
-        return steady_budget(scenario, ship.model)
+        found = steady_budget(scenario, ship.model)
+        pairs = zip(found.methods, scenario.method, strict=True)
+        methods = tuple(_with_growth(ship, result, method) for result, method in pairs)
+        return replace(found, methods=methods, assumed_zero=unstated)
     left_out = _warnings(scenario)
     untold = any(column.source not in TOLD for column in ship.columns)
     done = [0.0] * (len(scenario.method) + 1)
@@ -87,7 +93,7 @@ def budget(
                 series = Series(variances.t_s, variances.variance, variances.total)
                 result = _of_series(method, "covariance", series, left_out)
         report(index, 1.0)
-        return replace(result, reads_log=method.reads_log)
+        return replace(_with_growth(ship, result, method), reads_log=method.reads_log)
 
     with ThreadPoolExecutor(2) as pool:
         least = pool.submit(lambda: ship.floor_series)
@@ -96,8 +102,16 @@ def budget(
     report(len(scenario.method), 1.0)
     if floor is None:
         reason = steady_floor(ship.model, scenario.omega_s).reason
-        return Budget(False, Entry(Figures(), Figures()), reason, None, methods)
-    return with_floor(False, entry_of(floor.t_s, floor.total), "", floor, methods)
+        return Budget(False, Entry(Figures(), Figures()), reason, None, methods, unstated)
+    found = with_floor(False, entry_of(floor.t_s, floor.total), "", floor, methods)
+    return replace(found, assumed_zero=unstated)
+
+
+def _with_growth(ship: Ship, budget: MethodBudget, method: Method) -> MethodBudget:
+    """Add what one level channel does not see: modes of the whole system that grow."""
+    if budget.diverged or not method.kind.uses_network or method.policy.tunes:
+        return budget
+    return replace(budget, warnings=(*budget.warnings, *growing(Setting(ship, method))))
 
 
 def _of_filter(scenario: Scenario, method: Method, own: Series, untold: bool) -> tuple[Series, str]:

@@ -21,7 +21,7 @@ def own_limits(scenario: Scenario, given: Sequence[Requirement]) -> list[Require
     """Limits of the scenario on settling and growth that are not given anew."""
     known = {*OF_THE_SETTING} - {one.name for one in given}
     own = [one for one in scenario.requirement if one.quantity in known]
-    return [read_requirement(f"{one.quantity}<={one.at_most!r}") for one in own]
+    return [read_requirement(f"{one.quantity}{one.sense}{one.limit_si!r}") for one in own]
 
 
 def limits_by_default(objective: Objective, limits: Sequence[Requirement]) -> list[Requirement]:

@@ -1,15 +1,17 @@
 """From limits to designs: which methods meet the requirements, on which share of seeds (theory.md 18)."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from navcore.design.measures import TUNING_INTERVALS, Setting
+from navcore.design.needed import Needed, needed
 from navcore.design.shares import Share, require_limits, share_of
 from navcore.design.ship import Ship
+from navcore.design.stated import assumed_zero
 from navcore.design.tuned_designs import kalman, tuned_methods
 from navcore.engine.ensemble import outcomes
-from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.errors import Fault, InputError, StoppedError
 from navcore.foundation.text import Text
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
@@ -17,16 +19,6 @@ from navcore.scenario.model import Scenario
 SEEDS = 200
 _TUNING_SHARE = 0.5
 """Of the time that a design takes."""
-_STATED = (
-    ("imu", "gyro_bias_std_dph", "gyro_bias_dph"),
-    ("imu", "accel_bias_std_ug", "accel_bias_ug"),
-    ("reference", "bias_std_mps", "bias_mps"),
-    ("initial_error", "level_std_arcmin", "attitude_arcmin"),
-    ("initial_error", "heading_std_arcmin", "attitude_arcmin"),
-    ("initial_error", "velocity_std_mps", "velocity_mps"),
-    ("initial_error", "position_std_arcsec", "position_arcsec"),
-)
-"""Block, field of a standard deviation, and field of the numbers whose sizes take its place."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +35,8 @@ class Designs:
         Standard deviations that the scenario states neither by themselves nor by a number: 0 is assumed.
     left_out : tuple of (str, str)
         Networks for which there is no method, and why.
+    needed : tuple of Needed
+        Where no method meets all limits on half of the seeds: figures that would have to be better.
     stopped : bool
         It was cancelled: fewer seeds, or methods that were not tuned to the end.
     """
@@ -51,7 +45,13 @@ class Designs:
     methods: tuple[Share, ...]
     assumed_zero: tuple[str, ...]
     left_out: tuple[tuple[str, str], ...] = ()
+    needed: tuple[Needed, ...] = ()
     stopped: bool = False
+
+    @property
+    def met(self) -> bool:
+        """Whether a method meets all limits on half of the seeds."""
+        return self.methods[0].met >= 0.5
 
     def as_dict(self) -> dict[str, Any]:
         """Return the document of interface.md."""
@@ -60,6 +60,7 @@ class Designs:
             "methods": [share.as_dict() for share in self.methods],
             "assumed_zero": list(self.assumed_zero),
             "left_out": dict(self.left_out),
+            "needed": [one.as_dict() for one in self.needed],
             "stopped": self.stopped,
         }
 
@@ -116,26 +117,15 @@ def designs(
     found = outcomes(scenario, methods, range(seeds), report(share, 1.0 - share), cancelled)
     stopped = cancelled is not None and cancelled()
     if not found:
-        raise InputError(
+        raise StoppedError(
             Fault("", "--seeds", seeds, Text("the command was stopped before a seed was completed"))
         )
     shares = _judged(scenario, methods, found)
-    return Designs(len(found), shares, assumed_zero(scenario), tuple(left_out), stopped)
+    result = Designs(len(found), shares, assumed_zero(scenario), tuple(left_out), stopped=stopped)
+    return result if result.met or stopped else replace(result, needed=needed(scenario, shares, cancelled))
 
 
 def _judged(scenario: Scenario, methods: Sequence[Method], found: Sequence[Any]) -> tuple[Share, ...]:
     ship = Ship(scenario, True, TUNING_INTERVALS)
     shares = [share_of(Setting(ship, method), [one[k] for one in found]) for k, method in enumerate(methods)]
     return tuple(sorted(shares, key=lambda share: share.order))
-
-
-def assumed_zero(scenario: Scenario) -> tuple[str, ...]:
-    """Fields of standard deviations that the scenario states in no way, so that 0 is assumed."""
-    fields = []
-    for block, deviation, number in _STATED:
-        settings = getattr(scenario, block)
-        if block == "reference" and settings.kind != "log":
-            continue
-        if getattr(settings, deviation) is None and number not in settings.model_fields_set:
-            fields.append(f"{block}.{deviation}")
-    return tuple(fields)

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,7 +12,7 @@ from navcore.analysis import Loop, analyse
 from navcore.analysis.filter_loop import filter_loop
 from navcore.analysis.held_log import held_log
 from navcore.analysis.judged import JudgedLoop, loop_value
-from navcore.analysis.whole_system import WholeSystem, whole_system
+from navcore.analysis.whole_system import WholeSystem, duration, whole_system
 from navcore.design.figures import Figures, mean_figures, total_of
 from navcore.design.level import Level
 from navcore.design.sampled import SampledLevel, timing_of
@@ -112,6 +112,15 @@ class Setting:
                 return Figures()
         variances = ship.along(self.method)
         return mean_figures(variances.t_s, variances.total)
+
+
+def growing(setting: Setting) -> Iterator[str]:
+    """Yield a sentence for each mode of the whole system that grows, as it is sampled too."""
+    growth = setting.growth_per_s
+    if growth > 0.0 and setting.whole.stable:
+        every = duration(1.0 / growth)
+        yield Text("whole system: it grows as it is sampled, by e every {every}", every=every)
+    yield from setting.whole.warnings
 
 
 def measure(setting: Setting, key: str) -> float:
@@ -232,7 +241,10 @@ def in_words(name: str, value: float) -> str:
     if not math.isfinite(value):
         return Text("no finite value")
     in_unit, unit = in_display_unit(name, value)
-    return f"{in_unit:.4g} {unit}".rstrip()
+    if name not in QUANTITIES:
+        return f"{in_unit:.4g}"
+    template = "{in_unit:.4g} {unit}" if unit else "{in_unit:.4g}"
+    return Text(template, in_unit=in_unit, unit=unit, quantity=name, si=value)
 
 
 def read_objective(text: str) -> Objective:

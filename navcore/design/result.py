@@ -97,6 +97,8 @@ class Budget:
         Along the run only.
     methods : tuple of MethodBudget
         In the scenario's order.
+    assumed_zero : tuple of str
+        Standard deviations of constants that the scenario states in no way, so that 0 is assumed.
     """
 
     steady: bool
@@ -104,6 +106,7 @@ class Budget:
     floor_reason: str
     floor_series: Series | None
     methods: tuple[MethodBudget, ...]
+    assumed_zero: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """One line: of what, and the methods."""
@@ -122,6 +125,7 @@ class Budget:
         return {
             "steady": self.steady,
             "floor": floor,
+            "assumed_zero": list(self.assumed_zero),
             "methods": [
                 {**method.as_dict(), "times_floor": self.times_floor(method)} for method in self.methods
             ],

@@ -42,17 +42,13 @@ class Limit:
     @property
     def ratio(self) -> float:
         """Median over the limit; infinite without a median, or where a limit of 0 is missed."""
-        if self.median is None:
-            return math.inf
-        at_most = self.requirement.at_most
-        if at_most > 0.0:
-            return self.median / at_most
-        return 0.0 if self.median <= at_most else math.inf
+        return self.requirement.times(self.median)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the document of interface.md."""
         one = self.requirement
-        return {"quantity": one.quantity, "at_most": one.at_most, "median": self.median, "met": self.met}
+        limit = {"at_most" if one.sense == "<=" else "at_least": one.limit}
+        return {"quantity": one.quantity, **limit, "median": self.median, "met": self.met}
 
 
 @dataclass(frozen=True)
@@ -151,7 +147,7 @@ def share_of(setting: Setting, outcomes: Sequence[Outcome]) -> Share:
     """
     requirements = setting.ship.scenario.requirement
     values = np.column_stack([_values(setting, one, outcomes) for one in requirements])
-    met = values <= [one.at_most for one in requirements]
+    met = np.array([[one.met(x) for one, x in zip(requirements, row, strict=True)] for row in values])
     ended = np.array([one.ended for one in outcomes])
     met &= ended[:, None]
     count, full = len(outcomes), int(np.count_nonzero(met.all(axis=1)))

@@ -7,16 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from navcore.analysis.whole_system import duration
 from navcore.design.confirm import Confirmed, confirmed
 from navcore.design.default_limits import limits_by_default, own_limits, without_defaults
+from navcore.design.limits_cost import flat_ranges, nothing_meets, without_limits
 from navcore.design.measures import (
     TUNING_INTERVALS,
     Objective,
     Requirement,
     Setting,
     Ship,
-    in_words,
+    growing,
     measure,
     over_run,
     read_objective,
@@ -24,7 +24,6 @@ from navcore.design.measures import (
 )
 from navcore.design.search import (
     ALONG,
-    BOUNDLESS,
     EXPLAIN,
     MISSED,
     REFUSED,
@@ -34,16 +33,14 @@ from navcore.design.search import (
     Search,
     no_method,
 )
+from navcore.design.stated import assumed_zero
 from navcore.design.unmodelled import unmodelled_warnings
 from navcore.design.vary import Varied, present, read_varied
-from navcore.foundation.errors import Fault, InputError, UnstableError
+from navcore.foundation.errors import Fault, InputError, StoppedError, UnstableError
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES, Judged
 from navcore.scenario.model import Scenario
 
-_SEARCH_SHARE = 0.8
-"""Of the time that a search takes with its confirmation."""
-_FLAT = 1.05
 _GAIN = 1e-4
 """Relative gain without a requirement from which it counts as holding the optimum back."""
 
@@ -79,6 +76,8 @@ class Tuned:
         What root mean squares are of.
     default_limits : tuple of str
         Limits that were kept because none of their quantity was given.
+    assumed_zero : tuple of str
+        Standard deviations of constants that the scenario states in no way, so that 0 is assumed.
     confirmed : Confirmed or None
         Both settings in runs; None where that was not asked for.
     scenario : Scenario
@@ -98,6 +97,7 @@ class Tuned:
     judged: Judged
     default_limits: tuple[str, ...]
     scenario: Scenario = field(repr=False)
+    assumed_zero: tuple[str, ...] = ()
     confirmed: Confirmed | None = None
 
     def as_dict(self) -> dict[str, Any]:
@@ -113,6 +113,7 @@ class Tuned:
             "flat": {name: list(ends) for name, ends in self.flat.items()},
             "stopped": self.stopped,
             "default_limits": list(self.default_limits),
+            "assumed_zero": list(self.assumed_zero),
             "warnings": list(self.warnings),
             **({} if self.confirmed is None else {"confirmed": self.confirmed.as_dict()}),
         }
@@ -153,7 +154,8 @@ def tune(
         Keep `navcore.design.default_limits.DEFAULT_LIMITS` of what nothing limits; where no setting keeps
         them, the search does without them, and says so.
     confirm : bool
-        Run the present setting and the proposal on 32 seeds of the scenario.
+        Run the present setting and the proposal on 32 seeds of the scenario. A proposal of the steady state
+        that is no better there, or diverges, gives way to one that is searched over the run and is better.
     progress, cancelled : callable, optional
         Told the fraction done, 0..1; when ``cancelled`` says True the best so far is given.
 
@@ -173,44 +175,86 @@ def tune(
     wanted, limits = read_objective(objective), [read_requirement(text) for text in require]
     limits += own_limits(scenario, limits)
     varied = read_varied(scenario, vary)
-    judged = scenario.method[varied[0].method]
-    along = along or over_run((*wanted.names, *(one.name for one in limits))) or judged.policy.tunes
-    ships = [Ship(one, along, TUNING_INTERVALS) for one in (scenario, *worst_of)]
-    _check(ships, varied, wanted)
+    index = varied[0].method
+    along = along or over_run((*wanted.names, *(one.name for one in limits)))
+    along = along or scenario.method[index].policy.tunes
     defaults = limits_by_default(wanted, limits) if default_limits else []
-    part = _SEARCH_SHARE if confirm and progress is not None else 1.0
-    told = None if progress is None else lambda fraction: progress(part * fraction)
-    search = Search(ships, varied, wanted, [*limits, *defaults], told, cancelled)
+
+    def searched(over_the_run: bool, begin: float, end: float) -> Tuned:
+        ships = [Ship(one, over_the_run, TUNING_INTERVALS) for one in (scenario, *worst_of)]
+        _check(ships, varied, wanted)
+        return _searched(
+            Search(ships, varied, wanted, limits, _part(progress, begin, end), cancelled), defaults
+        )
+
+    def in_runs(found: Tuned, begin: float, end: float) -> Tuned:
+        return (
+            found
+            if found.stopped
+            else _confirmed(found, scenario, index, wanted, _part(progress, begin, end), cancelled)
+        )
+
+    if not confirm:
+        return searched(along, 0.0, 1.0)
+    if along:
+        return in_runs(searched(True, 0.0, 0.8), 0.8, 1.0)
+    steady, diverging = searched(False, 0.0, 0.3), None
+    try:
+        steady = in_runs(steady, 0.3, 0.4)
+    except UnstableError as error:
+        diverging = error
+    if diverging is None and (steady.stopped or _holds(steady, wanted)):
+        return steady
+    try:
+        over = in_runs(searched(True, 0.4, 0.9), 0.9, 1.0)
+    except InputError as error:
+        if diverging is not None:
+            raise diverging from None
+        return replace(steady, stopped=isinstance(error, StoppedError))
+    if diverging is None and (over.stopped or _after(over, wanted) >= _after(steady, wanted)):
+        return replace(steady, stopped=over.stopped)
+    note = Text(
+        "the best setting of the steady state is no better in the runs; this is the best over the run"
+    )
+    return replace(over, warnings=(note, *over.warnings))
+
+
+def _part(
+    progress: Callable[[float], None] | None, begin: float, end: float
+) -> Callable[[float], None] | None:
+    return None if progress is None else lambda fraction: progress(begin + (end - begin) * fraction)
+
+
+def _searched(search: Search, defaults: Sequence[Requirement]) -> Tuned:
+    """Search under the limits of a search and those by default, or without these where nothing keeps them."""
+    wanted, limits = search.objective, search.requirements
+    search.requirements = (*limits, *defaults)
     start, before = _begin(search)
     if before == 0.0 and all(QUANTITIES[name].kind for name in wanted.names):
         reason = Text("is 0 as it is: the scenario has no error that a setting could make smaller")
         raise InputError(Fault("", "--objective", wanted.text, reason))
+    along = search.ships[0].along_run
     effort = ALONG if along else STEADY
     stopped = search.run(effort, start)
     left = ()
     if defaults and not stopped and search.best is not None and MISSED <= search.best[0] < UNSTABLE:
         left = (without_defaults(defaults),)
-        search.requirements, defaults = tuple(limits), []
+        search.requirements, defaults = limits, ()
         stopped = search.run(effort, start)
-    best = search.best
+    best, vary = search.best, ", ".join(one.field for one in search.varied)
+    if stopped and (best is None or best[0] >= MISSED):
+        reason = Text("the search was stopped before it found a setting that meets all limits")
+        raise StoppedError(Fault("", "--vary", vary, reason))
     if best is None or best[0] >= REFUSED:
-        if stopped:
-            raise InputError(
-                Fault("", "--vary", None, Text("the search was stopped before it found a setting"))
-            )
-        raise InputError(list(no_method(search, ", ".join(vary))))
+        raise InputError(list(no_method(search, vary)))
     if best[0] >= UNSTABLE:
         reason = Text("no setting within these ranges is stable: {unstable}", unstable=search.unstable)
-        raise UnstableError(Fault("", "--vary", ", ".join(vary), reason))
+        raise UnstableError(Fault("", "--vary", vary, reason))
     if best[0] >= MISSED:
-        raise InputError(list(_nothing_meets(search, ALONG if along else EXPLAIN, start)))
+        raise InputError(list(nothing_meets(search, ALONG if along else EXPLAIN, start)))
     found = _result(search, best[1], before, effort, stopped)
-    found = replace(
-        found, default_limits=tuple(one.text for one in defaults), warnings=(*left, *found.warnings)
-    )
-    if not confirm or stopped:
-        return found
-    return _confirmed(found, scenario, varied[0].method, wanted, part, progress, cancelled)
+    kept = tuple(one.text for one in defaults)
+    return replace(found, default_limits=kept, warnings=(*left, *found.warnings))
 
 
 def _confirmed(
@@ -218,18 +262,30 @@ def _confirmed(
     scenario: Scenario,
     index: int,
     objective: Objective,
-    part: float,
     progress: Callable[[float], None] | None,
     cancelled: Callable[[], bool] | None,
 ) -> Tuned:
     """Add what runs say of the proposal."""
-    told = None if progress is None else lambda fraction: progress(part + (1.0 - part) * fraction)
     pair = scenario.method[index], found.scenario.method[index]
-    result = confirmed(scenario, *pair, progress=told, cancelled=cancelled)
+    result = confirmed(scenario, *pair, progress=progress, cancelled=cancelled)
     if result is None:
         return replace(found, stopped=True)
     verdicts = (result.verdict(name) for name in objective.names)
     return replace(found, confirmed=result, warnings=(*filter(None, verdicts), *found.warnings))
+
+
+def _holds(found: Tuned, objective: Objective) -> bool:
+    """Whether runs do not speak against every term of the objective."""
+    assert found.confirmed is not None
+    return not all(found.confirmed.verdict(name) for name in objective.names)
+
+
+def _after(found: Tuned, objective: Objective) -> float:
+    """Objective in the runs after a proposal, each term over its value before."""
+    assert found.confirmed is not None
+    changes = found.confirmed.changes
+    terms = ((changes[name], weight) for name, weight in objective.terms if name in changes)
+    return sum(weight * one.after / one.before for one, weight in terms if one.after and one.before)
 
 
 def _check(ships: Sequence[Ship], varied: Sequence[Varied], objective: Objective) -> None:
@@ -278,10 +334,10 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
     active = [one for one in search.requirements if any(one.active(setting) for setting in settings)]
     cost, flat = {}, {}
     if not stopped:
-        flat = _flat(search, places, objective)
+        flat = flat_ranges(search, places, objective)
         for one in active:
             rest = [other for other in search.requirements if other is not one]
-            cost[one.text] = _without(search, rest, effort, places)
+            cost[one.text] = without_limits(search, rest, effort, places)
         # at its limit by chance: without it the optimum would stay where it is
         holding = [one for one in active if cost[one.text] < objective - _GAIN * abs(objective)]
         active = holding or active
@@ -310,88 +366,11 @@ def _result(search: Search, places: np.ndarray, before: float | None, effort: Ef
         judged="ensemble" if search.ships[0].along_run else "steady",
         default_limits=(),
         scenario=scenario.model_copy(update={"method": methods}),
+        assumed_zero=assumed_zero(scenario, not search.ships[0].along_run),
     )
 
 
 def _unseen(setting: Setting) -> Iterator[str]:
     """Whole system and unmodelled errors, of which a measure of one channel says nothing."""
-    growth = setting.growth_per_s
-    if growth > 0.0 and setting.whole.stable:
-        every = duration(1.0 / growth)
-        yield Text("whole system: it grows as it is sampled, by e every {every}", every=every)
-    yield from (
-        *setting.whole.warnings,
-        *unmodelled_warnings(setting.ship.scenario, not setting.ship.along_run),
-    )
-
-
-def _without(search: Search, rest: Sequence[Requirement], effort: Effort, start: np.ndarray | None) -> float:
-    """Objective that could be reached with fewer requirements."""
-    other = Search(search.ships, search.varied, search.objective, rest, None, search.cancelled)
-    other.reference, other.scale = search.reference, search.scale
-    other.run(effort, start)
-    if other.best is None or other.best[0] >= MISSED:  # stopped at once, or nothing meets the rest
-        return math.inf
-    return other.best[0] * other.scale
-
-
-def _flat(search: Search, places: np.ndarray, objective: float) -> dict[str, tuple[float, float]]:
-    """Range of each field in which the objective stays within 5 % of the best, the others held."""
-    quiet = Search(search.ships, search.varied, search.objective, search.requirements)
-    quiet.reference, quiet.scale = search.reference, search.scale
-    limit = _FLAT * objective / search.scale
-    ranges = {}
-    for i, one in enumerate(search.varied):
-        ends = []
-        for end in (0.0, 1.0):
-            inside, outside = float(places[i]), end
-            trial = places.copy()
-            trial[i] = end
-            if quiet.cost(trial) <= limit:
-                ends.append(one.value(end))
-                continue
-            for _ in range(9):
-                trial[i] = 0.5 * (inside + outside)
-                if quiet.cost(trial) <= limit:
-                    inside = float(trial[i])
-                else:
-                    outside = float(trial[i])
-            ends.append(one.value(inside))
-        ranges[one.field] = (ends[0], ends[1])
-    return ranges
-
-
-def _nothing_meets(search: Search, effort: Effort, start: np.ndarray | None) -> Iterator[Fault]:
-    """Yield a fault for each requirement: what is the best of it alone, and what it costs."""
-    for one in search.requirements:
-        reach = _reach(search, one, effort, start)
-        rest = [other for other in search.requirements if other is not one]
-        without = _without(search, rest, effort, start)
-        if math.isfinite(without):
-            least = in_words(search.objective.text, without)
-            left = Text("without it {text} comes to {least}", text=search.objective.text, least=least)
-        else:
-            left = Text("without it the others are not met either")
-        reason = Text(
-            "nothing within these ranges meets all requirements: alone {name} comes to", name=one.name
-        )
-        yield Fault(
-            "",
-            "--require",
-            one.text,
-            Text("{reason} {in_words}; {left}", reason=reason, in_words=in_words(one.name, reach), left=left),
-        )
-
-
-def _reach(search: Search, one: Requirement, effort: Effort, start: np.ndarray | None) -> float:
-    """Least value of a measure alone, or the largest where a requirement asks for at least something."""
-    sign = 1.0 if one.sense == "<=" else -1.0
-
-    class _Alone(Search):
-        def value(self, settings: Sequence[Setting]) -> float:
-            return max(sign * measure(setting, one.name) for setting in settings)
-
-    alone = _Alone(search.ships, search.varied, search.objective, ())
-    alone.run(effort, start)
-    assert alone.best is not None
-    return sign * alone.best[0] if alone.best[0] < BOUNDLESS else math.inf
+    yield from growing(setting)
+    yield from unmodelled_warnings(setting.ship.scenario, not setting.ship.along_run)

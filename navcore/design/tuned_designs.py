@@ -34,6 +34,8 @@ _INTERVALS = 96
 _EFFORT = Effort(5, 5, 40)
 _PEAK = 1.6
 """Largest length of a vector over the root of its largest mean square, about, in the middle of the seeds."""
+_SIGNED = {"growth_per_s": 1.0 / 86400.0, "h_slope_s": 100.0}
+"""Size of an excess that counts like the limit itself, where a value may be negative."""
 _AXES = {TILT: (0, 1), VELOCITY: (3, 4), HEADING: (2,), POSITION: (5, 6)}
 """Components of each kind among `navcore.quantities.COMPONENTS`."""
 
@@ -104,7 +106,7 @@ def _candidates(
     stable = {method.network: method for method in present if not Setting(ship, method).instability}
     if not stable:
         return [], Setting(ship, default).instability
-    ranked = sorted(stable.values(), key=lambda method: _foretold(Setting(ship, method)))
+    ranked = sorted(stable.values(), key=lambda method: _largest_ratio(Setting(ship, method)))
     return ranked[:_CANDIDATES], ""
 
 
@@ -126,10 +128,10 @@ class _ByLimits(Search):
         super().__init__([Ship(scenario, True, _INTERVALS)], varied, read_objective("tilt_rms"), ())
 
     def value(self, settings: Sequence[Setting]) -> float:
-        return _foretold(settings[0])
+        return _largest_ratio(settings[0])
 
 
-def _foretold(setting: Setting) -> float:
+def _largest_ratio(setting: Setting) -> float:
     """Largest quantity over its limit, by the covariance along the run; infinite where there is none."""
     requirements = setting.ship.scenario.requirement
     series = None
@@ -144,19 +146,20 @@ def _foretold(setting: Setting) -> float:
                 return math.inf
             variances = setting.ship.along(setting.method)
             series = variances.t_s, variances.total
-        ratios.append(_over(_of_series(quantity, *series, begins_s(one)), one))
+        ratios.append(_over(foretold(quantity, *series, begins_s(one)), one))
     return max(ratios)
 
 
 def _over(value: float, one: Requirement) -> float:
-    """Value over the limit; where the limit has a sign, 1 at the limit and the excess in days beyond."""
-    limit = one.at_most * limit_unit(one.quantity)
+    """Value over the limit; where that may be negative, 1 at the limit and more beyond."""
+    unit = limit_unit(one.quantity)
     if QUANTITIES[one.quantity].signed:
-        return 1.0 + 86400.0 * (value - limit)
-    return value / limit if limit > 0.0 else (0.0 if value <= limit else math.inf)
+        return 1.0 + (value / unit - one.limit) / _SIGNED.get(one.quantity, 1.0)
+    return one.times(value / unit)
 
 
-def _of_series(quantity: Quantity, t_s: np.ndarray, variance: np.ndarray, from_s: float) -> float:
+def foretold(quantity: Quantity, t_s: np.ndarray, variance: np.ndarray, from_s: float) -> float:
+    """Value of a quantity of errors, SI, by variances along the run of shape (m, 7)."""
     assert quantity.kind is not None
     axes = _AXES[quantity.kind]
     square = variance[t_s >= from_s - 1e-6][:, axes].sum(axis=1)

@@ -67,7 +67,7 @@ def judged(requirement: Requirement, run: MethodRun) -> tuple[float | None, bool
         Of a method. Null is not met, and what diverged meets nothing.
     """
     value = measure(run, requirement.quantity, begins_s(requirement)) / limit_unit(requirement.quantity)
-    return _finite(value), run.status == "ok" and value <= requirement.at_most
+    return _finite(value), run.status == "ok" and requirement.met(value)
 
 
 def begins_s(requirement: Requirement) -> float:
@@ -79,7 +79,7 @@ def _requirements(scenario: Scenario, run: MethodRun) -> dict[str, Any]:
     found = []
     for one in scenario.requirement:
         value, met = judged(one, run)
-        found.append({**one.model_dump(mode="json"), "value": value, "met": met})
+        found.append({**one.model_dump(mode="json", exclude_none=True), "value": value, "met": met})
     return {"requirements": found} if found else {}
 
 

@@ -6,7 +6,7 @@ This is the only place where navcore asks for anything of the page, and nothing 
 from importlib import import_module
 from typing import Any
 
-_PAGE = "app.notebook"
+_PAGE = "schuler_bench.notebook"
 
 
 def drawn(what: str, subject: Any, *given: Any, **options: Any) -> Any:

@@ -102,3 +102,7 @@ class InputError(ValueError):
 
 class UnstableError(InputError):
     """Every setting that was tried is unstable: the input is read, and there is no answer to it."""
+
+
+class StoppedError(InputError):
+    """The work was stopped before it had an answer: the input is read, and nothing is found."""

@@ -2,8 +2,9 @@
 
 The folder is named after the digest of `navcore.foundation.kernel_digest` and lies under
 ``SCHULER_CACHE_DIR``, else the user's cache folder, else (no home, or a read-only one) a temporary folder; a
-cache that root has compiled, or that is read-only, is copied to a writable place first: further kernels may
-have to be compiled. Where nothing can be written to, a complete one is used where it lies.
+cache that root has compiled, or that is read-only, is copied to a writable place first, over a copy that is
+not complete: further kernels may have to be compiled. Where nothing can be written to, a complete one is used
+where it lies.
 Forming that digest takes some 150 ms, so it is kept beside the folders under the digest of the raw sources.
 Folders that nothing has used for a month are removed when kernels are compiled.
 """
@@ -170,9 +171,10 @@ def cache_folder() -> Path:
     why_not = "" if named else "there is no home folder"
     for at, base in enumerate(bases):
         folder = base / name
-        missing = not _exists(folder)
-        copied = missing and any(kernel_files.copy(other / name, folder) for other in bases[:at])
-        if missing and not copied and (as_it_lies := _complete_in(bases[:at], name)):
+        missing, begun = not _exists(folder), not _exists(folder / _COMPLETE)
+        others = [other / name for other in bases[:at] if missing or _exists(other / name / _COMPLETE)]
+        copied = begun and any(kernel_files.copy(other, folder) for other in others)
+        if begun and not copied and (as_it_lies := _complete_in(bases[:at], name)):
             return as_it_lies
         reason = kernel_files.refusal(folder)
         if not reason:

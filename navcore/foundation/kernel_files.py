@@ -9,7 +9,7 @@ import shutil
 import stat
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
@@ -103,16 +103,16 @@ def untrusted(folder: Path) -> str:
 
 
 def copy(source: Path, target: Path) -> bool:
-    """Copy a folder that is trusted in all its parts; False, and no trace, when it cannot be used.
+    """Copy a folder that is trusted in all its parts; False when it cannot be used or copied.
 
     Parameters
     ----------
     source : Path
         May be missing.
     target : Path
-        Must not exist. Renamed into place, so that a process that starts at the same time never sees half
-        a copy.
+        The copy takes its place by a rename: a process that starts at the same time never sees half of it.
     """
+    before = _number(target)
     try:
         if untrusted(source):
             return False
@@ -122,7 +122,18 @@ def copy(source: Path, target: Path) -> bool:
             shutil.copytree(source, made, ignore=shutil.ignore_patterns(".*", "lock"))
             for path in (made, *made.rglob("*")):
                 path.chmod(_FOLDER if path.is_dir() else _FILE)
-            made.rename(target)
+            if _number(target) == before:  # else another process has been quicker
+                with suppress(FileNotFoundError):
+                    target.rename(Path(folder) / "replaced")
+                made.rename(target)
     except OSError:
-        return target.is_dir()
+        return False
     return True
+
+
+def _number(path: Path) -> int | None:
+    """Number by which the file system knows what lies there."""
+    try:
+        return path.stat().st_ino
+    except OSError:
+        return None

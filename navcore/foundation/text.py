@@ -25,8 +25,9 @@ class Words(str):
 class Text(Words):
     """A text in English, which keeps the template and the values that it consists of.
 
-    `app.languages.wording.Wording` looks the template up in a reader's language and fills the values in. A
-    text that is put into another one must be a value of that one: an f-string keeps only the English.
+    `schuler_bench.languages.wording.Wording` looks the template up in a reader's language and fills the
+    values in. A text that is put into another one must be a value of that one: an f-string keeps only the
+    English.
 
     Parameters
     ----------

@@ -85,12 +85,15 @@ class OptimalNetwork(NetworkParameters):
         ),
     )
     q: float = quantity(
-        0.0,
+        1.0,
         ge=0.0,
         le=1e3,
         slider=(0.0, 5.0),
         label="q",
-        help=Text("Weight of the velocity error beside that of the tilt (theory.md 17)."),
+        help=Text(
+            "Weight of the velocity error beside that of the tilt; with 0 the tilt comes to the floor, "
+            "and the 24 h mode grows within hours (theory.md 17)."
+        ),
     )
     realisation: Literal["network", "feedback"] = choice(
         "network",

@@ -314,22 +314,30 @@ LIMITED = (
     "heading_max_arcmin",
     "heading_rms_arcmin",
     "position_max_m",
+    "position_rms_m",
     "position_final_m",
     "settling_s",
     "growth_per_s",
+    "tilt_overshoot",
+    "damping_ratio",
+    "h0_deviation",
+    "h_slope_s",
+    "log_tilt",
 )
-"""Quantities of a ``[[requirement]]``; the last part of a name is the unit of its limit."""
+"""Quantities of a ``[[requirement]]``."""
 
 
 def limit_unit(key: str) -> float:
-    """SI value of the unit in the name of a row of `LIMITED`.
+    """SI value of the unit of a limit, of a row of `LIMITED`: that in its name, else that on the page.
 
     Examples
     --------
     >>> limit_unit("heading_max_arcmin") == UNITS["arcmin"], limit_unit("velocity_max_mps")
     (True, 1.0)
+    >>> limit_unit("tilt_overshoot")
+    0.01
     """
-    return UNITS.get(key.rpartition("_")[2], 1.0)
+    return UNITS.get(key.rpartition("_")[2], QUANTITIES[key].size)
 
 
 def searched(key: str) -> Quantity | None:

@@ -12,7 +12,6 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
-from navcore.quantities import QUANTITIES
 from navcore.scenario.bounds import MAX_METHODS
 from navcore.scenario.fields import ScenarioFields
 from navcore.scenario.method import Method
@@ -90,16 +89,10 @@ class Scenario(ScenarioFields):
             yield Fault("", "method", len(self.method), _METHODS_ALLOWED)
         yield from _method_faults(self)
         yield from self.alignment.faults()
-        yield from _requirement_faults(self)
+        for i, one in enumerate(self.requirement):
+            yield from one.faults(f"requirement.{i}")
         yield from need_faults(self)
         yield from strapdown_faults(self)
-
-
-def _requirement_faults(scenario: ScenarioFields) -> Iterator[Fault]:
-    for i, one in enumerate(scenario.requirement):
-        if one.at_most < 0.0 and not QUANTITIES[one.quantity].signed:
-            allowed = Text("must be >= 0: {quantity} has no sign", quantity=one.quantity)
-            yield Fault("", f"requirement.{i}.at_most", one.at_most, allowed)
 
 
 def _method_faults(scenario: ScenarioFields) -> Iterator[Fault]:

@@ -5,7 +5,6 @@ import json
 import numpy as np
 import pytest
 
-from app.cli import main
 from navcore.analysis.held_log import held_log
 from navcore.design.budget import budget
 from navcore.design.tune import tune
@@ -15,6 +14,7 @@ from navcore.foundation.units import ARCSEC
 from navcore.networks import parse_network
 from navcore.scenario.file import to_toml
 from navcore.scenario.model import Scenario
+from schuler_bench.cli import main
 from tests.acceptance.test_design_values import SET_A
 
 NETWORKS = (

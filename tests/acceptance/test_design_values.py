@@ -113,7 +113,7 @@ def test_tilt_at_the_known_optima(network: dict[str, object], arcsec: float) -> 
 @pytest.mark.parametrize(("rho", "arcsec", "velocity"), OPTIMAL)
 def test_optimal_network(rho: float, arcsec: float, velocity: float) -> None:
     """LQG with the cost of the tilt only: the rows of the reference to 1 %, never below the floor."""
-    found = budget(set_a({"id": "optimal", "rho": rho}), steady=True)
+    found = budget(set_a({"id": "optimal", "rho": rho, "q": 0.0}), steady=True)
     total = found.methods[0].total.rms
     assert (total.tilt_rad or 0.0) / ARCSEC == pytest.approx(arcsec, rel=0.01)
     assert total.velocity_mps == pytest.approx(velocity, rel=0.01)

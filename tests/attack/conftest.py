@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 import viser
 
-from app.http.ids import SessionIds
-from app.http.server import DashboardServer, start
+from schuler_bench.http.ids import SessionIds
+from schuler_bench.http.server import DashboardServer, start
 
 
 @dataclass

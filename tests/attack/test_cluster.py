@@ -13,21 +13,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.bench.process import Server, environment, free_port
-from app.jobs import cluster as module
-from app.jobs import envelopes
-from app.jobs.cluster import Cluster
-from app.jobs.designer import Budgeter
-from app.jobs.elsewhere import CLUSTER, LOST, cluster, note_of, use_cluster
-from app.jobs.envelopes import Envelopes
-from app.jobs.load import heavy_load
-from app.jobs.scheduler import Lane, scheduler
-from app.jobs.search import Search
 from navcore.design.budget import budget
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.bench.process import Server, environment, free_port
+from schuler_bench.jobs import cluster as module
+from schuler_bench.jobs import envelopes
+from schuler_bench.jobs.cluster import Cluster
+from schuler_bench.jobs.designer import Budgeter
+from schuler_bench.jobs.elsewhere import CLUSTER, LOST, cluster, note_of, use_cluster
+from schuler_bench.jobs.envelopes import Envelopes
+from schuler_bench.jobs.load import heavy_load
+from schuler_bench.jobs.scheduler import Lane, scheduler
+from schuler_bench.jobs.search import Search
 from tests.attack.conftest import eventually
 from tests.attack.wire import ask
 
@@ -210,7 +210,7 @@ def changed_program(folder: Path, change: str) -> dict[str, str]:
     """Environment of a worker whose copy of the program differs in one place."""
     own = environment()
     root = Path(own["PYTHONPATH"].split(os.pathsep)[0])
-    for package in ("app", "navcore", "assets"):
+    for package in ("schuler_bench", "navcore", "assets"):
         shutil.copytree(root / package, folder / package, ignore=shutil.ignore_patterns("__pycache__"))
     name, old, new = CHANGES[change]
     text = (folder / name).read_text("utf-8")

@@ -10,7 +10,7 @@ from contextlib import ExitStack, contextmanager
 
 import pytest
 
-from app.http.limits import MIB, Limits
+from schuler_bench.http.limits import MIB, Limits
 from tests.attack.conftest import TOKEN, Bench, eventually, running
 from tests.attack.wire import SESSION, ask, raw, shake_hands, statuses, upload, visit
 

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.http.ids import SessionIds, copied_from, is_shared, new_shared_id
 from navcore.foundation.errors import InputError
+from schuler_bench.http.ids import SessionIds, copied_from, is_shared, new_shared_id
 from tests.attack.conftest import TOKEN, Bench, eventually, running
 from tests.attack.wire import SESSION, ask, shake_hands, statuses, visit
 

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from app.bench.visitor import PAGE_STATE, Visitor
-from app.serve import open_dashboard
-from app.shell.page import Page
-from app.shell.view import PictureView, View
-from app.views import load
 from navcore.scenario.file import load as load_scenario
 from navcore.scenario.model import Scenario
+from schuler_bench.bench.visitor import PAGE_STATE, Visitor
+from schuler_bench.serve import open_dashboard
+from schuler_bench.shell.page import Page
+from schuler_bench.shell.view import PictureView, View
+from schuler_bench.views import load
 from tests.attack.wire import ask
 from tests.browser.fields import label_of
 
 if TYPE_CHECKING:
-    from app.serve import Dashboard
+    from schuler_bench.serve import Dashboard
 
 pytestmark = pytest.mark.attack
 

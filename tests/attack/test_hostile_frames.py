@@ -12,8 +12,8 @@ import pytest
 import viser._viser
 from websockets.exceptions import ConnectionClosed
 
-from app.bridge.controls import lock_controls
-from app.http.limits import MIB
+from schuler_bench.bridge.controls import lock_controls
+from schuler_bench.http.limits import MIB
 from tests.attack.conftest import Bench, eventually
 from tests.attack.wire import CAMERA, raw, upload, visit
 

@@ -14,8 +14,8 @@ from contextlib import contextmanager
 
 import pytest
 
-from app.bench.process import Server
-from app.bench.visitor import PAGE_STATE, Visitor
+from schuler_bench.bench.process import Server
+from schuler_bench.bench.visitor import PAGE_STATE, Visitor
 from tests.attack.conftest import eventually
 from tests.bombs import FILES, SCENARIOS
 from tests.browser.fields import label_of

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-import app
-from app.bench.visitor import PAGE_STATE
-from app.bench.visitor import Visitor as Page
-from app.http.metrics import Metrics
-from app.http.server import DashboardServer
-from app.logs import begin_logging
-from app.serve import Dashboard, open_dashboard
+import schuler_bench
 from navcore.foundation import guarded
+from schuler_bench.bench.visitor import PAGE_STATE
+from schuler_bench.bench.visitor import Visitor as Page
+from schuler_bench.http.metrics import Metrics
+from schuler_bench.http.server import DashboardServer
+from schuler_bench.logs import begin_logging
+from schuler_bench.serve import Dashboard, open_dashboard
 from tests.attack.conftest import TOKEN, running
 from tests.attack.wire import ask, upload, visit
 from tests.browser.fields import label_of
@@ -114,7 +114,7 @@ def test_nothing_that_is_sent_holds_a_path_of_the_server(
         page.set(page.control(ZETA), 0.43)
         page.wait_for(lambda m: m in page.received[before:] and m["type"] == "NotificationShowMessage", 30.0)
         sent = str(page.received)
-    for secret in (str(tmp_path), str(Path(app.__file__).parents[1]), str(Path.home()) + "/"):
+    for secret in (str(tmp_path), str(Path(schuler_bench.__file__).parents[1]), str(Path.home()) + "/"):
         at = sent.find(secret)
         assert at < 0, sent[max(0, at - 200) : at + 200]
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from websockets.sync.client import connect
 
-from app.bench.process import free_port
+from schuler_bench.bench.process import free_port
 from tests.attack.conftest import eventually, running
 from tests.attack.wire import ask
 

@@ -13,12 +13,12 @@ from pathlib import Path
 
 import pytest
 
-from app.bench.process import environment
-from app.bench.visitor import PAGE_STATE, Visitor
-from app.http.front import Front, _told
-from app.http.limits import Limits
-from app.http.server import start
-from app.session.store import open_store, session_key
+from schuler_bench.bench.process import environment
+from schuler_bench.bench.visitor import PAGE_STATE, Visitor
+from schuler_bench.http.front import Front, _told
+from schuler_bench.http.limits import Limits
+from schuler_bench.http.server import start
+from schuler_bench.session.store import open_store, session_key
 from tests.attack.conftest import eventually, running
 from tests.attack.wire import ask, shake_hands, statuses, visit
 from tests.browser.fields import label_of
@@ -27,7 +27,7 @@ pytestmark = pytest.mark.attack
 
 PROGRAM = """
 import signal, threading, time
-from app.http.server import start
+from schuler_bench.http.server import start
 def connected(client, session):
     button = client.gui.add_button("last")
     @button.on_click
@@ -46,7 +46,7 @@ print("left", flush=True)
 NEVER_DONE = 'server.stop = lambda: (print("stopping", flush=True), time.sleep(60))\nserver.wait()'
 BUSY_PORT = """
 import sys
-from app.http.server import start
+from schuler_bench.http.server import start
 from navcore.foundation.errors import InputError
 try:
     start(port=PORT, on_connect=None, on_disconnect=None)
@@ -200,7 +200,7 @@ class Door:
 
 def started(state: Path, *more: str) -> subprocess.Popen[str]:
     return subprocess.Popen(
-        [sys.executable, "-m", "app", "serve", "--port", "0", "--workers", "2", *more],
+        [sys.executable, "-m", "schuler_bench", "serve", "--port", "0", "--workers", "2", *more],
         env=environment() | {"XDG_STATE_HOME": str(state)},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -300,7 +300,7 @@ def test_workers_know_each_others_sessions(tmp_path: Path) -> None:
     first.write("a" * 24, {"id": "a" * 24})
     assert session_key(tmp_path) == session_key(tmp_path)
     code = (
-        "from pathlib import Path; from app.session.database import Database; import sys;"
+        "from pathlib import Path; from schuler_bench.session.database import Database; import sys;"
         "print(Database(Path(sys.argv[1])).has('a' * 24))"
     )
     command = [sys.executable, "-c", code, str(tmp_path)]

@@ -23,10 +23,10 @@ from viser._assignable_props_api import AssignablePropsBase
 from viser.infra import _infra
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
-from app.bridge import controls, mends, program, server, texts
-from app.bridge.pool import FairPool
-from app.http.page import FIRST_SCRIPTS, PLOTLY, build_page
 from navcore.foundation.errors import InputError
+from schuler_bench.bridge import controls, mends, program, server, texts
+from schuler_bench.bridge.pool import FairPool
+from schuler_bench.http.page import FIRST_SCRIPTS, PLOTLY, build_page
 from tests.attack.conftest import Bench, eventually
 from tests.attack.wire import Visitor, visit
 

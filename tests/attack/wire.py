@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 from websockets.sync.client import ClientConnection, connect
 
-from app.bench.visitor import CAMERA, decoded
+from schuler_bench.bench.visitor import CAMERA, decoded
 
 SESSION = "session-of-a-test"
 UPGRADE = {

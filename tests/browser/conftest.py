@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser
 
-from app.http.server import DashboardServer
-from app.serve import Dashboard, open_dashboard
-from app.session.session import Session
+from schuler_bench.http.server import DashboardServer
+from schuler_bench.serve import Dashboard, open_dashboard
+from schuler_bench.session.session import Session
 from tests.browser.driver import SIZES, Bench
 
 Served = tuple[DashboardServer, Dashboard]

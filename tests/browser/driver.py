@@ -13,21 +13,23 @@ import pytest
 from playwright.sync_api import Error as PlaywrightError
 from playwright.sync_api import Locator, Page
 
-from app.bridge.mends import pool_of
-from app.languages.wording import wording
-from app.session.display import Display
-from app.session.names import GivenNames
-from app.session.session import Session
-from app.session.sessions import Sessions
-from app.shell.layout import WIDE_FROM_PX, layout_for
-from app.shell.page import Page as OpenPage
 from navcore.foundation.text import Text
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.bridge.mends import pool_of
+from schuler_bench.languages.wording import wording
+from schuler_bench.session.display import Display
+from schuler_bench.session.names import GivenNames
+from schuler_bench.session.session import Session
+from schuler_bench.session.sessions import Sessions
+from schuler_bench.shell.layout import WIDE_FROM_PX, layout_for
+from schuler_bench.shell.page import Page as OpenPage
 from tests.browser.fields import box_labels, slider_labels
 from tests.browser.patience import GONE, PATIENCE_MS, SLOW, THROTTLE_MS
+from tests.limits import limits
 
 T = TypeVar("T")
+_LABEL = re.compile(r"(.+?)( [≤≥])? \(([^()]*)\)")
 
 SIZES = [(1920, 1080), (1366, 768), (1280, 720)]
 """Windows in which the page is looked at; most tests run in the first."""
@@ -107,18 +109,18 @@ class Bench:
     # Tests name what is on the page in English, whatever its language is.
 
     def said(self, text: str) -> str:
-        """What an English text of the page is called in the page's language."""
+        """What an English text of the page is called in the page's language; a label may end in a unit."""
         language = wording(self.language)
         if language is None:
             return text
-        label, sign, unit = re.fullmatch(r"(.+?)( [≤≥])?(?: \(([^()]*)\))?", text).groups()  # pyright: ignore
+        names = frozenset[str]() if self.sessions is None else GivenNames(self.session)()
+        whole, parts = language.text(text, names), _LABEL.fullmatch(text)
+        if isinstance(text, Text) or whole != text or parts is None:
+            return whole
+        label, sign, unit = parts.groups("")
         if sign:
             return f"{self.said(label)}{sign} ({unit})"
-        if unit:
-            text = Text("{label} ({unit})", label=label, unit=unit)
-        return (
-            language.text(text) if self.sessions is None else language.text(text, GivenNames(self.session)())
-        )
+        return language.text(Text("{label} ({unit})", label=label, unit=unit), names)
 
     def button(self, name: str) -> Locator:
         """The button of this name."""
@@ -251,6 +253,12 @@ class Bench:
     def show(self, **choices: object) -> None:
         """Change how the session's pictures are shown, without a click; wait until the page shows it."""
         self.session.show(None, **choices)
+        self.catch_up()
+
+    def require(self, **shown: float) -> None:
+        """Give the scenario these limits, without a click; wait until the page shows who meets them."""
+        session = self.session
+        session.change(session.scenario.model_copy(update={"requirement": limits(**shown)}), None)
         self.catch_up()
 
     def select(self, index: int) -> None:

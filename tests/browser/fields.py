@@ -5,9 +5,6 @@ from functools import lru_cache
 
 from pydantic import BaseModel
 
-from app.editing import form
-from app.editing.form import FieldSpec
-from app.shell.control import EXACT
 from navcore.averaging.parameters import Averaging
 from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
@@ -18,6 +15,9 @@ from navcore.scenario.initial_error import InitialError
 from navcore.scenario.method import Method
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import Reference
+from schuler_bench.editing import form
+from schuler_bench.editing.form import FieldSpec
+from schuler_bench.shell.control import EXACT
 
 
 def slider_labels(name: str) -> list[str]:

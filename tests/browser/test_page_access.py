@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.plots.style import INK, method_color
-from app.views.appearance.view import DARK
+from schuler_bench.plots.style import INK, method_color
+from schuler_bench.views.appearance.view import DARK
 from tests import dark_page as theme
 from tests.browser.driver import SWEEP, Bench
 from tests.browser.fields import label_of

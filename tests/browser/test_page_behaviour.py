@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.editing import edits
-from app.session.session import Session
-from app.views.scene.track import HALF_WIDTH
 from navcore.networks.compass import gains_from_sigma_xi
 from navcore.scenario.file import load, presets, to_toml
+from schuler_bench.editing import edits
+from schuler_bench.session.session import Session
+from schuler_bench.views.scene.track import HALF_WIDTH
 from tests.browser.driver import Bench
 from tests.browser.fields import label_of
 from tests.recordings import ship
@@ -130,7 +130,15 @@ def test_numbers_are_those_of_the_command_line(fresh: Bench, tmp_path: Path, rep
             fresh.button(f"Download {name}").click()
         download.value.save_as(tmp_path / name)
         assert download.value.suggested_filename == name
-    command = [sys.executable, "-m", "app", "run", str(tmp_path / "scenario.toml"), "--json", "--quiet"]
+    command = [
+        sys.executable,
+        "-m",
+        "schuler_bench",
+        "run",
+        str(tmp_path / "scenario.toml"),
+        "--json",
+        "--quiet",
+    ]
     done = subprocess.run(command, cwd=repo_root, capture_output=True, text=True, check=True, timeout=250)
     expected = json.loads(done.stdout)
     shown, downloaded = fresh.metrics, json.loads((tmp_path / "metrics.json").read_text("utf-8"))

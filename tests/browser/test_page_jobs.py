@@ -5,16 +5,16 @@ from typing import Any
 
 import pytest
 
-from app.editing import edits
-from app.jobs.designer import FrontsTask
-from app.jobs.verifier import STOPPED
-from app.views.appearance.view import BANDS
-from app.views.design.view import BUDGET_OF, CHOICES
-from app.views.tune import finder
-from app.views.tune.setting import ACCEPT, DISCARD, TUNE
-from app.views.tune.view import SEARCH_FOR
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import edits
+from schuler_bench.jobs.designer import FrontsTask
+from schuler_bench.jobs.verifier import STOPPED
+from schuler_bench.views.appearance.view import BANDS
+from schuler_bench.views.design.view import BUDGET_OF, CHOICES
+from schuler_bench.views.tune import finder
+from schuler_bench.views.tune.setting import ACCEPT, DISCARD, TUNE, UNDO
+from schuler_bench.views.tune.view import SEARCH_FOR
 from tests.browser.driver import SWEEP, Bench
 
 VERIFY, STOP_VERIFYING = "Verify with full strapdown", "Stop verifying"
@@ -240,6 +240,7 @@ def designing(request: pytest.FixtureRequest, moving: Bench) -> Bench:
 
 def test_the_bars_follow_a_slider_and_the_run_has_four_panels(designing: Bench) -> None:
     page = designing.page
+    designing.choose(BUDGET_OF, CHOICES["steady"])
     page.wait_for_function("() => look.bars() > 0")
     before = page.evaluate("look.bars")
     designing.press("network.zeta")
@@ -254,12 +255,17 @@ def test_a_proposal_is_accepted_and_undone_or_discarded(moving: Bench) -> None:
     moving.tab("Tune")
     moving.button(TUNE).click()
     accept.wait_for(timeout=120_000)
-    assert "times the floor" in page.locator(".sb-proposal").inner_text()
+    told = page.locator(".sb-proposal")
+    # the runs come before Accept
+    assert "times the floor" in told.inner_text() and "Mean of 32 runs" in told.inner_text()
     assert session.scenario == before
     accept.click()
     accept.wait_for(state="hidden")
     assert session.scenario.method[2].network != before.method[2].network
-    assert session.undo() and session.scenario == before
+    told.get_by_text("Accepted for complementary").wait_for()
+    moving.button(UNDO).click()
+    accept.wait_for()
+    assert session.scenario == before
     moving.button(TUNE).click()
     moving.button(DISCARD).wait_for(timeout=120_000)
     moving.button(DISCARD).click()

@@ -3,8 +3,8 @@
 import pytest
 from playwright.sync_api import Locator
 
-from app.views.learn.lessons import lessons
 from navcore.scenario.file import load
+from schuler_bench.views.learn.lessons import lessons
 from tests.browser.driver import SIZES, Bench
 from tests.browser.windows.seeing import left_out
 

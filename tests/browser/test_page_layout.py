@@ -1,17 +1,17 @@
 """At three window sizes nothing is clipped, empty or unlabelled; sliders and boxes stand in one row."""
 
 import re
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 
-from app.misprints import MISPRINTS
-from app.shell.layout import WIDE_FROM_PX
-from app.views import load
-from app.views.poles.figure import ZOOM
 from navcore.scenario.file import load as load_preset
 from navcore.scenario.model import Scenario
+from schuler_bench.misprints import MISPRINTS
+from schuler_bench.shell.layout import WIDE_FROM_PX
+from schuler_bench.views import load
+from schuler_bench.views.poles.figure import ZOOM
 from tests.browser.conftest import Another
 from tests.browser.driver import SIZES, SWEEP, Bench
 from tests.browser.placing import place
@@ -44,7 +44,9 @@ def test_every_tab_fits_its_panel(sized: Bench) -> None:
             page.wait_for_function("look.misprintDrawn")
         if tab == "Metrics":  # its last lines come later than the run
             page.wait_for_function("look.why", arg="1")
-        wait_until_it_fits(sized, tab, scrolls=tab == "Scenario" or (small and tab == "Metrics"))
+        wait_until_it_fits(
+            sized, tab, scrolls=tab == "Scenario" or (small and tab in ("Metrics", "Requirements"))
+        )
         assert page.evaluate("look.clipped") == [], tab
         if tab in ("Frequency", "Poles", "Step"):
             assert sized.plotly(), tab
@@ -69,14 +71,16 @@ def test_why_folds_where_its_panel_is_too_small_and_as_the_user_likes(moving: Be
     page, why = moving.page, moving.page.locator("#sb-why")
     line = why.locator("div").first
 
-    def look(height: int) -> bool:
+    def look(height: int, state: Literal["visible", "hidden"]) -> None:
+        """The page measures its room after the lines have come: their state is waited for."""
         moving.resize((1920, height))
         moving.tab("Metrics")
         page.wait_for_function("look.why", arg="1")
-        return line.is_visible()
+        line.wait_for(state=state)
 
-    assert look(1400) and why.locator(".sb-short").is_hidden()
-    assert not look(900)
+    look(1400, "visible")
+    assert why.locator(".sb-short").is_hidden()
+    look(900, "hidden")
     assert "complementary: position error mostly" in why.inner_text()
     why.locator("summary").click()
     line.wait_for()
@@ -85,7 +89,7 @@ def test_why_folds_where_its_panel_is_too_small_and_as_the_user_likes(moving: Be
     assert line.is_visible(), "what is opened by hand stays open"
     why.locator("summary").click()
     line.wait_for(state="hidden")
-    assert not look(1400)
+    look(1400, "hidden")
 
 
 def test_tabs_tools_and_boxes_stand_in_one_row(sized: Bench) -> None:

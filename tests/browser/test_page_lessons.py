@@ -2,10 +2,10 @@
 
 import pytest
 
-from app.views.learn.lessons import Lesson, lessons
-from app.views.learn.names import named
-from app.views.learn.view import spec_at
 from navcore.engine.simulation import simulate
+from schuler_bench.views.learn.lessons import Lesson, lessons
+from schuler_bench.views.learn.names import named
+from schuler_bench.views.learn.view import spec_at
 from tests.answers import names_in, right_answer
 from tests.browser.driver import Bench
 

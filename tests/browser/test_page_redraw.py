@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.bridge.controls import in_single
-from app.editing import edits
-from app.session.shown import shown
-from app.shell.reports import run_element
-from app.views.errors.view import _OVERVIEW_KEYS, error_curves
 from navcore.engine.measures import metrics
+from schuler_bench.bridge.controls import in_single
+from schuler_bench.editing import edits
+from schuler_bench.session.shown import shown
+from schuler_bench.shell.reports import run_element
+from schuler_bench.views.errors.view import _OVERVIEW_KEYS, error_curves
 from tests.browser.conftest import Another, Served
 from tests.browser.driver import Bench
 

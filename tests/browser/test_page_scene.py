@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
-from app.plots import style
-from app.shell.layout import layout_for
-from app.views.scene.playback import SPEEDS
-from app.views.scene.track import track
+from schuler_bench.plots import style
+from schuler_bench.shell.layout import layout_for
+from schuler_bench.views.scene.playback import SPEEDS
+from schuler_bench.views.scene.track import track
 from tests.browser.driver import SIZES, Bench
 
 

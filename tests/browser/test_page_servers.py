@@ -12,15 +12,15 @@ import pytest
 import viser
 from playwright.sync_api import Page
 
-import app.shell
-from app.bench.dashboard import ZETA
-from app.bench.process import Server, free_port
-from app.http.limits import Limits
-from app.http.server import DashboardServer, start
-from app.serve import open_dashboard
-from app.session.database import Database
-from app.session.session import Session
-from app.views import VIEWS
+import schuler_bench.shell
+from schuler_bench.bench.dashboard import ZETA
+from schuler_bench.bench.process import Server, free_port
+from schuler_bench.http.limits import Limits
+from schuler_bench.http.server import DashboardServer, start
+from schuler_bench.serve import open_dashboard
+from schuler_bench.session.database import Database
+from schuler_bench.session.session import Session
+from schuler_bench.views import VIEWS
 from tests.attack.conftest import eventually
 from tests.browser.conftest import Another, Served
 from tests.browser.test_page_state import wait_for_value
@@ -98,7 +98,7 @@ def test_page_works_under_its_session_path_with_the_policy_on(another: Another) 
 # ------------------------------------------------------------ places
 
 
-SCRIPT = Path(app.shell.__file__).parent / "static" / "place.js"
+SCRIPT = Path(schuler_bench.shell.__file__).parent / "static" / "place.js"
 QUIET_MS = 5500
 
 
@@ -140,7 +140,7 @@ def test_an_idle_page_comes_back_by_itself_and_at_once_with_its_person(another: 
 VIEW = '''
 """Tab "Peaks": the largest position error of every method."""
 
-from app.shell.view import PictureView, if_user
+from schuler_bench.shell.view import PictureView, if_user
 
 
 class PeaksView(PictureView):

@@ -4,10 +4,9 @@ from typing import Any
 
 import pytest
 
-from app.editing import edits
-from app.session.requirements import Requirements
-from app.session.session import Session
 from navcore.scenario.file import load
+from schuler_bench.editing import edits
+from schuler_bench.session.session import Session
 from tests.browser.conftest import Another
 from tests.browser.driver import Bench
 from tests.browser.fields import label_of
@@ -246,7 +245,8 @@ def test_a_reload_keeps_the_work_and_another_visitor_has_none_of_it(
     fresh: Bench, session: Session, another: Another
 ) -> None:
     fresh.type(SIGMA, "0.0123")
-    fresh.show(theme="dark", requirements=Requirements(overshoot_percent=36.0))
+    fresh.show(theme="dark")
+    fresh.require(tilt_overshoot=36.0)
     assert fresh.sessions.get("somebody-else").scenario != session.scenario
     # the same address in another window, as after a reload
     other = another(1280, 720).open(f"s/{fresh.session_id}/")

@@ -10,16 +10,16 @@ from typing import Any
 
 import pytest
 
-from app.bench.visitor import decoded
-from app.editing import edits
-from app.shell.page import Page
-from app.shell.plotly_view import PlotlyView
-from app.shell.reports import PAGE_STATE
-from app.views import load
-from app.views.tune.view import TuneView
 from navcore.scenario.file import load as load_preset
 from navcore.scenario.file import scenario_hash
 from navcore.scenario.model import Scenario
+from schuler_bench.bench.visitor import decoded
+from schuler_bench.editing import edits
+from schuler_bench.shell.page import Page
+from schuler_bench.shell.plotly_view import PlotlyView
+from schuler_bench.shell.reports import PAGE_STATE
+from schuler_bench.views import load
+from schuler_bench.views.tune.view import TuneView
 from tests.attack.conftest import eventually
 from tests.attack.wire import Visitor, visit
 from tests.browser.conftest import Served

@@ -108,7 +108,7 @@ def follow(blocks: list[tuple[str, str, str]], folder: Path) -> None:
 def program(tmp_path_factory: pytest.TempPathFactory, repo_root: Path) -> Iterator[Path]:
     """Copy of the program with all examples of the guide in it."""
     folder = tmp_path_factory.mktemp("copy") / "program"
-    shutil.copytree(repo_root, folder, ignore=_LEFT_OUT)
+    shutil.copytree(repo_root, folder, symlinks=True, ignore=_LEFT_OUT)
     for blocks in recipes((folder / "CONTRIBUTING.md").read_text(encoding="utf-8")).values():
         follow(blocks, folder)
     yield folder
@@ -161,7 +161,9 @@ def test_the_examples_run_in_both_fidelities(program: Path) -> None:
 
 
 def test_the_command_line_shows_the_network(program: Path) -> None:
-    report = json.loads(python(program, "-m", "app", "network", 'id = "lead", corner = 0.5', "--json"))
+    report = json.loads(
+        python(program, "-m", "schuler_bench", "network", 'id = "lead", corner = 0.5', "--json")
+    )
     assert report["id"] == "lead" and report["stable"]
     assert report["h0"] == pytest.approx(1.0)
 
@@ -171,7 +173,7 @@ def test_the_format_is_read_and_its_faults_name_the_line(program: Path, tmp_path
     good, bad = tmp_path / "good.jsonl", tmp_path / "bad.jsonl"
     good.write_text("\n".join(lines))
     bad.write_text("\n".join([*lines, '{"utc_s": 2}']))
-    report = json.loads(python(program, "-m", "app", "check", str(good), "--json"))
+    report = json.loads(python(program, "-m", "schuler_bench", "check", str(good), "--json"))
     assert report["kind"] == "JSON Lines log" and report["quantities"]["water"]["forward_mps"] == [5.0, 7.0]
     call = f"from navcore.io.recording import load\ntry: load({str(bad)!r})\nexcept ValueError as e: print(e)"
     assert 'line 4: expected "utc_s" and "speed_mps"' in python(program, "-c", call)

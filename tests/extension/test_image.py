@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import pytest
 
-from app.bench.process import environment, free_port
+from schuler_bench.bench.process import environment, free_port
 
 pytestmark = pytest.mark.timeout(1800)
 TOKEN = "a-token-of-this-test"
@@ -130,7 +130,7 @@ def test_command_and_health_check_do_what_they_say(stages: list[list[Instruction
     shipped, port = stages[1], free_port()
     program, *words = of(shipped, "CMD")[0].words
     assert (program, of(shipped, "EXPOSE")[0].text) == ("schuler", words[-1])
-    start = [sys.executable, "-m", "app", *words]
+    start = [sys.executable, "-m", "schuler_bench", *words]
     variables = environment() | {"XDG_STATE_HOME": str(tmp_path)}
     refused = subprocess.run(start, env=variables, capture_output=True, text=True, timeout=60)
     assert (refused.returncode, "Traceback" in refused.stderr) == (2, False)
@@ -186,7 +186,8 @@ def image(repo_root: Path) -> Iterator[str]:
 
 
 _WHERE = (
-    "import app; from navcore.foundation.assets import asset_path as p; print(app.__file__, p('presets'))"
+    "import schuler_bench; from navcore.foundation.assets import asset_path as p;"
+    "print(schuler_bench.__file__, p('presets'))"
 )
 _WARM = "from navcore.warm import warm; warm()"
 

@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import pytest
 
-from app.bench.process import environment, free_port
-from app.bench.visitor import Visitor
 from navcore.foundation.kernel_cache import cache_folder, complete
 from navcore.foundation.kernel_files import copy
+from schuler_bench.bench.process import environment, free_port
+from schuler_bench.bench.visitor import Visitor
 from tests.attack.conftest import eventually
 from tests.attack.wire import ask
 from tests.users import ROOT, entering, require_users
@@ -82,7 +82,7 @@ def test_every_command_works_with_the_kernels_that_root_has_compiled(place: Plac
     if "read_only" in options:
         options["read_only"] = (str(place.home),)
     for name, words in COMMANDS.items():
-        line, variables = command(place, ["app", *words], **options)
+        line, variables = command(place, ["schuler_bench", *words], **options)
         variables["NUMBA_DEBUG_CACHE"] = "1"
         done = subprocess.run(line, env=variables, cwd=place.top, capture_output=True, text=True, check=False)
         assert (done.returncode, done.stderr) == (0, ""), name
@@ -93,7 +93,7 @@ def test_every_command_works_with_the_kernels_that_root_has_compiled(place: Plac
 
 @pytest.mark.parametrize("name", ["check", "run"])
 def test_nowhere_to_write_is_one_line(place: Place, name: str) -> None:
-    line, variables = command(place, ["app", *COMMANDS[name]], "SCHULER_CACHE_DIR HOME", _NOWHERE)
+    line, variables = command(place, ["schuler_bench", *COMMANDS[name]], "SCHULER_CACHE_DIR HOME", _NOWHERE)
     done = subprocess.run(line, env=variables, cwd=place.top, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (2, "")
     assert "no folder for compiled kernels can be written to" in done.stderr
@@ -101,7 +101,7 @@ def test_nowhere_to_write_is_one_line(place: Place, name: str) -> None:
 
 
 def test_without_home_and_kernels_the_temporary_folder_is_used_and_named_once(place: Place) -> None:
-    words = ["app", "run", "liu-networks", "--set", "run.duration_h=0.01"]
+    words = ["schuler_bench", "run", "liu-networks", "--set", "run.duration_h=0.01"]
     line, variables = command(place, words, "SCHULER_CACHE_DIR HOME")
     said = [
         subprocess.run(line, env=variables, cwd=place.top, capture_output=True, text=True, check=True).stderr
@@ -116,7 +116,7 @@ def test_without_home_and_kernels_the_temporary_folder_is_used_and_named_once(pl
 def test_health_tells_whether_the_kernels_can_be_had(place: Place, kernels: bool, workers: str) -> None:
     """Served as the container does it: by another user than the one that compiled."""
     port = free_port()
-    words = ["app", "serve", "--port", str(port), "--workers", workers]
+    words = ["schuler_bench", "serve", "--port", str(port), "--workers", workers]
     line, variables = command(place, words, "" if kernels else "SCHULER_CACHE_DIR HOME")
     if not kernels:  # uploads still need a temporary folder
         (place.scratch / "schuler-bench-10001").touch()

@@ -1,15 +1,19 @@
-"""The wheel by itself: built, installed beside the locked requirements in a clean environment, and used."""
+"""The wheel by itself: built, installed beside the locked requirements in a clean environment, and used.
+
+Beside a user's own `app`, and installed as a wheel, by way of the source distribution, or as a checkout.
+"""
 
 import os
 import subprocess
 import sys
+import sysconfig
 from importlib.metadata import Distribution
 from pathlib import Path
 
 import pytest
 from packaging.requirements import Requirement
 
-pytestmark = [pytest.mark.nightly, pytest.mark.timeout(1800)]
+pytestmark = pytest.mark.timeout(1800)
 USED = """
 from importlib.util import find_spec
 from navcore import load, parse_network, simulate
@@ -20,9 +24,19 @@ assert len(parse_network('id = "unity2"').figure("bode").data)
 """
 
 
-def command(*arguments: str | Path, cwd: Path) -> str:
+FOREIGN = {"app.py": "app.py", "a package app": "app/__init__.py"}
+"""A module or a package of the user's own."""
+STUDY = """
+import sys
+from navcore import load, simulate
+figure = simulate(load("zha-fast", ["run.duration_h=0.01"])).figure("errors")
+assert len(figure.data) and "app" not in sys.modules
+"""
+
+
+def command(*arguments: str | Path, cwd: Path, **variables: str) -> str:
     """Run a program; return what it prints."""
-    clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"} | variables
     line = [str(argument) for argument in arguments]
     ended = subprocess.run(line, cwd=cwd, env=clean, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stdout[-5000:] + ended.stderr[-5000:]
@@ -38,6 +52,41 @@ def wheel(repo_root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return built
 
 
+@pytest.fixture(scope="module", params=["wheel", "editable"])
+def python(request: pytest.FixtureRequest, repo_root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Python of an environment with the packages of this one, in which the program is installed anew."""
+    folder = tmp_path_factory.mktemp(request.param)
+    pip = sys.executable, "-m", "pip"
+    offline = "--no-deps", "--no-index", "--no-build-isolation"
+    built = ["--editable", repo_root]
+    if request.param == "wheel":
+        command(sys.executable, "-m", "hatchling", "build", "-t", "sdist", "-d", folder, cwd=repo_root)
+        (source,) = folder.glob("*.tar.gz")
+        command(*pip, "wheel", *offline, "-w", folder, source, cwd=folder)
+        built = list(folder.glob("*.whl"))
+    command(sys.executable, "-m", "venv", "--without-pip", folder / "own", cwd=folder)
+    (site,) = (folder / "own" / "lib").glob("python*/site-packages")
+    (site / "shared.pth").write_text(f"{sysconfig.get_path('purelib')}\n")
+    python = folder / "own" / "bin" / "python"
+    command(*pip, "--python", python, "install", *offline, *built, cwd=folder)
+    return python
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("foreign", FOREIGN)
+def test_an_app_of_the_users_own_changes_nothing(foreign: str, python: Path, tmp_path: Path) -> None:
+    own = tmp_path / FOREIGN[foreign]
+    own.parent.mkdir(exist_ok=True)
+    own.write_text("raise SystemExit('the own app was imported')\n")
+    (tmp_path / "study.py").write_text(STUDY)
+    command(python, "study.py", cwd=tmp_path)
+    checked = command(
+        python.with_name("schuler"), "check", "zha-fast", cwd=tmp_path, PYTHONPATH=str(tmp_path)
+    )
+    assert "zha-fast" in checked
+
+
+@pytest.mark.nightly
 @pytest.mark.parametrize("version", ["3.11", "3.13"])
 def test_the_wheel_works_in_a_clean_environment(
     version: str, wheel: Path, repo_root: Path, tmp_path: Path

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from app.plots.plotly_data import PlotlyFigure, values_of
 from navcore.engine.run import MethodRun, PlotSeries, Run
 from navcore.engine.simulation import simulate
 from navcore.scenario.model import Scenario
+from schuler_bench.plots.plotly_data import PlotlyFigure, values_of
 
 THREE = (
     {"name": "free"},

@@ -8,13 +8,14 @@ from pathlib import Path
 import pytest
 import viser
 
-import app
-from app.views import VIEWS, load, scripts
+import schuler_bench
+from schuler_bench.views import VIEWS, load, scripts
 
 pytestmark = pytest.mark.contract
 
-ROOT = Path(app.__file__).parents[1]
-ROOMS = [("navcore", 2), ("navcore", 9), ("app", 2), ("app.views", 3), ("app", 9)]
+ROOT = Path(schuler_bench.__file__).parents[1]
+PACKAGE = "schuler_bench"
+ROOMS = [("navcore", 2), ("navcore", 9), (PACKAGE, 2), (f"{PACKAGE}.views", 3), (PACKAGE, 9)]
 """Packages, and how many parts of a module's name tell a room; nine: every module is one."""
 
 
@@ -23,8 +24,9 @@ def module_name(path: Path) -> str:
 
     Examples
     --------
-    >>> module_name(ROOT / "app" / "shell" / "page.py"), module_name(ROOT / "app" / "shell" / "__init__.py")
-    ('app.shell.page', 'app.shell')
+    >>> shell = ROOT / PACKAGE / "shell"
+    >>> module_name(shell / "page.py"), module_name(shell / "__init__.py")
+    ('schuler_bench.shell.page', 'schuler_bench.shell')
     """
     return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
 
@@ -102,7 +104,10 @@ def test_rooms_import_each_other_in_no_circle(package: str, depth: int) -> None:
 
 
 def test_a_circle_would_be_found() -> None:
-    assert circle(arrows("app", 2) | {"app.shell": {"app.views"}, "app.views": {"app.shell"}})
+    assert circle(
+        arrows(PACKAGE, 2)
+        | {"schuler_bench.shell": {"schuler_bench.views"}, "schuler_bench.views": {"schuler_bench.shell"}}
+    )
 
 
 # ---------------------------------------------------------------- viser
@@ -113,8 +118,8 @@ def test_only_the_bridge_leans_on_the_insides_of_viser() -> None:
     assert {"_impl", "_websock_connection", "_gui_input_handle_from_uuid"} <= kept
     leaning = {
         name: sorted(found)
-        for name, tree in modules("app").items()
-        if not name.startswith("app.bridge") and (found := set(uses_of_insides(tree, kept)))
+        for name, tree in modules(PACKAGE).items()
+        if not name.startswith("schuler_bench.bridge") and (found := set(uses_of_insides(tree, kept)))
     }
     assert leaning == {}
 
@@ -158,8 +163,12 @@ def uses_of_insides(tree: ast.AST, kept: set[str]) -> Iterator[str]:
 
 
 def test_every_folder_of_views_is_registered_once() -> None:
-    folders = {f"app.views.{path.name}" for path in (ROOT / "app" / "views").iterdir() if path.suffix == ""}
-    folders.discard("app.views.__pycache__")
+    folders = {
+        f"schuler_bench.views.{path.name}"
+        for path in (ROOT / PACKAGE / "views").iterdir()
+        if path.suffix == ""
+    }
+    folders.discard("schuler_bench.views.__pycache__")
     assert sorted(VIEWS) == sorted(folders)
 
 
@@ -174,9 +183,13 @@ def test_views_have_tabs_of_their_own() -> None:
 def test_the_shell_knows_no_view_by_name() -> None:
     named = {
         name: found
-        for name, tree in modules("app").items()
-        if name.startswith("app.shell")
-        and (found := [other for other in imports(tree, modules("app")) if other.startswith("app.views")])
+        for name, tree in modules(PACKAGE).items()
+        if name.startswith("schuler_bench.shell")
+        and (
+            found := [
+                other for other in imports(tree, modules(PACKAGE)) if other.startswith("schuler_bench.views")
+            ]
+        )
     }
     assert named == {}
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import tools.benchmarks.__main__ as command
-from app.bench.strapdown import StaticRecord
 from navcore.networks.undamped import UndampedNetwork
+from schuler_bench.bench.strapdown import StaticRecord
 from tools.benchmarks.python_ins import PythonIns
 
 RATIOS = {

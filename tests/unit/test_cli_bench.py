@@ -7,13 +7,13 @@ import sys
 
 import pytest
 
-from app.bench.dashboard import DESIGN, slider_to_frame_ms
-from app.bench.process import Server
-from app.bench.rounds import median_ratio, timed_rounds
-from app.bench.runs import KALMAN, day, strapdown_day
-from app.bench.strapdown import YARDSTICK, measure_strapdown
-from app.cli import main
-from app.cli.bench_text import bench_text
+from schuler_bench.bench.dashboard import DESIGN, slider_to_frame_ms
+from schuler_bench.bench.process import Server
+from schuler_bench.bench.rounds import median_ratio, timed_rounds
+from schuler_bench.bench.runs import KALMAN, day, strapdown_day
+from schuler_bench.bench.strapdown import YARDSTICK, measure_strapdown
+from schuler_bench.cli import main
+from schuler_bench.cli.bench_text import bench_text
 
 NUMBERS = {
     "error_model_24h_ms_per_method": 12.34567,
@@ -42,7 +42,7 @@ def assert_told_in_words(numbers) -> None:
 
 
 def test_numbers_are_one_document_or_lines_with_units_and_goals(capsys, monkeypatch):
-    monkeypatch.setattr("app.bench.bench", lambda tell: NUMBERS)
+    monkeypatch.setattr("schuler_bench.bench.bench", lambda tell: NUMBERS)
     assert main(["bench", "--json"]) == 0
     assert json.loads(capsys.readouterr().out) == NUMBERS | {"error_model_24h_ms_per_method": 12.3457}
     assert main(["bench"]) == 0
@@ -57,7 +57,7 @@ def test_a_dashboard_that_does_not_answer_is_one_line(capsys, monkeypatch):
     def fails(tell):
         raise TimeoutError("the dashboard served no page within 30 s")
 
-    monkeypatch.setattr("app.bench.bench", fails)
+    monkeypatch.setattr("schuler_bench.bench.bench", fails)
     assert main(["bench"]) == 3
     assert capsys.readouterr().err == "bench: stopped: the dashboard served no page within 30 s\n"
 
@@ -121,7 +121,7 @@ def test_a_compiled_yardstick_is_found_again_in_the_cache(tmp_path):
         "def quick(samples, repeats): return half(100.0)\n"
     )
     program = (
-        "from app.bench.strapdown import _yardstick; from numba import config;"
+        "from schuler_bench.bench.strapdown import _yardstick; from numba import config;"
         f"config.CACHE_DIR = {str(tmp_path / 'cache')!r}; print(_yardstick(10)())"
     )
     for _ in range(2):

@@ -7,11 +7,11 @@ import sys
 import pytest
 from numba.core import event
 
-from app.bench.process import environment
-from app.cli import main
-from app.cli.check import check
 from navcore.scenario.file import load, scenario_hash
 from navcore.warm import compile_once
+from schuler_bench.bench.process import environment
+from schuler_bench.cli import main
+from schuler_bench.cli.check import check
 from tests.recordings import ship
 
 
@@ -202,7 +202,7 @@ def test_a_preset_is_understood_right_after_an_installation(tmp_path):
     """With an empty cache, as after ``pip install``; the second time without a word about kernels."""
     places = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "TMPDIR"), str(tmp_path))
     variables = {name: value for name, value in environment().items() if name != "SCHULER_CACHE_DIR"} | places
-    words = [sys.executable, "-m", "app", "check", "zha-fast"]
+    words = [sys.executable, "-m", "schuler_bench", "check", "zha-fast"]
     first, second = (
         subprocess.run(words, env=variables, capture_output=True, text=True, check=False) for _ in range(2)
     )

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from app.cli import main
 from navcore.scenario.file import presets
 from navcore.scenario.schema_file import schema_text
+from schuler_bench.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -103,7 +103,7 @@ def test_help_and_version(capsys):
 
 
 def test_a_ctrl_c_outside_a_run_is_one_line(capsys, monkeypatch):
-    from app.cli.network import NetworkCommand
+    from schuler_bench.cli.network import NetworkCommand
 
     def interrupted(_: NetworkCommand) -> int:
         raise KeyboardInterrupt
@@ -113,8 +113,27 @@ def test_a_ctrl_c_outside_a_run_is_one_line(capsys, monkeypatch):
 
 
 def command(*arguments: str, **keywords) -> subprocess.Popen[str]:
-    words = [sys.executable, "-m", "app", *arguments]
+    words = [sys.executable, "-m", "schuler_bench", *arguments]
     return subprocess.Popen(words, cwd=ROOT, text=True, stderr=subprocess.PIPE, **keywords)
+
+
+_BY_NAME = """
+import runpy, sys
+sys.argv[1:] = ["--version"]
+try:
+    runpy.run_module({name!r}, run_name="__main__", alter_sys=True)
+finally:
+    print(*(name for name in sys.modules if name.partition(".")[0] == "app"))
+"""
+
+
+@pytest.mark.parametrize(("name", "loaded"), [("schuler_bench", ""), ("app", "app")])
+def test_in_a_checkout_the_folder_is_the_command_too(name: str, loaded: str):
+    words = [sys.executable, "-c", _BY_NAME.format(name=name)]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True)
+    version, by_the_folders_name = done.stdout.splitlines()
+    assert version.startswith("schuler 0.")
+    assert by_the_folders_name == loaded, "a module is imported under two names"
 
 
 def test_a_reader_that_leaves_early_is_no_fault():

@@ -12,12 +12,12 @@ import pyarrow.parquet
 import pytest
 from numba.core import event
 
-from app.cli import main
-from app.cli.progress import Bar, compiling
-from app.cli.terminal import on_terminal
 from navcore.engine.measures import metrics
 from navcore.engine.simulation import simulate
 from navcore.scenario.file import load
+from schuler_bench.cli import main
+from schuler_bench.cli.progress import Bar, compiling
+from schuler_bench.cli.terminal import on_terminal
 
 SHORT = ["--set", "run.duration_h=0.1"]
 COLUMNS = [

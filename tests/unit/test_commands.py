@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from app.shell.commands import LONGEST_ARGUMENT, LONGEST_TEXT, MOST_AT_ONCE, Commands, read_commands
+from schuler_bench.shell.commands import LONGEST_ARGUMENT, LONGEST_TEXT, MOST_AT_ONCE, Commands, read_commands
 
 
 class Gui:

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from viser import _messages as messages
 
-from app.bridge.mends import MendedBuffer
+from schuler_bench.bridge.mends import MendedBuffer
 
 Data = tuple[np.ndarray, ...]
 

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.cli.check_scenario import check_scenario
 from navcore.damping import KINDS
 from navcore.design.bands import covariance_bands
 from navcore.design.budget import budget
@@ -17,6 +16,7 @@ from navcore.law.records import CHANNELS, MAX_STATES, U
 from navcore.networks import parse_network
 from navcore.scenario.file import to_toml
 from navcore.scenario.model import Scenario
+from schuler_bench.cli.check_scenario import check_scenario
 from tests.unit.test_architecture import modules
 
 pytestmark = pytest.mark.contract
@@ -108,7 +108,7 @@ def test_the_law_has_room_for_an_azimuth_channel() -> None:
 def test_no_code_but_the_kinds_compares_a_kind_with_a_name() -> None:
     found = [
         f"{module}:{node.lineno}"
-        for package in ("navcore", "app", "tools")
+        for package in ("navcore", "schuler_bench", "tools")
         for module, tree in modules(package).items()
         if not module.startswith("navcore.damping")
         for node in ast.walk(tree)

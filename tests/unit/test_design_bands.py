@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from app.jobs.envelopes import Envelopes
-from app.plots.envelope import covariance_envelope
-from app.views.errors.figure import error_plots
-from app.views.errors.view import legend_html
 from navcore.design.bands import Bands, covariance_bands
 from navcore.design.budget import budget
 from navcore.engine.results import timeseries
 from navcore.engine.simulation import simulate
 from navcore.mechanization.recorder import NAMES, PHI_E, POSITION
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs.envelopes import Envelopes
+from schuler_bench.plots.envelope import covariance_envelope
+from schuler_bench.views.errors.figure import error_plots
+from schuler_bench.views.errors.view import legend_html
 from tools.filter_consistency import SHIP, final_error
 
 _SHORT = SHIP["run"] | {"duration_h": 1.0}

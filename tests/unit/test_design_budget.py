@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.cli import main
 from navcore.design.budget import budget
 from navcore.design.course import course
 from navcore.design.seeds import no_covariance
@@ -15,6 +14,7 @@ from navcore.engine.simulation import simulate
 from navcore.foundation.units import ARCMIN, DEG_PER_HOUR, MICRO_G
 from navcore.scenario.model import Scenario
 from navcore.scenario.stochastic import RANDOM_SOURCES, stochastic_model
+from schuler_bench.cli import main
 
 IMU = {
     "gyro_arw_dpsh": 0.003,
@@ -227,7 +227,7 @@ def test_what_has_no_covariance_says_so(method: dict[str, Any], reason: str) -> 
     shown = budget(found, seeds=2).methods[0]
     assert shown.shown == ("seeds" if reason else "covariance")
     assert bool(shown.sources) is not bool(reason)
-    assert any(reason in text for text in shown.warnings) if reason else not shown.warnings
+    assert any(reason in text for text in shown.warnings) if reason else "24 h" in shown.warnings[0]
 
 
 def test_sensors_without_any_random_error_have_no_floor() -> None:
@@ -256,6 +256,16 @@ def test_an_unstable_loop_has_no_budget() -> None:
     assert [method.diverged for method in found.methods] == [False, True]
     assert found.methods[1].total.rms.tilt_rad is None and "unstable" in found.methods[1].warnings[0]
     assert found.methods[0].total.rms.tilt_rad and found.as_dict()["methods"][1]["status"] == "diverged"
+
+
+@pytest.mark.parametrize("steady", [True, False])
+def test_a_whole_system_that_grows_stands_in_its_budget(steady: bool) -> None:
+    """`optimal` with q = 0 is at the floor of one channel; with its default it does not grow."""
+    networks: list[dict[str, Any]] = [{"id": "optimal", "q": 0.0}, {"id": "optimal"}]
+    methods = [{"name": str(k), "damping": "external", "network": n} for k, n in enumerate(networks)]
+    found = budget(scenario(run={"duration_h": 1.0}, method=methods), steady=steady)
+    greedy, default = (" ".join(map(str, method.warnings)) for method in found.methods)
+    assert "the 24 h mode grows" in greedy and "grows" not in default
 
 
 def test_command_prints_the_contract(capsys: pytest.CaptureFixture[str]) -> None:

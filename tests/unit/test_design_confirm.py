@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.cli import main
 from navcore.design.confirm import confirmed
 from navcore.design.measures import Setting
 from navcore.design.ship import Ship
@@ -19,6 +18,7 @@ from navcore.foundation.errors import UnstableError
 from navcore.scenario.file import to_toml
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from schuler_bench.cli import main
 
 SHIP: dict[str, Any] = {
     "run": {"duration_h": 3.0},
@@ -97,6 +97,16 @@ def test_command_confirms_unless_told_otherwise(tmp_path: Path, capsys: pytest.C
     assert "confirmed" not in found and found["default_limits"] == []
     assert main(command) == 0
     assert "run, 32 seeds" in capsys.readouterr().out
+
+
+def test_a_proposal_that_runs_refute_gives_way_to_one_over_the_run() -> None:
+    """On a ship with biases and little noise the steady state prefers damping under which 24 h modes grow."""
+    day, vary = ship(run={"duration_h": 24.0, "step_s": 2.0}), [f"{ZETA}=0.05:10", f"{ETA}=0.05:10"]
+    found, steady = (tune(day, "velocity_rms", vary, confirm=confirm) for confirm in (True, False))
+    refuted = confirmed(day, day.method[0], steady.scenario.method[0])
+    assert refuted is not None and refuted.verdict("velocity_rms")
+    assert found.confirmed is not None and not found.confirmed.verdict("velocity_rms")
+    assert found.judged == "ensemble" and "no better in the runs" in found.warnings[0]
 
 
 def test_the_damping_is_not_tuned_away() -> None:

@@ -6,7 +6,6 @@ from typing import Any
 
 import pytest
 
-from app.cli import main
 from navcore.design.budget import budget
 from navcore.design.pareto import pareto
 from navcore.design.tune import tune
@@ -14,6 +13,7 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
 from navcore.scenario.file import to_toml
 from navcore.scenario.model import Scenario
+from schuler_bench.cli import main
 from tests.acceptance.test_design_values import SET_A
 
 SIGMA, XI = "method.0.network.sigma", "method.0.network.xi"

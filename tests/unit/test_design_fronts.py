@@ -6,15 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.editing.edits import with_network
-from app.jobs.designer import FrontsTask
-from app.plots.plotly_data import values_of
-from app.session.requirements import Requirements
-from app.views.frequency.curves import optimal_reference
-from app.views.frequency.figure import bode
-from app.views.tune.finder import read_place
-from app.views.tune.fronts import fronts_figure, nearest
-from app.views.tune.setting import requirements_told
 from navcore.design.pareto import Pareto, measured, pareto
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
@@ -22,6 +13,15 @@ from navcore.foundation.units import ARCSEC
 from navcore.networks.optimal import OptimalNetwork
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.editing.edits import with_network
+from schuler_bench.jobs.designer import FrontsTask
+from schuler_bench.plots.plotly_data import values_of
+from schuler_bench.views.frequency.curves import optimal_reference
+from schuler_bench.views.frequency.figure import bode
+from schuler_bench.views.tune.finder import read_place
+from schuler_bench.views.tune.fronts import fronts_figure, nearest
+from schuler_bench.views.tune.setting import requirements_told
+from tests.limits import limits
 
 OBJECTIVES = ("tilt_rms", "velocity_rms")
 
@@ -55,18 +55,23 @@ def test_the_picture_has_a_curve_a_network_the_star_and_the_floor(ship: Scenario
     assert layout["meta"]["pick"]["panels"] == (("xaxis", "yaxis"),)
 
 
-def test_a_point_whose_24_h_mode_grows_has_an_open_mark(found: Pareto) -> None:
+def test_a_point_whose_whole_system_grows_has_an_open_mark(found: Pareto) -> None:
     (classic3,) = found.fronts["classic3"]
     assert classic3.earth_growth > 0.0  # H'(0) > 0 (physics, docs/networks.md)
-    decaying = replace(classic3, earth_growth=-classic3.earth_growth)
-    for point, symbol, told in ((classic3, "-open", "24 h mode grows"), (decaying, "", "24 h mode decays")):
+    decaying = replace(classic3, earth_growth=-1e-5, growth_per_s=-1e-5)
+    other = replace(decaying, growth_per_s=1.0 / 7200.0)  # not the 24 h mode
+    for point, symbol, told in (
+        (classic3, "-open", "24 h mode grows"),
+        (other, "-open", "24 h mode decays, e-folding 1.2 days<br>whole system grows by e in 2 h"),
+        (decaying, "", "whole system does not grow"),
+    ):
         one = replace(found, fronts={"classic3": (point,)}, floor=(None, None))
         made = fronts_figure(one, OBJECTIVES, None, "")
         (trace,) = made["data"]
         assert trace["marker"]["symbol"][0].removeprefix("square") == symbol
         assert told in trace["text"][0]
         said = [note["text"] for note in made["layout"]["annotations"]]
-        assert said == (["open mark: its 24 h mode grows"] if symbol else [])
+        assert said == (["open mark: its whole system grows"] if symbol else [])
 
 
 def test_a_click_means_the_nearest_point_and_nothing_far_from_all(found: Pareto) -> None:
@@ -85,6 +90,7 @@ def test_a_point_changes_one_network_and_the_fronts_still_fit(ship: Scenario, fo
     task = FrontsTask(ship, 2, OBJECTIVES)
     (point,) = found.fronts["classic3"]
     changed = with_network(ship, 2, point.network)
+    assert changed.method[2].name == "classic3"  # "complementary" before: a name made from the network
     assert changed.method[2].network.id == "classic3" and changed.method[:2] == ship.method[:2]
     assert measured(changed, OBJECTIVES, 2) == pytest.approx(point.values)
     assert task.fits(changed) and task.fits(ship)
@@ -95,12 +101,12 @@ def test_a_point_changes_one_network_and_the_fronts_still_fit(ship: Scenario, fo
 
 
 def test_it_is_told_which_requirements_a_search_keeps() -> None:
-    told = requirements_told(Requirements(settling_min=60.0, position_rms_m=100.0, tilt_max_arcsec=20.0))
+    told = requirements_told(limits(settling_s=60.0, position_rms_m=100.0, tilt_max_arcsec=20.0))
     assert told == (
         "Requirements that are kept: settling ≤ 60 min, ensemble position RMS ≤ 100 m. "
-        "Not measured by a search: largest tilt of this run ≤ 20 arcsec."
+        "Judged by runs alone: largest tilt of this run ≤ 20 arcsec."
     )
-    assert requirements_told(Requirements()) == "No requirement is to be kept."
+    assert requirements_told(()) == "No requirement is to be kept."
 
 
 def test_the_optimal_network_is_a_dashed_reference_or_it_is_said_why_not(ship: Scenario) -> None:

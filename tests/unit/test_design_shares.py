@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.cli import main
-from navcore.design.designs import assumed_zero, designs
+from navcore.design.budget import budget
+from navcore.design.designs import designs
 from navcore.design.shares import wilson
+from navcore.design.stated import assumed_zero
+from navcore.design.tune import tune
 from navcore.engine.ensemble import drawn, outcomes
 from navcore.engine.measures import judged
 from navcore.engine.simulation import simulate
@@ -19,6 +21,7 @@ from navcore.foundation.units import ARCMIN, ARCSEC
 from navcore.scenario.file import to_toml
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from schuler_bench.cli import main
 
 SHIP: dict[str, Any] = {
     "run": {"duration_h": 2.0, "seed": 7},
@@ -145,6 +148,18 @@ def test_unstated_spreads_are_named() -> None:
     )
     stated = {**SHIP["initial_error"], "velocity_std_mps": 0.0, "position_arcsec": [0.0, 0.0]}
     assert assumed_zero(ship(initial_error=stated)) == ("reference.bias_std_mps",)
+
+
+def test_budget_and_tuning_name_unstated_spreads_too(capsys: pytest.CaptureFixture[str]) -> None:
+    """The steady state knows no initial error."""
+    damped = ship(method=SHIP["method"][:1])
+    assert budget(damped).as_dict()["assumed_zero"] == list(assumed_zero(damped))
+    assert budget(damped, steady=True).assumed_zero == ("reference.bias_std_mps",)
+    compass = ship(method=[{"damping": "external", "network": {"id": "complementary"}}])
+    found = tune(compass, "tilt_rms", ["method.0.network.zeta=0.3:1"])
+    assert found.as_dict()["assumed_zero"] == ["reference.bias_std_mps"]
+    assert main(["budget", "zha-fast", "--steady"]) == 0
+    assert "note: 0 is assumed for " in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -7,10 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.cli import main
-from app.editing import form
-from app.views.method.view import described
-from app.views.tune.setting import left_out_html
 from navcore.design.budget import budget
 from navcore.design.measures import Setting, Ship, read_objective, read_requirement
 from navcore.design.pareto import measured, pareto
@@ -21,6 +17,10 @@ from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.cli import main
+from schuler_bench.editing import form
+from schuler_bench.views.method.view import described
+from schuler_bench.views.tune.setting import left_out_html
 from tests.acceptance.test_design_values import SET_A, set_a
 from tools.tuning import CASES, Case, best_of_grid
 

@@ -5,19 +5,22 @@ from dataclasses import replace
 
 import pytest
 
-from app.jobs.designer import Budgeter, Designer, TuningTask
-from app.plots.budgets import steady_budget
-from app.session.requirements import Requirements
-from app.views.design.figure import NOTHING, budget_figure, parts
-from app.views.tune.proposal import proposal_html, sentences_about
-from app.views.tune.setting import requirements_as_text
 from navcore.design.budget import budget
 from navcore.design.measures import read_requirement
 from navcore.design.tune import tune
 from navcore.design.vary import tunable_fields
+from navcore.engine.simulation import simulate
+from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs.designer import Budgeter, Designer, TuningTask
+from schuler_bench.jobs.refusals import refusals
+from schuler_bench.plots.budgets import steady_budget
+from schuler_bench.views.design.figure import NOTHING, budget_figure, parts
+from schuler_bench.views.tune.proposal import proposal_html, sentences_about
+from schuler_bench.views.tune.setting import requirements_as_text
+from tests.limits import limits
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +69,7 @@ def test_every_quantity_has_its_bars_its_unit_and_the_floor(ship):
     )
     for k, (key, title, unit_name, unit) in enumerate(shown):
         suffix = "" if k == 0 else str(k + 1)
-        assert layout[f"xaxis{suffix}"]["title"]["text"] == unit_name
+        assert layout[f"xaxis{suffix}"]["title"]["text"] == f"{unit_name}; parts: shares of variance"
         assert f"<b>{title}</b>" in [note["text"] for note in layout["annotations"]]
         bars = [trace for trace in made["data"] if trace["yaxis"] == f"y{suffix}"]
         total = sum(trace["x"][1] for trace in bars)
@@ -77,6 +80,16 @@ def test_every_quantity_has_its_bars_its_unit_and_the_floor(ship):
         # across the rows of the methods that read the log, which the first, free, does not
         rows = [(line["y0"], line["y1"]) for line in lines]
         assert rows == [(row - 0.5, row + 0.5) for row in range(1, len(found.methods))]
+
+
+def test_a_growing_whole_system_is_marked_at_its_name(ship):
+    """Without a mark before: 1e-5 1/s is e in 1.2 days."""
+    found = budget(ship, steady=True)
+    made = budget_figure(found, 0.5, growth=[None, 1e-5, -1e-5])
+    labels = made["layout"]["yaxis"]["ticktext"]
+    assert labels == [found.methods[0].name, f"{found.methods[1].name} ↗1.2 days", found.methods[2].name]
+    told = " ".join(note["text"] for note in made["layout"]["annotations"])
+    assert "↗ grows by e in this time" in told
 
 
 def test_a_name_with_markup_is_shown_as_text(compass):
@@ -90,9 +103,9 @@ def test_only_numbers_of_the_network_that_are_given_may_vary(ship, compass):
 
 
 def test_requirements_reach_the_search_in_si():
-    asked = Requirements(settling_min=60.0, damping_ratio=0.4, log_tilt_arcsec=3.0, position_rms_m=100.0)
-    limits = {one.name: one.limit for one in map(read_requirement, requirements_as_text(asked))}
-    assert limits == {
+    asked = limits(settling_s=60.0, damping_ratio=0.4, log_tilt=3.0, position_rms_m=100.0)
+    found = {one.name: one.limit for one in map(read_requirement, requirements_as_text(asked))}
+    assert found == {
         "settling_s": 3600.0,
         "damping_ratio": 0.4,
         "log_tilt": pytest.approx(3.0 * math.pi / 648000.0),
@@ -110,6 +123,36 @@ def test_a_proposal_names_field_value_floor_and_what_holds_it(compass):
     assert sentences_about(task, replace(found, warnings=(grows,)))[-1] == grows
     html = proposal_html(task, found)
     assert ">σ<" in html and "arcsec" in html and "0.0088" in html
+
+
+def test_a_refusal_speaks_the_language_of_the_page(compass):
+    """It was "--require = 'settling_s<=60': nothing within these ranges meets ... settling_s comes to"."""
+    with pytest.raises(InputError) as refused:
+        tune(compass, "tilt_rms", ("method.0.network.xi",), ("settling_s<=60",))
+    (words,) = refusals(refused.value)
+    assert words.startswith("Limit settling ≤ 1 min: nothing within these ranges meets all requirements")
+    assert "alone settling comes to" in words and " min; without it steady tilt RMS per axis comes" in words
+    assert "--" not in words and "settling_s" not in words and "tilt_rms" not in words
+
+
+def test_the_start_cards_network_keeps_its_damping():
+    """*Tune a network*, *Tune*, *Accept* took zeta from 0.7 to 0.01 and settling from 195 to 5580 min."""
+    designer = Designer(lambda: None)
+    scenario = load("liu-networks", ["run.duration_h=2.0"])
+    try:
+        designer.begin(TuningTask(scenario, "tilt_rms", tunable_fields(scenario, 2), ()))
+        assert designer.wait_idle(120.0)
+        found, task = designer.result, designer.asked
+        assert found is not None and task is not None and found.confirmed is not None
+        assert found.best["method.2.network.zeta"] > 0.1
+        assert (simulate(found.scenario).methods[2].loop.settling_s or math.inf) <= 4.0 * 3600.0
+        html = proposal_html(task, found)
+        assert "Mean of 32 runs" in html and "settling" in html and "✓ met" in html
+        designer.accept(found.scenario)
+        assert designer.result is found and designer.accepted is found.scenario
+        assert "Accepted for complementary" in proposal_html(task, found, accepted=True)
+    finally:
+        designer.stop()
 
 
 def test_the_jobs_give_what_the_library_gives_and_forget_it(compass):

@@ -6,8 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.jobs.why import Explainer
-from app.views.metrics.view import cause_text, why_html
 from navcore.averaging.lines import line_phases
 from navcore.design.dominance import HEADING, POSITION, TILT, swing, why
 from navcore.engine.run import Run
@@ -15,6 +13,8 @@ from navcore.engine.simulation import simulate
 from navcore.mechanization.recorder import PHI_E, PHI_N
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs.why import Explainer
+from schuler_bench.views.metrics.view import cause_text, why_html
 
 DAY = {"run": {"duration_h": 30.0, "step_s": 10.0, "output_step_s": 60.0}}
 

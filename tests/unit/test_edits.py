@@ -6,10 +6,6 @@ from typing import Any, cast
 
 import pytest
 
-from app.editing import edits, form
-from app.editing.edits import WHERE, disturbances_toml, method_toml, paste
-from app.shell.editor import Editor
-from app.shell.reset import opened_value
 from navcore.foundation.errors import InputError
 from navcore.networks import NETWORKS
 from navcore.networks.compass import gains_from_sigma_xi
@@ -17,6 +13,10 @@ from navcore.scenario.blocks import RunSettings
 from navcore.scenario.file import load
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import edits, form
+from schuler_bench.editing.edits import WHERE, disturbances_toml, method_toml, paste
+from schuler_bench.shell.editor import Editor
+from schuler_bench.shell.reset import opened_value
 
 NETWORK = ("method", 1, "network")
 HEADING = ("motion", "heading_deg")

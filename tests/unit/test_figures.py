@@ -9,26 +9,26 @@ from html import escape
 import numpy as np
 import pytest
 
-from app.misprints import MISPRINTS
-from app.plots import style
-from app.plots.effective import OPEN_LOOP, TRANSFERS
-from app.plots.pinned import restyled, together
-from app.plots.plotly_data import PlotlyFigure, values_of
-from app.plots.saved import time_figure
-from app.session.display import Display
-from app.views.errors.figure import TITLES, error_plots
-from app.views.frequency.figure import frequency_view
-from app.views.metrics.table import metrics_html
-from app.views.misprints.figure import SHOWN, comparison_plot
-from app.views.poles.figure import poles
-from app.views.poles.whole import whole_system_figure
-from app.views.scene.track import track
-from app.views.spectrum.figure import spectrum
-from app.views.step.figure import step
-from app.views.switching.figure import switched_methods, switching_plots
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.scenario.file import load, presets
+from schuler_bench.misprints import MISPRINTS
+from schuler_bench.plots import style
+from schuler_bench.plots.effective import OPEN_LOOP, TRANSFERS
+from schuler_bench.plots.pinned import restyled, together
+from schuler_bench.plots.plotly_data import PlotlyFigure, values_of
+from schuler_bench.plots.saved import time_figure
+from schuler_bench.session.display import Display
+from schuler_bench.views.errors.figure import TITLES, error_plots
+from schuler_bench.views.frequency.figure import frequency_view
+from schuler_bench.views.metrics.table import metrics_html
+from schuler_bench.views.misprints.figure import SHOWN, comparison_plot
+from schuler_bench.views.poles.figure import poles
+from schuler_bench.views.poles.whole import whole_system_figure
+from schuler_bench.views.scene.track import track
+from schuler_bench.views.spectrum.figure import spectrum
+from schuler_bench.views.step.figure import step
+from schuler_bench.views.switching.figure import switched_methods, switching_plots
 from tests.unit.figures_runs import (
     INTERNAL,
     THREE,

@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from app.jobs.verifier import Verified
-from app.plots import style
-from app.plots.legend import STATES, after
-from app.plots.uplot import stack_heights
-from app.session.display import Display
-from app.session.shown import Shown
-from app.views.errors.figure import GROUPS, VERIFIED, Overlay, error_plots, verification_plots
-from app.views.errors.view import error_curves, legend_html
 from navcore.engine.simulation import simulate
 from navcore.engine.verification import Verification, verify
 from navcore.mechanization.recorder import NAMES
 from navcore.scenario.file import load
+from schuler_bench.jobs.verifier import Verified
+from schuler_bench.plots import style
+from schuler_bench.plots.legend import STATES, after
+from schuler_bench.plots.uplot import stack_heights
+from schuler_bench.session.display import Display
+from schuler_bench.session.shown import Shown
+from schuler_bench.views.errors.figure import GROUPS, VERIFIED, Overlay, error_plots, verification_plots
+from schuler_bench.views.errors.view import error_curves, legend_html
 from tests.unit.figures_runs import Pinned, diverging, run_of, static_run
 
 KEYS = ("phi_e", "phi_n", "phi_u", "dve", "dvn", "dlat", "dlon", "position")

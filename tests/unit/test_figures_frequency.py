@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.plots import style
-from app.plots.effective import OMEGA_MAX, OMEGA_MIN, TRANSFERS, VIEWS
-from app.views.frequency.curves import law_step_s, measured_gain
-from app.views.frequency.figure import bode, natural_frequencies
-from app.views.frequency.nyquist import HIGH, LOW, margin_words, margins_of, nyquist
 from navcore.analysis import RADIUS, frequency_response
 from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.units import ARCSEC, DEG_PER_HOUR
 from navcore.networks.discrete import discretise
+from schuler_bench.plots import style
+from schuler_bench.plots.effective import OMEGA_MAX, OMEGA_MIN, TRANSFERS, VIEWS
+from schuler_bench.views.frequency.curves import law_step_s, measured_gain
+from schuler_bench.views.frequency.figure import bode, natural_frequencies
+from schuler_bench.views.frequency.nyquist import HIGH, LOW, margin_words, margins_of, nyquist
 from tests.unit.figures_runs import (
     INTERNAL,
     THREE,

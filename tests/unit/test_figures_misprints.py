@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from app.misprints import Axis, Comparison, Curve, Misprint, Number
-from app.plots.plotly_data import unpacked
-from app.views.misprints.figure import comparison_plot, words_html
+from schuler_bench.misprints import Axis, Comparison, Curve, Misprint, Number
+from schuler_bench.plots.plotly_data import unpacked
+from schuler_bench.views.misprints.figure import comparison_plot, words_html
 
 T = np.linspace(0.0, 7200.0, 50)
 TILT = Axis("tilt", "rad")

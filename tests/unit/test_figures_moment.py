@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.session.display import Display
-from app.views.learn.lessons import lessons
-from app.views.scene.moment import moment, pendulum, pendulum_svg, plane_ends, readout_html, row_at
-from app.views.scene.playback import MOST_AHEAD, SLOW_S, SPEEDS, TICK_S, Playback, PlayState
 from navcore.engine.simulation import simulate
 from navcore.foundation.units import ARCMIN, DEG
 from navcore.mechanization.recorder import PHI_E, PHI_N, PHI_U
 from navcore.motion.truth import HEADING, VE, VN
+from schuler_bench.session.display import Display
+from schuler_bench.views.learn.lessons import lessons
+from schuler_bench.views.scene.moment import moment, pendulum, pendulum_svg, plane_ends, readout_html, row_at
+from schuler_bench.views.scene.playback import MOST_AHEAD, SLOW_S, SPEEDS, TICK_S, Playback, PlayState
 from tests.unit.figures_runs import diverging, moving_run, run_of, static_run
 
 
@@ -124,7 +124,7 @@ def test_a_page_that_falls_behind_gets_fewer_updates(monkeypatch: pytest.MonkeyP
             enough.set()
 
     playback = Playback(lambda state: None)
-    monkeypatch.setattr("app.views.scene.playback.time.sleep", sleep)
+    monkeypatch.setattr("schuler_bench.views.scene.playback.time.sleep", sleep)
     playback.follow(1e9)
     playback.toggle()
     assert enough.wait(10.0)

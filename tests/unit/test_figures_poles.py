@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.plots.effective import earth_mode_text
-from app.views.method.view import loop_text
-from app.views.poles.figure import poles
-from app.views.poles.grid import locus_fields, locus_of, settling_lines
-from app.views.poles.whole import LATITUDES, whole_system_figure
-from app.views.step.figure import step
 from navcore.analysis import initial_tilt_response
 from navcore.analysis.whole_system import EARTH_MODE, NETWORK_MODE, SCHULER_MODE, whole_system
 from navcore.foundation.units import ARCSEC, DEG
+from schuler_bench.plots.effective import earth_mode_text
+from schuler_bench.views.method.view import loop_text
+from schuler_bench.views.poles.figure import poles
+from schuler_bench.views.poles.grid import locus_fields, locus_of, settling_lines
+from schuler_bench.views.poles.whole import LATITUDES, whole_system_figure
+from schuler_bench.views.step.figure import step
 from tests.unit.figures_runs import (
     INTERNAL,
     THREE,

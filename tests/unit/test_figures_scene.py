@@ -11,17 +11,25 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.plots.style import method_color, rgb
-from app.plots.units import round_down, round_up
-from app.session.pins import Pin
-from app.views.scene.drawer import ShipPart, ship_parts
-from app.views.scene.graticule import LocalMap, angle_text, dashes, graticule, needed, scale_bar, segments
-from app.views.scene.track import HALF_WIDTH, LINE_WIDTH, attitude_quaternions, track
-from app.views.scene.view import CAMERAS, FOLLOW, SIDE, Cameras, Window
 from navcore.foundation.earth import WGS84, attitude_matrix
 from navcore.foundation.units import ARCSEC, DEG
 from navcore.mechanization.recorder import D_LAT, D_LON
 from navcore.motion.truth import LAT, LON
+from schuler_bench.plots.style import method_color, rgb
+from schuler_bench.plots.units import round_down, round_up
+from schuler_bench.session.pins import Pin
+from schuler_bench.views.scene.drawer import ShipPart, ship_parts
+from schuler_bench.views.scene.graticule import (
+    LocalMap,
+    angle_text,
+    dashes,
+    graticule,
+    needed,
+    scale_bar,
+    segments,
+)
+from schuler_bench.views.scene.track import HALF_WIDTH, LINE_WIDTH, attitude_quaternions, track
+from schuler_bench.views.scene.view import CAMERAS, FOLLOW, SIDE, Cameras, Window
 from tests.unit.figures_runs import diverging, moving_run, run_of, static_run
 
 

@@ -8,11 +8,13 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from app.plots import style
-from app.session.display import Display
-from app.session.shown import Shown
-from app.views.appearance.document import _numbers
-from app.views.switching.figure import (
+from navcore.engine.run import Run
+from navcore.law.policy import POLICIES
+from schuler_bench.plots import style
+from schuler_bench.session.display import Display
+from schuler_bench.session.shown import Shown
+from schuler_bench.views.appearance.document import _numbers
+from schuler_bench.views.switching.figure import (
     MARGIN,
     STATE,
     XI,
@@ -21,9 +23,7 @@ from app.views.switching.figure import (
     switching_plots,
     thin,
 )
-from app.views.switching.view import SwitchingView
-from navcore.engine.run import Run
-from navcore.law.policy import POLICIES
+from schuler_bench.views.switching.view import SwitchingView
 from tests.unit.figures_runs import THREE, run_of, static_run
 
 EVENT = {"t_h": 0.3, "duration_s": 1.0, "accel_mps2": [0.8, 0.0]}

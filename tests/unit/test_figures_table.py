@@ -5,16 +5,20 @@ from html import escape
 import numpy as np
 import pytest
 
-from app.editing import edits
-from app.plots import style
-from app.plots.legend import severity, warnings_for
-from app.plots.pinned import pinned_methods, restyled, together
-from app.plots.units import angle_unit, length_unit, rounded, settling, speed_unit, time_unit
-from app.session.display import Display
-from app.session.pins import Pins
-from app.session.shown import laid, titled
-from app.views.frequency.figure import bode
-from app.views.metrics.table import (
+from navcore.engine.run import Run
+from navcore.engine.verification import Difference, Verification
+from navcore.foundation.units import ARCMIN, ARCSEC, NAUTICAL_MILE
+from navcore.mechanization.recorder import NAMES
+from schuler_bench.editing import edits
+from schuler_bench.plots import style
+from schuler_bench.plots.legend import severity, warnings_for
+from schuler_bench.plots.pinned import pinned_methods, restyled, together
+from schuler_bench.plots.units import angle_unit, length_unit, rounded, settling, speed_unit, time_unit
+from schuler_bench.session.display import Display
+from schuler_bench.session.pins import Pins
+from schuler_bench.session.shown import laid, titled
+from schuler_bench.views.frequency.figure import bode
+from schuler_bench.views.metrics.table import (
     STATISTICS,
     difference_rows,
     metrics_html,
@@ -22,11 +26,7 @@ from app.views.metrics.table import (
     system_html,
     verdict,
 )
-from app.views.metrics.view import warnings_html
-from navcore.engine.run import Run
-from navcore.engine.verification import Difference, Verification
-from navcore.foundation.units import ARCMIN, ARCSEC, NAUTICAL_MILE
-from navcore.mechanization.recorder import NAMES
+from schuler_bench.views.metrics.view import warnings_html
 from tests.unit.figures_runs import THREE, UNSTABLE, Pinned, diverging, of_trace, run_of, static_run
 
 
@@ -154,6 +154,9 @@ def test_the_best_of_each_row_is_marked_and_points_stand_below_each_other() -> N
     rows = {row.label: row for row in metrics_rows(run)}
     peaks = [method.errors["phi_e_rad"]["max_abs"] for method in run.methods]
     assert [marks[1] for marks in rows["tilt φE"].best] == [peak == min(peaks) for peak in peaks]
+    assert not any(marks[2] for marks in rows["tilt φE"].best), (
+        "an error passes through 0: final marks no best"
+    )
     assert not rows["settling"].best[0][0]
     alone = metrics_rows(run_of(method=[THREE[1]]))
     assert not any(mark for row in alone for marks in row.best for mark in marks)

@@ -2,8 +2,8 @@
 
 import re
 
-from app.views.method.tuned import HEIGHT, WIDTH, table_html
 from navcore.design.sun import TuningSettings, tune_table
+from schuler_bench.views.method.tuned import HEIGHT, WIDTH, table_html
 
 
 def test_every_row_is_a_dot_in_the_frame_and_stands_beside_suns() -> None:

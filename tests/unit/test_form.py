@@ -10,9 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
-from app.editing import form, typed
-from app.editing.form import FieldSpec, Slider
-from app.editing.typed import read_typed, unit_of
 from navcore.law.policy import POLICIES
 from navcore.law.switching import SWITCHINGS
 from navcore.motion import MOTIONS
@@ -22,6 +19,9 @@ from navcore.scenario.initial_error import InitialError
 from navcore.sensors.imu import Imu
 from navcore.sensors.log_errors.events import LogEvent
 from navcore.sensors.reference import Outage, Reference
+from schuler_bench.editing import form, typed
+from schuler_bench.editing.form import FieldSpec, Slider
+from schuler_bench.editing.typed import read_typed, unit_of
 
 BLOCKS: list[type[BaseModel]] = [
     Imu, Reference, LogEvent, Outage, RunSettings, SiteSettings, InitialError,

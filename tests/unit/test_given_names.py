@@ -7,13 +7,13 @@ from typing import Any, cast
 import pytest
 from viser import _messages as messages
 
-from app.bridge.texts import Translator
-from app.languages.wording import Wording, wording
-from app.plots.plotly_data import PlotlyFigure
-from app.session.names import GivenNames
-from app.session.session import Session
 from navcore.foundation.text import Text
 from navcore.scenario.file import load
+from schuler_bench.bridge.texts import Translator
+from schuler_bench.languages.wording import Wording, wording
+from schuler_bench.plots.plotly_data import PlotlyFigure
+from schuler_bench.session.names import GivenNames
+from schuler_bench.session.session import Session
 
 CHINESE = cast("Wording", wording("zh-CN"))
 GIVEN = ("drift of log", "position", "log", "must be 3", "step / output", "reset", "a & b", "a <b>log</b> c")

@@ -9,14 +9,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.session.uploads import Uploads, opened_scenario
 from navcore.foundation import guarded
 from navcore.foundation.errors import Fault, InputError
 from navcore.io.recording import load
+from schuler_bench.session.uploads import Uploads, opened_scenario
 from tests.bombs import FILES, SCENARIOS
 
 LIMITS = guarded.Limits(memory_bytes=1 << 30, cpu_s=10, wall_s=120.0)
-READERS = ("app.session.uploads", "navcore.io.csv", "navcore.io.tables", "pyarrow.parquet", "scipy.io")
+READERS = (
+    "schuler_bench.session.uploads",
+    "navcore.io.csv",
+    "navcore.io.tables",
+    "pyarrow.parquet",
+    "scipy.io",
+)
 
 
 def _answer(what: str) -> object:

@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
-from app.editing import edits
-from app.session.history import MOST_STEPS, History, State, change_name
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import edits
+from schuler_bench.session.history import MOST_STEPS, History, State, change_name
 
 FIRST = State(load("zha-fast"), "zha-fast", 0, load("zha-fast"))
 TO_8, TO_X = ("run.duration_h=8", "run.duration_h: 4 → 8"), ("title=x", "change of 2 fields")

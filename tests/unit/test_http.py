@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 from websockets.datastructures import Headers
 
-from app.http.access import Access, Throttle, access_rules, refuse_address, shown
-from app.http.address import authority, find_token, is_loopback, listen, parse_origins
 from navcore.foundation.errors import InputError
+from schuler_bench.http.access import Access, Throttle, access_rules, refuse_address, shown
+from schuler_bench.http.address import authority, find_token, is_loopback, listen, parse_origins
 
 # ------------------------------------------------------------ addresses
 

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.bridge.controls import Control, Guest
-from app.bridge.server import FRAME_TYPES
-from app.http.frames import BadFrame, Gate, Uploading, safe_file_name, shown, why_not
-from app.http.limits import MIB, Limits
+from schuler_bench.bridge.controls import Control, Guest
+from schuler_bench.bridge.server import FRAME_TYPES
+from schuler_bench.http.frames import BadFrame, Gate, Uploading, safe_file_name, shown, why_not
+from schuler_bench.http.limits import MIB, Limits
 from tests.attack.wire import CAMERA
 
 # ------------------------------------------------------------ values of controls

@@ -10,17 +10,17 @@ from typing import Any
 
 import pytest
 
-from app.jobs import helper
-from app.jobs.designer import Budgeter, Designer, Fronts, FrontsTask, TableTask, Tuner, TuningTask
-from app.jobs.envelopes import Envelopes
-from app.jobs.search import Search
-from app.jobs.verifier import Verifier
-from app.jobs.why import Explainer
 from navcore.design.sun import TuningSettings
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs import helper
+from schuler_bench.jobs.designer import Budgeter, Designer, Fronts, FrontsTask, TableTask, Tuner, TuningTask
+from schuler_bench.jobs.envelopes import Envelopes
+from schuler_bench.jobs.search import Search
+from schuler_bench.jobs.verifier import Verifier
+from schuler_bench.jobs.why import Explainer
 from tests.waiting import until
 
 Progress = Callable[[float], None]

@@ -7,15 +7,15 @@ from typing import Any
 
 import pytest
 
-from app.editing import edits
-from app.jobs.designer import TableTask, Tuner
-from app.jobs.scheduler import Lane, Load
-from app.jobs.searches import Searches
-from app.jobs.verifier import CHANGED, STOPPED, Verifier
-from app.jobs.why import Explainer
 from navcore.design.sun_settings import TuningSettings
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import edits
+from schuler_bench.jobs.designer import TableTask, Tuner
+from schuler_bench.jobs.scheduler import Lane, Load
+from schuler_bench.jobs.searches import Searches
+from schuler_bench.jobs.verifier import CHANGED, STOPPED, Verifier
+from schuler_bench.jobs.why import Explainer
 from tests.waiting import until
 
 

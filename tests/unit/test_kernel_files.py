@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from app.bench.process import environment
 from navcore.foundation import kernel_cache, kernel_files
 from navcore.foundation.errors import InputError
+from schuler_bench.bench.process import environment
 
 KERNEL = """
 import os
@@ -99,6 +99,63 @@ def test_without_any_folder_a_program_can_be_imported_and_a_kernel_says_so(
     finally:
         kernel_cache.cache_folder.cache_clear()
     assert "no folder for compiled kernels" in str(caught.value) and str(tmp_path) not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("own", "room", "used", "code"),
+    [
+        ("none", True, "own", "shared"),
+        ("begun", True, "own", "shared"),
+        ("complete", True, "own", "own"),
+        ("none", False, "shared", "shared"),
+        ("begun", False, "shared", "shared"),
+    ],
+)
+def test_a_begun_folder_of_ones_own_does_not_hide_a_complete_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, own: str, room: bool, used: str, code: str
+):
+    def refuse(*given: object, **options: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    for base, kept in (("shared", "complete"), ("own", own)):
+        if kept != "none":
+            kernel_files.make_folder(tmp_path / base / "kernels-0")
+            (tmp_path / base / "kernels-0" / "code").write_text(base)
+        if kept == "complete":
+            (tmp_path / base / "kernels-0" / "complete").touch()
+    monkeypatch.setattr(kernel_cache, "kernel_hash", lambda: "0")
+    monkeypatch.setattr(kernel_cache, "_bases", lambda: [tmp_path / "shared", tmp_path / "own"])
+    refusal = kernel_files.refusal
+    monkeypatch.setattr(
+        kernel_files, "refusal", lambda at: "is root's" if at.parent.name == "shared" else refusal(at)
+    )
+    if not room:
+        monkeypatch.setattr(kernel_files.shutil, "copytree", refuse)
+    kernel_cache.cache_folder.cache_clear()
+    try:
+        folder = kernel_cache.cache_folder()
+        assert (folder.parent.name, kernel_cache.complete()) == (used, True)
+    finally:
+        kernel_cache.cache_folder.cache_clear()
+    assert (folder / "code").read_text() == code
+    assert not list(tmp_path.glob("own/tmp*")), "an unfinished copy is left"
+
+
+def test_of_two_processes_that_copy_the_first_is_left_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    source, target = tmp_path / "shared" / "kernels", tmp_path / "own" / "kernels"
+    for folder in (source, target):
+        kernel_files.make_folder(folder)
+    copytree = kernel_files.shutil.copytree
+
+    def slowly(*given: Path, **options: Callable[[str, list[str]], set[str]]) -> None:
+        monkeypatch.undo()  # the other process begins later, and ends before this one
+        assert kernel_files.copy(source, target)
+        (target / "compiled since").touch()
+        copytree(*given, **options)
+
+    monkeypatch.setattr(kernel_files.shutil, "copytree", slowly)
+    assert kernel_files.copy(source, target)
+    assert (target / "compiled since").exists()
 
 
 def test_a_disk_without_room_is_told_before_all_kernels_are_compiled(

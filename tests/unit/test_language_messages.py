@@ -8,10 +8,10 @@ import pytest
 from viser import _messages as messages
 from websockets.datastructures import Headers
 
-from app.bridge.texts import Translator
-from app.http.running import language_of
-from app.languages.wording import Wording
 from navcore.foundation.text import Text
+from schuler_bench.bridge.texts import Translator
+from schuler_bench.http.running import language_of
+from schuler_bench.languages.wording import Wording
 
 WORDS = {
     "damping": "阻尼",

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from babel.messages.mofile import write_mo
 
-from app.languages.wording import NAMES, Wording, read_texts
-from app.views import load
 from navcore.foundation.text import Text as PageText
+from schuler_bench.languages.wording import NAMES, Wording, read_texts
+from schuler_bench.views import load
 from tools.translating.__main__ import (
     LANGUAGES,
     missing,

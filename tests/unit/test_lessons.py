@@ -7,33 +7,6 @@ from functools import lru_cache
 
 import pytest
 
-from app.editing import form
-from app.editing.form import FieldSpec
-from app.session.display import Display
-from app.views import load
-from app.views.explain.view import (
-    Explanation,
-    explain_html,
-    explanation,
-    explanations,
-    formula_html,
-    key_of,
-    told_html,
-)
-from app.views.learn.lessons import (
-    Lesson,
-    Question,
-    Step,
-    holds,
-    is_right,
-    lessons,
-    read_lesson,
-    right_choice,
-    to_html,
-)
-from app.views.learn.names import Named, named
-from app.views.learn.view import spec_at
-from app.views.log.view import _KINDS
 from navcore.averaging.parameters import Averaging
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
@@ -49,6 +22,33 @@ from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.reference import Reference
+from schuler_bench.editing import form
+from schuler_bench.editing.form import FieldSpec
+from schuler_bench.session.display import Display
+from schuler_bench.views import load
+from schuler_bench.views.explain.view import (
+    Explanation,
+    explain_html,
+    explanation,
+    explanations,
+    formula_html,
+    key_of,
+    told_html,
+)
+from schuler_bench.views.learn.lessons import (
+    Lesson,
+    Question,
+    Step,
+    holds,
+    is_right,
+    lessons,
+    read_lesson,
+    right_choice,
+    to_html,
+)
+from schuler_bench.views.learn.names import Named, named
+from schuler_bench.views.learn.view import spec_at
+from schuler_bench.views.log.view import _KINDS
 from tests.answers import names_in, right_answer
 
 

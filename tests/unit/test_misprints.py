@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from app.misprints import MISPRINTS, Comparison
-from app.misprints.base import OMEGA_S, growth_time
-from app.misprints.direct_form import direct_form_error, direct_form_growth, state_space_error
-from app.misprints.liu import variation
-from app.misprints.sun import least_stable
 from navcore.foundation.units import ARCSEC, DEG, HOUR, KNOT, MINUTE
 from navcore.networks import parse_network
 from navcore.networks.pole2 import Pole2Network
+from schuler_bench.misprints import MISPRINTS, Comparison
+from schuler_bench.misprints.base import OMEGA_S, growth_time
+from schuler_bench.misprints.direct_form import direct_form_error, direct_form_growth, state_space_error
+from schuler_bench.misprints.liu import variation
+from schuler_bench.misprints.sun import least_stable
 from tools.papers.misprints import window
 
 UNSTABLE = ["deng-1", "deng-3", "liu-5", "sun-16"]

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.cli import main
 from navcore.analysis import analyse
 from navcore.analysis.held_log import held_log
 from navcore.analysis.locus import root_locus
@@ -20,6 +19,7 @@ from navcore.networks.lqg import Compensator, compensator, plant
 from navcore.networks.optimal import EXAMPLE_SHIP, modulus_margin
 from navcore.scenario.file import parse_toml, to_toml
 from navcore.scenario.model import Scenario
+from schuler_bench.cli import main
 
 OMEGA_S = 1.24e-3
 IMU = {"gyro_arw_dpsh": 0.01, "accel_vrw_ugpshz": 20.0, "gyro_instability_dph": 0.01, "gyro_tau_s": 900.0}
@@ -74,7 +74,7 @@ def test_closed_loop_poles_are_those_of_filter_and_feedback(rho: float) -> None:
     """Separation principle, on the network that runs."""
     system = plant(EXAMPLE_SHIP, OMEGA_S)
     full = compensator(system, rho, 0.0, feedback=False)
-    network = parse_network({"id": "optimal", "rho": rho}).transfer(OMEGA_S)
+    network = parse_network({"id": "optimal", "rho": rho, "q": 0.0}).transfer(OMEGA_S)
     assert network.order <= MAX_ORDER
     loop = analyse(network)
     assert loop.stable
@@ -87,7 +87,9 @@ def test_closed_loop_poles_are_those_of_filter_and_feedback(rho: float) -> None:
 
 def test_a_smaller_rho_is_a_faster_and_no_less_robust_loop() -> None:
     """Modulus margin and H(0) over rho."""
-    networks = [parse_network({"id": "optimal", "rho": rho}).transfer(OMEGA_S) for rho in (1.0, 1e-2, 1e-4)]
+    networks = [
+        parse_network({"id": "optimal", "rho": rho, "q": 0.0}).transfer(OMEGA_S) for rho in (1.0, 1e-2, 1e-4)
+    ]
     margins = [modulus_margin(network) for network in networks]
     assert margins == sorted(margins)
     gains = [network.h0 for network in networks]

@@ -5,11 +5,11 @@ import math
 
 import pytest
 
-from app.cli import main
 from navcore.analysis.report import network_report
 from navcore.foundation.earth import SPHERE
 from navcore.foundation.errors import InputError
 from navcore.networks import NETWORKS, parse_network
+from schuler_bench.cli import main
 
 KEYS = [
     "id",

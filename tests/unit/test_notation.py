@@ -4,9 +4,9 @@ import re
 
 import pytest
 
-from app.editing import form
 from navcore.foundation.notation import symbol, unit_sign
 from navcore.networks import NETWORKS
+from schuler_bench.editing import form
 from tools.translating.extract import texts
 
 pytestmark = pytest.mark.contract

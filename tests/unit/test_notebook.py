@@ -7,10 +7,10 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 
-from app.cli.design_text import budget_text
-from app.cli.run_text import run_text
-from app.notebook import OF_NETWORK, OF_RUN
 from navcore import InputError, budget, load, parse_network, simulate
+from schuler_bench.cli.design_text import budget_text
+from schuler_bench.cli.run_text import run_text
+from schuler_bench.notebook import OF_NETWORK, OF_RUN
 
 RUN = simulate(load("liu-switching", ["run.duration_h=2"]))
 

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.shell import pace as module
-from app.shell.pace import AHEAD, LATE_S, NEXT, Event, Pace, State
+from schuler_bench.shell import pace as module
+from schuler_bench.shell.pace import AHEAD, LATE_S, NEXT, Event, Pace, State
 
 RUN, LATE, OPENS, CLOSES = "a run ends", "the page is late", "the page will answer", "the page goes"
 Step = str | tuple[int, bool]

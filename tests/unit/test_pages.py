@@ -7,17 +7,17 @@ from typing import Any
 
 import pytest
 
-from app.cli import main
-from app.cli.parse import _COMMANDS
-from app.session.display import Display
-from app.session.shown import Shown
-from app.shell.view import PictureView
 from docs.site.api import rooms
 from docs.site.stage import _settled, for_myst
 from navcore.analysis import analyse
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import SPHERE
 from navcore.scenario.model import Scenario
+from schuler_bench.cli import main
+from schuler_bench.cli.parse import _COMMANDS
+from schuler_bench.session.display import Display
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell.view import PictureView
 from tests import theory
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.jobs.rows import MOST_ROWS, few_rows
-from app.session.pins import COLORS, LONGEST_NAME, MOST_PINS, Pins
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
+from schuler_bench.jobs.rows import MOST_ROWS, few_rows
+from schuler_bench.session.pins import COLORS, LONGEST_NAME, MOST_PINS, Pins
 from tests.unit.figures_runs import run_of, static_run
 
 

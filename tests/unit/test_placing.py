@@ -5,7 +5,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.editing.placing import (
+from navcore.analysis import analyse
+from navcore.foundation.errors import InputError
+from navcore.scenario.model import Scenario
+from schuler_bench.editing.placing import (
     handle_of,
     pair_at,
     read_drag,
@@ -14,9 +17,6 @@ from app.editing.placing import (
     with_nearest_pair,
     with_pair,
 )
-from navcore.analysis import analyse
-from navcore.foundation.errors import InputError
-from navcore.scenario.model import Scenario
 from tests.unit.figures_runs import THREE, scenario
 
 NETWORKS = ["compass", "unity2", "pole2", "complementary"]

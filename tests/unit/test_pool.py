@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-from app.bridge.pool import MOST_WAITING, FairPool
+from schuler_bench.bridge.pool import MOST_WAITING, FairPool
 
 
 def same_text(call: object, arguments: tuple[object, ...]) -> object:

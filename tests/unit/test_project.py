@@ -42,7 +42,9 @@ TOP_LEVEL = {
     ),
     *(".dockerignore", ".gitattributes", ".gitignore"),
 }
-NEVER_IN_NAVCORE = {"app", "plotly", "viser"}
+PACKAGES = {"app": "schuler_bench", "navcore": "navcore"}
+"""Folders of the checkout, and the name by which each is imported."""
+NEVER_IN_NAVCORE = {*PACKAGES, "plotly", "viser"} - {"navcore"}
 HEAVY = {"control", "joblib", "matplotlib", "pandas", "plotly", "pyarrow", "rich", "scipy"}
 LONGEST_MODULE = 400
 
@@ -125,12 +127,13 @@ def test_heavy_packages_are_imported_where_they_are_used(repo_root: Path):
 @pytest.mark.parametrize(
     ("names", "unwanted"),
     [
-        ("app.cli", HEAVY | {"viser"}),
+        ("schuler_bench.cli", HEAVY | {"viser"}),
         ("navcore.analysis, navcore.networks.discrete", HEAVY | {"numba"}),
         # numba itself loads the bare scipy package
         (
-            "app.views.frequency.figure, app.views.poles.figure, app.views.step.figure, "
-            "app.views.errors.figure, app.views.scene.track, app.views.metrics.table, app.plots.legend",
+            "schuler_bench.views.frequency.figure, schuler_bench.views.poles.figure, "
+            "schuler_bench.views.step.figure, schuler_bench.views.errors.figure, "
+            "schuler_bench.views.scene.track, schuler_bench.views.metrics.table, schuler_bench.plots.legend",
             HEAVY - {"scipy"} | {"viser", "scipy.linalg", "scipy.signal"},
         ),
     ],
@@ -145,12 +148,12 @@ def test_it_starts_light(names: str, unwanted: set[str]):
 
 def test_imports_are_told_apart():
     tree = ast.parse(
-        "import numpy, app.cli\nfrom scipy.signal import bode\nfrom . import x\n"
+        "import numpy, schuler_bench.cli\nfrom scipy.signal import bode\nfrom . import x\n"
         "if TYPE_CHECKING:\n    import pandas\ndef f():\n    import control\n"
         "try:\n    import rich\nfinally:\n    pass"
     )
-    assert set(imported(tree)) == {"numpy", "app", "scipy", "pandas", "control", "rich"}
-    assert set(imported_on_loading(tree)) == {"numpy", "app", "scipy", "rich"}
+    assert set(imported(tree)) == {"numpy", "schuler_bench", "scipy", "pandas", "control", "rich"}
+    assert set(imported_on_loading(tree)) == {"numpy", "schuler_bench", "scipy", "rich"}
 
 
 def test_modules_are_short(repo_root: Path):
@@ -279,7 +282,7 @@ def test_imports_and_requirements_are_the_same_packages(repo_root: Path):
     required = {Requirement(text).name for text in project["project"]["dependencies"]}
     runtime = required | {Requirement(text).name for text in extra}
     testing = {Requirement(text).name for text in project["dependency-groups"]["test"]}
-    known = {*sys.stdlib_module_names, "app", "docs", "navcore", "tests", "tools"}
+    known = {*sys.stdlib_module_names, "docs", "navcore", "schuler_bench", "tests", "tools"}
     providers = packages_distributions()
     used: set[str] = set()
     for packages, asked in (
@@ -353,12 +356,13 @@ def wheel(repo_root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_wheel_holds_code_and_assets_and_no_tests(repo_root: Path, wheel: Path):
     names = set(zipfile.ZipFile(wheel).namelist())
-    for path in modules(repo_root, "app", "navcore"):
-        assert str(path.relative_to(repo_root)) in names
+    for path in modules(repo_root, *PACKAGES):
+        folder, *below = path.relative_to(repo_root).parts
+        assert "/".join((PACKAGES[folder], *below)) in names
     for path in (p for p in (repo_root / "assets").rglob("*") if p.is_file()):
         assert f"navcore/_assets/{path.relative_to(repo_root / 'assets').as_posix()}" in names
     tops = {name.split("/")[0] for name in names}
-    assert tops == {"app", "navcore", f"schuler_bench-{navcore.__version__}.dist-info"}
+    assert tops == {*PACKAGES.values(), f"schuler_bench-{navcore.__version__}.dist-info"}
 
 
 def test_assets_are_found_in_an_installed_wheel(wheel: Path, tmp_path: Path):

@@ -9,14 +9,6 @@ from typing import get_args
 
 import pytest
 
-from app.cli import main
-from app.plots.units import NAMED
-from app.session import display
-from app.session.requirements import ROWS, Requirements, verdicts
-from app.session.shown import window_of
-from app.views.compare.table import MEASURED, lines_of
-from app.views.errors.figure import GROUPS, VERIFIED
-from app.views.metrics.table import metrics_rows
 from navcore.analysis import judged
 from navcore.design.figures import Figures
 from navcore.design.measures import Setting, Ship
@@ -31,6 +23,7 @@ from navcore.quantities import (
     COMPONENTS,
     ERRORS,
     KINDS,
+    LIMITED,
     NAMES,
     OBJECTIVES,
     QUANTITIES,
@@ -41,6 +34,14 @@ from navcore.quantities import (
     searched,
 )
 from navcore.scenario.file import load
+from schuler_bench.cli import main
+from schuler_bench.plots.units import NAMED
+from schuler_bench.session import display
+from schuler_bench.session.requirements import verdicts
+from schuler_bench.session.shown import window_of
+from schuler_bench.views.compare.table import MEASURED, lines_of
+from schuler_bench.views.errors.figure import GROUPS, VERIFIED
+from schuler_bench.views.metrics.table import metrics_rows
 
 ROOT = Path(__file__).parents[2]
 TABLE = ROOT / "navcore" / "quantities"
@@ -105,8 +106,8 @@ def test_the_recorded_errors_and_the_words_of_the_table_stand_nowhere_else() -> 
 
 def test_lists_of_the_page_and_of_files_are_selections(run: Run) -> None:
     assert set(display.OBJECTIVES) <= set(OBJECTIVES) and set(display.AXES) <= set(WEIGHED)
-    for rows in (ROWS, MEASURED):
-        assert all(QUANTITIES[row.key] is row for row in rows.values())
+    assert all(QUANTITIES[row.key] is row for row in MEASURED.values())
+    assert {*LIMITED} <= {*QUANTITIES}
     assert [
         key for group in (*GROUPS.values(), VERIFIED) for key in group if key not in {e.key for e in ERRORS}
     ] == []
@@ -156,7 +157,7 @@ def test_help_and_interface_name_every_row(capsys: pytest.CaptureFixture[str]) -
 def test_a_key_has_the_same_number_wherever_it_is_shown(run: Run) -> None:
     """In the page, in files and in a search; of an adaptive method too, whose loop is that of its run."""
     document, rows = metrics(run), {row.label: row for row in metrics_rows(run)}
-    judged_all = verdicts(run, Requirements())
+    judged_all = verdicts(run, ())
     ship = Ship(run.scenario, along_run=False)
     for place, method in enumerate(run.methods):
         numbers = {key: measure(method, key) for key in (*OF_LOOP, *OF_RUN)}
@@ -168,9 +169,9 @@ def test_a_key_has_the_same_number_wherever_it_is_shown(run: Run) -> None:
             if name in numbers:
                 assert value == (numbers[name] if math.isfinite(numbers[name]) else None), name
         for verdict in judged_all:
-            row = ROWS[verdict.name]
+            row = verdict.quantity
             assert verdict.measured[place] * row.size == pytest.approx(numbers[row.key], rel=1e-14)
-        (line,) = lines_of(window_of(run, display.Display()), place, (), Requirements())
+        (line,) = lines_of(window_of(run, display.Display()), run, place, ())
         assert line.numbers == {name: numbers[row.key] / row.size for name, row in MEASURED.items()}
         minutes = rows["settling"].cells[place][0].removesuffix(" min").replace("never", "inf")
         assert float(minutes) == pytest.approx(numbers["settling_s"] / 60.0, rel=5e-3)

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from app.session.log_fit import can_fit, fit_of, told, with_fitted_log
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG
 from navcore.motion.track import TrackMotion
@@ -16,6 +15,7 @@ from navcore.sensors.log import reference_errors
 from navcore.sensors.recorded import recorded_window
 from navcore.sensors.reference import Reference
 from navcore.sensors.true_state import horizontal_state, to_ship
+from schuler_bench.session.log_fit import can_fit, fit_of, told, with_fitted_log
 
 AT_REST = Truth(0.5, np.zeros((1, COLUMNS)))
 

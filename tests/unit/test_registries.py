@@ -7,8 +7,6 @@ from typing import Any, get_args, get_origin
 import numpy as np
 import pytest
 
-from app.editing import form
-from app.views.explain.view import explanation
 from navcore.analysis import analyse
 from navcore.analysis.placement import place
 from navcore.engine.simulation import simulate
@@ -39,6 +37,8 @@ from navcore.scenario.file import parse_toml, to_toml
 from navcore.scenario.guide import guide
 from navcore.scenario.model import Scenario
 from navcore.scenario.schema_file import schema_text
+from schuler_bench.editing import form
+from schuler_bench.views.explain.view import explanation
 from tests.motions import MANOEUVRES, SEA, circle_track
 from tests.strapdown import DENG_SWING, DRIVE, SITE
 

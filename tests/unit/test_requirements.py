@@ -11,40 +11,40 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from app.session.display import Display
-from app.session.requirements import (
-    ROWS,
-    Requirements,
-    error_limits,
-    label_of,
-    read_limit,
-    verdicts,
-)
-from app.session.shown import window_of
-from app.views.requirements.table import requirements_html
-from app.views.requirements.view import RequirementsView
-from app.views.tune.setting import requirements_as_text
 from navcore.design.measures import read_requirement
 from navcore.engine.run import Run
+from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
-from navcore.quantities import NAMES
+from navcore.quantities import LIMITED, NAMES
+from navcore.scenario.file import to_toml
+from navcore.scenario.model import Scenario
+from schuler_bench.editing.limits import BOXES, FROM, from_text, label_of, limit_text, with_begin, with_limit
+from schuler_bench.session.display import Display
+from schuler_bench.session.requirements import error_limits, limits_of, verdicts
+from schuler_bench.session.shown import window_of
+from schuler_bench.views.requirements.table import requirements_html
+from schuler_bench.views.requirements.view import RequirementsView
+from schuler_bench.views.tune.setting import requirements_as_text
+from tests.limits import limits, under
 from tests.unit.figures_runs import INTERNAL, THREE, UNSTABLE, diverging, run_of, static_run
 
 
-def measured(name: str, run: Run | None = None) -> tuple[float, ...]:
-    return next(v.measured for v in verdicts(run or static_run(), Requirements()) if v.name == name)
+def measured(key: str, run: Run | None = None) -> tuple[float, ...]:
+    return next(v.measured for v in verdicts(run or static_run(), ()) if v.quantity.key == key)
 
 
-def test_every_limit_is_measured_and_labelled_once() -> None:
-    assert list(ROWS) == list(Requirements.model_fields)
-    assert len({label_of(name) for name in ROWS}) == len({row.key for row in ROWS.values()}) == len(ROWS)
+def test_every_quantity_of_a_block_has_one_box_and_is_measured() -> None:
+    """The page had nine limits of its own, the file ten others."""
+    assert {*BOXES} == {*LIMITED} and len(BOXES) == len(LIMITED)
+    assert len({label_of(key) for key in BOXES}) == len(BOXES)
+    assert [v.quantity.key for v in verdicts(static_run(), ())] == [*BOXES]
 
 
 def test_settling_and_damping_are_the_loops_and_a_free_method_has_none() -> None:
     settling = static_run().methods[1].loop.settling_s
     assert settling is not None
-    assert measured("settling_min")[:2] == (math.inf, pytest.approx(settling / 60.0))
+    assert measured("settling_s")[:2] == (math.inf, pytest.approx(settling / 60.0))
     assert measured("damping_ratio") == (0.0, pytest.approx(0.699, abs=2e-3), pytest.approx(0.7))
     assert measured("h0_deviation")[0] == 0.0
     free = run_of(method=[{"name": "free", "network": {"id": "classic2"}}])
@@ -61,11 +61,11 @@ def test_overshoot_of_the_compass_is_that_of_its_three_poles() -> None:
     phi = np.real(np.array(residues) @ np.exp(np.outer(poles, t)))
     assert phi[0] == pytest.approx(1.0)
     expected = (pytest.approx(100.0, rel=1e-3), pytest.approx(-100.0 * phi.min(), rel=2e-3))
-    assert measured("overshoot_percent")[::2] == expected
+    assert measured("tilt_overshoot")[::2] == expected
 
 
 def test_log_tilt_of_an_internal_and_a_free_method_is_zero() -> None:
-    free, damped, _, inner = measured("log_tilt_arcsec", run_of(method=[*THREE, INTERNAL]))
+    free, damped, _, inner = measured("log_tilt", run_of(method=[*THREE, INTERNAL]))
     assert free == inner == 0.0 and damped > 10.0
 
 
@@ -74,10 +74,10 @@ def test_slope_at_0_is_that_of_the_network_and_its_limit_may_be_negative() -> No
     networks = [{"id": "classic2"}, {"id": "complementary", "zeta": 0.5, "eta": 0.5}]
     damped = [{"name": n["id"], "damping": "external", "network": n} for n in networks]
     run = run_of(method=[{"name": "free"}, *damped])
-    (slope,) = (v for v in verdicts(run, Requirements(h_slope_s=0.0)) if v.name == "h_slope_s")
+    (slope,) = (v for v in verdicts(run, limits(h_slope_s=0.0)) if v.quantity.key == "h_slope_s")
     assert slope.measured == (0.0, pytest.approx(962.1, rel=0.03), pytest.approx(-806.5, rel=0.03))
     assert slope.passed == (True, False, True)
-    assert requirements_as_text(Requirements(h_slope_s=-500.0)) == ("h_slope_s<=-500",)
+    assert requirements_as_text(limits(h_slope_s=-500.0)) == ("h_slope_s<=-500",)
     assert read_requirement("h_slope_s<=-500").limit == -500.0
 
 
@@ -90,44 +90,63 @@ def test_run_measures_are_the_runs_errors() -> None:
 
 def test_unstable_and_diverged_methods_meet_nothing_of_it() -> None:
     run = diverging(run_of(method=[UNSTABLE]), 0, 50)
-    numbers = {v.name: v.measured[0] for v in verdicts(run, Requirements())}
-    unmet = {"settling_min", "overshoot_percent", "log_tilt_arcsec", "tilt_max_arcsec", "position_rms_m"}
+    numbers = {v.quantity.key: v.measured[0] for v in verdicts(run, ())}
+    unmet = {"settling_s", "tilt_overshoot", "log_tilt", "tilt_max_arcsec", "position_rms_m"}
     assert unmet <= {name for name, number in numbers.items() if number == math.inf}
     assert numbers["damping_ratio"] < 0.0
 
 
 def test_a_limit_is_met_up_to_its_value() -> None:
-    run, at = static_run(), measured("settling_min")[1]
+    run, at = static_run(), measured("settling_s")[1]
     for limit, met in ((at, True), (at * 0.999, False)):
-        assert verdicts(run, Requirements(settling_min=limit))[0].passed[:2] == (False, met)
-    assert verdicts(run, Requirements(damping_ratio=0.6))[2].passed == (False, True, True)
-    assert all(v.passed == (True, True, True) for v in verdicts(run, Requirements()))
+        assert verdicts(run, limits(settling_s=limit))[0].passed[:2] == (False, met)
+    assert verdicts(run, limits(damping_ratio=0.6))[0].passed == (False, True, True)
+    assert all(v.passed == (True, True, True) for v in verdicts(run, ()))
 
 
-@pytest.mark.parametrize("text", ["3x", "nan", "inf", "-1", "1e9", "1 2", "--"])
+@pytest.mark.parametrize("text", ["3x", "nan", "inf", "-1", "1e12", "1 2", "--"])
 def test_bad_input_is_refused_with_what_is_allowed(text: str) -> None:
     with pytest.raises(InputError) as refused:
-        read_limit("settling_min", text)
-    assert "settling ≤ (min)" in str(refused.value) and "<= 100000 (min)" in str(refused.value)
+        with_limit(static_run().scenario, "settling_s", text)
+    assert "settling ≤ (min)" in str(refused.value) and repr(text) in str(refused.value)
 
 
 @pytest.mark.parametrize(
-    ("name", "text", "limit"),
+    ("key", "text", "limit"),
     [
-        ("settling_min", "  ", None),
-        ("settling_min", " 30,5 ", 30.5),
+        ("settling_s", "  ", None),
+        ("settling_s", " 30,5 ", 1830.0),
         ("damping_ratio", "0.5", 0.5),
         ("h_slope_s", "-500", -500.0),
     ],
 )
-def test_what_may_be_typed(name: str, text: str, limit: float | None) -> None:
-    assert read_limit(name, text) == limit
+def test_what_may_be_typed(key: str, text: str, limit: float | None) -> None:
+    changed = with_limit(static_run().scenario, key, text)
+    assert [one.limit for one in changed.requirement] == ([] if limit is None else [limit])
+    assert Scenario.parse(changed.canonical()) == changed
+
+
+def test_a_box_edits_the_block_of_the_scenario_and_one_time_counts_for_all_errors() -> None:
+    first = with_limit(static_run().scenario, "tilt_max_arcsec", "20")
+    second = with_begin(with_limit(first, "settling_s", "90"), "1.5")
+    assert [one.from_h for one in second.requirement] == [1.5, 0.0]
+    third = with_limit(with_limit(second, "velocity_max_mps", "0.3"), "tilt_max_arcsec", "25")
+    assert [(one.quantity, one.limit, one.from_h) for one in third.requirement] == [
+        ("tilt_max_arcsec", 25.0, 1.5),
+        ("settling_s", 5400.0, 0.0),
+        ("velocity_max_mps", 0.3, 1.5),
+    ]
+    assert (limit_text(third, "settling_s"), from_text(third)) == ("90", "1.5")
+    assert "[[requirement]]" in to_toml(third)
+    with pytest.raises(InputError, match="the end of the run"):
+        with_begin(third, "1e3")
+    assert from_text(with_begin(third, " ")) == "0" and FROM
 
 
 def test_what_is_drawn_is_in_si() -> None:
-    asked = Requirements(settling_min=60.0, overshoot_percent=40.0, log_tilt_arcsec=20.0,
-                         tilt_max_arcsec=30.0, position_rms_m=500.0, damping_ratio=0.4)  # fmt: skip
-    assert asked.limits == pytest.approx(
+    asked = limits(settling_s=60.0, tilt_overshoot=40.0, log_tilt=20.0,
+                   tilt_max_arcsec=30.0, position_rms_m=500.0, damping_ratio=0.4)  # fmt: skip
+    assert limits_of(asked) == pytest.approx(
         {"settling_s": 3600.0, "tilt_overshoot": 0.4, "log_tilt": 20.0 * ARCSEC, "damping_ratio": 0.4}
         | {"tilt_max_arcsec": 30.0 * ARCSEC, "position_rms_m": 500.0}
     )
@@ -135,27 +154,27 @@ def test_what_is_drawn_is_in_si() -> None:
     drawn = {"phi_e": 30 * ARCSEC, "phi_n": 30 * ARCSEC, "position": 500.0}
     assert error_limits(asked, run) == pytest.approx(drawn)
     # one far above the curves would press them flat
-    for nothing in (Requirements(), Requirements(position_rms_m=1e8)):
+    for nothing in ((), limits(position_rms_m=1e8)):
         assert error_limits(nothing, run) == {}
 
 
 def test_table_says_in_words_who_meets_what() -> None:
     run = run_of(method=[{"name": "<b>free"}, THREE[1]])
-    html = requirements_html(run, Requirements(damping_ratio=0.5, settling_min=10.0))
+    html = requirements_html(under(run, damping_ratio=0.5, settling_s=10.0))
     words = ("✓ met", "✗ missed", "✗ misses 1 of 2", "&lt;b&gt;free")
     assert [word in html for word in (*words, "<b>free")] == [True] * 4 + [False]
-    assert "nothing asked" in requirements_html(run, Requirements())
-    assert "✓ meets it" in requirements_html(run, Requirements(overshoot_percent=150.0))
+    assert "nothing asked" in requirements_html(run)
+    assert "✓ meets it" in requirements_html(under(run, tilt_overshoot=150.0))
 
 
 # ------------------------------------------------------------ kept with the display
 
 
 def test_choices_are_kept_and_changed_in_a_copy() -> None:
-    first, wanted = Display(), Requirements(settling_min=60.0, position_rms_m=1852.0)
-    display = first.with_(requirements=wanted, angle="deg")
+    first = Display()
+    display = first.with_(angle="deg")
     assert Display.model_validate_json(display.model_dump_json()) == display
-    assert (display.requirements, display.angle, first) == (wanted, "deg", Display())
+    assert (display.angle, first) == ("deg", Display())
 
 
 @pytest.mark.parametrize(
@@ -167,9 +186,6 @@ def test_choices_are_kept_and_changed_in_a_copy() -> None:
         {"theme": "blue"},
         {"no_such": 1},
         {"window_from_h": -1.0},
-        {"requirements": {"settling_min": -3.0}},
-        {"requirements": {"damping_ratio": 1.5}},
-        {"requirements": {"settling": 3.0}},
     ],
 )
 def test_what_is_not_offered_is_refused(wrong: dict[str, object]) -> None:
@@ -198,23 +214,27 @@ def test_a_limit_that_is_being_typed_is_not_overwritten() -> None:
         assert hint
         return boxes.setdefault(label, Box(value))
 
-    session: Any = SimpleNamespace(lock=threading.RLock(), display=Display())
+    begun = static_run().scenario
+    session: Any = SimpleNamespace(lock=threading.RLock(), scenario=begun, run=None)
+    session.searches = SimpleNamespace(judge=SimpleNamespace(known={}, words=()))
 
-    def show(**choices: Any) -> None:
-        session.display = session.display.with_(**choices)
-        view.follow_display()
+    def change(scenario: Scenario, by: object, name: str = "") -> None:
+        session.scenario = scenario
+        view.follow_scenario()
 
+    session.change = change
     gui = SimpleNamespace(add_text=add_text, add_html=lambda text: SimpleNamespace(content=text))
-    frame: Any = SimpleNamespace(gui=gui, session=session, show=show)
+    frame: Any = SimpleNamespace(gui=gui, session=session)
     view = RequirementsView(frame)
     view.build(nullcontext())
-    settling, overshoot = (boxes[label_of(name)] for name in ("settling_min", "overshoot_percent"))
+    settling, overshoot = (boxes[label_of(key)] for key in ("settling_s", "tilt_overshoot"))
     settling.value = "90"  # typed, and not called back yet
-    show(requirements=Requirements(settling_min=30.0, overshoot_percent=20.0))  # by another page
+    both = with_limit(with_limit(begun, "settling_s", "30"), "tilt_overshoot", "20")
+    change(both, None)  # by another page
     assert (settling.value, overshoot.value) == ("90", "20")
     settling.call(SimpleNamespace(client=object()))
-    assert session.display.requirements == Requirements(settling_min=90.0, overshoot_percent=20.0)
-    show(requirements=Requirements())
+    assert session.scenario == with_limit(both, "settling_s", "90")
+    change(begun, None)
     assert (settling.value, overshoot.value) == ("", "")
 
 
@@ -275,12 +295,21 @@ def test_a_method_that_ended_before_the_window_has_no_numbers() -> None:
     assert list(map(math.isnan, numbers)) == [True, False, False]
 
 
-@pytest.mark.parametrize("display", [Display(), Display(window="settled")], ids=["whole", "settled"])
-def test_velocity_requirement_is_per_axis_over_the_window(display: Display) -> None:
-    run = window_of(static_run(), display).run
-    both = [(m.errors["dve_mps"]["rms"], m.errors["dvn_mps"]["rms"]) for m in run.methods]
-    wanted = [math.hypot(*pair) / math.sqrt(2.0) for pair in both]
-    asked = verdicts(run, Requirements(velocity_rms_mps=wanted[1] * (1.0 + 1e-12)))
-    (velocity,) = (v for v in asked if v.name == "velocity_rms_mps")
-    assert velocity.measured == pytest.approx(wanted)
-    assert velocity.passed[:2] == (wanted[0] <= wanted[1], True)
+def test_velocity_requirement_is_per_axis_from_its_own_time_on() -> None:
+    scenario = with_begin(with_limit(static_run().scenario, "velocity_rms_mps", "1"), "2")
+    run = simulate(scenario)
+    rows = [method.rows[method.t_s >= 7200.0] for method in run.methods]
+    wanted = [float(np.sqrt(np.mean(part[:, 3] ** 2 + part[:, 4] ** 2) / 2.0)) for part in rows]
+    (velocity,) = (v for v in verdicts(run, scenario.requirement) if v.quantity.key == "velocity_rms_mps")
+    assert velocity.measured == pytest.approx(wanted, rel=0.02)
+    # a run that was not watched from then on, such as a pin, has no value
+    (velocity,) = (v for v in verdicts(static_run(), scenario.requirement) if v.requirement is not None)
+    assert velocity.measured == (math.inf,) * 3 and velocity.passed == (False,) * 3
+
+
+def test_a_change_of_a_limit_runs_no_method_again() -> None:
+    run = static_run()
+    again = simulate(with_limit(run.scenario, "settling_s", "90"), before=run)
+    assert all(new is old for new, old in zip(again.methods, run.methods, strict=True))
+    later = simulate(with_begin(with_limit(run.scenario, "tilt_max_arcsec", "9"), "1"), before=run)
+    assert not any(new is old for new, old in zip(later.methods, run.methods, strict=True))

@@ -6,14 +6,14 @@ from typing import Any
 
 import pytest
 
-from app.cli import main
-from app.editing.edits import paste
-from app.session.uploads import Uploads, opened_scenario
 from navcore import InputError, Scenario, load, parse_network, simulate
 from navcore.law.policy.adaptive import Adaptive
 from navcore.motion.swing import SwingMotion
 from navcore.scenario.file import parse_toml
 from navcore.scenario.schema_file import schema_text
+from schuler_bench.cli import main
+from schuler_bench.editing.edits import paste
+from schuler_bench.session.uploads import Uploads, opened_scenario
 
 HEAD = "schema = 1\n[run]\nduration_h = 0.02\n"
 

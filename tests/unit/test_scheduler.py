@@ -5,13 +5,13 @@ import time
 
 import pytest
 
-from app.jobs import scheduler as module
-from app.jobs.load import refuse_too_large, run_load, spare_load
-from app.jobs.scheduler import Lane, Load, Scheduler, Ticket, cores_of_machine, memory_of_machine
-from app.jobs.worker import Watch, Worker
 from navcore.foundation.errors import InputError
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs import scheduler as module
+from schuler_bench.jobs.load import refuse_too_large, run_load, spare_load
+from schuler_bench.jobs.scheduler import Lane, Load, Scheduler, Ticket, cores_of_machine, memory_of_machine
+from schuler_bench.jobs.worker import Watch, Worker
 from tests.waiting import until
 
 

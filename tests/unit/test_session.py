@@ -8,15 +8,15 @@ from typing import Any
 
 import pytest
 
-from app.editing import edits
-from app.session import sessions
-from app.session.history import first_editable
-from app.session.session import Session, runs_on_demand
-from app.session.sessions import Sessions, first_scenario
 from navcore.engine import simulation
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import edits
+from schuler_bench.session import sessions
+from schuler_bench.session.history import first_editable
+from schuler_bench.session.session import Session, runs_on_demand
+from schuler_bench.session.sessions import Sessions, first_scenario
 
 PRESET = load("zha-fast")
 
@@ -117,7 +117,7 @@ def test_a_long_run_is_stopped_by_the_user(session: Session, page: Watcher) -> N
 def test_a_long_run_gives_way_to_a_new_change(
     session: Session, page: Watcher, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.jobs.worker.SUPERSEDE_AFTER_S", 0.0)
+    monkeypatch.setattr("schuler_bench.jobs.worker.SUPERSEDE_AFTER_S", 0.0)
     session.change(edits.with_value(PRESET, ("run", "duration_h"), 15.0), page)
     change(session, page, "duration_h", 2.0)
     assert page.names[-1] == "run_ended" and "run_stopped" not in page.names

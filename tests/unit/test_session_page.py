@@ -7,17 +7,17 @@ from html import unescape
 
 import pytest
 
-from app.languages.wording import wording
-from app.plots.units import rounded
-from app.session.display import Display
-from app.session.pins import Pins
-from app.session.requirements import Requirements
-from app.session.shown import Shown
-from app.views.appearance.document import Session, command, document
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.scenario.file import load, scenario_hash
 from navcore.scenario.model import Scenario
+from schuler_bench.languages.wording import wording
+from schuler_bench.plots.units import rounded
+from schuler_bench.session.display import Display
+from schuler_bench.session.pins import Pins
+from schuler_bench.session.shown import Shown
+from schuler_bench.views.appearance.document import Session, command, document
+from tests.limits import under
 from tests.unit.figures_runs import THREE, UNSTABLE, run_of, static_run
 
 HOSTILE = "<img src=x onerror=alert(1)>"
@@ -43,9 +43,8 @@ STYLE = re.compile(r"<style>(.*?)</style>", re.DOTALL)
 
 
 def test_the_page_holds_numbers_verdicts_pins_warnings_plots_and_scenario() -> None:
-    run = run_of(method=[*THREE, UNSTABLE])
-    limits = Requirements(settling_min=200.0, tilt_max_arcsec=1e4)
-    html = document(session_of(run, "before the change", requirements=limits), PICTURES)
+    run = under(run_of(method=[*THREE, UNSTABLE]), settling_s=200.0, tilt_max_arcsec=1e4)
+    html = document(session_of(run, "before the change"), PICTURES)
     text = sections(html)
     names = [method.name for method in run.scenario.method]
     expected = {
@@ -101,7 +100,7 @@ def test_the_page_loads_and_runs_nothing_and_is_for_a4() -> None:
 @pytest.mark.parametrize("count", [1, 3, 4, 10])
 def test_no_table_is_wider_than_paper(count: int) -> None:
     run = run_of(run={"duration_h": 1.0}, method=[{"name": f"method {i}"} for i in range(count)])
-    html = document(session_of(run, requirements={"settling_min": 9}), [])
+    html = document(session_of(under(run, settling_s=9.0)), [])
     heads = re.findall(r"<thead>(.*?)</thead>", html, re.DOTALL)
     widths = [head.count("method ") for head in heads if "rms" in head or "limit" in head]
     assert 0 < min(widths) <= max(widths) <= 3 and sum(widths) == 2 * count

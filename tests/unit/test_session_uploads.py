@@ -5,9 +5,12 @@ from typing import Any
 
 import pytest
 
-from app.session import uploads
-from app.session.content import Contents
-from app.session.uploads import (
+from navcore.foundation.errors import InputError
+from navcore.scenario.file import load, to_toml
+from navcore.scenario.model import Scenario
+from schuler_bench.session import uploads
+from schuler_bench.session.content import Contents
+from schuler_bench.session.uploads import (
     Uploads,
     opened_scenario,
     plain_names,
@@ -15,9 +18,6 @@ from app.session.uploads import (
     shared_files,
     with_plain_names,
 )
-from navcore.foundation.errors import InputError
-from navcore.scenario.file import load, to_toml
-from navcore.scenario.model import Scenario
 
 
 def without_last_column(text: str) -> str:

@@ -9,14 +9,14 @@ from typing import Any
 
 import pytest
 
-from app.editing import edits
-from app.http.ids import SessionIds, is_shared
-from app.session.database import Database
-from app.session.session import Session
-from app.session.sessions import Sessions
-from app.session.store import open_store
-from app.session.uploads import recorded_scenario
 from navcore.scenario.file import load
+from schuler_bench.editing import edits
+from schuler_bench.http.ids import SessionIds, is_shared
+from schuler_bench.session.database import Database
+from schuler_bench.session.session import Session
+from schuler_bench.session.sessions import Sessions
+from schuler_bench.session.store import open_store
+from schuler_bench.session.uploads import recorded_scenario
 
 ID, PRESET = "visitor-of-the-tests-000", load("zha-fast")
 XI = ("method", 2, "network", "xi")
@@ -101,7 +101,7 @@ def test_a_session_only_looked_at_is_not_kept(started: Callable[[], Sessions]) -
 def test_a_session_that_had_to_make_room_comes_back(
     started: Callable[[], Sessions], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.session.sessions.MOST_SESSIONS", 1)
+    monkeypatch.setattr("schuler_bench.session.sessions.MOST_SESSIONS", 1)
     sessions = started()
     state = worked_on(sessions).state
     assert sessions._store.flush()

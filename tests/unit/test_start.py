@@ -4,16 +4,16 @@ import re
 
 import pytest
 
-from app.editing import edits
-from app.views.start.cards import card_path, mark, network_cards
 from navcore.networks import NETWORKS
 from navcore.scenario.file import load, presets
+from schuler_bench.editing import edits
+from schuler_bench.views.start.cards import card_path, mark, network_cards
 
 
 @pytest.mark.parametrize("name", presets())
 def test_each_preset_has_a_picture_of_its_own_run(name: str) -> None:
     svg = card_path(name).read_text(encoding="utf-8")
-    assert f'data-of="{mark(name)}"' in svg, "run python -m app.views.start.cards"
+    assert f'data-of="{mark(name)}"' in svg, "run python -m schuler_bench.views.start.cards"
     assert svg.count("<polyline") == len(load(name).method)
     assert "<script" not in svg and len(svg) < 20_000
 

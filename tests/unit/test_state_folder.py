@@ -11,14 +11,14 @@ from pathlib import Path
 
 import pytest
 
-from app.bench.process import environment
-from app.session import content, folder
-from app.session import store as store_module
-from app.session.content import Contents
-from app.session.folder import refuse_others
-from app.session.store import Store, open_store, session_key
-from app.session.uploads import Uploads
 from navcore.foundation.errors import InputError
+from schuler_bench.bench.process import environment
+from schuler_bench.session import content, folder
+from schuler_bench.session import store as store_module
+from schuler_bench.session.content import Contents
+from schuler_bench.session.folder import refuse_others
+from schuler_bench.session.store import Store, open_store, session_key
+from schuler_bench.session.uploads import Uploads
 from tests.waiting import until
 
 ID = "a" * 24
@@ -247,7 +247,7 @@ def test_the_command_refuses_to_start_in_one_line(
     with closing(socket.create_server(("127.0.0.1", 0))) as free:
         port = str(free.getsockname()[1])
     done = subprocess.run(
-        [sys.executable, "-m", "app", "serve", "--port", port, *more],
+        [sys.executable, "-m", "schuler_bench", "serve", "--port", port, *more],
         env=environment() | {"XDG_STATE_HOME": str(tmp_path)},
         capture_output=True,
         text=True,

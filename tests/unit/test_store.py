@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from app.session import content
-from app.session import store as store_module
-from app.session.store import Store, default_folder, open_store, session_key
+from schuler_bench.session import content
+from schuler_bench.session import store as store_module
+from schuler_bench.session.store import Store, default_folder, open_store, session_key
 
 ID, OTHER = "a" * 24, "b" * 24
 

@@ -5,9 +5,9 @@ from typing import Any
 
 import pytest
 
-from app.languages.wording import Wording
-from app.plots.plotly_data import PlotlyFigure
 from navcore.foundation.text import Text, quoted
+from schuler_bench.languages.wording import Wording
+from schuler_bench.plots.plotly_data import PlotlyFigure
 
 SAY = Wording(
     {

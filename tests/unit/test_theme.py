@@ -6,16 +6,16 @@ from pathlib import Path
 
 import pytest
 
-import app
-from app.plots import style
-from app.plots.style import METHOD_COLORS
-from app.session.pins import COLORS
-from app.shell import notices
+import schuler_bench
+from schuler_bench.plots import style
+from schuler_bench.plots.style import METHOD_COLORS
+from schuler_bench.session.pins import COLORS
+from schuler_bench.shell import notices
 from tests import dark_page as theme
 
 WHITE = "#FFFFFF"
 BOTH = pytest.mark.parametrize("shown", ["light", "dark"])
-LESSONS = Path(app.__file__).parent / "views" / "learn" / "learn.css"
+LESSONS = Path(schuler_bench.__file__).parent / "views" / "learn" / "learn.css"
 
 
 def rules() -> list[tuple[str, str, str]]:

@@ -225,7 +225,7 @@ def test_optimal_network_of_section_20():
         theory.numbers(" ".join(rows[name])) for name in ("$\\varphi$, ″", "$\\delta V$, m/s")
     )
     for rho, tilt, velocity in zip(weights, tilts, velocities, strict=True):
-        network = parse_network({"id": "optimal", "rho": rho}).transfer(OMEGA_S)
+        network = parse_network({"id": "optimal", "rho": rho, "q": 0.0}).transfer(OMEGA_S)
         total = {
             output: np.sqrt(sum(rms(network, source, output, density) ** 2 for source, density in SOURCES))
             for output in ("phi", "dv")

@@ -168,7 +168,7 @@ def test_the_list_names_changes_of_the_code_as_it_is(entry: dict[str, str]) -> N
 
 _CHILD = """
 import gc
-from app.memory import collect_seldom
+from schuler_bench.memory import collect_seldom
 
 lasting = [[number] for number in range(10_000)]
 collect_seldom()

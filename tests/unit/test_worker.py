@@ -5,12 +5,12 @@ import threading
 
 import pytest
 
-from app.cli import main
-from app.jobs import worker
-from app.jobs.cluster import check_address
-from app.jobs.scheduler import Lane, Load, Scheduler
-from app.jobs.worker import ElsewhereLost, Watch, Worker
 from navcore.foundation.errors import InputError
+from schuler_bench.cli import main
+from schuler_bench.jobs import worker
+from schuler_bench.jobs.cluster import check_address
+from schuler_bench.jobs.scheduler import Lane, Load, Scheduler
+from schuler_bench.jobs.worker import ElsewhereLost, Watch, Worker
 from tests.waiting import until
 
 

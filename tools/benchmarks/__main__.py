@@ -8,10 +8,10 @@ import os
 import statistics
 import sys
 
-from app.bench.rounds import Timed, median_ratio, timed_rounds
-from app.bench.strapdown import YARDSTICK, StaticRecord, measure_strapdown
 from navcore.networks.compass import CompassNetwork
 from navcore.networks.undamped import UndampedNetwork
+from schuler_bench.bench.rounds import Timed, median_ratio, timed_rounds
+from schuler_bench.bench.strapdown import YARDSTICK, StaticRecord, measure_strapdown
 from tools.benchmarks.python_ins import PythonIns
 
 HOUR_S = 3600

@@ -1,4 +1,4 @@
-"""python-ins (imported as ``pyins``; M. Mayorov, MIT) on the work of `app.bench.strapdown.StaticRecord`.
+"""python-ins (``pyins``; M. Mayorov, MIT) on the work of `schuler_bench.bench.strapdown.StaticRecord`.
 
 One hour at 200 Hz at rest, height held, increments in. Its bare kernel takes rotation vectors and velocity
 increments that are compensated already; its public call makes the table of the trajectory from them. Ours
@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.rounds import Timed, seconds_of
-from app.bench.strapdown import RATE_HZ, SITE, StaticRecord
 from navcore.foundation.units import DEG
 from navcore.motion.truth import LAT, LON
+from schuler_bench.bench.rounds import Timed, seconds_of
+from schuler_bench.bench.strapdown import RATE_HZ, SITE, StaticRecord
 
 STILL_MPS = 1e-5
 """Velocity that neither may exceed at the end: the work was done, and done right."""

@@ -73,7 +73,7 @@ class _Room:
     def __init__(self, room: str, tree: Path, kept: Kept, compiles: bool) -> None:
         self.room, self.tree, self.kept, self.compiles = room, tree, kept, compiles
         ignored = shutil.ignore_patterns(".git", ".venv", "__pycache__", "*.webp", "build")
-        shutil.copytree(ROOT, tree, ignore=ignored)
+        shutil.copytree(ROOT, tree, symlinks=True, ignore=ignored)
         first, others = ([f for word in words for f in _test_files(tree, word)] for words in ROOMS[room])
         self.tiers = (first, [file for file in dict.fromkeys(others) if file not in first])
         self.interpreted = [f for word in INTERPRETED[room] for f in _test_files(tree, word)]

@@ -16,8 +16,8 @@ from typing import Any
 
 from playwright.sync_api import Browser, Page
 
-from app.bench.dashboard import median_and_p95
-from app.bench.process import free_port
+from schuler_bench.bench.dashboard import median_and_p95
+from schuler_bench.bench.process import free_port
 from tests.browser.fields import slider_labels
 from tools.chromium import launched
 from tools.paint.measuring import WINDOW, browser_cpu_ms, served, server_cpu_ms, step_times_ms, thumb

@@ -17,16 +17,16 @@ import viser
 from playwright.sync_api import Browser
 from plotly.subplots import make_subplots
 
-from app.bench.dashboard import median_and_p95
-from app.bench.process import free_port
-from app.editing import edits
-from app.plots.effective import loop_of, network_curve, transfer_curve
-from app.serve import open_dashboard
 from navcore.engine.run import MethodRun, Run
 from navcore.engine.simulation import simulate
 from navcore.mechanization.recorder import NAMES
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
+from schuler_bench.bench.dashboard import median_and_p95
+from schuler_bench.bench.process import free_port
+from schuler_bench.editing import edits
+from schuler_bench.plots.effective import loop_of, network_curve, transfer_curve
+from schuler_bench.serve import open_dashboard
 from tests.browser.driver import Bench
 from tests.browser.fields import label_of
 from tests.browser.patience import THROTTLE_MS

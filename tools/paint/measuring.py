@@ -41,6 +41,7 @@ _NUMBER = """() => {
 def served(tree: Path, state: Path, port: int) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
     """Serve a tree in a process of its own, which keeps its sessions in a folder; gives its address."""
     environment = os.environ | {"XDG_STATE_HOME": str(state), "XDG_DATA_HOME": str(state)}
+    # By the name that an earlier checkout has too.
     command, quiet = [sys.executable, "-m", "app", "serve", "--port", str(port)], subprocess.DEVNULL
     process = subprocess.Popen(command, cwd=tree, env=environment, stdout=quiet, stderr=quiet)
     try:

@@ -1,4 +1,4 @@
-"""Section of the printed errors that change a result, printed and corrected (`app.misprints`)."""
+"""Section of the printed errors that change a result, printed and corrected (`schuler_bench.misprints`)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.misprints import MISPRINTS, Comparison, Misprint
+from schuler_bench.misprints import MISPRINTS, Comparison, Misprint
 from tools.papers.claim import Exhibit, Paper, Table, number
 from tools.papers.picture import panel
 from tools.papers.runs import Runs

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from app.plots.style import GRID, INK, MUTED, REFERENCE, method_color
 from navcore.foundation.notation import in_symbols
+from schuler_bench.plots.style import GRID, INK, MUTED, REFERENCE, method_color
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -17,14 +17,14 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from app.bench.visitor import PAGE_COMMAND, PAGE_PAINTED, PAGE_STATE, Visitor
-from app.views.appearance.view import BANDS
-from app.views.tune.finder import FIND
-from app.views.tune.view import SEARCH_FOR
 from navcore.engine.measures import metrics as measured
 from navcore.engine.simulation import simulate
 from navcore.scenario.file import load, parse_toml
 from navcore.scenario.model import Scenario
+from schuler_bench.bench.visitor import PAGE_COMMAND, PAGE_PAINTED, PAGE_STATE, Visitor
+from schuler_bench.views.appearance.view import BANDS
+from schuler_bench.views.tune.finder import FIND
+from schuler_bench.views.tune.view import SEARCH_FOR
 from tests.browser.fields import box_labels, label_of
 
 if TYPE_CHECKING:

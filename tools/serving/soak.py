@@ -24,7 +24,7 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from app.bench.process import Server
+from schuler_bench.bench.process import Server
 from tools.serving.load import (
     Order,
     Seen,

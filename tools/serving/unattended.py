@@ -27,8 +27,8 @@ from http.client import HTTPConnection, HTTPException
 from pathlib import Path
 from urllib.request import urlopen
 
-from app.bench.process import environment, free_port
-from app.bench.visitor import PAGE_COMMAND, PAGE_STATE, Visitor
+from schuler_bench.bench.process import environment, free_port
+from schuler_bench.bench.visitor import PAGE_COMMAND, PAGE_STATE, Visitor
 from tools.serving.load import WINDOW, ZETA
 from tools.serving.soak import HEAD, Row, counted
 from tools.serving.table import machine
@@ -66,7 +66,7 @@ class Kept:
         """Start it and wait until it answers."""
         variables = {"XDG_STATE_HOME": str(self.folder / "state")}
         variables |= {"SCHULER_LOG_FILE": str(self.folder / "log"), "SCHULER_LOG_BYTES": str(LOG_BYTES)}
-        words = [sys.executable, "-m", "app", "serve", "--port", str(self.port)]
+        words = [sys.executable, "-m", "schuler_bench", "serve", "--port", str(self.port)]
         out = subprocess.DEVNULL
         self.process = subprocess.Popen(words, env=environment() | variables, stdin=out, stdout=out)
         self.figures.clear()

@@ -1,1 +1,1 @@
-"""For developers: finds the texts of the page and keeps the catalogues of `app.languages`."""
+"""For developers: finds the texts of the page and keeps the catalogues of `schuler_bench.languages`."""

@@ -15,8 +15,8 @@ from babel.messages.catalog import Catalog, Message
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
 
-from app.languages.wording import DOMAIN, FOLDER
-from app.views import load
+from schuler_bench.languages.wording import DOMAIN, FOLDER
+from schuler_bench.views import load
 from tools.translating.extract import Text, script_texts, texts
 
 _NAMED = re.compile(r"\{[a-z][^{}]*\}")

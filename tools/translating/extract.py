@@ -5,8 +5,8 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
-from app.views import load
 from navcore.foundation.assets import asset_path
+from schuler_bench.views import load
 from tools.translating import python, scripts
 from tools.translating.python import Text, pieces
 
@@ -82,8 +82,8 @@ def script_texts() -> Iterator[Text]:
 
 
 def _assets() -> Iterator[Text]:
-    from app.views.learn.lessons import lessons, to_html
     from navcore.scenario.file import load, presets
+    from schuler_bench.views.learn.lessons import lessons, to_html
 
     for entry, fields in tomllib.loads(asset_path("explain.toml").read_text(encoding="utf-8")).items():
         for name in ("says", "source"):
@@ -107,8 +107,8 @@ def _assets() -> Iterator[Text]:
 
 def _fields() -> Iterator[Text]:
     """Labels of the controls, a field's own or its name, names of a vector's elements, and choices."""
-    from app.editing import form
     from navcore.foundation.parameters import Parameters, extra_of
+    from schuler_bench.editing import form
 
     load()  # so that all models are there
     for kind in _models(Parameters):
@@ -124,6 +124,6 @@ def _fields() -> Iterator[Text]:
 def _models(base: type) -> Iterator[type]:
     """Models of the program; those that a test has made are no texts of a page."""
     for kind in base.__subclasses__():
-        if kind.__module__.startswith(("app.", "navcore.")):
+        if kind.__module__.startswith(("schuler_bench.", "navcore.")):
             yield kind
         yield from _models(kind)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from babel.messages.extract import extract
 
-from app.languages.markup import has_markup, hidden, in_pieces
+from schuler_bench.languages.markup import has_markup, hidden, in_pieces
 
 KEYWORDS = {"Text": None, "plural": (1, 2)}
 """Functions whose first text is one of the page; `Text.plural` has two."""

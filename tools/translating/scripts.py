@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from app.languages.markup import CLOSE, OPEN, in_pieces
+from schuler_bench.languages.markup import CLOSE, OPEN, in_pieces
 from tools.translating.python import Text
 
 _PROSE = re.compile(

@@ -49,7 +49,8 @@
     return text;
   }
 
-  const english = new Map([...exact].map(([key, said]) => [said, key]));
+  // Keys are sorted: of two with one translation, "Errors" and "error", the title comes first, and is meant.
+  const english = new Map([...exact].reverse().map(([key, said]) => [said, key]));
 
   Object.assign(window.schuler, {
     language,

@@ -10,25 +10,25 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
-from app.bridge.texts import figure_said, language_of, text_said
-from app.editing.edits import files_of
-from app.plots import table
-from app.plots.plotly_data import PlotlyFigure
-from app.plots.saved import WIDTH_PX, plotly_csv, time_csv, time_figure
-from app.session.pins import Pin
-from app.session.shown import Shown, shown, titled, window_of
-from app.session.uploads import with_plain_names
-from app.shell import notices
-from app.shell.layout import layout_for
-from app.shell.plotly_view import PlotlyView
-from app.shell.view import Figures, Frame, PictureView
-from app.views.compare.table import lines_of, pins_html
-from app.views.metrics.table import metrics_html, system_html
-from app.views.metrics.view import warnings_html
-from app.views.requirements.table import requirements_html
 from navcore.foundation.text import Text, quoted
 from navcore.foundation.version import __version__
 from navcore.scenario.file import load, presets, to_toml
+from schuler_bench.bridge.texts import figure_said, language_of, text_said
+from schuler_bench.editing.edits import files_of
+from schuler_bench.plots import table
+from schuler_bench.plots.plotly_data import PlotlyFigure
+from schuler_bench.plots.saved import WIDTH_PX, plotly_csv, time_csv, time_figure
+from schuler_bench.session.pins import Pin
+from schuler_bench.session.shown import Shown, shown, titled, window_of
+from schuler_bench.session.uploads import with_plain_names
+from schuler_bench.shell import notices
+from schuler_bench.shell.layout import layout_for
+from schuler_bench.shell.plotly_view import PlotlyView
+from schuler_bench.shell.view import Figures, Frame, PictureView
+from schuler_bench.views.compare.table import lines_of, pins_html
+from schuler_bench.views.metrics.table import metrics_html, system_html
+from schuler_bench.views.metrics.view import warnings_html
+from schuler_bench.views.requirements.table import requirements_html
 
 FORMATS = ("CSV", "SVG", "PNG")
 
@@ -297,13 +297,10 @@ def _metrics(session: Session) -> str:
 
 
 def _requirements(session: Session) -> str:
-    display = session.now.display
-    if not display.requirements.limits:
+    run = session.now.run
+    if not run.scenario.requirement:
         return _section(Text("Requirements"), Text("<p>No requirement is set.</p>"))
-    run = window_of(session.now.run, display).run
-    tables = _tables(
-        len(run.methods), lambda part: requirements_html(run, display.requirements, methods=part)
-    )
+    tables = _tables(len(run.methods), lambda part: requirements_html(run, methods=part))
     return _section(Text("Requirements"), tables)
 
 
@@ -312,7 +309,7 @@ def _pins(session: Session) -> str:
     pins = titled(session.pins, run.scenario)
     if not pins:
         return _section(Text("Pins"), Text("<p>No run is pinned.</p>"))
-    lines = lines_of(window_of(run, display), session.now.selected, pins, display.requirements)
+    lines = lines_of(window_of(run, display), run, session.now.selected, pins)
     by = None if baseline is None else baseline.id
     return _section(
         Text("Pins"),

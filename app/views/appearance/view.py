@@ -1,8 +1,8 @@
 """Tab "View": units, axes and bands of the plots, export of any plot, language, look and size of the page.
 
 In presentation size the panels are enlarged by the style sheet (presentation.css), the plots in them by
-`app.plots.plotly_data`: a browser that enlarged a drawn plot would blur it, and would miss its cursor. Of the
-left tabs the one that leads (`app.shell.view.View.leads`) is shown alone.
+`schuler_bench.plots.plotly_data`: a browser that enlarged a drawn plot would blur it, and would miss its
+cursor. Of the left tabs the one that leads (`schuler_bench.shell.view.View.leads`) is shown alone.
 """
 
 from collections.abc import Callable
@@ -10,15 +10,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
 
-from app.bridge.texts import language_of
-from app.jobs.envelopes import SEEDS
-from app.languages.wording import NAMES
-from app.session.display import Display
-from app.shell import notices
-from app.shell.view import Frame, Tab, View, if_user
-from app.views.appearance.document import FORMATS, Export, Sheet
 from navcore.foundation.notation import unit_sign
 from navcore.foundation.text import Text
+from schuler_bench.bridge.texts import language_of
+from schuler_bench.jobs.envelopes import SEEDS
+from schuler_bench.languages.wording import NAMES
+from schuler_bench.session.display import Display
+from schuler_bench.shell import notices
+from schuler_bench.shell.view import Frame, Tab, View, if_user
+from schuler_bench.views.appearance.document import FORMATS, Export, Sheet
 
 DARK, PRESENTATION, LANGUAGE = Text("dark page"), Text("presentation size"), Text("language")
 """Labels; ``language`` is also the name of the command, its argument a language such as "zh-CN"."""
@@ -62,7 +62,7 @@ class Look:
     Attributes
     ----------
     field : str
-        Of `app.session.display.Display`.
+        Of `schuler_bench.session.display.Display`.
     values : (str, str)
         Off, on.
     label, hint : str

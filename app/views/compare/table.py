@@ -4,17 +4,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.plots import style
-from app.plots.table import cell, row, table
-from app.plots.units import rounded
-from app.session.pins import Pin
-from app.session.requirements import Requirements, verdicts
-from app.session.shown import Window, edited
-from app.views.requirements.table import overall
 from navcore.engine.measures import measure
 from navcore.engine.run import Run
 from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES
+from navcore.scenario.requirement import Requirement
+from schuler_bench.plots import style
+from schuler_bench.plots.table import cell, row, table
+from schuler_bench.plots.units import rounded
+from schuler_bench.session.pins import Pin
+from schuler_bench.session.requirements import verdicts
+from schuler_bench.session.shown import Window, edited
+from schuler_bench.views.requirements.table import overall
 
 MEASURED = {
     "settling": QUANTITIES["settling_s"],
@@ -71,37 +72,39 @@ class Line:
         return math.isnan(value), 0.0 if math.isnan(value) else value, ""
 
 
-def lines_of(
-    window: Window, selected: int, pins: Sequence[Pin], requirements: Requirements
-) -> tuple[Line, ...]:
+def lines_of(window: Window, run: Run, selected: int, pins: Sequence[Pin]) -> tuple[Line, ...]:
     """Measure the present run and the pins, each by its edited method, over the same window.
+
+    The requirements of the present run judge all of them, each from its own time on.
 
     Parameters
     ----------
     window : Window
         Part of the run that counts.
+    run : Run
+        All of it.
     selected : int
         Place of the method that is edited now.
     pins : sequence of Pin
         Pinned runs.
-    requirements : Requirements
-        By which all of them are judged.
     """
     place = min(selected, len(window.run.methods) - 1)
-    lines = [_line(None, style.method_color(place), window.run, place, requirements)]
+    lines = [_line(None, style.method_color(place), window.run, run, place, run.scenario.requirement)]
     for pin in pins:
         place = edited(pin)
         if pin.run is None:
             lines.append(Line(pin, pin.hex, pin.scenario.method[place].name, {}))
         else:
-            lines.append(_line(pin, pin.hex, window.of(pin.run), place, requirements))
+            lines.append(_line(pin, pin.hex, window.of(pin.run), pin.run, place, run.scenario.requirement))
     return tuple(lines)
 
 
-def _line(pin: Pin | None, color: str, run: Run, place: int, requirements: Requirements) -> Line:
-    method = run.methods[place]
+def _line(
+    pin: Pin | None, color: str, part: Run, whole: Run, place: int, requirements: Sequence[Requirement]
+) -> Line:
+    method = part.methods[place]
     numbers = {name: measure(method, one.key) / one.size for name, one in MEASURED.items()}
-    limits = [verdict for verdict in verdicts(run, requirements) if verdict.limit is not None]
+    limits = [verdict for verdict in verdicts(whole, requirements) if verdict.limit is not None]
     if limits:
         numbers["verdict"] = float(sum(not verdict.passed[place] for verdict in limits))
     return Line(pin, color, method.method.name, numbers, len(limits))

@@ -4,16 +4,16 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-from app.plots import style
-from app.session.history import first_editable
-from app.session.pins import COLORS, MOST_PINS, Pin
-from app.session.shown import Shown, titled, window_of
-from app.shell import notices
-from app.shell.view import Frame, PictureView, Tab, if_user
-from app.views.compare.table import COLUMNS, lines_of, pins_html
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.quantities import STATISTICS
+from schuler_bench.plots import style
+from schuler_bench.session.history import first_editable
+from schuler_bench.session.pins import COLORS, MOST_PINS, Pin
+from schuler_bench.session.shown import Shown, titled, window_of
+from schuler_bench.shell import notices
+from schuler_bench.shell.view import Frame, PictureView, Tab, if_user
+from schuler_bench.views.compare.table import COLUMNS, lines_of, pins_html
 
 PIN, FLIP = Text("Pin this run"), Text("Flip to the baseline")
 CHOSEN, NAME, NOTE, COLOR, SHOWN = (
@@ -117,7 +117,7 @@ class CompareView(PictureView[str]):
         if not pins:
             return Text('<div class="sb-no-pins">{small}</div>', small=notices.small(_EMPTY))
         window = window_of(found.run, found.display)
-        lines = lines_of(window, found.selected, pins, found.display.requirements)
+        lines = lines_of(window, found.run, found.selected, pins)
         baseline = session.pins.baseline(found.display.baseline)
         note = notices.note([window.told] if window.told else [], "info" if window.possible else "warning")
         return note + pins_html(lines, found.display.pins_by, None if baseline is None else baseline.id)

@@ -5,12 +5,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from app.plots import style
-from app.plots.plotly_data import PlotlyFigure, figure
-from app.plots.units import number
+from navcore.analysis.whole_system import duration
 from navcore.design.budget import Budget, MethodBudget
 from navcore.foundation.text import Text
 from navcore.quantities import Kind, budgeted
+from schuler_bench.plots import style
+from schuler_bench.plots.plotly_data import PlotlyFigure, figure
+from schuler_bench.plots.units import number
 
 SOURCES = {
     "gyro_white": (Text("gyro white noise"), "#1F5A91"),
@@ -31,6 +32,8 @@ SOURCES = {
 """A source of `navcore.design` in words, and its colour: blue the gyros, red the accelerometers, green the
 log, grey the start. Other sources are shown by their own name."""
 _OTHER = "#C9A227"
+_GROWS = "↗"
+"""Stands at a method whose whole system grows."""
 _LEAST_SHARE = 0.005
 """A source with a smaller part of every bar is left out of the legend and joins the last one."""
 _LETTER_PX, _LONGEST = 7.0, 18
@@ -41,6 +44,8 @@ _LONG_PX, _SHORT_PX = 128, 80
 """Room right of a bar for "12.3 = 45.6 × floor", and for "12.3, 45.6×" where that is too much of a panel."""
 _LEAST_BAR_PX, _LEAST_ROW_PX = 130, 22
 """Widths of the longest bar, and height of a row, below which the panels are arranged otherwise."""
+_WORDS_PX = 230
+"""Width of a panel from which its axis says in full what the parts of a bar are."""
 _GAP_PX, _RIGHT_PX, _TOP_PX = 18, 12, 52
 _NOTE_PX = 26
 """Of the line about the whole figure above the panels, so that it stands clear of their titles."""
@@ -56,7 +61,12 @@ NOTHING = {
 
 
 def budget_figure(
-    budget: Budget, aspect: float = 0.46, *, width_px: float = 940.0, note: str = ""
+    budget: Budget,
+    aspect: float = 0.46,
+    *,
+    width_px: float = 940.0,
+    note: str = "",
+    growth: Sequence[float | None] = (),
 ) -> PlotlyFigure:
     """Stacked bars of every quantity.
 
@@ -73,14 +83,17 @@ def budget_figure(
         Expected width on screen.
     note : str
         What else the title says, e.g. that a newer budget is being computed.
+    growth : sequence of float or None
+        Of each method's whole system, 1/s; what grows is marked at its name.
     """
     shown = budgeted(budget.steady)
     names = _names(budget, [kind.figure for kind in shown])
     if not names:
         return _without_bars(budget, aspect)
-    grid = _grid(budget, len(shown), names, aspect, width_px)
+    labels = _labels(budget, growth)
+    grid = _grid(labels, len(shown), names, aspect, width_px)
     data: list[dict[str, Any]] = []
-    layout = _layout(budget, shown, grid, aspect, width_px, note)
+    layout = _layout(budget, labels, shown, grid, aspect, width_px, note)
     for k, kind in enumerate(shown):
         suffix = "" if k == 0 else str(k + 1)
         for name in names:
@@ -118,9 +131,20 @@ class _Grid:
         return self.wide / max(self.wide - (_LONG_PX if self.long else _SHORT_PX), 20.0)
 
 
-def _grid(budget: Budget, panels: int, names: Sequence[str], aspect: float, width_px: float) -> _Grid:
+def _labels(budget: Budget, growth: Sequence[float | None]) -> list[str]:
+    """Names of the methods; behind that of a growing one the time in which it grows by e."""
+    labels = []
+    for k, method in enumerate(budget.methods):
+        rate, name = growth[k] if k < len(growth) else None, _cut(method.name)
+        if rate is not None and rate > 0.0:
+            name = Text("{name} {sign}{every}", name=name, sign=_GROWS, every=duration(1.0 / rate))
+        labels.append(name)
+    return labels
+
+
+def _grid(labels: Sequence[str], panels: int, names: Sequence[str], aspect: float, width_px: float) -> _Grid:
     """Two panels to a row; all of them where the rows of the methods would be too low."""
-    left = 22.0 + _LETTER_PX * max(min(len(method.name), _LONGEST) for method in budget.methods)
+    left = 22.0 + _LETTER_PX * max(map(len, labels))
     legend_px = _LEGEND_ROW_PX * style.legend_rows([_words(name) for name in names], width_px - left)
     bottom = _TICKS_PX + legend_px
 
@@ -132,7 +156,7 @@ def _grid(budget: Budget, panels: int, names: Sequence[str], aspect: float, widt
         return _Grid(columns, rows, wide, high, left, bottom)
 
     two = made(2)
-    return two if panels == 2 or two.high >= _LEAST_ROW_PX * len(budget.methods) else made(panels)
+    return two if panels == 2 or two.high >= _LEAST_ROW_PX * len(labels) else made(panels)
 
 
 def _without_bars(budget: Budget, aspect: float) -> PlotlyFigure:
@@ -254,6 +278,7 @@ def _floor_line(value: float, suffix: str, row: int) -> dict[str, Any]:
 
 def _layout(
     budget: Budget,
+    labels: Sequence[str],
     shown: Sequence[Kind],
     grid: _Grid,
     aspect: float,
@@ -282,7 +307,9 @@ def _layout(
     )
     inner_w = width_px - grid.left - _RIGHT_PX
     inner_h = max(aspect * width_px - _TOP_PX - grid.bottom, 1.0)
-    methods = [style.plain(_cut(method.name)) for method in budget.methods]
+    methods = [style.plain(label) for label in labels]
+    if any(_GROWS in label for label in labels):
+        note = Text.joined("; ", filter(None, (Text("{sign} grows by e in this time", sign=_GROWS), note)))
     for k, kind in enumerate(shown):
         suffix = "" if k == 0 else str(k + 1)
         column, row = k % grid.columns, k // grid.columns
@@ -292,7 +319,7 @@ def _layout(
         values.append(getattr(budget.floor.rms, kind.figure))
         peak = max((v / kind.size for v in values if v is not None and math.isfinite(v)), default=0.0)
         layout[f"xaxis{suffix}"] = style.axis(
-            kind.unit,
+            _axis_title(kind.unit, grid.wide),
             domain=[left, left + grid.wide / inner_w],
             anchor=f"y{suffix}",
             range=[0.0, grid.headroom * peak if peak > 0.0 else 1.0],
@@ -323,6 +350,13 @@ def _layout(
         )
     )
     return layout
+
+
+def _axis_title(unit: str, wide: float) -> str:
+    """Unit, and what the parts of a bar are."""
+    if wide < _WORDS_PX:
+        return Text("{unit}, parts by variance", unit=unit)
+    return Text("{unit}; parts: shares of variance", unit=unit)
 
 
 def _cut(name: str) -> str:

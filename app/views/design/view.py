@@ -1,57 +1,81 @@
-"""Tab "Design": the error budget of every method by source, and how many times the floor it is."""
+"""Tab "Design": which methods meet the limits; the error budget of every method by source, over the floor."""
 
 from typing import Any
 
-from app.plots.budgets import steady_budget
-from app.plots.plotly_data import PlotlyFigure
-from app.session.shown import Shown
-from app.shell.plotly_view import PlotlyView
-from app.shell.view import Frame, if_user
-from app.views.design.figure import budget_figure
 from navcore.design.budget import Budget
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import edits
+from schuler_bench.jobs.judge import Odds
+from schuler_bench.plots.budgets import steady_budget
+from schuler_bench.plots.plotly_data import PlotlyFigure
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell import notices
+from schuler_bench.shell.layout import TOOLS
+from schuler_bench.shell.plotly_view import PlotlyView
+from schuler_bench.shell.searching import SearchControls, show_html
+from schuler_bench.shell.view import Figures, Frame, if_user
+from schuler_bench.views.design.figure import budget_figure
+from schuler_bench.views.design.limits import TAKE_DESIGN, designs_html
 
-BUDGET_OF = Text("budget of")
-CHOICES = {"steady": Text("the steady state, one level channel"), "run": Text("this run, all sources")}
+BUDGET_OF = Text("show")
+CHOICES = {
+    "limits": Text("methods that meet the limits"),
+    "steady": Text("budget of the steady state, one level channel"),
+    "run": Text("budget of this run, all sources"),
+}
+FIND, STOP = Text("Find designs for these limits"), Text("Stop finding designs")
 
 
 class DesignView(PlotlyView):
-    """Chooser above the bars.
+    """Chooser above the table of methods, or above the bars.
 
-    The steady budget follows a slider. The budget of the run takes longer: it is computed in the background
-    once the scenario stands still, and the steady one is shown until then.
+    The table says at once what this run makes of the limits; the shares of seeds follow once the scenario
+    stands still. The steady budget follows a slider. The budget of the run takes longer: it is computed in
+    the background once the scenario stands still, and the steady one is shown until then.
     """
 
     title = Text("Design")
     place = "lower"
-    look_for = Text("Which source the error comes from, and how far it is from the best possible.")
+    look_for = Text(
+        "Which methods meet the limits, and with what probability; which source the error comes from."
+    )
     plots = (title,)
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
         self._budgeter = frame.session.searches.budgeter
+        searches = frame.session.searches
+        self._judge, self._limits = searches.judge, searches.limits
         self._drawn: Budget | None = None
+        self._known: object = None
+        frame.commands.register(TAKE_DESIGN, self._take)
 
     def build_tools(self) -> None:
-        """Make the chooser."""
+        """Make the chooser, the search, and the place of the table."""
+        self.frame.gui.add_html(TOOLS)
         self._chooser: Any = self.frame.gui.add_dropdown(
             BUDGET_OF,
             tuple(CHOICES.values()),
             initial_value=CHOICES[self.session.display.budget],
             hint=Text(
-                "Which source each method's error is made of. Dashed: the floor, the least error that any "
-                "causal linear damping can reach with these sensors and this log; it does not bound methods "
-                "that do not use the log."
+                "Methods that meet the limits of the tab Requirements, or which source each method's error "
+                "is made of. Dashed: the floor, the least error that any causal linear damping can reach "
+                "with these sensors and this log; it does not bound methods that do not use the log."
             ),
         )
         words = {word: key for key, word in CHOICES.items()}
         self._chooser.on_update(if_user(lambda: self.frame.show(budget=words[self._chooser.value])))
+        hint = Text("Tunes every network for the limits, then runs each on 200 seeds: up to a minute.")
+        self._controls = SearchControls(self.frame.gui, self._limits, self._find, (FIND, STOP), hint)
+        self._table = self.frame.gui.add_html("", visible=False)
+        self.follow_jobs()
 
     def follow_display(self) -> None:
         """Show the display's choice."""
         self._chooser.value = CHOICES[self.session.display.budget]
+        self.follow_jobs()
         if self.session.run is not None:
             self._ask(self.session.run.scenario)
 
@@ -59,9 +83,25 @@ class DesignView(PlotlyView):
         """Have the budget of the new run computed, if that is what is shown."""
         self._ask(found.run.scenario)
 
+    @property
+    def _of_limits(self) -> bool:
+        return self.session.display.budget == "limits"
+
+    def follow_scenario(self) -> None:
+        """Offer the search where there are limits."""
+        self.follow_jobs()
+
+    def follow_jobs(self) -> None:
+        """Show how far the search for designs is."""
+        self._controls.follow(self._of_limits and bool(self.session.scenario.requirement))
+
     def take_new(self) -> bool:
-        """Whether the budget of the run has just been computed."""
-        run = self.session.run
+        """Whether shares, designs or the budget of the run have just been computed."""
+        run, known = self.session.run, (self._judge.known, self._limits.result, self._limits.words)
+        if self._of_limits:
+            new = known != self._known
+            self._known = known
+            return new
         result = None if run is None else self._budgeter.beside(run.scenario)
         if result is None or result is self._drawn or self.session.display.budget != "run":
             return False
@@ -82,7 +122,54 @@ class DesignView(PlotlyView):
         if budget.floor_reason:
             reason = Text("no floor: {floor_reason}", floor_reason=budget.floor_reason)
             note = Text.joined("; ", filter(None, (note, reason)))
-        return budget_figure(budget, self.aspect, width_px=self.width_px, note=note)
+        growth = [method.growth_per_s for method in found.run.methods]
+        return budget_figure(budget, self.aspect, width_px=self.width_px, note=note, growth=growth)
+
+    def picture(self, found: Shown) -> PlotlyFigure:
+        """Make the bars; a figure without anything while the table is shown."""
+        return PlotlyFigure() if found.display.budget == "limits" else super().picture(found)
+
+    def figures(self, found: Shown, plot: str) -> Figures:
+        """Make the bars, to be saved."""
+        del plot
+        return super().picture(found), []
+
+    def show(self, picture: PlotlyFigure) -> None:
+        """Send the bars, or show the table."""
+        if picture:
+            super().show(picture)
+        if self._plot is not None and self._plot.visible != bool(picture):
+            self._plot.visible = bool(picture)
+        run = self.session.run
+        html = ""
+        if not picture and run is not None:
+            self._judge.follow(run.scenario)
+            note = notices.note((*self._judge.words, *self._limits.words), "warning")
+            scenario = run.scenario
+            found = self._limits.beside(scenario)
+            html = designs_html(run, lambda method: self._judge.odds(scenario, method), found, note)
+        show_html(self._table, Text('<div class="sb-wide sb-table">{html}</div>', html=html) if html else "")
+
+    def _find(self) -> None:
+        """Tune every network for the limits."""
+        with self.session.lock:
+            scenario = self.session.scenario
+        self._limits.begin(scenario)
+
+    def _take(self, text: str) -> None:
+        """Put the design with this place into the method that is edited."""
+        session = self.session
+        with session.lock:
+            found = self._limits.beside(session.scenario)
+            if found is None or not text.isdecimal() or int(text) >= len(found.methods):
+                return
+            share = found.methods[int(text)]
+            title = Text("The design cannot be used")
+            with notices.told(self.frame.client, title, self.frame.refresh):
+                changed, at = edits.with_design(session.scenario, session.selected, share.method)
+                self._judge.learn(changed, changed.method[at], Odds(share, found.seeds))
+                name = Text("{name} from Design", name=share.method.label())
+                session.change(changed, None, name=name, selected=at)
 
     def _ask(self, scenario: Scenario) -> None:
         if self.session.display.budget != "run" or self._budgeter.beside(scenario) is not None:

@@ -6,11 +6,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.plots import style
-from app.plots.envelope import Envelope
-from app.plots.legend import counts
-from app.plots.pinned import PIN_WIDTH, Pinned, pinned_methods
-from app.plots.units import (
+from navcore.engine.run import ENDINGS, MethodRun, PlotSeries, Run
+from navcore.engine.verification import Verification
+from navcore.foundation.text import Text
+from navcore.quantities import ERRORS, NAMES, Kind
+from schuler_bench.plots import style
+from schuler_bench.plots.envelope import Envelope
+from schuler_bench.plots.legend import counts
+from schuler_bench.plots.pinned import PIN_WIDTH, Pinned, pinned_methods
+from schuler_bench.plots.units import (
     AUTO,
     Unit,
     angle_unit,
@@ -19,12 +23,8 @@ from app.plots.units import (
     time_unit,
     wanted_unit,
 )
-from app.plots.uplot import Curve, Dash, UplotFigure
-from app.session.display import Display
-from navcore.engine.run import ENDINGS, MethodRun, PlotSeries, Run
-from navcore.engine.verification import Verification
-from navcore.foundation.text import Text
-from navcore.quantities import ERRORS, NAMES, Kind
+from schuler_bench.plots.uplot import Curve, Dash, UplotFigure
+from schuler_bench.session.display import Display
 
 _CUT = 3.0
 """A diverged method is drawn up to this many times the largest value of the others."""

@@ -4,20 +4,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 
-from app.jobs.verifier import Verified
-from app.plots import style
-from app.plots.envelope import Envelope
-from app.plots.legend import COMMAND, entry
-from app.plots.pinned import Pinned, pinned_methods
-from app.plots.table import cell
-from app.plots.uplot import LABEL_SIZE, Y_SIZE, Dash, UplotFigure, stack_heights
-from app.session.display import Display
-from app.session.requirements import error_limits
-from app.session.shown import Shown
-from app.shell import notices
-from app.shell.stack import Stack, room_px
-from app.shell.view import Figures, Frame, PictureView, Tab, if_user
-from app.views.errors.figure import (
+from navcore.engine.run import Run
+from navcore.foundation.text import Text, quoted
+from schuler_bench.jobs.verifier import Verified
+from schuler_bench.plots import style
+from schuler_bench.plots.envelope import Envelope
+from schuler_bench.plots.legend import COMMAND, entry
+from schuler_bench.plots.pinned import Pinned, pinned_methods
+from schuler_bench.plots.table import cell
+from schuler_bench.plots.uplot import LABEL_SIZE, Y_SIZE, Dash, UplotFigure, stack_heights
+from schuler_bench.session.display import Display
+from schuler_bench.session.requirements import error_limits
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell import notices
+from schuler_bench.shell.stack import Stack, room_px
+from schuler_bench.shell.view import Figures, Frame, PictureView, Tab, if_user
+from schuler_bench.views.errors.figure import (
     GROUPS,
     STRAPDOWN,
     TITLES,
@@ -27,8 +29,6 @@ from app.views.errors.figure import (
     legend_name,
     verification_plots,
 )
-from navcore.engine.run import Run
-from navcore.foundation.text import Text, quoted
 
 
 def legend_html(
@@ -208,7 +208,7 @@ def error_curves(found: Shown, keys: Sequence[str] = tuple(TITLES), two_abreast:
         display=found.display,
         pins=found.pins,
         envelope=found.envelope,
-        limits=error_limits(found.display.requirements, found.run),
+        limits=error_limits(found.run.scenario.requirement, found.run),
     )
     legend = legend_html(found.run, None, found.pins, found.envelope, found.display)
     return ErrorCurves({key: plots[key] for key in keys}, legend, two_abreast)

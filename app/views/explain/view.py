@@ -11,10 +11,6 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import lru_cache
 
-from app.bridge.controls import control_with
-from app.editing.form import FieldSpec, Path
-from app.shell.view import Frame, Tab, View
-from app.views.learn.lessons import formula_html
 from navcore.damping import KINDS
 from navcore.foundation.assets import asset_path
 from navcore.foundation.parameters import Parameters, extra_of
@@ -24,6 +20,10 @@ from navcore.law.switching import SWITCHINGS
 from navcore.motion import MOTIONS
 from navcore.networks import NETWORKS
 from navcore.scenario.model import Scenario
+from schuler_bench.bridge.controls import control_with
+from schuler_bench.editing.form import FieldSpec, Path
+from schuler_bench.shell.view import Frame, Tab, View
+from schuler_bench.views.learn.lessons import formula_html
 
 _REGISTRIES: Mapping[str, Mapping[str, type[Parameters]]] = {
     "network": NETWORKS,
@@ -152,7 +152,8 @@ class ExplainView(View):
         with self.session.lock:
             content = self._content(id.strip())
             self._count += 1
-            # No div: what a hidden div holds is for scripts, and stays English (app.languages.markup).
+            # No div: what a hidden div holds is for scripts, and stays English
+            # (schuler_bench.languages.markup).
             self._html.content = Text(
                 '<section id="sb-explained" hidden data-count="{count}">{content}</section>',
                 count=self._count,

@@ -1,11 +1,11 @@
 """Tab "Files": upload of recordings and scenarios, download of the scenario and its numbers."""
 
-from app.plots import style
-from app.session.uploads import LARGEST_FILE, MIB, Upload
-from app.shell import notices
-from app.shell.opening import METRICS, SCENARIO
-from app.shell.view import Frame, Tab, View
 from navcore.foundation.text import Text
+from schuler_bench.plots import style
+from schuler_bench.session.uploads import LARGEST_FILE, MIB, Upload
+from schuler_bench.shell import notices
+from schuler_bench.shell.opening import METRICS, SCENARIO
+from schuler_bench.shell.view import Frame, Tab, View
 
 
 class FilesView(View):

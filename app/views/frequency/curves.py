@@ -7,9 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from app.plots import style
-from app.plots.effective import realisation
-from app.plots.plotly_data import packed
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
@@ -17,6 +14,9 @@ from navcore.networks.base import ComplexArray, LinearNetwork
 from navcore.networks.lqg import SensorFigures
 from navcore.networks.optimal import OptimalNetwork
 from navcore.scenario.model import Scenario
+from schuler_bench.plots import style
+from schuler_bench.plots.effective import realisation
+from schuler_bench.plots.plotly_data import packed
 
 LOWEST, HIGHEST = 2e-4, 0.15
 """Range of the measured frequencies, rad/s: the slowest takes nine hours of the filter's time."""

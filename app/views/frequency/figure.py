@@ -6,8 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from app.plots import style
-from app.plots.effective import (
+from navcore.engine.run import MethodRun, Run
+from navcore.foundation.earth import EARTH_RATE
+from navcore.foundation.text import Text
+from navcore.foundation.units import DEG
+from schuler_bench.plots import style
+from schuler_bench.plots.effective import (
     OMEGA_MAX,
     OMEGA_MIN,
     OPEN_LOOP,
@@ -20,9 +24,9 @@ from app.plots.effective import (
     network_curve,
     transfer_curve,
 )
-from app.plots.plotly_data import PlotlyFigure, figure, packed
-from app.plots.units import duration
-from app.views.frequency.curves import (
+from schuler_bench.plots.plotly_data import PlotlyFigure, figure, packed
+from schuler_bench.plots.units import duration
+from schuler_bench.views.frequency.curves import (
     Reference,
     decibel,
     law_step_s,
@@ -33,11 +37,7 @@ from app.views.frequency.curves import (
     phase,
     phase_axis,
 )
-from app.views.frequency.nyquist import nyquist
-from navcore.engine.run import MethodRun, Run
-from navcore.foundation.earth import EARTH_RATE
-from navcore.foundation.text import Text
-from navcore.foundation.units import DEG
+from schuler_bench.views.frequency.nyquist import nyquist
 
 HANDLE_PANEL = ("xaxis2", "yaxis3")
 """Axes of the magnitude of the closed loop's transfer, where the handle of its pair stands."""
@@ -80,7 +80,7 @@ def frequency_view(
     run : Run
         Result.
     shown : str
-        Key of `app.plots.effective.SHOWN`.
+        Key of `schuler_bench.plots.effective.SHOWN`.
     aspect, width_px, discrete, reference
         See `bode`.
     """
@@ -105,7 +105,7 @@ def bode(
     run : Run
         Result; only its networks are used.
     transfer_id : str
-        Key of `app.plots.effective.TRANSFERS`.
+        Key of `schuler_bench.plots.effective.TRANSFERS`.
     discrete : bool
         Measure the filters that run, and draw what they do as dots on H.
     aspect : float

@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from app.plots import style
-from app.plots.effective import Loop, loop_of
-from app.plots.plotly_data import PlotlyFigure, figure, packed
-from app.plots.units import duration, number
 from navcore.analysis.frequencies import curve_frequencies
 from navcore.analysis.loop import closed_loop_poles
 from navcore.analysis.margins import Margins, margins
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
+from schuler_bench.plots import style
+from schuler_bench.plots.effective import Loop, loop_of
+from schuler_bench.plots.plotly_data import PlotlyFigure, figure, packed
+from schuler_bench.plots.units import duration, number
 
 LOW, HIGH = 0.02, 500.0
 """Range of the frequency axis, units of omega_s."""

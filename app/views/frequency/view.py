@@ -1,16 +1,16 @@
 """Tab "Frequency": Bode plots of the network and of a transfer, or the open loop's Nyquist plot."""
 
-from app.plots.effective import OPEN_LOOP, SHOWN
-from app.plots.plotly_data import PlotlyFigure
-from app.session.shown import Shown
-from app.shell.layout import TOOLS
-from app.shell.pair_handle import PairHandle
-from app.shell.plotly_view import PlotlyView
-from app.shell.view import Frame, if_user
-from app.views.frequency.curves import optimal_reference
-from app.views.frequency.figure import HANDLE_PANEL, frequency_view
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
+from schuler_bench.plots.effective import OPEN_LOOP, SHOWN
+from schuler_bench.plots.plotly_data import PlotlyFigure
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell.layout import TOOLS
+from schuler_bench.shell.pair_handle import PairHandle
+from schuler_bench.shell.plotly_view import PlotlyView
+from schuler_bench.shell.view import Frame, if_user
+from schuler_bench.views.frequency.curves import optimal_reference
+from schuler_bench.views.frequency.figure import HANDLE_PANEL, frequency_view
 
 DISCRETE, OPTIMAL = Text("measured filter"), Text("optimal H")
 _IDS = {label: id for id, label in SHOWN.items()}

@@ -3,12 +3,13 @@
 A file begins with TOML between two lines ``+++``: ``title``, ``about`` (one sentence), and the scenario it
 plays in, as ``preset = "NAME"`` or as a table ``[scenario]``. Each ``## Heading`` begins a step: Markdown
 with ``$...$`` and ``$$...$$`` (LaTeX), ``{{name}}`` for a number of the present run
-(`app.views.learn.names`), and at most one each of two fenced blocks of TOML:
+(`schuler_bench.views.learn.names`), and at most one each of two fenced blocks of TOML:
 
 ``toml action``
     The button "Show me". ``set``: fields of the scenario as on the command line, each step beginning from the
-    lesson's scenario; ``tabs`` to bring to the front; ``display``: fields of `app.session.display.Display`;
-    ``method``: number of the method to edit; ``sliders``: fields that get a slider in the lesson.
+    lesson's scenario; ``tabs`` to bring to the front; ``display``: fields of
+    `schuler_bench.session.display.Display`; ``method``: number of the method to edit; ``sliders``: fields
+    that get a slider in the lesson.
 
 ``toml question``
     ``ask``, ``why`` (shown once it is answered rightly), and either ``answer`` (a name) and its ``tolerance``
@@ -28,13 +29,13 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from app.views.learn.names import named
 from navcore.engine.run import Run
 from navcore.foundation.assets import asset_path
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.scenario.file import apply_overrides, load
 from navcore.scenario.model import Scenario
+from schuler_bench.views.learn.names import named
 
 _FRONT = re.compile(r"\A\+\+\+\n(.*?)\n\+\+\+\n(.*)\Z", re.DOTALL)
 _FENCE = re.compile(r"^```toml (action|question)\n(.*?)^```$\n?", re.DOTALL | re.MULTILINE)

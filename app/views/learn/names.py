@@ -118,7 +118,7 @@ def _foucault(run: Run, turns: float) -> Named:
 
 
 def _floor(run: Run, what: str) -> Named:
-    from app.plots.budgets import steady_budget
+    from schuler_bench.plots.budgets import steady_budget
 
     return _in_unit(getattr(steady_budget(run.scenario).floor.rms, _BUDGETED[what].figure), _BUDGETED[what])
 
@@ -189,7 +189,7 @@ def _curve(what: str, number: int, run: Run) -> Named:
 
 
 def _budget(what: str, number: int, run: Run) -> Named:
-    from app.plots.budgets import steady_budget
+    from schuler_bench.plots.budgets import steady_budget
 
     budget = steady_budget(run.scenario)
     method = budget.methods[number]

@@ -9,15 +9,15 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from app.editing import edits, form
-from app.editing.form import FieldSpec, Path
-from app.session.shown import Shown
-from app.shell.control import Control, Section
-from app.shell.view import Frame, Tab, View
-from app.views.learn.lessons import Action, Lesson, Question, is_right, lessons, to_html
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import edits, form
+from schuler_bench.editing.form import FieldSpec, Path
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell.control import Control, Section
+from schuler_bench.shell.view import Frame, Tab, View
+from schuler_bench.views.learn.lessons import Action, Lesson, Question, is_right, lessons, to_html
 
 COMMAND = "lesson"
 """Command with which the panel's HTML asks: ``lesson open 2``, ``step 1``, ``next``, ``back``, ``list``,

@@ -2,16 +2,16 @@
 
 from typing import TYPE_CHECKING
 
-from app.editing import edits, form
-from app.editing.form import FieldSpec
-from app.session.log_fit import can_fit, fit_of, told, with_fitted_log
-from app.shell import notices
-from app.shell.palette import COPY_LOG, PASTE
-from app.shell.view import FieldsView, Tab, if_user
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from navcore.sensors.log_errors.events import LogEvent
 from navcore.sensors.reference import Outage, Reference
+from schuler_bench.editing import edits, form
+from schuler_bench.editing.form import FieldSpec
+from schuler_bench.session.log_fit import can_fit, fit_of, told, with_fitted_log
+from schuler_bench.shell import notices
+from schuler_bench.shell.palette import COPY_LOG, PASTE
+from schuler_bench.shell.view import FieldsView, Tab, if_user
 
 if TYPE_CHECKING:
     from navcore.sensors.fit import LogErrorFit

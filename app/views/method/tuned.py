@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.plots import style
-from app.plots.table import cell, row, table
-from app.plots.units import number, round_up
 from navcore.foundation.text import Text
 from navcore.law.policy.adaptive import SUN_TABLE
+from schuler_bench.plots import style
+from schuler_bench.plots.table import cell, row, table
+from schuler_bench.plots.units import number, round_up
 
 if TYPE_CHECKING:
     from navcore.design.sun import Tuning

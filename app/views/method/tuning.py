@@ -5,20 +5,20 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from app.editing import form
-from app.editing.form import FieldSpec
-from app.jobs.designer import TableTask
-from app.plots import style
-from app.shell import notices
-from app.shell.control import Control, Section
-from app.shell.searching import SearchControls, reveal, show_html
-from app.shell.view import Frame, Tab
-from app.views.method.tuned import table_html
 from navcore.design.sun_settings import TuningSettings
 from navcore.foundation.errors import InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.text import Text
 from navcore.scenario.method import Method
+from schuler_bench.editing import form
+from schuler_bench.editing.form import FieldSpec
+from schuler_bench.jobs.designer import TableTask
+from schuler_bench.plots import style
+from schuler_bench.shell import notices
+from schuler_bench.shell.control import Control, Section
+from schuler_bench.shell.searching import SearchControls, reveal, show_html
+from schuler_bench.shell.view import Frame, Tab
+from schuler_bench.views.method.tuned import table_html
 
 FIND, STOP, USE = Text("Find the table for this scenario"), Text("Stop the search"), Text("Use this table")
 _TITLE = Text("Table by Sun's double loop")

@@ -4,19 +4,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from app.editing import edits, form
-from app.editing.form import FieldSpec, Path
-from app.plots import style
-from app.plots.effective import earth_mode_text
-from app.plots.legend import severity, warnings_for
-from app.plots.units import number, settling
-from app.session.shown import Shown
-from app.shell import notices
-from app.shell.control import Control, Section, controls_of
-from app.shell.palette import COPY_METHOD, PASTE
-from app.shell.searching import show_html
-from app.shell.view import Frame, Tab, View, if_user
-from app.views.method.tuning import TuningPanel
 from navcore.design.vary import network_not_in_force
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
@@ -25,6 +12,19 @@ from navcore.law.switching import SWITCHINGS
 from navcore.networks import NETWORKS
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import edits, form
+from schuler_bench.editing.form import FieldSpec, Path
+from schuler_bench.plots import style
+from schuler_bench.plots.effective import earth_mode_text
+from schuler_bench.plots.legend import severity, warnings_for
+from schuler_bench.plots.units import number, settling
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell import notices
+from schuler_bench.shell.control import Control, Section, controls_of
+from schuler_bench.shell.palette import COPY_METHOD, PASTE
+from schuler_bench.shell.searching import show_html
+from schuler_bench.shell.view import Frame, Tab, View, if_user
+from schuler_bench.views.method.tuning import TuningPanel
 
 ADD, COPY, REMOVE = Text("add"), Text("copy"), Text("remove")
 COPY_TEXT, PASTE_TEXT = Text("copy as TOML"), Text("paste TOML")

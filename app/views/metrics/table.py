@@ -7,12 +7,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from app.plots import style
-from app.plots.budgets import times_the_floor
-from app.plots.effective import earth_mode_text
-from app.plots.pinned import Pinned, difference_text
-from app.plots.table import cell, row, table
-from app.plots.units import (
+from navcore.engine.measures import measure
+from navcore.engine.run import LawInForce, Run
+from navcore.foundation.text import Text, quoted
+from navcore.quantities import ERRORS, QUANTITIES, STATISTICS, RecordedError
+from schuler_bench.plots import style
+from schuler_bench.plots.budgets import times_the_floor
+from schuler_bench.plots.effective import earth_mode_text
+from schuler_bench.plots.pinned import Pinned, difference_text
+from schuler_bench.plots.table import cell, row, table
+from schuler_bench.plots.units import (
     AUTO,
     NAMED,
     Unit,
@@ -20,11 +24,7 @@ from app.plots.units import (
     rounded,
     settling,
 )
-from app.session.display import Display
-from navcore.engine.measures import measure
-from navcore.engine.run import LawInForce, Run
-from navcore.foundation.text import Text, quoted
-from navcore.quantities import ERRORS, QUANTITIES, STATISTICS, RecordedError
+from schuler_bench.session.display import Display
 
 if TYPE_CHECKING:
     from navcore.engine.verification import Difference, Verification
@@ -202,7 +202,10 @@ def _coefficient(law: LawInForce) -> str:
 def _error_row(run: Run, error: RecordedError, unit: Unit) -> Row:
     values = [[method.errors[error.name][statistic] for statistic in STATISTICS] for method in run.methods]
     cells = tuple(tuple(rounded(value / unit.si) for value in row) for row in values)
-    sizes = [[abs(value) for value in row] for row in values]
+    # an error passes through 0: the last value says nothing of a method
+    sizes = [
+        [math.nan if s == "final" else abs(v) for s, v in zip(STATISTICS, row, strict=True)] for row in values
+    ]
     return Row(error.label, unit.name, cells, best=_best(sizes))
 
 

@@ -6,24 +6,24 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from app.jobs.verifier import Verified
-from app.plots import style
-from app.plots.legend import severity, warnings_for
-from app.plots.table import parts
-from app.plots.units import duration
-from app.session.shown import Shown, window_of
-from app.shell import notices
-from app.shell.control import Widget
-from app.shell.view import PictureView, Tab, if_user
-from app.views.metrics.table import method_px, metrics_html, metrics_rows, system_html, verdict
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from navcore.quantities import HEADING, POSITION, TILT, Kind
+from schuler_bench.jobs.verifier import Verified
+from schuler_bench.plots import style
+from schuler_bench.plots.legend import severity, warnings_for
+from schuler_bench.plots.table import parts
+from schuler_bench.plots.units import duration
+from schuler_bench.session.shown import Shown, window_of
+from schuler_bench.shell import notices
+from schuler_bench.shell.control import Widget
+from schuler_bench.shell.view import PictureView, Tab, if_user
+from schuler_bench.views.metrics.table import method_px, metrics_html, metrics_rows, system_html, verdict
 
 if TYPE_CHECKING:
-    from app.jobs.why import Explainer
     from navcore.design.dominance import Cause, Why
     from navcore.engine.run import Run
+    from schuler_bench.jobs.why import Explainer
 
 
 _WAITS = Text("What dominates this result is computed once the controls rest.")
@@ -179,7 +179,7 @@ class MetricsView(PictureView[tuple[str, str]]):
             self._over: Any = self.frame.gui.add_dropdown(
                 OVER,
                 tuple(_WINDOWS),
-                hint=Text("Part of the run over which errors and requirements are measured."),
+                hint=Text("Part of the run over which errors are measured."),
             )
             self._ends = {
                 field: Widget(

@@ -7,14 +7,14 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from app.misprints import Axis, Comparison, Curve, Misprint, Number
-from app.plots import style
-from app.plots.plotly_data import PlotlyFigure, figure, packed
-from app.plots.table import cell, row, table
-from app.plots.units import Unit, angle_unit, length_unit, number, speed_unit
 from navcore.foundation.notation import with_unit
 from navcore.foundation.text import Text, quoted
 from navcore.foundation.units import HOUR, MINUTE
+from schuler_bench.misprints import Axis, Comparison, Curve, Misprint, Number
+from schuler_bench.plots import style
+from schuler_bench.plots.plotly_data import PlotlyFigure, figure, packed
+from schuler_bench.plots.table import cell, row, table
+from schuler_bench.plots.units import Unit, angle_unit, length_unit, number, speed_unit
 
 Shown = Literal["both", "as printed", "corrected"]
 SHOWN: tuple[Shown, ...] = get_args(Shown)

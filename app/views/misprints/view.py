@@ -4,12 +4,12 @@ import threading
 from functools import lru_cache
 from typing import Any
 
-from app.misprints import MISPRINTS, Comparison
-from app.plots.plotly_data import enlarged
-from app.shell.layout import CHOOSER_PX
-from app.shell.view import Frame, Tab, View, if_user
-from app.views.misprints.figure import SHOWN, Shown, comparison_plot, words_html
 from navcore.foundation.text import Text
+from schuler_bench.misprints import MISPRINTS, Comparison
+from schuler_bench.plots.plotly_data import enlarged
+from schuler_bench.shell.layout import CHOOSER_PX
+from schuler_bench.shell.view import Frame, Tab, View, if_user
+from schuler_bench.views.misprints.figure import SHOWN, Shown, comparison_plot, words_html
 
 _WORDS_PX = {True: 96, False: 186}
 """Height of the words and numbers above the plot, in a wide window and in a narrow one: a first estimate."""

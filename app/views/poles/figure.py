@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from app.editing.placing import COMMAND
-from app.plots import style
-from app.plots.plotly_data import PlotlyFigure, figure, packed
-from app.plots.units import duration
-from app.views.poles.grid import (
+from navcore.engine.run import MethodRun, Run
+from navcore.foundation.text import Text
+from schuler_bench.editing.placing import COMMAND
+from schuler_bench.plots import style
+from schuler_bench.plots.plotly_data import PlotlyFigure, figure, packed
+from schuler_bench.plots.units import duration
+from schuler_bench.views.poles.grid import (
     DAMPING,
     NO_LOCUS,
     PAPER,
@@ -22,8 +24,6 @@ from app.views.poles.grid import (
     settling_labels,
     settling_shapes,
 )
-from navcore.engine.run import MethodRun, Run
-from navcore.foundation.text import Text
 
 ZOOM = 1.7
 """Half height of the right panel, units of omega_s."""
@@ -77,7 +77,7 @@ def poles(
     locus : str
         Parameter of its network over which the locus is drawn.
     limits : mapping of str to float, optional
-        `app.session.requirements.Requirements.limits`: what they rule out is shaded.
+        `schuler_bench.session.requirements.Requirements.limits`: what they rule out is shaded.
     """
     names = [*(method.method.name for method in run.methods), *_KEYS]
     layout = style.framed(names, aspect, width_px, {"l": 58, "r": 16, "t": 32, "b": 48}, hovermode="closest")

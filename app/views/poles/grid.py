@@ -7,10 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from app.editing import form
-from app.plots import style
-from app.plots.plotly_data import packed
-from app.plots.units import number
 from navcore.analysis.locus import Locus, root_locus
 from navcore.analysis.settling import LEVEL
 from navcore.engine.run import Run
@@ -19,6 +15,10 @@ from navcore.foundation.parameters import extra_of
 from navcore.foundation.text import Text
 from navcore.foundation.units import MINUTE
 from navcore.networks.base import NetworkParameters
+from schuler_bench.editing import form
+from schuler_bench.plots import style
+from schuler_bench.plots.plotly_data import packed
+from schuler_bench.plots.units import number
 
 NO_LOCUS = ""
 _COUNT = 161
@@ -49,7 +49,7 @@ def _giving(run: Run, index: int, field: str) -> Any:
 
     Sigma and xi become the gains when one of them is to move.
     """
-    from app.editing.edits import network_values, with_value
+    from schuler_bench.editing.edits import network_values, with_value
 
     parameters = run.scenario.method[index].network
     value = network_values(run.scenario, index).get(field)
@@ -112,7 +112,7 @@ def locus_traces(run: Run, index: int, field: str, suffix: str) -> list[dict[str
 
 def locus_note(run: Run, index: int, field: str) -> str:
     """Say what moves along the branches, from which end to which, and where it is; empty without a locus."""
-    from app.editing.edits import network_values
+    from schuler_bench.editing.edits import network_values
 
     locus = locus_of(run, index, field)
     if locus is None:

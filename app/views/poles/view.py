@@ -3,22 +3,25 @@
 from collections.abc import Callable
 from typing import Any
 
-from app.editing.placing import COMMAND, pair_at, read_point, typed_pair, with_pair
-from app.plots.plotly_data import PlotlyFigure
-from app.session.display import Display
-from app.session.shown import Shown
-from app.shell import notices
-from app.shell.layout import CHOOSER_PX, TOOLS
-from app.shell.pair_handle import PairHandle
-from app.shell.plotly_view import PlotlyView
-from app.shell.view import Frame, if_user
-from app.views.poles.figure import PANELS, poles
-from app.views.poles.grid import NO_LOCUS, locus_fields
-from app.views.poles.whole import whole_system_figure
 from navcore.engine.run import Run
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
+from schuler_bench.editing.limits import with_limit
+from schuler_bench.editing.placing import COMMAND, pair_at, read_point, typed_pair, with_pair
+from schuler_bench.plots.plotly_data import PlotlyFigure
+from schuler_bench.session.display import Display
+from schuler_bench.session.requirements import limits_of
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell import notices
+from schuler_bench.shell.layout import CHOOSER_PX, TOOLS
+from schuler_bench.shell.pair_handle import PairHandle
+from schuler_bench.shell.plotly_view import PlotlyView
+from schuler_bench.shell.view import Frame, if_user
+from schuler_bench.views.poles.figure import PANELS, poles
+from schuler_bench.views.poles.grid import NO_LOCUS, locus_fields
+from schuler_bench.views.poles.whole import whole_system_figure
 
 LOCUS = Text("locus")
 DECAYS = "H'(0) ≤ 0"
@@ -88,7 +91,7 @@ class PolesView(PlotlyView):
         )  # fmt: skip
         self._decays: Any = gui.add_checkbox(
             DECAYS,
-            _decays(display),
+            _decays(self.session.scenario),
             hint=Text(
                 "A pair is only placed when H(0) = 1 and the slope H'(0) is at most 0, so "
                 "that the 24 h "
@@ -113,7 +116,7 @@ class PolesView(PlotlyView):
         session, client = self.session, self.frame.client
         with session.lock:
             try:
-                limit = session.display.requirements.h_slope_s
+                limit = limits_of(session.scenario.requirement).get("h_slope_s")
                 placed = with_pair(session.scenario, session.selected, *wanted(), limit)
             except InputError as error:
                 notices.tell(client, Text("The pair was not placed"), notices.fault_lines(error), "warning")
@@ -130,13 +133,14 @@ class PolesView(PlotlyView):
         return self.session.scenario.method[self.session.selected]
 
     def _limit_slope(self) -> None:
-        wanted = self.session.display.requirements.model_copy(
-            update={"h_slope_s": 0.0 if self._decays.value else None}
-        )
-        self.frame.show(requirements=wanted)
+        session = self.session
+        with session.lock:
+            changed = with_limit(session.scenario, "h_slope_s", "0" if self._decays.value else "")
+            session.change(changed, None)
 
     def follow_scenario(self) -> None:
-        """Offer the parameters of the selected method's network, and show which is chosen."""
+        """Offer the parameters of the selected method's network, and show which is chosen, and the limit."""
+        self._decays.value = _decays(self.session.scenario)
         offered = _offered(self._method)
         if offered != self._fields:
             self._fields, self._locus.options = offered, tuple(offered)
@@ -147,7 +151,6 @@ class PolesView(PlotlyView):
     def follow_display(self) -> None:
         """Show whose poles and which parameter are chosen."""
         self._system.value = _system(self.session.display)
-        self._decays.value = _decays(self.session.display)
         # A click or a tap into the map places a pair, too: where there is little room, that is enough.
         room = self.session.display.size == "normal" and not self.frame.layout().touch
         for tool in self._placing:
@@ -169,7 +172,7 @@ class PolesView(PlotlyView):
             width_px=self.width_px,
             selected=found.selected,
             locus=found.display.locus,
-            limits=found.display.requirements.limits,
+            limits=limits_of(found.run.scenario.requirement),
         )
         plot["layout"]["meta"] |= self._handle.meta(found)
         return plot
@@ -185,9 +188,9 @@ def _system(display: Display) -> str:
     return next(label for label, name in SYSTEMS.items() if name == display.poles)
 
 
-def _decays(display: Display) -> bool:
+def _decays(scenario: Scenario) -> bool:
     """A limit of H'(0) above 0 lets the 24 h mode grow."""
-    limit = display.requirements.h_slope_s
+    limit = limits_of(scenario.requirement).get("h_slope_s")
     return limit is not None and limit <= 0.0
 
 

@@ -4,9 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from app.plots import style
-from app.plots.effective import earth_mode_text
-from app.plots.plotly_data import PlotlyFigure, figure, packed
 from navcore.analysis.whole_system import (
     EARTH_MODE,
     NETWORK_MODE,
@@ -18,6 +15,9 @@ from navcore.analysis.whole_system import (
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
+from schuler_bench.plots import style
+from schuler_bench.plots.effective import earth_mode_text
+from schuler_bench.plots.plotly_data import PlotlyFigure, figure, packed
 
 LATITUDES = np.linspace(0.0, 85.0, 18)
 """Of the curve, deg; north and south are alike."""

@@ -3,22 +3,25 @@
 import math
 from collections.abc import Sequence
 
-from app.plots import style
-from app.plots.pinned import Pinned, pinned_methods, together
-from app.plots.table import cell, row, table
-from app.plots.units import number, rounded
-from app.session.requirements import ROWS, SIGNS, Requirements, Verdict, verdicts
 from navcore.engine.run import Run
 from navcore.foundation.text import Text, quoted
+from schuler_bench.jobs.judge import Odds
+from schuler_bench.plots import style
+from schuler_bench.plots.limits import SIGNS
+from schuler_bench.plots.pinned import Pinned, pinned_methods, together
+from schuler_bench.plots.table import cell, row, table
+from schuler_bench.plots.units import number, rounded
+from schuler_bench.session.requirements import Verdict, verdicts
+from schuler_bench.views.requirements.shares import odds_html
 
 _DIGITS = 4
 
 
 def requirements_html(
     run: Run,
-    requirements: Requirements,
     pins: Sequence[Pinned] = (),
     methods: Sequence[int] | None = None,
+    odds: Sequence[Odds | None] = (),
 ) -> str:
     """Return a row a requirement and a column a method: measured value, and whether it meets the limit.
 
@@ -26,16 +29,16 @@ def requirements_html(
     ----------
     run : Run
         Result.
-    requirements : Requirements
-        Limits.
     pins : sequence of Pinned
         Runs that are judged beside it.
     methods : sequence of int, optional
         Places of the columns to show, the run's methods first; all when None.
+    odds : sequence of Odds or None
+        Of each method of the run: how often its seeds meet the limits.
     """
     judged = together(run, pins)
     shown = range(len(judged.methods)) if methods is None else methods
-    judged_all = verdicts(judged, requirements)
+    judged_all = verdicts(judged, run.scenario.requirement)
     lines = [
         Text("solid {method_color}", method_color=style.method_color(i)) for i in range(len(run.methods))
     ]
@@ -50,14 +53,22 @@ def requirements_html(
         [
             cell(Text("all together"), "sb-all"),
             cell(),
-            *(cell(_overall(judged_all, i), "sb-n") for i in shown),
+            *(cell(_overall(judged_all, i) + odds_html(_of(odds, i)), "sb-n") for i in shown),
         ],
     )
-    return table([head], [*(_row(verdict, shown, asked=asked) for verdict in judged_all), foot])
+    rows = (
+        _row(verdict, shown, [odds_html(_of(odds, i), place) for i in shown], asked=asked)
+        for place, verdict in enumerate(judged_all)
+    )
+    return table([head], [*rows, foot])
 
 
-def _row(verdict: Verdict, shown: Sequence[int], *, asked: bool) -> str:
-    quantity = ROWS[verdict.name]
+def _of(odds: Sequence[Odds | None], index: int) -> Odds | None:
+    return odds[index] if index < len(odds) else None
+
+
+def _row(verdict: Verdict, shown: Sequence[int], beside: Sequence[str], *, asked: bool) -> str:
+    quantity, one = verdict.quantity, verdict.requirement
     unit = (
         Text(' <span class="sb-muted">({shown:html})</span>', shown=quantity.shown) if quantity.shown else ""
     )
@@ -68,15 +79,25 @@ def _row(verdict: Verdict, shown: Sequence[int], *, asked: bool) -> str:
     )
     cells = (
         cell(
-            Text("{measured}{mark}", measured=_measured(value), mark=_mark(verdict, ok) if asked else ""),
+            Text(
+                "{measured}{mark}{odds}",
+                measured=_measured(verdict, value),
+                mark=_mark(verdict, ok) if asked else "",
+                odds=odds if one is not None else "",
+            ),
             "sb-n",
-            data_measure=verdict.name,
+            data_measure=quantity.key,
             data_value=_number(value),
             data_passed=_word(verdict, ok),
         )
-        for value, ok in ((verdict.measured[i], verdict.passed[i]) for i in shown)
+        for value, ok, odds in (
+            (verdict.measured[i], verdict.passed[i], said) for i, said in zip(shown, beside, strict=True)
+        )
     )
-    named = cell(Text("{label:html}{unit}", label=quantity.label, unit=unit))
+    name = Text("{label:html}{unit}", label=quantity.label, unit=unit)
+    if one is not None and one.from_h and quantity.kind is not None:
+        name = Text("{name}, from {hours:g} h", name=name, hours=one.from_h)
+    named = cell(name)
     return row([named, cell(limit, "sb-n"), *cells], title=quantity.help)
 
 
@@ -85,8 +106,10 @@ def _number(value: float) -> str:
     return f"{value:.9g}" if math.isfinite(value) else "Infinity"
 
 
-def _measured(value: float) -> str:
-    return Text("never") if math.isinf(value) else rounded(value)
+def _measured(verdict: Verdict, value: float) -> str:
+    if not math.isinf(value):
+        return rounded(value)
+    return Text("never") if verdict.quantity.kind is None else Text("no value")
 
 
 def _word(verdict: Verdict, passed: bool) -> str:

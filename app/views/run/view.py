@@ -1,15 +1,15 @@
 """Tab "Run": duration, site, motion, initial errors, seed, strapdown settings."""
 
-from app.editing import form
-from app.editing.form import FieldSpec, Path
-from app.shell import notices
-from app.shell.view import FieldsView, Tab
 from navcore.foundation.registry import blocks_of
 from navcore.foundation.text import Text
 from navcore.motion import MOTIONS
 from navcore.scenario.blocks import Alignment, RunSettings, SiteSettings
 from navcore.scenario.initial_error import InitialError
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import form
+from schuler_bench.editing.form import FieldSpec, Path
+from schuler_bench.shell import notices
+from schuler_bench.shell.view import FieldsView, Tab
 
 _RATE, _STRAPDOWN_ONLY = "rate_hz", ("vertical", "compensation")
 _STRAPDOWN_TOLD = Text(

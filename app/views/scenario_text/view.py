@@ -1,9 +1,9 @@
 """Tab "Scenario": the scenario of the run as TOML, as it can be saved."""
 
-from app.session.shown import Shown
-from app.session.uploads import with_plain_names
-from app.shell.view import PictureView, Tab
 from navcore.foundation.text import Text
+from schuler_bench.session.shown import Shown
+from schuler_bench.session.uploads import with_plain_names
+from schuler_bench.shell.view import PictureView, Tab
 
 
 class ScenarioTextView(PictureView[str]):

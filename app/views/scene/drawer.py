@@ -8,9 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from app.plots import style
-from app.views.scene.graticule import SceneLabel, segments
-from app.views.scene.track import HALF_WIDTH, LINE_WIDTH, SHIP_LENGTH, MethodTrack, Place, TrackScene
+from schuler_bench.plots import style
+from schuler_bench.views.scene.graticule import SceneLabel, segments
+from schuler_bench.views.scene.track import (
+    HALF_WIDTH,
+    LINE_WIDTH,
+    SHIP_LENGTH,
+    MethodTrack,
+    Place,
+    TrackScene,
+)
 
 if TYPE_CHECKING:
     import viser

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
-from app.plots.units import length_unit, number, round_down, round_up
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG
+from schuler_bench.plots.units import length_unit, number, round_down, round_up
 
 
 def segments(points: np.ndarray) -> np.ndarray:

@@ -13,8 +13,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.plots import style
-from app.plots.units import (
+from navcore.engine.run import MethodRun, Run
+from navcore.foundation.earth import attitude_matrix
+from navcore.foundation.notation import with_unit
+from navcore.foundation.text import Text
+from navcore.foundation.units import DEG
+from navcore.mechanization.recorder import DV_E, DV_N, PHI_E, PHI_N, PHI_U, POSITION, QUANTITIES
+from navcore.motion.truth import HEADING, PITCH, ROLL, VE, VN
+from navcore.quantities import TILT, components
+from schuler_bench.plots import style
+from schuler_bench.plots.units import (
     AUTO,
     NAMED,
     Unit,
@@ -26,15 +34,7 @@ from app.plots.units import (
     speed_unit,
     wanted_unit,
 )
-from app.session.display import Display
-from navcore.engine.run import MethodRun, Run
-from navcore.foundation.earth import attitude_matrix
-from navcore.foundation.notation import with_unit
-from navcore.foundation.text import Text
-from navcore.foundation.units import DEG
-from navcore.mechanization.recorder import DV_E, DV_N, PHI_E, PHI_N, PHI_U, POSITION, QUANTITIES
-from navcore.motion.truth import HEADING, PITCH, ROLL, VE, VN
-from navcore.quantities import TILT, components
+from schuler_bench.session.display import Display
 
 WIDTH, HEIGHT = 296, 134
 _WIDEST = 30.0 * DEG

@@ -7,11 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.plots import style
-from app.plots.legend import State, counts
-from app.plots.pinned import Pinned, pinned_methods
-from app.plots.units import length_unit, number, round_down, round_up, rounded
-from app.views.scene.graticule import (
+from navcore.engine.run import MethodRun, Run
+from navcore.foundation.text import Text
+from navcore.mechanization.recorder import D_LAT, D_LON
+from navcore.motion.truth import HEADING, HEIGHT, LAT, LON, PITCH, ROLL
+from schuler_bench.plots import style
+from schuler_bench.plots.legend import State, counts
+from schuler_bench.plots.pinned import Pinned, pinned_methods
+from schuler_bench.plots.units import length_unit, number, round_down, round_up, rounded
+from schuler_bench.views.scene.graticule import (
     MOST_BESIDE,
     Graticule,
     LocalMap,
@@ -22,10 +26,6 @@ from app.views.scene.graticule import (
     scale_bar,
     segments,
 )
-from navcore.engine.run import MethodRun, Run
-from navcore.foundation.text import Text
-from navcore.mechanization.recorder import D_LAT, D_LON
-from navcore.motion.truth import HEADING, HEIGHT, LAT, LON, PITCH, ROLL
 
 MAX_POINTS = 1000
 """Points of a track: at this density the ship moves smoothly along 24 h."""

@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.plots import legend
-from app.session.display import Display
-from app.session.shown import Shown
-from app.shell.view import Frame, Tab, View, if_user
-from app.views.scene.drawer import SceneDrawer
-from app.views.scene.moment import caption_of, moment, pendulum, pendulum_svg, readout_html
-from app.views.scene.playback import SPEEDS, Playback, PlayState
-from app.views.scene.track import HALF_WIDTH, Place, track
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
+from schuler_bench.plots import legend
+from schuler_bench.session.display import Display
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell.view import Frame, Tab, View, if_user
+from schuler_bench.views.scene.drawer import SceneDrawer
+from schuler_bench.views.scene.moment import caption_of, moment, pendulum, pendulum_svg, readout_html
+from schuler_bench.views.scene.playback import SPEEDS, Playback, PlayState
+from schuler_bench.views.scene.track import HALF_WIDTH, Place, track
 
 if TYPE_CHECKING:
     import viser

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from app.editing import edits, form
-from app.shell import notices
-from app.shell.view import FieldsView, Tab, if_user
 from navcore.foundation.text import Text
 from navcore.sensors.imu import Imu
+from schuler_bench.editing import edits, form
+from schuler_bench.shell import notices
+from schuler_bench.shell.view import FieldsView, Tab, if_user
 
 _FIRST = 8
 """Fields of the IMU model, in its order, that are shown without asking."""

@@ -5,16 +5,16 @@ from typing import Any
 
 import numpy as np
 
-from app.plots import style
-from app.plots.plotly_data import PlotlyFigure, figure, packed
-from app.plots.units import NAMED, Unit, duration
-from app.session.display import Display
-from app.views.errors.figure import error_plots
-from app.views.frequency.figure import natural_frequencies
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.quantities import NAMES
+from schuler_bench.plots import style
+from schuler_bench.plots.plotly_data import PlotlyFigure, figure, packed
+from schuler_bench.plots.units import NAMED, Unit, duration
+from schuler_bench.session.display import Display
+from schuler_bench.views.errors.figure import error_plots
+from schuler_bench.views.frequency.figure import natural_frequencies
 
 _PADDING = 6
 """Points by which each lobe of the window is drawn: a sine between two shows 99.5 % of its amplitude."""
@@ -32,7 +32,7 @@ def spectrum(
     display: Display | None = None,
     width_px: float = 940.0,
 ) -> PlotlyFigure:
-    """Amplitude spectrum of one quantity of `app.views.errors.figure.error_plots`.
+    """Amplitude spectrum of one quantity of `schuler_bench.views.errors.figure.error_plots`.
 
     Parameters
     ----------

@@ -2,14 +2,14 @@
 
 from typing import Any
 
-from app.plots.plotly_data import PlotlyFigure
-from app.session.shown import Shown
-from app.shell.plotly_view import PlotlyView
-from app.shell.view import if_user
-from app.views.errors.figure import TITLES
-from app.views.spectrum.figure import spectrum
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
+from schuler_bench.plots.plotly_data import PlotlyFigure
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell.plotly_view import PlotlyView
+from schuler_bench.shell.view import if_user
+from schuler_bench.views.errors.figure import TITLES
+from schuler_bench.views.spectrum.figure import spectrum
 
 SPECTRUM_OF = Text("spectrum of")
 _KEYS = {title: key for key, title in TITLES.items()}

@@ -1,6 +1,6 @@
 """Small pictures: presets by their own runs, networks by |H| from the registry, with their trade in words.
 
-``python -m app.views.start.cards`` makes those of the presets anew.
+``python -m schuler_bench.views.start.cards`` makes those of the presets anew.
 """
 
 import re
@@ -10,8 +10,6 @@ from pathlib import Path
 
 import numpy as np
 
-from app.plots import style
-from app.plots.units import duration, rounded, settling
 from navcore.analysis import analyse
 from navcore.analysis.frequencies import curve_frequencies
 from navcore.analysis.judged import JudgedLoop, loop_value
@@ -24,6 +22,8 @@ from navcore.mechanization.recorder import DV_E, DV_N
 from navcore.networks import NETWORKS
 from navcore.networks.base import LinearNetwork
 from navcore.scenario.file import load, presets, scenario_hash
+from schuler_bench.plots import style
+from schuler_bench.plots.units import duration, rounded, settling
 
 _WIDE, _HIGH = 150, 62
 _LOW_DB, _HIGH_DB = -12.0, 18.0

@@ -2,13 +2,13 @@
 
 from functools import lru_cache
 
-from app.editing import edits
-from app.shell import notices
-from app.shell.view import Frame, Tab, View
-from app.views.start.cards import card, network_cards
 from navcore.foundation.text import Text
 from navcore.networks import NETWORKS
 from navcore.scenario.file import load, presets
+from schuler_bench.editing import edits
+from schuler_bench.shell import notices
+from schuler_bench.shell.view import Frame, Tab, View
+from schuler_bench.views.start.cards import card, network_cards
 
 START, TOUR, SCENARIOS, NETWORK_CARDS = "start", "tour", "scenarios", "networks"
 """Commands that show the card, the tour, and the two galleries."""

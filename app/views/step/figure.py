@@ -7,16 +7,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.plots import style
-from app.plots.effective import network_step, reacts, response, time_grid
-from app.plots.plotly_data import PlotlyFigure, figure, packed
-from app.plots.units import Unit, angle_unit, speed_unit
-from app.views.poles.grid import FORBIDDEN
 from navcore.analysis.settling import LEVEL
 from navcore.analysis.transfers import Output, Source
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG_PER_HOUR, MINUTE
+from schuler_bench.plots import style
+from schuler_bench.plots.effective import network_step, reacts, response, time_grid
+from schuler_bench.plots.plotly_data import PlotlyFigure, figure, packed
+from schuler_bench.plots.units import Unit, angle_unit, speed_unit
+from schuler_bench.views.poles.grid import FORBIDDEN
 
 POINTS = 400
 _SPANS_MIN = (5, 10, 20, 30, 45, 60, 90, 120, 180, 240, 360)
@@ -83,7 +83,7 @@ def step(
     width_px : float
         Expected width on screen, for room for the legend.
     limits : mapping of str to float, optional
-        `app.session.requirements.Requirements.limits`: what they rule out is shaded.
+        `schuler_bench.session.requirements.Requirements.limits`: what they rule out is shaded.
     """
     loop_s, network_s = _loop_span(run), _network_span(run)
     cause = _LOG if any(reacts(m, "dv_r") for m in run.methods) else _GYRO

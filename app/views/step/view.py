@@ -1,11 +1,12 @@
 """Tab "Step": responses of tilt and velocity error to steps of log, gyro and accelerometer errors."""
 
-from app.plots.plotly_data import PlotlyFigure
-from app.session.shown import Shown
-from app.shell.plotly_view import PlotlyView
-from app.views.step.figure import step
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
+from schuler_bench.plots.plotly_data import PlotlyFigure
+from schuler_bench.session.requirements import limits_of
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell.plotly_view import PlotlyView
+from schuler_bench.views.step.figure import step
 
 
 class StepView(PlotlyView):
@@ -22,7 +23,7 @@ class StepView(PlotlyView):
 
     def figure(self, both: Run, found: Shown) -> PlotlyFigure:
         """Step responses."""
-        limits = found.display.requirements.limits
+        limits = limits_of(found.run.scenario.requirement)
         return step(both, self.aspect, width_px=self.width_px, limits=limits)
 
 

@@ -6,15 +6,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.plots import style
-from app.plots.units import AUTO, Unit, number, time_unit
-from app.plots.uplot import LABEL_SIZE, Y_SIZE, Curve, Dash, UplotFigure
 from navcore.engine.in_force import damping_in_force
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.notation import unit_sign, with_unit
 from navcore.foundation.parameters import extra_of
 from navcore.foundation.text import Text
 from navcore.law.policy.base import Limit, Measure
+from schuler_bench.plots import style
+from schuler_bench.plots.units import AUTO, Unit, number, time_unit
+from schuler_bench.plots.uplot import LABEL_SIZE, Y_SIZE, Curve, Dash, UplotFigure
 
 MOST_POINTS = 2000
 STATE, XI, MARGIN = "state", "xi", "margin"

@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 from typing import Any
 
-from app.plots.uplot import UplotFigure, stack_heights
-from app.session.shown import Shown
-from app.shell.stack import Stack, room_px
-from app.shell.view import Figures, Frame, PictureView, Tab, if_user
-from app.views.errors.view import error_curves
-from app.views.switching.figure import switched_methods, switching_legend, switching_plots
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
+from schuler_bench.plots.uplot import UplotFigure, stack_heights
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell.stack import Stack, room_px
+from schuler_bench.shell.view import Figures, Frame, PictureView, Tab, if_user
+from schuler_bench.views.errors.view import error_curves
+from schuler_bench.views.switching.figure import switched_methods, switching_legend, switching_plots
 
 _FIRST_ABOVE = "dve"
 _LEAST_PX = 64

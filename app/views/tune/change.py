@@ -2,11 +2,11 @@
 
 from typing import Any
 
-from app.editing.edits import with_network
-from app.shell import notices
-from app.shell.view import Frame
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
+from schuler_bench.editing.edits import with_network
+from schuler_bench.shell import notices
+from schuler_bench.shell.view import Frame
 
 
 def change_network(frame: Frame, index: int, network: dict[str, Any], name: str) -> bool:

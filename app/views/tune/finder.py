@@ -3,17 +3,17 @@
 import math
 from typing import Any
 
-from app.jobs.designer import FrontsTask
-from app.session.display import AXES
-from app.shell import notices
-from app.shell.searching import SearchControls, reveal, show_html
-from app.shell.view import Frame, if_user
-from app.views.tune.change import change_network
-from app.views.tune.fronts import COMMAND, nearest, setting_text
 from navcore.design.pareto import Pareto
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES
+from schuler_bench.jobs.designer import FrontsTask
+from schuler_bench.session.display import AXES
+from schuler_bench.shell import notices
+from schuler_bench.shell.searching import SearchControls, reveal, show_html
+from schuler_bench.shell.view import Frame, if_user
+from schuler_bench.views.tune.change import change_network
+from schuler_bench.views.tune.fronts import COMMAND, nearest, setting_text
 
 ACROSS, UP = "across", "up"
 FIND, STOP = Text("Find the fronts"), Text("Stop finding")

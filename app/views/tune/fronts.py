@@ -3,19 +3,20 @@
 import math
 from typing import Any
 
-from app.plots import style
-from app.plots.effective import earth_mode_text
-from app.plots.plotly_data import PlotlyFigure, figure
-from app.plots.units import number
 from navcore.design.pareto import Pareto, Point
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES
+from schuler_bench.plots import style
+from schuler_bench.plots.effective import earth_mode_text, growth_text
+from schuler_bench.plots.plotly_data import PlotlyFigure, figure
+from schuler_bench.plots.units import number
 
 COMMAND = "front-point"
 """Command with which a click asks for a point: ``front-point x y``, in the units of the axes."""
 _SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "pentagon", "hexagon", "triangle-down")
+_STANDS = Text("does not grow")
 _NEAR = 0.05
 """A click takes the nearest point within this part of both axes."""
 _PAD = 0.06
@@ -57,6 +58,7 @@ def fronts_figure(
     *,
     width_px: float = 940.0,
     note: str = "",
+    growth: float | None = None,
 ) -> PlotlyFigure:
     """Fronts on logarithmic axes.
 
@@ -74,6 +76,8 @@ def fronts_figure(
         Height over width of the figure, and its expected width on screen.
     note : str
         What is to be heeded, above the plot.
+    growth : float or None
+        Of the present whole system, 1/s.
     """
     across, up = (QUANTITIES[name] for name in objectives)
     sizes = across.size, up.size
@@ -84,7 +88,12 @@ def fronts_figure(
         _front(name, points, k, sizes)
         for k, (name, points) in enumerate(fronts.items(), start=_NETWORK_COLORS)
     ]
-    now = style.plain(Text("now: {method}", method=method))
+    grows = growth_text(growth)
+    now = style.plain(
+        Text("now: {method}, {grows}", method=method, grows=grows)
+        if grows
+        else Text("now: {method}", method=method)
+    )
     if present is not None:
         data.append(_present(now, present, sizes))
     ranges = _ranges(found, present, sizes)
@@ -147,10 +156,11 @@ def _front(name: str, points: tuple[Point, ...], index: int, sizes: Pair) -> dic
         "y": [point.values[1] / sizes[1] for point in points],
         "text": [
             Text(
-                "{name}: {setting_text}<br>24 h mode {earth_mode_text}",
+                "{name}: {setting_text}<br>24 h mode {earth_mode_text}<br>whole system {growth}",
                 name=name,
                 setting_text=setting_text(point.network),
                 earth_mode_text=earth_mode_text(point.earth_growth),
+                growth=growth_text(point.growth_per_s) or _STANDS,
             )
             for point in points
         ],
@@ -159,9 +169,14 @@ def _front(name: str, points: tuple[Point, ...], index: int, sizes: Pair) -> dic
         "marker": {
             "color": color,
             "size": 9,
-            "symbol": [f"{full}-open" if point.earth_growth > 0.0 else full for point in points],
+            "symbol": [f"{full}-open" if _grows(point) else full for point in points],
         },
     }
+
+
+def _grows(point: Point) -> bool:
+    """Whether the whole system grows with it, as the law is sampled or its 24 h mode alone."""
+    return point.growth_per_s > 0.0 or point.earth_growth > 0.0
 
 
 def _present(name: str, present: Pair, sizes: Pair) -> dict[str, Any]:
@@ -243,7 +258,7 @@ def _add_floor(layout: dict[str, Any], found: Pareto, ranges: tuple[Pair, Pair],
 def _add_key(layout: dict[str, Any], found: Pareto) -> None:
     """Say above the plot what the open marks and the grey stand for."""
     points = [point for front in found.fronts.values() for point in front]
-    said = [Text("open mark: its 24 h mode grows")] if any(p.earth_growth > 0.0 for p in points) else []
+    said = [Text("open mark: its whole system grows")] if any(map(_grows, points)) else []
     if any(found.floor):
         said.append(Text("grey: below the floor, out of reach of any causal linear damping with the log"))
     if said:

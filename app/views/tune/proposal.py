@@ -1,4 +1,4 @@
-"""The proposal of a search as HTML: each field now and proposed, and what holds the optimum where it is."""
+"""The proposal of a search as HTML: each field now and proposed, what runs say of both, and the limits."""
 
 from __future__ import annotations
 
@@ -6,22 +6,23 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from app.plots.table import cell, row, table
-from app.plots.units import number
-from app.session.requirements import SIGNS
-from navcore.design.measures import read_requirement
 from navcore.design.vary import present, read_varied
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES
+from schuler_bench.jobs.refusals import spoken
+from schuler_bench.plots.limits import requirement_words
+from schuler_bench.plots.table import cell, row, table
+from schuler_bench.plots.units import number
+from schuler_bench.views.tune.confirmation import confirmation_html
 
 if TYPE_CHECKING:
-    from app.jobs.designer import TuningTask
     from navcore.design.tune import Tuned
+    from schuler_bench.jobs.designer import TuningTask
 
 
-def proposal_html(task: TuningTask, tuned: Tuned) -> str:
-    """Table of the present and the proposed setting, the objective, and sentences about the optimum."""
+def proposal_html(task: TuningTask, tuned: Tuned, *, accepted: bool = False) -> str:
+    """Tables of the present and the proposed setting, of their runs, and sentences about the optimum."""
     quantity = QUANTITIES[task.objective]
     label, size = quantity.names.get(tuned.judged, quantity.label), quantity.size
     rows = []
@@ -42,11 +43,12 @@ def proposal_html(task: TuningTask, tuned: Tuned) -> str:
         number(tuned.objective / size, 4),
         "" if tuned.floor is None else Text("floor {floor}", floor=number(tuned.floor / size, 4)),
     ]
-    method = task.scenario.method[int(task.vary[0].split(".")[1])].name
+    method = task.scenario.method[task.method].name
+    title = Text("Accepted for {method}", method=method) if accepted else None
     head = (
-        Text("Proposal for {method}", method=method),
-        Text("now"),
-        Text("proposed"),
+        title or Text("Proposal for {method}", method=method),
+        Text("before") if accepted else Text("now"),
+        Text("after") if accepted else Text("proposed"),
         Text("range within 5 % of the best"),
     )
     settings = table([_row(head, "th")], [_row(cells) for cells in (*rows, objective)])
@@ -55,7 +57,10 @@ def proposal_html(task: TuningTask, tuned: Tuned) -> str:
     )
     listed = Text("<ul>{sentences}</ul>", sentences=sentences) if sentences else ""
     return Text(
-        '<div class="sb-table sb-proposal">{settings}{listed}</div>', settings=settings, listed=listed
+        '<div class="sb-table sb-proposal">{settings}{runs}{listed}</div>',
+        settings=settings,
+        runs=confirmation_html(task, tuned),
+        listed=listed,
     )
 
 
@@ -89,32 +94,22 @@ def sentences_about(task: TuningTask, tuned: Tuned) -> list[str]:
                 more=more,
             )
         )
-    return [*sentences, *tuned.warnings]
+    if tuned.default_limits:
+        kept = Text.joined(", ", map(requirement_words, tuned.default_limits))
+        sentences.append(Text("Kept by default: {kept}.", kept=kept))
+    return [*sentences, *(spoken(text) for text in tuned.warnings if text not in _doubts(task, tuned))]
 
 
-def requirement_words(text: str) -> str:
-    """Limit as the tab Requirements has it.
-
-    Examples
-    --------
-    >>> requirement_words("settling_s<=3600")
-    'settling ≤ 60 min'
-    """
-    requirement = read_requirement(text)
-    return limit_words(requirement.name, requirement.limit)
+def doubts(task: TuningTask, tuned: Tuned) -> list[str]:
+    """Say what speaks against the proposal in its runs."""
+    if tuned.confirmed is None:
+        return [Text("No run has confirmed this setting.")]
+    return [spoken(text) for text in _doubts(task, tuned)]
 
 
-def limit_words(key: str, limit: float) -> str:
-    """Limit (SI) of a quantity as the tab Requirements has it."""
-    quantity = QUANTITIES[key]
-    value = number(limit / quantity.size, 4)
-    return Text(
-        "{label} {signs} {value} {shown}",
-        label=quantity.label,
-        signs=SIGNS[quantity.sense],
-        value=value,
-        shown=quantity.shown,
-    ).rstrip()
+def _doubts(task: TuningTask, tuned: Tuned) -> list[str]:
+    verdict = "" if tuned.confirmed is None else tuned.confirmed.verdict(task.objective)
+    return [verdict] if verdict else []
 
 
 def _row(cells: Sequence[str], tag: str = "td") -> str:

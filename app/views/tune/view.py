@@ -2,17 +2,17 @@
 
 from typing import Any
 
-from app.plots.plotly_data import PlotlyFigure
-from app.session.shown import Shown
-from app.shell.layout import CHOOSER_PX, TOOLS
-from app.shell.plotly_view import PlotlyView
-from app.shell.view import Figures, Frame, if_user
-from app.views.tune.finder import FrontsPanel
-from app.views.tune.fronts import fronts_figure
-from app.views.tune.setting import SettingPanel
 from navcore.design.pareto import Pareto, measured
 from navcore.engine.run import Run
 from navcore.foundation.text import Text
+from schuler_bench.plots.plotly_data import PlotlyFigure
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell.layout import CHOOSER_PX, TOOLS
+from schuler_bench.shell.plotly_view import PlotlyView
+from schuler_bench.shell.view import Figures, Frame, if_user
+from schuler_bench.views.tune.finder import FrontsPanel
+from schuler_bench.views.tune.fronts import fronts_figure
+from schuler_bench.views.tune.setting import SettingPanel
 
 SEARCH_FOR = Text("search for")
 SEARCHES = {Text("the best setting"): "setting", Text("Pareto fronts"): "fronts"}
@@ -96,6 +96,7 @@ class TuneView(PlotlyView):
             self.aspect,
             width_px=self.width_px,
             note=self._finder.note,
+            growth=found.run.methods[min(index, len(found.run.methods) - 1)].growth_per_s,
         )
 
     def picture(self, found: Shown) -> PlotlyFigure:

@@ -1,12 +1,12 @@
 """Above the tabs: verify the scenario with the full strapdown, progress, stop, and what came out."""
 
-from app.jobs.verifier import Verifier
-from app.shell import notices
-from app.shell.searching import reveal, show_html
-from app.shell.view import Frame, Tab, View
-from app.views.metrics.table import verdict
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.jobs.verifier import Verifier
+from schuler_bench.shell import notices
+from schuler_bench.shell.searching import reveal, show_html
+from schuler_bench.shell.view import Frame, Tab, View
+from schuler_bench.views.metrics.table import verdict
 
 VERIFY, STOP = Text("Verify with full strapdown"), Text("Stop verifying")
 _ORDER = 13.5

@@ -66,7 +66,8 @@ def unchanged_methods(scenario: Scenario, before: Run | None) -> tuple[MethodRun
 
 
 def _shared(scenario: Scenario) -> Scenario:
-    return scenario.model_copy(update={"method": (), "title": "", "source": ""})
+    begins = tuple(sorted({one.from_h for one in scenario.requirement} - {0.0}))
+    return scenario.model_copy(update={"method": (), "title": "", "source": "", "requirement": begins})
 
 
 def run_methods(

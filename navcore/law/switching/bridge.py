@@ -209,7 +209,8 @@ class Bridge(SwitchingParameters):
     """Bridge what the log cannot be trusted for by an estimate of the velocity error (theory.md 12).
 
     The damping acts only on an oscillation that stands out of the noise, goes on while the policy wants none,
-    and takes up the log again when its old level has come back, or its new one has stayed for 15 min.
+    and takes up the log again when its old level has come back, or its new one has stayed for 15 min. It is
+    for a log that changes: with outages it is no better than hard, with nothing to switch it is often worse.
     """
 
     needs_log: ClassVar[str] = Text('estimates the error of a log: needs damping = "external"')

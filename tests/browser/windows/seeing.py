@@ -6,10 +6,10 @@ from functools import lru_cache
 
 from playwright.sync_api import Locator
 
-from app.editing import form
-from app.views.learn.lessons import lessons
 from navcore.foundation.parameters import Parameters
 from navcore.scenario.file import load, presets
+from schuler_bench.editing import form
+from schuler_bench.views.learn.lessons import lessons
 from tests.browser.driver import Bench
 
 CHINESE = re.compile("[\u4e00-\u9fff]")

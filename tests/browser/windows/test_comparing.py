@@ -5,10 +5,9 @@ from itertools import combinations
 
 import pytest
 
-from app.editing import edits
-from app.session.pins import MOST_PINS
-from app.session.requirements import Requirements
-from app.shell.layout import layout_for
+from schuler_bench.editing import edits
+from schuler_bench.session.pins import MOST_PINS
+from schuler_bench.shell.layout import layout_for
 from tests.browser.driver import SIZES, Bench
 from tests.browser.fields import label_of
 from tests.browser.test_page_layout import wait_until_it_fits
@@ -114,7 +113,7 @@ def test_a_pin_is_renamed_hidden_gone_back_to_and_removed(pinned: Bench) -> None
 
 def test_pins_stand_in_one_table_that_sorts_and_judges(pinned: Bench) -> None:
     page, session = pinned.page, pinned.session
-    pinned.show(requirements=Requirements(settling_min=1.0))
+    pinned.require(settling_s=1.0)
     table = see(pinned, page.locator(".sb-pins table"))
     text = read(pinned, table)
     measured = (
@@ -135,7 +134,7 @@ def test_pins_stand_in_one_table_that_sorts_and_judges(pinned: Bench) -> None:
 
 
 def test_requirements_judge_pins(pinned: Bench) -> None:
-    pinned.show(requirements=Requirements(settling_min=1.0))
+    pinned.require(settling_s=1.0)
     pinned.tab("Requirements")
     read(pinned, pinned.page.locator(".sb-verdicts th", has_text="ζ"))
     read(pinned, pinned.page.locator(".sb-verdicts table"))

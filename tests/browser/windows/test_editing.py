@@ -7,9 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.editing import edits
 from navcore.analysis import analyse
+from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
+from schuler_bench.editing import edits
+from schuler_bench.shell.control import EXACT
 from tests.browser.driver import SIZES, Bench
 from tests.browser.patience import THROTTLE_MS
 from tests.browser.placing import NEAR, centre, drag, pair, place, pole, ring_at, spot
@@ -61,8 +63,9 @@ def test_a_pole_is_dragged(window: Bench) -> None:
     undone(window, before)
     window.close_notices()
     window.select(0)
-    why = window.said("No handle for fixed: its coefficients are fixed.")
-    window.page.get_by_text(why).locator("visible=true").wait_for()
+    reason = Text("its coefficients are fixed")
+    why = Text("No handle for {name}: {reason}.", name="fixed", reason=reason)
+    window.page.get_by_text(window.said(why)).locator("visible=true").wait_for()
     assert window.page.locator(".sb-handle:visible").count() == 0
 
 
@@ -199,5 +202,7 @@ def test_a_list_of_log_events_is_pasted(window: Bench) -> None:
     window.page.evaluate("look.pasted", "[[reference.event]]\nt_h = 1.0\n\n[[reference.event]]\nt_h = 2.5\n")
     window.wait_until(lambda: [e.t_h for e in window.session.scenario.reference.event] == [1.0, 2.5])
     window.settle()
-    assert see(window, window.box("event 2 begins (h), exact")).input_value() == "2.5"
+    parts = Text("{name} {i}", name="event", i=2), "begins", Text("({sign})", sign="h")
+    begins = Text.joined(" ", parts) + EXACT
+    assert see(window, window.box(begins)).input_value() == "2.5"
     assert "t_h = 2.5" in copied(window)

@@ -6,13 +6,14 @@ from typing import Any
 
 import pytest
 
-from app.session.requirements import Requirements, verdicts
-from app.session.shown import window_of
-from app.views.errors.view import OWN_NOISE
-from app.views.learn.lessons import MISSING, lessons
-from app.views.metrics.table import verdict
-from app.views.verification.view import VERIFY
+from navcore.foundation.text import Text
 from navcore.scenario.file import load
+from schuler_bench.session.requirements import verdicts
+from schuler_bench.session.shown import window_of
+from schuler_bench.views.errors.view import OWN_NOISE
+from schuler_bench.views.learn.lessons import MISSING, lessons
+from schuler_bench.views.metrics.table import verdict
+from schuler_bench.views.verification.view import VERIFY
 from tests.browser import test_page_lessons as learning
 from tests.browser import test_page_scene as playing
 from tests.browser.driver import Bench
@@ -60,8 +61,8 @@ def test_a_verification_leaves_the_curves_of_the_run(window: Bench) -> None:
     before, number = window.curves(), window.run
     see(window, window.button(VERIFY)).click()
     window.wait_until(lambda: verifier.result is not None, 120.0)
-    told = window.said(f"Verified. {verdict(verifier.result)}")
-    read(window, page.locator(".sb-note:visible", has_text=told))
+    verified = Text("Verified. {verdict}", verdict=verdict(verifier.result))
+    read(window, page.locator(".sb-note:visible", has_text=window.said(verified)))
     assert (window.curves(), window.run) == (before, number) and not any(page.evaluate("look.dashed"))
     window.choose("curves", "Verification")
     page.wait_for_function("() => look.dashed().some(lines => lines.length === 3)")
@@ -112,12 +113,6 @@ def test_errors_are_measured_after_settling(window: Bench) -> None:
     note = page.locator(".sb-note:visible", has_text=window.said(measured.told))
     read(window, note)
     page.wait_for_function("old => document.querySelector('.sb-table table').innerText !== old", arg=whole)
-    window.tab("Requirements")
-    note.first.wait_for()
-    wanted = verdicts(measured.run, session.display.requirements)
-    (velocity,) = [one for one in wanted if one.name == "velocity_rms_mps"]
-    assert [value for value, *_ in cells(window, "velocity_rms_mps")] == pytest.approx(velocity.measured)
-    window.tab("Metrics")
     window.choose("errors over", "chosen hours")
     page.get_by_label(window.said("measured from (h)")).wait_for()
     window.choose("errors over", "the whole run")
@@ -126,7 +121,7 @@ def test_errors_are_measured_after_settling(window: Bench) -> None:
 
 def test_a_velocity_is_required(window: Bench) -> None:
     window.tab("Requirements")
-    wait_for(window, "settling_min", ["", "", ""])
+    wait_for(window, "settling_s", ["", "", ""])
     limits = {
         "velocity RMS per axis of this run ≤ (m/s)": "0.1",
         "settling ≤ (min)": "90",
@@ -135,14 +130,23 @@ def test_a_velocity_is_required(window: Bench) -> None:
     see(window, box(window, "velocity RMS per axis of this run ≤ (m/s)"))
     for label, text in limits.items():
         ask(window, label, text)
-    wanted = Requirements(velocity_rms_mps=0.1, settling_min=90.0, position_rms_m=1.0)
-    assert window.session.display.requirements == wanted
+    wanted = window.session.scenario.requirement
+    assert [(one.quantity, one.limit) for one in wanted] == [
+        ("velocity_rms_mps", 0.1),
+        ("settling_s", 5400.0),
+        ("position_rms_m", 1.0),
+    ]
     for judged in verdicts(window.session.run, wanted):
-        if getattr(wanted, judged.name) is not None:
-            wait_for(window, judged.name, [("missed", "met")[met] for met in judged.passed])
-        values = [value for value, *_ in cells(window, judged.name)]
+        key = judged.quantity.key
+        if judged.limit is not None:
+            wait_for(window, key, [("missed", "met")[met] for met in judged.passed])
+        values = [value for value, *_ in cells(window, key)]
         assert values == pytest.approx(list(judged.measured), rel=1e-6, nan_ok=True)
-    wait_for(window, "settling_min", ["missed", "met", "missed"])
+    wait_for(window, "settling_s", ["missed", "met", "missed"])
+    # the share of seeds stands beside the tick
+    share = window.page.locator(".sb-share").first
+    share.wait_for(timeout=120_000)
+    assert " %" in share.inner_text()
     # in words, not by colour alone
     assert "✗" in cells(window, "position_rms_m")[0][2]
     for place in range(3):
@@ -161,7 +165,7 @@ def test_a_plot_of_a_switching_that_is_not_there_is_not_saved(window: Bench) -> 
 
 
 def test_a_limit_of_settling_is_one_edge_in_the_pole_map(window: Bench) -> None:
-    window.show(requirements=Requirements(settling_min=90.0, damping_ratio=0.5))
+    window.require(settling_s=90.0, damping_ratio=0.5)
     window.tab("Poles")
     settling = window.said("settling")
     window.page.wait_for_function("name => look.shapes().some(s => s[0] === name)", arg=settling)

@@ -9,11 +9,11 @@ from xml.etree import ElementTree
 import pytest
 import viser
 
-import app.shell
-from app.http.server import start
-from app.shell.layout import WIDE_FROM_PX
-from app.views import load
+import schuler_bench.shell
 from navcore.scenario.model import Scenario
+from schuler_bench.http.server import start
+from schuler_bench.shell.layout import WIDE_FROM_PX
+from schuler_bench.views import load
 from tests.browser.driver import Bench
 from tests.browser.patience import THROTTLE_MS
 from tests.browser.placing import place, ring_at
@@ -21,7 +21,7 @@ from tests.browser.test_page_layout import wait_until_it_fits
 from tests.browser.test_page_state import away_from_text
 from tests.browser.windows.seeing import read, see, speaks
 
-STATIC = Path(app.shell.__file__).parent / "static"
+STATIC = Path(schuler_bench.shell.__file__).parent / "static"
 NAME = "<b>\u963b\u5c3c</b>"
 DRAWING_MS = 300_000
 """A dozen plots are drawn one after the other: on a busy machine each takes seconds."""

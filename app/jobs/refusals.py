@@ -1,0 +1,41 @@
+"""Why a search has no proposal: boxes and names of the page in place of options and keys."""
+
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
+from navcore.quantities import QUANTITIES
+from schuler_bench.jobs.words import for_a_page
+from schuler_bench.plots.limits import amount, requirement_words
+
+OBJECTIVE, VARY = Text("tune for"), Text("what may vary")
+_BOXES = {"--objective": OBJECTIVE, "--vary": VARY}
+
+
+def refusals(error: InputError) -> tuple[str, ...]:
+    """One sentence a fault."""
+    return tuple(_sentence(fault) for fault in for_a_page(error).faults)
+
+
+def _sentence(fault: Fault) -> str:
+    reason = spoken(fault.allowed)
+    if fault.field == "--require":
+        limit = requirement_words(str(fault.value))
+        return Text("Limit {limit}: {reason}.", limit=limit, reason=reason)
+    box = _BOXES.get(fault.field)
+    return str(fault) if box is None else Text("Box “{box}”: {reason}.", box=box, reason=reason)
+
+
+def spoken(text: str) -> str:
+    """Replace the keys of quantities in a text by their names on the page, and their values by its units.
+
+    Examples
+    --------
+    >>> spoken(Text("{name} comes to", name="settling_s"))
+    'settling comes to'
+    """
+    if not isinstance(text, Text):
+        return QUANTITIES[text].label if text in QUANTITIES else text
+    values = text.values
+    if "quantity" in values and "si" in values:
+        return amount(values["quantity"], values["si"])
+    said = {name: spoken(value) if isinstance(value, str) else value for name, value in values.items()}
+    return Text(*text.forms, **said)

@@ -1,0 +1,176 @@
+"""Which methods meet the limits, and with what probability: one row a method, as HTML."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from navcore.design.designs import Designs
+from navcore.design.shares import Limit
+from navcore.engine.run import Run
+from navcore.foundation.notation import symbol
+from navcore.foundation.text import Text, quoted
+from navcore.quantities import QUANTITIES, limit_unit
+from navcore.scenario.method import Method
+from schuler_bench.jobs.judge import Odds
+from schuler_bench.plots.limits import SIGNS, amount, short_label
+from schuler_bench.plots.table import cell, row, table
+from schuler_bench.plots.units import number
+from schuler_bench.session.requirements import limits_of, verdicts
+from schuler_bench.views.requirements.shares import share_text
+from schuler_bench.views.tune.fronts import setting_text
+
+TAKE_DESIGN = "take-design"
+"""Command that puts a design into the method that is edited: ``take-design 3``, its place."""
+NO_LIMITS = Text(
+    "This scenario has no limits yet. Give what the ship needs, such as the largest tilt, in the tab "
+    "Requirements; this table then says which methods meet it, and with what probability."
+)
+_TAKE, _TAKE_HINT = Text("Take"), Text("Put it into the method that is edited; undo takes it back.")
+_UNDER_WAY = Text("runs are under way")
+_HEADS = (
+    Text("method"),
+    Text("setting"),
+    Text("meets all limits (95 % interval)"),
+    Text("limit that fails most often"),
+    Text("this run"),
+)
+
+
+@dataclass(frozen=True)
+class Line:
+    """One row.
+
+    Attributes
+    ----------
+    method : Method
+        With its setting.
+    odds : Odds or None
+        How often its seeds meet the limits; None while that is not known.
+    run : str
+        What it makes of the limits in the run that is shown; empty for a method that is not in it.
+    place : int or None
+        Of a design that can be taken.
+    """
+
+    method: Method
+    odds: Odds | None
+    run: str = ""
+    place: int | None = None
+
+
+def designs_html(
+    run: Run, odds: Callable[[Method], Odds | None], found: Designs | None, note: str = ""
+) -> str:
+    """Table of the scenario's methods and of the designs that were found, best first.
+
+    Parameters
+    ----------
+    run : Run
+        Of the scenario, which has limits.
+    odds : callable
+        Shares of its methods.
+    found : Designs or None
+        Of the same scenario.
+    note : str
+        HTML above the table.
+    """
+    if not run.scenario.requirement:
+        link = Text('<button class="sb-sort" data-command="tab Requirements">Requirements</button>')
+        return Text('<p class="sb-none">{words:html} {link}</p>', words=NO_LIMITS, link=link)
+    own = [
+        Line(method.method, odds(method.method), said)
+        for method, said in zip(run.methods, _in_run(run), strict=True)
+    ]
+    head = row(cell(quoted(text), tag="th") for text in _HEADS)
+    body = [_title(Text("Methods of this scenario")), *map(_line, own)]
+    if found is not None:
+        designs = [
+            Line(share.method, Odds(share, found.seeds), "", place)
+            for place, share in enumerate(found.methods)
+        ]
+        title = Text("Every network, tuned for these limits, and a Kalman filter")
+        body += [_title(title), *map(_line, designs)]
+    limits = limits_of(run.scenario.requirement)
+    asked = Text.joined(", ", (_words(key, limit) for key, limit in limits.items()))
+    said = Text("Limits: {asked}.", asked=asked)
+    told = Text('<p class="sb-asked-limits">{asked:html}</p>', asked=said)
+    return note + told + table([head], body, "sb-designs")
+
+
+def _words(key: str, limit: float) -> str:
+    name, sign = short_label(key), SIGNS[QUANTITIES[key].sense]
+    return Text("{label} {sign} {amount}", label=name, sign=sign, amount=amount(key, limit))
+
+
+def _title(text: str) -> str:
+    return row([cell(quoted(text), "sb-title", colspan=len(_HEADS))])
+
+
+def _in_run(run: Run) -> list[str]:
+    """What the run makes of the limits, a method: its answer to a slider, before any seed is run."""
+    asked = [verdict for verdict in verdicts(run, run.scenario.requirement) if verdict.limit is not None]
+    said = []
+    for k in range(len(run.methods)):
+        missed = [short_label(verdict.quantity.key) for verdict in asked if not verdict.passed[k]]
+        names = Text.joined(", ", missed)
+        word = Text("✗ misses {missed}", missed=names) if missed else Text("✓ meets all")
+        said.append(cell(quoted(word), "sb-missed" if missed else "sb-met", tag="span"))
+    return said
+
+
+def _line(line: Line) -> str:
+    method, odds = line.method, line.odds
+    if odds is None:
+        share, worst = cell(quoted(_UNDER_WAY), "sb-muted", tag="span"), ""
+    else:
+        one = odds.share
+        share = cell(
+            quoted(share_text(one.met, one.low, one.high)),
+            "sb-met" if one.met >= 0.5 else "sb-missed",
+            tag="span",
+            title=Text("{seeds} seeds, each with its own noise and constants", seeds=odds.seeds),
+        )
+        worst = _worst(one.limits, one.diverged)
+    button = ""
+    if line.place is not None:
+        button = Text(
+            '<button class="sb-take" data-command="{command} {place}" title="{hint:html}">'
+            "{take:html}</button>",
+            command=TAKE_DESIGN,
+            place=line.place,
+            hint=_TAKE_HINT,
+            take=_TAKE,
+        )
+    cells = (
+        cell(quoted(method.label()), "sb-all"),
+        cell(quoted(design_text(method))),
+        cell(share),
+        cell(quoted(worst), "sb-w"),
+        cell(line.run or button, "sb-w"),
+    )
+    return row(cells, data_design=method.label(), data_met="" if odds is None else f"{odds.share.met:g}")
+
+
+def design_text(method: Method) -> str:
+    """Setting of a method in a few words."""
+    if method.undamped or not method.kind.uses_network:
+        return symbol(method.damping)
+    return setting_text(method.network.model_dump(exclude_none=True))
+
+
+def _worst(limits: Sequence[Limit], diverged: int) -> str:
+    worst = min(limits, key=lambda limit: limit.met)
+    if worst.met >= 1.0:
+        return Text("none")
+    one = worst.requirement
+    row_ = QUANTITIES[one.quantity]
+    unit = limit_unit(one.quantity) / row_.size
+    middle = Text("no value") if worst.median is None else number(worst.median * unit, 3)
+    words = Text(
+        "{label}: median {median}, limit {sign} {limit} {unit}",
+        label=short_label(one.quantity),
+        median=middle,
+        sign=SIGNS[one.sense],
+        limit=number(one.limit * unit, 4),
+        unit=row_.shown,
+    )
+    return Text("{words}; {lost} seeds diverge", words=words, lost=diverged) if diverged else words

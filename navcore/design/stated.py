@@ -1,0 +1,59 @@
+"""Standard deviations of constants: which field states each of them, and which are stated in no way."""
+
+from navcore.scenario.model import Scenario
+
+_STATED = (
+    ("imu", "gyro_bias_std_dph", "gyro_bias_dph"),
+    ("imu", "accel_bias_std_ug", "accel_bias_ug"),
+    ("reference", "bias_std_mps", "bias_mps"),
+    ("initial_error", "level_std_arcmin", "attitude_arcmin"),
+    ("initial_error", "heading_std_arcmin", "attitude_arcmin"),
+    ("initial_error", "velocity_std_mps", "velocity_mps"),
+    ("initial_error", "position_std_arcsec", "position_arcsec"),
+)
+"""Block, field of a standard deviation, and field of the numbers whose sizes take its place."""
+_SOURCES = (
+    "gyro_bias",
+    "accel_bias",
+    "log_bias",
+    "initial_tilt",
+    "initial_heading",
+    "initial_velocity",
+    "initial_position",
+)
+"""Sources of the error budget in the same order."""
+
+
+def assumed_zero(scenario: Scenario, steady: bool = False) -> tuple[str, ...]:
+    """Fields of standard deviations that the scenario states in no way, so that 0 is assumed.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Complete and checked.
+    steady : bool
+        True for the steady state, which no initial error reaches.
+    """
+    fields = []
+    for block, deviation, number in _STATED:
+        settings = getattr(scenario, block)
+        recorded = block == "imu" and settings.file is not None
+        if recorded or (block == "reference" and settings.kind != "log"):
+            continue
+        if steady and block == "initial_error":
+            continue
+        if getattr(settings, deviation) is None and number not in settings.model_fields_set:
+            fields.append(f"{block}.{deviation}")
+    return tuple(fields)
+
+
+def fields_of_sources(scenario: Scenario) -> dict[str, str]:
+    """Field of the scenario that gives the size of each source of the error budget."""
+    fields = {}
+    for source, (block, deviation, number) in zip(_SOURCES, _STATED, strict=True):
+        given = getattr(getattr(scenario, block), deviation) is not None
+        fields[source] = f"{block}.{deviation if given else number}"
+    for block, settings in {"imu": scenario.imu, "reference": scenario.reference}.items():
+        for part in settings.all_parts():
+            fields.setdefault(part.source, f"{block}.{part.fields[0]}")
+    return fields

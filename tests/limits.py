@@ -1,0 +1,25 @@
+"""Requirements for tests, by key and in the units in which the page shows them."""
+
+from dataclasses import replace
+
+from navcore.engine.run import Run
+from navcore.quantities import QUANTITIES, limit_unit
+from navcore.scenario.file import scenario_hash
+from navcore.scenario.requirement import Requirement
+
+
+def limits(**shown: float) -> tuple[Requirement, ...]:
+    """One block a quantity."""
+    return tuple(_limit(key, value) for key, value in shown.items())
+
+
+def _limit(key: str, value: float) -> Requirement:
+    row = QUANTITIES[key]
+    named = "at_least" if row.sense == ">=" else "at_most"
+    return Requirement.model_validate({"quantity": key, named: value * row.size / limit_unit(key)})
+
+
+def under(run: Run, **shown: float) -> Run:
+    """Give a run's scenario these requirements."""
+    scenario = run.scenario.model_copy(update={"requirement": limits(**shown)})
+    return replace(run, scenario=scenario, scenario_sha256=scenario_hash(scenario))

@@ -1,0 +1,114 @@
+"""From limits to designs in the page: shares of seeds in the background, the table, and taking a design."""
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from navcore.design.designs import Designs, designs
+from navcore.engine.simulation import simulate
+from navcore.foundation.errors import InputError
+from navcore.scenario.file import load
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
+from schuler_bench.editing.edits import with_design, with_value
+from schuler_bench.editing.limits import with_limit
+from schuler_bench.jobs import judge
+from schuler_bench.jobs.designer import Limits
+from schuler_bench.jobs.judge import Judge, Odds
+from schuler_bench.views.design.limits import designs_html
+
+
+@pytest.fixture(scope="module")
+def ship() -> Scenario:
+    """Two hours under way, with a limit that some seeds meet."""
+    scenario = load("sikuliaq-like", ["run.duration_h=2", "initial_error.level_std_arcmin=0.1"])
+    return with_limit(with_limit(scenario, "tilt_max_arcsec", "12"), "settling_s", "200")
+
+
+@pytest.fixture
+def judging(monkeypatch: pytest.MonkeyPatch) -> Any:
+    monkeypatch.setattr(judge, "FEW", 4)
+    monkeypatch.setattr(judge, "SEEDS", 12)
+    told: list[int] = []
+    one = Judge(lambda: told.append(1), still_s=0.0)
+    yield one
+    one.stop()
+
+
+def shares(found: Designs) -> list[tuple[str, float]]:
+    return sorted((share.method.label(), share.met) for share in found.methods)
+
+
+def test_shares_are_those_of_the_command_and_a_method_that_stays_is_not_run_again(
+    judging: Judge, ship: Scenario
+) -> None:
+    judging.follow(ship)
+    assert judging.wait_idle(120.0)
+    odds = [judging.odds(ship, method) for method in ship.method]
+    wanted = designs(ship, 12, as_set=True)
+    found = sorted((one.share.method.label(), one.share.met) for one in odds if one is not None)
+    assert found == shares(wanted) and {one.seeds for one in odds if one is not None} == {12}
+    changed = with_value(ship, ("method", 2, "network", "zeta"), 0.6)
+    assert judging.odds(changed, changed.method[2]) is None
+    judging.follow(changed)
+    assert judging.wait_idle(120.0)
+    assert judging.asked is not None and [m.name for m in judging.asked.scenario.method] == ["complementary"]
+    assert judging.odds(changed, changed.method[1]) is odds[1]
+    # other limits, other shares
+    stricter = with_limit(changed, "tilt_max_arcsec", "1")
+    assert judging.odds(stricter, stricter.method[1]) is None
+
+
+def test_without_a_limit_nothing_is_judged_and_a_wrong_one_is_refused_in_words(
+    judging: Judge, ship: Scenario
+) -> None:
+    judging.follow(ship.model_copy(update={"requirement": ()}))
+    assert judging.wait_idle(10.0) and judging.asked is None and judging.under_way is None
+    late = ship.requirement[0].model_copy(update={"from_h": 5.0})
+    judging.follow(ship.model_copy(update={"requirement": (late,)}))
+    assert judging.wait_idle(60.0)
+    assert "requirement.0.from_h = 5.0: must be <= 2 (h), the end of the run" in judging.words
+
+
+def test_the_table_has_a_row_a_method_with_share_limit_and_this_run(ship: Scenario) -> None:
+    run = simulate(ship)
+    found = designs(ship, 6, as_set=True)
+    by_name = {share.method.name: Odds(share, found.seeds) for share in found.methods}
+    html = designs_html(run, lambda method: by_name.get(method.name), found)
+    rows = re.findall(r'<tr data-design="(.*?)" data-met="(.*?)">(.*?)</tr>', html)
+    assert [name for name, _, _ in rows[:3]] == [method.name for method in ship.method]
+    assert [float(met) for _, met, _ in rows[:3]] == [by_name[m.name].share.met for m in ship.method]
+    assert "largest tilt: median " in rows[0][2] and ", limit ≤ 12 arcsec" in rows[0][2]
+    assert "✗ misses largest tilt, settling" in rows[0][2]
+    assert "ζ = 0.5, η = 0.5" in rows[2][2]
+    assert [f"take-design {k}" in rows[3 + k][2] for k in range(3)] == [True] * 3
+    assert "Limits: largest tilt ≤ 12 arcsec, settling ≤ 200 min." in html
+    # the answer to a slider, before a seed is run
+    bare = designs_html(run, lambda _: None, None)
+    assert bare.count("runs are under way") == 3 and "✗ misses" in bare
+    none = replace(run, scenario=ship.model_copy(update={"requirement": ()}))
+    assert "This scenario has no limits yet." in designs_html(none, lambda _: None, None)
+
+
+def test_a_design_takes_the_place_of_the_edited_method_or_stands_behind_a_free_one(ship: Scenario) -> None:
+    kalman = Method(name="kalman", damping="kalman")
+    changed, at = with_design(ship, 2, kalman)
+    assert at == 2 and [m.name for m in changed.method] == ["free", "classic2", "kalman"]
+    changed, at = with_design(ship, 0, ship.method[1])
+    assert at == 1
+    assert [m.name for m in changed.method] == ["free", "classic2 2", "classic2", "complementary"]
+    with pytest.raises(InputError):
+        with_design(ship.model_copy(update={"method": ship.method[:1] * 8}), 0, kalman)
+
+
+def test_designs_are_of_one_ship_and_its_limits(ship: Scenario) -> None:
+    limits = Limits(lambda: None)
+    try:
+        limits.result, limits.asked = Designs(1, (), ()), ship
+        changed = with_value(ship, ("method", 2, "network", "zeta"), 0.6)
+        assert limits.beside(changed) is limits.result
+        assert limits.beside(with_limit(ship, "tilt_max_arcsec", "1")) is None
+    finally:
+        limits.stop()

@@ -1,0 +1,79 @@
+"""Figures that would have to be better: applied, they bring the median of runs to its limit."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from navcore.design.designs import Designs, designs
+from navcore.design.needed import Needed
+from navcore.scenario.file import to_toml
+from navcore.scenario.model import Scenario
+from schuler_bench.cli import main
+
+SEEDS = 60
+SHIP: dict[str, Any] = {
+    "run": {"duration_h": 6.0, "step_s": 5.0, "seed": 3},
+    "imu": {"gyro_bias_std_dph": 0.01, "accel_bias_std_ug": 50.0, "gyro_arw_dpsh": 0.001},
+    "reference": {"kind": "log", "noise_mps": 0.1, "bias_std_mps": 0.01},
+    "initial_error": {"level_std_arcmin": 0.05},
+    "method": [{"name": "damped", "damping": "external", "network": {"id": "complementary"}}],
+    "requirement": [
+        {"quantity": "tilt_max_arcsec", "at_most": 8.0, "from_h": 2.0},
+        {"quantity": "velocity_rms_mps", "at_most": 0.2, "from_h": 2.0},
+    ],
+}
+
+
+def judged(**blocks: Any) -> Designs:
+    """Method as set, with blocks exchanged."""
+    return designs(Scenario.parse({**SHIP, **blocks}), SEEDS, as_set=True)
+
+
+def of(found: Designs, quantity: str | None, *figures: str) -> Needed:
+    """Entry for a limit and these figures."""
+    return next(one for one in found.needed if one.quantity == quantity and one.figures == figures)
+
+
+def test_better_figures_bring_the_median_to_its_limit() -> None:
+    """The accelerometers' bias for the tilt, the gyros' for the velocity; neither is enough for both."""
+    found = judged()
+    assert not found.met
+    accel = of(found, "tilt_max_arcsec", "imu.accel_bias_std_ug").factor
+    gyro = of(found, "velocity_rms_mps", "imu.gyro_bias_std_dph").factor
+    assert 1.2 < accel < 10.0 and 1.2 < gyro < 10.0
+    assert not any(one.quantity is None and len(one.figures) == 1 for one in found.needed)
+    better = {**SHIP["imu"], "gyro_bias_std_dph": 0.01 / gyro, "accel_bias_std_ug": 50.0 / accel}
+    tilt, velocity = judged(imu=better).methods[0].limits
+    assert tilt.ratio == pytest.approx(1.0, abs=0.06)
+    assert velocity.ratio == pytest.approx(1.0, abs=0.06)
+
+
+def test_all_figures_together_are_enough() -> None:
+    """Each of them smaller by one factor: the errors of a linear model are so too."""
+    found = judged()
+    together = max(found.needed, key=lambda one: (one.quantity is None, len(one.figures)))
+    worst = max(limit.ratio for limit in found.methods[0].limits)
+    assert together.quantity is None and len(together.figures) == 6
+    assert together.factor == pytest.approx(worst, rel=0.03)
+
+
+def test_limits_of_the_setting_are_no_matter_of_sensors() -> None:
+    """Nothing is said where the setting itself misses one, nor where the limits are met."""
+    settling = [*SHIP["requirement"], {"quantity": "settling_s", "at_most": 10.0}]
+    assert judged(requirement=settling).needed == ()
+    wide = [{"quantity": "tilt_max_arcsec", "at_most": 500.0}]
+    met = judged(requirement=wide)
+    assert met.met and met.needed == ()
+
+
+def test_the_command_names_figure_factor_and_method(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Beside what each limit is met on by itself."""
+    path = tmp_path / "ship.toml"
+    path.write_text(to_toml(Scenario.parse(SHIP)))
+    assert main(["design", str(path), "--as-set", "--seeds", "20"]) == 0
+    text = capsys.readouterr().out
+    assert "each limit by itself" in text
+    assert "  tilt_max_arcsec: imu.accel_bias_std_ug " in text and "times better (damped)" in text
