@@ -232,7 +232,7 @@ def work() -> None:
     from schuler_bench.http.server import Inner
     from schuler_bench.serve import open_dashboard
 
-    begin_logging()
+    begin_logging(to_file=False)
     bound_arenas()
     settings = Settings(**json.loads(sys.stdin.readline()))
     server, dashboard = open_dashboard(

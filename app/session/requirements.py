@@ -44,9 +44,14 @@ class Verdict:
 
 def verdicts(run: Run, requirements: Sequence[Requirement]) -> tuple[Verdict, ...]:
     """Judge every method by every limit in order, then measure what has no limit."""
-    asked = {one.quantity for one in requirements}
-    limits = [_limited(run, one) for one in requirements]
-    return *limits, *(_measured(run, QUANTITIES[key]) for key in BOXES if key not in asked)
+    limited = {one.quantity for one in requirements}
+    rest = (_measured(run, QUANTITIES[key]) for key in BOXES if key not in limited)
+    return *asked(run, requirements), *rest
+
+
+def asked(run: Run, requirements: Sequence[Requirement]) -> tuple[Verdict, ...]:
+    """Judge every method by every limit, in order."""
+    return tuple(_limited(run, one) for one in requirements)
 
 
 def _limited(run: Run, one: Requirement) -> Verdict:
@@ -87,12 +92,12 @@ def error_limits(requirements: Sequence[Requirement], run: Run) -> dict[str, flo
 
     One that lies far above all curves is left out: it would press them flat.
     """
-    asked, drawn = limits_of(requirements), {}
-    for key in asked:
+    limits, drawn = limits_of(requirements), {}
+    for key, limit in limits.items():
         for error in ERRORS:
             if error.name not in QUANTITIES[key].errors or not _drawn(QUANTITIES[key]):
                 continue
             largest = max(method.errors[error.name]["max_abs"] for method in run.methods)
-            if asked[key] <= _IN_SIGHT * largest:
-                drawn[error.key] = min(asked[key], drawn.get(error.key, math.inf))
+            if limit <= _IN_SIGHT * largest:
+                drawn[error.key] = min(limit, drawn.get(error.key, math.inf))
     return drawn

@@ -52,6 +52,7 @@ class Control:
         self.spec = spec
         self.value: Any = value
         self._slider_moved = self._behind = self.removed = False
+        self._mark = ""
         self._last: Any = _UNKNOWN
         self._range, self._slider = self._make_slider(gui, order)
         self._box = Widget(self._make_box(gui, order))
@@ -178,8 +179,15 @@ class Control:
         """Whether the last value was typed letter by letter, so that a wrong one may only be unfinished."""
         return self.spec.kind not in ("choice", "flag") and not self._slider_moved
 
+    def mark(self, words: str) -> None:
+        """Say below the control where its value is from, if it is not given."""
+        if words != self._mark:
+            self._mark = words
+            self.say("")
+
     def say(self, html: str) -> None:
         """Put a note below the control, or take it away."""
+        html = html or (notices.small(self._mark) if self._mark else "")
         if self._note.content != html:
             self._note.content = html
         self._note.visible = bool(html)
@@ -255,7 +263,13 @@ class Section:
         self._gui, self._container, self._edit, self._order = gui, container, edit, order
         self.controls: dict[Path, Control] = {}
 
-    def show(self, specs: list[FieldSpec], values: Mapping[Path, Any], moved: Control | None) -> None:
+    def show(
+        self,
+        specs: list[FieldSpec],
+        values: Mapping[Path, Any],
+        moved: Control | None,
+        unset: Mapping[Path, str] | None = None,
+    ) -> None:
         """Show these fields with these values; widgets are made anew only when the fields are others.
 
         Parameters
@@ -266,13 +280,15 @@ class Section:
             Path -> value; a missing one leaves what is shown.
         moved : Control or None
             The control that the user is moving.
+        unset : mapping, optional
+            Path -> where the value of a field is from that is not given.
         """
         if [control.spec for control in self.controls.values()] != specs:
             self._rebuild(specs, values)
-            return
         for path, control in self.controls.items():
             if control is not moved:
                 control.show(values.get(path))
+            control.mark((unset or {}).get(path, ""))
 
     def _rebuild(self, specs: list[FieldSpec], values: Mapping[Path, Any]) -> None:
         for control in self.controls.values():

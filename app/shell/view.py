@@ -40,6 +40,8 @@ Tab = AbstractContextManager[Any]
 Figures = tuple[PlotlyFigure | None, list[UplotFigure]]
 """Content of a plot that can be saved: the plotly figure, or the plots over time."""
 P = TypeVar("P")
+NOT_GIVEN = Text("not given: this is not the same as 0")
+"""Below the box of a number that the scenario leaves out."""
 
 
 @dataclass(frozen=True)
@@ -243,7 +245,13 @@ class FieldsView(View):
         """Show fields of the session's scenario in the sections with these names."""
         scenario, moved = self.session.scenario, self.frame.editor.moved
         for name, specs in fields.items():
-            self.sections[name].show(specs, edits.values_at(scenario, [spec.path for spec in specs]), moved)
+            values = edits.values_at(scenario, [spec.path for spec in specs])
+            unset = {
+                spec.path: NOT_GIVEN
+                for spec in specs
+                if spec.kind == "number" and spec.default is None and values[spec.path] is None
+            }
+            self.sections[name].show(specs, values, moved, unset)
 
 
 def page_styles(kinds: Sequence[type[View]], state_id: str, command_id: str) -> str:

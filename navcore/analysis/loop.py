@@ -133,6 +133,25 @@ def _settling(network: LinearNetwork, poles: ComplexArray, zero: np.ndarray) -> 
     return None if tau is None else float(tau / network.omega_s)
 
 
+def velocity_settling(network: LinearNetwork, loop: Loop) -> float | None:
+    """Return the last time at which the velocity error after an initial tilt exceeds 2 % of its swing, s.
+
+    The swing is that of the undamped loop, phi_0 sqrt(g R); its transform is D/(s^2 D + omega_s^2 N).
+
+    Parameters
+    ----------
+    network : LinearNetwork
+        H(s).
+    loop : Loop
+        Its closed loop; None is returned where that does not settle, or keeps a velocity error.
+    """
+    poles = loop.poles / network.omega_s
+    if loop.settling_s is None or np.any(np.abs(poles) < 1e-9):
+        return None
+    tau = last_exceedance(state_space(network.den_p, poles), poles)
+    return None if tau is None else float(tau / network.omega_s)
+
+
 def _warnings(network: LinearNetwork, unstable: bool, undamped: bool, zero: bool) -> tuple[str, ...]:
     warnings = []
     if unstable:

@@ -290,6 +290,10 @@ class NetworkParameters(Entry):
         given = {name: value for name in names if (value := getattr(self, name)) is not None}
         return self.following(self.transfer(omega_s)) | given if self.alternatives else given
 
+    def taken(self) -> dict[str, Any]:
+        """Return the values of parameters that are not given and are those of the scenario."""
+        return {}
+
     def following(self, network: LinearNetwork) -> dict[str, Any]:
         """Return the values of the `alternatives`, computed from the network that the parameters make."""
         return {}

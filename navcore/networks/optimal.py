@@ -136,6 +136,15 @@ class OptimalNetwork(NetworkParameters):
         network = super().changed(field, value)
         return network if self._sensors is None else network.with_sensors(self._sensors)
 
+    def taken(self) -> dict[str, Any]:
+        """Return the figures of sensors and log that it is designed for and that are not given."""
+        figures, _ = self.figures()
+        return {
+            field: getattr(figures, name) / unit
+            for field, (name, unit) in _FIELDS.items()
+            if getattr(self, field) is None
+        }
+
     def figures(self) -> tuple[SensorFigures, tuple[str, ...]]:
         """Figures that the network is designed for, and warnings about those that are nobody's."""
         base, warnings = self._sensors, []

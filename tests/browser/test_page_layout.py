@@ -44,9 +44,8 @@ def test_every_tab_fits_its_panel(sized: Bench) -> None:
             page.wait_for_function("look.misprintDrawn")
         if tab == "Metrics":  # its last lines come later than the run
             page.wait_for_function("look.why", arg="1")
-        wait_until_it_fits(
-            sized, tab, scrolls=tab == "Scenario" or (small and tab in ("Metrics", "Requirements"))
-        )
+        goes_on = "Scenario", "Requirements"  # a text, and a table below a box for each quantity
+        wait_until_it_fits(sized, tab, scrolls=tab in goes_on or (small and tab == "Metrics"))
         assert page.evaluate("look.clipped") == [], tab
         if tab in ("Frequency", "Poles", "Step"):
             assert sized.plotly(), tab
@@ -110,7 +109,7 @@ def test_tabs_tools_and_boxes_stand_in_one_row(sized: Bench) -> None:
     place(sized, "Poles")
     for tab in ("Frequency", "Poles", "Requirements"):
         sized.tab(tab)
-        wait_until_it_fits(sized, tab)
+        wait_until_it_fits(sized, tab, scrolls=tab == "Requirements")
         rows = page.evaluate("look.toolsInRow")
         assert tab == "Requirements" or rows, tab
         for apart, cut in rows:

@@ -83,6 +83,10 @@ def test_the_table_has_a_row_a_method_with_share_limit_and_this_run(ship: Scenar
     assert "largest tilt: median " in rows[0][2] and ", limit ≤ 12 arcsec" in rows[0][2]
     assert "✗ misses largest tilt, settling" in rows[0][2]
     assert "ζ = 0.5, η = 0.5" in rows[2][2]
+    grows = [(method.growth_per_s or 0.0) > 0.0 for method in run.methods]
+    assert any(grows) and ["↗ grows by e in" in row[2] for row in rows[:3]] == grows
+    by_place = {name: "↗ grows by e in" in text for name, _, text in rows[3:]}
+    assert [by_place[method.name] for method in ship.method] == grows
     assert [f"take-design {k}" in rows[3 + k][2] for k in range(3)] == [True] * 3
     assert "Limits: largest tilt ≤ 12 arcsec, settling ≤ 200 min." in html
     # the answer to a slider, before a seed is run

@@ -185,6 +185,7 @@ class TestWholeSystem:
         growth = whole_system(run.methods[1].network, lat_deg * DEG, run.scenario.earth).earth_growth
         assert np.isclose(run.methods[1].whole.earth_growth, growth)
         assert text.startswith("One channel: least damping ratio 0.699, settles to 2 % in 53")
+        assert " min (tilt) and " in text and " min (velocity)" in text
         assert f"Whole system: 24 h mode {earth_mode_text(growth)}" in text
 
 

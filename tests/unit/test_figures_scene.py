@@ -28,7 +28,7 @@ from schuler_bench.views.scene.graticule import (
     scale_bar,
     segments,
 )
-from schuler_bench.views.scene.track import HALF_WIDTH, LINE_WIDTH, attitude_quaternions, track
+from schuler_bench.views.scene.track import HALF_WIDTH, LINE_WIDTH, attitude_quaternions, error_texts, track
 from schuler_bench.views.scene.view import CAMERAS, FOLLOW, SIDE, Cameras, Window
 from tests.unit.figures_runs import diverging, moving_run, run_of, static_run
 
@@ -132,7 +132,11 @@ class TestStatic:
         names = [label.text for label in scene.graticule.labels]
         assert 4 <= len(names) == len(set(names)) <= 20
         assert all(np.isfinite(m.points).all() for m in scene.methods)
-        assert "e" not in scene.methods[2].error_text(5)
+        texts = error_texts(scene.methods, 5)
+        assert all("e" not in text for text in texts)
+        assert len({text.split()[1] for text in texts}) == 1, (
+            "one legend, one unit: it was 3.4 km beside 120 m"
+        )
 
 
 class TestGraticule:

@@ -17,7 +17,7 @@ from navcore.foundation.errors import InputError
 from navcore.networks import MAX_ORDER, parse_network
 from navcore.networks.lqg import Compensator, compensator, plant
 from navcore.networks.optimal import EXAMPLE_SHIP, modulus_margin
-from navcore.scenario.file import parse_toml, to_toml
+from navcore.scenario.file import load, parse_toml, to_toml
 from navcore.scenario.model import Scenario
 from schuler_bench.cli import main
 
@@ -254,3 +254,14 @@ def test_a_compensator_that_does_not_decay_is_refused() -> None:
     law = Compensator(np.diag([-1.0, -2.0, -3.0, -4.0, 0.0]), np.ones(5), np.ones(5), np.ones(5))
     with pytest.raises(np.linalg.LinAlgError, match="does not decay"):
         law.reduced(4)
+
+
+def test_the_page_shows_the_figures_that_it_takes_from_the_scenario() -> None:
+    """Its boxes were at 0 and said nothing."""
+    scenario = load("sikuliaq-like").canonical()
+    scenario["method"][2]["network"] = {"id": "optimal", "log_noise_mps": 0.4}
+    network = Scenario.parse(scenario).method[2].network
+    imu, log = Scenario.parse(scenario).imu, Scenario.parse(scenario).reference
+    taken = network.taken()
+    assert taken["gyro_arw_dpsh"] == pytest.approx(imu.gyro_arw_dpsh)
+    assert taken["log_drift_mps"] == pytest.approx(log.drift_mps) and "log_noise_mps" not in taken

@@ -13,7 +13,7 @@ from schuler_bench.plots import style
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import rounded
 from schuler_bench.session.pins import Pin
-from schuler_bench.session.requirements import verdicts
+from schuler_bench.session.requirements import asked
 from schuler_bench.session.shown import Window, edited
 from schuler_bench.views.requirements.table import overall
 
@@ -104,7 +104,7 @@ def _line(
 ) -> Line:
     method = part.methods[place]
     numbers = {name: measure(method, one.key) / one.size for name, one in MEASURED.items()}
-    limits = [verdict for verdict in verdicts(whole, requirements) if verdict.limit is not None]
+    limits = asked(whole, requirements)
     if limits:
         numbers["verdict"] = float(sum(not verdict.passed[place] for verdict in limits))
     return Line(pin, color, method.method.name, numbers, len(limits))

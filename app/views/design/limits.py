@@ -2,19 +2,24 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 from navcore.design.designs import Designs
+from navcore.design.measures import Setting
 from navcore.design.shares import Limit
+from navcore.design.ship import Ship
 from navcore.engine.run import Run
 from navcore.foundation.notation import symbol
 from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES, limit_unit
 from navcore.scenario.method import Method
 from schuler_bench.jobs.judge import Odds
+from schuler_bench.plots.effective import growth_text
 from schuler_bench.plots.limits import SIGNS, amount, short_label
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import number
-from schuler_bench.session.requirements import limits_of, verdicts
+from schuler_bench.session.requirements import asked, limits_of
 from schuler_bench.views.requirements.shares import share_text
 from schuler_bench.views.tune.fronts import setting_text
 
@@ -49,12 +54,15 @@ class Line:
         What it makes of the limits in the run that is shown; empty for a method that is not in it.
     place : int or None
         Of a design that can be taken.
+    growth : float or None
+        Of the whole system, 1/s.
     """
 
     method: Method
     odds: Odds | None
     run: str = ""
     place: int | None = None
+    growth: float | None = None
 
 
 def designs_html(
@@ -77,21 +85,21 @@ def designs_html(
         link = Text('<button class="sb-sort" data-command="tab Requirements">Requirements</button>')
         return Text('<p class="sb-none">{words:html} {link}</p>', words=NO_LIMITS, link=link)
     own = [
-        Line(method.method, odds(method.method), said)
+        Line(method.method, odds(method.method), said, growth=method.growth_per_s)
         for method, said in zip(run.methods, _in_run(run), strict=True)
     ]
     head = row(cell(quoted(text), tag="th") for text in _HEADS)
     body = [_title(Text("Methods of this scenario")), *map(_line, own)]
     if found is not None:
         designs = [
-            Line(share.method, Odds(share, found.seeds), "", place)
+            Line(share.method, Odds(share, found.seeds), "", place, growth_of(run.scenario, share.method))
             for place, share in enumerate(found.methods)
         ]
         title = Text("Every network, tuned for these limits, and a Kalman filter")
         body += [_title(title), *map(_line, designs)]
     limits = limits_of(run.scenario.requirement)
-    asked = Text.joined(", ", (_words(key, limit) for key, limit in limits.items()))
-    said = Text("Limits: {asked}.", asked=asked)
+    words = Text.joined(", ", (_words(key, limit) for key, limit in limits.items()))
+    said = Text("Limits: {asked}.", asked=words)
     told = Text('<p class="sb-asked-limits">{asked:html}</p>', asked=said)
     return note + told + table([head], body, "sb-designs")
 
@@ -107,10 +115,10 @@ def _title(text: str) -> str:
 
 def _in_run(run: Run) -> list[str]:
     """What the run makes of the limits, a method: its answer to a slider, before any seed is run."""
-    asked = [verdict for verdict in verdicts(run, run.scenario.requirement) if verdict.limit is not None]
+    judged = asked(run, run.scenario.requirement)
     said = []
     for k in range(len(run.methods)):
-        missed = [short_label(verdict.quantity.key) for verdict in asked if not verdict.passed[k]]
+        missed = [short_label(verdict.quantity.key) for verdict in judged if not verdict.passed[k]]
         names = Text.joined(", ", missed)
         word = Text("✗ misses {missed}", missed=names) if missed else Text("✓ meets all")
         said.append(cell(quoted(word), "sb-missed" if missed else "sb-met", tag="span"))
@@ -125,7 +133,7 @@ def _line(line: Line) -> str:
         one = odds.share
         share = cell(
             quoted(share_text(one.met, one.low, one.high)),
-            "sb-met" if one.met >= 0.5 else "sb-missed",
+            "sb-odds sb-met" if one.met >= 0.5 else "sb-odds sb-missed",
             tag="span",
             title=Text("{seeds} seeds, each with its own noise and constants", seeds=odds.seeds),
         )
@@ -140,14 +148,27 @@ def _line(line: Line) -> str:
             hint=_TAKE_HINT,
             take=_TAKE,
         )
+    grows = growth_text(line.growth)
+    mark = cell(Text("↗ {grows}", grows=grows), "sb-muted", tag="div") if grows else ""
     cells = (
         cell(quoted(method.label()), "sb-all"),
-        cell(quoted(design_text(method))),
+        cell(quoted(design_text(method)) + mark),
         cell(share),
         cell(quoted(worst), "sb-w"),
         cell(line.run or button, "sb-w"),
     )
     return row(cells, data_design=method.label(), data_met="" if odds is None else f"{odds.share.met:g}")
+
+
+def growth_of(scenario: Any, method: Any) -> float:
+    """Growth of the whole system with a method as the law is sampled, 1/s; computed once."""
+    # both are frozen, and so hashable, which their types do not say
+    return _growth(scenario.model_copy(update={"method": ()}), method)
+
+
+@lru_cache(maxsize=64)
+def _growth(scenario: Any, method: Any) -> float:
+    return Setting(Ship(scenario), method).growth_per_s
 
 
 def design_text(method: Method) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from navcore.analysis.loop import velocity_settling
 from navcore.design.vary import network_not_in_force
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
@@ -28,6 +29,7 @@ from schuler_bench.views.method.tuning import TuningPanel
 
 ADD, COPY, REMOVE = Text("add"), Text("copy"), Text("remove")
 COPY_TEXT, PASTE_TEXT = Text("copy as TOML"), Text("paste TOML")
+_TAKEN = Text("from the sensors and the log of the scenario")
 NO_DESIGN = Text("no (σ, ζ) gives these K")
 _CATALOGUES: Mapping[str, tuple[Mapping[str, type], str]] = {
     "network": (NETWORKS, "network"),
@@ -161,7 +163,8 @@ class MethodView(View):
         self.sections["network"].show(
             [_catalogue("network", path)] if "network" in blocks else [], values, moved
         )
-        self.sections["parameters"].show(network if "network" in blocks else [], values, moved)
+        unset = {(*path, "network", name): _TAKEN for name in method.network.taken()}
+        self.sections["parameters"].show(network if "network" in blocks else [], values, moved, unset)
         for part in ("policy", "switching"):
             specs = [_catalogue(part, path), *form.fields(type(getattr(method, part)), (*path, part))]
             self.sections[part].show(specs if part in blocks else [], _values_at(scenario, specs), moved)
@@ -220,7 +223,11 @@ def loop_text(method: MethodRun, lat_deg: float) -> str:
     settles = (
         Text("never settles")
         if loop.settling_s is None
-        else Text("settles to 2 % in {settling}", settling=settling(loop.settling_s))
+        else Text(
+            "settles to 2 % in {tilt} (tilt) and {velocity} (velocity)",
+            tilt=settling(loop.settling_s),
+            velocity=settling(velocity_settling(method.network, loop)),
+        )
     )
     earth_mode = earth_mode_text(method.whole.earth_growth)
     return Text(
@@ -241,7 +248,7 @@ def first_line(kind: type) -> str:
 def _values(scenario: Scenario, index: int) -> dict[Path, Any]:
     method, path = scenario.method[index], ("method", index)
     values: dict[Path, Any] = {(*path, "name"): method.name, (*path, "damping"): method.damping}
-    network = edits.network_values(scenario, index) | {"id": method.network.id}
+    network = method.network.taken() | edits.network_values(scenario, index) | {"id": method.network.id}
     return values | {(*path, "network", name): _shown(value) for name, value in network.items()}
 
 

@@ -89,11 +89,16 @@ class MethodTrack:
             return parts[(np.abs(parts[:, :, :2]) <= HALF_WIDTH).all(axis=(1, 2))]
         return parts
 
-    def error_text(self, index: int) -> str:
-        """Size of the error at a point, e.g. ``3.21 km``."""
-        size = math.hypot(*self.error_m[min(index, len(self.error_m) - 1)])
-        unit = length_unit(size)
-        return f"{rounded(size / unit.si)} {unit.name}"
+    def error_size_m(self, index: int) -> float:
+        """Size of the error at a point, m."""
+        return math.hypot(*self.error_m[min(index, len(self.error_m) - 1)])
+
+
+def error_texts(tracks: Sequence[MethodTrack], index: int) -> list[str]:
+    """Size of each track's error at a point, all in one unit, e.g. ``3.21 km`` beside ``0.12 km``."""
+    sizes = [track.error_size_m(index) for track in tracks]
+    unit = length_unit(max(sizes, default=0.0))
+    return [f"{rounded(size / unit.si)} {unit.name}" for size in sizes]
 
 
 class PinnedTrack(NamedTuple):

@@ -24,7 +24,7 @@ from schuler_bench.shell.view import Frame, Tab, View, if_user
 from schuler_bench.views.scene.drawer import SceneDrawer
 from schuler_bench.views.scene.moment import caption_of, moment, pendulum, pendulum_svg, readout_html
 from schuler_bench.views.scene.playback import SPEEDS, Playback, PlayState
-from schuler_bench.views.scene.track import HALF_WIDTH, Place, track
+from schuler_bench.views.scene.track import HALF_WIDTH, Place, error_texts, track
 
 if TYPE_CHECKING:
     import viser
@@ -167,12 +167,12 @@ def bar_html(
             {
                 "key": method.name,
                 "color": "#{:02x}{:02x}{:02x}".format(*method.color),
-                "error": method.error_text(place.index),
+                "error": error,
                 "state": method.state,
                 "said": legend.word(method.state),
                 "hint": legend.hint(method.state),
             }
-            for method in drawn.methods
+            for method, error in zip(drawn.methods, error_texts(drawn.methods, place.index), strict=True)
         ]
     )
     now = {

@@ -82,7 +82,7 @@ def _trade(network: LinearNetwork, gain_db: np.ndarray) -> str:
         else Text("|H| stays at or below 0 dB")
     )
     return Text(
-        "Settles to 2 % in {settling}, least damping ratio {damping}. {gain}; a step "
+        "The tilt settles to 2 % in {settling}, least damping ratio {damping}. {gain}; a step "
         "of the log's error by 1 m/s tilts it by up to {tilt} arcsec.",
         settling=settling(loop.settling_s),
         damping=rounded(loop.damping_ratio, 2),

@@ -10,7 +10,7 @@ from navcore.design.measures import Setting, measure, read_requirement
 from navcore.design.ship import Ship
 from navcore.foundation.text import Text, quoted
 from navcore.quantities import QUANTITIES, Quantity, limit_unit
-from schuler_bench.plots.limits import SIGNS
+from schuler_bench.plots.limits import SIGNS, short_label
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import number
 
@@ -54,7 +54,9 @@ def _runs(task: TuningTask, tuned: Tuned) -> Iterator[str]:
         ]
         met = None if limit is None or change.after is None else change.after <= limit
         asked = None if limit is None else Text("≤ {limit}", limit=number(limit / size, 4))
-        yield _row(quantity, quantity.names.get("ensemble", quantity.label), texts, _side(change), asked, met)
+        yield _row(
+            quantity, quantity.names.get("ensemble") or short_label(key), texts, _side(change), asked, met
+        )
 
 
 def _loops(task: TuningTask, tuned: Tuned) -> Iterator[str]:
