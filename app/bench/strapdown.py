@@ -158,7 +158,7 @@ def measure_strapdown(rounds: int = ROUNDS, seconds: int = SECONDS) -> dict[str,
         "strapdown_damped_ns_per_sample": (record.run("external", CompassNetwork(), record.second), samples),
         "strapdown_imu_rate_ns_per_sample": (record.run("external", ComplementaryNetwork(), 1), samples),
         "strapdown_batch_ns_per_sample_run": (short.batch(BATCH_BLOCKS), many),
-        "strapdown_batch_noise_ns_per_sample_run": (short.batch_with_noise(BATCH_BLOCKS), many),
+        "strapdown_seeds_ns_per_sample_run": (short.batch_with_noise(BATCH_BLOCKS), many),
         "imu_simulation_ns_per_sample": (swinging_imu(samples), samples),
     }
     works = {name: work for name, (work, _) in pieces.items()}

@@ -23,7 +23,7 @@ NUMBERS = {
     "strapdown_damped_ns_per_sample": 62.0,
     "strapdown_imu_rate_ns_per_sample": 110.0,
     "strapdown_batch_ns_per_sample_run": 14.0,
-    "strapdown_batch_noise_ns_per_sample_run": 33.0,
+    "strapdown_seeds_ns_per_sample_run": 33.0,
     "imu_simulation_ns_per_sample": 75.0,
     "strapdown_24h_100hz_s": 1.7,
     "strapdown_24h_100hz_mb": 230.0,

@@ -245,5 +245,13 @@ def test_schedules_correction_has_no_jump_within_a_passage():
 
 def test_schedule_warns_of_gains_on_the_way_that_are_unstable():
     assert Schedule().warnings(COMPASS) == ()
-    odd = POLICIES["schedule"].model_validate({"id": "schedule", "to": [7.68e-3, 1.0, 1.0]})
-    assert "unstable" in odd.warnings(COMPASS)[0]
+    for gains, stable in (
+        ([7.68e-3, 1.0, 1.0], False),
+        ([1e-2, -1.5, -1e-2], False),
+        ([1e-2, 1.0, -1e-6], False),
+        ([-1e-6, 1.0, 1e-6], False),
+        ([1e-2, -0.95, 1e-4], True),  # next to each limit
+        ([1e-6, 1.0, 1e-7], True),
+    ):
+        schedule = POLICIES["schedule"].model_validate({"id": "schedule", "from": gains, "to": gains})
+        assert [("unstable" in text) for text in schedule.warnings(COMPASS)] == [True] * (not stable)

@@ -9,6 +9,9 @@ from navcore.mechanization.strapdown import velocity_reference
 from navcore.mechanization.strapdown.batch import BatchRun, side_by_side
 from navcore.scenario.model import Scenario
 
+_REPORTED = 6000
+"""Samples between two reports, some 10 ms a method."""
+
 
 def run_batches(scenarios: Sequence[Scenario], report: Callable[[float], bool]) -> list[BatchRun]:
     """Run every method of scenarios that differ in their seeds and constants.
@@ -45,9 +48,13 @@ def run_batches(scenarios: Sequence[Scenario], report: Callable[[float], bool]) 
         for method in one.method
     ]
     streams = [(increments for increments, _ in each.imu.chunks()) for each in environments]
+    unreported = 0
     for lanes in side_by_side(streams):
         for batch in batches:
             batch.advance(lanes)
-        if report(len(scenarios) * len(lanes) / settings.samples):
-            return []
+        unreported += len(lanes)
+        if unreported >= _REPORTED or batches[0].position == settings.samples:
+            if report(len(scenarios) * unreported / settings.samples):
+                return []
+            unreported = 0
     return batches

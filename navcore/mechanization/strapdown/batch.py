@@ -30,6 +30,8 @@ from navcore.mechanization.strapdown.step import (
 
 WIDTH = 16
 """Runs of a block."""
+_LAID = 512
+"""Samples that are laid side by side at once: 0.4 MB, which the cache holds."""
 _W = WIDTH
 # Rows of a block's flat state: what changes, then what is held, then the previous increment.
 _D_LAT, _D_LON, _V_E, _V_N, _Q, _Z, _M_E, _M_N, _M_LAT = 0, 1, 2, 3, 4, 8, 12, 13, 14
@@ -188,7 +190,7 @@ def _advance_block(increments, samples, first, pace, x, runs):
 
 
 def side_by_side(streams: Sequence[Iterable[np.ndarray]]) -> Iterator[np.ndarray]:
-    """Lay the increments of several IMUs side by side, chunk by chunk, as `BatchRun.advance` takes them.
+    """Lay the increments of several IMUs side by side, piece by piece, as `BatchRun.advance` takes them.
 
     Parameters
     ----------
@@ -200,11 +202,13 @@ def side_by_side(streams: Sequence[Iterable[np.ndarray]]) -> Iterator[np.ndarray
     ------
     ndarray, shape (n, 6, WIDTH)
     """
-    for pieces in zip(*streams, strict=True):
-        lanes = np.empty((*pieces[0].shape, WIDTH))
-        for lane in range(WIDTH):
-            lanes[:, :, lane] = pieces[lane if lane < len(pieces) else 0]
-        yield lanes
+    for chunks in zip(*streams, strict=True):
+        for first in range(0, len(chunks[0]), _LAID):
+            rows = slice(first, first + _LAID)
+            lanes = np.empty((*chunks[0][rows].shape, WIDTH))
+            for lane in range(WIDTH):
+                lanes[:, :, lane] = chunks[lane if lane < len(chunks) else 0][rows]
+            yield lanes
 
 
 class BatchRun:
