@@ -30,6 +30,7 @@ help:
 	@echo 'make papers   run the presets of the five papers and write docs/papers.md with its pictures anew'
 	@echo 'make paint    time from a slider step to the last paint of it in Chromium'
 	@echo 'make soak     30 visitors for 30 minutes on one server, then floods: one table (CLIENTS=, BROWSERS=, MINUTES=)'
+	@echo '              HOURS=12: ten visitors who come and go on a server that is restarted at random'
 	@echo 'make serving  run what docs/serving.md names, and write its table from that and from the last soak'
 	@echo 'make mutation  change the code of navcore at random, and see which changes no test notices (SAMPLE=, SEED=)'
 	@echo 'make accuracy  what the strapdown engine is accurate to, figure by figure'
@@ -67,9 +68,11 @@ paint: setup $(STAMPS)/test
 	@$(BIN)/python -m tools.paint.hand $(if $(BEFORE),--before $(BEFORE))
 
 # CLIENTS=30 BROWSERS=3 MINUTES=30: so many visitors, so many of them browsers, for so long.
+# HOURS=12: a server left alone for so long, ended and started at random, in place of the lecture.
 soak: setup $(STAMPS)/test
-	@$(BIN)/python -m tools.serving.soak --clients $(or $(CLIENTS),30) --browsers $(or $(BROWSERS),3) \
-	  --minutes $(or $(MINUTES),30) --json build/soak.json
+	@$(if $(HOURS),$(BIN)/python -m tools.serving.unattended --hours $(HOURS) --json build/unattended.json,\
+	  $(BIN)/python -m tools.serving.soak --clients $(or $(CLIENTS),30) --browsers $(or $(BROWSERS),3) \
+	  --minutes $(or $(MINUTES),30) --json build/soak.json)
 
 # The tests that tools/serving/rows.toml names, and what the last `make soak` has left in build/soak.json.
 serving: setup $(STAMPS)/test

@@ -2,6 +2,7 @@
 
 import json
 import logging
+import logging.handlers
 import os
 import sys
 import time
@@ -24,16 +25,24 @@ class _Lines(logging.Formatter):
         return json.dumps(line, ensure_ascii=False)
 
 
-def begin_logging(how: str | None = None) -> None:
-    """Send the program's log to standard error.
+def begin_logging(how: str | None = None, *, to_file: bool = True) -> None:
+    """Send the program's log to standard error, or to the file that SCHULER_LOG_FILE names.
+
+    The file is rotated: beyond 10 MB (SCHULER_LOG_BYTES) it becomes FILE.1, and that FILE.2, the last one.
 
     Parameters
     ----------
     how : str, optional
         "json" or "text"; by default what SCHULER_LOG says, else text.
+    to_file : bool
+        Heed SCHULER_LOG_FILE; only one process may rotate a file.
     """
     how = how or os.environ.get("SCHULER_LOG", "text")
-    handler = logging.StreamHandler(sys.stderr)
+    file = os.environ.get("SCHULER_LOG_FILE")
+    handler: logging.Handler = logging.StreamHandler(sys.stderr)
+    if file and to_file:
+        most = int(os.environ.get("SCHULER_LOG_BYTES", "10000000"))
+        handler = logging.handlers.RotatingFileHandler(file, maxBytes=most, backupCount=2, encoding="utf-8")
     handler.setFormatter(_Lines() if how == "json" else logging.Formatter("%(name)s: %(message)s"))
     log = logging.getLogger("schuler")
     log.handlers = [handler]

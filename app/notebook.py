@@ -55,7 +55,7 @@ OF_RUN: dict[str, Maker] = {
 
 def run_figure(run: Run, name: str, **options: Any) -> Figure:
     """Make a figure of a run; see `Run.figure`."""
-    return _made(OF_RUN, name, run, options)
+    return _figure_of(OF_RUN, name, run, options)
 
 
 def network_figure(network: NetworkParameters, name: str, lat_deg: float, **options: Any) -> Figure:
@@ -67,12 +67,12 @@ def network_figure(network: NetworkParameters, name: str, lat_deg: float, **opti
         "reference": {"kind": "log"},
         "method": [damped],
     }
-    return _made(OF_NETWORK, name, simulate(Scenario.parse(data)), options)
+    return _figure_of(OF_NETWORK, name, simulate(Scenario.parse(data)), options)
 
 
 def budget_bars(budget: Budget) -> Figure:
     """Make the bars of an error budget; see `Budget.figure`."""
-    return _made({"budget": budget_figure}, "budget", budget, {})
+    return _figure_of({"budget": budget_figure}, "budget", budget, {})
 
 
 def run_tables(run: Run) -> str:
@@ -90,7 +90,7 @@ def _as_html(lines: list[str]) -> str:
     return f'<pre style="white-space: pre; overflow-x: auto">{text}</pre>'
 
 
-def _made(offered: dict[str, Maker], name: str, subject: Any, options: dict[str, Any]) -> Figure:
+def _figure_of(offered: dict[str, Maker], name: str, subject: Any, options: dict[str, Any]) -> Figure:
     from plotly.graph_objects import Figure
 
     if name not in offered:

@@ -12,6 +12,7 @@ from urllib.parse import quote
 
 from navcore.foundation import guarded
 from navcore.foundation.errors import InputError
+from schuler_bench.jobs import helper
 from schuler_bench.jobs.words import what_failed
 from schuler_bench.languages import LANGUAGE_SCRIPTS
 from schuler_bench.logs import begin_logging
@@ -177,6 +178,7 @@ class Dashboard:
 
     def close(self) -> None:
         """End all sessions and remove what was uploaded and is not kept."""
+        helper.stop()
         if "sessions" in self.__dict__:  # made with the first page
             self.sessions.close()
 
@@ -214,6 +216,7 @@ def open_dashboard(
     from schuler_bench.session.store import session_key
 
     guarded.start(_READERS)
+    helper.start()
     dashboard = Dashboard(state, views)
     server = start(
         host,

@@ -102,11 +102,6 @@ class Crew:
         self._watcher = threading.Thread(target=self._watch, name="crew", daemon=True)
         self._watcher.start()
 
-    @property
-    def pids(self) -> list[int]:
-        """Process numbers, by worker."""
-        return [process.pid for process in self._processes]
-
     def stop(self) -> None:
         """End all workers; those that do not within a few seconds are killed."""
         self._ended.set()
@@ -202,11 +197,11 @@ def serve_with_workers(
         asyncio.run(_serve(Front(crew.ports, Limits()), listener, greeting))
 
 
-async def _serve(front: Front, listener: socket.socket, told: str) -> None:
+async def _serve(front: Front, listener: socket.socket, greeting: str) -> None:
     ended = asyncio.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, ended.set)
-    await front.serve(listener, ended, lambda: print(told, flush=True))
+    await front.serve(listener, ended, lambda: print(greeting, flush=True))
 
 
 @contextmanager
@@ -237,7 +232,7 @@ def work() -> None:
     from schuler_bench.http.server import Inner
     from schuler_bench.serve import open_dashboard
 
-    begin_logging()
+    begin_logging(to_file=False)
     bound_arenas()
     settings = Settings(**json.loads(sys.stdin.readline()))
     server, dashboard = open_dashboard(

@@ -14,19 +14,14 @@ from typing import Any
 import numpy as np
 
 from navcore.alignment.fine import coarse_alignment
+from navcore.engine.ensemble import outcomes
 from navcore.engine.environment import environment
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import WGS84
 from navcore.foundation.errors import InputError
 from navcore.foundation.kernel_cache import cache_folder, compiling, complete
-from navcore.law.law import prepare_law
-from navcore.law.policy.constant import Constant
-from navcore.law.switching.hard import Hard
-from navcore.mechanization.strapdown import Settings, start_from
-from navcore.mechanization.strapdown.batch import BatchRun
 from navcore.motion.static import StaticMotion
 from navcore.motion.truth import Site
-from navcore.networks.undamped import UndampedNetwork
 from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
@@ -91,7 +86,8 @@ def warm(progress: Callable[[str], None] = lambda what: None) -> None:
     for run in ({"duration_h": 0.02}, strapdown):
         simulate(_scenario(run, _MOTIONS[2], 1.0, [_KALMAN]))
     progress("many strapdown runs at once")
-    _warm_batch()
+    seeds = _scenario(strapdown, _MOTIONS[1], 1.0, [_COMPASS, _NETWORK])
+    outcomes(seeds, seeds.method, range(2))
     for motion in _MOTIONS[1:]:
         progress(f"{motion['kind']} motion, sensors, error model")
         simulate(_scenario({"duration_h": 0.02}, motion, 1.0, _POLICIES))
@@ -148,17 +144,6 @@ def _warm_coarse_alignment() -> None:
     samples = int(60.0 * _RATE_HZ)
     simulation = ImuSimulation(StaticMotion(), Site(0.5, 0.0, 0.0), WGS84, Imu(), _RATE_HZ, samples, 0)
     coarse_alignment(np.concatenate([chunk for chunk, _ in simulation.chunks()]), _RATE_HZ, 0.5)
-
-
-def _warm_batch() -> None:
-
-    truth = StaticMotion().rows(1, 1.0, Site(0.5, 0.0, 0.0), WGS84)
-    network = UndampedNetwork()
-    law = prepare_law("free", network, network.transfer(1e-3), Constant(), Hard(), 1.0)
-    second = round(_RATE_HZ)
-    settings = Settings(_RATE_HZ, second, second, second, 1.0)
-    batch = BatchRun([start_from(truth[0])], [law], np.zeros((1, 6)), settings, WGS84, truth)
-    batch.advance(np.zeros((second, 6)))
 
 
 def compile_once(progress: Callable[[str], None] = lambda what: None) -> None:

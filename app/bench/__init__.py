@@ -15,12 +15,11 @@ def bench(tell: Callable[[str], None] = lambda _: None) -> dict[str, float]:
     -------
     dict
         Keys of interface.md; ``error_model_24h_cold_ms``, ``run_24h_memory_mb``; ``budget_steady_7_ms``,
-        ``budget_24h_3_methods_ms`` (error budgets); of the full strapdown the
-        law at the IMU's rate, the batch with noise at every sample, and a day (``strapdown_24h_100hz_s``,
-        ``_mb``, with the Kalman filter ``_kalman_s``); the slider with the tab Design in front
-        (``slider_design_ms_p50``, ``_p95``) and with every tab. With a yardstick
-        (`schuler_bench.bench.strapdown.YARDSTICK`) its time and the ratios to it. Medians of at least five
-        repeats: ns, ms, s and MiB.
+        ``budget_24h_3_methods_ms`` (error budgets); of the full strapdown the law at the IMU's rate, the
+        batch with the simulation of each run's IMU, and a day (``strapdown_24h_100hz_s``, ``_mb``, with the
+        Kalman filter ``_kalman_s``); the slider with the tab Design in front (``slider_design_ms_p50``,
+        ``_p95``) and with every tab. With a yardstick (`schuler_bench.bench.strapdown.YARDSTICK`) its time
+        and the ratios to it. Medians of at least five repeats: ns, ms, s and MiB.
 
     Raises
     ------

@@ -4,6 +4,8 @@ import importlib.util
 import os
 import statistics
 import sys
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +16,9 @@ from navcore.law.law import Law, prepare_law
 from navcore.law.policy.constant import Constant
 from navcore.law.records import LawKind
 from navcore.law.switching.hard import Hard
+from navcore.mechanization.recorder import spans_from
 from navcore.mechanization.strapdown import Settings, VelocityReference, start_from, start_run
-from navcore.mechanization.strapdown.batch import BatchNoise, BatchRun
+from navcore.mechanization.strapdown.batch import WIDTH, BatchRun, side_by_side
 from navcore.motion.static import StaticMotion
 from navcore.motion.swing import Oscillation, SwingMotion
 from navcore.motion.truth import Site
@@ -30,7 +33,7 @@ from schuler_bench.bench.rounds import Timed, median_ratio, seconds_of, timed_ro
 ROUNDS = 7
 RATE_HZ = 200.0
 SECONDS = 1800
-BATCH_RUNS, BATCH_SECONDS = 64, 60
+BATCH_BLOCKS, BATCH_SECONDS = 4, 60
 SITE = Site(32.06 * DEG, 118.8 * DEG, 0.0)
 YARDSTICK = "SCHULER_YARDSTICK"
 """Environment variable: a Python file whose ``quick(samples, repeats)`` gives a reference's ns a sample."""
@@ -79,18 +82,38 @@ class StaticRecord:
 
         return once
 
-    def batch(self, runs: int, noise: BatchNoise | None) -> Timed:
-        """Time compass damping of many runs, each with its own biases."""
+    def batch(self, blocks: int) -> Timed:
+        """Time compass damping of blocks of runs, each with its own biases."""
+        biases = np.random.default_rng(1).normal(size=(blocks, WIDTH, 6)) * np.repeat([1e-9, 5e-6], 3)
+        lanes = [[*side_by_side([[self.increments + bias] for bias in block])] for block in biases]
+        return lambda: self._batch_seconds(lanes)
+
+    def batch_with_noise(self, blocks: int) -> Timed:
+        """Time the same with the simulation of each run's IMU, which has noise."""
+        imu = Imu(gyro_arw_dpsh=0.006, accel_vrw_ugpshz=10.0)
+
+        def stream(seed: int) -> Iterable[np.ndarray]:
+            simulation = ImuSimulation(StaticMotion(), SITE, WGS84, imu, RATE_HZ, self.samples, seed)
+            return (increments for increments, _ in simulation.chunks())
+
+        seeds = np.arange(blocks * WIDTH).reshape(blocks, WIDTH)
+        return lambda: self._batch_seconds([side_by_side([stream(int(s)) for s in block]) for block in seeds])
+
+    def _batch_seconds(self, lanes: Sequence[Iterable[np.ndarray]]) -> float:
         settings, log = self._started(self.second)
-        biases = np.random.default_rng(1).normal(size=(runs, 6)) * np.repeat([1e-7, 5e-4], 3)
 
-        def once() -> float:
-            laws = [_law("external", CompassNetwork(), self.second) for _ in range(runs)]
-            starts = [start_from(self.truth[0])] * runs
-            batch = BatchRun(starts, laws, biases, settings, WGS84, self.truth, log, self.before, noise)
-            return seconds_of(lambda: batch.advance(self.increments, workers=os.cpu_count() or 1))
+        def started() -> BatchRun:
+            laws = [_law("external", CompassNetwork(), self.second) for _ in range(WIDTH)]
+            starts, logs = [start_from(self.truth[0])] * WIDTH, [log] * WIDTH
+            return BatchRun(starts, laws, logs, settings, WGS84, self.truth, spans_from(()), self.before)
 
-        return once
+        def one(batch: BatchRun, increments: Iterable[np.ndarray]) -> None:
+            for chunk in increments:
+                batch.advance(chunk)
+
+        batches = [started() for _ in lanes]
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            return seconds_of(lambda: [*pool.map(one, batches, lanes)])
 
 
 def _law(damping: LawKind, network: NetworkParameters, law_every: int) -> Law:
@@ -129,14 +152,13 @@ def measure_strapdown(rounds: int = ROUNDS, seconds: int = SECONDS) -> dict[str,
     With a yardstick (`YARDSTICK`) its own time, and the ratio of each to it in the same round, come along.
     """
     record, short = StaticRecord(seconds), StaticRecord(min(seconds, BATCH_SECONDS))
-    walk = np.repeat([1e-6, 1e-4], 3)
-    samples, many = record.samples, short.samples * BATCH_RUNS
+    samples, many = record.samples, short.samples * BATCH_BLOCKS * WIDTH
     pieces: dict[str, tuple[Timed, int]] = {
         "strapdown_free_ns_per_sample": (record.run("free", UndampedNetwork(), record.second), samples),
         "strapdown_damped_ns_per_sample": (record.run("external", CompassNetwork(), record.second), samples),
         "strapdown_imu_rate_ns_per_sample": (record.run("external", ComplementaryNetwork(), 1), samples),
-        "strapdown_batch_ns_per_sample_run": (short.batch(BATCH_RUNS, None), many),
-        "strapdown_batch_noise_ns_per_sample_run": (short.batch(BATCH_RUNS, BatchNoise(walk, 1)), many),
+        "strapdown_batch_ns_per_sample_run": (short.batch(BATCH_BLOCKS), many),
+        "strapdown_batch_noise_ns_per_sample_run": (short.batch_with_noise(BATCH_BLOCKS), many),
         "imu_simulation_ns_per_sample": (swinging_imu(samples), samples),
     }
     works = {name: work for name, (work, _) in pieces.items()}

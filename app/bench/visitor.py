@@ -51,7 +51,7 @@ class Visitor:
         """Newest control of each label, as the server described it."""
         self._held: dict[str, Any] = {}
         self.run_number = self.picture_number = 0
-        self._told = ""
+        self._run_element = ""
         self.notices: list[tuple[str, str]] = []
         """Title and text of every notification that came."""
         self.text = ""
@@ -104,7 +104,7 @@ class Visitor:
     @property
     def metrics(self) -> dict[str, Any]:
         """Metrics that came with the newest run."""
-        return json.loads(unescape(self._told.partition(">")[2].removesuffix("</div>")))
+        return json.loads(unescape(self._run_element.partition(">")[2].removesuffix("</div>")))
 
     def wait_for_run(self, number: int) -> float:
         """Wait until the figures of this or a later run are there; return when their last byte came."""
@@ -157,7 +157,7 @@ class Visitor:
                 self.text = content
             number = _RUN.search(content[:200])
             if number is not None and int(number[1]) > self.run_number:
-                self.run_number, self.arrived_s, self._told = int(number[1]), came, content
+                self.run_number, self.arrived_s, self._run_element = int(number[1]), came, content
             elif "sb-picture" in content[:40] and (number := _PICTURE.search(content)) is not None:
                 self.picture_number = int(number[1])
 

@@ -58,9 +58,9 @@ class FairPool(Executor):
         key, same = self._key(args), self._same(fn, args)
         with self._changed:
             queue = self._waiting.setdefault(key, deque())
-            found = None if same is None else next((job for job in queue if job.same == same), None)
+            waiting = None if same is None else next((job for job in queue if job.same == same), None)
             job = _Job(Future(), fn, args, kwargs, same)
-            if found is not None:
+            if waiting is not None:
                 return job.future
             if self._closed or len(queue) >= MOST_WAITING:
                 self.dropped += 1
@@ -96,12 +96,12 @@ class FairPool(Executor):
         while True:
             with self._changed:
                 self._idle += 1
-                while (found := self._next()) is None and not self._closed:
+                while (entry := self._next()) is None and not self._closed:
                     self._changed.wait()
                 self._idle -= 1
-                if found is None:
+                if entry is None:
                     return
-                key, job = found
+                key, job = entry
                 self._running.add(key)
             try:
                 _run(job)

@@ -82,7 +82,7 @@ class Translator:
         fresh = {"props": dataclasses.replace(props, **changed)} if changed else {}
         value = getattr(message, "value", None)
         if "options" in held and isinstance(value, str):
-            fresh["value"] = self._shown(message.uuid, value)  # pyright: ignore[reportAttributeAccessIssue]
+            fresh["value"] = self._label_of(message.uuid, value)  # pyright: ignore[reportAttributeAccessIssue]
         return dataclasses.replace(cast("Any", message), **fresh) if fresh else message
 
     def meant(self, uuid: str, value: object) -> object:
@@ -90,8 +90,8 @@ class Translator:
         options = self._meant.get(uuid)
         return str(options.get(value, value)) if options is not None and isinstance(value, str) else value
 
-    def _shown(self, uuid: str, value: str) -> str:
-        return next((shown for shown, meant in self._meant.get(uuid, {}).items() if meant == value), value)
+    def _label_of(self, uuid: str, value: str) -> str:
+        return next((label for label, meant in self._meant.get(uuid, {}).items() if meant == value), value)
 
     def _fields(self, uuid: str, fields: Mapping[str, Any]) -> dict[str, Any]:
         """Translate those fields that hold texts; only what has changed is returned."""
@@ -112,9 +112,9 @@ class Translator:
             elif name in _UPLOT:
                 changed[name] = tuple(self._uplot(part) for part in value)
         if "value" in fields and "options" not in fields and uuid in self._meant:
-            changed["value"] = self._shown(uuid, fields["value"])
+            changed["value"] = self._label_of(uuid, fields["value"])
         elif "value" in fields and "options" in fields:
-            changed["value"] = self._shown(uuid, fields["value"])
+            changed["value"] = self._label_of(uuid, fields["value"])
         return {name: value for name, value in changed.items() if value != fields[name]}
 
     def _offer(self, uuid: str, options: tuple[str, ...]) -> tuple[str, ...]:
@@ -146,14 +146,14 @@ class Translator:
 
     def _meta(self, meta: Any, texts: Mapping[str, Text]) -> Any:
         """Of what a figure tells our scripts only ``told`` is for a reader."""
-        told = meta.get("told") if isinstance(meta, dict) else None
-        return {**meta, "told": self.text(texts.get(told, told))} if told else meta
+        words = meta.get("told") if isinstance(meta, dict) else None
+        return {**meta, "told": self.text(texts.get(words, words))} if words else meta
 
     def _uplot(self, part: Mapping[str, Any]) -> dict[str, Any]:
-        told = {name: part[name] for name in _UPLOT_TEXTS & part.keys()}
+        labels = {name: part[name] for name in _UPLOT_TEXTS & part.keys()}
         said = {
             name: self.text(value) if isinstance(value, str) else tuple(map(self.text, value))
-            for name, value in told.items()
+            for name, value in labels.items()
             if isinstance(value, str) or all(isinstance(one, str) for one in value)
         }
         return {**part, **said}

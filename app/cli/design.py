@@ -82,11 +82,11 @@ def _require_own(folder: Path) -> None:
         raise _refused(folder, f"holds what this command did not write: {', '.join(foreign[:3])}")
 
 
-def _write(folder: Path, found: Designs, scenario: Scenario) -> None:
+def _write(folder: Path, result: Designs, scenario: Scenario) -> None:
     from navcore.scenario.file import to_toml
 
-    methods = tuple(share.method for share in found.methods)
-    texts = json.dumps(found.as_dict(), indent=2), to_toml(scenario.model_copy(update={"method": methods}))
+    methods = tuple(share.method for share in result.methods)
+    texts = json.dumps(result.as_dict(), indent=2), to_toml(scenario.model_copy(update={"method": methods}))
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in zip(_FILES, texts, strict=True):

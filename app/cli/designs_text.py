@@ -7,10 +7,10 @@ from schuler_bench.cli.design_text import unstated
 from schuler_bench.cli.table import columns, number
 
 
-def designs_text(found: Designs) -> list[str]:
+def designs_text(designs: Designs) -> list[str]:
     """Lines: a row a method with its share, its setting and the limit that is missed most often."""
     rows = [["method", "met %", "95 % interval", "missed most often", "median", "limit"]]
-    for share in found.methods:
+    for share in designs.methods:
         worst = min(share.limits, key=lambda limit: limit.met)
         missed = ["-", "", ""]
         if worst.met < 1.0:
@@ -18,33 +18,33 @@ def designs_text(found: Designs) -> list[str]:
             missed = [requirement.quantity, number(worst.median), number(requirement.limit)]
         interval = f"{number(100.0 * share.low, 3)} to {number(100.0 * share.high, 3)}"
         rows.append([share.method.label(), number(100.0 * share.met, 3), interval, *missed])
-    lines = [f"{found.seeds} seeds, each with its own noise and constants", "", *columns(rows), ""]
-    if not found.met:
-        lines += [*_alone(found), *_needed(found), ""]
-    lines += [f"{share.method.label()}: {_setting(share)}" for share in found.methods]
-    lines += [f"{name}: left out: {reason}" for name, reason in found.left_out]
-    return [*lines, *unstated(found.assumed_zero)]
+    lines = [f"{designs.seeds} seeds, each with its own noise and constants", "", *columns(rows), ""]
+    if not designs.met:
+        lines += [*_alone(designs), *_needed(designs), ""]
+    lines += [f"{share.method.label()}: {_setting(share)}" for share in designs.methods]
+    lines += [f"{name}: left out: {reason}" for name, reason in designs.left_out]
+    return [*lines, *unstated(designs.assumed_zero)]
 
 
-def _alone(found: Designs) -> list[str]:
+def _alone(designs: Designs) -> list[str]:
     """What is the largest share that meets each limit by itself."""
     lines = ["no method meets all limits on half of the seeds; each limit by itself:"]
-    for k, one in enumerate(found.methods[0].limits):
-        best = max(found.methods, key=lambda share: share.limits[k].met)
+    for k, one in enumerate(designs.methods[0].limits):
+        best = max(designs.methods, key=lambda share: share.limits[k].met)
         limit = f"{one.requirement.quantity} <= {number(one.requirement.at_most)}"
         share = number(100.0 * best.limits[k].met, 3)
         lines.append(f"  {limit}: at most {share} % ({best.method.label()})")
     return lines
 
 
-def _needed(found: Designs) -> list[str]:
-    if not found.needed:
+def _needed(designs: Designs) -> list[str]:
+    if not designs.needed:
         return [f"no figure of a sensor, the log or the start is enough, not even {MOST:.0f} times better"]
     lines = ["enough for the median of the seeds, with the settings below:"]
     return lines + [
         f"  {one.quantity or 'all limits'}: {', '.join(one.figures)} {number(one.factor, 3)} times better "
         f"({one.method})"
-        for one in found.needed
+        for one in designs.needed
     ]
 
 

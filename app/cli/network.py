@@ -108,7 +108,7 @@ def _margins(margins: dict[str, float | None] | None) -> list[str]:
     if margins is None:
         return [title, "none: the loop is undamped or unstable"]
 
-    def shown(name: str, scale: float = 1.0) -> str:
+    def margin(name: str, scale: float = 1.0) -> str:
         value = margins[name]
         return "no limit" if value is None else number(value * scale)
 
@@ -117,12 +117,12 @@ def _margins(margins: dict[str, float | None] | None) -> list[str]:
         title,
         *columns(
             [
-                ["gain up", shown("gain_up"), "times"],
-                ["gain down", shown("gain_down"), "times"],
-                ["phase", shown("phase_rad", degrees), "°"],
-                ["delay", shown("delay_s"), "s"],
-                ["disk margin: gain", shown("disk_gain"), "times"],
-                ["disk margin: phase", shown("disk_phase_rad", degrees), "°"],
+                ["gain up", margin("gain_up"), "times"],
+                ["gain down", margin("gain_down"), "times"],
+                ["phase", margin("phase_rad", degrees), "°"],
+                ["delay", margin("delay_s"), "s"],
+                ["disk margin: gain", margin("disk_gain"), "times"],
+                ["disk margin: phase", margin("disk_phase_rad", degrees), "°"],
             ]
         ),
     ]

@@ -60,7 +60,7 @@ class Bar:
         self._title = title
         self._fraction = 0.0
         self._compiled = COMPILATION.count, COMPILATION.seconds
-        self._shown: tuple[Progress, TaskID] | None = None
+        self._bar: tuple[Progress, TaskID] | None = None
         self._lock = threading.Lock()
         self._timer = threading.Timer(_APPEARS_AFTER_S, self._appear) if show else None
 
@@ -77,9 +77,9 @@ class Bar:
             self._timer.cancel()
         with self._lock:
             self._timer = None
-            if self._shown is None:
+            if self._bar is None:
                 return
-            progress = self._shown[0]
+            progress = self._bar[0]
             progress.stop()
         compiled = COMPILATION.count - self._compiled[0]
         if compiled:
@@ -90,8 +90,8 @@ class Bar:
     def advance(self, fraction: float) -> None:
         """Tell the fraction done, 0..1; from any thread."""
         self._fraction = fraction
-        if self._shown is not None:
-            progress, task = self._shown
+        if self._bar is not None:
+            progress, task = self._bar
             progress.update(task, completed=fraction)
 
     def _appear(self) -> None:
@@ -125,5 +125,5 @@ class Bar:
             )
             task = progress.add_task(self._title, total=1.0)
             progress.update(task, completed=self._fraction)
-            self._shown = (progress, task)
+            self._bar = (progress, task)
             progress.start()

@@ -26,7 +26,7 @@ _STRAPDOWN_ONLY: dict[str, tuple[str, ...]] = {
 
 
 def with_value(
-    scenario: Scenario, path: Path, value: Any, shown: Callable[[], Mapping[str, Any]] = dict
+    scenario: Scenario, path: Path, value: Any, on_screen: Callable[[], Mapping[str, Any]] = dict
 ) -> Scenario:
     """Set one field.
 
@@ -38,7 +38,7 @@ def with_value(
         Where the value lies in the canonical scenario.
     value : object
         Not yet checked.
-    shown : callable, optional
+    on_screen : callable, optional
         Gives what the page shows for the network's other parameters, used where the scenario gives no
         value: after gains that no (sigma, xi) gives, a new xi goes with the sigma on the screen.
 
@@ -49,7 +49,7 @@ def with_value(
     """
     data = scenario.canonical()
     if len(path) == 4 and path[2] == "network":
-        _choose_alternative(scenario, data, path, shown)
+        _choose_alternative(scenario, data, path, on_screen)
     _place(data, path, value)
     if path == ("run", "fidelity") and value != "strapdown":
         _leave_strapdown(data)
@@ -105,13 +105,13 @@ def with_method(scenario: Scenario, like: int | None) -> tuple[Scenario, int]:
     data = scenario.canonical()
     if like is None:
         damping = "internal" if scenario.reference.kind == "none" else "external"
-        made: dict[str, Any] = {"damping": damping, "network": {"id": "classic2"}, "name": "classic2"}
+        added: dict[str, Any] = {"damping": damping, "network": {"id": "classic2"}, "name": "classic2"}
         where = len(data["method"])
     else:
-        made = dict(data["method"][like])
+        added = dict(data["method"][like])
         where = like + 1
-    made["name"] = free_name(made["name"], [m["name"] for m in data["method"]])
-    data["method"].insert(where, made)
+    added["name"] = free_name(added["name"], [m["name"] for m in data["method"]])
+    data["method"].insert(where, added)
     return Scenario.parse(data), where
 
 
@@ -205,7 +205,7 @@ def network_values(scenario: Scenario, index: int) -> dict[str, Any]:
 
 
 def _choose_alternative(
-    scenario: Scenario, data: Any, path: Path, shown: Callable[[], Mapping[str, Any]]
+    scenario: Scenario, data: Any, path: Path, on_screen: Callable[[], Mapping[str, Any]]
 ) -> None:
     """Make the group of parameters that holds the field the one that is given."""
     index, name = int(path[1]), path[3]
@@ -213,7 +213,7 @@ def _choose_alternative(
     mine = next((group for group in groups if name in group), None)
     if mine is None:
         return
-    values = dict(shown()) | network_values(scenario, index)
+    values = dict(on_screen()) | network_values(scenario, index)
     for field in (field for group in groups for field in group):
         block.pop(field, None)
         if field in mine and values.get(field) is not None:
@@ -245,8 +245,8 @@ def _forget_made_name(scenario: Scenario, data: Any, index: int) -> None:
     """Let a name that was made from the network be made anew."""
     method = scenario.method[index]
     others = [m["name"] for i, m in enumerate(data["method"]) if i != index]
-    made = {kind.label(method) for kind in KINDS.values()} | {method.network.id}
-    if _unnumbered(method.name) not in made:
+    automatic = {kind.label(method) for kind in KINDS.values()} | {method.network.id}
+    if _unnumbered(method.name) not in automatic:
         return
     block = data["method"][index]
     try:
@@ -369,16 +369,16 @@ def paste(scenario: Scenario, selected: int, text: str) -> Pasted:
     added = [_with_free_name(method, known) for method in methods]
     data["method"][selected + 1 : selected + 1] = added
     data["reference"].update(reference)
-    made = Scenario.parse(data, WHERE)
+    pasted = Scenario.parse(data, WHERE)
     at = selected + len(added)
-    said = [Text("method {name}", name=method.name) for method in made.method[selected + 1 : at + 1]]
+    said = [Text("method {name}", name=method.name) for method in pasted.method[selected + 1 : at + 1]]
     if "event" in reference:
-        said.append(Text("log events: {event}", event=len(made.reference.event)))
+        said.append(Text("log events: {event}", event=len(pasted.reference.event)))
     if "outage" in reference:
-        said.append(Text("log outages: {outage}", outage=len(made.reference.outage)))
+        said.append(Text("log outages: {outage}", outage=len(pasted.reference.outage)))
     if reference.get("current"):
-        said.append(Text("currents: {current}", current=len(made.reference.current)))
-    return Pasted(made, at, ", ".join(said))
+        said.append(Text("currents: {current}", current=len(pasted.reference.current)))
+    return Pasted(pasted, at, ", ".join(said))
 
 
 def _with_free_name(method: Any, known: list[str]) -> Any:
@@ -386,7 +386,7 @@ def _with_free_name(method: Any, known: list[str]) -> Any:
     if not isinstance(method, dict):
         return method
     network = method.get("network")
-    made = network.get("id") if isinstance(network, dict) else network
-    name = free_name(str(method.get("name") or made or method.get("damping") or "free"), known)
+    network_id = network.get("id") if isinstance(network, dict) else network
+    name = free_name(str(method.get("name") or network_id or method.get("damping") or "free"), known)
     known.append(name)
     return method | {"name": name}

@@ -167,13 +167,13 @@ def read_drag(text: str) -> Drag | None:
     >>> read_drag("17 2 nan 1.25 0"), read_drag("17 2 0.5 0 0")
     (None, None)
     """
-    found = _DRAG.fullmatch(text.strip())
-    if found is None:
+    match = _DRAG.fullmatch(text.strip())
+    if match is None:
         return None
-    damping_ratio, ratio = float(found[3]), float(found[4])
+    damping_ratio, ratio = float(match[3]), float(match[4])
     if not (0.0 < damping_ratio <= _FARTHEST and 0.0 < ratio <= _FARTHEST):
         return None
-    return Drag(found[1], int(found[2]), damping_ratio, ratio, found[5] == "1")
+    return Drag(match[1], int(match[2]), damping_ratio, ratio, match[5] == "1")
 
 
 def with_nearest_pair(

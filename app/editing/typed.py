@@ -35,8 +35,8 @@ def unit_of(label: str) -> str:
     >>> unit_of("duration (h)"), unit_of("gyro bias x (°/h)"), unit_of("r")
     ('h', '°/h', '')
     """
-    found = re.search(r"\(([^()]*)\)$", label)
-    return "" if found is None else found[1]
+    match = re.search(r"\(([^()]*)\)$", label)
+    return "" if match is None else match[1]
 
 
 def read_typed(text: str, unit: str) -> float:
@@ -59,10 +59,10 @@ def read_typed(text: str, unit: str) -> float:
     >>> read_typed("30 min", "h"), read_typed("2 kn", "kn"), read_typed("0.5", "")
     (0.5, 2.0, 0.5)
     """
-    found = _FORM.fullmatch(text)
-    if found is None:
+    match = _FORM.fullmatch(text)
+    if match is None:
         raise ValueError("must be a number, with a unit if wanted, such as 30 min")
-    value, given = float(found[1]), _SPELLED.get(found[2], found[2])
+    value, given = float(match[1]), _SPELLED.get(match[2], match[2])
     mine = _SPELLED.get(unit, unit)
     if not math.isfinite(value):
         raise ValueError("must be a finite number")

@@ -49,10 +49,10 @@ def listen(host: str, port: int) -> socket.socket:
     if not host:
         raise _fault("--host", host, "must be a name or address of this machine, for example 127.0.0.1")
     try:
-        found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
+        addresses = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
     except (OSError, UnicodeError):
         raise _fault("--host", host, "no such host; must be a name or address of this machine") from None
-    family, kind, protocol, _, address = min(found, key=lambda entry: entry[0] != socket.AF_INET)
+    family, kind, protocol, _, address = min(addresses, key=lambda entry: entry[0] != socket.AF_INET)
     listener = socket.socket(family, kind, protocol)
     try:
         if os.name == "posix":
@@ -192,10 +192,10 @@ def find_token(given: str | None, file: Path | None, generate: bool, environment
         return Token(_first_line(file))
     if not generate:
         return Token(None)
-    made = secrets.token_urlsafe(24)
+    secret = secrets.token_urlsafe(24)
     if file is not None:
-        _write(file, made)
-    return Token(made, generated=True)
+        _write(file, secret)
+    return Token(secret, generated=True)
 
 
 def _first_line(file: Path) -> str:

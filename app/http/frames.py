@@ -144,7 +144,7 @@ class Gate:
         if not control.disabled:
             name = control.label or Text("The control")
             refusal = Text(
-                "{name} must {reason}; {value} was refused.", name=name, reason=reason, value=shown(given)
+                "{name} must {reason}; {value} was refused.", name=name, reason=reason, value=excerpt(given)
             )
             self.visitor.tell(Text("Not accepted"), refusal)
         return None
@@ -283,7 +283,7 @@ def why_not(control: Control, value: object, longest_text: int) -> str | None:
     return next((reason for reason in reasons if reason is not None), None)
 
 
-def shown(value: object) -> str:
+def excerpt(value: object) -> str:
     """Return a value for a message to the visitor, shortened."""
     text = value if isinstance(value, str) else repr(value)
     return text if len(text) <= _LONGEST_SHOWN else text[: _LONGEST_SHOWN - 3] + "..."

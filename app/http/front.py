@@ -64,9 +64,9 @@ class Front:
 
     def worker_of(self, head: bytes) -> int:
         """Port of the worker for a request: of a session always the same one, else in turn."""
-        found = _SESSION.match(head)
-        if found is not None:
-            return self._workers[zlib.crc32(found.group(1)) % len(self._workers)]
+        match = _SESSION.match(head)
+        if match is not None:
+            return self._workers[zlib.crc32(match.group(1)) % len(self._workers)]
         self._next += 1
         return self._workers[self._next % len(self._workers)]
 
@@ -96,7 +96,7 @@ class Front:
             await writer.drain()
             return
         self._door.leave(guest)  # from here on the worker counts it
-        inner_writer.write(_told(head, guest.address))
+        inner_writer.write(_with_address(head, guest.address))
         ways = [
             asyncio.create_task(_copy(reader, inner_writer)),
             asyncio.create_task(_copy(inner_reader, writer)),
@@ -118,7 +118,7 @@ async def _copy(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> N
             await writer.drain()
 
 
-def _told(head: bytes, address: str) -> bytes:
+def _with_address(head: bytes, address: str) -> bytes:
     name = FORWARDED.encode()
     first, *lines = head[:-4].split(b"\r\n")
     kept = [line for line in lines if line.partition(b":")[0].strip().lower() != name]

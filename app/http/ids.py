@@ -34,8 +34,8 @@ def is_shared(id: str) -> bool:
 
 def copied_from(id: str) -> str | None:
     """Shared state that the session with this id began as a copy of; None for any other session."""
-    found = _COPY.fullmatch(id)
-    return None if found is None else found.group(1)
+    match = _COPY.fullmatch(id)
+    return None if match is None else match.group(1)
 
 
 def log_name(id: str) -> str:

@@ -117,12 +117,12 @@ class Running:
         }
         return websockets.asyncio.server.serve(placed, sock=self._listener, **{**keywords, **ours})
 
-    def _metrics(self, make: Callable[[], Metrics], made: list[Metrics]) -> bytes:
+    def _metrics(self, make: Callable[[], Metrics], cached: list[Metrics]) -> bytes:
         """Text for ``/metrics``; what gathers it is made when it is first asked for."""
-        if not made:
-            made.append(make())
-            made[0].sources.append(self._figures)
-        return made[0].text()
+        if not cached:
+            cached.append(make())
+            cached[0].sources.append(self._figures)
+        return cached[0].text()
 
     def _figures(self) -> dict[str, float]:
         return {
@@ -140,7 +140,7 @@ class Running:
         """Answer from now on, and call back, in threads of ``callbacks``, for pages that open or close."""
         server, uploading = self.viser, Uploading(self._limits)
         sessions: dict[int, str] = {}
-        shown: dict[int, Future[None]] = {}
+        opening: dict[int, Future[None]] = {}
         gates: dict[int, Gate] = {}
 
         def opened(client_id: int, connection: Connection) -> None:
@@ -155,11 +155,11 @@ class Running:
             id = sessions.get(client.client_id)
             if id is not None:
                 bridge.plotly_is_on_the_page(client)
-                shown[client.client_id] = callbacks.submit(_call, on_connect, client, id)
+                opening[client.client_id] = callbacks.submit(_call, on_connect, client, id)
 
         @server.on_client_disconnect
         async def _(client: viser.ClientHandle) -> None:
-            id, showing = sessions.get(client.client_id), shown.pop(client.client_id, None)
+            id, showing = sessions.get(client.client_id), opening.pop(client.client_id, None)
             if id is not None and showing is not None:
                 await asyncio.wrap_future(showing)
                 await asyncio.wrap_future(callbacks.submit(_call, on_disconnect, client, id))
@@ -235,11 +235,11 @@ def _accepted(lines: Iterable[str]) -> list[str]:
     >>> _accepted(["en;q=0.7, zh-CN, *;q=0.1, zh;q=0.9"])
     ['zh-CN', 'zh', 'en']
     """
-    found: list[tuple[float, str]] = []
+    ranked: list[tuple[float, str]] = []
     for part in ",".join(lines)[:_LONGEST_HEADER].split(","):
         one = re.fullmatch(
             r"\s*([A-Za-z]{1,8}(?:-[A-Za-z0-9]{1,8})*)\s*(?:;\s*q=([01](?:\.[0-9]{0,3})?))?\s*", part
         )
         if one is not None:
-            found.append((-float(one[2] or 1.0), one[1]))
-    return [name for _, name in sorted(found, key=lambda pair: pair[0])]
+            ranked.append((-float(one[2] or 1.0), one[1]))
+    return [name for _, name in sorted(ranked, key=lambda pair: pair[0])]

@@ -175,7 +175,7 @@ def start(
         raise
     callbacks = ThreadPoolExecutor(max_workers=8, thread_name_prefix="session")
     running.follow_visits(callbacks, on_connect, on_disconnect)
-    shown = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
-    address = f"http://{authority(shown, bound_port)}/"
+    named_host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
+    address = f"http://{authority(named_host, bound_port)}/"
     site = running.site
     return DashboardServer(running.viser, host, bound_port, address, site.prepare, site.fail, callbacks)

@@ -144,11 +144,11 @@ class Site:
             response.headers[name] = value
 
     def _open(self, connection: Connection, path: str) -> Response | None:
-        found = _SESSION_PATH.fullmatch(path)
-        if found is None or is_shared(found.group(1)):
+        match = _SESSION_PATH.fullmatch(path)
+        if match is None or is_shared(match.group(1)):
             return _not_found()
         # A page cannot be redirected here; one with an id that is not ours begins anew, under an id that is.
-        connection.session_id = found.group(1) if self.ids.accepts(found.group(1)) else self.ids.new()
+        connection.session_id = match.group(1) if self.ids.accepts(match.group(1)) else self.ids.new()
         return None if self.places.take(connection) else _full()
 
     async def _get(self, connection: Connection, path: str, query: str, headers: Headers) -> Response:

@@ -1,8 +1,9 @@
-"""Where heavy jobs are computed: on the Dask cluster of this process, if it has one that answers, or here."""
+"""Where heavy jobs are computed: on the Dask cluster if one answers, else by a helper, or in this process."""
 
 from collections.abc import Callable, Sequence
 
 from navcore.foundation.text import Text
+from schuler_bench.jobs import helper
 from schuler_bench.jobs.cluster import Cluster, Compute, Found, Item
 from schuler_bench.jobs.scheduler import Lane
 from schuler_bench.jobs.worker import ElsewhereLost, Watch
@@ -82,12 +83,14 @@ def carried_out(
 def carried_out_all(
     function: Compute[Item, Found], items: Sequence[Item], progress: Callable[[float], None], watch: Watch
 ) -> list[Found] | None:
-    """The same for several items; on the cluster side by side, here one after the other."""
+    """The same for several items; on the cluster side by side, else one after the other."""
     if watch.lane is Lane.CLUSTER:
         there = cluster()
         if there is None:
             raise ElsewhereLost
         return there.compute(function, items, progress, watch.unwanted)
+    if helper.helps(function):
+        return helper.compute(function, items, progress, watch.unwanted)
     results = []
     for number, item in enumerate(items):
 

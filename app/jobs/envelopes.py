@@ -7,6 +7,7 @@ from navcore.engine.run import Run
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from schuler_bench.jobs.elsewhere import carried_out_all
+from schuler_bench.jobs.helper import helps
 from schuler_bench.jobs.rows import few_rows
 from schuler_bench.jobs.scheduler import Lane
 from schuler_bench.jobs.search import Search
@@ -88,8 +89,8 @@ class Envelopes(Search[_Asked, Envelope]):
             return super()._carry_out(asked, progress, watch)
         scenario = asked.scenario
         seeds = [with_seed(scenario, scenario.run.seed + number) for number in range(1, SEEDS + 1)]
-        # On a cluster all of them side by side; here each takes over what the last one had in common with it.
-        one = _of_a_seed if watch.lane is Lane.CLUSTER else self._of_a_seed
+        # On a cluster all of them side by side; else each takes over what the last one had in common with it.
+        one = _of_a_seed if watch.lane is Lane.CLUSTER or helps(_of_a_seed) else self._of_a_seed
         runs = carried_out_all(one, seeds, progress, watch)
         if runs is None or watch.unwanted() or any(run.status == "stopped" for run in runs):
             return None
@@ -113,7 +114,7 @@ def _covariance(
 
 
 def _of_a_seed(scenario: Scenario, progress: Callable[[float], None], cancelled: Callable[[], bool]) -> Run:
-    """Run another seed for the bands; found by its name on a cluster."""
+    """Run another seed for the bands; found by its name on a cluster and by a helper."""
     from navcore.engine.simulation import simulate
 
     return few_rows(simulate(scenario, progress, cancelled), 2)

@@ -29,6 +29,8 @@ _PATIENCE_S = {"long": 0.8, "spare": 2.0}
 """So long one stands still at most before it gets a turn."""
 _LOOK_S = 0.05
 _MOST_REMEMBERED = 4096
+_MOST_SPARE = 4
+"""Jobs beside the answers at once: each may be of a process of its own."""
 _MOST_ON_CLUSTER = 8
 """Jobs sent to a cluster at once; each may be of several parts."""
 _ABOUT_S, _LONGEST_PAUSE_S = 3.0, 0.3
@@ -132,7 +134,8 @@ class Scheduler:
         """Jobs of a lane at once; where nobody waits for it at every step, a core stays free for answers."""
         if lane is Lane.CLUSTER:
             return _MOST_ON_CLUSTER
-        return self.cores if lane is Lane.ANSWER else max(1, self.cores - 1)
+        most = self.cores if lane is Lane.ANSWER else max(1, self.cores - 1)
+        return min(most, _MOST_SPARE) if lane is Lane.SPARE else most
 
     def take_back(self, ticket: Ticket) -> bool:
         """Remove a job that still waits; False when it does not, or not any more."""

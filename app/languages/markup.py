@@ -47,6 +47,8 @@ _TAG = re.compile(r"</?[a-z]+>")
 _PARTS = re.compile(r"(</?[a-z]+>)")
 _AROUND = re.compile(r"<([a-z]+)>(.*)</\1>", re.DOTALL)
 _BLANKS = re.compile(r"\s+")
+_LETTERS = re.compile(r"[A-Za-z]{2,}")
+_BARE = re.compile(r"\{[^{}]*\}|<[^>]*>")
 
 Say = Callable[[str], str]
 """``say(key)``: the translation of a plain text or of a piece."""
@@ -55,6 +57,11 @@ Say = Callable[[str], str]
 def has_markup(text: str) -> bool:
     """Whether a text must be read as HTML, or has values in the manner of plotly."""
     return "%{" in text or ("<" in text and _TOKEN.search(text) is not None)
+
+
+def has_words(text: str) -> bool:
+    """Whether a text has words beside its values and tags: anything to translate."""
+    return _LETTERS.search(_BARE.sub("", text)) is not None
 
 
 def hidden(template: str) -> str:
@@ -69,10 +76,10 @@ def key_of(piece: str) -> tuple[str, list[str]]:
     """Key of a piece in the catalogue, and those of its values that have no name: they count as ``{0}``."""
     values: list[str] = []
 
-    def field(found: re.Match[str]) -> str:
-        if found[1][0].isalpha():
-            return f"{{{found[1].rstrip(':')}}}"
-        values.append(found[0])
+    def field(match: re.Match[str]) -> str:
+        if match[1][0].isalpha():
+            return f"{{{match[1].rstrip(':')}}}"
+        values.append(match[0])
         return f"{{{len(values) - 1}}}"
 
     return HIDDEN.sub(field, piece), values
@@ -86,14 +93,14 @@ def in_pieces(html: str) -> list[str]:
     >>> in_pieces('<p title="a hint">See <b class="x">this</b> &amp; that</p><p>42</p>')
     ['a hint', 'See <b>this</b> & that', '42']
     """
-    found: list[str] = []
+    keys: list[str] = []
 
     def keep(key: str) -> str:
-        found.append(key_of(key)[0])
+        keys.append(key_of(key)[0])
         return f"{key} "  # another text: what is the same counts as unknown, and is looked up piece by piece
 
     translate(html, keep)
-    return found
+    return keys
 
 
 def translate(html: str, say: Say) -> str:
@@ -108,8 +115,8 @@ def translate(html: str, say: Say) -> str:
     """
     values: list[str] = []
 
-    def hide(found: re.Match[str]) -> str:
-        values.append(found[0])
+    def hide(match: re.Match[str]) -> str:
+        values.append(match[0])
         return f"{OPEN}{len(values) - 1}{CLOSE}"
 
     def live(found: re.Match[str]) -> str:
@@ -127,7 +134,7 @@ def translate(html: str, say: Say) -> str:
             piece.append(token)
     out.append(_translate_piece("".join(piece), say))
     return re.sub(
-        f"{OPEN}([0-9]+){CLOSE}", lambda found: _LIVE.sub(live, values[int(found[1])]), "".join(out)
+        f"{OPEN}([0-9]+){CLOSE}", lambda match: _LIVE.sub(live, values[int(match[1])]), "".join(out)
     )
 
 
@@ -136,8 +143,8 @@ def for_scripts(html: str) -> str:
     return _TAG_WITH_VALUE.sub(lambda tag: _VALUE_IN_TAG.sub(_marked, tag[0]), html)
 
 
-def _marked(found: re.Match[str]) -> str:
-    return found[0] if found[0][0] != OPEN else f"{OPEN}!{found[0][1:]}"
+def _marked(match: re.Match[str]) -> str:
+    return match[0] if match[0][0] != OPEN else f"{OPEN}!{match[0][1:]}"
 
 
 def _translate_piece(piece: str, say: Say) -> str:
@@ -146,11 +153,11 @@ def _translate_piece(piece: str, say: Say) -> str:
     tags: dict[str, list[str]] = {}
     key = ""
     for token in _TOKEN.split(piece):
-        found = _INLINE.fullmatch(token)
-        if found is None:
+        match = _INLINE.fullmatch(token)
+        if match is None:
             key += unescape(token)
         else:
-            short = f"<{found[1]}{found[2]}>"
+            short = f"<{match[1]}{match[2]}>"
             tags.setdefault(short, []).append(_attributes(token, say))
             key += short
     key = _BLANKS.sub(" ", key)
@@ -163,11 +170,11 @@ def _translate_piece(piece: str, say: Say) -> str:
 
 def say_inside(key: str, say: Say) -> str:
     """Translate a piece with elements in it: without those around all of it, else part by part."""
-    found = _AROUND.fullmatch(key)
-    if found is not None and f"<{found[1]}>" not in found[2]:
-        inner = found[2].strip()
+    match = _AROUND.fullmatch(key)
+    if match is not None and f"<{match[1]}>" not in match[2]:
+        inner = match[2].strip()
         said = say_inside(inner, say) if _TAG.search(inner) else say(inner)
-        return f"<{found[1]}>{found[2].replace(inner, said)}</{found[1]}>" if inner else key
+        return f"<{match[1]}>{match[2].replace(inner, said)}</{match[1]}>" if inner else key
     said = say(key)
     if said == key:
         said = "".join(part if _TAG.fullmatch(part) else _around(part, say) for part in _PARTS.split(key))
@@ -196,16 +203,16 @@ def _attributes(tag: str, say: Say) -> str:
     if "=" not in tag or tag.startswith(("<style", "<script")):
         return tag
 
-    def change(found: re.Match[str]) -> str:
-        name, text = found[1], unescape(found[2])
-        told = name == "data-told" and text.startswith("[")  # a list of texts
-        said = json.dumps(_walk(json.loads(text), say)) if told else say(text)
-        return found[0] if said == text else f'{name}="{escape(said)}"'
+    def change(match: re.Match[str]) -> str:
+        name, text = match[1], unescape(match[2])
+        nested = name == "data-told" and text.startswith("[")  # a list of texts
+        said = json.dumps(_walk(json.loads(text), say)) if nested else say(text)
+        return match[0] if said == text else f'{name}="{escape(said)}"'
 
     return _ATTRIBUTE.sub(change, tag)
 
 
-def _walk(told: object, say: Say) -> object:
-    if isinstance(told, list):
-        return [_walk(one, say) for one in told]
-    return say(told) if isinstance(told, str) else told
+def _walk(value: object, say: Say) -> object:
+    if isinstance(value, list):
+        return [_walk(one, say) for one in value]
+    return say(value) if isinstance(value, str) else value

@@ -11,7 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from navcore.foundation.text import Text, Words, filled
+from navcore.foundation.text import WIDE, Text, Words, filled
 from schuler_bench.languages import markup
 from schuler_bench.languages.markup import CLOSE, OPEN
 
@@ -21,12 +21,9 @@ NAMES = {"en": "English", "zh-CN": "中文（简体）"}
 """Languages of the page, each by its own name."""
 NONE: frozenset[str] = frozenset()
 """No names."""
-_LETTERS = re.compile(r"[A-Za-z]{2,}")
 _VALUE = re.compile(r"\{([0-9]+|[a-z][^{}]*)\}")
 _NAMED = re.compile(f"{OPEN}([a-z][^{CLOSE}]*){CLOSE}")
-_BARE = re.compile(r"\{[^{}]*\}|</?[a-z]+>")
 _JOINTS = {"; ": "；", ": ": "：", ", ": "，", " (": "（", ")": "）"}
-_WIDE = re.compile("[\u3000-\u9fff\uff00-\uffef]")
 _MOST_KEPT = 4_000
 _LONGEST_KEPT = 50_000
 """Letters of a text with markup: a longer one, a whole page to be saved, is not kept with its translation."""
@@ -59,7 +56,7 @@ class Wording:
         """
         if isinstance(text, Text):
             return self._filled(text, names)
-        if text in names or _LETTERS.search(text) is None:
+        if text in names or not markup.has_words(text):
             return text
         said = self._said(text)
         if said is None and markup.has_markup(text):
@@ -80,8 +77,8 @@ class Wording:
         key, values = markup.key_of(piece)
         said = self._said(key)
         if said is not None:
-            return _VALUE.sub(lambda found: _hidden(found[1], values), said)
-        return None if _LETTERS.search(_BARE.sub("", key)) is None else piece
+            return _VALUE.sub(lambda match: _hidden(match[1], values), said)
+        return piece if markup.has_words(key) else None
 
     def _filled(self, text: Text, names: frozenset[str]) -> str:
         """Fill the values, each in this language, into the translation of the template."""
@@ -89,7 +86,7 @@ class Wording:
         said = self._said(template)
         in_html = said is None and markup.has_markup(template)
         if said is None and not in_html:
-            if _LETTERS.search(_VALUE.sub("", template)) is not None:
+            if markup.has_words(template):
                 return str(text)
             said = template
         values = {
@@ -98,7 +95,7 @@ class Wording:
         }
         if said is None:
             return self._filled_html(text, values, names)
-        if said is template and any(_WIDE.search(str(value)) for value in values.values()):
+        if said is template and any(WIDE.search(str(value)) for value in values.values()):
             for joint, wide in _JOINTS.items():
                 said = said.replace(joint, wide)
         return filled(said, values)
@@ -112,9 +109,9 @@ class Wording:
             said = self._piece(key, names)
             return _NAMED.sub(rf"{OPEN}!\1{CLOSE}", key) if said == key else key if said is None else said
 
-        def value(found: re.Match[str]) -> str:
-            name, _, spec = found[1].lstrip("!").partition(":")
-            return filled(f"{{{name}:{spec}}}", text.values if found[1][0] == "!" else values)
+        def value(match: re.Match[str]) -> str:
+            name, _, spec = match[1].lstrip("!").partition(":")
+            return filled(f"{{{name}:{spec}}}", text.values if match[1][0] == "!" else values)
 
         return markup.HIDDEN.sub(value, markup.translate(markup.for_scripts(markup.hidden(template)), piece))
 

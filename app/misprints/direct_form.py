@@ -55,9 +55,9 @@ def _warped(step_s: float) -> np.ndarray:
     return OMEGA_S * np.tan(0.5 * _OMEGA * step_s) / np.tan(0.5 * OMEGA_S * step_s)
 
 
-def _largest_error(found: np.ndarray, network: LinearNetwork, step_s: float) -> float:
+def _largest_error(response: np.ndarray, network: LinearNetwork, step_s: float) -> float:
     exact = network.response(_warped(step_s))
-    return float(np.max(np.abs(found - exact) / np.abs(exact)))
+    return float(np.max(np.abs(response - exact) / np.abs(exact)))
 
 
 def direct_form_error(network: LinearNetwork, step_s: float, dtype: type[np.floating]) -> float:

@@ -31,7 +31,7 @@ def _gain() -> Comparison:
     }
     y = {form: initial_tilt_response(network, t) for form, network in networks.items()}
     loop = {form: analyse(network) for form, network in networks.items()}
-    slowest = {form: 5.25 / -float(np.max(found.poles.real)) for form, found in loop.items()}
+    slowest = {form: 5.25 / -float(np.max(closed.poles.real)) for form, closed in loop.items()}
     settled = {form: _last_above(t, values, _PERCENT_OF_INITIAL) for form, values in y.items()}
     return Comparison(
         x_axis=TIME,

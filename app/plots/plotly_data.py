@@ -166,8 +166,3 @@ def values_of(value: Any) -> list[float | None]:
     if isinstance(value, Packed):
         return [float(number) for number in value.full]
     return list(value)
-
-
-def unpacked(value: dict[str, str]) -> np.ndarray:
-    """Inverse of `packed`, float32."""
-    return np.frombuffer(base64.b64decode(value["bdata"]), dtype="<f4")

@@ -181,12 +181,12 @@ def differences(before: Any, after: Any, path: str = "") -> list[tuple[str, Any,
     old, new = _parts(before), _parts(after)
     if not (old or new):
         return [(path, _ANY.dump_python(before, mode="json"), _ANY.dump_python(after, mode="json"))]
-    found: list[tuple[str, Any, Any]] = []
+    changes: list[tuple[str, Any, Any]] = []
     for name in old | new:
         one, other = old.get(name), new.get(name)
         if one is not other and one != other:
-            found += differences(one, other, f"{path}.{name}" if path else name)
-    return found
+            changes += differences(one, other, f"{path}.{name}" if path else name)
+    return changes
 
 
 def _parts(value: Any) -> dict[str, Any]:

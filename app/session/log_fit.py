@@ -44,7 +44,7 @@ def with_fitted_log(scenario: Scenario, fit: LogErrorFit) -> Scenario:
     return Scenario.parse(scenario.canonical() | {"reference": reference.model_dump(mode="json")})
 
 
-def told(fit: LogErrorFit) -> list[str]:
+def fit_lines(fit: LogErrorFit) -> list[str]:
     """Say what the fit found, a line each."""
     (starboard, forward), (of_starboard, of_forward) = fit.bias, fit.bias_std
     return [

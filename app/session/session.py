@@ -383,8 +383,8 @@ class Session:
                 self.history.take_back(self._before)
                 self._show_state(self._before, self)
                 self.outdated = self.run is None or self.run.scenario != self.scenario
-        told = for_a_page(error)
-        self._tell(lambda view: view.run_refused(told))
+        message = for_a_page(error)
+        self._tell(lambda view: view.run_refused(message))
 
     def _tell(self, message: Callable[[View], None]) -> None:
         with self.lock:

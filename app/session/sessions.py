@@ -41,7 +41,7 @@ _LONGEST_NAME = 60
 
 Document = dict[str, Any]
 T = TypeVar("T")
-_made: WeakKeyDictionary[Session, dict[int, tuple[Scenario, Document]]] = WeakKeyDictionary()
+_numbered: WeakKeyDictionary[Session, dict[int, tuple[Scenario, Document]]] = WeakKeyDictionary()
 """Content of each session's last document: scenarios by their identity, as they are written."""
 Unreadable = (InputError, ValidationError, ValueError, TypeError, KeyError, IndexError, AttributeError)
 """Errors that reading a document of strange content raises."""
@@ -69,7 +69,7 @@ class Sessions:
         self._first, self._store, self._on_answer = first or first_scenario, store, on_answer
         self._lock = threading.Lock()
         self._by_id: OrderedDict[str, Session] = OrderedDict()
-        self._made: dict[str, threading.Lock] = {}
+        self._opening: dict[str, threading.Lock] = {}
         self._shared: OrderedDict[str, Document] = OrderedDict()
         self._folder: Path | None = None
         self.prepared: Run | None = None
@@ -80,18 +80,18 @@ class Sessions:
         """Return the session with that id: as it was left, a copy of a shared state, or new."""
         with self._lock:
             session = self._by_id.get(id)
-            making = self._made.setdefault(id, threading.Lock())
+            making = self._opening.setdefault(id, threading.Lock())
         # Reading files takes its time: other visitors need not wait.
         with making:
             with self._lock:
                 session = self._by_id.get(id)
-            made = self._make(id) if session is None else session
+            opened = self._make(id) if session is None else session
             with self._lock:
-                self._made.pop(id, None)
-                self._by_id[id] = made
+                self._opening.pop(id, None)
+                self._by_id[id] = opened
                 self._by_id.move_to_end(id)
-                self._trim(keep=made)
-                return made
+                self._trim(keep=opened)
+                return opened
 
     def knows(self, id: str) -> bool:
         """Whether there is a session with that id already, held or kept."""
@@ -240,17 +240,17 @@ def to_document(session: Session, *, whole: bool = True) -> Document:
         steps, at = ((state, ""),), 0
     first = max(0, at - STEPS_BACK)
     kept = steps[first : at + STEPS_FORWARD + 1]
-    scenarios = _Scenarios(_made.get(session, {}))
+    scenarios = _Scenarios(_numbered.get(session, {}))
     baseline = next((index for index, pin in enumerate(shown, start=1) if pin.id == display.baseline), None)
     listed = [_step(one, name, scenarios) for one, name in kept]
     if whole:
-        _made[session] = scenarios.made
+        _numbered[session] = scenarios.numbered
     return {
         "schema": SCHEMA,
         "id": session.id,
         "at": at - first,
         "steps": listed,
-        "scenarios": [document for _, document in scenarios.made.values()],
+        "scenarios": [document for _, document in scenarios.numbered.values()],
         "display": display.model_dump(mode="json") | {"baseline": baseline},
         "pins": [pin | {"scenario": plain_names(pin["scenario"])} for pin in pins],
         "files": files,
@@ -268,22 +268,22 @@ class _Scenarios:
 
     def __init__(self, before: dict[int, tuple[Scenario, Document]]) -> None:
         self._before = before
-        self.made: dict[int, tuple[Scenario, Document]] = {}
+        self.numbered: dict[int, tuple[Scenario, Document]] = {}
         self._numbers: dict[int, int] = {}
 
     def number(self, scenario: Scenario) -> int:
         key = id(scenario)
-        if key not in self.made:
+        if key not in self.numbered:
             known, document = self._before.get(key, (None, {}))
             if known is not scenario:
                 document = plain_names(scenario.canonical())
-            self.made[key] = scenario, document
+            self.numbered[key] = scenario, document
         return self._numbers.setdefault(key, len(self._numbers))
 
 
 def _step(state: State, name: str, scenarios: _Scenarios) -> Document:
-    found = {"scenario": scenarios.number(state.scenario), "opened": scenarios.number(state.opened)}
-    return found | {"origin": state.origin, "selected": state.selected} | ({"name": name} if name else {})
+    document = {"scenario": scenarios.number(state.scenario), "opened": scenarios.number(state.opened)}
+    return document | {"origin": state.origin, "selected": state.selected} | ({"name": name} if name else {})
 
 
 def restore(session: Session, document: Document) -> None:
@@ -302,13 +302,13 @@ def restore(session: Session, document: Document) -> None:
     scenarios: dict[int, Scenario] = {}
 
     def state(step: Document) -> State:
-        found = []
+        pair = []
         for number in (int(step["scenario"]), int(step["opened"])):
             if number not in scenarios:
                 scenarios[number] = _scenario(document["scenarios"][number], names)
-            found.append(scenarios[number])
-        selected = min(max(int(step["selected"]), 0), len(found[0].method) - 1)
-        return State(found[0], str(step["origin"])[:_LONGEST_NAME], selected, found[1])
+            pair.append(scenarios[number])
+        selected = min(max(int(step["selected"]), 0), len(pair[0].method) - 1)
+        return State(pair[0], str(step["origin"])[:_LONGEST_NAME], selected, pair[1])
 
     def part(name: str, read: Callable[[], T], otherwise: T) -> T:
         """Read a part that the session can do without."""

@@ -142,9 +142,9 @@ def _with_needed(pin: Pin, scenario: Scenario) -> Pin:
         return pin
     present = {method.name: method for method in scenario.method}
     needed = tuple(
-        found
-        for found in pin.run.methods
-        if found.method.name == pin.method or present.get(found.method.name) != found.method
+        method_run
+        for method_run in pin.run.methods
+        if method_run.method.name == pin.method or present.get(method_run.method.name) != method_run.method
     )
     return replace(pin, run=replace(pin.run, methods=needed)) if needed else pin
 

@@ -155,8 +155,8 @@ class Uploads:
         with opened(self.folder) as folder:
             for name in folder.files(TEMPORARY.fullmatch):
                 folder.remove(name, "an upload that was not finished")
-            found = folder.files(lambda name: safe_file_name(name) == name)
-        for name in sorted(found, key=lambda name: found[name].st_mtime)[:MOST_FILES]:
+            files = folder.files(lambda name: safe_file_name(name) == name)
+        for name in sorted(files, key=lambda name: files[name].st_mtime)[:MOST_FILES]:
             path = self.folder / name
             try:
                 report = guarded.call(path.name, check_recording, path)
@@ -235,21 +235,21 @@ def recorded_scenario(scenario: Scenario, uploads: Uploads) -> tuple[Scenario, l
                 name=Text.joined(", ", (Path(path).name for path in logs)),
             )
         )
-    made = Scenario.parse(data)
-    window = recorded_window(made.motion, made.reference)
+    parsed = Scenario.parse(data)
+    window = recorded_window(parsed.motion, parsed.reference)
     if window is None:
         raise InputError(
             Fault("", "upload", None, Text("holds neither a log nor a track with heading: nothing to run on"))
         )
-    step_s = made.run.step_s
+    step_s = parsed.run.step_s
     span_s = math.floor(window.span_s / step_s) * step_s
     data["run"] |= {
         "duration_h": span_s / HOUR,
-        "output_step_s": min(made.run.output_step_s, max(step_s, 1.0)),
+        "output_step_s": min(parsed.run.output_step_s, max(step_s, 1.0)),
     }
     notes.append(Text("The duration is the {span_s:g} s that all uploaded streams share.", span_s=span_s))
-    if made.motion.recorded:
-        start = made.motion.truth(1, 1.0, made.site.site(), made.earth, window.start_s).values[0]
+    if parsed.motion.recorded:
+        start = parsed.motion.truth(1, 1.0, parsed.site.site(), parsed.earth, window.start_s).values[0]
         lat_deg, lon_deg = float(start[LAT]) / DEG, float(start[LON]) / DEG
         data["site"] |= {"lat_deg": round(lat_deg, 6), "lon_deg": round(lon_deg, 6)}
         notes.append(

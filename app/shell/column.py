@@ -58,9 +58,9 @@ class Column:
         with tab:
             self._faults.place(view)
             if view.look_for:
-                told = quoted(view.look_for)
+                words = quoted(view.look_for)
                 self._gui.add_html(
-                    Text('<div class="sb-look" title="{told}">{told}</div>', told=told), order=-1
+                    Text('<div class="sb-look" title="{told}">{told}</div>', told=words), order=-1
                 )
         self._faults.call(view.build, tab)
 
@@ -102,22 +102,22 @@ class Column:
 
     # ------------------------------------------------------------ pictures
 
-    def make(self, found: Shown, wanted: Iterable[str]) -> dict[str, Any]:
+    def make(self, sources: Shown, wanted: Iterable[str]) -> dict[str, Any]:
         """Make the wanted pictures: title -> picture; nothing is sent yet."""
         views = [self._pictured[title] for title in wanted]
         pictures = {
-            view.title: self._faults.call(view.picture, found)
+            view.title: self._faults.call(view.picture, sources)
             for view in views
-            if self._faults.call(view.stands, found.run)
+            if self._faults.call(view.stands, sources.run)
         }
         return {title: picture for title, picture in pictures.items() if picture is not None}
 
-    def show(self, found: Shown, pictures: dict[str, Any], wanted: set[str]) -> None:
+    def show(self, sources: Shown, pictures: dict[str, Any], wanted: set[str]) -> None:
         """Send pictures that `make` gave for ``wanted``; they are up to date from now on."""
         self._stale -= wanted
         for view in self._pictured.values():
             if not view.always:
-                self._place(view, bool(self._faults.call(view.stands, found.run)))
+                self._place(view, bool(self._faults.call(view.stands, sources.run)))
         for title, picture in pictures.items():
             self._faults.call(self._pictured[title].show, picture)
 

@@ -87,7 +87,7 @@ class Commands:
         self._titles: dict[str, str] = {}
         self._entries: dict[str, viser.CommandHandle] = {}
         self._done, self._logged = 0, 0
-        self._shown = self._closed = False
+        self._open = self._closed = False
         self.watching = False
         """Only the commands for watchers are carried out."""
         self._box = gui.add_text(PAGE_COMMAND, "", order=1)
@@ -129,7 +129,7 @@ class Commands:
                 if other.name != name and {as_pressed(k) for k in keys} & {as_pressed(k) for k in other.keys}:
                     raise ValueError(f"{other.name} and {name} have the same key")
             self._by_name[name] = Command(name, act, title, keys, watcher, longest)
-            if self._shown:
+            if self._open:
                 self._show_entry(name)
                 self._show_keys()
 
@@ -138,7 +138,7 @@ class Commands:
         with self._lock:
             if self._titles.get(name) != title:
                 self._titles[name] = title
-                if self._shown:
+                if self._open:
                     self._show_entry(name)
 
     def remove(self, name: str) -> None:
@@ -155,7 +155,7 @@ class Commands:
     def show(self) -> None:
         """Put the palette and the keys on the page; what is registered later follows by itself."""
         with self._lock:
-            self._shown = True
+            self._open = True
             for name in self._by_name:
                 self._show_entry(name)
             self._show_keys()
@@ -200,11 +200,11 @@ class Commands:
     def _show_keys(self) -> None:
         named = [(key, command) for command in self._by_name.values() for key in command.keys]
         pressed = json.dumps({as_pressed(key): command.name for key, command in named})
-        told = json.dumps(
+        labels = json.dumps(
             [[" / ".join(c.keys), c.title] for c in self._by_name.values() if c.keys and c.title]
         )
         self._keys.content = (
-            f'<div id="sb-commands" hidden data-keys="{escape(pressed)}" data-told="{escape(told)}"></div>'
+            f'<div id="sb-commands" hidden data-keys="{escape(pressed)}" data-told="{escape(labels)}"></div>'
         )
 
     # ------------------------------------------------------------ carrying out
@@ -258,12 +258,12 @@ def read_commands(text: str) -> list[tuple[int, str, str]]:
     ([], [])
     """
     try:
-        found: Any = msgspec.json.decode(text, type=list[tuple[int, str, str]])
+        calls: Any = msgspec.json.decode(text, type=list[tuple[int, str, str]])
     except (msgspec.MsgspecError, UnicodeError, RecursionError):
         return []
     fitting = [
         (number, name, argument)
-        for number, name, argument in found[:MOST_AT_ONCE]
+        for number, name, argument in calls[:MOST_AT_ONCE]
         if 0 < number < 10**9 and len(argument) <= LONGEST_TEXT
     ]
     return sorted(fitting)

@@ -53,7 +53,7 @@ class Control:
         self.value: Any = value
         self._slider_moved = self._behind = self.removed = False
         self._mark = ""
-        self._shown: Any = _UNKNOWN
+        self._last: Any = _UNKNOWN
         self._range, self._slider = self._make_slider(gui, order)
         self._box = Widget(self._make_box(gui, order))
         self._widgets = [self._box] if self._slider is None else [self._slider, self._box]
@@ -71,13 +71,13 @@ class Control:
         spec = self.spec
         if spec.slider is None:
             return None, None
-        shown = float(self.value or 0.0)
-        slider = spec.slider.reaching(shown, spec.allowed)
+        number = float(self.value or 0.0)
+        slider = spec.slider.reaching(number, spec.allowed)
         handle = gui.add_slider(
             spec.label,
             *slider.ends,
             slider.step,
-            slider.position(shown),
+            slider.position(number),
             marks=_marks(slider),
             hint=spec.hint or None,
             order=order,
@@ -110,16 +110,16 @@ class Control:
 
     def show(self, value: Any) -> None:
         """Show a value; widgets that show it already send nothing. None leaves what is shown."""
-        if (value is None and self.spec.kind == "number") or value == self._shown:
+        if (value is None and self.spec.kind == "number") or value == self._last:
             return
         self.value, self._behind = value, False
         self._box.show(self._as_shown(value))
         self._show_on_slider(value)
-        self._shown = _UNKNOWN if any(widget.awaited for widget in self._widgets) else value
+        self._last = _UNKNOWN if any(widget.awaited for widget in self._widgets) else value
 
     def take(self, by_slider: bool) -> Any:
         """Value that the user has given: a number, a choice, or text as typed."""
-        self._slider_moved, self._shown, self._behind = by_slider, _UNKNOWN, False
+        self._slider_moved, self._last, self._behind = by_slider, _UNKNOWN, False
         if by_slider and self._slider is not None and self._range is not None:
             return self._range.value(self._slider.take())
         return self._box.take()
@@ -129,7 +129,7 @@ class Control:
 
         The box follows its slider in `catch_up`, with the picture: alone it would cost the page a frame.
         """
-        self.value, self._shown, self._behind = value, _UNKNOWN, self._slider_moved
+        self.value, self._last, self._behind = value, _UNKNOWN, self._slider_moved
         if not self._slider_moved:
             self._show_on_slider(value)
 
@@ -159,10 +159,10 @@ class Control:
         kind = self.spec.kind
         return _TEXTS[kind][1](value) if kind in _TEXTS else str(value or "")
 
-    def read(self, shown: Any) -> Any:
+    def read(self, entered: Any) -> Any:
         """Value of the field from what its box holds; raises ValueError for text that cannot be read."""
         kind = self.spec.kind
-        return _TEXTS[kind][0](shown) if kind in _TEXTS else shown
+        return _TEXTS[kind][0](entered) if kind in _TEXTS else entered
 
     @property
     def held(self) -> Any:

@@ -62,13 +62,13 @@ class Editor:
         with self._session.lock:
             if control.removed or self._closed:
                 return
-            shown = control.take(by_slider)
+            entered = control.take(by_slider)
             self.moved, self.by_slider = control, by_slider
             try:
-                value = control.read(shown)
+                value = control.read(entered)
                 changed = self._changed(control, value)
             except (InputError, ValueError) as error:
-                self._doubt(control, shown, error)
+                self._doubt(control, entered, error)
                 return
             self._trust(control)
             control.follow(value)
@@ -139,10 +139,10 @@ class Editor:
 
     # ------------------------------------------------------------ wrong values
 
-    def _doubt(self, control: Control, shown: Any, error: Exception) -> None:
+    def _doubt(self, control: Control, entered: Any, error: Exception) -> None:
         self._trust(control)
         delay_s = _UNFINISHED_S if control.typed else _PASSING_S
-        doubt = self._doubts[control] = timer(delay_s, self._refuse, control, shown, error)
+        doubt = self._doubts[control] = timer(delay_s, self._refuse, control, entered, error)
         doubt.start()
 
     def _trust(self, control: Control) -> None:
@@ -151,7 +151,7 @@ class Editor:
             doubt.cancel()
         control.say("")
 
-    def _refuse(self, control: Control, shown: Any, error: Exception) -> None:
+    def _refuse(self, control: Control, entered: Any, error: Exception) -> None:
         with self._session.lock, self._client.atomic():
             if self._closed or control.removed or control.moving or self._doubts.pop(control, None) is None:
                 return
@@ -160,12 +160,12 @@ class Editor:
             kept = f"{control.value:.9g}" if number else control.as_text(control.value)
             if isinstance(error, InputError):
                 field = ".".join(map(str, control.spec.path))
-                lines: list[str] = [notices.refusal(fault, kept, field, shown) for fault in error.faults]
+                lines: list[str] = [notices.refusal(fault, kept, field, entered) for fault in error.faults]
             else:
                 lines = [
                     Text(
                         "{shown!r} was refused: cannot be read ({kept} is kept)",
-                        shown=shown,
+                        shown=entered,
                         kept=kept,
                     )
                 ]

@@ -147,15 +147,15 @@ def read_state(text: str) -> tuple[Window | None, dict[str, int]]:
     (None, {})
     """
     size, *tabs = text.strip().split("|")
-    found = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})( alone)?( touch)?(?: ([0-9][.][0-9]{2}))?", size)
-    if found is None:
+    match = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})( alone)?( touch)?(?: ([0-9][.][0-9]{2}))?", size)
+    if match is None:
         return None, {}
-    smallest = SMALLEST_ALONE if found[3] else SMALLEST
+    smallest = SMALLEST_ALONE if match[3] else SMALLEST
     width, height = (
         min(max(int(number), low), high)
-        for number, low, high in zip(found.groups()[:2], smallest, LARGEST, strict=True)
+        for number, low, high in zip(match.groups()[:2], smallest, LARGEST, strict=True)
     )
     named = (tab.partition("~") for tab in tabs[:20])
     rooms = {title: int(px) if re.fullmatch("[0-9]{1,4}", px) else 0 for title, _, px in named}
-    letter = min(max(float(found[5] or 1.0), 0.5), 2.0)
-    return (width, height, found[3] is not None, found[4] is not None, letter), rooms
+    letter = min(max(float(match[5] or 1.0), 0.5), 2.0)
+    return (width, height, match[3] is not None, match[4] is not None, letter), rooms

@@ -53,8 +53,8 @@ def told(client: viser.ClientHandle, title: str, otherwise: Callable[[], None]) 
 
 def note(lines: Iterable[str], tone: Tone) -> str:
     """HTML of a note that stands beside the control it is about; empty without lines."""
-    shown = Text.joined("<br>", (quoted(line) for line in lines))
-    if not shown:
+    message = Text.joined("<br>", (quoted(line) for line in lines))
+    if not message:
         return ""
     ink, ground = _TONES[tone]
     return Text(
@@ -64,7 +64,7 @@ def note(lines: Iterable[str], tone: Tone) -> str:
         tone=tone,
         ink=ink,
         ground=ground,
-        shown=shown,
+        shown=message,
     )
 
 
@@ -105,14 +105,16 @@ def refusal(fault: Fault, kept: str = "", field: str = "", entered: object = Non
     str
         The value, what it must be, what is kept.
     """
-    told = Text("{allowed} ({kept} is kept)", allowed=fault.allowed, kept=kept) if kept else fault.allowed
+    remedy = Text("{allowed} ({kept} is kept)", allowed=fault.allowed, kept=kept) if kept else fault.allowed
     if field and fault.field and not f"{field}.".startswith(f"{fault.field}."):
-        other = fault.field if fault.value is None else f"{fault.field} = {_shown(fault.value)}"
-        return Text("{shown} does not go with {other}: {told}", shown=_shown(entered), other=other, told=told)
+        other = fault.field if fault.value is None else f"{fault.field} = {_excerpt(fault.value)}"
+        return Text(
+            "{shown} does not go with {other}: {told}", shown=_excerpt(entered), other=other, told=remedy
+        )
     return (
-        told
+        remedy
         if fault.value is None
-        else Text("{shown} was refused: {told}", shown=_shown(fault.value), told=told)
+        else Text("{shown} was refused: {told}", shown=_excerpt(fault.value), told=remedy)
     )
 
 
@@ -121,6 +123,6 @@ def fault_lines(error: InputError) -> list[str]:
     return [str(fault) for fault in for_a_page(error).faults]
 
 
-def _shown(value: object) -> str:
+def _excerpt(value: object) -> str:
     text = f"{value:.6g}" if isinstance(value, float) else str(value)
     return text if len(text) <= 40 else text[:37] + "..."

@@ -113,7 +113,7 @@ class Pace:
         """Send what stands in front first, and all the rest once the page has painted it."""
         self.state = State.OPENING
 
-    def told(self, painted: int, *, moving: bool) -> None:
+    def on_painted(self, painted: int, *, moving: bool) -> None:
         """The page has painted a picture, or a slider begins to move or has come to rest."""
         with self._lock:
             self._step(Event.HELD if moving else Event.RESTS)

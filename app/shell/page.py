@@ -73,7 +73,7 @@ class Page:
         gui, session = self.gui, self.session
         leaving_is_no_fault(self.client)
         keep_names(self.client, GivenNames(session))
-        self._reports = Reports(gui, self._on_window, self._pace.told)
+        self._reports = Reports(gui, self._on_window, self._pace.on_painted)
         self.commands = Commands(gui, self._command_failed)
         css = page_styles(kinds, self._reports.window_id, self.commands.box_id)
         gui.add_html(f"<style>{css}</style>", order=0)
@@ -187,12 +187,12 @@ class Page:
         self._again_pictures()
 
     def _follow_display(self) -> None:
-        found = shown(self.session)
+        sources = shown(self.session)
         self._fold()
         for view in self._views:
             self._faults.call(view.follow_display)
-            if found is not None:
-                self._faults.call(view.draw, found)
+            if sources is not None:
+                self._faults.call(view.draw, sources)
 
     def _fold(self) -> None:
         self.header.fold(self.session.display.enlarged)
@@ -290,15 +290,15 @@ class Page:
     def _draw(self, number: int, whole: bool) -> None:
         """Show the session's run: what is in front; if ``whole``, all other views and the run element too."""
         began = time.perf_counter()
-        session, found = self.session, shown(self.session)
-        if found is None or session.run is None or self._closed:
+        session, sources = self.session, shown(self.session)
+        if sources is None or session.run is None or self._closed:
             return
         run, wanted = session.run, self.column.wanted(self._in_front)
-        pictures = self.column.make(found, wanted)
-        content = run_element(run, found.number) if whole else ""
+        pictures = self.column.make(sources, wanted)
+        content = run_element(run, sources.number) if whole else ""
         with session.lock, self.client.atomic():
             self.column.mark_stale()
-            self.column.show(found, pictures, wanted)
+            self.column.show(sources, pictures, wanted)
             self.editor.catch_up()
             if whole:
                 if self._pace.controls_wait:
@@ -306,15 +306,15 @@ class Page:
                 else:
                     self.palette.show()
                 for view in self._views:
-                    self._faults.call(view.draw, found)
+                    self._faults.call(view.draw, sources)
                     self._faults.call(view.follow_jobs)
                 frame_ms = 1e3 * (run.elapsed_s + time.perf_counter() - began)
-                self.header.show_run(run, found.number, outdated=session.outdated, frame_ms=frame_ms)
+                self.header.show_run(run, sources.number, outdated=session.outdated, frame_ms=frame_ms)
                 self._run_element.content = content
             elif self._pace.moving:
                 self.header.show_moving()
-            told = f'data-number="{number}" data-answer="{self._reports.painted_id}"'
-            self._picture.content = Text("<div id='sb-picture' hidden {told}></div>", told=told)
+            attributes = f'data-number="{number}" data-answer="{self._reports.painted_id}"'
+            self._picture.content = Text("<div id='sb-picture' hidden {told}></div>", told=attributes)
         self.client.flush()
         # A tab that came to the front meanwhile was not yet known to be out of date.
         self._show_stale()
@@ -338,25 +338,25 @@ class Page:
     def _show_stale(self) -> None:
         session = self.session
         with session.lock:
-            found, wanted = shown(session), self.column.stale(self._in_front)
-        if found is None or not wanted:
+            sources, wanted = shown(session), self.column.stale(self._in_front)
+        if sources is None or not wanted:
             return
-        pictures = self.column.make(found, wanted)
+        pictures = self.column.make(sources, wanted)
         with session.lock, self.client.atomic():
-            if self._closed or session.run_number != found.number:
+            if self._closed or session.run_number != sources.number:
                 return
-            self.column.show(found, pictures, wanted)
+            self.column.show(sources, pictures, wanted)
         self.client.flush()
 
     # ------------------------------------------------------------ size and tabs
 
-    def _on_window(self, window: Window, rooms: dict[str, int], told: str) -> None:
+    def _on_window(self, window: Window, rooms: dict[str, int], report: str) -> None:
         self._window, front = window, frozenset(rooms)
         if front:
             fresh, self._front = front - self._front, front
             self.session.tell_front(self, fresh)
         if self._built:
-            self._heard.content = f'<div id="sb-heard" hidden data-state="{escape(told)}"></div>'
+            self._heard.content = f'<div id="sb-heard" hidden data-state="{escape(report)}"></div>'
             self._arrange()
             self.column.take_rooms(rooms)
             self._show_stale()

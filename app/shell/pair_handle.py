@@ -37,24 +37,24 @@ class PairHandle:
     def __init__(self, frame: Frame, kind: Kind, panels: Sequence[tuple[str, str]]) -> None:
         self._frame, self._kind, self._panels = frame, kind, panels
         self._control: Any = None
-        self._told = ""
+        self._announced = ""
 
     def build(self) -> None:
         """Make the control, in the present container."""
         self._control = self._frame.gui.add_text(PAIR_HANDLE, "", visible=False)
         self._control.on_update(lambda _: self.take(self._control.value))
 
-    def meta(self, found: Shown) -> dict[str, Any]:
+    def meta(self, sources: Shown) -> dict[str, Any]:
         """Description of the handle in a figure's ``meta``."""
-        handle = handle_of(found.run.scenario, found.selected)
-        told = {"told": handle.pop("told", "")}
+        handle = handle_of(sources.run.scenario, sources.selected)
+        note = {"told": handle.pop("told", "")}
         where = {
             "control": id_of(self._control),
             "kind": self._kind,
             "panels": [list(names) for names in self._panels],
-            "color": style.method_color(found.selected),
+            "color": style.method_color(sources.selected),
         }
-        return told | {"handle": where | handle}
+        return note | {"handle": where | handle}
 
     def take(self, text: str) -> None:
         """Place the pair where the handle is; what could not be met is told once a drag, at its end."""
@@ -80,7 +80,7 @@ class PairHandle:
                 )
                 if placed.note:
                     words, lines = Text("Placed in part"), [placed.words, placed.note]
-        if drag.ends and words and lines and self._told != gesture:
-            self._told = gesture
+        if drag.ends and words and lines and self._announced != gesture:
+            self._announced = gesture
             notices.tell(client, words, lines, "warning")
             client.flush()

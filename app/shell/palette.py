@@ -46,7 +46,7 @@ class Palette:
         self._frame, self._page, self._free = frame, page, free
         self._toolbar = Toolbar(frame.gui, order=5)
         self._register(frame.opening)
-        self._shown: tuple[object, ...] = ()
+        self._state: tuple[object, ...] = ()
         self._values: list[Any] = []
         self._resets = Resets(self._commands, frame.editor.put)
 
@@ -132,16 +132,16 @@ class Palette:
             session.opened, session.scenario, session.origin, history.undo_name, history.redo_name,
             self._frame.editor.moved, self._drives, self._watches, *controls,
         )  # fmt: skip
-        same = len(state) == len(self._shown) and all(map(operator.is_, state, self._shown))
+        same = len(state) == len(self._state) and all(map(operator.is_, state, self._state))
         if same and values == self._values:
             return
-        self._shown, self._values = state, values
+        self._state, self._values = state, values
         self._resets.show(session.opened, session.scenario, controls)
         changed = len(changed_fields(session.opened, session.scenario))
         control = None if self._watches else self._frame.editor.moved
         last = self._resets.of(control)
-        found = None if control is None or last is None else (last[0], control.spec.label, last[1])
-        self._toolbar.show(history, session.origin, changed, found, self._drives, self._watches)
+        last_edit = None if control is None or last is None else (last[0], control.spec.label, last[1])
+        self._toolbar.show(history, session.origin, changed, last_edit, self._drives, self._watches)
         self._commands.rename(UNDO, _titled(Text("Undo"), history.undo_name))
         self._commands.rename(REDO, _titled(Text("Redo"), history.redo_name))
         self._commands.rename(RESET_ALL, Text("Reset all: back to {origin} as opened", origin=session.origin))

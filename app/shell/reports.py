@@ -35,7 +35,7 @@ class Reports:
     gui : viser.GuiApi
         Of the page.
     on_window : callable
-        ``on_window(window, front, told)``, as `read_state` gives the first two; and the report itself.
+        ``on_window(window, front, report)``, as `read_state` gives the first two; and the report itself.
     on_painted : callable
         ``on_painted(picture, moving=...)``: it has painted this picture, and whether a slider moves.
 
@@ -64,16 +64,16 @@ class Reports:
         return self._came.wait(timeout_s)
 
     def _take_window(self) -> None:
-        told = self._window.value.strip()
-        window, front = read_state(told)
+        report = self._window.value.strip()
+        window, front = read_state(report)
         if window is not None:
-            self._on_window(window, front, told)
+            self._on_window(window, front, report)
             self._came.set()
 
     def _take_painted(self) -> None:
-        told = re.fullmatch(r"([0-9]{1,9}) ([01])", self._painted.value)
-        if told is not None:
-            self._on_painted(int(told[1]), moving=told[2] == "1")
+        match = re.fullmatch(r"([0-9]{1,9}) ([01])", self._painted.value)
+        if match is not None:
+            self._on_painted(int(match[1]), moving=match[2] == "1")
 
 
 def run_element(run: Run, number: int) -> str:

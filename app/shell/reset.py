@@ -109,23 +109,25 @@ class Resets:
             self._commands.remove(f"reset-{_slug(name)}")
         for name, (control, value) in now.items():
             if before.get(name, (None, None))[1] != value:
-                title = Text("Reset {label} to {told}", label=control.spec.label, told=told(control, value))
+                title = Text(
+                    "Reset {label} to {told}", label=control.spec.label, told=value_text(control, value)
+                )
                 self._commands.register(f"reset-{_slug(name)}", lambda _, name=name: self._reset(name), title)
 
     def of(self, control: Control | None) -> tuple[str, str] | None:
         """Argument of `RESET_FIELD` for a control, and the value it brings back; None if there is nothing."""
         name = "" if control is None else name_of(control.spec.path)
-        found = self._changed.get(name)
-        return None if found is None else (name, told(*found))
+        changed = self._changed.get(name)
+        return None if changed is None else (name, value_text(*changed))
 
     def take_back(self, control: Control) -> None:
         """Reset the field of a control, if it has been changed."""
         self._reset(name_of(control.spec.path))
 
     def _reset(self, name: str) -> None:
-        found = self._changed.get(name.strip())
-        if found is not None:
-            self._put(*found)
+        changed = self._changed.get(name.strip())
+        if changed is not None:
+            self._put(*changed)
 
 
 def name_of(path: Path) -> str:
@@ -133,7 +135,7 @@ def name_of(path: Path) -> str:
     return ".".join(str(step) for step in path)
 
 
-def told(control: Control, value: Any) -> str:
+def value_text(control: Control, value: Any) -> str:
     """A value of a control's field in a few characters."""
     text = f"{value:.6g}" if isinstance(value, float) else control.as_text(value)
     return text if len(text) <= 30 else f"{text[:29]}…"

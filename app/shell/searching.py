@@ -57,15 +57,15 @@ class SearchControls:
         self._start.on_click(if_user(begin))
         self._stop.on_click(if_user(search.cancel))
 
-    def follow(self, shown: bool = True) -> bool:
-        """Show how far the search is, nothing where not ``shown``; return whether it is under way."""
+    def follow(self, visible: bool = True) -> bool:
+        """Show how far the search is, nothing where not ``visible``; return whether it is under way."""
         fraction = self._search.fraction
         running = fraction is not None
         if fraction is not None:
             self._progress.value = round(100.0 * fraction, 1)
         reveal(
-            (self._start, shown and not running),
-            (self._stop, shown and running),
-            (self._progress, shown and running),
+            (self._start, visible and not running),
+            (self._stop, visible and running),
+            (self._progress, visible and running),
         )
         return running

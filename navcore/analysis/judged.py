@@ -7,14 +7,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from navcore.analysis.loop import Loop
+from navcore.analysis.loop import Loop, closed_loop_poles
 from navcore.analysis.transfers import Output, Source, time_response
 from navcore.analysis.whole_system import WholeSystem
 from navcore.foundation.units import HOUR
 from navcore.networks.base import LinearNetwork
 
-_POINTS = 800
+_POINTS = 400
+_SPANS, _SHORTER = 4, 20.0
+"""Spans over which a response is searched, and how many times shorter each is than the one before."""
 _SETTLINGS, _LONGEST_S = 2.0, 200.0 * HOUR
+_DECAYS = 8.0
+"""Time constants of the slowest mode after which it is gone."""
 _PERIODS = 6.0
 """Schuler periods over which the response of a loop that never settles is searched."""
 
@@ -67,9 +71,31 @@ def _extremes(judged: JudgedLoop, source: Source, output: Output) -> tuple[float
 def _searched(
     network: LinearNetwork, settling_s: float | None, source: Source, output: Output
 ) -> tuple[float, float]:
-    """Least and largest value of a response (SI), each looked at again more finely next to its sample."""
-    span_s = _SETTLINGS * settling_s if settling_s else _PERIODS * 2.0 * math.pi / network.omega_s
-    time_s = np.linspace(0.0, min(span_s, _LONGEST_S), _POINTS)
+    """Least and largest value of a response (SI): over spans of several lengths, each looked at more finely.
+
+    A slow loop's first peaks lie within Schuler periods, those of its fast modes within seconds, and a log's
+    step may excite a slow mode that an initial tilt does not.
+    """
+    period_s = 2.0 * math.pi / network.omega_s
+    slowest = network.omega_s * float(np.min(np.abs(closed_loop_poles(network).real)))
+    settled_s = max(_SETTLINGS * settling_s, _DECAYS / slowest) if settling_s and slowest else 0.0
+    longest_s = min(settled_s or _PERIODS * period_s, _LONGEST_S)
+    spans_s = [longest_s * _SHORTER**-k for k in range(_SPANS)]
+    least, largest = zip(
+        *(
+            _extremes_within(network, source, output, span)
+            for span in (*spans_s, min(longest_s, 2.0 * period_s))
+        ),
+        strict=True,
+    )
+    return min(least), max(largest)
+
+
+def _extremes_within(
+    network: LinearNetwork, source: Source, output: Output, span_s: float
+) -> tuple[float, float]:
+    """Least and largest value within a span, each looked at again next to its sample."""
+    time_s = np.linspace(0.0, span_s, _POINTS)
     sampled = time_response(network, source, output, time_s)
 
     def near(at: int) -> np.ndarray:

@@ -81,7 +81,7 @@ def forecast_from(increments: np.ndarray, step_s: float = 1.0) -> Forecast:
     ----------
     increments : ndarray, shape (n, 6)
         Angles (rad) and velocities (m/s) in body axes over intervals of about a second, the last one ending
-        at t = 0 (`second_increments` sums those of an IMU).
+        at t = 0.
     step_s : float
         Interval, s.
 
@@ -134,10 +134,3 @@ def _turned_axes(signals: np.ndarray, turn: np.ndarray) -> np.ndarray:
         v = signals[part]
         out[part] = c * v - s * np.cross(axis, v) + (1.0 - c) * (axis @ v) * axis
     return out
-
-
-def second_increments(increments: np.ndarray, rate_hz: float) -> np.ndarray:
-    """Sum an IMU's increments, shape (n, 6), to whole seconds that end at the record's end."""
-    many = max(1, round(rate_hz))
-    seconds = len(increments) // many
-    return increments[len(increments) - seconds * many :].reshape(seconds, many, 6).sum(axis=1)

@@ -47,7 +47,6 @@ def prepare_averaging(
     duration_s: float,
     motions: Sequence[AlignmentMotion],
     seed: int,
-    record: np.ndarray | None = None,
 ) -> Plan:
     """Make the plan of an averaging method.
 
@@ -69,9 +68,6 @@ def prepare_averaging(
         Small motions of the base during the alignment.
     seed : int
         Seed of the scenario.
-    record : ndarray, shape (seconds, 6), optional
-        Increments of a recorded or already simulated alignment (`forecast.second_increments`); one is
-        simulated when left out.
 
     Raises
     ------
@@ -79,8 +75,7 @@ def prepare_averaging(
         The vehicle moves at t = 0, or hardly ever stands still during the alignment.
     """
     standing = standing_row(true_row)
-    if record is None:
-        record = alignment_record(imu, standing, duration_s, motions, earth, seed)
+    record = alignment_record(imu, standing, duration_s, motions, earth, seed)
     forecast = forecast_from(record, RECORD_STEP_S)
     chosen = copies_of(averaging, omega_s, float(standing[LAT]), float(standing[HEIGHT]), earth)
     return Plan(chosen, forecast, standing, _notices(chosen, forecast, imu, len(record)))

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -88,7 +89,7 @@ def outcomes(
     scenario : Scenario
         Its own methods do not count.
     methods : sequence of Method
-        Designed for the scenario's sensors; a Kalman filter is told the scenario's standard deviations.
+        Designed for the scenario's sensors; a Kalman filter gets the scenario's standard deviations.
     numbers : sequence of int
         Added to the seed of the run.
     progress : callable, optional
@@ -103,41 +104,74 @@ def outcomes(
     """
     kept = {"method": tuple(methods), "run": scenario.run.model_copy(update={"output_step_s": 86400.0})}
     bare = scenario.model_copy(update=kept)
-    found: list[tuple[Outcome, ...]] = []
+    done: list[tuple[Outcome, ...]] = []
     gains = {k: Gains() for k, method in enumerate(bare.method) if method.kind.carrying == "filter"}
+    finished = 0.0
 
-    def of(number: int) -> tuple[Outcome, ...] | None:
-        if cancelled is not None and cancelled():
-            return None
-        one = tuple(_strapdown(bare, number) if bare.strapdown else _linear(bare, number, gains))
-        if progress is not None:
-            progress((len(found) + 1) / len(numbers))
-        return one
+    def report(seeds: float) -> bool:
+        nonlocal finished
+        finished += seeds
+        if progress is not None and seeds:
+            progress(min(finished / len(numbers), 1.0))
+        return cancelled is not None and cancelled()
 
-    def take(one: tuple[Outcome, ...] | None) -> None:
-        if one is not None:
-            found.append(one)
+    def one(number: int) -> list[tuple[Outcome, ...]]:
+        if report(0.0):
+            return []
+        outcome = tuple(_strapdown(bare, number) if bare.strapdown else _linear(bare, number, gains))
+        report(1.0)
+        return [outcome]
 
-    # the first seed alone: it computes the gains of a filter that the others share
-    for number in numbers[:1]:
-        take(of(number))
-    for k in [*gains]:
-        if not found or not found[0][k].ended:
-            del gains[k]
     with ThreadPoolExecutor(_WORKERS) as pool:
-        for one in pool.map(of, numbers[1:]):
-            take(one)
-    return found
+        if _batchable(bare):
+            for some in pool.map(partial(_batch, bare, report), _blocks(numbers)):
+                done += some
+            return done
+        # the first seed alone: it computes the gains of a filter that the others share
+        for number in numbers[:1]:
+            done += one(number)
+        for k in [*gains]:
+            if not done or not done[0][k].ended:
+                del gains[k]
+        for some in pool.map(one, numbers[1:]):
+            done += some
+    return done
+
+
+def _batchable(scenario: Scenario) -> bool:
+    """Whether strapdown runs of several seeds can go side by side (`navcore.engine.drivers.batch`)."""
+    simulated = scenario.strapdown and scenario.imu.file is None
+    laws = all(method.kind.carrying == "law" for method in scenario.method)
+    return simulated and laws and scenario.run.vertical == "locked"
+
+
+def _blocks(numbers: Sequence[int]) -> list[Sequence[int]]:
+    from navcore.mechanization.strapdown.batch import WIDTH
+
+    return [numbers[i : i + WIDTH] for i in range(0, len(numbers), WIDTH)]
+
+
+def _batch(
+    scenario: Scenario, report: Callable[[float], bool], numbers: Sequence[int]
+) -> list[tuple[Outcome, ...]]:
+    from navcore.engine.drivers.batch import run_batches
+
+    batches = run_batches([drawn(scenario, number) for number in numbers], report)
+    step_s = scenario.sampling.record_step_s
+    return [
+        tuple(Outcome(not b.diverged[k], spans(b.spans[k], step_s), float(b.position_m[k])) for b in batches)
+        for k in range(len(numbers) if batches else 0)
+    ]
 
 
 def _linear(scenario: Scenario, number: int, gains: Mapping[int, Gains]) -> Iterator[Outcome]:
-    made = drawn(scenario, number)
-    env, state = environment(made), np.array(made.initial_error.state())
+    seeded = drawn(scenario, number)
+    env, state = environment(seeded), np.array(seeded.initial_error.state())
     for k, method in enumerate(scenario.method):
         run, _, status, _ = carried_out(scenario, method, env, state, lambda _: None, None, gains.get(k))
         final = float(run.recorder.stats[POSITION, FINAL])
         yield Outcome(
-            status == "ok" and math.isfinite(final), spans(run.recorder, scenario.run.step_s), final
+            status == "ok" and math.isfinite(final), spans(run.recorder.spans, scenario.run.step_s), final
         )
 
 

@@ -76,11 +76,11 @@ def begins_s(requirement: Requirement) -> float:
 
 
 def _requirements(scenario: Scenario, run: MethodRun) -> dict[str, Any]:
-    found = []
+    rows = []
     for one in scenario.requirement:
         value, met = judged(one, run)
-        found.append({**one.model_dump(mode="json", exclude_none=True), "value": value, "met": met})
-    return {"requirements": found} if found else {}
+        rows.append({**one.model_dump(mode="json", exclude_none=True), "value": value, "met": met})
+    return {"requirements": rows} if rows else {}
 
 
 def measure(run: MethodRun, key: str, from_s: float = 0.0) -> float:

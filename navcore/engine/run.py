@@ -284,14 +284,14 @@ def statistics(recorder: Recorder) -> dict[str, dict[str, float]]:
     return out
 
 
-def spans(recorder: Recorder, step_s: float) -> tuple[Span, ...]:
-    """Lengths of the error vectors over each span that has a state."""
-    found = []
-    for span in recorder.spans[recorder.spans["count"] > 0]:
+def spans(records: np.ndarray, step_s: float) -> tuple[Span, ...]:
+    """Lengths of the error vectors over each span that has a state; of `recorder.SPAN`, shape (n,)."""
+    lengths = []
+    for span in records[records["count"] > 0]:
         rms = np.sqrt(span["sums"] / span["count"])
         largest = np.sqrt(span["largest"])
-        found.append(Span(float(span["first"] * step_s), tuple(largest.tolist()), tuple(rms.tolist())))
-    return tuple(found)
+        lengths.append(Span(float(span["first"] * step_s), tuple(largest.tolist()), tuple(rms.tolist())))
+    return tuple(lengths)
 
 
 def span_of(rows: np.ndarray) -> Span:

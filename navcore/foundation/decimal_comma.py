@@ -52,8 +52,8 @@ def refuse_comma(text: str, reason: str, where: str) -> None:
     lines = text.rstrip().split("\n")
     named = _LINE.search(reason)
     number = int(named[1]) if named else len(lines)
-    if number <= len(lines) and (found := _GIVEN.search(lines[number - 1].partition("#")[0])):
-        value = found[2] or found[3]
+    if number <= len(lines) and (match := _GIVEN.search(lines[number - 1].partition("#")[0])):
+        value = match[2] or match[3]
         raise InputError(
-            Fault(where, found[1], value, comma_refused(value, number if named else 0))
+            Fault(where, match[1], value, comma_refused(value, number if named else 0))
         ) from None

@@ -88,7 +88,7 @@ def _unfold(item: Any, model: Any, data: Any, where: str) -> list[Fault]:
         if isinstance(value, str):  # a name alone
             return [Fault(where, ".".join(path), value, _tags(place, name, value))]
         value = _lookup(data, [*path, name])
-        return [Fault(where, ".".join([*path, name]), _shown(value, None), _tags(place, name, value))]
+        return [Fault(where, ".".join([*path, name]), _excerpt(value, None), _tags(place, name, value))]
     if kind == "missing" and isinstance(item["loc"][-1], int):  # an element of a list that is too short
         path, place, info = _walk(model, data, item["loc"][:-1])
         kind = "tuple_type"
@@ -96,16 +96,16 @@ def _unfold(item: Any, model: Any, data: Any, where: str) -> list[Fault]:
     if kind == "missing":
         return [Fault(where, ".".join(path), None, _join(Text("is required"), _range(info)))]
     allowed = _allowed(item, path, place, info) if kind == item["type"] else _list(path, place, info)
-    return [Fault(where, ".".join(path), _shown(value, item.get("input")), allowed)]
+    return [Fault(where, ".".join(path), _excerpt(value, item.get("input")), allowed)]
 
 
 def _relocated(fault: Fault, path: list[str], data: Any, where: str) -> Fault:
     whole = [*path, *(fault.field.split(".") if fault.field else [])]
-    value = _shown(_lookup(data, whole), fault.value)
+    value = _excerpt(_lookup(data, whole), fault.value)
     return Fault(fault.where or where, ".".join(whole), value, fault.allowed)
 
 
-def _shown(value: Any, fallback: Any) -> Any:
+def _excerpt(value: Any, fallback: Any) -> Any:
     if value is _ABSENT:
         value = fallback
     return None if isinstance(value, dict | BaseModel) else value

@@ -118,14 +118,14 @@ def copy(source: Path, target: Path) -> bool:
             return False
         make_folder(target.parent)
         with tempfile.TemporaryDirectory(dir=target.parent) as folder:
-            made = Path(folder) / "copy"
-            shutil.copytree(source, made, ignore=shutil.ignore_patterns(".*", "lock"))
-            for path in (made, *made.rglob("*")):
+            copied = Path(folder) / "copy"
+            shutil.copytree(source, copied, ignore=shutil.ignore_patterns(".*", "lock"))
+            for path in (copied, *copied.rglob("*")):
                 path.chmod(_FOLDER if path.is_dir() else _FILE)
             if _number(target) == before:  # else another process has been quicker
                 with suppress(FileNotFoundError):
                     target.rename(Path(folder) / "replaced")
-                made.rename(target)
+                copied.rename(target)
     except OSError:
         return False
     return True

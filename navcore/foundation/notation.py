@@ -83,4 +83,4 @@ def in_symbols(text: str) -> str:
     >>> in_symbols("sigma = 0.0088, xi = 0.7 at 10 omega_s: `network.xi`")
     'σ = 0.0088, ζ = 0.7 at 10 ωₛ: `network.xi`'
     """
-    return _WORDS.sub(lambda found: _SPELLED.get(found[1], found[0]), text)
+    return _WORDS.sub(lambda match: _SPELLED.get(match[1], match[0]), text)

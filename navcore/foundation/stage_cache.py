@@ -59,10 +59,10 @@ class SharedCache:
     def get(self, key: Hashable) -> _Entry | None:
         """Return an entry, which counts as used now; None when there is none."""
         with self._lock:
-            found = self._entries.get(key)
-            if found is not None:
+            entry = self._entries.get(key)
+            if entry is not None:
                 self._entries.move_to_end(key)
-            return found
+            return entry
 
     def put(self, key: Hashable, value: Any, owner: Hashable) -> None:
         """Keep a value; beyond the limit the oldest entries of whoever holds most are dropped."""
@@ -89,11 +89,11 @@ class SharedCache:
         return self._held.total()
 
     def _drop(self, key: Hashable) -> None:
-        found = self._entries.pop(key, None)
-        if found is not None:
-            self._held[found.owner] -= found.size
-            if self._held[found.owner] <= 0:
-                del self._held[found.owner]
+        entry = self._entries.pop(key, None)
+        if entry is not None:
+            self._held[entry.owner] -= entry.size
+            if self._held[entry.owner] <= 0:
+                del self._held[entry.owner]
 
 
 _cache = SharedCache(_CACHE_BYTES)
@@ -116,9 +116,9 @@ def keep_only(owners: Set[Hashable]) -> None:
 
 def kept(key: Hashable, make: Callable[[], Any]) -> Any:
     """Return what was made under this key, or make it and keep it."""
-    found = _cache.get(key)
-    if found is not None:
-        return found.value
+    entry = _cache.get(key)
+    if entry is not None:
+        return entry.value
     value = make()
     _cache.put(key, value, _owner.get())
     return value

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from html import escape
 from typing import Any
 
-_WIDE = "\u3000"
-"""First of the letters that Chinese is written in."""
+WIDE = re.compile("[\u3000-\u9fff\uff00-\uffef]")
+"""A letter or stop that Chinese is written in."""
 
 
 class Words(str):
@@ -18,7 +19,7 @@ class Words(str):
         if spec == "html":
             return escape(str(self))
         if spec == "sentence":
-            return f"{self[:1].upper()}{self[1:]}{'。' if max(self, default='') >= _WIDE else '.'}"
+            return f"{self[:1].upper()}{self[1:]}{'。' if WIDE.search(self) else '.'}"
         return super().__format__(spec)
 
 

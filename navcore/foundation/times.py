@@ -46,11 +46,11 @@ class EitherUnit(Parameters):
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         """Properties of the fields, and of those that may stand in their place."""
-        made = handler(schema)
-        properties = handler.resolve_ref_schema(made)["properties"]
+        json_schema = handler(schema)
+        properties = handler.resolve_ref_schema(json_schema)["properties"]
         for own in cls.model_fields:
             if other := in_other_unit(own):
                 unit = "hours" if other.endswith("_h") else "seconds"
                 text = f"The same as {own}, in {unit}. Not together with {own}."
                 properties[other] = {"type": "number", "description": text}
-        return made
+        return json_schema

@@ -175,10 +175,10 @@ def known_columns(names: Sequence[str]) -> dict[str, Column]:
     """
     best: dict[str, tuple[int, Column]] = {}
     for index, name in enumerate(names):
-        found = _meaning(name)
-        if found is None:
+        meaning = _meaning(name)
+        if meaning is None:
             continue
-        rank, stem, unit, unit_given = found
+        rank, stem, unit, unit_given = meaning
         if stem not in best or rank < best[stem][0]:
             best[stem] = rank, Column(index, name.strip(), stem, unit, unit_given)
     chosen = {stem: column for stem, (_, column) in best.items()}

@@ -39,13 +39,13 @@ def require_columns(where: str, names: Sequence[str]) -> dict[str, Column]:
                 Text("has more than {most_columns} columns: no log", most_columns=MOST_COLUMNS),
             )
         )
-    found = known_columns(names)
+    columns = known_columns(names)
     held = listed(names)
     faults: list[Fault] = []
-    if not {UTC, UNIX, SECONDS} & found.keys() and not {DATE, CLOCK} <= found.keys():
+    if not {UTC, UNIX, SECONDS} & columns.keys() and not {DATE, CLOCK} <= columns.keys():
         missing = Text("missing column: utc (ISO 8601) or t_s (seconds); columns found: {held}", held=held)
         faults.append(Fault(where, "", None, missing))
-    if not QUANTITIES.keys() & found.keys():
+    if not QUANTITIES.keys() & columns.keys():
         missing = Text(
             "no column of a quantity; columns found: {held}; known: lat_deg, lon_deg, "
             "height_m, heading_deg, pitch_deg, roll_deg, ve_mps, vn_mps, sog_kn with "
@@ -64,14 +64,14 @@ def require_columns(where: str, names: Sequence[str]) -> dict[str, Column]:
                     "missing column: {name}_{unit} (its partner {name_2} is there)",
                     name=name,
                     unit=unit,
-                    name_2=found[other].name,
+                    name_2=columns[other].name,
                 ),
             )
             for name, other in ((first, second), (second, first))
-            if other in found and name not in found
+            if other in columns and name not in columns
         ]
     for across, along in _ACROSS:
-        if across in found and along not in found:
+        if across in columns and along not in columns:
             needed = Text("{along}_mps or {along}_kn", along=along)
             faults.append(
                 Fault(
@@ -84,18 +84,18 @@ def require_columns(where: str, names: Sequence[str]) -> dict[str, Column]:
     lowered = [name.strip().lower() for name in names]
     faults += [
         Fault(where, "", column.name.lower(), Text("column given twice"))
-        for column in found.values()
+        for column in columns.values()
         if lowered.count(column.name.lower()) > 1
     ]
     if faults:
         raise InputError(faults)
-    return found
+    return columns
 
 
 def listed(names: Sequence[str]) -> str:
     """Names for a message, the first of many."""
-    shown = ", ".join(name.strip()[:40] for name in names[:_MOST_NAMED])
-    return shown + (
+    listed = ", ".join(name.strip()[:40] for name in names[:_MOST_NAMED])
+    return listed + (
         Text(" and {names} more", names=len(names) - _MOST_NAMED) if len(names) > _MOST_NAMED else ""
     )
 

@@ -34,7 +34,7 @@ def read(path: Path) -> Recording:
     flagged = (
         [Text("{invalid} readings flagged invalid by the instrument", invalid=invalid)] if invalid else []
     )
-    found = {
+    series = {
         "position": _positions(path, log),
         "velocity": _series(path, log, *_pick(log, ("RMC", "VTG"), "velocity")),
         "water": _along_axes(path, log, *_pick(log, ("VBW", "VHW"), "water")),
@@ -54,7 +54,7 @@ def read(path: Path) -> Recording:
         tally.jitter,
         (*log.warnings, *flagged),
     )
-    return Recording(**found, sources=(source,))
+    return Recording(**series, sources=(source,))
 
 
 _HEADINGS = ("HDT", "THS", "PASHR", "PSXN", "PRDID", "VHW", "HDG")
@@ -73,10 +73,10 @@ def _rows(log: NmeaLog, channel: Channel, quantity: str) -> Rows:
 def _pick(log: NmeaLog, kinds: Iterable[str], quantity: str) -> tuple[str, Rows]:
     """Address and rows of the first kind that has the quantity; of several instruments the one with most."""
     for kind in kinds:
-        found = {c: _rows(log, c, quantity) for c in log.readings if kind in (c.address[2:], c.address)}
-        channel = max(found, key=lambda c: len(found[c]), default=None)
-        if channel is not None and found[channel]:
-            return channel.address, found[channel]
+        rows = {c: _rows(log, c, quantity) for c in log.readings if kind in (c.address[2:], c.address)}
+        channel = max(rows, key=lambda c: len(rows[c]), default=None)
+        if channel is not None and rows[channel]:
+            return channel.address, rows[channel]
     return "", []
 
 

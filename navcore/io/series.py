@@ -206,8 +206,8 @@ class Recording:
 
     def quantities(self) -> dict[str, Series]:
         """Return what there is, by attribute name."""
-        found = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "sources"}
-        return {name: series for name, series in found.items() if series is not None}
+        streams = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "sources"}
+        return {name: series for name, series in streams.items() if series is not None}
 
     @property
     def warnings(self) -> tuple[str, ...]:

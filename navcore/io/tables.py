@@ -75,7 +75,7 @@ def read(path: Path) -> Recording:
     rows = np.arange(1, sizes.pop() + 1)
     time_s, dated = _timing(path.name, clock, raw[clock.stem][0], rows)
     held = {stem: raw[stem] for stem in QUANTITIES if stem in raw}
-    values = {stem: _numeric(path.name, columns[stem], found) for stem, (found, _) in held.items()}
+    values = {stem: _numeric(path.name, columns[stem], cells) for stem, (cells, _) in held.items()}
     missing = {stem: gone for stem, (_, gone) in held.items() if gone.any()}
     warnings = tuple(column_warnings(names, columns))
     return table_recording(
@@ -97,14 +97,14 @@ def _needed(where: str, names: list[str]) -> dict[str, Column]:
     return {stem: c for stem, c in columns.items() if stem in QUANTITIES or stem in (clock, CLOCK)}
 
 
-def _timing(where: str, clock: Column, found: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, bool]:
-    if np.issubdtype(found.dtype, np.datetime64):
-        seconds = found.astype("datetime64[us]").astype(np.int64) * 1e-6
-        return np.where(np.isnat(found), np.nan, seconds), True
-    if found.dtype.kind in "iufb":
-        numbers = found.astype(float)
+def _timing(where: str, clock: Column, cells: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, bool]:
+    if np.issubdtype(cells.dtype, np.datetime64):
+        seconds = cells.astype("datetime64[us]").astype(np.int64) * 1e-6
+        return np.where(np.isnat(cells), np.nan, seconds), True
+    if cells.dtype.kind in "iufb":
+        numbers = cells.astype(float)
         return (numbers, False) if clock.stem == SECONDS else unix_or_elapsed(numbers)
-    distinct, places = np.unique(found.astype(str), return_inverse=True)
+    distinct, places = np.unique(cells.astype(str), return_inverse=True)
     if distinct.size and distinct.dtype.itemsize > 4 * _LONGEST_TIME:
         raise InputError(
             Fault(
@@ -114,8 +114,8 @@ def _timing(where: str, clock: Column, found: np.ndarray, rows: np.ndarray) -> t
                 Text("holds texts of more than {longest_time} letters", longest_time=_LONGEST_TIME),
             )
         )
-    if distinct.size == found.size:
-        return times(where, clock.name.lower(), [str(cell) for cell in found], rows.tolist())
+    if distinct.size == cells.size:
+        return times(where, clock.name.lower(), [str(cell) for cell in cells], rows.tolist())
     seconds, dated = times(where, clock.name.lower(), distinct.tolist(), rows[: distinct.size].tolist())
     return seconds[places], dated
 

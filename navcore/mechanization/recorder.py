@@ -62,7 +62,7 @@ class Recorder(NamedTuple):
     buffer : ndarray, shape (8, bin_width)
         Quantities of the steps since the last flush.
     spans : ndarray of `SPAN`, shape (MOST_SPANS,)
-        The first is the whole run; `watch` sets where others begin.
+        From `spans_from`: the first is the whole run.
     cursor : record
         `CURSOR`: how far all this is filled.
     """
@@ -103,8 +103,6 @@ def make_recorder(steps: int, step_s: float, output_step_s: float) -> Recorder:
     row_steps = output_steps(steps, step_s, output_step_s)
     width = max(1, math.ceil((steps + 1) / MAX_BINS)) if steps + 1 > 2 * MAX_BINS else 1
     bins = math.ceil((steps + 1) / width)
-    spans = np.zeros(MOST_SPANS, SPAN)
-    spans["first"][1:] = _NEVER
     return Recorder(
         row_steps=row_steps,
         rows=np.zeros((len(row_steps), ROW_COLUMNS)),
@@ -114,15 +112,18 @@ def make_recorder(steps: int, step_s: float, output_step_s: float) -> Recorder:
         bin_high=np.full((bins, QUANTITIES), -np.inf),
         bin_order=np.zeros((bins, QUANTITIES), np.int8),
         buffer=np.zeros((QUANTITIES, width)),
-        spans=spans,
+        spans=spans_from(()),
         cursor=new_record(CURSOR),
     )
 
 
-def watch(recorder: Recorder, first_steps: Iterable[int]) -> None:
-    """Form lengths of the error vectors from further steps on; at most `MOST_SPANS` - 1 different ones."""
+def spans_from(first_steps: Iterable[int]) -> np.ndarray:
+    """Make empty spans: the whole run, and from further steps on; at most `MOST_SPANS` - 1 different ones."""
+    spans = np.zeros(MOST_SPANS, SPAN)
+    spans["first"][1:] = _NEVER
     for place, step in enumerate(sorted({*first_steps} - {0}), 1):
-        recorder.spans["first"][place] = step
+        spans["first"][place] = step
+    return spans
 
 
 @inlined

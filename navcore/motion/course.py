@@ -17,25 +17,7 @@ from navcore.foundation.earth import SEMI_MAJOR_AXIS, Earth, meridian_radius, pr
 from navcore.foundation.text import Text
 from navcore.foundation.trigonometry import sincos, sincos_cycles
 from navcore.foundation.units import DEG
-from navcore.motion.truth import (
-    AE,
-    AN,
-    AU,
-    COLUMNS,
-    HEADING,
-    HEADING_RATE,
-    HEIGHT,
-    LAT,
-    LON,
-    PITCH,
-    PITCH_RATE,
-    ROLL,
-    ROLL_RATE,
-    VE,
-    VN,
-    VU,
-    Site,
-)
+from navcore.motion.truth import Site
 
 # Columns of a leg: its start, then start value, change and duration of the change, of speed and of heading;
 # how the rates of both go during their changes.
@@ -301,32 +283,3 @@ def askable_before_start(legs: np.ndarray) -> np.ndarray:
     legs = legs.copy()
     legs[:, [SPEED_TIME, COURSE_TIME]] = np.maximum(legs[:, [SPEED_TIME, COURSE_TIME]], 1e-6)
     return legs
-
-
-@kernel
-def _sample(legs, nodes, step, pitch, roll, height, out):
-    leg = node = 0
-    for k in range(out.shape[0]):
-        t = k * step
-        leg, node = leg_at(t, legs, leg), node_at(t, nodes, node)
-        lat, lon, v_e, v_n, a_e, a_n, heading, turn_rate = course_state_at(t, legs, nodes, leg, node)
-        out[k, LAT], out[k, LON], out[k, HEIGHT] = lat, lon, height
-        out[k, VE], out[k, VN], out[k, VU] = v_e, v_n, 0.0
-        out[k, AE], out[k, AN], out[k, AU] = a_e, a_n, 0.0
-        out[k, PITCH], out[k, ROLL], out[k, HEADING] = pitch, roll, heading
-        out[k, PITCH_RATE], out[k, ROLL_RATE], out[k, HEADING_RATE] = 0.0, 0.0, turn_rate
-
-
-def sample_course(
-    course: Course, count: int, step_s: float, pitch: float, roll: float, height: float
-) -> np.ndarray:
-    """Truth rows of a course at t = 0, step_s, ..., at constant pitch and roll (rad) and height (m).
-
-    Returns
-    -------
-    ndarray, shape (count, 15)
-        Columns of `navcore.motion.truth`; heading and longitude are not wrapped.
-    """
-    out = np.empty((count, COLUMNS))
-    _sample(course.legs, course.nodes, float(step_s), float(pitch), float(roll), float(height), out)
-    return out

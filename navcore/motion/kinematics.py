@@ -6,11 +6,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from navcore.foundation.compiled import inlined
 from navcore.motion.truth import COLUMNS
 
 REST, SWING, COURSE, PROFILE, WAVES, PIECES = range(6)
-"""How compiled loops are told a motion. PIECES, polynomials of time, serves any motion."""
+"""Layouts of a motion in compiled loops. PIECES, polynomials of time, serves any motion."""
 KINDS = (REST, SWING, COURSE, PROFILE, WAVES, PIECES)
 
 WIDTH = 72
@@ -72,11 +71,3 @@ class Kinematics:
         """
         angle = 2.0 * np.pi * np.outer(self.oscillations[:, FREQUENCY], np.arange(WIDTH) * step_s)
         return np.stack([np.cos(angle), np.sin(angle)], axis=1).reshape(-1)
-
-
-@inlined
-def write_rows(first, rows, w, out):
-    """Copy the buffer to rows ``first``, ... of ``out`` (n, 15)."""
-    for i in range(rows):
-        for j in range(COLUMNS):
-            out[first + i, j] = w[j * WIDTH + i]

@@ -6,14 +6,13 @@ from typing import NamedTuple
 from navcore.foundation.parameters import quantity
 from navcore.foundation.text import Text
 from navcore.foundation.times import EitherUnit
-from navcore.foundation.units import DEG, KNOT
+from navcore.foundation.units import DEG
+from navcore.motion.fields import heading_field, speed_kn_field, speed_mps_field, speed_of
 
 DEFAULT_ACCELERATION = 0.1
 """Mean acceleration of a change of speed when none is given, m/s^2."""
 DEFAULT_TURN_RATE_DPS = 1.0
 """Mean turn rate of a change of heading when none is given, deg/s."""
-SLOWEST, FASTEST = -50.0, 500.0
-"""Range of speeds, m/s; negative is astern."""
 DEFAULT_DIVE = 0.5
 """Mean vertical speed of a change of depth when none is given, m/s."""
 _SAME_HEADING_DEG = 1e-6
@@ -32,27 +31,13 @@ class Leg(EitherUnit):
         label=Text("duration"),
         help=Text("Length of the leg; a change must end within it."),
     )
-    speed_mps: float | None = quantity(
-        None,
-        unit="m/s",
-        ge=SLOWEST,
-        le=FASTEST,
-        slider=(0.0, 20.0),
-        label=Text("speed"),
-        help=Text(
+    speed_mps: float | None = speed_mps_field(
+        Text(
             "First leg: the initial speed. Later legs: the speed to reach, at accel_mps2 (mean), else at a "
             "mean of 0.1 m/s². Negative is astern. Not together with speed_kn."
-        ),
+        )
     )
-    speed_kn: float | None = quantity(
-        None,
-        unit="kn",
-        ge=-97.0,
-        le=970.0,
-        slider=(0.0, 40.0),
-        label=Text("speed"),
-        help=Text("The same in knots. Not together with speed_mps."),
-    )
+    speed_kn: float | None = speed_kn_field(Text("The same in knots. Not together with speed_mps."))
     accel_mps2: float | None = quantity(
         None,
         unit="m/s2",
@@ -79,14 +64,9 @@ class Leg(EitherUnit):
             "twice the mean."
         ),
     )
-    heading_deg: float | None = quantity(
+    heading_deg: float | None = heading_field(
         None,
-        unit="deg",
-        ge=-360.0,
-        le=360.0,
-        slider=(0.0, 360.0),
-        label=Text("heading"),
-        help=Text(
+        Text(
             "First leg: the initial heading, in place of that of the motion. Later legs: the heading to "
             "reach, at turn_dps (mean) if given, else by the shorter way at a mean of 1 °/s."
         ),
@@ -119,7 +99,7 @@ class Leg(EitherUnit):
     @property
     def speed(self) -> float | None:
         """Speed in m/s, None when the leg names none."""
-        return self.speed_kn * KNOT if self.speed_kn is not None else self.speed_mps
+        return speed_of(self.speed_mps, self.speed_kn)
 
     @property
     def speed_field(self) -> str:

@@ -26,13 +26,12 @@ from navcore.motion.course import (
     PoleReached,
     askable_before_start,
     lay_course,
-    sample_course,
 )
+from navcore.motion.fields import FASTEST, SLOWEST
+from navcore.motion.filling import sample
 from navcore.motion.kinematics import COURSE as BY_COURSE
 from navcore.motion.kinematics import Kinematics
 from navcore.motion.leg import (
-    FASTEST,
-    SLOWEST,
     Change,
     Leg,
     change_of_depth,
@@ -241,9 +240,8 @@ class LegsMotion(SeagoingMotion):
         if not legs[:, [SPEED, SPEED_CHANGE, COURSE_CHANGE]].any():
             heading = self.heading_deg if self.leg[0].heading_deg is None else self.leg[0].heading_deg
             return Truth(step_s, self.model_copy(update={"heading_deg": heading}).rest_row(site))
-        course = self.course(max(count - 1, 1) * step_s, site, earth)
-        pitch, roll = self.pitch_deg * DEG, self.roll_deg * DEG
-        return Truth(step_s, sample_course(course, count, step_s, pitch, roll, site.height))
+        kin = self.calm_kinematics(max(count - 1, 1) * step_s, site, earth)
+        return Truth(step_s, sample(kin, count, step_s, earth))
 
     @property
     def dives(self) -> bool:

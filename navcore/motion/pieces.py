@@ -9,12 +9,11 @@ from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.earth import SEMI_MAJOR_AXIS
 from navcore.foundation.trigonometry import sincos
 from navcore.motion.course import leg_at
-from navcore.motion.kinematics import WIDTH, write_rows
+from navcore.motion.kinematics import WIDTH
 from navcore.motion.truth import (
     AE,
     AN,
     AU,
-    COLUMNS,
     HEADING,
     HEADING_RATE,
     HEIGHT,
@@ -131,29 +130,3 @@ def fill_pieces(t0, dt, pieces, place, e2, columns, samples, w):
         w[HEADING_RATE * WIDTH + k] = _rate(x, pieces, i, PIECE_HEADING)
         w[PITCH_RATE * WIDTH + k] = _rate(x, pieces, i, PIECE_PITCH)
         w[ROLL_RATE * WIDTH + k] = _rate(x, pieces, i, PIECE_ROLL)
-
-
-@kernel
-def _sample(pieces, step, e2, out):
-    w, place = np.empty(COLUMNS * WIDTH), np.zeros(2, np.int64)
-    for first in range(0, out.shape[0], WIDTH):
-        rows = min(WIDTH, out.shape[0] - first)
-        fill_pieces(first * step, step, pieces, place, e2, rows, rows, w)
-        write_rows(first, rows, w, out)
-
-
-def sample_pieces(pieces: np.ndarray, count: int, step_s: float, e2: float) -> np.ndarray:
-    """Rows of truth at t = 0, step_s, ...; shape (count, 15).
-
-    Parameters
-    ----------
-    pieces : ndarray, shape (m, 25)
-        From `shared_pieces`.
-    count, step_s
-        The times.
-    e2 : float
-        First eccentricity squared of the Earth.
-    """
-    out = np.empty((count, COLUMNS))
-    _sample(pieces, float(step_s), float(e2), out)
-    return out

@@ -9,53 +9,35 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from pydantic import Field, model_validator
 
-from navcore.foundation.compiled import kernel
 from navcore.foundation.earth import Earth
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import bounded, choice, quantity
 from navcore.foundation.text import Text
 from navcore.foundation.times import EitherUnit
-from navcore.foundation.trigonometry import sincos
-from navcore.foundation.units import DEG, KNOT
+from navcore.foundation.units import DEG
 from navcore.motion.course import (
-    COURSE,
-    COURSE_CHANGE,
     HALF_SINE,
     RAISED_COSINE,
-    SHAPE,
     SPEED,
     SPEED_CHANGE,
-    SPEED_TIME,
-    START,
     TRIANGLE,
     PoleReached,
     askable_before_start,
     lay_course,
-    leg_at,
-    node_at,
-    position_at,
-    smooth_change,
 )
-from navcore.motion.kinematics import PROFILE, WIDTH, Kinematics, write_rows
-from navcore.motion.leg import FASTEST, SLOWEST
+from navcore.motion.fields import (
+    FASTEST,
+    heading_field,
+    pitch_field,
+    roll_field,
+    speed_kn_field,
+    speed_mps_field,
+    speed_of,
+)
+from navcore.motion.filling import sample
+from navcore.motion.kinematics import PROFILE, Kinematics
 from navcore.motion.seagoing import SeagoingMotion
-from navcore.motion.truth import (
-    AE,
-    AN,
-    COLUMNS,
-    HEADING,
-    HEADING_RATE,
-    LAT,
-    LON,
-    PITCH,
-    PITCH_RATE,
-    ROLL,
-    ROLL_RATE,
-    VE,
-    VN,
-    Site,
-    Truth,
-)
+from navcore.motion.truth import HEADING, PITCH, ROLL, Site, Truth
 
 _SHAPES = {"raised_cosine": RAISED_COSINE, "half_sine": HALF_SINE, "triangle": TRIANGLE}
 _Component = Annotated[float, bounded(unit="m/s", ge=-FASTEST, le=FASTEST)]
@@ -73,35 +55,17 @@ class Point(EitherUnit):
         label=Text("time"),
         help=Text("Time of the point; the first one is at 0, each later than the one before."),
     )
-    speed_mps: float | None = quantity(
-        None,
-        unit="m/s",
-        ge=SLOWEST,
-        le=FASTEST,
-        slider=(0.0, 20.0),
-        label=Text("speed"),
-        help=Text(
+    speed_mps: float | None = speed_mps_field(
+        Text(
             "Speed along the course, negative is astern; 0 at the first point if it names none. "
             "Not together with speed_kn."
-        ),
+        )
     )
-    speed_kn: float | None = quantity(
+    speed_kn: float | None = speed_kn_field(Text("The same in knots."))
+    course_deg: float | None = heading_field(
         None,
-        unit="kn",
-        ge=-97.0,
-        le=970.0,
-        slider=(0.0, 40.0),
-        label=Text("speed"),
-        help=Text("The same in knots."),
-    )
-    course_deg: float | None = quantity(
-        None,
-        unit="deg",
-        ge=-360.0,
-        le=360.0,
-        slider=(0.0, 360.0),
-        label=Text("course"),
-        help=Text("Direction of the velocity, clockwise from true north; reached by the shorter way."),
+        Text("Direction of the velocity, clockwise from true north; reached by the shorter way."),
+        Text("course"),
     )
     velocity_mps: tuple[_Component, _Component] | None = Field(
         default=None,
@@ -111,33 +75,12 @@ class Point(EitherUnit):
         ),
         json_schema_extra={"unit": "m/s", "elements": ["E", "N"], "label": "velocity"},
     )
-    heading_deg: float | None = quantity(
+    heading_deg: float | None = heading_field(
         None,
-        unit="deg",
-        ge=-360.0,
-        le=360.0,
-        slider=(0.0, 360.0),
-        label=Text("heading"),
-        help=Text("Heading, reached by the shorter way; only when the bow does not follow the course."),
+        Text("Heading, reached by the shorter way; only when the bow does not follow the course."),
     )
-    pitch_deg: float | None = quantity(
-        None,
-        unit="deg",
-        ge=-89.0,
-        le=89.0,
-        slider=(-30.0, 30.0),
-        label=Text("pitch"),
-        help=Text("Pitch, bow up positive."),
-    )
-    roll_deg: float | None = quantity(
-        None,
-        unit="deg",
-        ge=-180.0,
-        le=180.0,
-        slider=(-30.0, 30.0),
-        label=Text("roll"),
-        help=Text("Roll, starboard down positive."),
-    )
+    pitch_deg: float | None = pitch_field(None)
+    roll_deg: float | None = roll_field(None)
 
     def contradictions(self) -> Iterator[tuple[str, object, str]]:
         """Fields given twice over: name, value, what is allowed."""
@@ -159,7 +102,7 @@ class Point(EitherUnit):
         """Speed in m/s, None when the point names none."""
         if self.velocity_mps is not None:
             return math.hypot(*self.velocity_mps)
-        return self.speed_kn * KNOT if self.speed_kn is not None else self.speed_mps
+        return speed_of(self.speed_mps, self.speed_kn)
 
     @property
     def course(self) -> float | None:
@@ -269,9 +212,7 @@ class ProfileMotion(SeagoingMotion):
             row[0, [PITCH, ROLL, HEADING]] = attitude[0, :3]
             return Truth(step_s, row)
         kin = self.calm_kinematics(max(count - 1, 1) * step_s, site, earth)
-        values = np.empty((count, COLUMNS))
-        _sample(kin.rest, kin.legs, kin.nodes, kin.attitude, float(step_s), values)
-        return Truth(step_s, values)
+        return Truth(step_s, sample(kin, count, step_s, earth))
 
     def changes(self) -> np.ndarray:
         """Return the table of the legs."""
@@ -325,43 +266,3 @@ def _turned(angle: float, goal: float | None, first: bool) -> float:
         return angle if goal is None else goal
     difference = goal - angle
     return angle + difference - 2.0 * math.pi * math.ceil(difference / (2.0 * math.pi) - 0.5)
-
-
-@kernel
-def fill_profile(t0, dt, legs, nodes, attitude, place, columns, samples, w):
-    """Fill the buffer ``w`` (`navcore.motion.kinematics.WIDTH`) with a profile from t0 on.
-
-    ``place`` holds the numbers of leg and node reached, for the next call, which begins ``samples`` steps
-    later. Height and vertical motion stay as they are.
-    """
-    leg, node = place[0], place[1]
-    for i in range(columns):
-        t = t0 + i * dt
-        leg, node = leg_at(t, legs, leg), node_at(t, nodes, node)
-        if i == samples - 1:
-            place[0], place[1] = leg, node
-        w[LAT * WIDTH + i], w[LON * WIDTH + i] = position_at(t, nodes, node)
-        done, rate = smooth_change(t - legs[leg, START], legs[leg, SPEED_TIME], 1.0, legs[leg, SHAPE])
-        speed, acceleration = (
-            legs[leg, SPEED] + done * legs[leg, SPEED_CHANGE],
-            rate * legs[leg, SPEED_CHANGE],
-        )
-        across = speed * rate * legs[leg, COURSE_CHANGE]
-        s, c = sincos(legs[leg, COURSE] + done * legs[leg, COURSE_CHANGE])
-        w[VE * WIDTH + i], w[VN * WIDTH + i] = speed * s, speed * c
-        w[AE * WIDTH + i], w[AN * WIDTH + i] = acceleration * s + across * c, acceleration * c - across * s
-        w[PITCH * WIDTH + i] = attitude[leg, 0] + done * attitude[leg, 3]
-        w[ROLL * WIDTH + i] = attitude[leg, 1] + done * attitude[leg, 4]
-        w[HEADING * WIDTH + i] = attitude[leg, 2] + done * attitude[leg, 5]
-        w[PITCH_RATE * WIDTH + i] = rate * attitude[leg, 3]
-        w[ROLL_RATE * WIDTH + i] = rate * attitude[leg, 4]
-        w[HEADING_RATE * WIDTH + i] = rate * attitude[leg, 5]
-
-
-@kernel
-def _sample(rest, legs, nodes, attitude, step, out):
-    w, place = np.repeat(rest, WIDTH), np.zeros(2, np.int64)
-    for first in range(0, out.shape[0], WIDTH):
-        rows = min(WIDTH, out.shape[0] - first)
-        fill_profile(first * step, step, legs, nodes, attitude, place, rows, rows, w)
-        write_rows(first, rows, w, out)

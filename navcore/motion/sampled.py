@@ -20,6 +20,7 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.motion.base import MotionParameters
+from navcore.motion.filling import sample
 from navcore.motion.kinematics import PIECES, Kinematics
 from navcore.motion.pieces import (
     PIECE_HEADING,
@@ -28,7 +29,6 @@ from navcore.motion.pieces import (
     PIECE_LON,
     PIECE_PITCH,
     PIECE_ROLL,
-    sample_pieces,
     shared_pieces,
 )
 from navcore.motion.static import rest_at
@@ -90,8 +90,8 @@ class SampledMotion(MotionParameters):
         self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
     ) -> Truth:
         """Return the motion at ``count`` times 0, step_s, ...; shape (count, 15)."""
-        pieces = self._pieces((count - 1) * step_s, site, earth)
-        return Truth(step_s, sample_pieces(pieces, count, step_s, earth.e2))
+        kin = self.kinematics((count - 1) * step_s, site, earth)
+        return Truth(step_s, sample(kin, count, step_s, earth))
 
     def kinematics(
         self, end_s: float, site: Site, earth: Earth, start_utc: float | None = None

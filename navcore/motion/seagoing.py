@@ -161,22 +161,22 @@ class Voyage(SampledMotion):
         later = t_s >= -1e-9
         rows = motion.calm_truth(int(later.sum()), step_s, site, earth).values
         rows = np.broadcast_to(rows, (int(later.sum()), rows.shape[1]))
-        found = np.empty((t_s.size, 6))
-        found[later] = rows[:, [LAT, LON, HEIGHT, PITCH, ROLL, HEADING]]
+        values = np.empty((t_s.size, 6))
+        values[later] = rows[:, [LAT, LON, HEIGHT, PITCH, ROLL, HEADING]]
         velocity = np.empty((t_s.size, 2))
         velocity[later], velocity[~later] = rows[:, [VE, VN]], rows[0, [VE, VN]]
         meridian, prime_vertical = earth.radii(site.lat)
         rates = np.zeros(6)
         rates[0] = rows[0, VN] / (meridian + site.height)
         rates[1] = rows[0, VE] / ((prime_vertical + site.height) * math.cos(site.lat))
-        found[~later] = found[later][0] + t_s[~later, None] * rates
+        values[~later] = values[later][0] + t_s[~later, None] * rates
         depth = motion.depth_at(t_s)
-        found[:, 2] -= depth
+        values[:, 2] -= depth
         if motion.rough:
             steps = 0.5 * step_s * (velocity[1:] + velocity[:-1])
             moved = np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
             moved -= moved[np.argmax(later)]
             sea, answers = motion.waves.seaway(), motion.waves.answers()
-            swing = motion_along(sea, t_s, moved, velocity, found[:, 5].copy(), depth, answers)
-            found[:, [3, 4, 5, 2]] += swing
-        return found
+            swing = motion_along(sea, t_s, moved, velocity, values[:, 5].copy(), depth, answers)
+            values[:, [3, 4, 5, 2]] += swing
+        return values

@@ -6,10 +6,10 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from navcore.foundation.earth import Earth
-from navcore.foundation.parameters import quantity
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
 from navcore.motion.base import MotionParameters
+from navcore.motion.fields import heading_field, pitch_field, roll_field
 from navcore.motion.kinematics import REST, Kinematics
 from navcore.motion.truth import COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL, Site, Truth
 
@@ -17,33 +17,9 @@ from navcore.motion.truth import COLUMNS, HEADING, HEIGHT, LAT, LON, PITCH, ROLL
 class AttitudeMotion(MotionParameters):
     """Base of the motions that are given a mean (or initial) attitude."""
 
-    pitch_deg: float = quantity(
-        0.0,
-        unit="deg",
-        ge=-89.0,
-        le=89.0,
-        slider=(-30.0, 30.0),
-        label=Text("pitch"),
-        help=Text("Pitch, bow up positive."),
-    )
-    roll_deg: float = quantity(
-        0.0,
-        unit="deg",
-        ge=-180.0,
-        le=180.0,
-        slider=(-30.0, 30.0),
-        label=Text("roll"),
-        help=Text("Roll, starboard down positive."),
-    )
-    heading_deg: float = quantity(
-        0.0,
-        unit="deg",
-        ge=-360.0,
-        le=360.0,
-        slider=(0.0, 360.0),
-        label=Text("heading"),
-        help=Text("Heading, clockwise from true north."),
-    )
+    pitch_deg: float = pitch_field(0.0)
+    roll_deg: float = roll_field(0.0)
+    heading_deg: float = heading_field(0.0, Text("Heading, clockwise from true north."))
 
     def rest_row(self, site: Site) -> np.ndarray:
         """One row of truth at rest at the site with this attitude, shape (1, 15)."""

@@ -18,6 +18,7 @@ from navcore.foundation.units import DEG
 from navcore.io.recording import Window, file_keys, load, require_cover, shared_window
 from navcore.io.series import LONGEST_REACH_S, Recording, Series, utc_text
 from navcore.motion.base import MotionParameters, Streams
+from navcore.motion.filling import sample
 from navcore.motion.kinematics import PIECES, Kinematics
 from navcore.motion.pieces import (
     PIECE_HEADING,
@@ -26,7 +27,6 @@ from navcore.motion.pieces import (
     PIECE_LON,
     PIECE_PITCH,
     PIECE_ROLL,
-    sample_pieces,
     shared_pieces,
 )
 from navcore.motion.static import rest_at
@@ -150,9 +150,8 @@ class TrackMotion(MotionParameters):
         self, count: int, step_s: float, site: Site, earth: Earth, start_utc: float | None = None
     ) -> np.ndarray:
         """Rows of truth at 0, step_s, ...; shape (count, 15)."""
-        del site
-        track = self._covering((count - 1) * step_s, start_utc)
-        return sample_pieces(self._pieces(track, start_utc), count, step_s, earth.e2)
+        self._covering((count - 1) * step_s, start_utc)
+        return sample(self.kinematics(0.0, site, earth, start_utc), count, step_s, earth)
 
     def kinematics(
         self, end_s: float, site: Site, earth: Earth, start_utc: float | None = None

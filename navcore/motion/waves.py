@@ -9,45 +9,21 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
-from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.earth import Earth
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.parameters import Parameters, quantity
 from navcore.foundation.text import Text
-from navcore.foundation.trigonometry import sincos_cycles
 from navcore.foundation.units import DEG
 from navcore.motion.base import MotionParameters
-from navcore.motion.course import PoleReached, lay_course, node_at, position_at
-from navcore.motion.kinematics import FREQUENCY, PHASE, WAVES, WIDTH, Kinematics, write_rows
+from navcore.motion.course import PoleReached, lay_course
+from navcore.motion.filling import sample
+from navcore.motion.kinematics import FREQUENCY, WAVES, Kinematics
 from navcore.motion.sea import ship_motion
 from navcore.motion.sea_fields import ANSWERS, AnswerFields, SeaFields
 from navcore.motion.static import AttitudeMotion
 from navcore.motion.swing import SAMPLES_A_PERIOD, STEEPEST_PITCH_DEG
-from navcore.motion.truth import (
-    AU,
-    COLUMNS,
-    HEADING,
-    HEADING_RATE,
-    HEIGHT,
-    LAT,
-    LON,
-    PITCH,
-    PITCH_RATE,
-    ROLL,
-    ROLL_RATE,
-    VE,
-    VN,
-    VU,
-    Site,
-    Truth,
-)
-
-# Columns of a component beside FREQUENCY and PHASE: angular frequency and its square, then real and imaginary
-# parts of the answers in pitch, roll, heading and height.
-OMEGA, OMEGA_SQUARED, REAL, IMAGINARY = 0, 1, 4, 8
-COMPONENT_COLUMNS = 12
-HEAVE = 3
-"""Place of heave among the answers."""
+from navcore.motion.truth import VE, VN, Site, Truth
+from navcore.motion.wave_kernels import COMPONENT_COLUMNS, IMAGINARY, OMEGA, OMEGA_SQUARED, REAL
 
 
 class _Way(Parameters):
@@ -141,10 +117,7 @@ class WavesMotion(AnswerFields, _Way, SeaFields, AttitudeMotion):
         kin = self.kinematics(max(count - 1, 1) * step_s, site, earth, start_utc)
         if self.speed_mps == 0.0 and not kin.oscillations[:, REAL:].any():
             return kin.rest[None, :].copy()
-        values = np.empty((count, COLUMNS))
-        turns = kin.turns(step_s)
-        _sample(kin.rest, kin.oscillations, turns, kin.nodes, float(step_s), values)
-        return values
+        return sample(kin, count, step_s, earth)
 
     def kinematics(
         self, end_s: float, site: Site, earth: Earth, start_utc: float | None = None
@@ -211,75 +184,3 @@ class WavesMotion(AnswerFields, _Way, SeaFields, AttitudeMotion):
                     ),
                 )
             )
-
-
-@inlined
-def _amplitudes(m, which, components, s, c):
-    """Real and imaginary part of one answer, turned by a phase of sine s and cosine c."""
-    real, imaginary = components[m, REAL + which], components[m, IMAGINARY + which]
-    return real * c - imaginary * s, real * s + imaginary * c
-
-
-@inlined
-def _fill_quantity(m, components, s, c, turns, columns, row, rate_row, which, w):
-    """Add one component of a quantity and of its rate, whose phase at the start has sine s and cosine c."""
-    p, q = _amplitudes(m, which, components, s, c)
-    rate_p, rate_q = components[m, OMEGA] * p, components[m, OMEGA] * q
-    # Unsigned, or numba's care for negative indices keeps LLVM from vectorising.
-    first, half = np.uint64(2 * m * WIDTH), np.uint64(WIDTH)
-    for i in range(columns):
-        ci, si = turns[first + np.uint64(i)], turns[first + half + np.uint64(i)]
-        w[row * WIDTH + i] += p * ci - q * si
-        w[rate_row * WIDTH + i] -= rate_q * ci + rate_p * si
-
-
-@inlined
-def _fill_vertical_acceleration(m, components, s, c, turns, columns, w):
-    p, q = _amplitudes(m, HEAVE, components, s, c)
-    p, q = components[m, OMEGA_SQUARED] * p, components[m, OMEGA_SQUARED] * q
-    first, half = np.uint64(2 * m * WIDTH), np.uint64(WIDTH)
-    for i in range(columns):
-        w[AU * WIDTH + i] -= p * turns[first + np.uint64(i)] - q * turns[first + half + np.uint64(i)]
-
-
-@inlined
-def _restart_row(row, rest, columns, w):
-    for i in range(columns):
-        w[row * WIDTH + i] = rest[row]
-
-
-@kernel
-def fill_waves(t0, dt, components, turns, rest, nodes, place, columns, samples, w):
-    """Fill the buffer ``w`` (`navcore.motion.kinematics.WIDTH`) with a ship in waves from t0 on.
-
-    ``turns`` (2 m WIDTH,): cosine and sine of each component's angle after i steps; its phase is taken afresh
-    at t0. ``place[1]`` is the number of the node reached, for the next call, which begins ``samples`` steps
-    later. Horizontal velocity stays as it is.
-    """
-    node = place[1]
-    for i in range(columns):
-        t = t0 + i * dt
-        node = node_at(t, nodes, node)
-        if i == samples - 1:
-            place[1] = node
-        w[LAT * WIDTH + i], w[LON * WIDTH + i] = position_at(t, nodes, node)
-    _restart_row(HEIGHT, rest, columns, w)
-    _restart_row(VU, rest, columns, w)
-    for row in range(AU, HEADING_RATE + 1):
-        _restart_row(row, rest, columns, w)
-    for m in range(components.shape[0]):
-        s, c = sincos_cycles(components[m, FREQUENCY] * t0 + components[m, PHASE])
-        _fill_quantity(m, components, s, c, turns, columns, PITCH, PITCH_RATE, 0, w)
-        _fill_quantity(m, components, s, c, turns, columns, ROLL, ROLL_RATE, 1, w)
-        _fill_quantity(m, components, s, c, turns, columns, HEADING, HEADING_RATE, 2, w)
-        _fill_quantity(m, components, s, c, turns, columns, HEIGHT, VU, HEAVE, w)
-        _fill_vertical_acceleration(m, components, s, c, turns, columns, w)
-
-
-@kernel
-def _sample(rest, components, turns, nodes, step, out):
-    w, place = np.repeat(rest, WIDTH), np.zeros(2, np.int64)
-    for first in range(0, out.shape[0], WIDTH):
-        rows = min(WIDTH, out.shape[0] - first)
-        fill_waves(first * step, step, components, turns, rest, nodes, place, rows, rows, w)
-        write_rows(first, rows, w, out)

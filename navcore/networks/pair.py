@@ -65,7 +65,7 @@ class MainPair:
         possible = [_within(frequency, ends) for ends in ranges if ends[0] <= ends[1]]
         if not possible:
             return self.damping_ratio, self.frequency
-        return damping_ratio, min(possible, key=lambda found: abs(math.log(found / frequency)))
+        return damping_ratio, min(possible, key=lambda candidate: abs(math.log(candidate / frequency)))
 
     def allowed(self, omega_s: float) -> str:
         """Say which pairs are possible; frequencies in units of omega_s (rad/s).

@@ -60,7 +60,7 @@ _CITATION = re.compile(r"theory\.md (?:section )?(\d+)(?:\.(\d+))?")
 def _linked(text: str) -> str:
     """Text in which each section of the theory that it cites is a link to its anchor."""
     return _CITATION.sub(
-        lambda found: f"[{found[0]}](theory.md#s-{'-'.join(filter(None, found.groups()))})", text
+        lambda match: f"[{match[0]}](theory.md#s-{'-'.join(filter(None, match.groups()))})", text
     )
 
 

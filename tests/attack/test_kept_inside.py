@@ -72,6 +72,27 @@ def test_a_log_line_for_programs_is_one_json_object(
     assert "ValueError: two" in told["exception"] and told["time"].endswith("Z")
 
 
+def test_the_log_goes_to_a_file_that_is_rotated_and_bounded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log = logging.getLogger("schuler")
+    for name in ("handlers", "propagate", "level"):
+        monkeypatch.setattr(log, name, getattr(log, name))
+    monkeypatch.setenv("SCHULER_LOG_FILE", str(tmp_path / "log"))
+    monkeypatch.setenv("SCHULER_LOG_BYTES", "2000")
+    begin_logging()
+    for number in range(500):
+        logging.getLogger("schuler.test").info("line %d", number)
+    log.handlers[0].close()
+    files = sorted(path.name for path in tmp_path.iterdir())
+    assert files == ["log", "log.1", "log.2"]
+    assert all(path.stat().st_size <= 2000 for path in tmp_path.iterdir())
+    assert (tmp_path / "log").read_text().endswith("schuler.test: line 499\n")
+    begin_logging(to_file=False)
+    logging.getLogger("schuler.test").info("to the console")
+    assert capsys.readouterr().err == "schuler.test: to the console\n"
+
+
 def test_nothing_that_is_sent_holds_a_path_of_the_server(
     served: tuple[DashboardServer, Dashboard], tmp_path: Path
 ) -> None:

@@ -15,7 +15,7 @@ import pytest
 
 from schuler_bench.bench.process import environment
 from schuler_bench.bench.visitor import PAGE_STATE, Visitor
-from schuler_bench.http.front import Front, _told
+from schuler_bench.http.front import Front, _with_address
 from schuler_bench.http.limits import Limits
 from schuler_bench.http.server import start
 from schuler_bench.session.store import open_store, session_key
@@ -288,7 +288,7 @@ def test_a_session_always_goes_to_the_same_worker_and_others_are_spread() -> Non
 
 def test_a_stranger_cannot_say_where_a_request_comes_from() -> None:
     head = b"GET / HTTP/1.1\r\nX-Schuler-Address: 1.2.3.4\r\nHost: a\r\nx-schuler-ADDRESS : 5.6.7.8\r\n\r\n"
-    told = _told(head, "10.0.0.9").decode()
+    told = _with_address(head, "10.0.0.9").decode()
     assert told.lower().count("x-schuler-address") == 1 and "x-schuler-address: 10.0.0.9\r\n" in told
     assert "Host: a\r\n" in told and told.endswith("\r\n\r\n")
 

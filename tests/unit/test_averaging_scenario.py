@@ -1,13 +1,12 @@
 """Averaging as a method of a scenario; the alignment record and the forecast from it."""
 
-import math
 from typing import Any
 
 import numpy as np
 import pytest
 
 from navcore.averaging import AlignmentMotion, Averaging
-from navcore.averaging.forecast import base_motion, forecast_from, second_increments, still_segments
+from navcore.averaging.forecast import base_motion, forecast_from, still_segments
 from navcore.averaging.record import alignment_record, standing_row, standing_signals
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import EARTH_RATE, WGS84
@@ -213,14 +212,6 @@ def test_a_vehicle_under_way_is_refused():
     row[VE] = 5.0
     with pytest.raises(InputError, match="must start from rest"):
         standing_row(row)
-
-
-def test_second_increments_end_with_the_record():
-    increments = np.arange(250.0)[:, None] * np.ones(6)
-    seconds = second_increments(increments, 100.0)
-    assert seconds.shape == (2, 6)
-    assert seconds[1, 0] == np.arange(150, 250).sum()
-    assert math.isclose(seconds[0, 5], np.arange(50, 150).sum())
 
 
 def test_a_base_that_moves_at_the_end_is_forecast_in_the_attitude_in_which_it_ends():

@@ -251,8 +251,8 @@ def test_the_bar_shows_titles_as_they_are_and_follows_the_run():
     with Bar("[red]title[/red] [x", show=True) as bar:
         bar.advance(0.25)
         bar._appear()
-        assert bar._shown is not None
-        task = bar._shown[0].tasks[0]
+        assert bar._bar is not None
+        task = bar._bar[0].tasks[0]
         assert task.completed == 0.25
         bar.advance(0.5)
         assert (task.completed, task.description) == (0.5, "[red]title[/red] [x")
@@ -264,8 +264,8 @@ def test_the_bar_says_what_is_compiled_and_how_long_it_took(capsys):
 
     class Watch(event.Listener):
         def on_start(self, event):
-            column: Any = bar._shown[0].columns[1]
-            said.append(str(column.render(bar._shown[0].tasks[0])))
+            column: Any = bar._bar[0].columns[1]
+            said.append(str(column.render(bar._bar[0].tasks[0])))
 
         def on_end(self, event):
             pass
@@ -294,7 +294,7 @@ def test_no_bar_appears_after_the_run():
     with Bar("title", show=True) as bar:
         pass
     bar._appear()
-    assert bar._shown is None
+    assert bar._bar is None
 
 
 # ---------------------------------------------------------------- strapdown

@@ -146,6 +146,8 @@ def test_a_network_without_velocity_feedback_asks_for_no_acceleration() -> None:
     for d in (0.3, -0.1, 0.2):
         c_e, _, a_e, a_n = run.step(d, 0.1)
         assert c_e != 0.0 and (a_e, a_n) == (0.0, 0.0)
+    network = run.law.s["network"]
+    assert not network["E"].any() and network["F"] == 0.0
 
 
 def test_gains_that_would_make_h_zero_are_refused_and_k3_zero_alone_is_not() -> None:

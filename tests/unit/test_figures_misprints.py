@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from schuler_bench.misprints import Axis, Comparison, Curve, Misprint, Number
-from schuler_bench.plots.plotly_data import unpacked
 from schuler_bench.views.misprints.figure import comparison_plot, words_html
+from tests.traces import unpacked
 
 T = np.linspace(0.0, 7200.0, 50)
 TILT = Axis("tilt", "rad")

@@ -14,7 +14,7 @@ from navcore.scenario.model import Scenario
 from schuler_bench.jobs.envelopes import SEEDS, Envelopes, with_seed
 from schuler_bench.plots import style
 from schuler_bench.plots.envelope import Envelope, envelope
-from schuler_bench.plots.plotly_data import enlarged, enlarged_time_plot, figure, packed, unpacked, values_of
+from schuler_bench.plots.plotly_data import enlarged, enlarged_time_plot, figure, packed, values_of
 from schuler_bench.plots.saved import plotly_csv, time_csv, time_figure
 from schuler_bench.session.display import Display
 from schuler_bench.shell.layout import layout_for
@@ -22,6 +22,7 @@ from schuler_bench.views.errors.figure import error_plots
 from schuler_bench.views.frequency.figure import bode
 from schuler_bench.views.spectrum.figure import amplitude_spectrum, spectrum
 from schuler_bench.views.switching.figure import switching_plots
+from tests.traces import unpacked
 from tests.unit.figures_runs import THREE, diverging, run_of, scenario, static_run, texts_of
 from tests.unit.test_figures_switching import switching_run
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from schuler_bench.bridge.controls import Control, Guest
 from schuler_bench.bridge.server import FRAME_TYPES
-from schuler_bench.http.frames import BadFrame, Gate, Uploading, safe_file_name, shown, why_not
+from schuler_bench.http.frames import BadFrame, Gate, Uploading, excerpt, safe_file_name, why_not
 from schuler_bench.http.limits import MIB, Limits
 from tests.attack.wire import CAMERA
 
@@ -68,7 +68,7 @@ def test_whether_a_value_fits_its_control(held: Control, value: object, reason: 
 
 
 def test_long_values_are_shown_short() -> None:
-    assert (len(shown("x" * 1000)), shown(math.nan)) == (60, "nan")
+    assert (len(excerpt("x" * 1000)), excerpt(math.nan)) == (60, "nan")
 
 
 # ------------------------------------------------------------ the gate

@@ -26,7 +26,7 @@ class Played:
 
     def play(self, step: Step) -> None:
         if isinstance(step, tuple):
-            self.pace.told(step[0], moving=step[1])
+            self.pace.on_painted(step[0], moving=step[1])
         elif step == LATE:
             self.now_s += LATE_S
         else:

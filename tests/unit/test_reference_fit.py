@@ -15,7 +15,7 @@ from navcore.sensors.log import reference_errors
 from navcore.sensors.recorded import recorded_window
 from navcore.sensors.reference import Reference
 from navcore.sensors.true_state import horizontal_state, to_ship
-from schuler_bench.session.log_fit import can_fit, fit_of, told, with_fitted_log
+from schuler_bench.session.log_fit import can_fit, fit_lines, fit_of, with_fitted_log
 
 AT_REST = Truth(0.5, np.zeros((1, COLUMNS)))
 
@@ -114,7 +114,7 @@ def test_the_recorded_ships_log_errs_as_the_preset_that_was_fitted_to_it() -> No
     like = load("sikuliaq-like").reference
     assert fit.delay_s == pytest.approx(like.delay_s, abs=0.5)
     assert tuple(fit.bias) == pytest.approx(like.bias_mps, abs=0.005)
-    assert f"Delay {fit.delay_s:.1f} s." in told(fit)
+    assert f"Delay {fit.delay_s:.1f} s." in fit_lines(fit)
     made = with_fitted_log(recorded, fit)
     assert made.reference.kind == "log" and made.reference.bias_mps == fit.reference().bias_mps
     assert made.motion == recorded.motion and not can_fit(made)

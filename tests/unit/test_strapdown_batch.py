@@ -1,35 +1,27 @@
 """A batch gives each run what the single run gives."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from navcore.design.confirm import confirmed
+from navcore.engine.ensemble import drawn, outcomes
+from navcore.engine.simulation import simulate
 from navcore.foundation.earth import WGS84
-from navcore.mechanization.strapdown import Settings, StrapdownRun, start_from, start_run
-from navcore.mechanization.strapdown.batch import WIDTH, BatchNoise, BatchRun
+from navcore.mechanization.recorder import FINAL, POSITION, spans_from
+from navcore.mechanization.strapdown import Settings, start_from, start_run
+from navcore.mechanization.strapdown.batch import WIDTH, BatchRun, side_by_side
 from navcore.networks.classic import Classic2Network
 from navcore.networks.compass import CompassNetwork
+from navcore.scenario.model import Scenario
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
-from navcore.sensors.imu_simulation.normal import fill_normals, stream_key
-from navcore.sensors.imu_simulation.work import HALF_NORMALS, NORMAL, WORK, W
 from tests.strapdown import DENG_SWING, DRIVE, SITE, law, reference
 
-RATE, SECONDS, RUNS = 50.0, 400, WIDTH + 3
-
-
-def _make(motion, network, seconds=SECONDS):
-    rng = np.random.default_rng(4)
-    biases = rng.normal(size=(RUNS, 6)) * np.repeat([1e-7, 1e-3], 3)
-    samples = int(RATE * seconds)
-    sim = ImuSimulation(motion, SITE, WGS84, Imu(), RATE, samples, 1)
-    increments = np.concatenate([chunk.copy() for chunk, _ in sim.chunks()])
-    truth = sim.truth_rows(seconds + 1, 1.0)
-    errors = rng.normal(size=(RUNS, 7)) * np.array([0.1, 0.1, 1e-6, 1e-6, 1e-4, 1e-4, 1e-3])
-    starts = [start_from(truth[0], e) for e in errors]
-    settings = Settings(RATE, samples, int(RATE), int(RATE), 1.0)
-    return biases, sim, increments, truth, starts, settings, reference((0.1, -0.2), seconds)
+RATE, SECONDS, RUNS = 50.0, 400, WIDTH - 3
+NOISY = Imu(gyro_arw_dpsh=0.01, accel_vrw_ugpshz=10.0, gyro_bias_dph=(0.1, -0.2, 0.1))
 
 
 @pytest.mark.parametrize("motion", [DENG_SWING, DRIVE], ids=["swing", "legs"])
@@ -39,72 +31,105 @@ def _make(motion, network, seconds=SECONDS):
 # the mutation run makes the short ones as Python
 @pytest.mark.parametrize(("seconds", "law_s"), [(1, 1.0), (3, 0.5), (SECONDS, 1.0)])
 def test_each_run_is_the_single_run(motion, network, seconds, law_s):
-    biases, sim, increments, truth, starts, settings, log = _make(motion, network, seconds)
-    settings = replace(settings, law_every=int(RATE * law_s))
-    laws = [law("external", network, law_s) for _ in range(RUNS)]
-    batch = BatchRun(starts, laws, biases, settings, WGS84, truth, log, sim.before())
-    piece = min(777, len(increments) * 2 // 5)
-    ended = [batch.advance(increments[i : i + piece]) for i in range(0, len(increments), piece)]
-    assert ended[-1] and not any(ended[:-1])
-    for run in (0, 7, WIDTH - 1, WIDTH, RUNS - 1):
-        bias = biases[run] / RATE
-        single_law = law("external", network, law_s)
-        single = start_run(starts[run], settings, WGS84, single_law, truth, log, sim.before() + bias)
-        single.advance(increments + bias)
-        assert_same(batch, run, single)
+    rng, samples = np.random.default_rng(4), int(RATE * seconds)
+    sims = [ImuSimulation(motion, SITE, WGS84, NOISY, RATE, samples, seed) for seed in range(RUNS)]
+    increments = [np.concatenate([chunk.copy() for chunk, _ in sim.chunks()]) for sim in sims]
+    truth, before = sims[0].truth_rows(seconds + 1, 1.0), sims[0].before()
+    errors = rng.normal(size=(RUNS, 7)) * np.array([0.1, 0.1, 1e-6, 1e-6, 1e-4, 1e-4, 1e-3])
+    starts = [start_from(truth[0], e) for e in errors]
+    logs = [reference((0.1 * run, -0.2), seconds) for run in range(RUNS)]
+    settings = Settings(RATE, samples, int(RATE * law_s), int(RATE), 1.0)
+    laws, spans = [law("external", network, law_s) for _ in range(RUNS)], spans_from([2, seconds // 2])
+    batch = BatchRun(starts, laws, logs, settings, WGS84, truth, spans, before)
+    # pieces of no round length, and more than there is
+    piece = min(777, samples * 2 // 5)
+    pieces = [[each[i : i + piece] for i in range(0, samples, piece)] + [each[:5]] for each in increments]
+    for lanes in side_by_side(pieces):
+        batch.advance(lanes)
+    for run in (0, 7, RUNS - 1):
+        single = start_run(
+            starts[run], settings, WGS84, law("external", network, law_s), truth, logs[run], before
+        )
+        single.recorder.spans[:] = spans
+        single.advance(increments[run])
+        assert_same_spans(batch.spans[run], single.recorder.spans)
+        final = single.recorder.stats[POSITION, FINAL]
+        assert batch.position_m[run] == pytest.approx(final, rel=1e-7) and not batch.diverged[run]
 
 
-def assert_same(batch: BatchRun, run: int, single: StrapdownRun) -> None:
-    rows = single.recorder.rows
-    np.testing.assert_allclose(batch.errors[:, run, :2], rows[:, 3:5], rtol=0, atol=2e-9)
-    np.testing.assert_allclose(batch.errors[:, run, 4:], rows[:, :3], rtol=0, atol=1e-11)
+def assert_same_spans(ours: np.ndarray, theirs: np.ndarray) -> None:
+    for name in ("first", "count"):
+        np.testing.assert_array_equal(ours[name], theirs[name])
+    for name in ("largest", "sums"):
+        np.testing.assert_allclose(ours[name], theirs[name], rtol=1e-7)
 
 
-def _unit_normals(run: int, draws: int, seed: int) -> np.ndarray:
-    """Unit normal numbers of a run, one row a draw, as the batch takes them from the counter."""
-    block, lane = divmod(run, WIDTH)
-    each, w, rows = 2 * HALF_NORMALS // (6 * WIDTH), np.zeros(WORK), []
-    key = np.uint64(stream_key(seed, "batch.white"))
-    for group in range(-(-draws // each)):
-        fill_normals((block << 32) + group, key, HALF_NORMALS, w)
-        rows.append(w[NORMAL * W : NORMAL * W + 2 * HALF_NORMALS].reshape(each, 6, WIDTH)[:, :, lane].copy())
-    return np.concatenate(rows)[:draws]
+BLOCKS: dict[str, Any] = {
+    "run": {"duration_h": 0.2, "fidelity": "strapdown", "rate_hz": 20.0, "seed": 5},
+    "imu": {"gyro_bias_std_dph": 0.1, "accel_bias_std_ug": 50.0, "gyro_instability_dph": 0.01},
+    "initial_error": {"level_std_arcmin": 0.5},
+    "reference": {"kind": "log", "noise_mps": 0.1, "bias_std_mps": 0.1},
+    "requirement": [{"quantity": "tilt_max_arcsec", "at_most": 30.0, "from_h": 0.1}],
+    "method": [
+        {"name": "damped", "damping": "external", "network": {"id": "classic2"}},
+        {
+            "name": "jolted",
+            "damping": "internal",
+            "event": [{"t_h": 0.1, "duration_s": 60.0, "accel_mps2": [0.02, 0.0]}],
+        },
+    ],
+}
+SHIP = Scenario.parse(BLOCKS)
 
 
-@pytest.mark.parametrize("every", [1, 5])
-def test_noise_of_a_run_is_that_of_a_single_run(every):
-    biases, sim, increments, truth, starts, settings, log = _make(DENG_SWING, CompassNetwork())
-    laws = [law("external", CompassNetwork(), 1.0) for _ in range(RUNS)]
-    walk = np.repeat([1e-6, 1e-4], 3)
-    noise = BatchNoise(walk, 11, every)
-    batch = BatchRun(starts, laws, biases, settings, WGS84, truth, log, sim.before(), noise)
-    # Pieces of no round length: what is drawn must not depend on them.
-    assert any([batch.advance(increments[i : i + 773]) for i in range(0, len(increments), 773)])
-    for run in (3, WIDTH + 1):
-        unit = _unit_normals(run, len(increments) // every, 11)
-        bias, single_law = biases[run] / RATE, law("external", CompassNetwork(), 1.0)
-        single = start_run(starts[run], settings, WGS84, single_law, truth, log, sim.before() + bias)
-        single.advance(increments + bias + np.repeat(unit * walk / np.sqrt(RATE * every), every, axis=0))
-        assert_same(batch, run, single)
+def test_seeds_of_a_strapdown_scenario_come_out_as_their_runs():
+    """More seeds than a batch holds, all errors of their sensors, spans of the requirements, two methods."""
+    fractions: list[float] = []
+    results = outcomes(SHIP, SHIP.method, range(WIDTH + 2), fractions.append)
+    assert len(results) == WIDTH + 2
+    assert fractions == sorted(fractions) and fractions[-1] == pytest.approx(1.0)
+    for number in (0, WIDTH - 1, WIDTH + 1):
+        for ours, run in zip(results[number], simulate(drawn(SHIP, number)).methods, strict=True):
+            assert ours.ended and ours.final_m == pytest.approx(run.errors["position_m"]["final"], rel=1e-7)
+            assert [one.from_s for one in ours.spans] == [0.0, 360.0]
+            for one, other in zip(ours.spans, run.spans, strict=True):
+                assert one.largest == pytest.approx(other.largest, rel=1e-7)
+                assert one.rms == pytest.approx(other.rms, rel=1e-7)
+
+
+def test_a_search_that_is_cancelled_gives_no_half_batch():
+    calls = iter([False, False, True])
+    assert outcomes(SHIP, SHIP.method, range(3), cancelled=lambda: next(calls, True)) == []
+    assert confirmed(SHIP, SHIP.method[0], SHIP.method[1], 3, cancelled=lambda: True) is None
+
+
+def test_a_run_that_diverges_in_a_batch_is_reported_as_such():
+    unstable = {"damping": "external", "network": {"id": "compass", "sigma": 0.0088, "xi": 0.7}}
+    runaway = Scenario.parse(
+        BLOCKS
+        | {
+            "run": {"duration_h": 2.0, "fidelity": "strapdown", "rate_hz": 20.0},
+            "reference": {"kind": "log", "rate_hz": 0.01, "bias_std_mps": 0.1},
+            "method": [unstable, {"name": "free", "damping": "free"}],
+        }
+    )
+    results = outcomes(runaway, runaway.method, range(2))
+    assert [[one.ended for one in pair] for pair in results] == [[False, True]] * 2
 
 
 def test_what_a_batch_cannot_do_is_refused():
     truth = np.zeros((1, 15))
-    with pytest.raises(ValueError, match="locked"):
-        BatchRun(
-            [start_from(truth[0])],
-            [law("free", CompassNetwork(), 1.0)],
-            np.zeros((1, 6)),
-            Settings(50.0, 50, 50, 50, 1.0, "altimeter"),
-            WGS84,
-            truth,
-        )
-    with pytest.raises(ValueError, match="multiple"):
-        BatchRun(
-            [start_from(truth[0])],
-            [law("free", CompassNetwork(), 1.0)],
-            np.zeros((1, 6)),
-            Settings(50.0, 150, 50, 75, 1.0),
-            WGS84,
-            truth,
-        )
+    settings = Settings(50.0, 50, 50, 50, 1.0)
+
+    def batch(settings, runs=1):
+        laws = [law("free", CompassNetwork(), 1.0)] * runs
+        starts, logs = [start_from(truth[0])] * runs, [reference((0.0, 0.0), 1)] * runs
+        return BatchRun(starts, laws, logs, settings, WGS84, truth, spans_from(()), np.zeros(6))
+
+    for wrong, runs, words in (
+        (replace(settings, vertical="altimeter"), 1, "locked"),
+        (replace(settings, samples=150, record_every=75), 1, "multiple"),
+        (settings, WIDTH + 1, "at most 16 runs, not 17"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            batch(wrong, runs)

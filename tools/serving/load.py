@@ -22,6 +22,9 @@ from navcore.engine.simulation import simulate
 from navcore.scenario.file import load, parse_toml
 from navcore.scenario.model import Scenario
 from schuler_bench.bench.visitor import PAGE_COMMAND, PAGE_PAINTED, PAGE_STATE, Visitor
+from schuler_bench.views.appearance.view import BANDS
+from schuler_bench.views.tune.finder import FIND
+from schuler_bench.views.tune.view import SEARCH_FOR
 from tests.browser.fields import box_labels, label_of
 
 if TYPE_CHECKING:
@@ -33,6 +36,8 @@ ZETA, DURATION = label_of("network.zeta"), box_labels("run.duration_h")[0]
 LONG_RUN_H = 300.0
 """Some seconds of computing, within the memory that a run may take."""
 _PER_PROCESS = 8
+_SEARCH_S = (20, 10, 10, 5)
+"""After so long each search is begun anew."""
 _RECOMPUTED_EVERY, _RECOMPUTED_FIRST = 25, 7
 _ZETA = re.compile(r"zeta = ([0-9.]+)")
 _PRE = re.compile(r"<pre[^>]*>(.*)</pre>", re.DOTALL)
@@ -288,6 +293,31 @@ def long_runs(port: int, number: int, ended: Event, count: int = 10) -> None:
 
     with ThreadPoolExecutor(count) as threads:
         list(threads.map(one, range(count)))
+
+
+def searches(port: int, number: int, ended: Event) -> None:
+    """Visitors who search in loops, one for each search: fronts, setting, verification, bands."""
+
+    def one(place: int) -> None:
+        with opened(port, number + place) as visitor:
+            if place == 0:
+                visitor.set(str(SEARCH_FOR), "Pareto fronts")
+            if place == 3:
+                visitor.set(str(BANDS), "20 seeds, 5 to 95 %")
+            for step in itertools.count(1):
+                if place == 0:
+                    visitor.set(str(FIND), True)
+                elif place == 3:
+                    visitor.set(ZETA, round(0.5 + 0.001 * (step % 300), 3))
+                else:
+                    visitor.set(PAGE_COMMAND, f'[[{step},"{("tune", "verify")[place - 1]}",""]]')
+                for _ in range(_SEARCH_S[place]):
+                    visitor.rest(1.0)
+                    if ended.is_set():
+                        return
+
+    with ThreadPoolExecutor(len(_SEARCH_S)) as threads:
+        list(threads.map(one, range(len(_SEARCH_S))))
 
 
 def long_under_way(port: int) -> float:

@@ -37,6 +37,7 @@ from tools.serving.load import (
     long_runs,
     long_under_way,
     pausing,
+    searches,
 )
 from tools.serving.table import machine
 
@@ -197,6 +198,7 @@ def fairness(server: Server, arguments: argparse.Namespace) -> list[Row]:
     attacks = [
         ("slider_flood", "one who floods a slider", flood_of_a_slider, 1, 8.0),
         ("command_flood", "one who floods commands", flood_of_commands, 1, 8.0),
+        ("searches", "four who search in loops", searches, 1, 15.0),
     ]
     if arguments.long:
         processes, settle_s = arguments.long // _LONG_PER_PROCESS, 8.0 + 0.25 * arguments.long

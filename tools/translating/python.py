@@ -1,13 +1,12 @@
 """Texts in Python files: the templates of `navcore.foundation.text.Text`, as pybabel extracts them."""
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from babel.messages.extract import extract
 
-from schuler_bench.languages.markup import has_markup, hidden, in_pieces
+from schuler_bench.languages.markup import has_markup, has_words, hidden, in_pieces
 
 KEYWORDS = {"Text": None, "plural": (1, 2)}
 """Functions whose first text is one of the page; `Text.plural` has two."""
@@ -50,16 +49,12 @@ def texts_in(path: Path, name: str) -> Iterator[Text]:
             one, *many = (message,) if isinstance(message, str) else message
             if has_markup(hidden(one)):
                 yield from pieces(hidden(one), name)
-            elif _has_words(one):
+            elif has_words(one):
                 yield Text(" ".join(one.split()), name, " ".join("".join(many).split()))
 
 
 def pieces(html: str, where: str, *, prose: bool = True) -> Iterator[Text]:
     """Texts in some HTML; ``prose`` as `Text.prose`."""
     for key in in_pieces(html):
-        if _has_words(key):
+        if has_words(key):
             yield Text(key, where, prose=prose)
-
-
-def _has_words(key: str) -> bool:
-    return re.search(r"[A-Za-z]{2,}", re.sub(r"\{[^{}]*\}|<[^>]*>", "", key)) is not None

@@ -8,7 +8,7 @@ from navcore.sensors.log_errors.events import LogEvent
 from navcore.sensors.reference import Outage, Reference
 from schuler_bench.editing import edits, form
 from schuler_bench.editing.form import FieldSpec
-from schuler_bench.session.log_fit import can_fit, fit_of, told, with_fitted_log
+from schuler_bench.session.log_fit import can_fit, fit_lines, fit_of, with_fitted_log
 from schuler_bench.shell import notices
 from schuler_bench.shell.palette import COPY_LOG, PASTE
 from schuler_bench.shell.view import FieldsView, Tab, if_user
@@ -117,7 +117,9 @@ class LogView(FieldsView):
             of = self._last_fit[0]
             if (of.reference, of.motion) != (scenario.reference, scenario.motion):
                 self._last_fit = None
-        self._fitted.content = "" if self._last_fit is None else notices.note(told(self._last_fit[1]), "info")
+        self._fitted.content = (
+            "" if self._last_fit is None else notices.note(fit_lines(self._last_fit[1]), "info")
+        )
         self._use.visible = self._last_fit is not None
 
     def follow_scenario(self) -> None:

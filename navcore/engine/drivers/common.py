@@ -14,7 +14,7 @@ from navcore.engine.run import MethodRun, Status, plot_series, spans, statistics
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
 from navcore.law.law import Law, prepare_law
-from navcore.mechanization.recorder import DAMPED_COLUMN, LAW_COLUMNS, XI_COLUMN, Recorder, watch
+from navcore.mechanization.recorder import DAMPED_COLUMN, LAW_COLUMNS, XI_COLUMN, Recorder, spans_from
 from navcore.motion.truth import COLUMNS
 from navcore.networks.base import LinearNetwork
 from navcore.scenario.method import Method
@@ -37,9 +37,9 @@ def law_of(method: Method, network: LinearNetwork, law_step_s: float) -> Law:
     return prepare_law(method.kind.law, method.network, network, method.policy, method.switching, law_step_s)
 
 
-def watch_requirements(scenario: Scenario, recorder: Recorder, step_s: float) -> None:
-    """Have a recorder look at the errors from where each requirement begins."""
-    watch(recorder, (math.ceil(one.from_h * HOUR / step_s - 1e-9) for one in scenario.requirement))
+def requirement_spans(scenario: Scenario, step_s: float) -> np.ndarray:
+    """Make empty spans (`navcore.mechanization.recorder.SPAN`) from where each requirement begins."""
+    return spans_from(math.ceil(one.from_h * HOUR / step_s - 1e-9) for one in scenario.requirement)
 
 
 def seen_by(method: Method, reference: ReferenceErrors) -> ReferenceErrors:
@@ -196,7 +196,7 @@ def method_run(
         loop=stability.loop,
         whole=stability.whole,
         growth_per_s=stability.growth_per_s,
-        spans=spans(recorder, step_s),
+        spans=spans(recorder.spans, step_s),
         status=status,
         reason=ending,
         warnings=_warnings(method, network, (*stability.warnings, *notices), ending),

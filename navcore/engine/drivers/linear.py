@@ -17,10 +17,10 @@ from navcore.engine.drivers.common import (
     law_of,
     method_run,
     network_of,
+    requirement_spans,
     seen_by,
     stability_of,
     truth_at,
-    watch_requirements,
 )
 from navcore.engine.drivers.kalman import Gains, filtered_linear, own_sigma
 from navcore.engine.environment import Environment, environment
@@ -182,7 +182,7 @@ def carried_out(
         run, notices = _STARTS[method.kind.carrying](scenario, method, env, state)
     else:
         run, notices = filtered_linear(scenario, method, env, state, gains)
-    watch_requirements(scenario, run.recorder, scenario.run.step_s)
+    run.recorder.spans[:] = requirement_spans(scenario, scenario.run.step_s)
     return run, notices, *_carry_out(run, report, cancelled)
 
 

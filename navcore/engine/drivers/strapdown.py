@@ -17,10 +17,10 @@ from navcore.engine.drivers.common import (
     law_of,
     method_run,
     network_of,
+    requirement_spans,
     seen_by,
     stability_of,
     truth_at,
-    watch_requirements,
 )
 from navcore.engine.drivers.kalman import filtered_strapdown, own_sigma
 from navcore.engine.run import MethodRun, Run, Status
@@ -71,7 +71,7 @@ def run_methods(
     settings = settings_of(scenario, env.sampling)
     started = [_STARTS[method.kind.carrying](scenario, method, env, settings) for method in scenario.method]
     for run, _ in started:
-        watch_requirements(scenario, run.recorder, settings.record_step_s)
+        run.recorder.spans[:] = requirement_spans(scenario, settings.record_step_s)
     # An averaging run is advanced like one of its copies.
     runs = cast("list[StrapdownRun]", [run for run, _ in started])
 

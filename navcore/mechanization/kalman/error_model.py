@@ -56,7 +56,7 @@ def _advance(
         fill_turn(true[PITCH], true[ROLL], true[HEADING], f.turn)
         if s.epoch != before and s.valid:
             update(model, s.epoch, s.difference[E], s.difference[N], log_inputs.v_e, log_inputs.v_n, f)
-            d = f.found
+            d = f.errors
             x = Errors(
                 x.dv_e - d[0], x.dv_n - d[1], x.d_lat - d[2], x.d_lon - d[3],
                 x.phi_e - d[4], x.phi_n - d[5], x.phi_u - d[6],

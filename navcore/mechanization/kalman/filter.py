@@ -73,7 +73,7 @@ class FilterState(NamedTuple):
     sigma : ndarray, shape (rows, 7)
         Standard deviations of the seven errors at the output rows, as the filter has them.
     scratch : ndarray, shape (n, n)
-    found : ndarray, shape (n,)
+    errors : ndarray, shape (n,)
         What the last sample of the log corrected.
     gains : ndarray, shape (epochs, 2, n)
         Gains of each epoch of the log, for both components; no epochs where they are not kept.
@@ -89,7 +89,7 @@ class FilterState(NamedTuple):
     inputs: np.ndarray
     sigma: np.ndarray
     scratch: np.ndarray
-    found: np.ndarray
+    errors: np.ndarray
     gains: np.ndarray
     known: bool
 
@@ -204,14 +204,14 @@ def predict(model, f):
 
 @kernel
 def update(model, epoch, d_e, d_n, v_e, v_n, f):
-    """Take the difference V_r - V_c of sample ``epoch``; ``f.found`` is to be taken off the errors.
+    """Take the difference V_r - V_c of sample ``epoch``; ``f.errors`` is to be taken off the errors.
 
     The two components are independent, so that they are taken one after the other.
     """
     moored = model.moored.shape[0] > 0 and model.moored[epoch]
     P, seen, gain = f.P, f.scratch[0], f.scratch[1]
     n = P.shape[0]
-    f.found[:] = 0.0
+    f.errors[:] = 0.0
     for channel in range(2):
         innovation = -(d_e if channel == 0 else d_n)
         seen[:] = 0.0
@@ -225,9 +225,9 @@ def update(model, epoch, d_e, d_n, v_e, v_n, f):
                 innovation += share * f.sensors[i]
         if f.known:
             for i in range(n):
-                innovation -= seen[i] * f.found[i]
+                innovation -= seen[i] * f.errors[i]
             for i in range(n):
-                f.found[i] += f.gains[epoch, channel, i] * innovation
+                f.errors[i] += f.gains[epoch, channel, i] * innovation
             continue
         variance = model.moored_white if moored else model.log_white
         for i in range(n):
@@ -236,16 +236,16 @@ def update(model, epoch, d_e, d_n, v_e, v_n, f):
                 total += P[i, j] * seen[j]
             gain[i] = total
             variance += seen[i] * total
-            innovation -= seen[i] * f.found[i]
+            innovation -= seen[i] * f.errors[i]
         for i in range(n):
-            f.found[i] += gain[i] * innovation / variance
+            f.errors[i] += gain[i] * innovation / variance
             for j in range(n):
                 P[i, j] -= gain[i] * gain[j] / variance
         if f.gains.shape[0] > 0:
             for i in range(n):
                 f.gains[epoch, channel, i] = gain[i] / variance
     for i in range(n - STATES):
-        f.sensors[i] += f.found[STATES + i]
+        f.sensors[i] += f.errors[STATES + i]
 
 
 @inlined

@@ -120,7 +120,7 @@ def _measure(t, con, x, log, model, f, place):
     last = LastCall(x.last.time, x.last.v_e, x.last.v_n)
     d_e, d_n = held_difference(t, j, v_e, v_n, heading, last, log)
     update(model, j, d_e, d_n, v_e, v_n, f)
-    _correct(x, f.found)
+    _correct(x, f.errors)
 
 
 @kernel

@@ -67,29 +67,47 @@ def law_epoch(t, v_e, v_n, q, last, log, law):
 
 
 @inlined
+def errors_at(con, d_lat, d_lon, v_e, v_n, q, truth, i):
+    """Errors against row i of the truth; d_lat, d_lon from the start (rad), q the attitude's quaternion."""
+    t0, t1, t2, t3 = quaternion_of(truth[i, PITCH], truth[i, ROLL], truth[i, HEADING])
+    phi_e, phi_n, phi_u = misalignment(q[0], q[1], q[2], q[3], t0, t1, t2, t3)
+    return Errors(
+        v_e - truth[i, VE], v_n - truth[i, VN], con.lat0 + d_lat - truth[i, LAT],
+        con.lon0 - truth[i, LON] + d_lon, phi_e, phi_n, phi_u,
+    )  # fmt: skip
+
+
+@inlined
+def navigates(errors, height):
+    """Whether the errors are in the range in which a run means anything."""
+    level = abs(errors.phi_e) < TILT_LIMIT and abs(errors.phi_n) < TILT_LIMIT
+    slow = math.hypot(errors.dv_e, errors.dv_n) < VELOCITY_LIMIT
+    return level and slow and math.isfinite(errors.d_lat + errors.d_lon + errors.phi_u + height)
+
+
+@inlined
+def arms(con, truth, i):
+    """Turn latitude and longitude at row i of the truth into metres: m/rad."""
+    sin_lat, height = math.sin(truth[i, LAT]), truth[i, TRUE_HEIGHT]
+    n_cos = (prime_vertical_radius(con.e2, sin_lat) + height) * math.cos(truth[i, LAT])
+    return meridian_radius(con.e2, sin_lat) + height, n_cos
+
+
+@inlined
 def _record_state(k, con, x, truth, law, navigation, recorder):
     """Record state k against its row of the truth; False when it has diverged."""
     i = k if truth.shape[0] > 1 else 0
     lat, v_u, height = con.lat0 + x.d_lat, x.v[2], x.height
-    q0, q1, q2, q3 = x.q[0], x.q[1], x.q[2], x.q[3]
-    t0, t1, t2, t3 = quaternion_of(truth[i, PITCH], truth[i, ROLL], truth[i, HEADING])
-    phi_e, phi_n, phi_u = misalignment(q0, q1, q2, q3, t0, t1, t2, t3)
-    errors = Errors(
-        x.v[E] - truth[i, VE], x.v[N] - truth[i, VN], lat - truth[i, LAT],
-        con.lon0 - truth[i, LON] + x.d_lon, phi_e, phi_n, phi_u,
-    )  # fmt: skip
-    level = abs(phi_e) < TILT_LIMIT and abs(phi_n) < TILT_LIMIT
-    slow = math.hypot(errors.dv_e, errors.dv_n) < VELOCITY_LIMIT
-    if not (level and slow and math.isfinite(errors.d_lat + errors.d_lon + phi_u + height)):
+    q = (x.q[0], x.q[1], x.q[2], x.q[3])
+    errors = errors_at(con, x.d_lat, x.d_lon, x.v[E], x.v[N], q, truth, i)
+    if not navigates(errors, height):
         return False
     s, j = law.s, recorder.cursor.row
-    sin_lat, true_height = math.sin(truth[i, LAT]), truth[i, TRUE_HEIGHT]
-    n_cos = (prime_vertical_radius(con.e2, sin_lat) + true_height) * math.cos(truth[i, LAT])
     watched = Watched(float(s.wanted), 1.0 if s.damped else 0.0, s.xi, s.measure)
-    m = meridian_radius(con.e2, sin_lat) + true_height
+    m, n_cos = arms(con, truth, i)
     record(k, given_out(errors, s), m, n_cos, watched, recorder)
     if recorder.cursor.row > j:
-        pitch, roll, heading = angles_of(q0, q1, q2, q3)
+        pitch, roll, heading = angles_of(q[0], q[1], q[2], q[3])
         navigation[j, 0], navigation[j, 1], navigation[j, 2] = lat, con.lon0 + x.d_lon, height
         navigation[j, 3], navigation[j, 4] = x.v[E] - s.output[E], x.v[N] - s.output[N]
         navigation[j, 5] = v_u

@@ -3,13 +3,10 @@
 import numpy as np
 
 from navcore.foundation.compiled import kernel
-from navcore.motion.kinematics import COURSE, PIECES, PROFILE, REST, SWING, WAVES, WIDTH
-from navcore.motion.pieces import fill_pieces
-from navcore.motion.profile import fill_profile
+from navcore.motion.filling import fill_motion, fill_rest
+from navcore.motion.kinematics import REST, SWING, WIDTH
 from navcore.motion.truth import HEIGHT, LAT
-from navcore.motion.waves import fill_waves
 from navcore.sensors.imu_simulation.corrupt import SUMS, add_sums, fill_errors, write_measured
-from navcore.sensors.imu_simulation.kinematics import fill_course, fill_rest, fill_swing
 from navcore.sensors.imu_simulation.signals import (
     fill_attitude,
     fill_increments,
@@ -75,21 +72,13 @@ def simulate_blocks(
             # Whole vectors: the rest of a row would otherwise be done one by one.
             padded = min(W, (columns + 7) // 8 * 8)
             t0 = (block * block_samples + first - 1) * dt
-            if kind == COURSE:
-                fill_course(t0, dt, legs, nodes, place, columns, samples, w)
-                fill_navigation(padded, e2, g_equator, k, w)
-            elif kind == PIECES:
-                fill_pieces(t0, dt, legs, place, e2, columns, samples, w)
-                fill_navigation(padded, e2, g_equator, k, w)
-            elif kind == PROFILE:
-                fill_profile(t0, dt, legs, nodes, attitude, place, columns, samples, w)
-                fill_navigation(padded, e2, g_equator, k, w)
-            elif kind == WAVES:
-                fill_waves(t0, dt, oscillations, turns, rest, nodes, place, padded, samples, w)
-                fill_navigation(padded, e2, g_equator, k, w)
-            elif kind == SWING:
-                fill_swing(t0, oscillations, turns, padded, w)
+            fill_motion(
+                kind, t0, dt, rest, oscillations, turns, legs, nodes, attitude, place, e2, columns, padded,
+                samples, w,
+            )  # fmt: skip
             if kind != REST:
+                if kind != SWING:
+                    fill_navigation(padded, e2, g_equator, k, w)
                 fill_attitude(padded, w)
                 fill_signals(padded, w)
                 fill_increments(samples, dt, w)
