@@ -18,6 +18,7 @@ from schuler_bench.views.tune import finder
 from schuler_bench.views.tune.setting import ACCEPT, DISCARD, TUNE, UNDO
 from schuler_bench.views.tune.view import SEARCH_FOR
 from tests.browser.driver import SWEEP, Bench
+from tests.limits import require
 
 VERIFY, STOP_VERIFYING = "Verify with full strapdown", "Stop verifying"
 FIND, STOP, USE = "Find the table for this scenario", "Stop the search", "Use this table"
@@ -279,7 +280,7 @@ def test_a_design_is_taken_from_the_table(moving: Bench) -> None:
     page, session = moving.page, moving.session
     moving.tab("Design")
     page.get_by_text("This scenario has no limits yet.").wait_for()
-    moving.require(tilt_max_arcsec=12.0)
+    require(moving, tilt_max_arcsec=12.0)
     page.locator("[data-design=complementary]").wait_for()
     moving.button(FIND_DESIGNS).wait_for()
     before, limits = session.scenario, session.searches.limits
