@@ -1,6 +1,7 @@
 """Requirements for tests, by key and in the units in which the page shows them."""
 
 from dataclasses import replace
+from typing import Any
 
 from navcore.engine.run import Run
 from navcore.quantities import QUANTITIES, limit_unit
@@ -23,3 +24,10 @@ def under(run: Run, **shown: float) -> Run:
     """Give a run's scenario these requirements."""
     scenario = run.scenario.model_copy(update={"requirement": limits(**shown)})
     return replace(run, scenario=scenario, scenario_sha256=scenario_hash(scenario))
+
+
+def require(bench: Any, **shown: float) -> None:
+    """Give the scenario of a page these limits, without a click; wait until it shows who meets them."""
+    session = bench.session
+    session.change(session.scenario.model_copy(update={"requirement": limits(**shown)}), None)
+    bench.catch_up()

@@ -26,7 +26,6 @@ from schuler_bench.shell.layout import WIDE_FROM_PX, layout_for
 from schuler_bench.shell.page import Page as OpenPage
 from tests.browser.fields import box_labels, slider_labels
 from tests.browser.patience import GONE, PATIENCE_MS, SLOW, THROTTLE_MS
-from tests.limits import limits
 
 T = TypeVar("T")
 _LABEL = re.compile(r"(.+?)( [≤≥])? \(([^()]*)\)")
@@ -253,12 +252,6 @@ class Bench:
     def show(self, **choices: object) -> None:
         """Change how the session's pictures are shown, without a click; wait until the page shows it."""
         self.session.show(None, **choices)
-        self.catch_up()
-
-    def require(self, **shown: float) -> None:
-        """Give the scenario these limits, without a click; wait until the page shows who meets them."""
-        session = self.session
-        session.change(session.scenario.model_copy(update={"requirement": limits(**shown)}), None)
         self.catch_up()
 
     def select(self, index: int) -> None:

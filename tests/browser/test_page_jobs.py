@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from navcore.design.designs import designs
 from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
@@ -12,10 +13,12 @@ from schuler_bench.jobs.designer import FrontsTask
 from schuler_bench.jobs.verifier import STOPPED
 from schuler_bench.views.appearance.view import BANDS
 from schuler_bench.views.design.view import BUDGET_OF, CHOICES
+from schuler_bench.views.design.view import FIND as FIND_DESIGNS
 from schuler_bench.views.tune import finder
 from schuler_bench.views.tune.setting import ACCEPT, DISCARD, TUNE, UNDO
 from schuler_bench.views.tune.view import SEARCH_FOR
 from tests.browser.driver import SWEEP, Bench
+from tests.limits import require
 
 VERIFY, STOP_VERIFYING = "Verify with full strapdown", "Stop verifying"
 FIND, STOP, USE = "Find the table for this scenario", "Stop the search", "Use this table"
@@ -271,6 +274,26 @@ def test_a_proposal_is_accepted_and_undone_or_discarded(moving: Bench) -> None:
     moving.button(DISCARD).click()
     page.locator(".sb-proposal").wait_for(state="hidden")
     assert session.scenario == before
+
+
+def test_a_design_is_taken_from_the_table(moving: Bench) -> None:
+    page, session = moving.page, moving.session
+    moving.tab("Design")
+    page.get_by_text("This scenario has no limits yet.").wait_for()
+    require(moving, tilt_max_arcsec=12.0)
+    page.locator("[data-design=complementary]").wait_for()
+    moving.button(FIND_DESIGNS).wait_for()
+    before, limits = session.scenario, session.searches.limits
+    # all networks take too long for a test
+    limits.result, limits.asked = designs(before, 2, as_set=True), before
+    limits._tell()
+    take = page.locator("[data-design=classic2] .sb-take")
+    take.wait_for()
+    with moving.next_run():
+        take.click()
+    assert session.scenario.method[2].network.id == "classic2"
+    assert session.undo() and session.scenario == before
+    limits.forget()
 
 
 def test_a_click_on_a_point_of_the_fronts_is_one_step_of_undo(designing: Bench) -> None:

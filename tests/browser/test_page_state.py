@@ -10,6 +10,7 @@ from schuler_bench.session.session import Session
 from tests.browser.conftest import Another
 from tests.browser.driver import Bench
 from tests.browser.fields import label_of
+from tests.limits import require
 
 XI, SIGMA = "network.xi", "network.sigma"
 
@@ -246,7 +247,7 @@ def test_a_reload_keeps_the_work_and_another_visitor_has_none_of_it(
 ) -> None:
     fresh.type(SIGMA, "0.0123")
     fresh.show(theme="dark")
-    fresh.require(tilt_overshoot=36.0)
+    require(fresh, tilt_overshoot=36.0)
     assert fresh.sessions.get("somebody-else").scenario != session.scenario
     # the same address in another window, as after a reload
     other = another(1280, 720).open(f"s/{fresh.session_id}/")

@@ -141,7 +141,7 @@ def test_the_start_cards_network_keeps_its_damping():
     scenario = load("liu-networks", ["run.duration_h=2.0"])
     try:
         designer.begin(TuningTask(scenario, "tilt_rms", tunable_fields(scenario, 2), ()))
-        assert designer.wait_idle(120.0)
+        assert designer.wait_idle(360.0)
         found, task = designer.result, designer.asked
         assert found is not None and task is not None and found.confirmed is not None
         assert found.best["method.2.network.zeta"] > 0.1

@@ -13,6 +13,7 @@ from tests.browser.fields import label_of
 from tests.browser.test_page_layout import wait_until_it_fits
 from tests.browser.test_page_scene import overlap
 from tests.browser.windows.seeing import read, see, speaks
+from tests.limits import require
 
 ZETA = ("method", 2, "network", "zeta")
 
@@ -113,7 +114,7 @@ def test_a_pin_is_renamed_hidden_gone_back_to_and_removed(pinned: Bench) -> None
 
 def test_pins_stand_in_one_table_that_sorts_and_judges(pinned: Bench) -> None:
     page, session = pinned.page, pinned.session
-    pinned.require(settling_s=1.0)
+    require(pinned, settling_s=1.0)
     table = see(pinned, page.locator(".sb-pins table"))
     text = read(pinned, table)
     measured = (
@@ -134,7 +135,7 @@ def test_pins_stand_in_one_table_that_sorts_and_judges(pinned: Bench) -> None:
 
 
 def test_requirements_judge_pins(pinned: Bench) -> None:
-    pinned.require(settling_s=1.0)
+    require(pinned, settling_s=1.0)
     pinned.tab("Requirements")
     read(pinned, pinned.page.locator(".sb-verdicts th", has_text="ζ"))
     read(pinned, pinned.page.locator(".sb-verdicts table"))

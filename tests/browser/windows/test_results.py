@@ -18,6 +18,7 @@ from tests.browser import test_page_lessons as learning
 from tests.browser import test_page_scene as playing
 from tests.browser.driver import Bench
 from tests.browser.windows.seeing import read, see
+from tests.limits import require
 from tests.recordings import OWN
 
 
@@ -165,7 +166,7 @@ def test_a_plot_of_a_switching_that_is_not_there_is_not_saved(window: Bench) -> 
 
 
 def test_a_limit_of_settling_is_one_edge_in_the_pole_map(window: Bench) -> None:
-    window.require(settling_s=90.0, damping_ratio=0.5)
+    require(window, settling_s=90.0, damping_ratio=0.5)
     window.tab("Poles")
     settling = window.said("settling")
     window.page.wait_for_function("name => look.shapes().some(s => s[0] === name)", arg=settling)
