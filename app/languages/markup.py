@@ -47,7 +47,8 @@ _TAG = re.compile(r"</?[a-z]+>")
 _PARTS = re.compile(r"(</?[a-z]+>)")
 _AROUND = re.compile(r"<([a-z]+)>(.*)</\1>", re.DOTALL)
 _BLANKS = re.compile(r"\s+")
-_LETTERS = re.compile(r"[A-Za-z]{2,}")
+LETTERS = re.compile(r"[A-Za-z]{2,}")
+"""In a text to translate; a tag may hold words too, in its attributes."""
 _BARE = re.compile(r"\{[^{}]*\}|<[^>]*>")
 
 Say = Callable[[str], str]
@@ -61,7 +62,7 @@ def has_markup(text: str) -> bool:
 
 def has_words(text: str) -> bool:
     """Whether a text has words beside its values and tags: anything to translate."""
-    return _LETTERS.search(_BARE.sub("", text)) is not None
+    return LETTERS.search(_BARE.sub("", text)) is not None
 
 
 def hidden(template: str) -> str:

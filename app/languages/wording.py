@@ -56,7 +56,7 @@ class Wording:
         """
         if isinstance(text, Text):
             return self._filled(text, names)
-        if text in names or not markup.has_words(text):
+        if text in names or markup.LETTERS.search(text) is None:
             return text
         said = self._said(text)
         if said is None and markup.has_markup(text):

@@ -19,6 +19,7 @@ from schuler_bench.shell.page import Page
 from schuler_bench.shell.plotly_view import PlotlyView
 from schuler_bench.shell.reports import PAGE_STATE
 from schuler_bench.views import load
+from schuler_bench.views.design.view import DesignView
 from schuler_bench.views.tune.view import TuneView
 from tests.attack.conftest import eventually
 from tests.attack.wire import Visitor, visit
@@ -64,8 +65,8 @@ def test_a_visitor_without_our_script_gets_all_figures(dashboard: Served) -> Non
     with visit(server.port, named(dashboard, "no-script-here")) as visitor:
         visitor.wait_for(is_run, 60.0)
         kinds = [message["type"] for message in visitor.received]
-        # Tune has a figure only once Pareto fronts are searched for.
-        drawn = [kind for kind in load() if kind.always and kind is not TuneView]
+        # Tune has a figure only once Pareto fronts are searched for; Design begins with its table.
+        drawn = [kind for kind in load() if kind.always and kind not in (TuneView, DesignView)]
         plotly = [kind for kind in drawn if issubclass(kind, PlotlyView)]
         assert kinds.count("GuiPlotlyMessage") == len(plotly) >= 4
         assert kinds.count("GuiUplotMessage") == 6
