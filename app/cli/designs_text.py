@@ -27,11 +27,11 @@ def designs_text(designs: Designs) -> list[str]:
 
 
 def _alone(designs: Designs) -> list[str]:
-    """What is the largest share that meets each limit by itself."""
+    """Say for each limit the largest share that meets it by itself."""
     lines = ["no method meets all limits on half of the seeds; each limit by itself:"]
     for k, one in enumerate(designs.methods[0].limits):
         best = max(designs.methods, key=lambda share: share.limits[k].met)
-        limit = f"{one.requirement.quantity} <= {number(one.requirement.at_most)}"
+        limit = f"{one.requirement.quantity} {one.requirement.sense} {number(one.requirement.limit)}"
         share = number(100.0 * best.limits[k].met, 3)
         lines.append(f"  {limit}: at most {share} % ({best.method.label()})")
     return lines

@@ -77,3 +77,14 @@ def test_the_command_names_figure_factor_and_method(
     text = capsys.readouterr().out
     assert "each limit by itself" in text
     assert "  tilt_max_arcsec: imu.accel_bias_std_ug " in text and "times better (damped)" in text
+
+
+def test_the_command_writes_a_least_value_with_its_sense(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Damping is limited from below, the other quantities from above."""
+    path = tmp_path / "ship.toml"
+    least = {"quantity": "damping_ratio", "at_least": 0.9}
+    path.write_text(to_toml(Scenario.parse({**SHIP, "requirement": [least]})))
+    assert main(["design", str(path), "--as-set", "--seeds", "2"]) == 0
+    assert "  damping_ratio >= 0.9: at most 0 % (damped)" in capsys.readouterr().out
