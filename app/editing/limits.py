@@ -49,7 +49,7 @@ def with_limit(scenario: Scenario, key: str, text: str) -> Scenario:
     """
     kept = [one for one in scenario.requirement if one.quantity != key]
     if not text.strip():
-        return _with(scenario, kept)
+        return scenario.model_copy(update={"requirement": tuple(kept)})
     value = _number(label_of(key), text) * QUANTITIES[key].size / limit_unit(key)
     named = "at_least" if QUANTITIES[key].sense == ">=" else "at_most"
     begins = from_text(scenario) if key not in OF_THE_SETTING else ""
@@ -90,10 +90,6 @@ def _number(label: str, text: str) -> float:
     if not math.isfinite(value):
         raise InputError(Fault("", label, text, Text("must be a number; leave it empty for no requirement")))
     return value
-
-
-def _with(scenario: Scenario, requirements: list[Requirement]) -> Scenario:
-    return scenario.model_copy(update={"requirement": tuple(requirements)})
 
 
 def _parsed(scenario: Scenario, blocks: list[Any], label: str, text: str) -> Scenario:

@@ -20,6 +20,7 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any
 
+from navcore.foundation.progress import part_of
 from navcore.foundation.stage_cache import keep_only, working_for
 from navcore.foundation.text import Text
 from schuler_bench.jobs.remote import Compute, Outcome
@@ -170,10 +171,7 @@ def compute(
     try:
         for number, item in enumerate(items):
             job = pickle.dumps((function, item, number + 1 == len(items)), protocol=pickle.HIGHEST_PROTOCOL)
-
-            def partly(fraction: float, number: int = number) -> None:
-                progress((number + fraction) / len(items))
-
+            partly = part_of(progress, number / len(items), (number + 1) / len(items))
             outcome = helper.carry_out(job, partly, unwanted)
             if outcome is None or (len(items) > 1 and unwanted()):
                 return None

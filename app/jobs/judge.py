@@ -112,7 +112,7 @@ class Judge(Search[Asked, "Designs"]):
 
     def _go_on(self) -> None:
         with self._lock:
-            scenario, most = self._wanted, 0
+            scenario = self._wanted
             if scenario is None:
                 return
             most = _seeds(scenario)

@@ -6,8 +6,6 @@ from navcore.quantities import QUANTITIES
 from schuler_bench.plots.units import number
 
 SIGNS = {"<=": "≤", ">=": "≥"}
-
-
 _KINDS = {
     "tilt": Text("tilt"),
     "velocity": Text("velocity error"),
@@ -45,12 +43,12 @@ def requirement_words(text: str) -> str:
     return limit_words(requirement.name, requirement.limit)
 
 
-def limit_words(key: str, limit: float) -> str:
-    """Limit (SI) of a quantity as the tab Requirements has it."""
+def limit_words(key: str, limit: float, label: str = "") -> str:
+    """Limit (SI) of a quantity as the tab Requirements has it, with its own label or another one."""
     quantity = QUANTITIES[key]
     return Text(
         "{label} {sign} {amount}",
-        label=quantity.label,
+        label=label or quantity.label,
         sign=SIGNS[quantity.sense],
         amount=amount(key, limit),
     )

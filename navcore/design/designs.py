@@ -12,6 +12,7 @@ from navcore.design.stated import assumed_zero
 from navcore.design.tuned_designs import kalman, tuned_methods
 from navcore.engine.ensemble import outcomes
 from navcore.foundation.errors import Fault, InputError, StoppedError
+from navcore.foundation.progress import part_of
 from navcore.foundation.text import Text
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
@@ -103,18 +104,14 @@ def designs(
     if seeds < 1:
         raise InputError(Fault("", "--seeds", seeds, Text("must be >= 1")))
     share = 0.0 if as_set else _TUNING_SHARE
-
-    def report(begin: float, width: float) -> Callable[[float], None]:
-        return lambda fraction: None if progress is None else progress(begin + width * fraction)
-
     if as_set:
         methods, left_out = scenario.method, ()
     else:
-        tuned, left_out = tuned_methods(scenario, report(0.0, share), cancelled)
+        tuned, left_out = tuned_methods(scenario, part_of(progress, 0.0, share), cancelled)
         methods = (*tuned, *kalman(scenario))
     if not methods:
         raise InputError([Fault("", "method", name, reason) for name, reason in left_out])
-    found = outcomes(scenario, methods, range(seeds), report(share, 1.0 - share), cancelled)
+    found = outcomes(scenario, methods, range(seeds), part_of(progress, share, 1.0), cancelled)
     stopped = cancelled is not None and cancelled()
     if not found:
         raise StoppedError(

@@ -3,25 +3,15 @@
 from navcore.scenario.model import Scenario
 
 _STATED = (
-    ("imu", "gyro_bias_std_dph", "gyro_bias_dph"),
-    ("imu", "accel_bias_std_ug", "accel_bias_ug"),
-    ("reference", "bias_std_mps", "bias_mps"),
-    ("initial_error", "level_std_arcmin", "attitude_arcmin"),
-    ("initial_error", "heading_std_arcmin", "attitude_arcmin"),
-    ("initial_error", "velocity_std_mps", "velocity_mps"),
-    ("initial_error", "position_std_arcsec", "position_arcsec"),
+    ("gyro_bias", "imu", "gyro_bias_std_dph", "gyro_bias_dph"),
+    ("accel_bias", "imu", "accel_bias_std_ug", "accel_bias_ug"),
+    ("log_bias", "reference", "bias_std_mps", "bias_mps"),
+    ("initial_tilt", "initial_error", "level_std_arcmin", "attitude_arcmin"),
+    ("initial_heading", "initial_error", "heading_std_arcmin", "attitude_arcmin"),
+    ("initial_velocity", "initial_error", "velocity_std_mps", "velocity_mps"),
+    ("initial_position", "initial_error", "position_std_arcsec", "position_arcsec"),
 )
-"""Block, field of a standard deviation, and field of the numbers whose sizes take its place."""
-_SOURCES = (
-    "gyro_bias",
-    "accel_bias",
-    "log_bias",
-    "initial_tilt",
-    "initial_heading",
-    "initial_velocity",
-    "initial_position",
-)
-"""Sources of the error budget in the same order."""
+"""Source of the error budget, block, field of a standard deviation, and field of the numbers in its place."""
 
 
 def assumed_zero(scenario: Scenario, steady: bool = False) -> tuple[str, ...]:
@@ -35,7 +25,7 @@ def assumed_zero(scenario: Scenario, steady: bool = False) -> tuple[str, ...]:
         True for the steady state, which no initial error reaches.
     """
     fields = []
-    for block, deviation, number in _STATED:
+    for _, block, deviation, number in _STATED:
         settings = getattr(scenario, block)
         recorded = block == "imu" and settings.file is not None
         if recorded or (block == "reference" and settings.kind != "log"):
@@ -50,7 +40,7 @@ def assumed_zero(scenario: Scenario, steady: bool = False) -> tuple[str, ...]:
 def fields_of_sources(scenario: Scenario) -> dict[str, str]:
     """Field of the scenario that gives the size of each source of the error budget."""
     fields = {}
-    for source, (block, deviation, number) in zip(_SOURCES, _STATED, strict=True):
+    for source, block, deviation, number in _STATED:
         given = getattr(getattr(scenario, block), deviation) is not None
         fields[source] = f"{block}.{deviation if given else number}"
     for block, settings in {"imu": scenario.imu, "reference": scenario.reference}.items():

@@ -37,6 +37,7 @@ from navcore.design.stated import assumed_zero
 from navcore.design.unmodelled import unmodelled_warnings
 from navcore.design.vary import Varied, present, read_varied
 from navcore.foundation.errors import Fault, InputError, StoppedError, UnstableError
+from navcore.foundation.progress import part_of
 from navcore.foundation.text import Text
 from navcore.quantities import QUANTITIES, Judged
 from navcore.scenario.model import Scenario
@@ -185,14 +186,14 @@ def tune(
         ships = [Ship(one, over_the_run, TUNING_INTERVALS) for one in (scenario, *worst_of)]
         _check(ships, varied, wanted)
         return _searched(
-            Search(ships, varied, wanted, limits, _part(progress, begin, end), cancelled), defaults
+            Search(ships, varied, wanted, limits, part_of(progress, begin, end), cancelled), defaults
         )
 
     def in_runs(found: Tuned, begin: float, end: float) -> Tuned:
         return (
             found
             if found.stopped
-            else _confirmed(found, scenario, index, wanted, _part(progress, begin, end), cancelled)
+            else _confirmed(found, scenario, index, wanted, part_of(progress, begin, end), cancelled)
         )
 
     if not confirm:
@@ -218,12 +219,6 @@ def tune(
         "the best setting of the steady state is no better in the runs; this is the best over the run"
     )
     return replace(over, warnings=(note, *over.warnings))
-
-
-def _part(
-    progress: Callable[[float], None] | None, begin: float, end: float
-) -> Callable[[float], None] | None:
-    return None if progress is None else lambda fraction: progress(begin + (end - begin) * fraction)
 
 
 def _searched(search: Search, defaults: Sequence[Requirement]) -> Tuned:

@@ -16,7 +16,7 @@ from navcore.quantities import QUANTITIES, limit_unit
 from navcore.scenario.method import Method
 from schuler_bench.jobs.judge import Odds
 from schuler_bench.plots.effective import growth_text
-from schuler_bench.plots.limits import SIGNS, amount, short_label
+from schuler_bench.plots.limits import SIGNS, limit_words, short_label
 from schuler_bench.plots.table import cell, row, table
 from schuler_bench.plots.units import number
 from schuler_bench.session.requirements import asked, limits_of
@@ -98,15 +98,10 @@ def designs_html(
         title = Text("Every network, tuned for these limits, and a Kalman filter")
         body += [_title(title), *map(_line, designs)]
     limits = limits_of(run.scenario.requirement)
-    words = Text.joined(", ", (_words(key, limit) for key, limit in limits.items()))
+    words = Text.joined(", ", (limit_words(key, limit, short_label(key)) for key, limit in limits.items()))
     said = Text("Limits: {asked}.", asked=words)
     told = Text('<p class="sb-asked-limits">{asked:html}</p>', asked=said)
     return note + told + table([head], body, "sb-designs")
-
-
-def _words(key: str, limit: float) -> str:
-    name, sign = short_label(key), SIGNS[QUANTITIES[key].sense]
-    return Text("{label} {sign} {amount}", label=name, sign=sign, amount=amount(key, limit))
 
 
 def _title(text: str) -> str:

@@ -43,7 +43,7 @@ def confirmation_html(task: TuningTask, tuned: Tuned) -> str:
 def _runs(task: TuningTask, tuned: Tuned) -> Iterator[str]:
     if tuned.confirmed is None:
         return
-    limits = {one.quantity: one.limit for one in task.scenario.requirement}
+    limits = {one.quantity: one for one in task.scenario.requirement}
     for key, change in tuned.confirmed.changes.items():
         quantity = QUANTITIES[key]
         size = quantity.size / (limit_unit(key) if key in limits else 1.0)
@@ -52,8 +52,10 @@ def _runs(task: TuningTask, tuned: Tuned) -> Iterator[str]:
             *(_shown(value, size) for value in (change.before, change.after)),
             _difference(change, size),
         ]
-        met = None if limit is None or change.after is None else change.after <= limit
-        asked = None if limit is None else Text("≤ {limit}", limit=number(limit / size, 4))
+        asked = met = None
+        if limit is not None:
+            asked = Text("{sign} {limit}", sign=SIGNS[limit.sense], limit=number(limit.limit / size, 4))
+            met = None if change.after is None else limit.met(change.after)
         yield _row(
             quantity, quantity.names.get("ensemble") or short_label(key), texts, _side(change), asked, met
         )
