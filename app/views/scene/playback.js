@@ -5,12 +5,15 @@
   const PERIOD_MS = 300;
   const AFTER_SCRUB_MS = 500;
   const HEARD_MS = 250;
+  const CHOICE_MS = 2000;
   const UNITS = { s: 1, min: 60, h: 3600, d: 86400 };
   let now = null;
   let shown = "";
   let scrubbed = -1e9;
   let heard = -1e9;
   let stage = null;
+  const wanted = window.schuler.alone && document.documentElement.dataset.alone;
+  let chosen = -1e9;
 
   const element = (html) => {
     const holder = document.createElement("template");
@@ -64,10 +67,14 @@
       button.addEventListener("click", () => reveal(button, button.getAttribute("aria-pressed") !== "true"));
       reveal(button, innerHeight >= (button.dataset.shows === "pendulum" ? 560 : 900));
     }
-    const asked = window.schuler.alone && document.documentElement.dataset.alone;
-    if (!now.cameras.includes(asked)) return;
-    stage.classList.add("sb-alone");
-    window.schuler.command(`camera-${asked}`);
+    stage.classList.toggle("sb-alone", now.cameras.includes(wanted));
+  }
+
+  // The camera of the address: asked for until the server shows it, since a page that opens may lose a command.
+  function choose() {
+    if (now.camera === wanted || !now.cameras.includes(wanted) || performance.now() - chosen < CHOICE_MS) return;
+    chosen = performance.now();
+    window.schuler.command(`camera-${wanted}`);
   }
 
   // A small view has room for one of them.
@@ -171,10 +178,10 @@
     if (!box || box.width < 40) return;
     // alone.js lets it fill the window: viser's own frame of the canvas, of which the canvas takes its size.
     canvas.parentElement.parentElement.dataset.sbViews = now.cameras.join(" ");
-    const wanted = [box.left, box.bottom, box.width].map(Math.round);
-    stage.style.left = `${wanted[0]}px`;
+    const [left, width] = [box.left, box.width].map(Math.round);
+    stage.style.left = `${left}px`;
     stage.style.top = `${Math.round(box.top)}px`;
-    stage.style.width = `${wanted[2]}px`;
+    stage.style.width = `${width}px`;
     stage.style.height = `${Math.round(box.height)}px`;
     const scale = Number(document.getElementById("sb-size")?.dataset.scale ?? 1);
     const small = box.width < 480 * scale;
@@ -199,11 +206,13 @@
     shown = source.dataset.now;
     now = JSON.parse(shown);
     if (stage === null) build();
+    choose();
     update(source);
     tellShown();
   });
   setInterval(() => {
     if (now === null) return;
+    choose();
     place();
     if (performance.now() - scrubbed > AFTER_SCRUB_MS) mark(now.time); // a plot was zoomed or made anew
   }, PERIOD_MS);
