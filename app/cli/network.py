@@ -24,6 +24,8 @@ class NetworkCommand:
         Time between two samples of the log, s: checks the sampled law with the log held as well; 0: no check.
     law_step_s : float
         Time between two calls of the damping law, s; counts with --log-period-s.
+    azimuth : str
+        Network of the azimuth channel, with the Earth's rate for its Schuler frequency; empty: none.
     margins : bool
         Show the margins of the open loop too: gain, phase and delay, and the disk margin.
     json : bool
@@ -34,6 +36,7 @@ class NetworkCommand:
     lat: Annotated[float, arg(metavar="DEG")] = 45.0
     log_period_s: Annotated[float, arg(metavar="S")] = 0.0
     law_step_s: Annotated[float, arg(metavar="S")] = 1.0
+    azimuth: Annotated[str, arg(metavar="NETWORK")] = ""
     margins: bool = False
     json: bool = False
 
@@ -44,7 +47,8 @@ class NetworkCommand:
 
         parameters = parse_network(self.network)
         log_period_s = self.log_period_s or None
-        report = network_report(parameters, self.lat, log_period_s, self.law_step_s, self.margins)
+        azimuth = parse_network(self.azimuth, "--azimuth") if self.azimuth else None
+        report = network_report(parameters, self.lat, log_period_s, self.law_step_s, self.margins, azimuth)
         emit_result(self.json, report, lambda: network_text(report))
         return 0
 
@@ -89,7 +93,8 @@ def _whole_system(report: dict[str, Any]) -> list[str]:
         mode = "neither grows nor decays"
     else:
         mode = f"{'GROWS' if growth > 0.0 else 'decays'}, e-folding time {duration(1.0 / growth)}"
-    slope = report["h_slope_s"]
+    slope, slow = report["h_slope_s"], report["slow_mode_natural_frequency_rad_s"]
+    ratio = report["slow_mode_damping_ratio"]
     return [
         f"whole system at latitude {report['lat_deg']:g}° (--lat sets it)",
         *columns(
@@ -97,6 +102,8 @@ def _whole_system(report: dict[str, Any]) -> list[str]:
                 ["H'(0)", number(slope), "" if slope is None else "s"],
                 ["stable", "yes" if report["whole_system_stable"] else "NO", ""],
                 ["24 h mode", mode, ""],
+                ["slow oscillation", *(("none", "") if slow is None else (number(slow), "rad/s"))],
+                ["its damping ratio", "" if slow is None else number(ratio), ""],
             ]
         ),
     ]

@@ -26,6 +26,7 @@ from navcore.analysis.whole_system import (
     feedback_gains,
     free_matrix,
     inputs_of_law,
+    up_rate,
 )
 from navcore.foundation.earth import SPHERE, Earth
 from navcore.foundation.errors import InputError
@@ -83,6 +84,7 @@ def held_log(
     lat: float,
     earth: Earth = SPHERE,
     coupled: bool = True,
+    azimuth: LinearNetwork | None = None,
 ) -> HeldLog:
     """Check the sampled law of a method at rest.
 
@@ -101,11 +103,13 @@ def held_log(
         WGS-84 or the sphere.
     coupled : bool
         False: `growth_per_s` is that of the level channels by themselves, without heading and latitude.
+    azimuth : LinearNetwork, optional
+        Y(s) of the azimuth channel; it counts in `growth_per_s`.
     """
     calls = max(1, round(log_period_s / law_step_s))
     growth = _growth(network, law_step_s, calls, lat, earth)
     try:
-        period = period_map(network, law_step_s, calls, lat, earth, coupled)
+        period = period_map(network, law_step_s, calls, lat, earth, coupled, azimuth)
         overall = growth_of_map(period, calls * law_step_s, network.omega_s)
     except InputError:
         overall = math.nan
@@ -124,12 +128,14 @@ def period_map(
     lat: float,
     earth: Earth = SPHERE,
     coupled: bool = True,
+    azimuth: LinearNetwork | None = None,
 ) -> np.ndarray:
     """Map of the state over one period of the log, i.e. ``calls`` calls of the law.
 
     The state holds the six errors (normalised as in `whole_system.free_matrix`), the law's states of both
     channels and, when the log is slower than the law, the two held differences V_r - V_c. Uncoupled, it is
-    that of the level channels, without heading and latitude.
+    that of the level channels, without heading and latitude. With an azimuth network its states follow, and
+    the held difference omega_Ur - omega_U.
 
     Raises
     ------
@@ -140,7 +146,8 @@ def period_map(
     n, omega_s = len(B), network.omega_s
     plant, forced = _held_plant(lat, omega_s, law_step_s, earth, coupled)
     held = STATES + 2 * n
-    step = np.zeros((held + 2, held + 2))
+    m = 0 if azimuth is None else azimuth.order + 1
+    step = np.zeros((held + 2 + m, held + 2 + m))
     step[:STATES, :STATES] = plant
     for channel in range(2):
         z = slice(STATES + channel * n, STATES + (channel + 1) * n)
@@ -150,9 +157,15 @@ def period_map(
         step[z, held + channel] = B
         step[held + channel, held + channel] = 1.0
     # a fresh epoch: the difference becomes -dV before the law is called
-    fresh = np.eye(held + 2)
-    fresh[held:, held:] = 0.0
+    fresh = np.eye(held + 2 + m)
+    fresh[held : held + 2, held : held + 2] = 0.0
     fresh[held, 0] = fresh[held + 1, 1] = -1.0
+    if azimuth is not None:
+        y, z, u = discretise(azimuth, law_step_s), slice(held + 2, held + 1 + m), held + 1 + m
+        step[:STATES, z] = np.outer(forced[:, 4], -y.C)
+        step[:STATES, u] = forced[:, 4] * (1.0 - y.D)
+        step[z, z], step[z, u], step[u, u] = np.eye(y.order) + y.dA, y.B, 1.0
+        fresh[u, :STATES], fresh[u, u] = -up_rate(lat, omega_s, earth), 0.0
     period = np.linalg.matrix_power(step, calls) @ fresh
     return period if coupled else np.delete(np.delete(period, _ALONE, 0), _ALONE, 1)
 
@@ -188,10 +201,11 @@ def _sampled_law(
 def _held_plant(
     lat: float, omega_s: float, step_s: float, earth: Earth, coupled: bool
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Transition of the six states over a step, and that of the four inputs held over it."""
-    both = np.zeros((STATES + 4, STATES + 4))
+    """Transition of the six states over a step, and that of the five inputs held over it."""
+    both = np.zeros((STATES + 5, STATES + 5))
     both[:STATES, :STATES] = free_matrix(lat, omega_s, earth) * (1.0 if coupled else _CHANNELS)
-    both[:STATES, STATES:] = inputs_of_law(lat, omega_s, earth)
+    both[:STATES, STATES:-1] = inputs_of_law(lat, omega_s, earth)
+    both[PHI_U, -1] = 1.0
     moved = matrix_exponential(both * (omega_s * step_s))
     return moved[:STATES, :STATES], moved[:STATES, STATES:]
 

@@ -23,6 +23,7 @@ def network_report(
     log_period_s: float | None = None,
     law_step_s: float = 1.0,
     with_margins: bool = False,
+    azimuth: NetworkParameters | None = None,
 ) -> dict[str, Any]:
     """Return the ``network --json`` document; complex numbers as [re, im], no value that JSON cannot hold.
 
@@ -38,6 +39,8 @@ def network_report(
         Time between two calls of the law, s; counts with ``log_period_s`` only.
     with_margins : bool
         Add the margins of the open loop, the disk margin among them, which takes a second.
+    azimuth : NetworkParameters, optional
+        Network Y(s) of the azimuth channel.
 
     Raises
     ------
@@ -47,11 +50,12 @@ def network_report(
     _check(lat_deg, log_period_s, law_step_s)
     network = parameters.transfer(SPHERE.schuler_frequency(0.0))
     loop = analyse(network)
-    whole = whole_system(network, lat_deg * DEG)
+    slow = None if azimuth is None else azimuth.at_earth_rate()
+    whole = whole_system(network, lat_deg * DEG, azimuth=slow)
     warnings = [*network.warnings, *loop.warnings, *whole.warnings]
     growth = max(mode.growth for mode in whole.modes)
     if log_period_s is not None:
-        sampled = held_log(network, log_period_s, law_step_s, lat_deg * DEG)
+        sampled = held_log(network, log_period_s, law_step_s, lat_deg * DEG, azimuth=slow)
         warnings += sampled.warnings
         growth = sampled.growth_per_s
     return {
@@ -78,10 +82,13 @@ def network_report(
 
 def whole_system_report(whole: WholeSystem) -> dict[str, Any]:
     """Return what documents say of the whole system (interface.md)."""
+    slow = whole.slow_mode
     return {
         "earth_mode_growth_per_s": whole.earth_growth,
         "h_slope_s": _finite(whole.h_slope),
         "whole_system_stable": whole.stable,
+        "slow_mode_damping_ratio": None if slow is None else slow.damping_ratio,
+        "slow_mode_natural_frequency_rad_s": None if slow is None else abs(slow.eigenvalue),
     }
 
 

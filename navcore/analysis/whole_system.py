@@ -87,6 +87,16 @@ class WholeSystem:
         return tuple(mode for mode in self.modes if mode.name == name)
 
     @property
+    def slow_mode(self) -> Mode | None:
+        """Least damped oscillation with 0.3 Omega < abs(s) < 3 Omega; None where there is none."""
+        slow = [
+            mode
+            for mode in self.modes
+            if mode.eigenvalue.imag > 0.0 and 0.3 < abs(mode.eigenvalue) / EARTH_RATE < 3.0
+        ]
+        return min(slow, key=lambda mode: mode.damping_ratio, default=None)
+
+    @property
     def e_folding_s(self) -> float:
         """Time in which the 24 h mode grows by the factor e, s; negative: decays by it; inf: neither."""
         return 1.0 / self.earth_growth if self.earth_growth != 0.0 else math.inf
@@ -176,25 +186,51 @@ def _stiffness(lat: float, omega_s: float, earth: Earth, height: float) -> tuple
 
 
 def system_matrix(
-    network: LinearNetwork, lat: float, earth: Earth = SPHERE, height: float = 0.0
+    network: LinearNetwork,
+    lat: float,
+    earth: Earth = SPHERE,
+    height: float = 0.0,
+    azimuth: LinearNetwork | None = None,
 ) -> np.ndarray:
-    """System matrix with the law's states of the east, then the north channel, shape (6 + 2 n, 6 + 2 n)."""
+    """System matrix with the law's states of the east, the north and the azimuth channel.
+
+    Shape (6 + 2 n + m, 6 + 2 n + m) for n states of H(s) and m of Y(s).
+    """
     law = law_form(network)
     n = len(law.B)
     act = inputs_of_law(lat, network.omega_s, earth, height)
-    f = np.zeros((STATES + 2 * n, STATES + 2 * n))
+    m = 0 if azimuth is None else azimuth.order
+    f = np.zeros((STATES + 2 * n + m, STATES + 2 * n + m))
     f[:STATES, :STATES] = free_matrix(lat, network.omega_s, earth, height)
     for channel in (DV_E, DV_N):
         z = slice(STATES + channel * n, STATES + (channel + 1) * n)
         f[:STATES, channel] += act[:, channel] * law.D - act[:, 2 + channel] * law.k1
         f[:STATES, z] = np.outer(act[:, channel], law.C) + np.outer(act[:, 2 + channel], law.E)
         f[z, channel], f[z, z] = law.B, law.A
+    if azimuth is not None:
+        y, rate = law_form(azimuth), azimuth.omega_s / network.omega_s
+        up, z = up_rate(lat, network.omega_s, earth, height), slice(STATES + 2 * n, None)
+        f[PHI_U, :STATES] += y.D * up
+        f[PHI_U, z] = y.C
+        f[z, :STATES], f[z, z] = rate * np.outer(y.B, up), rate * y.A
     return f
+
+
+def up_rate(lat: float, omega_s: float, earth: Earth = SPHERE, height: float = 0.0) -> np.ndarray:
+    """Error of the computed rate about the vertical by the six states, shape (6,); omega_Ur has none."""
+    row = np.zeros(STATES)
+    row[DV_E] = _stiffness(lat, omega_s, earth, height)[0] * math.tan(lat)
+    row[LATITUDE] = EARTH_RATE / omega_s * math.cos(lat)
+    return row
 
 
 @lru_cache(maxsize=256)
 def whole_system(
-    network: LinearNetwork, lat: float, earth: Earth = SPHERE, height: float = 0.0
+    network: LinearNetwork,
+    lat: float,
+    earth: Earth = SPHERE,
+    height: float = 0.0,
+    azimuth: LinearNetwork | None = None,
 ) -> WholeSystem:
     """Analyse the whole system at rest.
 
@@ -208,9 +244,12 @@ def whole_system(
         WGS-84 or the sphere.
     height : float
         m.
+    azimuth : LinearNetwork, optional
+        Y(s) of the azimuth channel (theory.md 3.7).
     """
-    values = np.linalg.eigvals(system_matrix(network, lat, earth, height)).astype(np.complex128)
-    modes = tuple(_named(values, network, lat))
+    matrix = system_matrix(network, lat, earth, height, azimuth)
+    values = np.linalg.eigvals(matrix).astype(np.complex128)
+    modes = tuple(_named(values, network, lat, azimuth))
     growth = max(mode.growth for mode in modes if mode.name == EARTH_MODE)
     tolerance = _STANDS * network.omega_s
     growing = [mode for mode in modes if mode.growth > tolerance]
@@ -224,10 +263,14 @@ def whole_system(
     )
 
 
-def growth_over_latitude(network: LinearNetwork, lats: np.ndarray, earth: Earth = SPHERE) -> np.ndarray:
+def growth_over_latitude(
+    network: LinearNetwork, lats: np.ndarray, earth: Earth = SPHERE, azimuth: LinearNetwork | None = None
+) -> np.ndarray:
     """Growth rate of the 24 h mode at each latitude (rad), 1/s, shape of ``lats``."""
     lats = np.asarray(lats, dtype=float)
-    rates = [whole_system(network, float(lat), earth).earth_growth for lat in lats.reshape(-1)]
+    rates = [
+        whole_system(network, float(lat), earth, azimuth=azimuth).earth_growth for lat in lats.reshape(-1)
+    ]
     return np.array(rates).reshape(lats.shape)
 
 
@@ -242,9 +285,11 @@ def duration(seconds: float) -> str:
     return Text("{seconds:.2g} min", seconds=seconds / 60.0) if seconds >= 90.0 else f"{seconds:.2g} s"
 
 
-def _named(values: ComplexArray, network: LinearNetwork, lat: float) -> list[Mode]:
+def _named(
+    values: ComplexArray, network: LinearNetwork, lat: float, azimuth: LinearNetwork | None
+) -> list[Mode]:
     """Name every eigenvalue after the mode it comes from; of a pair only the upper one is kept."""
-    targets, names = _uncoupled(network, lat)
+    targets, names = _uncoupled(network, lat, azimuth)
     target_of = _nearest(values, targets)
     modes: list[Mode] = []
     for name in (EARTH_MODE, SCHULER_MODE, NETWORK_MODE):
@@ -253,23 +298,33 @@ def _named(values: ComplexArray, network: LinearNetwork, lat: float) -> list[Mod
     return modes
 
 
-def _uncoupled(network: LinearNetwork, lat: float) -> tuple[ComplexArray, list[str]]:
-    """Modes as they were without coupling: +-j Omega and the poles of both channels.
+def _uncoupled(
+    network: LinearNetwork, lat: float, azimuth: LinearNetwork | None
+) -> tuple[ComplexArray, list[str]]:
+    """Modes as they were without coupling: those of s^2 + Omega^2 Y and the poles of both channels.
 
     The main pair is split by Omega sin L. The last, at zero, is for a state of the law that H(s) has not.
     """
     rate = 1j * EARTH_RATE / network.omega_s
     poles = closed_loop_poles(network)
+    main = _least_damped(poles)
+    slow = np.array([rate, -rate]) if azimuth is None else abs(rate) * closed_loop_poles(azimuth)
+    earth = [EARTH_MODE if own else NETWORK_MODE for own in _least_damped(slow)]
+    split = np.where(main, rate * math.sin(lat), 0.0)
+    names = [SCHULER_MODE if own else NETWORK_MODE for own in main]
+    targets = np.concatenate([slow, poles + split, poles - split, [0.0]])
+    return targets, [*earth, *names, *names, NETWORK_MODE]
+
+
+def _least_damped(poles: ComplexArray) -> np.ndarray:
+    """Mark the least damped pair, shape (n,)."""
     size = np.abs(poles)
     damping = np.where(size > _STANDS, -poles.real / np.maximum(size, _STANDS), np.inf)
     least = poles[np.argmin(damping)]
     main = np.zeros(len(poles), dtype=bool)
     for pole in (least, np.conj(least)):
         main[np.argmin(np.where(main, np.inf, np.abs(poles - pole)))] = True
-    split = np.where(main, rate * math.sin(lat), 0.0)
-    names = [SCHULER_MODE if own else NETWORK_MODE for own in main]
-    targets = np.concatenate([[rate, -rate], poles + split, poles - split, [0.0]])
-    return targets, [EARTH_MODE, EARTH_MODE, *names, *names, NETWORK_MODE]
+    return main
 
 
 def _nearest(values: ComplexArray, targets: ComplexArray) -> list[int]:

@@ -13,3 +13,8 @@ _PLACES = (
 
 KINDS: dict[str, Damping] = {kind.id: kind for kind in (loaded(place)() for place in _PLACES)}
 """Kinds by name, in the order in which the page offers them."""
+WHOLE: dict[str, Damping] = {
+    kind.id: kind
+    for kind in (loaded(f"navcore.damping.whole:{name}")() for name in ("WholeInternal", "WholeExternal"))
+}
+"""Kinds of the same names with a network in the azimuth channel too."""

@@ -33,13 +33,13 @@ class Need(NamedTuple):
 
     Attributes
     ----------
-    of : {"reference", "log", "coupled channels", "simulated IMU", "standing start"}
+    of : {"reference", "log", "coupled channels", "simulated IMU", "standing start", "below 85 deg"}
         The condition.
     because : str
         The fault's text where it is not met.
     """
 
-    of: Literal["reference", "log", "coupled channels", "simulated IMU", "standing start"]
+    of: Literal["reference", "log", "coupled channels", "simulated IMU", "standing start", "below 85 deg"]
     because: str
 
 
@@ -49,6 +49,11 @@ class Configured(Protocol):
     @property
     def network(self) -> NetworkParameters:
         """Network as configured."""
+        ...
+
+    @property
+    def azimuth(self) -> NetworkParameters:
+        """Network of the azimuth channel as configured; "none": it is not damped."""
         ...
 
     @property
@@ -129,6 +134,10 @@ class Damping:
         """Network in force: as configured, or the one that the policy brings; H = 1 where none acts."""
         return network_in_force(self.law, method.network, method.policy)
 
+    def azimuth(self, method: Configured) -> LinearNetwork | None:
+        """Network Y(s) of the azimuth channel in force; None where none acts."""
+        return None
+
     def acting(self, network: LinearNetwork) -> LinearNetwork:
         """H(s) as it closes the loop: H = 1 where no network acts.
 
@@ -160,6 +169,7 @@ class Damping:
 class NetworkDamping(Damping):
     """A kind in which the method's network acts, by its policy and switching method."""
 
+    blocks: ClassVar[tuple[str, ...]] = ("network", "azimuth", "policy", "switching")
     uses_network: ClassVar[bool] = True
 
     def label(self, method: Configured) -> str:

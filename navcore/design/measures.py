@@ -67,7 +67,8 @@ class Setting:
         """Both channels with heading and latitude at the site."""
         scenario = self.ship.scenario
         place = scenario.site.lat_deg * DEG, scenario.earth, scenario.site.height_m
-        return whole_system(self.method.kind.acting(self.network), *place)
+        kind = self.method.kind
+        return whole_system(kind.acting(self.network), *place, azimuth=kind.azimuth(self.method))
 
     @cached_property
     def growth_per_s(self) -> float:
@@ -79,7 +80,10 @@ class Setting:
             return 0.0
         period_s = timing.step_s * (timing.hold if self.method.kind.referenced else 1)
         place = scenario.site.lat_deg * DEG, scenario.earth, scenario.run.fidelity != "channel"
-        return held_log(self.method.kind.acting(self.network), period_s, timing.step_s, *place).growth_per_s
+        kind = self.method.kind
+        return held_log(
+            kind.acting(self.network), period_s, timing.step_s, *place, azimuth=kind.azimuth(self.method)
+        ).growth_per_s
 
     @property
     def _filter(self) -> Loop | None:

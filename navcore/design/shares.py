@@ -83,11 +83,14 @@ class Share:
 
     def as_dict(self) -> dict[str, Any]:
         """Return the document of interface.md."""
-        network = self.method.network.model_dump(mode="json", exclude_none=True)
+        network, azimuth = (
+            each.model_dump(mode="json", exclude_none=True)
+            for each in (self.method.network, self.method.azimuth)
+        )
         return {
             "name": self.method.label(),
             "network": None if self.method.undamped else network,
-            "azimuth": None,
+            "azimuth": None if azimuth["id"] == "none" else azimuth,
             "met": self.met,
             "low": self.low,
             "high": self.high,

@@ -7,9 +7,8 @@ from typing import Literal
 import numpy as np
 
 from navcore.foundation.compiled import inlined
+from navcore.foundation.units import EARTH_RATE as EARTH_RATE
 
-EARTH_RATE = 7.292115e-5
-"""Rotation rate Omega, rad/s."""
 SEMI_MAJOR_AXIS = 6378137.0
 """WGS-84 equatorial radius, and the radius of the textbook sphere, m."""
 ECCENTRICITY_SQUARED = 6.6943799901413e-3

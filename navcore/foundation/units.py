@@ -16,6 +16,8 @@ STANDARD_GRAVITY = 9.80665
 MICRO_G = 1e-6 * STANDARD_GRAVITY
 """Accelerometer bias unit, m/s^2; also velocity random walk ug/sqrt(Hz) -> (m/s^2)/sqrt(Hz)."""
 PPM = 1e-6
+EARTH_RATE = 7.292115e-5
+"""Rotation rate Omega of the Earth, rad/s."""
 UNITS = {
     "rad": 1.0,
     "deg": DEG,

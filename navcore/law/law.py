@@ -68,6 +68,7 @@ def prepare_law(
     policy: PolicyParameters,
     switching: SwitchingParameters,
     law_step_s: float,
+    azimuth: LinearNetwork | None = None,
 ) -> Law:
     """Fill the records of a method's law.
 
@@ -82,6 +83,8 @@ def prepare_law(
         When and how to switch.
     law_step_s : float
         Time between two calls of `law_step`, s.
+    azimuth : LinearNetwork, optional
+        Y(s) of the azimuth channel, for `navcore.law.azimuth.steer`.
 
     Raises
     ------
@@ -108,6 +111,9 @@ def prepare_law(
     s = new_record(LAW_STATE, xi_target=xi, epoch=-1, policies={policy.id: policy.remembered()})
     p["tan_half"] = math.tan(0.5 * omega_s * law_step_s)
     _fill_form(p, s, parameters, network, policy, switching)
+    if azimuth is not None:
+        p["azimuth_order"] = azimuth.order
+        fill_record(s["azimuth"], _complement(azimuth, law_step_s))
     rows = max(1, policy.ring_rows(law_step_s), switching.ring_rows(law_step_s))
     return Law(p, s, np.zeros(rows, LAW_HISTORY))
 

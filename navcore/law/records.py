@@ -13,7 +13,7 @@ from navcore.foundation.records import COUNT, FLAG, REAL, record_type
 MAX_STATES = 4
 """States of a network in one channel (navcore.networks.base.MAX_ORDER)."""
 E, N, U = 0, 1, 2
-"""Channels, the first index of what each of them has: two level ones, and room for the azimuth."""
+"""Channels, the first index of what each of them has: two level ones, and the azimuth."""
 CHANNELS = 3
 
 LawKind = Literal["free", "internal", "external"]
@@ -92,7 +92,11 @@ STATE = {
     "valid": FLAG,  # the held difference may be used
     "fresh": COUNT,  # calls in a row with a valid difference
     "epoch": COUNT,  # index of the log epoch in force
-    "correction": (REAL, (CHANNELS,)),  # velocity correction c applied last, m/s
+    "steered": FLAG,  # the azimuth channel has started
+    "azimuth_epoch": COUNT,  # log epoch of azimuth_input
+    "azimuth_input": REAL,  # omega_Ur - omega_U held from that epoch, rad/s
+    "latitude": REAL,  # L_r - L_c, rad
+    "correction": (REAL, (CHANNELS,)),  # correction c applied last, m/s; in azimuth rad/s
     "output": (REAL, (CHANNELS,)),  # taken off the computed velocity where it is given out, m/s
     "offset": (REAL, (CHANNELS,)),  # what re-tuning would have made the correction jump by, fading, m/s
     "feedback_gain": REAL,  # velocity feedback of gains that change, 1/s; feedback_k1 is 0 then

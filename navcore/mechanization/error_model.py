@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from navcore.foundation.compiled import inlined, kernel
+from navcore.law.azimuth import UpRate, steer
 from navcore.law.law import Law, law_step
 from navcore.law.records import E, N, Sensed, Watched
 from navcore.mechanization.recorder import Errors, Recorder, flush, given_out, record
@@ -41,7 +42,7 @@ class LogErrors(NamedTuple):
 
 
 class Held(NamedTuple):
-    """Values held over a step: sensor errors (rad/s, m/s^2), and the law's c (m/s) and a (m/s^2)."""
+    """Values held over a step: sensor errors (rad/s, m/s^2); c (m/s), a (m/s^2), c_U (rad/s) of the law."""
 
     eps_e: float
     eps_n: float
@@ -52,6 +53,7 @@ class Held(NamedTuple):
     c_n: float
     a_e: float
     a_n: float
+    c_u: float
 
 
 @inlined
@@ -80,7 +82,7 @@ def _rate(c, x, held):
         (x.dv_e + c.v_e * c.tan_lat * x.d_lat) * c.inv_n * c.sec_lat,
         c.w_u * x.phi_n - c.w_n * x.phi_u - (x.dv_n + held.c_n) * c.inv_m - held.eps_e,
         c.w_e * x.phi_u - c.w_u * x.phi_e + (x.dv_e + held.c_e) * c.inv_n - c.earth_u * x.d_lat - held.eps_n,
-        c.w_n * x.phi_e - c.w_e * x.phi_n + up + c.earth_n * x.d_lat - held.eps_u,
+        c.w_n * x.phi_e - c.w_e * x.phi_n + up + c.earth_n * x.d_lat + held.c_u - held.eps_u,
     )
 
 
@@ -149,6 +151,13 @@ def in_range(x):
     return level and slow and math.isfinite(x.d_lat + x.d_lon)
 
 
+@inlined
+def _up_rate(c, x):
+    """Computed rate about the vertical with the `Errors` x, at the coefficients of a step's begin."""
+    by_lat, by_v_e = c.earth_n + c.up_lat, c.tan_lat * c.inv_n
+    return UpRate(c.w_u + by_lat * x.d_lat + by_v_e * x.dv_e, by_lat, by_v_e, c.inv_m)
+
+
 @kernel
 def _advance(first, last, final, h, half, law_input, gyro, accel, log, law, state, recorder):
     """Integrate steps first..last of 0..final; ``state`` (7,), law and recorder go on from call to call."""
@@ -170,6 +179,7 @@ def _advance(first, last, final, h, half, law_input, gyro, accel, log, law, stat
         # the heading that the ship has is the computed one: level, it is off by phi_U (theory.md 2.3)
         c = law_step(law, Sensed(motion.v_e + x.dv_e, motion.v_n + x.dv_n, motion.heading + x.phi_u))
         begin = half[2 * k * half_stride]
+        c_u = steer(law, _up_rate(begin, x)) if law.p.azimuth_order > 0 else 0.0
         watched = Watched(float(s.wanted), 1.0 if s.damped else 0.0, s.xi, s.measure)
         record(k, given_out(x, s), begin.m, begin.n_cos, watched, recorder)
         if (k + 1) % recorder.bin_width == 0 or k + 1 == last:
@@ -178,7 +188,9 @@ def _advance(first, last, final, h, half, law_input, gyro, accel, log, law, stat
             reached, code = k, COMPLETE
             break
         g, a = k * gyro_stride, k * accel_stride
-        held = Held(gyro[g, 0], gyro[g, 1], gyro[g, 2], accel[a, 0], accel[a, 1], c.c_e, c.c_n, c.a_e, c.a_n)
+        held = Held(
+            gyro[g, 0], gyro[g, 1], gyro[g, 2], accel[a, 0], accel[a, 1], c.c_e, c.c_n, c.a_e, c.a_n, c_u
+        )  # fmt: skip
         middle, end = half[(2 * k + 1) * half_stride], half[(2 * k + 2) * half_stride]
         x = runge_kutta(x, h, begin, middle, end, held)
     state[0], state[1], state[2], state[3] = x.dv_e, x.dv_n, x.d_lat, x.d_lon

@@ -19,6 +19,7 @@ from navcore.foundation.drawing import drawn
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.registry import Entry
 from navcore.foundation.text import Text
+from navcore.foundation.units import EARTH_RATE
 from navcore.networks.pair import MainPair, Placement
 from navcore.networks.roots import fixed, leading, sorted_roots
 from navcore.networks.transfer_function import transfer_function
@@ -139,8 +140,7 @@ class LinearNetwork:
 
         Returns
         -------
-        ndarray of complex
-            Of the shape of ``omega``.
+        ndarray of complex, shape of ``omega``
         """
         p = 1j * np.asarray(omega, dtype=float) / self.omega_s
         return np.polyval(self.num_p, p) / np.polyval(self.den_p, p)
@@ -184,6 +184,10 @@ class NetworkParameters(Entry):
     placeable: ClassVar[str] = ""
     no_handle: ClassVar[str] = Text("its parameters set no pair")
     id: Any  # a Literal in each subclass; str here would be narrowed against the rule for mutable fields
+
+    def at_earth_rate(self) -> LinearNetwork:
+        """Return Y(s) of the azimuth channel: the network with Omega for omega_s (theory.md 3.7)."""
+        return self.transfer(EARTH_RATE)
 
     def transfer(self, omega_s: float) -> LinearNetwork:
         """Return H(s) for a Schuler frequency.

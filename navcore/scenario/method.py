@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field, create_model
 
-from navcore.damping import KINDS
+from navcore.damping import KINDS, WHOLE
 from navcore.damping.base import Damping
 from navcore.foundation.parameters import Parameters
 from navcore.foundation.text import Text
@@ -51,6 +51,14 @@ class Method(_Settled):
     """One ``[[method]]``: a way of damping, run on the same truth, IMU and log as the others."""
 
     network: Network = Field(default_factory=UndampedNetwork)
+    azimuth: Network = Field(
+        default_factory=UndampedNetwork,
+        json_schema_extra={"label": "azimuth network"},
+        description=Text(
+            "Network Y(s) of the azimuth channel beside the level networks (whole damping), at the Earth's "
+            "rate in place of the Schuler frequency; none: the azimuth is not damped."
+        ),
+    )
     policy: Policy = Field(default_factory=Constant)
     switching: Switching = Field(default_factory=Hard)
     event: tuple[LogEvent, ...] = Field(
@@ -62,7 +70,9 @@ class Method(_Settled):
     @property
     def kind(self) -> Damping:
         """Kind of damping."""
-        return KINDS[self.damping]
+        return (
+            KINDS[self.damping] if self.azimuth.id == "none" else WHOLE.get(self.damping, KINDS[self.damping])
+        )
 
     @property
     def reads_log(self) -> bool:

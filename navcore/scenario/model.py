@@ -8,6 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from navcore.damping import WHOLE
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.text import Text
@@ -121,6 +122,11 @@ def _method_faults(scenario: ScenarioFields) -> Iterator[Fault]:
         except InputError as error:
             yield from error.located("", f"{at}.network.").faults
             continue
+        if method.azimuth.id != "none" and method.damping not in WHOLE:
+            allowed = Text(
+                'needs damping = "internal" or "external", not "{damping}"', damping=method.damping
+            )
+            yield Fault("", f"{at}.azimuth", method.azimuth.id, allowed)
         own_faults = list(method.kind.faults(method, scenario.law_step_s))
         if own_faults:
             yield from InputError(own_faults).located("", f"{at}.").faults

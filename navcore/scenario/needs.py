@@ -6,6 +6,9 @@ from navcore.averaging.record import under_way
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.fields import ScenarioFields
 
+_HIGHEST_LAT_DEG = 85.0
+"""Latitude up to which an azimuth channel means anything, deg."""
+
 
 def need_faults(scenario: ScenarioFields) -> Iterator[Fault]:
     """Yield the conditions of the methods' kinds of damping that are not met, each once."""
@@ -44,5 +47,6 @@ _UNMET = {
     "coupled channels": _unless(lambda scenario: scenario.run.fidelity != "channel"),
     "simulated IMU": _unless(lambda scenario: scenario.imu.file is None),
     "standing start": _under_way,
+    "below 85 deg": _unless(lambda scenario: abs(scenario.site.lat_deg) <= _HIGHEST_LAT_DEG),
 }
 """How the conditions of `navcore.damping.base.Need` are checked."""

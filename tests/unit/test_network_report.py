@@ -28,6 +28,8 @@ KEYS = [
     "earth_mode_growth_per_s",
     "h_slope_s",
     "whole_system_stable",
+    "slow_mode_damping_ratio",
+    "slow_mode_natural_frequency_rad_s",
     "growth_per_s",
     "warnings",
 ]

@@ -33,6 +33,7 @@ _TAKEN = Text("from the sensors and the log of the scenario")
 NO_DESIGN = Text("no (σ, ζ) gives these K")
 _CATALOGUES: Mapping[str, tuple[Mapping[str, type], str]] = {
     "network": (NETWORKS, "network"),
+    "azimuth": (NETWORKS, Text("azimuth network")),
     "policy": (POLICIES, "policy"),
     "switching": (SWITCHINGS, "switching"),
 }
@@ -96,6 +97,7 @@ class MethodView(View):
             "settings": 10.0,
             "network": 20.0,
             "parameters": 30.0,
+            "azimuth": 60.0,
             "policy": 70.0,
             "switching": 100.0,
         }
@@ -165,8 +167,11 @@ class MethodView(View):
         )
         unset = {(*path, "network", name): _TAKEN for name in method.network.taken()}
         self.sections["parameters"].show(network if "network" in blocks else [], values, moved, unset)
-        for part in ("policy", "switching"):
-            specs = [_catalogue(part, path), *form.fields(type(getattr(method, part)), (*path, part))]
+        for part in ("azimuth", "policy", "switching"):
+            own = form.fields(type(getattr(method, part)), (*path, part))
+            if part == "azimuth":
+                own = [replace(spec, label=Text("azimuth {label}", label=spec.label)) for spec in own]
+            specs = [_catalogue(part, path), *own]
             self.sections[part].show(specs if part in blocks else [], _values_at(scenario, specs), moved)
         own = method.kind.settings if method.damping in blocks else None
         block = form.fields(own, (*path, method.damping)) if own else []

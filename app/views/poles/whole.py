@@ -42,8 +42,9 @@ def whole_system_figure(run: Run, aspect: float = 0.46, *, width_px: float = 940
     data: list[dict[str, Any]] = []
     rates = []
     for index, method in enumerate(run.methods):
-        acting = method.method.kind.acting(method.network)
-        growth = growth_over_latitude(acting, LATITUDES * DEG, run.scenario.earth)
+        kind = method.method.kind
+        acting, azimuth = kind.acting(method.network), kind.azimuth(method.method)
+        growth = growth_over_latitude(acting, LATITUDES * DEG, run.scenario.earth, azimuth)
         rates.append(_DAY * growth)
         data += _marks(method, index)
         data += _growth(run, method, index, rates[-1])

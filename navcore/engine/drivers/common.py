@@ -34,7 +34,11 @@ def network_of(scenario: Scenario, method: Method) -> LinearNetwork:
 
 def law_of(method: Method, network: LinearNetwork, law_step_s: float) -> Law:
     """Damping law of a method, asked every ``law_step_s`` seconds."""
-    return prepare_law(method.kind.law, method.network, network, method.policy, method.switching, law_step_s)
+    kind = method.kind
+    azimuth = kind.azimuth(method)
+    return prepare_law(
+        kind.law, method.network, network, method.policy, method.switching, law_step_s, azimuth
+    )
 
 
 def requirement_spans(scenario: Scenario, step_s: float) -> np.ndarray:
@@ -99,7 +103,9 @@ def stability_of(
     """
     kind, lat = method.kind, scenario.site.lat_deg * DEG
     acting = kind.acting(network)
-    loop, whole = analyse(network), whole_system(acting, lat, scenario.earth, scenario.site.height_m)
+    azimuth = kind.azimuth(method)
+    loop = analyse(network)
+    whole = whole_system(acting, lat, scenario.earth, scenario.site.height_m, azimuth)
     if kind.no_loop:
         own = filter_loop(scenario.figures(), scenario.omega_s) if kind.covering == "filter" else None
         return Stability(own or loop, whole, (), None if own is None else float(np.max(own.poles.real)))
@@ -108,7 +114,7 @@ def stability_of(
     if kind.uses_network:
         period_s = _log_period_s(scenario, log, law_step_s) if kind.referenced else law_step_s
         coupled = scenario.run.fidelity != "channel"
-        sampled = held_log(acting, period_s, law_step_s, lat, scenario.earth, coupled)
+        sampled = held_log(acting, period_s, law_step_s, lat, scenario.earth, coupled, azimuth)
         warnings, growth = (*warnings, *sampled.warnings), sampled.growth_per_s
     return Stability(loop, whole, warnings, growth)
 

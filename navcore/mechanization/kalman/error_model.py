@@ -75,7 +75,7 @@ def _advance(
         g, a = k * gyro_stride, k * accel_stride
         held = Held(
             gyro[g, 0] - g_e, gyro[g, 1] - g_n, gyro[g, 2] - g_u, accel[a, 0] - a_e, accel[a, 1] - a_n,
-            0.0, 0.0, 0.0, 0.0,
+            0.0, 0.0, 0.0, 0.0, 0.0,
         )  # fmt: skip
         x = runge_kutta(x, h, begin, middle, end, held)
         if (half_stride or k == first) and not f.known:

@@ -128,11 +128,11 @@ def _put(table, j, x):
 @kernel
 def fill_transition(h, begin, middle, end, f):
     """Transition of the errors and their response to sensor errors over a step of h seconds."""
-    none = Held(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    none = Held(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for j in range(STATES):
         _put(f.moved, j, runge_kutta(_unit(j), h, begin, middle, end, none))
     for j in range(INPUTS):
-        one = Held(_one(j, 0), _one(j, 1), _one(j, 2), _one(j, 3), _one(j, 4), 0.0, 0.0, 0.0, 0.0)
+        one = Held(_one(j, 0), _one(j, 1), _one(j, 2), _one(j, 3), _one(j, 4), 0.0, 0.0, 0.0, 0.0, 0.0)
         _put(f.inputs, j, runge_kutta(_unit(-1), h, begin, middle, end, one))
 
 

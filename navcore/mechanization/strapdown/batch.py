@@ -15,7 +15,7 @@ from navcore.foundation.compiled import inlined, kernel
 from navcore.foundation.earth import Earth
 from navcore.law.law import LAW_PARAMETERS, LAW_STATE, Law
 from navcore.mechanization.recorder import given_out
-from navcore.mechanization.strapdown.kernel import arms, errors_at, law_epoch, navigates
+from navcore.mechanization.strapdown.kernel import arms, azimuth_epoch, errors_at, law_epoch, navigates
 from navcore.mechanization.strapdown.log import VelocityReference
 from navcore.mechanization.strapdown.records import CONSTANTS, LARGEST_LATITUDE, LAST_CALL, constants_of
 from navcore.mechanization.strapdown.run import Settings, Start, constants
@@ -35,8 +35,8 @@ _LAID = 512
 _W = WIDTH
 # Rows of a block's flat state: what changes, then what is held, then the previous increment.
 _D_LAT, _D_LON, _V_E, _V_N, _Q, _Z, _M_E, _M_N, _M_LAT = 0, 1, 2, 3, 4, 8, 12, 13, 14
-_C_E, _C_N, _A_E, _A_N, _TERMS, _ORIGIN, _BEFORE = 15, 16, 17, 18, 19, 27, 28
-_ROWS = 34
+_C_E, _C_N, _A_E, _A_N, _TERMS, _ORIGIN, _BEFORE, _C_U = 15, 16, 17, 18, 19, 27, 28, 34
+_ROWS = 35
 
 
 @inlined
@@ -92,7 +92,10 @@ def _run_samples(first, last, increments, con, x):
     for i in range(first, last):
         for j in range(_W):
             now = _increment_of(increments, 6 * i, j)
-            held = Held(x[_C_E * _W + j], x[_C_N * _W + j], x[_A_E * _W + j], x[_A_N * _W + j], 0.0, 0.0)
+            held = Held(
+                x[_C_E * _W + j], x[_C_N * _W + j], x[_C_U * _W + j],
+                x[_A_E * _W + j], x[_A_N * _W + j], 0.0, 0.0,
+            )  # fmt: skip
             nav = strapdown_step(
                 step, now, _increment_of(x, _BEFORE, j), _navigation_of(x, j, height), _terms_of(x, j),
                 x[_ORIGIN * _W + j], held, False,
@@ -156,7 +159,8 @@ def _epoch(k, run, row, x, runs):
         runs.diverged[run] = True
         lat = 0.0 if not math.isfinite(lat) else math.copysign(LARGEST_LATITUDE, lat)
     x[_ORIGIN * _W + j] = d_lat
-    for i, term in enumerate(earth_terms(con.e2, lat, con.height0)):
+    terms = earth_terms(con.e2, lat, con.height0)
+    for i, term in enumerate(terms):
         x[(_TERMS + i) * _W + j] = term
     law, logs = Law(runs.p[run], runs.s[run], runs.ring[run]), runs.log
     log = VelocityReference(
@@ -164,6 +168,7 @@ def _epoch(k, run, row, x, runs):
     )  # fmt: skip
     held = law_epoch(k * con.dt, v_e, v_n, q, runs.last[run], log, law)
     x[_C_E * _W + j], x[_C_N * _W + j], x[_A_E * _W + j], x[_A_N * _W + j] = held
+    x[_C_U * _W + j] = azimuth_epoch(law, terms, v_e)
     if row >= 0:
         i = row if truth.shape[0] > 1 else 0
         errors = errors_at(con, d_lat, x[_D_LON * _W + j], v_e, v_n, q, truth, i)

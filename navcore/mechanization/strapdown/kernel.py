@@ -4,10 +4,11 @@ import math
 from typing import NamedTuple
 
 from navcore.foundation.compiled import inlined, kernel
-from navcore.foundation.earth import meridian_radius, prime_vertical_radius
+from navcore.foundation.earth import EARTH_RATE, meridian_radius, prime_vertical_radius
+from navcore.law.azimuth import UpRate, steer
 from navcore.law.history import USE_HEADING
 from navcore.law.law import law_step
-from navcore.law.records import FREE, E, N, Sensed, Watched
+from navcore.law.records import FREE, E, N, Sensed, U, Watched
 from navcore.mechanization.recorder import Errors, flush, given_out, record
 from navcore.mechanization.strapdown.attitude import angles_of, heading_of, misalignment, quaternion_of
 from navcore.mechanization.strapdown.log import LastCall, held_difference, newest_epoch, usable
@@ -64,6 +65,16 @@ def law_epoch(t, v_e, v_n, q, last, log, law):
     _read_log(t, v_e, v_n, heading, last, log, law.s)
     last.time, last.v_e, last.v_n = t, v_e, v_n
     return law_step(law, Sensed(v_e, v_n, heading))
+
+
+@inlined
+def azimuth_epoch(law, terms, v_e):
+    """Ask the azimuth channel of a law that was just called, at the place of `EarthTerms`; c_U, rad/s."""
+    if law.p.azimuth_order == 0:
+        return 0.0
+    by_v_e = terms.sin * terms.sec * terms.inv_n
+    by_lat = EARTH_RATE * terms.cos + v_e * terms.inv_n * terms.sec * terms.sec
+    return steer(law, UpRate(EARTH_RATE * terms.sin + v_e * by_v_e, by_lat, by_v_e, terms.inv_m))
 
 
 @inlined
@@ -150,6 +161,8 @@ def advance_kernel(increments, first, pace, con, x, truth, heights, log, law, na
             q = (x.q[0], x.q[1], x.q[2], x.q[3])
             held = law_epoch(k * dt, x.v[E], x.v[N], q, x.last, log, law)
             x.c[E], x.c[N], x.a[E], x.a[N] = held.c_e, held.c_n, held.a_e, held.a_n
+            if law.p.azimuth_order > 0:
+                x.c[U] = azimuth_epoch(law, earth_terms(con.e2, con.lat0 + x.d_lat, x.height), x.v[E])
             if altimeter:
                 _altimeter_epoch(k * dt, law_every * dt, con, x, pace.record_step_s, heights)
         if to_record == 0:

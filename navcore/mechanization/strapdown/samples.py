@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from navcore.foundation.compiled import inlined, kernel
 from navcore.law.network_state import Channel, channel_of, fed_back, feed, keep_channel
-from navcore.law.records import AS_PRINTED, EXTERNAL, E, N, Sensed
+from navcore.law.records import AS_PRINTED, EXTERNAL, E, N, Sensed, U
 from navcore.law.step import as_printed
 from navcore.mechanization.strapdown.attitude import heading_of
 from navcore.mechanization.strapdown.log import LastCall, held_difference, newest_epoch, usable
@@ -70,7 +70,7 @@ def run_held(increments, first, last, con, x, altimeter):
     if altimeter:
         height_rate = con.altimeter_k1 * x.altimeter_difference
         a_u = con.altimeter_k2 * x.altimeter_difference + x.altimeter_integral
-    held = Held(x.c[E], x.c[N], x.a[E], x.a[N], a_u, height_rate)
+    held = Held(x.c[E], x.c[N], x.c[U], x.a[E], x.a[N], a_u, height_rate)
     run_samples(increments, first, last, con, x, altimeter, _ask_nothing, _Unchanging(held), 0, 0, 0)
 
 
@@ -101,8 +101,8 @@ class _Fixed(NamedTuple):
 
 @inlined
 def is_steady(law):
-    """Whether the law now does nothing but feed its network."""
-    return law.p.steady and law.s.started and law.s.damped
+    """Whether the law now does nothing but feed its network of the level channels."""
+    return law.p.steady and law.p.azimuth_order == 0 and law.s.started and law.s.damped
 
 
 @inlined
@@ -129,7 +129,7 @@ def _fed(t, nav, carried, fixed, network):
     c_n, north = feed(fixed.order, network, carried.north, u_n)
     if fixed.as_printed:
         c_e, c_n = as_printed(c_e, c_n, Sensed(nav.v_e, nav.v_n, 0.0), u_e, u_n)
-    held = Held(c_e, c_n, a_e, a_n, 0.0, 0.0)
+    held = Held(c_e, c_n, 0.0, a_e, a_n, 0.0, 0.0)
     return _Steady(held, east, north, carried.epoch, carried.d_e, carried.d_n, LastCall(t, nav.v_e, nav.v_n))
 
 
@@ -156,7 +156,7 @@ def run_steady(increments, first, last, start, con, x, log, law):
     external, printed = p.damping == EXTERNAL, p.realisation == AS_PRINTED
     fixed = _Fixed(start, con.dt, con.lat0, external, printed, p.order, p.feedback_k1, p.feeds_back)
     carried = _Steady(
-        Held(x.c[E], x.c[N], x.a[E], x.a[N], 0.0, 0.0), channel_of(s, E), channel_of(s, N),
+        Held(x.c[E], x.c[N], 0.0, x.a[E], x.a[N], 0.0, 0.0), channel_of(s, E), channel_of(s, N),
         s.epoch, s.difference[E], s.difference[N], LastCall(kept.time, kept.v_e, kept.v_n),
     )  # fmt: skip
     i, end = run_samples(

@@ -85,10 +85,11 @@ class Navigation(NamedTuple):
 
 
 class Held(NamedTuple):
-    """Corrections held by law and altimeter: c (m/s), a (m/s^2), a rate of the height (m/s)."""
+    """Corrections held by law and altimeter: c (m/s; up rad/s), a (m/s^2), a rate of the height (m/s)."""
 
     c_e: float
     c_n: float
+    c_u: float
     a_e: float
     a_n: float
     a_u: float
@@ -206,9 +207,10 @@ def strapdown_step(con, now, before, nav, terms, origin, held, altimeter):
     earth_n, earth_u = EARTH_RATE * cm, EARTH_RATE * sm
     transport_n = mid_e * inv_n
     w_u = earth_u + transport_n * sm * sec
-    # The platform turns with V* = V_c + c in its level components, theory.md section 3.
-    w_e, w_n = -(mid_n + held.c_n) * inv_m, earth_n + (mid_e + held.c_e) * inv_n
     o_u = w_u + earth_u
+    # The platform turns with V* = V_c + c in its level components, with c_U more in azimuth (theory.md 3).
+    w_u += held.c_u
+    w_e, w_n = -(mid_n + held.c_n) * inv_m, earth_n + (mid_e + held.c_e) * inv_n
     half = 0.5 * dt
     if altimeter:
         o_e, o_n, mid_u = -mid_n * inv_m, 2.0 * earth_n + transport_n, v_u + 0.5 * nav.m_u

@@ -1,0 +1,66 @@
+"""The network of the azimuth channel: the correction of the platform's turn about the vertical. Compiled.
+
+The platform is commanded to turn with omega_U + c_U, c_U = (1 - Y) u: external u = omega_Ur - omega_U, the
+rate that the log's velocity and its dead-reckoned latitude L_r give against the computed one; internal
+u = -omega_U (theory.md 3.7). L_r - L_c is the integral of the held difference, so it is kept instead of L_r.
+"""
+
+from typing import NamedTuple
+
+from navcore.foundation.compiled import inlined
+from navcore.law.network_state import channel_of, feed, keep_channel
+from navcore.law.records import CLEAR, EXTERNAL, REST, E, N, U
+
+
+class UpRate(NamedTuple):
+    """The computed rate about the vertical, omega_U = Omega sin L + V_E tan L/(N + h), and its slopes.
+
+    Attributes
+    ----------
+    rate : float
+        rad/s.
+    by_lat, by_v_e : float
+        d(omega_U)/dL (1/s) and d(omega_U)/dV_E (rad/m).
+    inv_m : float
+        1/(M + h), 1/m.
+    """
+
+    rate: float
+    by_lat: float
+    by_v_e: float
+    inv_m: float
+
+
+@inlined
+def _difference(law, up):
+    """Return omega_Ur - omega_U, rad/s, held from the log's epoch as V_r - V_c is."""
+    s = law.s
+    if s.epoch != s.azimuth_epoch:
+        s.azimuth_epoch = s.epoch
+        s.azimuth_input = up.by_lat * s.latitude + up.by_v_e * s.difference[E]
+    return s.azimuth_input
+
+
+@inlined
+def steer(law, up):
+    """Return c_U (rad/s) of this call; to be called after `navcore.law.step.law_step`, which decides."""
+    p, s = law.p, law.s
+    external = p.damping == EXTERNAL
+    if s.action == CLEAR or not s.steered:
+        s.latitude, s.azimuth_epoch, s.steered = 0.0, -2, True
+        u = 0.0 if external else -up.rate
+        for i in range(p.azimuth_order):
+            s.x[U, i] = s.azimuth.steady[i] * u
+    u = _difference(law, up) if external else -up.rate
+    if s.action == REST:
+        for i in range(p.azimuth_order):
+            s.x[U, i] = s.azimuth.steady[i] * u
+    if not s.damped:
+        s.correction[U] = 0.0
+        return 0.0
+    c_u, states = feed(p.azimuth_order, s.azimuth, channel_of(s, U), u)
+    keep_channel(s, U, states)
+    if external:
+        s.latitude += s.difference[N] * up.inv_m * p.law_step
+    s.correction[U] = c_u
+    return c_u

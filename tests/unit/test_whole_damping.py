@@ -1,0 +1,226 @@
+"""Whole damping: a network in the azimuth channel (at-sea eigenvalues, closed forms, both fidelities)."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from navcore.analysis.held_log import held_log
+from navcore.analysis.whole_system import whole_system
+from navcore.engine.drivers.batch import run_batches
+from navcore.engine.run import Run
+from navcore.engine.simulation import simulate
+from navcore.foundation.earth import EARTH_RATE, SPHERE
+from navcore.foundation.errors import InputError
+from navcore.foundation.units import DEG
+from navcore.networks import parse_network
+from navcore.quantities import NAMES
+from navcore.scenario.model import Scenario
+
+COMPLEMENTARY, UNITY2 = {"id": "complementary", "zeta": 0.5, "eta": 0.5}, {"id": "unity2", "zeta": 0.5}
+
+
+def made(*methods: dict[str, Any], hours: float = 48.0, **blocks: dict[str, Any]) -> Scenario:
+    run = {"duration_h": hours, "fidelity": "error_model", "earth": "sphere", "output_step_s": 60.0}
+    data: dict[str, Any] = {
+        "site": {"lat_deg": 45.0, "lon_deg": 0.0},
+        "run": run | blocks.pop("run", {}),
+        "reference": {"kind": "log", "rate_hz": 1.0} | blocks.pop("reference", {}),
+        "method": [{"damping": "external", "network": COMPLEMENTARY} | one for one in methods],
+    }
+    return Scenario.model_validate(data | blocks)
+
+
+def raise_faults(scenario: Scenario) -> None:
+    if faults := list(scenario.faults()):
+        raise InputError(faults)
+
+
+def columns(run: Run, name: str) -> list[np.ndarray]:
+    return [method.rows[:, NAMES.index(name)] for method in run.methods]
+
+
+# ------------------------------------------------------------ poles
+
+
+@pytest.mark.parametrize(
+    ("level", "azimuth", "modes", "growth"),
+    [
+        (COMPLEMENTARY, COMPLEMENTARY, [(0.3986, 1.2448), (0.3942, 1.2724), (0.3902, 1.2971)], -2.385e-5),
+        (COMPLEMENTARY, UNITY2, [(0.5400, 1.1342), (0.5484, 1.1162), (0.5574, 1.0991)], -4.463e-5),
+        ({"id": "classic2"}, UNITY2, [(0.4473, 1.2821), (0.4181, 1.3101), (0.3873, 1.3366)], -3.994e-5),
+        ({"id": "none"}, UNITY2, [(0.5015, 1.1975), (0.4989, 1.1995), (0.4976, 1.2020)], 1.576e-5),
+    ],
+)
+def test_slow_mode_and_growth_are_those_of_an_independent_program(level, azimuth, modes, growth) -> None:
+    network = parse_network(level).transfer(SPHERE.schuler_frequency(0.0))
+    slow = parse_network(azimuth).at_earth_rate()
+    for lat_deg, (ratio, frequency) in zip((20.0, 45.0, 70.0), modes, strict=True):
+        mode = whole_system(network, lat_deg * DEG, azimuth=slow).slow_mode
+        assert mode is not None
+        assert (mode.damping_ratio, abs(mode.eigenvalue) / EARTH_RATE) == pytest.approx(
+            (ratio, frequency), abs=1e-4
+        )
+    whole = whole_system(network, 45.0 * DEG, azimuth=slow)
+    assert max(mode.growth for mode in whole.modes) == pytest.approx(growth, rel=1e-3)
+    assert whole.stable == (growth < 0.0)
+    sampled = held_log(network, 1.0, 1.0, 45.0 * DEG, azimuth=slow)
+    assert sampled.growth_per_s == pytest.approx(growth, rel=2e-3)
+
+
+def test_a_classic_network_of_the_azimuth_is_that_of_the_level_channels_in_units_of_its_frequency() -> None:
+    level = parse_network("classic3").transfer(1.2400e-3)
+    slow = parse_network("classic3").at_earth_rate()
+    assert slow.poles / EARTH_RATE == pytest.approx(level.poles / 1.2400e-3)
+    assert slow.zeros / EARTH_RATE == pytest.approx(level.zeros / 1.2400e-3)
+    assert parse_network(UNITY2).at_earth_rate().h_slope == pytest.approx(12179.0, abs=1.0)
+
+
+# ------------------------------------------------------------ closed forms
+
+
+def test_an_east_gyro_bias_turns_the_heading_to_where_it_settles() -> None:
+    # phi_U -> -eps_E/(Omega cos L): 3.23 arcmin for 0.01 deg/h at 45 deg, as without damping
+    scenario = made({"azimuth": UNITY2}, hours=72.0, imu={"gyro_bias_dph": [0.01, 0.0, 0.0]})
+    (heading,) = columns(simulate(scenario), "phi_u_rad")
+    wanted = -0.01 * DEG / 3600.0 / (EARTH_RATE * math.cos(45.0 * DEG))
+    assert heading[-1] == pytest.approx(wanted, rel=1e-3)
+
+
+@pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
+def test_a_standing_error_of_the_log_leaves_a_latitude_of_609_m(fidelity: str) -> None:
+    sampling = {"rate_hz": 10.0} if fidelity == "strapdown" else {}
+    run = {"fidelity": fidelity, **sampling}
+    scenario = made({"azimuth": UNITY2}, hours=72.0, run=run, reference={"bias_mps": [0.0, 0.1]})
+    (latitude,) = columns(simulate(scenario), "dlat_m")
+    slope = parse_network(UNITY2).at_earth_rate().h_slope
+    assert latitude[-1] == pytest.approx(slope * 0.1 * 0.5, rel=2e-2)
+
+
+def test_a_steady_speed_costs_the_internal_form_30_km_and_the_external_one_nothing() -> None:
+    # dL R = -Y'(0) V_N cos^2 L
+    scenario = made(
+        {"name": "internal", "damping": "internal", "azimuth": UNITY2},
+        {"name": "external", "azimuth": UNITY2},
+        hours=30.0,
+        motion={"kind": "legs", "leg": [{"duration_s": 108000.0, "speed_mps": 5.0, "heading_deg": 0.0}]},
+    )
+    internal, external = columns(simulate(scenario), "dlat_m")
+    slope = parse_network(UNITY2).at_earth_rate().h_slope
+    lat = 45.0 * DEG + 5.0 * 30.0 * 3600.0 / SPHERE.radii(0.0)[0]  # where the ship has come to
+    assert internal[-1] == pytest.approx(-slope * 5.0 * math.cos(lat) ** 2, rel=0.02)
+    assert abs(external[-1]) < 1e-6 * abs(internal[-1])
+
+
+@pytest.mark.parametrize("damping", ["external", "internal"])
+def test_both_fidelities_agree_within_2_percent_of_the_peak_under_way(damping: str) -> None:
+    legs = [
+        {"duration_s": 21600.0, "speed_mps": 6.0, "heading_deg": 30.0},
+        {"duration_s": 21600.0, "heading_deg": 200.0},
+        {"duration_s": 21600.0, "heading_deg": 90.0},
+    ]
+
+    def errors(fidelity: str) -> np.ndarray:
+        scenario = made(
+            {"damping": damping, "azimuth": UNITY2},
+            hours=18.0,
+            run={"fidelity": fidelity, "rate_hz": 10.0},
+            motion={"kind": "legs", "leg": legs},
+            imu={"gyro_bias_dph": [0.01, -0.01, 0.01], "accel_bias_ug": [30.0, -20.0, 0.0]},
+            reference={"bias_mps": [0.1, -0.05]},
+        )
+        (method,) = simulate(scenario).methods
+        assert method.status == "ok"
+        return method.rows[:, :7]
+
+    linear, full = errors("error_model"), errors("strapdown")
+    peak = np.max(np.abs(full), axis=0)
+    assert np.all(np.max(np.abs(linear - full), axis=0) <= 0.02 * peak)
+
+
+def test_the_azimuth_network_damps_the_24_h_oscillation_that_level_networks_leave() -> None:
+    scenario = made(
+        {"name": "level"},
+        {"name": "whole", "azimuth": UNITY2},
+        hours=96.0,
+        initial_error={"attitude_arcmin": [0.0, 0.0, 10.0]},
+    )
+    level, whole = columns(simulate(scenario), "phi_u_rad")
+    last = len(level) * 3 // 4
+    assert np.ptp(whole[last:]) < 1e-2 * np.ptp(level[last:])
+
+
+def test_a_restart_after_an_outage_agrees_in_both_fidelities() -> None:
+    outage = [{"t_h": 6.0, "duration_s": 7200.0}, {"t_h": 12.0, "duration_s": 3600.0}]
+
+    def errors(fidelity: str, switching: str) -> np.ndarray:
+        scenario = made(
+            {"azimuth": UNITY2, "switching": {"id": switching}},
+            hours=18.0,
+            run={"fidelity": fidelity, "rate_hz": 10.0},
+            imu={"gyro_bias_dph": [0.01, 0.01, 0.01]},
+            reference={"bias_mps": [0.05, 0.1], "outage": outage},
+        )
+        (method,) = simulate(scenario).methods
+        return method.rows[:, :7]
+
+    for switching in ("hard", "keep", "ramp", "bumpless"):
+        linear, full = errors("error_model", switching), errors("strapdown", switching)
+        peak = np.max(np.abs(full), axis=0)
+        assert np.all(np.max(np.abs(linear - full), axis=0) <= 0.02 * peak), switching
+
+
+# ------------------------------------------------------------ what does not go together
+
+
+@pytest.mark.parametrize(
+    ("method", "blocks", "field", "told"),
+    [
+        ({"damping": "free", "network": {"id": "none"}}, {}, "method.0.azimuth", "internal"),
+        ({}, {"run": {"fidelity": "channel"}}, "method.0.damping", "error_model"),
+        ({}, {"site": {"lat_deg": 86.0, "lon_deg": 0.0}}, "method.0.damping", "85"),
+        (
+            {
+                "damping": "internal",
+                "azimuth": {"id": "custom", "zeros": [-1e-4], "poles": [-2e-4], "gain": 1.0},
+            },
+            {},
+            "method.0.azimuth.id",
+            "Y(0)",
+        ),
+    ],
+)
+def test_what_an_azimuth_network_does_not_go_with_is_refused(method, blocks, field: str, told: str) -> None:
+    with pytest.raises(InputError) as caught:
+        raise_faults(made({"azimuth": UNITY2} | method, **blocks))
+    assert field in str(caught.value) and told in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("method", "told"),
+    [
+        ({"network": {"id": "none"}}, "without level damping"),
+        ({"damping": "internal"}, "12179 s"),
+        ({"network": {"id": "compass", "sigma": 0.0015, "xi": 0.7}}, 'realisation = "network"'),
+    ],
+)
+def test_what_the_user_should_know_of_an_azimuth_network_is_told(method, told: str) -> None:
+    (run,) = simulate(made({"azimuth": UNITY2} | method, hours=1.0)).methods
+    assert any("azimuth" in text and told in text for text in run.warnings), run.warnings
+
+
+def test_a_batch_of_strapdown_runs_ends_where_single_runs_end() -> None:
+    scenarios = [
+        made(
+            {"azimuth": UNITY2},
+            hours=3.0,
+            run={"fidelity": "strapdown", "rate_hz": 10.0, "seed": seed},
+            imu={"gyro_bias_dph": [0.01, 0.01, 0.01], "gyro_arw_dpsh": 0.001},
+            reference={"noise_mps": 0.1},
+        )
+        for seed in (1, 2)
+    ]
+    (batch,) = run_batches(scenarios, lambda _: False)
+    single = [columns(simulate(scenario), "position_m")[0][-1] for scenario in scenarios]
+    assert batch.position_m == pytest.approx(single, rel=1e-9)
