@@ -14,6 +14,7 @@ from numba.core import event
 
 from navcore.engine.measures import metrics
 from navcore.engine.simulation import simulate
+from navcore.foundation.earth import EARTH_RATE
 from navcore.scenario.file import load
 from schuler_bench.cli import main
 from schuler_bench.cli.progress import Bar, compiling
@@ -44,6 +45,8 @@ LOOP_KEYS = [
     "earth_mode_growth_per_s",
     "h_slope_s",
     "whole_system_stable",
+    "slow_mode_damping_ratio",
+    "slow_mode_natural_frequency_rad_s",
     "growth_per_s",
 ]
 
@@ -76,6 +79,8 @@ def test_json_is_one_document_with_the_contracts_keys(capsys):
         "earth_mode_growth_per_s": 0.0,
         "h_slope_s": 0.0,
         "whole_system_stable": True,
+        "slow_mode_damping_ratio": pytest.approx(0.0, abs=1e-9),
+        "slow_mode_natural_frequency_rad_s": pytest.approx(EARTH_RATE, rel=2e-2),
         "growth_per_s": 0.0,
     }
     assert "undamped" in free["warnings"]

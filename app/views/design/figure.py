@@ -285,6 +285,8 @@ def _layout(
     width_px: float,
     note: str,
 ) -> dict[str, Any]:
+    if any(_GROWS in label for label in labels):
+        note = Text.joined("; ", filter(None, (Text("{sign} grows by e in this time", sign=_GROWS), note)))
     what = (
         Text("standard deviation, steady state at rest")
         if budget.steady
@@ -294,7 +296,7 @@ def _layout(
         what = Text("{what}; the dashed line is the floor", what=what)
         if not grid.long:
             what = Text("{what}, × how many times it", what=what)
-            if _NOTE_LETTER_PX * len(what) > width_px - _RIGHT_PX:
+            if _NOTE_LETTER_PX * len(Text.joined("; ", filter(None, (what, note)))) > width_px - _RIGHT_PX:
                 what = Text("the dashed line is the floor, × how many times it")
     layout = style.layout(
         meta={"aspect": aspect},
@@ -308,8 +310,6 @@ def _layout(
     inner_w = width_px - grid.left - _RIGHT_PX
     inner_h = max(aspect * width_px - _TOP_PX - grid.bottom, 1.0)
     methods = [style.plain(label) for label in labels]
-    if any(_GROWS in label for label in labels):
-        note = Text.joined("; ", filter(None, (Text("{sign} grows by e in this time", sign=_GROWS), note)))
     for k, kind in enumerate(shown):
         suffix = "" if k == 0 else str(k + 1)
         column, row = k % grid.columns, k // grid.columns
