@@ -12,11 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from navcore.alignment.kernel import coarse_kernel, fine_kernel
-from navcore.alignment.loop import CompassLoop, azimuth_gains, check_latitude
+from navcore.alignment.loop import CompassLoop, check_latitude
 from navcore.foundation.earth import EARTH_RATE, Earth
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.mechanization.strapdown.run import turned_by
+from navcore.networks.azimuth_loop import azimuth_gains
 from navcore.networks.compass import gains_from_sigma_xi
 
 
@@ -153,7 +154,7 @@ def fine_alignment(
     for first, last, sigma, azimuth in parts:
         east = gains_from_sigma_xi(sigma, loop.xi, frequencies[1])
         north = gains_from_sigma_xi(sigma, loop.xi, frequencies[0])
-        up = azimuth_gains(sigma, loop.xi, frequencies[0], gravity)
+        up = azimuth_gains(sigma, loop.xi, frequencies[0], gravity)[:4]
         fine_kernel(
             increments,
             first,
@@ -195,7 +196,6 @@ def _product(p: np.ndarray, q: np.ndarray) -> np.ndarray:
 __all__ = [
     "Aligned",
     "CompassLoop",
-    "azimuth_gains",
     "check_latitude",
     "coarse_alignment",
     "fine_alignment",

@@ -51,11 +51,3 @@ def check_latitude(lat: float) -> None:
                 ),
             )
         )
-
-
-def azimuth_gains(
-    sigma: float, xi: float, omega_s: float, gravity: float
-) -> tuple[float, float, float, float]:
-    """K_U1 (1/s), K_U2, K_U3 (1/(m s^2) times rad), K_U4 (1/s) of theory.md 6.1."""
-    stiffness = sigma**2 / xi**2
-    return 2.0 * sigma, 2.0 * stiffness / omega_s**2 - 1.0, stiffness**2 / gravity, 2.0 * sigma

@@ -28,9 +28,10 @@ from navcore.analysis.whole_system import (
     inputs_of_law,
     up_rate,
 )
-from navcore.foundation.earth import SPHERE, Earth
+from navcore.foundation.earth import EARTH_RATE, SPHERE, Earth
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
+from navcore.networks.azimuth_loop import AzimuthGains
 from navcore.networks.base import LinearNetwork
 from navcore.networks.discrete import discretise
 
@@ -84,7 +85,7 @@ def held_log(
     lat: float,
     earth: Earth = SPHERE,
     coupled: bool = True,
-    azimuth: LinearNetwork | None = None,
+    azimuth: LinearNetwork | AzimuthGains | None = None,
 ) -> HeldLog:
     """Check the sampled law of a method at rest.
 
@@ -103,8 +104,8 @@ def held_log(
         WGS-84 or the sphere.
     coupled : bool
         False: `growth_per_s` is that of the level channels by themselves, without heading and latitude.
-    azimuth : LinearNetwork, optional
-        Y(s) of the azimuth channel; it counts in `growth_per_s`.
+    azimuth : LinearNetwork or AzimuthGains, optional
+        Y(s) or the gyrocompass of the azimuth channel; it counts in `growth_per_s`.
     """
     calls = max(1, round(log_period_s / law_step_s))
     growth = _growth(network, law_step_s, calls, lat, earth)
@@ -128,7 +129,7 @@ def period_map(
     lat: float,
     earth: Earth = SPHERE,
     coupled: bool = True,
-    azimuth: LinearNetwork | None = None,
+    azimuth: LinearNetwork | AzimuthGains | None = None,
 ) -> np.ndarray:
     """Map of the state over one period of the log, i.e. ``calls`` calls of the law.
 
@@ -146,7 +147,7 @@ def period_map(
     n, omega_s = len(B), network.omega_s
     plant, forced = _held_plant(lat, omega_s, law_step_s, earth, coupled)
     held = STATES + 2 * n
-    m = 0 if azimuth is None else azimuth.order + 1
+    m = 0 if azimuth is None else 1 if isinstance(azimuth, AzimuthGains) else azimuth.order + 1
     step = np.zeros((held + 2 + m, held + 2 + m))
     step[:STATES, :STATES] = plant
     for channel in range(2):
@@ -160,7 +161,9 @@ def period_map(
     fresh = np.eye(held + 2 + m)
     fresh[held : held + 2, held : held + 2] = 0.0
     fresh[held, 0] = fresh[held + 1, 1] = -1.0
-    if azimuth is not None:
+    if isinstance(azimuth, AzimuthGains):
+        _turn_north(step, forced, azimuth, omega_s, law_step_s, EARTH_RATE * math.cos(lat))
+    elif azimuth is not None:
         y, z, u = discretise(azimuth, law_step_s), slice(held + 2, held + 1 + m), held + 1 + m
         step[:STATES, z] = np.outer(forced[:, 4], -y.C)
         step[:STATES, u] = forced[:, 4] * (1.0 - y.D)
@@ -168,6 +171,20 @@ def period_map(
         fresh[u, :STATES], fresh[u, u] = -up_rate(lat, omega_s, earth), 0.0
     period = np.linalg.matrix_power(step, calls) @ fresh
     return period if coupled else np.delete(np.delete(period, _ALONE, 0), _ALONE, 1)
+
+
+def _turn_north(
+    step: np.ndarray, forced: np.ndarray, gains: AzimuthGains, omega_s: float, step_s: float, earth_n: float
+) -> None:
+    """Put a gyrocompass in the place of the north network: w is the last state, d_N the one before."""
+    w, held, left = len(step) - 1, len(step) - 2, math.exp(-gains.k4 * step_s)
+    gain = gains.k3 * gains.gravity * (1.0 - left) / (gains.k4 * omega_s**2 * earth_n)
+    step[w, w], step[w, held] = left, -gain
+    step[:STATES, STATES + (held - 1 - STATES) // 2 : held - 1] = 0.0
+    step[:STATES, held] = (
+        forced[:, 3] * (gains.k1 / omega_s) - forced[:, 1] * gains.k2 - forced[:, 4] * 0.5 * gain
+    )
+    step[:STATES, w] = forced[:, 4] * 0.5 * (1.0 + left)
 
 
 def growth_of_map(period: np.ndarray, period_s: float, omega_s: float) -> float:

@@ -16,6 +16,7 @@ from navcore.analysis.loop import closed_loop_poles
 from navcore.foundation.earth import EARTH_RATE, SPHERE, Earth
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
+from navcore.networks.azimuth_loop import AzimuthGains
 from navcore.networks.base import ComplexArray, LinearNetwork
 from navcore.networks.roots import sorted_roots
 from navcore.networks.state_space import state_space, state_spaces
@@ -190,7 +191,7 @@ def system_matrix(
     lat: float,
     earth: Earth = SPHERE,
     height: float = 0.0,
-    azimuth: LinearNetwork | None = None,
+    azimuth: LinearNetwork | AzimuthGains | None = None,
 ) -> np.ndarray:
     """System matrix with the law's states of the east, the north and the azimuth channel.
 
@@ -199,15 +200,23 @@ def system_matrix(
     law = law_form(network)
     n = len(law.B)
     act = inputs_of_law(lat, network.omega_s, earth, height)
-    m = 0 if azimuth is None else azimuth.order
+    compass = isinstance(azimuth, AzimuthGains)
+    m = 0 if azimuth is None else 1 if compass else azimuth.order
     f = np.zeros((STATES + 2 * n + m, STATES + 2 * n + m))
     f[:STATES, :STATES] = free_matrix(lat, network.omega_s, earth, height)
-    for channel in (DV_E, DV_N):
+    for channel in (DV_E,) if compass else (DV_E, DV_N):
         z = slice(STATES + channel * n, STATES + (channel + 1) * n)
         f[:STATES, channel] += act[:, channel] * law.D - act[:, 2 + channel] * law.k1
         f[:STATES, z] = np.outer(act[:, channel], law.C) + np.outer(act[:, 2 + channel], law.E)
         f[z, channel], f[z, z] = law.B, law.A
-    if azimuth is not None:
+    if isinstance(azimuth, AzimuthGains):
+        f = np.delete(np.delete(f, north := range(STATES + n, STATES + 2 * n), 0), north, 1)
+        rate = network.omega_s
+        f[DV_N, DV_N] -= azimuth.k1 / rate
+        f[PHI_E, DV_N] += act[PHI_E, 1] * azimuth.k2
+        f[PHI_U, -1], f[-1, -1] = 1.0, -azimuth.k4 / rate
+        f[-1, DV_N] = azimuth.k3 * azimuth.gravity / (rate**3 * EARTH_RATE * math.cos(lat))
+    elif azimuth is not None:
         y, rate = law_form(azimuth), azimuth.omega_s / network.omega_s
         up, z = up_rate(lat, network.omega_s, earth, height), slice(STATES + 2 * n, None)
         f[PHI_U, :STATES] += y.D * up
@@ -230,7 +239,7 @@ def whole_system(
     lat: float,
     earth: Earth = SPHERE,
     height: float = 0.0,
-    azimuth: LinearNetwork | None = None,
+    azimuth: LinearNetwork | AzimuthGains | None = None,
 ) -> WholeSystem:
     """Analyse the whole system at rest.
 
@@ -244,8 +253,8 @@ def whole_system(
         WGS-84 or the sphere.
     height : float
         m.
-    azimuth : LinearNetwork, optional
-        Y(s) of the azimuth channel (theory.md 3.7).
+    azimuth : LinearNetwork or AzimuthGains, optional
+        Y(s) or the gyrocompass of the azimuth channel (theory.md 3.7, 3.8).
     """
     matrix = system_matrix(network, lat, earth, height, azimuth)
     values = np.linalg.eigvals(matrix).astype(np.complex128)
@@ -264,7 +273,10 @@ def whole_system(
 
 
 def growth_over_latitude(
-    network: LinearNetwork, lats: np.ndarray, earth: Earth = SPHERE, azimuth: LinearNetwork | None = None
+    network: LinearNetwork,
+    lats: np.ndarray,
+    earth: Earth = SPHERE,
+    azimuth: LinearNetwork | AzimuthGains | None = None,
 ) -> np.ndarray:
     """Growth rate of the 24 h mode at each latitude (rad), 1/s, shape of ``lats``."""
     lats = np.asarray(lats, dtype=float)
@@ -286,7 +298,7 @@ def duration(seconds: float) -> str:
 
 
 def _named(
-    values: ComplexArray, network: LinearNetwork, lat: float, azimuth: LinearNetwork | None
+    values: ComplexArray, network: LinearNetwork, lat: float, azimuth: LinearNetwork | AzimuthGains | None
 ) -> list[Mode]:
     """Name every eigenvalue after the mode it comes from; of a pair only the upper one is kept."""
     targets, names = _uncoupled(network, lat, azimuth)
@@ -299,7 +311,7 @@ def _named(
 
 
 def _uncoupled(
-    network: LinearNetwork, lat: float, azimuth: LinearNetwork | None
+    network: LinearNetwork, lat: float, azimuth: LinearNetwork | AzimuthGains | None
 ) -> tuple[ComplexArray, list[str]]:
     """Modes as they were without coupling: those of s^2 + Omega^2 Y and the poles of both channels.
 
@@ -308,6 +320,16 @@ def _uncoupled(
     rate = 1j * EARTH_RATE / network.omega_s
     poles = closed_loop_poles(network)
     main = _least_damped(poles)
+    if isinstance(azimuth, AzimuthGains):
+        pair = np.roots([1.0, azimuth.k1, math.sqrt(azimuth.k3 * azimuth.gravity)])
+        loop = np.tile(pair / network.omega_s, 2)
+        targets = np.concatenate([[0.0], loop, poles, [0.0]]).astype(np.complex128)
+        return targets, [
+            EARTH_MODE,
+            *[NETWORK_MODE] * 4,
+            *[SCHULER_MODE if own else NETWORK_MODE for own in main],
+            NETWORK_MODE,
+        ]
     slow = np.array([rate, -rate]) if azimuth is None else abs(rate) * closed_loop_poles(azimuth)
     earth = [EARTH_MODE if own else NETWORK_MODE for own in _least_damped(slow)]
     split = np.where(main, rate * math.sin(lat), 0.0)

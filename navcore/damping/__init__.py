@@ -18,3 +18,5 @@ WHOLE: dict[str, Damping] = {
     for kind in (loaded(f"navcore.damping.whole:{name}")() for name in ("WholeInternal", "WholeExternal"))
 }
 """Kinds of the same names with a network in the azimuth channel too."""
+GYROCOMPASS: Damping = loaded("navcore.damping.gyrocompass:GyrocompassExternal")()
+"""External damping with a gyrocompass in the azimuth channel."""

@@ -17,6 +17,7 @@ from navcore.law.combination import combination_faults, combination_warnings, ne
 from navcore.law.policy.base import PolicyParameters
 from navcore.law.records import LawKind
 from navcore.law.switching.base import SwitchingParameters
+from navcore.networks.azimuth_loop import AzimuthGains
 from navcore.networks.base import LinearNetwork, NetworkParameters
 from navcore.networks.undamped import UndampedNetwork
 
@@ -43,6 +44,20 @@ class Need(NamedTuple):
     because: str
 
 
+class GyrocompassSettings(Protocol):
+    """Decay rate (1/s) and damping ratio of an azimuth loop."""
+
+    @property
+    def sigma(self) -> float:
+        """1/s."""
+        ...
+
+    @property
+    def xi(self) -> float:
+        """Damping ratio."""
+        ...
+
+
 class Configured(Protocol):
     """A block ``[[method]]`` as a kind of damping sees it."""
 
@@ -54,6 +69,11 @@ class Configured(Protocol):
     @property
     def azimuth(self) -> NetworkParameters:
         """Network of the azimuth channel as configured; "none": it is not damped."""
+        ...
+
+    @property
+    def gyrocompass(self) -> GyrocompassSettings | None:
+        """Azimuth loop as configured."""
         ...
 
     @property
@@ -134,8 +154,8 @@ class Damping:
         """Network in force: as configured, or the one that the policy brings; H = 1 where none acts."""
         return network_in_force(self.law, method.network, method.policy)
 
-    def azimuth(self, method: Configured) -> LinearNetwork | None:
-        """Network Y(s) of the azimuth channel in force; None where none acts."""
+    def azimuth(self, method: Configured, omega_s: float) -> LinearNetwork | AzimuthGains | None:
+        """Y(s) or gyrocompass of the azimuth channel at a Schuler frequency (rad/s); None: neither."""
         return None
 
     def acting(self, network: LinearNetwork) -> LinearNetwork:

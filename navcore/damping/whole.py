@@ -17,7 +17,7 @@ _UNITY = 1e-3
 class _Whole(NetworkDamping):
     no_covariance: ClassVar[str] = Text("the azimuth network couples both channels with heading and latitude")
 
-    def azimuth(self, method: Configured) -> LinearNetwork | None:
+    def azimuth(self, method: Configured, omega_s: float) -> LinearNetwork | None:
         """Y(s) at Omega."""
         return method.azimuth.at_earth_rate()
 
@@ -73,25 +73,26 @@ class _Whole(NetworkDamping):
             )
 
 
-_NEEDS = (
+AZIMUTH_NEEDS = (
     Need(
         "coupled channels",
         Text(
-            'needs run.fidelity "error_model" or "strapdown" for its azimuth network: one channel has no '
+            'needs run.fidelity "error_model" or "strapdown" for its azimuth channel: one channel has no '
             "heading"
         ),
     ),
-    Need("below 85 deg", Text("needs abs(site.lat_deg) <= 85 for its azimuth network")),
+    Need("below 85 deg", Text("needs abs(site.lat_deg) <= 85 for its azimuth channel")),
 )
+"""Conditions of whatever acts in the azimuth channel."""
 
 
 class WholeExternal(_Whole, External):
     """External damping of level channels and azimuth."""
 
-    needs: ClassVar[tuple[Need, ...]] = (*External.needs, *_NEEDS)
+    needs: ClassVar[tuple[Need, ...]] = (*External.needs, *AZIMUTH_NEEDS)
 
 
 class WholeInternal(_Whole, Internal):
     """Internal damping of level channels and azimuth."""
 
-    needs: ClassVar[tuple[Need, ...]] = (*Internal.needs, *_NEEDS)
+    needs: ClassVar[tuple[Need, ...]] = (*Internal.needs, *AZIMUTH_NEEDS)

@@ -68,7 +68,9 @@ class Setting:
         scenario = self.ship.scenario
         place = scenario.site.lat_deg * DEG, scenario.earth, scenario.site.height_m
         kind = self.method.kind
-        return whole_system(kind.acting(self.network), *place, azimuth=kind.azimuth(self.method))
+        return whole_system(
+            kind.acting(self.network), *place, azimuth=kind.azimuth(self.method, self.network.omega_s)
+        )
 
     @cached_property
     def growth_per_s(self) -> float:
@@ -82,7 +84,11 @@ class Setting:
         place = scenario.site.lat_deg * DEG, scenario.earth, scenario.run.fidelity != "channel"
         kind = self.method.kind
         return held_log(
-            kind.acting(self.network), period_s, timing.step_s, *place, azimuth=kind.azimuth(self.method)
+            kind.acting(self.network),
+            period_s,
+            timing.step_s,
+            *place,
+            azimuth=kind.azimuth(self.method, self.network.omega_s),
         ).growth_per_s
 
     @property

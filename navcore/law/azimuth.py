@@ -10,6 +10,7 @@ from typing import NamedTuple
 from navcore.foundation.compiled import inlined
 from navcore.law.network_state import channel_of, feed, keep_channel
 from navcore.law.records import CLEAR, EXTERNAL, REST, E, N, U
+from navcore.law.step import Correction
 
 
 class UpRate(NamedTuple):
@@ -23,12 +24,15 @@ class UpRate(NamedTuple):
         d(omega_U)/dL (1/s) and d(omega_U)/dV_E (rad/m).
     inv_m : float
         1/(M + h), 1/m.
+    earth_n : float
+        Omega cos L, rad/s.
     """
 
     rate: float
     by_lat: float
     by_v_e: float
     inv_m: float
+    earth_n: float
 
 
 @inlined
@@ -42,9 +46,32 @@ def _difference(law, up):
 
 
 @inlined
-def steer(law, up):
-    """Return c_U (rad/s) of this call; to be called after `navcore.law.step.law_step`, which decides."""
+def _compass(law, c, up):
+    """North channel and azimuth of a gyrocompass: w' = -K_U4 w + K_U3 dv_N/(Omega cos L), theory.md 3.8."""
     p, s = law.p, law.s
+    w = s.x[U, 0]
+    if s.action == CLEAR or not s.steered:
+        w, s.steered = 0.0, True
+    if not s.damped:
+        s.x[U, 0] = s.correction[N] = s.correction[U] = 0.0
+        return Correction(c.c_e, 0.0, c.a_e, 0.0), 0.0
+    d_n = s.difference[N]
+    after = p.compass[2] * w - p.compass[3] * d_n / up.earth_n
+    s.x[U, 0] = after
+    c_n, c_u = -p.compass[1] * d_n, 0.5 * (w + after)
+    s.correction[N], s.correction[U] = c_n, c_u
+    return Correction(c.c_e, c_n, c.a_e, p.compass[0] * d_n), c_u
+
+
+@inlined
+def steer(law, c, up):
+    """Return the `Correction` c as the azimuth channel leaves it, and its own c_U (rad/s).
+
+    To be called after `navcore.law.step.law_step`, which gives c and decides.
+    """
+    p, s = law.p, law.s
+    if p.gyrocompass:
+        return _compass(law, c, up)
     external = p.damping == EXTERNAL
     if s.action == CLEAR or not s.steered:
         s.latitude, s.azimuth_epoch, s.steered = 0.0, -2, True
@@ -57,10 +84,10 @@ def steer(law, up):
             s.x[U, i] = s.azimuth.steady[i] * u
     if not s.damped:
         s.correction[U] = 0.0
-        return 0.0
+        return c, 0.0
     c_u, states = feed(p.azimuth_order, s.azimuth, channel_of(s, U), u)
     keep_channel(s, U, states)
     if external:
         s.latitude += s.difference[N] * up.inv_m * p.law_step
     s.correction[U] = c_u
-    return c_u
+    return c, c_u

@@ -34,6 +34,7 @@ from navcore.law.records import (
 from navcore.law.step import law_step
 from navcore.law.switching import SWITCHINGS, SwitchingParameters
 from navcore.law.tuned_network import tune
+from navcore.networks.azimuth_loop import AzimuthGains
 from navcore.networks.base import LinearNetwork, NetworkParameters
 from navcore.networks.discrete import discretise
 
@@ -68,7 +69,7 @@ def prepare_law(
     policy: PolicyParameters,
     switching: SwitchingParameters,
     law_step_s: float,
-    azimuth: LinearNetwork | None = None,
+    azimuth: LinearNetwork | AzimuthGains | None = None,
 ) -> Law:
     """Fill the records of a method's law.
 
@@ -83,8 +84,8 @@ def prepare_law(
         When and how to switch.
     law_step_s : float
         Time between two calls of `law_step`, s.
-    azimuth : LinearNetwork, optional
-        Y(s) of the azimuth channel, for `navcore.law.azimuth.steer`.
+    azimuth : LinearNetwork or AzimuthGains, optional
+        Y(s) or the gyrocompass of the azimuth channel, for `navcore.law.azimuth.steer`.
 
     Raises
     ------
@@ -111,7 +112,11 @@ def prepare_law(
     s = new_record(LAW_STATE, xi_target=xi, epoch=-1, policies={policy.id: policy.remembered()})
     p["tan_half"] = math.tan(0.5 * omega_s * law_step_s)
     _fill_form(p, s, parameters, network, policy, switching)
-    if azimuth is not None:
+    if isinstance(azimuth, AzimuthGains):
+        left = math.exp(-azimuth.k4 * law_step_s)
+        p["gyrocompass"], p["azimuth_order"] = True, 1
+        p["compass"] = azimuth.k1, azimuth.k2, left, azimuth.k3 * (1.0 - left) / azimuth.k4
+    elif azimuth is not None:
         p["azimuth_order"] = azimuth.order
         fill_record(s["azimuth"], _complement(azimuth, law_step_s))
     rows = max(1, policy.ring_rows(law_step_s), switching.ring_rows(law_step_s))

@@ -37,7 +37,9 @@ PARAMETERS = {
     "damping": COUNT,  # FREE, INTERNAL, EXTERNAL
     "realisation": COUNT,  # NETWORK, FEEDBACK, AS_PRINTED
     "order": COUNT,  # states of a level channel
-    "azimuth_order": COUNT,  # states of the azimuth channel; 0: no network acts there
+    "azimuth_order": COUNT,  # states of the azimuth channel; 0: nothing acts there
+    "gyrocompass": FLAG,  # a gyrocompass acts there, no network
+    "compass": (REAL, (4,)),  # K_U1 (1/s), K_U2, what a step leaves of its rate, gain of a step (rad/m)
     "policy": COUNT,  # place of the policy in its registry
     "switching": COUNT,  # place of the switching method in its registry
     "plain": FLAG,  # policy and switching need nothing but the present difference

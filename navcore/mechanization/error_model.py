@@ -155,7 +155,7 @@ def in_range(x):
 def _up_rate(c, x):
     """Computed rate about the vertical with the `Errors` x, at the coefficients of a step's begin."""
     by_lat, by_v_e = c.earth_n + c.up_lat, c.tan_lat * c.inv_n
-    return UpRate(c.w_u + by_lat * x.d_lat + by_v_e * x.dv_e, by_lat, by_v_e, c.inv_m)
+    return UpRate(c.w_u + by_lat * x.d_lat + by_v_e * x.dv_e, by_lat, by_v_e, c.inv_m, c.earth_n)
 
 
 @kernel
@@ -179,7 +179,9 @@ def _advance(first, last, final, h, half, law_input, gyro, accel, log, law, stat
         # the heading that the ship has is the computed one: level, it is off by phi_U (theory.md 2.3)
         c = law_step(law, Sensed(motion.v_e + x.dv_e, motion.v_n + x.dv_n, motion.heading + x.phi_u))
         begin = half[2 * k * half_stride]
-        c_u = steer(law, _up_rate(begin, x)) if law.p.azimuth_order > 0 else 0.0
+        c_u = 0.0
+        if law.p.azimuth_order > 0:
+            c, c_u = steer(law, c, _up_rate(begin, x))
         watched = Watched(float(s.wanted), 1.0 if s.damped else 0.0, s.xi, s.measure)
         record(k, given_out(x, s), begin.m, begin.n_cos, watched, recorder)
         if (k + 1) % recorder.bin_width == 0 or k + 1 == last:

@@ -4,8 +4,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field, create_model
 
-from navcore.damping import KINDS, WHOLE
+from navcore.damping import GYROCOMPASS, KINDS, WHOLE
 from navcore.damping.base import Damping
+from navcore.damping.gyrocompass import Gyrocompass
 from navcore.foundation.parameters import Parameters
 from navcore.foundation.text import Text
 from navcore.law.policy import Policy
@@ -59,6 +60,14 @@ class Method(_Settled):
             "rate in place of the Schuler frequency; none: the azimuth is not damped."
         ),
     )
+    gyrocompass: Gyrocompass | None = Field(
+        default=None,
+        json_schema_extra={"label": "gyrocompass"},
+        description=Text(
+            "Azimuth loop on the north channel's difference to the log (gyrocompass during navigation); the "
+            "network then damps the east channel only. Not together with azimuth."
+        ),
+    )
     policy: Policy = Field(default_factory=Constant)
     switching: Switching = Field(default_factory=Hard)
     event: tuple[LogEvent, ...] = Field(
@@ -70,6 +79,8 @@ class Method(_Settled):
     @property
     def kind(self) -> Damping:
         """Kind of damping."""
+        if self.gyrocompass is not None and self.damping == GYROCOMPASS.id:
+            return GYROCOMPASS
         return (
             KINDS[self.damping] if self.azimuth.id == "none" else WHOLE.get(self.damping, KINDS[self.damping])
         )

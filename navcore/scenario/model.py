@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from navcore.damping import WHOLE
+from navcore.damping import GYROCOMPASS, WHOLE
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.faults import faults_from
 from navcore.foundation.text import Text
@@ -127,6 +127,9 @@ def _method_faults(scenario: ScenarioFields) -> Iterator[Fault]:
                 'needs damping = "internal" or "external", not "{damping}"', damping=method.damping
             )
             yield Fault("", f"{at}.azimuth", method.azimuth.id, allowed)
+        if method.gyrocompass is not None and method.kind is not GYROCOMPASS:
+            allowed = Text('needs damping = "external", not "{damping}"', damping=method.damping)
+            yield Fault("", f"{at}.gyrocompass", method.damping, allowed)
         own_faults = list(method.kind.faults(method, scenario.law_step_s))
         if own_faults:
             yield from InputError(own_faults).located("", f"{at}.").faults

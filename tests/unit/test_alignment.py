@@ -5,7 +5,6 @@ import pytest
 
 from navcore.alignment.fine import (
     CompassLoop,
-    azimuth_gains,
     coarse_alignment,
     fine_alignment,
     steady_misalignment,
@@ -17,6 +16,7 @@ from navcore.mechanization.strapdown.attitude import misalignment, quaternion_of
 from navcore.mechanization.strapdown.run import turned_by
 from navcore.motion.static import StaticMotion
 from navcore.motion.truth import HEADING, PITCH, ROLL
+from navcore.networks.azimuth_loop import azimuth_gains
 from navcore.sensors.imu import Imu
 from navcore.sensors.imu_simulation import ImuSimulation
 from tests.strapdown import DENG_SWING, SITE
@@ -66,7 +66,7 @@ def test_angular_random_walk_alone_gives_0_14_deg_of_heading():
 
 def test_azimuth_poles_are_those_of_the_design():
     sigma, xi, omega_s = 0.02, 0.707, 1.24e-3
-    k1, k2, k3, k4 = azimuth_gains(sigma, xi, omega_s, GRAVITY)
+    k1, k2, k3, k4, _ = azimuth_gains(sigma, xi, omega_s, GRAVITY)
     # (s + k4) [s (s + k1) + (1 + k2) ws^2] + g k3, from the north channel with the azimuth loop closed
     got = np.polyadd(np.polymul([1, k4], [1, k1, (1 + k2) * omega_s**2, 0]), [GRAVITY * k3])
     design = np.polymul([1, 2 * sigma, sigma**2 / xi**2], [1, 2 * sigma, sigma**2 / xi**2])

@@ -18,7 +18,7 @@ from tools.papers.measure import interval, last_above
 from tools.papers.runs import Runs, method, scenario_of
 from tools.papers.write import papers, write_report
 
-OWN = {"sea-whole", "sikuliaq-like", "sikuliaq-recorded", "sun-states"}
+OWN = {"sea-gyrocompass", "sea-whole", "sikuliaq-like", "sikuliaq-recorded", "sun-states"}
 """Presets of no exhibit: no paper prints numbers for them."""
 CHEAP = ("liu-fig-3", "sun-table-1")
 """Exhibits that need no run."""

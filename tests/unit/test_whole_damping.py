@@ -13,8 +13,9 @@ from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.earth import EARTH_RATE, SPHERE
 from navcore.foundation.errors import InputError
-from navcore.foundation.units import DEG
+from navcore.foundation.units import ARCMIN, DEG
 from navcore.networks import parse_network
+from navcore.networks.azimuth_loop import azimuth_gains
 from navcore.quantities import NAMES
 from navcore.scenario.model import Scenario
 
@@ -179,6 +180,14 @@ def test_a_restart_after_an_outage_agrees_in_both_fidelities() -> None:
     [
         ({"damping": "free", "network": {"id": "none"}}, {}, "method.0.azimuth", "internal"),
         ({}, {"run": {"fidelity": "channel"}}, "method.0.damping", "error_model"),
+        ({"gyrocompass": {"sigma": 0.002, "xi": 0.707}}, {}, "method.0.azimuth.id", "gyrocompass"),
+        (
+            {"gyrocompass": {"sigma": 0.5, "xi": 0.707}, "azimuth": {"id": "none"}},
+            {},
+            "method.0.gyrocompass.sigma",
+            "<= 0.1",
+        ),
+        ({"gyrocompass": {}, "damping": "internal"}, {}, "method.0.gyrocompass", "external"),
         ({}, {"site": {"lat_deg": 86.0, "lon_deg": 0.0}}, "method.0.damping", "85"),
         (
             {
@@ -224,3 +233,49 @@ def test_a_batch_of_strapdown_runs_ends_where_single_runs_end() -> None:
     (batch,) = run_batches(scenarios, lambda _: False)
     single = [columns(simulate(scenario), "position_m")[0][-1] for scenario in scenarios]
     assert batch.position_m == pytest.approx(single, rel=1e-9)
+
+
+# ------------------------------------------------------------ gyrocompass during navigation
+
+
+COMPASS = {"id": "compass", "sigma": 0.0015, "xi": 0.7}
+GYROCOMPASS = {"sigma": 0.002, "xi": 0.707}
+
+
+@pytest.mark.parametrize(
+    ("blocks", "arcmin"),
+    [
+        ({"reference": {"bias_mps": [0.0, 0.1]}}, -1.0146),
+        ({"imu": {"gyro_bias_dph": [0.01, 0.0, 0.0]}}, -3.2330),
+        ({"imu": {"gyro_bias_dph": [0.0, 0.0, 0.01]}}, -0.1661),
+        ({"imu": {"accel_bias_ug": [50.0, 0.0, 0.0]}}, 0.1719),
+    ],
+    ids=["log", "east gyro", "up gyro", "east accelerometer"],
+)
+@pytest.mark.parametrize("fidelity", ["error_model", "strapdown"])
+def test_a_gyrocompass_settles_where_an_independent_integration_does(blocks, arcmin, fidelity: str) -> None:
+    method = {"network": COMPASS, "gyrocompass": GYROCOMPASS}
+    run = {"fidelity": fidelity, "rate_hz": 10.0}
+    (heading,) = columns(simulate(made(method, hours=3.0, run=run, **blocks)), "phi_u_rad")
+    assert heading[-1] / ARCMIN == pytest.approx(arcmin, rel=1e-2)
+
+
+def test_the_whole_system_with_a_gyrocompass_has_its_poles_and_the_sampled_law_agrees() -> None:
+    omega_s = SPHERE.schuler_frequency(0.0)
+    network = parse_network(COMPASS).transfer(omega_s)
+    gains = azimuth_gains(0.002, 0.707, omega_s, omega_s**2 * 6378137.0)
+    whole = whole_system(network, 45.0 * DEG, azimuth=gains)
+    assert whole.stable
+    wanted = max(np.roots([1.0, 0.004, 0.002**2 / 0.707**2]), key=lambda root: root.imag)
+    nearest = min(abs(mode.eigenvalue - wanted) for mode in whole.modes)
+    assert nearest < 0.2 * abs(wanted)
+    sampled = held_log(network, 1.0, 1.0, 45.0 * DEG, azimuth=gains)
+    assert sampled.growth_per_s <= 0.0
+    for period_s, status in ((400.0, "ok"), (600.0, "diverged")):
+        growth = held_log(network, period_s, 1.0, 45.0 * DEG, azimuth=gains).growth_per_s
+        method = {"network": COMPASS, "gyrocompass": GYROCOMPASS}
+        start = {"attitude_arcmin": [0.0, 0.0, 10.0]}
+        (run,) = simulate(
+            made(method, hours=12.0, reference={"rate_hz": 1.0 / period_s}, initial_error=start)
+        ).methods
+        assert (run.status, growth > 0.0) == (status, status == "diverged")

@@ -43,7 +43,7 @@ def whole_system_figure(run: Run, aspect: float = 0.46, *, width_px: float = 940
     rates = []
     for index, method in enumerate(run.methods):
         kind = method.method.kind
-        acting, azimuth = kind.acting(method.network), kind.azimuth(method.method)
+        acting, azimuth = kind.acting(method.network), kind.azimuth(method.method, method.network.omega_s)
         growth = growth_over_latitude(acting, LATITUDES * DEG, run.scenario.earth, azimuth)
         rates.append(_DAY * growth)
         data += _marks(method, index)

@@ -35,7 +35,7 @@ def network_of(scenario: Scenario, method: Method) -> LinearNetwork:
 def law_of(method: Method, network: LinearNetwork, law_step_s: float) -> Law:
     """Damping law of a method, asked every ``law_step_s`` seconds."""
     kind = method.kind
-    azimuth = kind.azimuth(method)
+    azimuth = kind.azimuth(method, network.omega_s)
     return prepare_law(
         kind.law, method.network, network, method.policy, method.switching, law_step_s, azimuth
     )
@@ -103,7 +103,7 @@ def stability_of(
     """
     kind, lat = method.kind, scenario.site.lat_deg * DEG
     acting = kind.acting(network)
-    azimuth = kind.azimuth(method)
+    azimuth = kind.azimuth(method, network.omega_s)
     loop = analyse(network)
     whole = whole_system(acting, lat, scenario.earth, scenario.site.height_m, azimuth)
     if kind.no_loop:

@@ -167,8 +167,8 @@ def _epoch(k, run, row, x, runs):
         logs.time_s[run], logs.velocity[run], logs.valid[run], logs.body_frame, logs.hold_s
     )  # fmt: skip
     held = law_epoch(k * con.dt, v_e, v_n, q, runs.last[run], log, law)
+    held, x[_C_U * _W + j] = azimuth_epoch(law, held, terms, v_e)
     x[_C_E * _W + j], x[_C_N * _W + j], x[_A_E * _W + j], x[_A_N * _W + j] = held
-    x[_C_U * _W + j] = azimuth_epoch(law, terms, v_e)
     if row >= 0:
         i = row if truth.shape[0] > 1 else 0
         errors = errors_at(con, d_lat, x[_D_LON * _W + j], v_e, v_n, q, truth, i)

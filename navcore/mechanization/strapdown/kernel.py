@@ -68,13 +68,14 @@ def law_epoch(t, v_e, v_n, q, last, log, law):
 
 
 @inlined
-def azimuth_epoch(law, terms, v_e):
-    """Ask the azimuth channel of a law that was just called, at the place of `EarthTerms`; c_U, rad/s."""
+def azimuth_epoch(law, held, terms, v_e):
+    """Ask the azimuth channel of a law that has just given ``held``, at the place of `EarthTerms`."""
     if law.p.azimuth_order == 0:
-        return 0.0
+        return held, 0.0
     by_v_e = terms.sin * terms.sec * terms.inv_n
     by_lat = EARTH_RATE * terms.cos + v_e * terms.inv_n * terms.sec * terms.sec
-    return steer(law, UpRate(EARTH_RATE * terms.sin + v_e * by_v_e, by_lat, by_v_e, terms.inv_m))
+    up = UpRate(EARTH_RATE * terms.sin + v_e * by_v_e, by_lat, by_v_e, terms.inv_m, EARTH_RATE * terms.cos)
+    return steer(law, held, up)
 
 
 @inlined
@@ -160,9 +161,10 @@ def advance_kernel(increments, first, pace, con, x, truth, heights, log, law, na
                 return k, POLE
             q = (x.q[0], x.q[1], x.q[2], x.q[3])
             held = law_epoch(k * dt, x.v[E], x.v[N], q, x.last, log, law)
-            x.c[E], x.c[N], x.a[E], x.a[N] = held.c_e, held.c_n, held.a_e, held.a_n
             if law.p.azimuth_order > 0:
-                x.c[U] = azimuth_epoch(law, earth_terms(con.e2, con.lat0 + x.d_lat, x.height), x.v[E])
+                terms = earth_terms(con.e2, con.lat0 + x.d_lat, x.height)
+                held, x.c[U] = azimuth_epoch(law, held, terms, x.v[E])
+            x.c[E], x.c[N], x.a[E], x.a[N] = held.c_e, held.c_n, held.a_e, held.a_n
             if altimeter:
                 _altimeter_epoch(k * dt, law_every * dt, con, x, pace.record_step_s, heights)
         if to_record == 0:
