@@ -77,10 +77,10 @@ class Reference(_Errors):
     """Block ``reference``: the velocity that external damping compares with.
 
     The simulated log (``kind = "log"``) reads, in its own axes,
-    ``(1 + scale) (V - V_water) + bias + drift + noise``, rounded to ``lsb_mps``, with V and the velocity of
-    the water ``V_water`` (current and tide) taken ``delay_s`` earlier; events are added to that. The recorded
-    one (``kind = "file"``) uses only ``file``, ``speed``, ``frame``, ``event``, ``outage`` and
-    ``min_speed_mps``.
+    ``(1 + scale) (V - V_water) + k a + bias + drift + noise``, rounded to ``lsb_mps``, with V, the ship's
+    acceleration a and the velocity of the water ``V_water`` (current and tide) taken ``delay_s`` earlier;
+    events are added to that. The recorded one (``kind = "file"``) uses only ``file``, ``speed``, ``frame``,
+    ``event``, ``outage`` and ``min_speed_mps``.
     """
 
     outage: tuple[Outage, ...] = Field(

@@ -11,7 +11,7 @@ from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.log_errors.base import LogPart
 from navcore.sensors.noise import gauss_markov, unit_noise
 from navcore.sensors.reference import Reference, in_service
-from navcore.sensors.true_state import horizontal_state, to_navigation, to_ship
+from navcore.sensors.true_state import horizontal_acceleration, horizontal_state, to_navigation, to_ship
 
 SHORTEST_HOLD_S = 5.0
 """A sample stands for three intervals of the log, and at least this long."""
@@ -116,6 +116,11 @@ class _Log:
         """Relative error of the measured velocity."""
         return sum(part.scale for part in self.parts)
 
+    def by_acceleration(self, truth: Truth, time_s: np.ndarray) -> np.ndarray | float:
+        """Error by the ship's acceleration, E and N, m/s; shape (m, 2) or (1, 2), or 0."""
+        seconds = sum(part.acceleration_s for part in self.parts)
+        return seconds * horizontal_acceleration(truth, time_s) if seconds else 0.0
+
     def water(self, time_s: np.ndarray) -> np.ndarray:
         """Velocity of the water over the ground, E and N, m/s; shape (m, 2) or (1, 2)."""
         return sum((part.water(time_s) for part in self.parts if part.water), np.zeros((1, 2)))
@@ -139,7 +144,7 @@ class _Log:
 
     def linear_errors(self, truth: Truth, time_s: np.ndarray, own: np.ndarray) -> np.ndarray:
         """Errors without delay and rounding: the velocity itself cancels, and is often not needed."""
-        error = -(1.0 + self.scale) * self.water(time_s)
+        error = self.by_acceleration(truth, time_s) - (1.0 + self.scale) * self.water(time_s)
         if self.scale == 0.0 and not self.body_frame:
             return error + own
         velocity, heading = horizontal_state(truth, time_s)
@@ -153,6 +158,7 @@ class _Log:
         velocity, heading = horizontal_state(truth, time_s)
         then_velocity, then_heading = horizontal_state(truth, measured_at)
         seen = (1.0 + self.scale) * (then_velocity - self.water(measured_at))
+        seen = seen + self.by_acceleration(truth, measured_at)
         if self.body_frame:
             return to_navigation(_rounded(to_ship(seen, then_heading) + own, lsb), heading) - velocity
         return _rounded(seen + own, lsb) - velocity

@@ -36,6 +36,18 @@ def horizontal_state(truth: Truth, time_s: np.ndarray) -> tuple[np.ndarray, np.n
     return state[:, :2], state[:, 2]
 
 
+def horizontal_acceleration(truth: Truth, time_s: np.ndarray) -> np.ndarray:
+    """Rate of change of the horizontal velocity, E and N, m/s^2, linear between grid points.
+
+    Shape (m, 2), or (1, 2) for a constant truth; parameters as of `horizontal_state`.
+    """
+    values = truth.values
+    if truth.constant:
+        return values[:, [AE, AN]]
+    grid_s = truth.step_s * np.arange(len(values))
+    return np.column_stack([np.interp(time_s, grid_s, values[:, axis]) for axis in (AE, AN)])
+
+
 def _hermite(
     values: np.ndarray,
     step_s: float,

@@ -90,6 +90,14 @@ def test_scale_error_is_a_share_of_the_velocity_through_the_water(frame):
     np.testing.assert_allclose(found.error, expected, rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.parametrize("frame", ["enu", "body"])
+@pytest.mark.parametrize("reading", [{}, {"lsb_mps": 1e-9, "delay_s": 0.0}], ids=["plain", "rounded"])
+def test_the_error_by_acceleration_is_in_proportion_to_it(frame, reading):
+    motion = truth()
+    found = errors(motion, acceleration_s=0.3, frame=frame, **reading)
+    np.testing.assert_allclose(found.error, 0.3 * motion.values[::2, [AE, AN]], rtol=0.0, atol=1e-8)
+
+
 def test_delay_is_the_velocity_earlier():
     motion = truth(turn=0.0)
     found = errors(motion, delay_s=10.0)

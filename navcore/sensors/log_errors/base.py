@@ -20,6 +20,8 @@ class LogPart(ErrorPart):
     ----------
     scale : float
         Relative error of the measured velocity.
+    acceleration_s : float
+        Error by the ship's acceleration, s.
     delay_s : float
         Age of the velocity that is measured, s.
     water : callable, optional
@@ -31,6 +33,7 @@ class LogPart(ErrorPart):
     """
 
     scale: float = 0.0
+    acceleration_s: float = 0.0
     delay_s: float = 0.0
     water: Callable[[np.ndarray], np.ndarray] | None = None
     after: Callable[[np.ndarray], np.ndarray] | None = None
@@ -39,7 +42,7 @@ class LogPart(ErrorPart):
     @property
     def has_shape(self) -> bool:
         """Whether the error budget knows it by the numbers of the scenario as they stand."""
-        return any((self.scale, self.delay_s, self.water, self.after))
+        return any((self.scale, self.acceleration_s, self.delay_s, self.water, self.after))
 
     def elements(self) -> Iterator[LogPart]:
         """Yield the parts that make one response of the budget each."""

@@ -1,4 +1,4 @@
-"""How the log reads the velocity: scale, delay, resolution."""
+"""How the log reads the velocity: scale, error by acceleration, delay, resolution."""
 
 from collections.abc import Iterator
 
@@ -9,7 +9,10 @@ from navcore.sensors.log_errors.base import LogPart, LogTerm
 
 
 class LogReading(LogTerm):
-    """Scale error, delay and resolution, which the covariance takes for white noise of lsb / sqrt(12)."""
+    """Scale error, error by acceleration, delay and resolution.
+
+    The covariance takes the resolution for white noise of lsb / sqrt(12).
+    """
 
     scale_ppm: float = quantity(
         0.0,
@@ -19,6 +22,15 @@ class LogReading(LogTerm):
         slider=(-20000.0, 20000.0),
         label=Text("scale error"),
         help=Text("Relative error of the measured velocity."),
+    )
+    acceleration_s: float = quantity(
+        0.0,
+        unit="s",
+        ge=-100.0,
+        le=100.0,
+        slider=(-5.0, 5.0),
+        label=Text("by acceleration"),
+        help=Text("Error in proportion to the ship's acceleration, k a: the main cause of overshoot at sea."),
     )
     delay_s: float = quantity(
         0.0,
@@ -40,7 +52,13 @@ class LogReading(LogTerm):
     )
 
     def parts(self) -> Iterator[LogPart]:
-        """Yield all three."""
+        """Yield all four."""
         yield LogPart(("scale_ppm",), "log_scale", Text("log bias"), scale=self.scale_ppm * PPM)
+        yield LogPart(
+            ("acceleration_s",),
+            "log_acceleration",
+            Text("log bias"),
+            acceleration_s=self.acceleration_s,
+        )
         yield LogPart(("delay_s",), "log_delay", Text("log delay and resolution"), delay_s=self.delay_s)
         yield LogPart(("lsb_mps",), "log_resolution", Text("log delay and resolution"), lsb=self.lsb_mps)
