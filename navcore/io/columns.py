@@ -7,7 +7,17 @@ import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns
+from navcore.io.column_names import (
+    CLOCK,
+    DATE,
+    QUANTITIES,
+    SECONDS,
+    UNIX,
+    UTC,
+    Column,
+    known_columns,
+    misfits,
+)
 from navcore.io.series import Recording, Series, SourceReport, stream_report, tidy
 
 MOST_COLUMNS = 1000
@@ -87,6 +97,20 @@ def require_columns(where: str, names: Sequence[str]) -> dict[str, Column]:
         for column in columns.values()
         if lowered.count(column.name.lower()) > 1
     ]
+    faults += [
+        Fault(
+            where,
+            "",
+            column.name,
+            Text(
+                "names a unit or qualifier that is not understood: {unknown}; "
+                "rename the column, with a unit as in heading_deg, speed_mps, time (ms)",
+                unknown=column.unknown,
+            ),
+        )
+        for column in columns.values()
+        if column.unknown
+    ]
     if faults:
         raise InputError(faults)
     return columns
@@ -120,6 +144,10 @@ def column_warnings(names: Sequence[str], known: Mapping[str, Column]) -> list[s
     words += [
         Text("column {name} names no unit: taken as {unit}", name=column.name, unit=column.unit)
         for column in guessed
+    ]
+    words += [
+        Text("column {name} left out: {unit} is no unit of what its name says", name=c.name, unit=c.unit)
+        for c in misfits(names)
     ]
     if ("sog" in known) != ("cog" in known):
         there = known.get("sog") or known["cog"]

@@ -279,8 +279,10 @@ def _timing(where: str, rows: _Rows, kept: list[int]) -> tuple[np.ndarray, bool,
         dates = rows.cells[DATE]
         cells = [f"{dates[i].strip()} {cell.strip()}" for i, cell in zip(kept, cells, strict=True)]
     if column.stem in (UTC, CLOCK):
-        return (*times(where, name, cells, numbered), name)
+        return (*times(where, name, cells, numbered, column.unit), name)
     time_s, empty = numbers(where, name, cells, numbered)
     del empty
-    time_s, dated = unix_or_elapsed(time_s) if column.stem == UNIX else (time_s, False)
-    return time_s, dated, name
+    if column.stem == UNIX or column.unit:
+        time_s, dated = unix_or_elapsed(time_s, column.unit)
+        return time_s, dated and column.stem == UNIX, name
+    return time_s, False, name

@@ -103,7 +103,8 @@ def _timing(where: str, clock: Column, cells: np.ndarray, rows: np.ndarray) -> t
         return np.where(np.isnat(cells), np.nan, seconds), True
     if cells.dtype.kind in "iufb":
         numbers = cells.astype(float)
-        return (numbers, False) if clock.stem == SECONDS else unix_or_elapsed(numbers)
+        seconds, dated = unix_or_elapsed(numbers, clock.unit or ("s" if clock.stem == SECONDS else ""))
+        return seconds, dated and clock.stem != SECONDS
     distinct, places = np.unique(cells.astype(str), return_inverse=True)
     if distinct.size and distinct.dtype.itemsize > 4 * _LONGEST_TIME:
         raise InputError(
