@@ -24,6 +24,7 @@ from navcore.io.columns import (
     table_recording,
 )
 from navcore.io.formats import Candidate
+from navcore.io.hemispheres import is_named
 from navcore.io.series import Recording
 
 if TYPE_CHECKING:
@@ -93,6 +94,12 @@ def _needed(where: str, names: list[str]) -> dict[str, Column]:
     if DATE in columns:
         allowed = Text("date and time in two columns: join them in one column utc")
         raise InputError(Fault(where, "", columns[DATE].name, allowed))
+    sides = [
+        (name, stem) for stem in ("lat", "lon") for name in names if stem in columns and is_named(name, stem)
+    ]
+    if sides:
+        allowed = Text("a hemisphere in a column of its own: give {stem} its sign instead", stem=sides[0][1])
+        raise InputError(Fault(where, "", sides[0][0], allowed))
     clock = next(stem for stem in (UTC, UNIX, SECONDS) if stem in columns)
     return {stem: c for stem, c in columns.items() if stem in QUANTITIES or stem in (clock, CLOCK)}
 
