@@ -18,6 +18,7 @@ from navcore.io.column_names import (
     known_columns,
     misfits,
 )
+from navcore.io.placeholders import AIS_NO_COURSE, not_available
 from navcore.io.series import Recording, Series, SourceReport, stream_report, tidy
 
 MOST_COLUMNS = 1000
@@ -280,15 +281,33 @@ def _axes(forward_first: Series | None) -> Series | None:
 
 def _without_placeholders(table: Table) -> Table:
     """Take as missing what stands for no reading: NaN among numbers, -999 and the like out of range."""
-    missing = dict(table.missing)
+    missing, told = dict(table.missing), []
+    no_reading = {stem: not_available(stem, table.columns[stem].unit, v) for stem, v in table.values.items()}
+    if {"lat", "lon"} <= no_reading.keys():
+        no_reading["lat"] = no_reading["lon"] = no_reading["lat"] & no_reading["lon"]
+    if "cog" in table.values and any(gone.any() for gone in no_reading.values()):
+        no_reading["cog"] = table.values["cog"] == AIS_NO_COURSE
     for stem, values in table.values.items():
         low, high = table.columns[stem].limits
         gone = np.isin(values, _MISSING_NUMBERS) & ~((values >= low) & (values <= high))
+        gone |= no_reading[stem]
+        if gone.any():
+            numbers = ", ".join(f"{number:g}" for number in np.unique(values[gone])[:_MOST_FAULTS])
+            count = int(np.count_nonzero(gone))
+            name = table.columns[stem].name
+            told.append(
+                Text(
+                    "{name} = {numbers}: not available, {count} missing samples",
+                    name=name,
+                    numbers=numbers,
+                    count=count,
+                )
+            )
         if not np.isnan(values).all():
             gone |= np.isnan(values)
         if gone.any():
             missing[stem] = missing.get(stem, False) | gone
-    return replace(table, missing=missing)
+    return replace(table, missing=missing, warnings=(*table.warnings, *told))
 
 
 def _range_faults(table: Table) -> list[Fault]:

@@ -14,6 +14,7 @@ from navcore.foundation.stage_cache import kept
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.io.formats import format_of
+from navcore.io.placeholders import without_zero_places
 from navcore.io.series import Recording, Series, utc_text
 from navcore.io.source import require_file
 
@@ -116,7 +117,7 @@ def file_keys(paths: PathLike | Sequence[PathLike], where: str = "", field: str 
 
 def read_recording(path: Path) -> Recording:
     """Read one file by its content, without the cache; raises `InputError`."""
-    return format_of(path).read(path)
+    return without_zero_places(format_of(path).read(path))
 
 
 def shared_window(series: Iterable[Series], field: str = "file") -> Window:
