@@ -13,7 +13,7 @@ import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.io.cells import is_empty, numbers, times, unix_or_elapsed
+from navcore.io.cells import is_empty, numbers, times
 from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns
 from navcore.io.columns import (
     MOST_CELLS,
@@ -24,6 +24,7 @@ from navcore.io.columns import (
     require_columns,
     table_recording,
 )
+from navcore.io.epochs import numeric_times
 from navcore.io.formats import Candidate
 from navcore.io.hemispheres import candidates, signed
 from navcore.io.series import Recording
@@ -315,11 +316,18 @@ def _timing(where: str, rows: _Rows, kept: list[int]) -> tuple[np.ndarray, bool,
     if column.stem == CLOCK and DATE in rows.columns:
         dates = rows.cells[DATE]
         cells = [f"{dates[i].strip()} {cell.strip()}" for i, cell in zip(kept, cells, strict=True)]
-    if column.stem in (UTC, CLOCK):
+    parsed = _as_numbers(cells)
+    if parsed is None and column.stem in (UTC, CLOCK):
         return (*times(where, name, cells, numbered, column.unit), name)
-    time_s, empty = numbers(where, name, cells, numbered)
-    del empty
-    if column.stem == UNIX or column.unit:
-        time_s, dated = unix_or_elapsed(time_s, column.unit)
-        return time_s, dated and column.stem == UNIX, name
-    return time_s, False, name
+    if parsed is None:
+        parsed, _ = numbers(where, name, cells, numbered)
+    time_s, dated, told = numeric_times(where, column, parsed)
+    rows.warnings += told
+    return time_s, dated, name
+
+
+def _as_numbers(cells: list[str]) -> np.ndarray | None:
+    try:
+        return np.array(cells, dtype=float)
+    except ValueError:
+        return None
