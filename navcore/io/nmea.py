@@ -249,6 +249,13 @@ def _warnings(tally: Tally) -> list[str]:
                 ahead=ahead,
             )
         )
+    if tally.clock_error_s:
+        words.append(
+            Text(
+                "the logger's clock is {ahead:+.1f} s from the sentences' own UTC: taken off all its stamps",
+                ahead=tally.clock_error_s,
+            )
+        )
     if tally.clock_offsets:
         offset = sorted(tally.clock_offsets)[len(tally.clock_offsets) // 2]
         if abs(offset) > _CLOCK_WARNING_S:
