@@ -7,6 +7,7 @@ import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.io.coarse_stamps import spread
 from navcore.io.column_names import (
     CLOCK,
     DATE,
@@ -204,7 +205,7 @@ def table_recording(table: Table) -> Recording:
     InputError
         A value is not finite or out of range; time is unordered or repeated; every cell of a table is empty.
     """
-    table = _without_placeholders(table)
+    table = _spread(_without_placeholders(table))
     faults = _range_faults(table) or _order_faults(table)
     if faults:
         raise InputError(faults)
@@ -277,6 +278,18 @@ def _axes(forward_first: Series | None) -> Series | None:
     return (
         None if forward_first is None else replace(forward_first, values=forward_first.values[:, ::-1].copy())
     )
+
+
+def _spread(table: Table) -> Table:
+    """Rows that bear the same stamp over its interval."""
+    time_s, rows = spread(table.time_s)
+    if rows == 1:
+        return table
+    told = Text(
+        "{rows} rows bear the same time, too coarse for them: spread over its interval, as they stand",
+        rows=rows,
+    )
+    return replace(table, time_s=time_s, warnings=(*table.warnings, told))
 
 
 def _without_placeholders(table: Table) -> Table:
