@@ -38,3 +38,10 @@ def test_a_row_that_is_there_twice_is_still_refused(tmp_path: Path) -> None:
 def test_rows_out_of_order_are_still_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="put the rows in order"):
         _read(tmp_path, ["00", "00", "01", "01", "00", "02", "02"])
+
+
+def test_a_table_without_any_time_is_refused_and_raises_nothing_else(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("utc,heading\n,\n,5\n")
+    with pytest.raises(InputError):
+        read_recording(path)
