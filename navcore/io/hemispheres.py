@@ -16,9 +16,13 @@ _SIDES = {
 _STEMS = {"lat": "lat|latitude", "lon": "lon|long|lng|longitude"}
 _WORDS = "dir|direction|hem|hemi|hemisphere|side|sign|ref|ns|ew|n_s|e_w|indicator"
 _NAMED = {
-    "lat": re.compile(rf"(?:ns|n_s|north_south)(?:_indicator)?|\w{{0,20}}?(?:{_STEMS['lat']})_?(?:{_WORDS})"),
-    "lon": re.compile(rf"(?:ew|e_w|east_west)(?:_indicator)?|\w{{0,20}}?(?:{_STEMS['lon']})_?(?:{_WORDS})"),
+    "lat": re.compile(rf"\w{{0,20}}?(?:{_STEMS['lat']})_?(?:{_WORDS})"),
+    "lon": re.compile(rf"\w{{0,20}}?(?:{_STEMS['lon']})_?(?:{_WORDS})"),
 }
+
+
+_MAY_BE = {"lat": frozenset(("ns", "n_s", "ns_indicator")), "lon": frozenset(("ew", "e_w", "ew_indicator"))}
+"""Names that the cells must confirm: ``ns`` is also a number of satellites."""
 
 
 def is_named(name: str, stem: str) -> bool:
@@ -31,7 +35,11 @@ def candidates(names: Sequence[str], columns: dict[str, Column]) -> dict[str, li
     used = {column.index for column in columns.values()}
     found: dict[str, list[int]] = {}
     for stem in _SIDES.keys() & columns.keys():
-        named = [i for i, name in enumerate(names) if i not in used and is_named(name, stem)]
+        named = [
+            i
+            for i, name in enumerate(names)
+            if i not in used and (is_named(name, stem) or plain_name(name) in _MAY_BE[stem])
+        ]
         after = columns[stem].index + 1
         beside = [after] if after < len(names) and after not in used and after not in named else []
         found[stem] = named + beside

@@ -51,3 +51,9 @@ def test_a_hemisphere_in_a_parquet_file_is_refused_by_name(tmp_path: Path) -> No
     pyarrow.parquet.write_table(pyarrow.table(content), path)
     with pytest.raises(InputError, match="lat_dir"):
         read_recording(path)
+
+
+def test_a_number_of_satellites_is_no_hemisphere(tmp_path: Path) -> None:
+    position = read_recording(_table(tmp_path, "t_s,lat,lon,ns", "0,12.5,70,9", "1,12.5,70,9")).position
+    assert position is not None
+    assert position.values[:, 0] == pytest.approx(12.5 * DEG)
