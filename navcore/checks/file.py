@@ -12,6 +12,7 @@ import numpy as np
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, KNOT
+from navcore.io.courses import course_warnings
 from navcore.io.plausible import speed_warnings
 from navcore.io.recording import read_recording
 from navcore.io.series import Recording, Series, SourceReport, StreamReport, utc_text
@@ -256,7 +257,7 @@ def _extent(key: str, extent: list[float]) -> str:
 
 
 def _warnings(source: SourceReport, recording: Recording) -> tuple[str, ...]:
-    existing = [*source.warnings, *speed_warnings(recording)]
+    existing = [*source.warnings, *speed_warnings(recording), *course_warnings(recording)]
     for name, series in recording.quantities().items():
         gaps, longest = series.gaps()
         if gaps:

@@ -10,6 +10,7 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.io.columns import limited
 from navcore.io.stamps import StampReader, day_comes_first
+from navcore.io.written_units import UNITS
 
 _EMPTY = frozenset(("", "-", "--", "na", "n/a", "null", "none"))
 _HEMISPHERE = re.compile(r"[\d.]{1,20}[ \d.'\"°:]{0,30} ?[NSEWnsew]")
@@ -73,7 +74,9 @@ def _degrees(cell: str) -> float | None:
     return -value if cell[-1] in "SWsw" else value
 
 
-def times(where: str, name: str, cells: Sequence[str], rows: Sequence[int]) -> tuple[np.ndarray, bool]:
+def times(
+    where: str, name: str, cells: Sequence[str], rows: Sequence[int], unit: str = ""
+) -> tuple[np.ndarray, bool]:
     """Times of a column, s, and whether they are dated (since 1970) or of the file's own zero.
 
     Taken are ISO 8601 (no zone means UTC), what `navcore.io.stamps` reads, Unix time in s or ms, and times of
@@ -88,11 +91,18 @@ def times(where: str, name: str, cells: Sequence[str], rows: Sequence[int]) -> t
         parsed = np.array(cells, dtype=float)
     except ValueError:
         return _written_times(where, name, cells, rows)
-    return unix_or_elapsed(parsed)
+    return unix_or_elapsed(parsed, unit)
 
 
-def unix_or_elapsed(values: np.ndarray) -> tuple[np.ndarray, bool]:
-    """Numbers of time: Unix time in s, ms, us or ns by their size, or s since the file's own zero."""
+def unix_or_elapsed(values: np.ndarray, unit: str = "") -> tuple[np.ndarray, bool]:
+    """Numbers of time: Unix time in s, ms, us or ns by their size, or s since the file's own zero.
+
+    With a ``unit`` (a key of `navcore.io.written_units.UNITS`) that the column names, they are in it.
+    """
+    if unit:
+        seconds = values * UNITS["time"][unit]
+        known = seconds[~np.isnan(seconds)]
+        return seconds, bool(known.size) and float(np.median(np.abs(known))) >= _UNIX_FROM
     known = values[~np.isnan(values)]
     size = float(np.median(np.abs(known))) if known.size else 0.0
     if not size >= _UNIX_FROM:

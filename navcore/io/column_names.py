@@ -6,27 +6,12 @@ A name is read without regard to case, spaces and signs. A unit may stand behind
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from navcore.foundation.units import DEG, KNOT
+from navcore.io.written_units import UNITS, unit_of, written
 
 UTC, UNIX, SECONDS, DATE, CLOCK = "utc", "unix", "t_s", "date", "clock"
 """Columns of time: a date and time, Unix time, s since the file's own zero; a date and a time apart."""
-_UNITS = {
-    "angle": {"deg": DEG, "rad": 1.0},
-    "speed": {"mps": 1.0, "kn": KNOT, "kmh": 1.0 / 3.6, "cms": 0.01},
-    "length": {"m": 1.0},
-}
-_SPELT = {
-    "deg": "degree degrees degrees_true deg_true degrees_north degrees_east degree_north degree_east",
-    "rad": "radian radians",
-    "mps": "m_s ms meter_second meters_second metre_second m_sec",
-    "kn": "kt kts knot knots",
-    "kmh": "km_h kph",
-    "cms": "cm_s",
-    "m": "meter meters metre metres",
-}
-_UNIT_NAMES = {name: unit for unit, names in _SPELT.items() for name in (unit, *names.split())}
 
 
 @dataclass(frozen=True)
@@ -137,9 +122,13 @@ class Column:
     stem : str
         What it holds: a key of `QUANTITIES`, or a column of time.
     unit : str
-        Of its numbers; empty for times.
+        Of its numbers; empty for times whose unit is not named.
     unit_given : bool
         Whether the name gives the unit.
+    unknown : str
+        What stands in its brackets and is not understood.
+    misfit : bool
+        Whether the unit is of another quantity than the name: ``Log (nm)`` is a distance.
     """
 
     index: int
@@ -147,19 +136,19 @@ class Column:
     stem: str
     unit: str = ""
     unit_given: bool = True
+    unknown: str = ""
+    misfit: bool = False
 
     @property
     def factor(self) -> float:
         """SI over the column's unit."""
-        return _UNITS[QUANTITIES[self.stem].dimension][self.unit]
+        return UNITS[QUANTITIES[self.stem].dimension][self.unit]
 
     @property
     def limits(self) -> tuple[float, float]:
         """Range in the column's unit."""
         quantity = QUANTITIES[self.stem]
-        scale = _UNITS[quantity.dimension][
-            "deg" if quantity.dimension == "angle" else quantity_unit(quantity)
-        ]
+        scale = UNITS[quantity.dimension]["deg" if quantity.dimension == "angle" else quantity_unit(quantity)]
         return quantity.low * scale / self.factor, quantity.high * scale / self.factor
 
 
@@ -175,20 +164,19 @@ def known_columns(names: Sequence[str]) -> dict[str, Column]:
     """
     best: dict[str, tuple[int, Column]] = {}
     for index, name in enumerate(names):
-        meaning = _meaning(name)
-        if meaning is None:
+        rank, column = _meaning(index, name)
+        if column is None or column.misfit:
             continue
-        rank, stem, unit, unit_given = meaning
-        if stem not in best or rank < best[stem][0]:
-            best[stem] = rank, Column(index, name.strip(), stem, unit, unit_given)
+        if column.stem not in best or rank < best[column.stem][0]:
+            best[column.stem] = rank, column
     chosen = {stem: column for stem, (_, column) in best.items()}
     if DATE in chosen:
         if UTC in chosen:
             column = chosen.pop(UTC)
-            chosen[CLOCK] = Column(column.index, column.name, CLOCK)
+            chosen[CLOCK] = replace(column, stem=CLOCK)
         else:
             column = chosen.pop(DATE)
-            chosen[UTC] = Column(column.index, column.name, UTC)
+            chosen[UTC] = replace(column, stem=UTC)
     return chosen
 
 
@@ -197,30 +185,45 @@ def plain_name(name: str) -> str:
     return _SIGNS.sub("_", _HUMP.sub("_", name.strip()[:80]).lower()).strip("_")
 
 
-def _meaning(name: str) -> tuple[int, str, str, bool] | None:
-    """Rank (0 the usual name), what the column holds, its unit and whether the name gives it."""
+def misfits(names: Sequence[str]) -> list[Column]:
+    """Columns whose unit is of another quantity than their name."""
+    columns = (_meaning(index, name)[1] for index, name in enumerate(names))
+    return [column for column in columns if column is not None and column.misfit]
+
+
+_LAST = 1000
+"""Rank of a name whose brackets are not understood, behind all others."""
+
+
+def _meaning(index: int, name: str) -> tuple[int, Column | None]:
+    """Rank (0 the usual name) and what the column holds."""
+    texts = _BRACKETS.findall(name[:80])
     bracket = _BRACKETS.search(name[:80])
-    given = _UNIT_NAMES.get(plain_name(bracket[1]), "") if bracket else ""
     plain = plain_name(name[: bracket.start()] if bracket else name)
-    for words, unit in ((plain, given), *_without_unit(plain)):
-        if words in _IN_MPS:
-            return 5, _IN_MPS[words], unit or "mps", True
-        stem = _NAMES.get(words)
-        if stem is not None and (not unit or unit in _UNITS[QUANTITIES[stem].dimension]):
-            rank = QUANTITIES[stem].names.index(words)
-            unit_given = bool(unit) or QUANTITIES[stem].dimension != "speed"
-            return rank, stem, unit or QUANTITIES[stem].unit, unit_given
-    if plain in _TIME_NAMES:
-        stem = _TIME_NAMES[plain]
-        return _TIMES[stem].split().index(plain), stem, "", True
-    return None
+    for words, suffix in ((plain, ""), *_without_unit(plain)):
+        stem = _IN_MPS.get(words) or _NAMES.get(words) or ""
+        time = _TIME_NAMES.get(words) or ""
+        dimension = QUANTITIES[stem].dimension if stem else "time"
+        unit = unit_of(suffix, dimension)
+        if not (stem or time) or (suffix and not unit):
+            continue
+        said = written(texts, dimension)
+        misfit = bool(said.unit) and said.dimension != dimension
+        unknown = said.unknown
+        given = said.unit or unit
+        if time:
+            rank = _TIMES[time].split().index(words)
+            column = Column(index, name.strip(), time, given, unknown=unknown, misfit=misfit)
+        else:
+            default = "mps" if words in _IN_MPS else QUANTITIES[stem].unit
+            sure = bool(given) or words in _IN_MPS or (dimension != "speed" and not unknown)
+            rank = 5 if words in _IN_MPS else QUANTITIES[stem].names.index(words)
+            column = Column(index, name.strip(), stem, given or default, sure, unknown, misfit)
+        return rank + _LAST * bool(unknown), column
+    return 0, None
 
 
 def _without_unit(plain: str) -> list[tuple[str, str]]:
-    """The name without its last one to three words, where these are a unit."""
+    """The name without its last one or two words, and these, which may be a unit."""
     words = plain.split("_")
-    return [
-        ("_".join(words[:-n]), unit)
-        for n in (1, 2)
-        if len(words) > n and (unit := _UNIT_NAMES.get("_".join(words[-n:])))
-    ]
+    return [("_".join(words[:-n]), "_".join(words[-n:])) for n in (1, 2) if len(words) > n]

@@ -7,7 +7,19 @@ import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns
+from navcore.io.coarse_stamps import spread
+from navcore.io.column_names import (
+    CLOCK,
+    DATE,
+    QUANTITIES,
+    SECONDS,
+    UNIX,
+    UTC,
+    Column,
+    known_columns,
+    misfits,
+)
+from navcore.io.placeholders import AIS_NO_COURSE, not_available
 from navcore.io.series import Recording, Series, SourceReport, stream_report, tidy
 
 MOST_COLUMNS = 1000
@@ -87,6 +99,20 @@ def require_columns(where: str, names: Sequence[str]) -> dict[str, Column]:
         for column in columns.values()
         if lowered.count(column.name.lower()) > 1
     ]
+    faults += [
+        Fault(
+            where,
+            "",
+            column.name,
+            Text(
+                "names a unit or qualifier that is not understood: {unknown}; "
+                "rename the column, with a unit as in heading_deg, speed_mps, time (ms)",
+                unknown=column.unknown,
+            ),
+        )
+        for column in columns.values()
+        if column.unknown
+    ]
     if faults:
         raise InputError(faults)
     return columns
@@ -120,6 +146,10 @@ def column_warnings(names: Sequence[str], known: Mapping[str, Column]) -> list[s
     words += [
         Text("column {name} names no unit: taken as {unit}", name=column.name, unit=column.unit)
         for column in guessed
+    ]
+    words += [
+        Text("column {name} left out: {unit} is no unit of what its name says", name=c.name, unit=c.unit)
+        for c in misfits(names)
     ]
     if ("sog" in known) != ("cog" in known):
         there = known.get("sog") or known["cog"]
@@ -175,7 +205,7 @@ def table_recording(table: Table) -> Recording:
     InputError
         A value is not finite or out of range; time is unordered or repeated; every cell of a table is empty.
     """
-    table = _without_placeholders(table)
+    table = _spread(_without_placeholders(table))
     faults = _range_faults(table) or _order_faults(table)
     if faults:
         raise InputError(faults)
@@ -250,17 +280,47 @@ def _axes(forward_first: Series | None) -> Series | None:
     )
 
 
+def _spread(table: Table) -> Table:
+    """Rows that bear the same stamp over its interval."""
+    time_s, rows = spread(table.time_s)
+    if rows == 1:
+        return table
+    told = Text(
+        "{rows} rows bear the same time, too coarse for them: spread over its interval, as they stand",
+        rows=rows,
+    )
+    return replace(table, time_s=time_s, warnings=(*table.warnings, told))
+
+
 def _without_placeholders(table: Table) -> Table:
     """Take as missing what stands for no reading: NaN among numbers, -999 and the like out of range."""
-    missing = dict(table.missing)
+    missing, told = dict(table.missing), []
+    no_reading = {stem: not_available(stem, table.columns[stem].unit, v) for stem, v in table.values.items()}
+    if {"lat", "lon"} <= no_reading.keys():
+        no_reading["lat"] = no_reading["lon"] = no_reading["lat"] & no_reading["lon"]
+    if "cog" in table.values and any(gone.any() for gone in no_reading.values()):
+        no_reading["cog"] = table.values["cog"] == AIS_NO_COURSE
     for stem, values in table.values.items():
         low, high = table.columns[stem].limits
         gone = np.isin(values, _MISSING_NUMBERS) & ~((values >= low) & (values <= high))
+        gone |= no_reading[stem]
+        if gone.any():
+            numbers = ", ".join(f"{number:g}" for number in np.unique(values[gone])[:_MOST_FAULTS])
+            count = int(np.count_nonzero(gone))
+            name = table.columns[stem].name
+            told.append(
+                Text(
+                    "{name} = {numbers}: not available, {count} missing samples",
+                    name=name,
+                    numbers=numbers,
+                    count=count,
+                )
+            )
         if not np.isnan(values).all():
             gone |= np.isnan(values)
         if gone.any():
             missing[stem] = missing.get(stem, False) | gone
-    return replace(table, missing=missing)
+    return replace(table, missing=missing, warnings=(*table.warnings, *told))
 
 
 def _range_faults(table: Table) -> list[Fault]:

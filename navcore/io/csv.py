@@ -6,14 +6,14 @@ The standard library's reader and numpy are enough, name the row of a bad cell, 
 import csv
 import io
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.io.cells import is_empty, numbers, times, unix_or_elapsed
+from navcore.io.cells import is_empty, numbers, times
 from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns
 from navcore.io.columns import (
     MOST_CELLS,
@@ -24,7 +24,9 @@ from navcore.io.columns import (
     require_columns,
     table_recording,
 )
+from navcore.io.epochs import numeric_times
 from navcore.io.formats import Candidate
+from navcore.io.hemispheres import candidates, signed
 from navcore.io.series import Recording
 from navcore.io.source import read_text
 
@@ -44,6 +46,10 @@ class _Rows:
     numbers: list[int] = field(default_factory=list)
     cells: dict[str, list[str]] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
+    sides: dict[int, list[str]] = field(default_factory=dict)
+    """Cells of columns that may hold a hemisphere."""
+    heeded: set[int] = field(default_factory=set)
+    """Those that do."""
 
 
 def recognises(candidate: Candidate) -> bool:
@@ -70,8 +76,11 @@ def read(path: Path) -> Recording:
     rows = _rows(path.name, content.text)
     if not rows.numbers:
         raise InputError(Fault(path.name, "", None, Text("a header but no rows")))
-    warnings = (*content.warnings(), *rows.warnings, *column_warnings(rows.header, rows.columns))
-    return table_recording(_table(path.name, rows, warnings))
+    table = _table(path.name, rows)
+    others = ["" if index in rows.heeded else name for index, name in enumerate(rows.header)]
+    unused = column_warnings(others, rows.columns)
+    warnings = (*content.warnings(), *rows.warnings, *unused, *table.warnings)
+    return table_recording(replace(table, warnings=warnings))
 
 
 def _head(text: str) -> list[str]:
@@ -123,6 +132,7 @@ def _rows(where: str, text: str) -> _Rows:
     _refuse_size(where, text, len(rows.columns))
     width, faults = len(header), []
     columns = list(rows.columns.values())
+    beside = {index for found in candidates(header, rows.columns).values() for index in found}
     for number, row in _after_header(where, text, separator, header_line):
         row = _fitted(row, width, separator, rows.columns)
         if len(row) != width:
@@ -136,6 +146,8 @@ def _rows(where: str, text: str) -> _Rows:
         rows.numbers.append(number)
         for column in columns:
             rows.cells.setdefault(column.stem, []).append(row[column.index])
+        for index in beside:
+            rows.sides.setdefault(index, []).append(row[index])
     if len(faults) == 1 and rows.numbers and "cells" in faults[0].allowed and _is_last(text, faults[0]):
         rows.warnings.append(Text("the last row is cut off: left out"))
         faults = []
@@ -212,7 +224,7 @@ def _is_last(text: str, fault: Fault) -> bool:
     return fault.where.endswith(f"row {len(text.rstrip().split(chr(10)))}")
 
 
-def _table(where: str, rows: _Rows, warnings: tuple[str, ...]) -> Table:
+def _table(where: str, rows: _Rows) -> Table:
     faults: list[Fault] = []
     values: dict[str, np.ndarray] = {}
     missing: dict[str, np.ndarray] = {}
@@ -232,6 +244,7 @@ def _table(where: str, rows: _Rows, warnings: tuple[str, ...]) -> Table:
             continue
         if empty.any():
             missing[stem] = empty
+    hemispheres = _hemispheres(where, rows, kept, numbered, values, missing)
     if faults or timing is None:
         raise InputError(faults)
     time_s, dated, clock = timing
@@ -254,8 +267,33 @@ def _table(where: str, rows: _Rows, warnings: tuple[str, ...]) -> Table:
         values,
         missing,
         numbered,
-        (*warnings, *notes),
+        (*notes, *hemispheres),
     )
+
+
+def _hemispheres(
+    where: str,
+    rows: _Rows,
+    kept: list[int],
+    numbered: list[int],
+    values: dict[str, np.ndarray],
+    missing: dict[str, np.ndarray],
+) -> list[str]:
+    """Give latitude and longitude the sign of a hemisphere in a column of its own; say from which."""
+    words: list[str] = []
+    for stem, found in candidates(rows.header, rows.columns).items():
+        if stem not in values:
+            continue
+        sides = [(rows.header[index].strip(), [rows.sides[index][i] for i in kept]) for index in found]
+        values[stem], absent, name = signed(where, stem, values[stem], sides, numbered)
+        if not name:
+            continue
+        rows.heeded |= {index for index in found if rows.header[index].strip() == name}
+        if absent.any():
+            missing[stem] = missing.get(stem, np.zeros(absent.size, dtype=bool)) | absent
+        told = Text("column {name} gives the sign of {column}", name=name, column=rows.columns[stem].name)
+        words.append(told)
+    return words
 
 
 def _clock_column(columns: dict[str, Column]) -> Column:
@@ -278,9 +316,18 @@ def _timing(where: str, rows: _Rows, kept: list[int]) -> tuple[np.ndarray, bool,
     if column.stem == CLOCK and DATE in rows.columns:
         dates = rows.cells[DATE]
         cells = [f"{dates[i].strip()} {cell.strip()}" for i, cell in zip(kept, cells, strict=True)]
-    if column.stem in (UTC, CLOCK):
-        return (*times(where, name, cells, numbered), name)
-    time_s, empty = numbers(where, name, cells, numbered)
-    del empty
-    time_s, dated = unix_or_elapsed(time_s) if column.stem == UNIX else (time_s, False)
+    parsed = _as_numbers(cells)
+    if parsed is None and column.stem in (UTC, CLOCK):
+        return (*times(where, name, cells, numbered, column.unit), name)
+    if parsed is None:
+        parsed, _ = numbers(where, name, cells, numbered)
+    time_s, dated, told = numeric_times(where, column, parsed)
+    rows.warnings += told
     return time_s, dated, name
+
+
+def _as_numbers(cells: list[str]) -> np.ndarray | None:
+    try:
+        return np.array(cells, dtype=float)
+    except ValueError:
+        return None

@@ -13,7 +13,7 @@ from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.io.nmea_clock import Clock
 from navcore.io.nmea_lines import OTHER_KINDS, Tally, intact_lines
-from navcore.io.nmea_sentences import KINDS, Reading, decode, is_used
+from navcore.io.nmea_sentences import KINDS, Reading, decode, doubt_of, is_used
 from navcore.io.source import read_text
 
 MOST_BAD_CHECKSUMS = 0.2
@@ -76,6 +76,8 @@ def read_nmea(path: Path) -> NmeaLog:
             tally.unparsable += 1
             continue
         name = tally.count(tally.intact, line.address)
+        if reading is not None and reading.valid and (doubt := doubt_of(line.sentence, line.address[2:])):
+            tally.doubts[line.address, doubt] += 1
         time_s = clock.time_of(line.stamp, reading)
         if time_s is None:
             tally.untimed += reading is not None
@@ -228,6 +230,14 @@ def _warnings(tally: Tally) -> list[str]:
                 "{intact} sentences of many further kinds counted together", intact=tally.intact[OTHER_KINDS]
             )
         )
+    words += [
+        Text(
+            "{count} readings of {address} are {doubt}, by the receiver's own quality or mode: "
+            "no truth to judge by",
+            count=count, address=address, doubt=doubt,
+        )
+        for (address, doubt), count in tally.doubts.items()
+    ]  # fmt: skip
     if not tally.dated:
         words.append(Text("times of day without a date: it cannot be joined with a dated file"))
     if tally.local_time_s:
@@ -237,6 +247,13 @@ def _warnings(tally: Tally) -> list[str]:
                 "the times beside the sentences are local time, {ahead:+g} h from UTC: "
                 "corrected by the sentences' own UTC",
                 ahead=ahead,
+            )
+        )
+    if tally.clock_error_s:
+        words.append(
+            Text(
+                "the logger's clock is {ahead:+.1f} s from the sentences' own UTC: taken off all its stamps",
+                ahead=tally.clock_error_s,
             )
         )
     if tally.clock_offsets:

@@ -18,6 +18,8 @@ _QUARTER_S = 900.0
 _FARTHEST_ZONE_S = 14.5 * 3600.0
 _CLOCK_ERROR_S = 120.0
 """By how much a logger's clock may be off for its time zone to be recognised."""
+_LEAST_ERROR_S, _LARGEST_ERROR_S = 5.0, 3600.0
+"""An error of the logger's clock within these is taken from the first dated sentence, for all lines."""
 _LONGEST_SENTENCE = 120
 _MOST_TRIES = 20_000
 _DATE_PLACES = {"RMC,": (0, 8), "ZDA,": (0, 1)}
@@ -46,7 +48,10 @@ class Clock:
         dated = _first_dated(text)
         self._date = None if dated is None else dated[0] // _DAY * _DAY
         if dated is not None:
-            tally.local_time_s = _zone(text, *dated)
+            ahead = _ahead(text, *dated)
+            tally.local_time_s = _zone(ahead)
+            wrong = ahead - tally.local_time_s
+            tally.clock_error_s = wrong if _LEAST_ERROR_S < abs(wrong) <= _LARGEST_ERROR_S else 0.0
         year = _LOGGED_DAY.search(Path(name).stem)
         known = datetime.fromtimestamp(self._date, UTC).year if self._date is not None else None
         self._year = int(year[1]) if year is not None else known
@@ -79,7 +84,7 @@ class Clock:
         """Time of the stamp, or of the logger's line before."""
         if stamp is None:
             return self._logged
-        seconds = stamp.seconds - self._tally.local_time_s
+        seconds = stamp.seconds - self._tally.local_time_s - self._tally.clock_error_s
         if stamp.dated:
             return seconds
         return self._without_stamp(seconds, None)
@@ -133,8 +138,8 @@ def _moment(key: str, fields: str) -> float | None:
         return None
 
 
-def _zone(text: str, utc: float, position: int) -> float:
-    """By how much the stamp of a dated sentence's line is ahead of UTC when it is local time, s; else 0."""
+def _ahead(text: str, utc: float, position: int) -> float:
+    """By how much the stamp of a dated sentence's line is ahead of UTC, s; 0 without a stamp."""
     begin = max(
         text.rfind("\n", max(0, position - 2 * LONGEST_STAMP), position) + 1, position - LONGEST_STAMP
     )
@@ -147,6 +152,11 @@ def _zone(text: str, utc: float, position: int) -> float:
     ahead = stamp.seconds - (utc if stamp.dated else utc % _DAY)
     if not stamp.dated:
         ahead -= _DAY * round(ahead / _DAY)
+    return ahead
+
+
+def _zone(ahead: float) -> float:
+    """The part of it that is a time zone, s."""
     quarters = round(ahead / _QUARTER_S) * _QUARTER_S
     recognised = quarters != 0.0 and abs(quarters) <= _FARTHEST_ZONE_S
     return quarters if recognised and abs(ahead - quarters) <= _CLOCK_ERROR_S else 0.0

@@ -49,6 +49,10 @@ class Tally:
     dated: bool = True
     local_time_s: float = 0.0
     """By how much the stamps are ahead of UTC, s."""
+    clock_error_s: float = 0.0
+    """By how much the logger's clock is ahead of the sentences' own UTC, s; taken off all its stamps."""
+    doubts: Counter[tuple[str, str]] = field(default_factory=Counter)
+    """Fixes that are not measured, by kind of sentence and what the receiver calls them."""
     clock_offsets: list[float] = field(default_factory=list)
     times: dict[str, list[float]] = field(default_factory=dict)
     """Times of every intact sentence by address."""

@@ -173,9 +173,12 @@ def _hdt(fields: list[str]) -> Reading:
 
 
 def _gll(fields: list[str]) -> Reading:
-    if fields[5] != "A":
+    """Place, time and status; the oldest form has the place alone, which does not say that it is invalid."""
+    oldest = len(fields) == 4 + len(_LEFT_OUT)
+    if fields[5] != "A" and not oldest:
         return Reading(valid=False)
-    return Reading(time_of_day=_time_of_day(fields[4]), position=_place(fields[:4], math.nan))
+    time_s = None if oldest else _time_of_day(fields[4])
+    return Reading(time_of_day=time_s, position=_place(fields[:4], math.nan))
 
 
 def _gns(fields: list[str]) -> Reading:
@@ -254,6 +257,24 @@ _MAKERS: dict[str, Callable[[list[str]], Reading]] = {"PASHR": _pashr, "PRDID": 
 """Decoders of makers' own sentences, by the whole address."""
 KINDS = ", ".join((*sorted(_STANDARD | _WHOLE), *_MAKERS))
 """Sentences that can be read, for messages."""
+
+
+_MODE_FIELD = {"RMC": 11, "GLL": 6, "VTG": 8, "GNS": 5}
+_DOUBTS = {"6": "dead-reckoned", "7": "manual", "8": "simulated", "E": "dead-reckoned", "M": "manual"}
+_DOUBTS["S"] = _DOUBTS["8"]
+
+
+def doubt_of(sentence: str, kind: str) -> str:
+    """What a receiver says of a fix that it did not measure: dead-reckoned, manual, simulated; else empty.
+
+    By the quality of GGA (6 to 8) and the mode of RMC, GLL, VTG and GNS (E, M, S; GNS: of every system).
+    """
+    fields = sentence.partition("*")[0].split(",")[1:]
+    if kind == "GGA":
+        return _DOUBTS.get(fields[5], "") if len(fields) > 5 and fields[5].isdigit() else ""
+    at = _MODE_FIELD.get(kind, len(fields))
+    modes = set(fields[at]) - {"N"} if at < len(fields) else set()
+    return _DOUBTS.get(modes.pop(), "") if len(modes) == 1 and not modes & set("678") else ""
 
 
 def is_used(address: str) -> bool:

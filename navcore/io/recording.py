@@ -14,7 +14,8 @@ from navcore.foundation.stage_cache import kept
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
 from navcore.io.formats import format_of
-from navcore.io.series import Recording, Series, utc_text
+from navcore.io.placeholders import without_zero_places
+from navcore.io.series import LONGEST_REACH_S, Recording, Series, utc_text
 from navcore.io.source import require_file
 
 PathLike = str | os.PathLike[str]
@@ -116,7 +117,7 @@ def file_keys(paths: PathLike | Sequence[PathLike], where: str = "", field: str 
 
 def read_recording(path: Path) -> Recording:
     """Read one file by its content, without the cache; raises `InputError`."""
-    return format_of(path).read(path)
+    return without_zero_places(format_of(path).read(path))
 
 
 def shared_window(series: Iterable[Series], field: str = "file") -> Window:
@@ -154,8 +155,30 @@ def shared_window(series: Iterable[Series], field: str = "file") -> Window:
                 for s in streams
             ),
         )
-        raise InputError(Fault("", field, None, Text("the streams share no time: {spans}", spans=spans)))
+        share = Text("the streams share no time: {spans}{hint}", spans=spans, hint=_apart(streams))
+        raise InputError(Fault("", field, None, share))
     return Window(float(start), float(end), float(begin))
+
+
+_ROLLOVER_S = 1024 * 7 * 86400.0
+
+
+def _apart(streams: list[Series]) -> str:
+    """Hint at the whole weeks or hours by which streams lie apart; or empty."""
+    first, last = min(s.time_s[0] for s in streams), max(s.time_s[0] for s in streams)
+    reach = max(s.time_s[-1] - s.time_s[0] for s in streams) + 2.0 * LONGEST_REACH_S
+    weeks = round((last - first) / _ROLLOVER_S)
+    if weeks and abs(last - first - weeks * _ROLLOVER_S) < reach:
+        return Text(
+            "; they lie {days} days = {weeks} weeks apart: a receiver's week counter has rolled over, "
+            "its dates are too early",
+            days=weeks * 7168,
+            weeks=weeks * 1024,
+        )
+    hours = round((last - first) / HOUR)
+    if 1 <= hours <= 14 and abs(last - first - hours * HOUR) < min(reach, 0.25 * HOUR):
+        return Text("; they lie {hours} h apart: is one of them in local time?", hours=hours)
+    return ""
 
 
 def require_cover(window: Window, start_s: float, duration_s: float, what: str, file: object) -> None:

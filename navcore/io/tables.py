@@ -13,7 +13,7 @@ import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.io.cells import times, unix_or_elapsed
+from navcore.io.cells import times
 from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column
 from navcore.io.columns import (
     MOST_CELLS,
@@ -23,7 +23,9 @@ from navcore.io.columns import (
     require_columns,
     table_recording,
 )
+from navcore.io.epochs import numeric_times
 from navcore.io.formats import Candidate
+from navcore.io.hemispheres import is_named
 from navcore.io.series import Recording
 
 if TYPE_CHECKING:
@@ -73,11 +75,12 @@ def read(path: Path) -> Recording:
         raise InputError(Fault(path.name, "", None, allowed))
     clock = next(columns[stem] for stem in (UTC, UNIX, SECONDS) if stem in columns)
     rows = np.arange(1, sizes.pop() + 1)
-    time_s, dated = _timing(path.name, clock, raw[clock.stem][0], rows)
+    notes: list[str] = []
+    time_s, dated = _timing(path.name, clock, raw[clock.stem][0], rows, notes)
     held = {stem: raw[stem] for stem in QUANTITIES if stem in raw}
     values = {stem: _numeric(path.name, columns[stem], cells) for stem, (cells, _) in held.items()}
     missing = {stem: gone for stem, (_, gone) in held.items() if gone.any()}
-    warnings = tuple(column_warnings(names, columns))
+    warnings = (*column_warnings(names, columns), *notes)
     return table_recording(
         Table(path.name, kind, columns, time_s, dated, clock.name.lower(), values, missing, rows, warnings)
     )
@@ -93,17 +96,27 @@ def _needed(where: str, names: list[str]) -> dict[str, Column]:
     if DATE in columns:
         allowed = Text("date and time in two columns: join them in one column utc")
         raise InputError(Fault(where, "", columns[DATE].name, allowed))
+    sides = [
+        (name, stem) for stem in ("lat", "lon") for name in names if stem in columns and is_named(name, stem)
+    ]
+    if sides:
+        allowed = Text("a hemisphere in a column of its own: give {stem} its sign instead", stem=sides[0][1])
+        raise InputError(Fault(where, "", sides[0][0], allowed))
     clock = next(stem for stem in (UTC, UNIX, SECONDS) if stem in columns)
     return {stem: c for stem, c in columns.items() if stem in QUANTITIES or stem in (clock, CLOCK)}
 
 
-def _timing(where: str, clock: Column, cells: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, bool]:
+def _timing(
+    where: str, clock: Column, cells: np.ndarray, rows: np.ndarray, notes: list[str]
+) -> tuple[np.ndarray, bool]:
     if np.issubdtype(cells.dtype, np.datetime64):
         seconds = cells.astype("datetime64[us]").astype(np.int64) * 1e-6
         return np.where(np.isnat(cells), np.nan, seconds), True
     if cells.dtype.kind in "iufb":
         numbers = cells.astype(float)
-        return (numbers, False) if clock.stem == SECONDS else unix_or_elapsed(numbers)
+        seconds, dated, told = numeric_times(where, clock, numbers)
+        notes += told
+        return seconds, dated
     distinct, places = np.unique(cells.astype(str), return_inverse=True)
     if distinct.size and distinct.dtype.itemsize > 4 * _LONGEST_TIME:
         raise InputError(

@@ -7,6 +7,7 @@ import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.io.courses import course_warnings
 from navcore.io.plausible import speed_warnings
 from navcore.io.recording import Window, load, require_cover, shared_window
 from navcore.io.series import Recording, Series
@@ -193,6 +194,7 @@ def _log_notices(moving: MotionParameters, reference: Reference) -> Iterator[str
         )
     else:
         yield from speed_warnings(Recording(track.position, track.recording.velocity, recording.water))
+        yield from course_warnings(track.recording)
     if track is not None and not along_axes and series.file == track.position.file:
         yield Text(
             "{source}: the log comes from the same receiver as the track, its errors cancel in part",

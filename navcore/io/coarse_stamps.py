@@ -1,0 +1,35 @@
+"""Stamps coarser than the data: several rows in order that bear the same second are spread over it."""
+
+import numpy as np
+
+_FEWEST_STAMPS = 3
+
+
+def spread(time_s: np.ndarray) -> tuple[np.ndarray, int]:
+    """Times with the rows of one stamp spread evenly over its interval, and how many rows bear one stamp.
+
+    Parameters
+    ----------
+    time_s : ndarray, shape (n,)
+        Never decreasing; else, and when most stamps stand once, it is returned as it is, with a count of 1.
+
+    Returns
+    -------
+    times : ndarray, shape (n,)
+        A first stamp with fewer rows than the median has those of its interval's end.
+    rows : int
+        Median number of rows of a stamp.
+    """
+    steps = np.diff(time_s)
+    if time_s.size < _FEWEST_STAMPS or not np.all(steps >= 0.0):
+        return time_s, 1
+    stamps, counts = np.unique(time_s, return_counts=True)
+    each = int(np.median(counts))
+    if stamps.size < _FEWEST_STAMPS or each < 2 or counts.max() > 2 * each:
+        return time_s, 1
+    interval = float(np.median(np.diff(stamps)))
+    shared = np.maximum(counts, each)
+    places = np.arange(time_s.size) - np.repeat(np.cumsum(counts) - counts, counts)
+    late = max(each - int(counts[0]), 0)
+    places[: counts[0]] += late
+    return np.repeat(stamps, counts) + interval * places / np.repeat(shared, counts), each

@@ -1,0 +1,161 @@
+"""Whether heading, course, speed and positions of a recording agree; the likely slip of one that does not."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from navcore.foundation.earth import WGS84
+from navcore.foundation.text import Text
+from navcore.foundation.units import DEG, KNOT
+from navcore.io.series import Recording, Series
+
+LARGEST_DRIFT = 45.0 * DEG
+"""A heading that is farther from the course, as a median, is told."""
+LARGEST_COURSE_ERROR = 20.0 * DEG
+"""... and a course over ground that is farther from the track."""
+LARGEST_SPEED_SHARE = 0.25
+"""... and a speed over ground that differs from the track's by more of the larger one."""
+_NEAR = 15.0 * DEG
+_SLOWEST_MPS = 1.0
+_LEG_S = 10.0
+_FEWEST = 3
+_RATIO_SLIP = 0.08
+
+
+class _Way(NamedTuple):
+    """Times (s) and velocity over ground (m/s, E and N) while under way."""
+
+    time_s: np.ndarray
+    east: np.ndarray
+    north: np.ndarray
+
+
+def course_warnings(recording: Recording) -> list[str]:
+    """Say that heading or course, speed and positions contradict each other, and by which slip if one fits.
+
+    Parameters
+    ----------
+    recording : Recording
+        With positions or velocity under way; else nothing is said.
+    """
+    track, velocity = _track(recording.position), _velocity(recording.velocity)
+    words: list[str] = []
+    if track is not None and velocity is not None and recording.velocity is not None:
+        words += _angles(
+            Text("the course over ground"), recording.velocity.time_s,
+            np.arctan2(*recording.velocity.values.T), track, LARGEST_COURSE_ERROR,
+        )  # fmt: skip
+        words += _speeds(recording.velocity, track)
+    way = track or velocity
+    if recording.heading is not None and way is not None:
+        heading = recording.heading
+        angle = heading.values[:, 0]
+        words += _angles(Text("the heading"), heading.time_s, angle, way, LARGEST_DRIFT)
+    return words
+
+
+def _track(position: Series | None) -> _Way | None:
+    """Velocity of legs of 10 s between positions that share none of the gaps."""
+    if position is None or position.time_s.size < _FEWEST:
+        return None
+    time_s = position.time_s
+    leg_s = max(_LEG_S, position.interval_s)
+    starts = np.searchsorted(time_s, np.arange(time_s[0], time_s[-1], leg_s))
+    starts = np.unique(starts[starts < time_s.size])
+    lat, lon = position.values[starts, 0], np.unwrap(position.values[starts, 1])
+    steps = np.diff(time_s[starts])
+    if steps.size < _FEWEST:
+        return None
+    meridian, prime_vertical = WGS84.radii(float(np.median(lat)))
+    east, north = np.diff(lon) * prime_vertical * np.cos(lat[:-1]) / steps, np.diff(lat) * meridian / steps
+    return _moving(_Way(time_s[starts][:-1] + 0.5 * steps, east, north), steps < 3.0 * leg_s)
+
+
+def _velocity(velocity: Series | None) -> _Way | None:
+    if velocity is None:
+        return None
+    return _moving(_Way(velocity.time_s, *velocity.values.T), velocity.valid)
+
+
+def _moving(way: _Way, usable: np.ndarray) -> _Way | None:
+    kept = usable & (np.hypot(way.east, way.north) > _SLOWEST_MPS)
+    if np.count_nonzero(kept) < _FEWEST:
+        return None
+    return _Way(*(values[kept] for values in way))
+
+
+def _nearest(time_s: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    after = np.clip(np.searchsorted(time_s, wanted), 1, max(time_s.size - 1, 1))
+    after = np.minimum(after, time_s.size - 1)
+    before = np.maximum(after - 1, 0)
+    return np.where(wanted - time_s[before] < time_s[after] - wanted, before, after)
+
+
+def _angles(what: str, time_s: np.ndarray, angle: np.ndarray, way: _Way, most: float) -> list[str]:
+    near = _nearest(time_s, way.time_s)
+    close = np.abs(time_s[near] - way.time_s) <= _LEG_S
+    if np.count_nonzero(close) < _FEWEST:
+        return []
+    told, course = angle[near][close], np.arctan2(way.east, way.north)[close]
+    off = _off(told, course)
+    if off <= most:
+        return []
+    degrees, turned = np.rad2deg(angle % (2.0 * np.pi)), np.rad2deg(told % (2.0 * np.pi))
+    slips = (
+        (Text("radians taken for degrees"), degrees.max() <= 2.0 * np.pi + 0.01, turned, course),
+        (Text("the wrong sign of the angle or of the longitude"), True, -told, course),
+        (Text("the wrong sign (hemisphere) of the latitude"), True, told, np.pi - course),
+        (Text("the opposite direction"), True, told + np.pi, course),
+        (Text("east and north exchanged"), True, 0.5 * np.pi - told, course),
+    )  # fmt: skip
+    likely = next((name for name, able, mended, to in slips if able and _off(mended, to) < _NEAR), "")
+    reason = likely or Text("a wrong unit, sign or zero")
+    return [
+        Text(
+            "{what} (median {told:.1f}°) is {off:.0f}° from the course of the track: {reason}?",
+            what=what,
+            told=float(np.median(turned)),
+            off=off / DEG,
+            reason=reason,
+        )
+    ]
+
+
+def _off(angle: np.ndarray, course: np.ndarray) -> float:
+    """Median size of the difference, rad."""
+    return float(np.median(np.abs((angle - course + np.pi) % (2.0 * np.pi) - np.pi)))
+
+
+_SLIPS = {
+    KNOT: Text("m/s taken for knots"),
+    1.0 / KNOT: Text("knots taken for m/s"),
+    3.6: Text("m/s taken for km/h, or the reverse"),
+    1.0 / 3.6: Text("m/s taken for km/h, or the reverse"),
+    1.852: Text("knots taken for km/h, or the reverse"),
+    1.0 / 1.852: Text("knots taken for km/h, or the reverse"),
+    1.0 / DEG: Text("positions in radians"),
+}
+"""By the speed that is given over the speed of the track."""
+
+
+def _speeds(velocity: Series, track: _Way) -> list[str]:
+    near = _nearest(velocity.time_s, track.time_s)
+    close = np.abs(velocity.time_s[near] - track.time_s) <= _LEG_S
+    if np.count_nonzero(close) < _FEWEST:
+        return []
+    given = float(np.median(np.hypot(*velocity.values[near][close].T)))
+    moved = float(np.median(np.hypot(track.east, track.north)[close]))
+    if abs(given - moved) <= max(_SLOWEST_MPS, LARGEST_SPEED_SHARE * max(given, moved)):
+        return []
+    ratio = given / moved
+    slip = next((name for size, name in _SLIPS.items() if abs(ratio / size - 1.0) < _RATIO_SLIP), "")
+    return [
+        Text(
+            "the speed over ground (median {given:.1f} kn, {source}) is not that of the positions "
+            "({moved:.1f} kn): {reason}?",
+            given=given / KNOT,
+            source=velocity.source,
+            moved=moved / KNOT,
+            reason=slip or Text("a wrong unit or scale"),
+        )
+    ]

@@ -1,0 +1,102 @@
+"""Hemispheres in columns of their own: ``33.9, S`` beside each other, found by cells and names."""
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
+from navcore.io.column_names import Column, plain_name
+
+_SIDES = {
+    "lat": {"n": 1.0, "north": 1.0, "s": -1.0, "south": -1.0},
+    "lon": {"e": 1.0, "east": 1.0, "w": -1.0, "west": -1.0},
+}
+_STEMS = {"lat": "lat|latitude", "lon": "lon|long|lng|longitude"}
+_WORDS = "dir|direction|hem|hemi|hemisphere|side|sign|ref|ns|ew|n_s|e_w|indicator"
+_NAMED = {
+    "lat": re.compile(rf"\w{{0,20}}?(?:{_STEMS['lat']})_?(?:{_WORDS})"),
+    "lon": re.compile(rf"\w{{0,20}}?(?:{_STEMS['lon']})_?(?:{_WORDS})"),
+}
+
+
+_MAY_BE = {"lat": frozenset(("ns", "n_s", "ns_indicator")), "lon": frozenset(("ew", "e_w", "ew_indicator"))}
+"""Names that the cells must confirm: ``ns`` is also a number of satellites."""
+
+
+def is_named(name: str, stem: str) -> bool:
+    """Whether a name says that the column holds the hemisphere of ``lat`` or ``lon``."""
+    return _NAMED[stem].fullmatch(plain_name(name)) is not None
+
+
+def candidates(names: Sequence[str], columns: dict[str, Column]) -> dict[str, list[int]]:
+    """Columns that may hold the hemisphere of latitude and longitude: so named first, then the next one."""
+    used = {column.index for column in columns.values()}
+    found: dict[str, list[int]] = {}
+    for stem in _SIDES.keys() & columns.keys():
+        named = [
+            i
+            for i, name in enumerate(names)
+            if i not in used and (is_named(name, stem) or plain_name(name) in _MAY_BE[stem])
+        ]
+        after = columns[stem].index + 1
+        beside = [after] if after < len(names) and after not in used and after not in named else []
+        found[stem] = named + beside
+    return found
+
+
+def signed(
+    where: str,
+    stem: str,
+    values: np.ndarray,
+    sides: Sequence[tuple[str, Sequence[str]]],
+    rows: Sequence[int],
+) -> tuple[np.ndarray, np.ndarray, str]:
+    """Values with the sign of their hemisphere, which of them have none, and the column's name.
+
+    Parameters
+    ----------
+    where : str
+        File name, for faults.
+    stem : str
+        ``lat`` or ``lon``.
+    values : ndarray, shape (n,)
+        Unsigned, or with the same sign.
+    sides : sequence of (str, sequence of str)
+        Name and cells of the candidates.
+    rows : sequence of int
+        Row numbers, for faults.
+
+    Returns
+    -------
+    signed : ndarray, shape (n,)
+    absent : ndarray of bool, shape (n,)
+    name : str
+        Empty when no candidate is a column of hemispheres.
+
+    Raises
+    ------
+    InputError
+        A column is named a hemisphere and holds something else, or a value has the other sign.
+    """
+    known = _SIDES[stem]
+    for name, cells in sides:
+        lowered = [cell.strip().lower() for cell in cells]
+        strange = next((i for i, cell in enumerate(lowered) if cell and cell not in known), None)
+        if strange is not None and is_named(name, stem):
+            at = Text("{where}, row {rows}", where=where, rows=rows[strange])
+            allowed = Text(
+                "must be {sides}: a hemisphere", sides=" or ".join(k.upper() for k in known if len(k) == 1)
+            )
+            raise InputError(Fault(at, name, cells[strange], allowed))
+        if strange is not None or not any(lowered):
+            continue
+        sign = np.array([known.get(cell, 0.0) for cell in lowered])
+        against = np.flatnonzero((values < 0.0) & (sign > 0.0))
+        if against.size:
+            at = Text("{where}, row {rows}", where=where, rows=rows[against[0]])
+            allowed = Text("contradicts the negative number beside it")
+            raise InputError(Fault(at, name, cells[against[0]], allowed))
+        return np.abs(values) * sign, sign == 0.0, name
+    return values, np.zeros(values.size, dtype=bool), ""

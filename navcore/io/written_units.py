@@ -1,0 +1,119 @@
+"""Units and qualifiers as headers write them: each is understood here, or the column is refused by name.
+
+``[m/s]``, ``(m s-1)``, ``m·s⁻¹``, ``_mps``, ``degrees_north``, ``(deg, true)``, ``(°)``, ``[ms]`` of a time.
+"""
+
+import re
+from typing import NamedTuple
+
+from navcore.foundation.units import DEG, KNOT
+
+UNITS = {
+    "angle": {"deg": DEG, "rad": 1.0, "mrad": 1e-3},
+    "speed": {
+        "mps": 1.0, "kn": KNOT, "kmh": 1.0 / 3.6, "cms": 0.01, "mms": 1e-3, "mph": 0.44704, "fps": 0.3048,
+    },
+    "length": {"m": 1.0, "cm": 0.01, "mm": 1e-3, "km": 1e3, "ft": 0.3048, "nm": 1852.0, "mi": 1609.344},
+    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0, "day": 86400.0},
+}  # fmt: skip
+"""SI over each unit, by dimension."""
+_SPELT = {
+    "angle": {
+        "deg": "degs degree degrees deg_true degt degrees_true degrees_north degrees_east degree_north "
+        "degree_east degrees_n degrees_e degree_n degree_e",
+        "rad": "rads radian radians",
+        "mrad": "milliradian milliradians",
+    },
+    "speed": {
+        "mps": "m_s ms meter_second meters_second metre_second metres_second m_sec m_s_1 ms_1 m_sec_1 "
+        "meter_per_second meters_per_second metre_per_second metres_per_second meter_second_1 "
+        "metre_second_1",
+        "kn": "kt kts kns knot knots nmi_h nm_h nmi_h_1 nm_h_1",
+        "kmh": "km_h kph kmph km_hr km_h_1 km_hr_1 kilometers_per_hour kilometres_per_hour",
+        "cms": "cm_s cm_s_1 cm_sec",
+        "mms": "mm_s mm_s_1",
+        "mph": "mi_h mile_per_hour miles_per_hour",
+        "fps": "ft_s ft_s_1 feet_per_second",
+    },
+    "length": {
+        "m": "meter meters metre metres",
+        "cm": "centimeter centimetre",
+        "mm": "millimeter millimetre",
+        "km": "kilometer kilometers kilometre kilometres",
+        "ft": "feet foot",
+        "nm": "nmi naut_mi nautical_mile nautical_miles",
+        "mi": "mile miles",
+    },
+    "time": {
+        "s": "sec secs second seconds",
+        "ms": "msec millis millisecond milliseconds",
+        "us": "usec micros microsecond microseconds",
+        "ns": "nsec nanos nanosecond nanoseconds",
+        "min": "minute minutes",
+        "h": "hr hrs hour hours",
+        "day": "d days",
+    },
+}
+_NAMES = {
+    dimension: {name: unit for unit in units for name in (unit, *_SPELT[dimension].get(unit, "").split())}
+    for dimension, units in UNITS.items()
+}
+_HARMLESS = {
+    "angle": frozenset("true t n e north east decimal dec dd wgs84 wgs_84".split()),
+    "speed": frozenset("true water ground".split()),
+    "length": frozenset("msl wgs84 ellipsoid ellipsoidal".split()),
+    "time": frozenset("utc gmt z iso iso8601 8601 gps gpst unix epoch posix time".split()),
+}
+"""Words that say what is taken anyway, or that other modules heed (``gps``)."""
+_CONTRARY = frozenset("magnetic mag compass relative local lt".split())
+"""Words that make another quantity of a column, whatever unit stands beside them."""
+_STAMP_FORM = re.compile(r"(?:y{2,4}|h{1,2})[ymdhs_tz0-9]{0,40}", re.IGNORECASE)
+_SPELLINGS = str.maketrans({"⁻": "-", "¹": "1", "·": " ", "⋅": " ", "µ": "u", "μ": "u"})
+_SIGNS = re.compile(r"[^a-z0-9]+")
+
+
+class Written(NamedTuple):
+    """What the words in the brackets of a column say.
+
+    Attributes
+    ----------
+    unit : str
+        Key of `UNITS`; empty when none is named.
+    dimension : str
+        Of the unit; that of the quantity, as a rule.
+    unknown : str
+        Words that are not understood.
+    """
+
+    unit: str = ""
+    dimension: str = ""
+    unknown: str = ""
+
+
+def unit_of(words: str, dimension: str) -> str:
+    """Unit of this dimension that plain words (joined by underscores) name; empty when they name none."""
+    return _NAMES[dimension].get(words, "")
+
+
+def written(texts: list[str], dimension: str) -> Written:
+    """Unit and qualifiers in the brackets of a column whose quantity has this dimension."""
+    found, unknown = Written(dimension=dimension), ""
+    for text in texts:
+        words = _plain(text)
+        rest = "_".join(word for word in words.split("_") if word not in _HARMLESS[dimension])
+        if _CONTRARY & set(words.split("_")):
+            return Written(dimension=dimension, unknown=text)
+        unit = unit_of(words, dimension) or unit_of(rest, dimension)
+        other = next((d for d in UNITS if unit_of(words, d)), "")
+        if unit:
+            found = found._replace(unit=unit)
+        elif other:
+            return Written(unit_of(words, other), other)
+        elif rest and not (dimension == "time" and _STAMP_FORM.fullmatch(rest)):
+            unknown = unknown or text
+    return found if found.unit else found._replace(unknown=unknown)
+
+
+def _plain(text: str) -> str:
+    spelt = re.sub("[°º]", " deg ", text.translate(_SPELLINGS).lower())
+    return _SIGNS.sub("_", spelt).strip("_")
