@@ -19,7 +19,17 @@ _SLOWEST_HZ = 10.0
 def recognises(path: Path, head: bytes) -> bool:
     """Whether a file that begins so is a recorded IMU: PSINS text, or a CSV that names its quantities."""
     text = head.decode("utf-8", errors="replace")
-    return is_psins(text) or is_imu_header(text.lstrip().split("\n", 1)[0])
+    return (is_psins(text) and _numbers_below(text)) or is_imu_header(text.lstrip().split("\n", 1)[0])
+
+
+def _numbers_below(text: str) -> bool:
+    """Whether numbers alone follow the comments: other tables begin with ``%`` too, names or dates below."""
+    lines = (line.strip() for line in text.split("\n"))
+    words = next((line for line in lines if line and not line.startswith("%")), "").partition("%")[0].split()
+    try:
+        return all(isinstance(float(word), float) for word in words)
+    except ValueError:
+        return False
 
 
 def check_imu(path: Path) -> FileReport:

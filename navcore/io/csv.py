@@ -24,7 +24,7 @@ from navcore.io.columns import (
     require_columns,
     table_recording,
 )
-from navcore.io.epochs import numeric_times
+from navcore.io.epochs import GPS_EPOCH_S, gps_to_unix, numeric_times
 from navcore.io.formats import Candidate
 from navcore.io.hemispheres import candidates, signed
 from navcore.io.series import Recording
@@ -318,7 +318,11 @@ def _timing(where: str, rows: _Rows, kept: list[int]) -> tuple[np.ndarray, bool,
         cells = [f"{dates[i].strip()} {cell.strip()}" for i, cell in zip(kept, cells, strict=True)]
     parsed = _as_numbers(cells)
     if parsed is None and column.stem in (UTC, CLOCK):
-        return (*times(where, name, cells, numbered, column.unit), name)
+        time_s, dated = times(where, name, cells, numbered, column.unit)
+        if dated and "gpst" in name:
+            rows.warnings.append(Text("column {name} is GPS time: leap seconds removed", name=column.name))
+            time_s = gps_to_unix(time_s - GPS_EPOCH_S)
+        return time_s, dated, name
     if parsed is None:
         parsed, _ = numbers(where, name, cells, numbered)
     time_s, dated, told = numeric_times(where, column, parsed)

@@ -56,3 +56,11 @@ def test_leap_seconds_are_those_of_the_date() -> None:
         1341100799.0,
         1341100800.0,
     ]
+
+
+def test_dates_in_gps_time_become_utc(tmp_path: Path) -> None:
+    path = tmp_path / "track.pos"
+    path.write_text("%  GPST   latitude(deg) longitude(deg)\n2021/08/03 06:00:18.0 44.0 8.0\n")
+    position = read_recording(path).position
+    assert position is not None
+    assert position.time_s[0] == pytest.approx(_START)
