@@ -148,7 +148,8 @@ def _speeds(velocity: Series, track: _Way) -> list[str]:
     if abs(given - moved) <= max(_SLOWEST_MPS, LARGEST_SPEED_SHARE * max(given, moved)):
         return []
     ratio = given / moved
-    slip = next((name for size, name in _SLIPS.items() if abs(ratio / size - 1.0) < _RATIO_SLIP), "")
+    slips = (name for size, name in _SLIPS.items() if abs(ratio / size - 1.0) < _RATIO_SLIP)
+    slip = next(slips, Text("a wrong unit or scale"))
     return [
         Text(
             "the speed over ground (median {given:.1f} kn, {source}) is not that of the positions "
@@ -156,6 +157,6 @@ def _speeds(velocity: Series, track: _Way) -> list[str]:
             given=given / KNOT,
             source=velocity.source,
             moved=moved / KNOT,
-            reason=slip or Text("a wrong unit or scale"),
+            reason=slip,
         )
     ]

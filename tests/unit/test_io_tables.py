@@ -265,3 +265,12 @@ def test_a_mat_file_of_cells_is_refused_unread(tmp_path):
     cell[0, 0] = np.zeros((10, 10))
     savemat(tmp_path / "table.mat", {"t_s": np.array([0.0]), "heading_deg": cell})
     assert "heading_deg: must be a column of numbers, is of class cell" in faults(tmp_path / "table.mat")[0]
+
+
+def test_a_date_and_a_time_in_gmt_are_one_time(tmp_path: Path) -> None:
+    path = tmp_path / "voyage.csv"
+    rows = [f"2023/02/11,18:05:{second:02d}.250,80.0" for second in range(30)]
+    path.write_text("\n".join(["DATE_GMT,TIME_GMT,HDT", *rows]) + "\n", "utf-8")
+    heading = read_recording(path).heading
+    assert heading is not None and heading.dated
+    assert heading.time_s[1] - heading.time_s[0] == pytest.approx(1.0)
