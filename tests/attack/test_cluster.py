@@ -221,7 +221,7 @@ def changed_program(folder: Path, change: str) -> dict[str, str]:
 
 CHANGES = {
     "version": ("navcore/foundation/version.py", '"0.1.0"', '"0.0.9"'),
-    "kernels": ("navcore/foundation/earth.py", "7.292115e-5", "7.292116e-5"),
+    "kernels": ("navcore/foundation/units.py", "7.292115e-5", "7.292116e-5"),
     "sources": ("navcore/design/seeds.py", "SEEDS = 24", "SEEDS = 25"),
 }
 """What differs first, and by which change in which file."""
