@@ -80,6 +80,10 @@ def test_a_click_means_the_nearest_point_and_nothing_far_from_all(found: Pareto)
     assert nearest(found, 1.01 * x, 0.99 * y) == ("classic3", point)
     with pytest.raises(InputError, match="near a point"):
         nearest(found, 10.0 * x, 10.0 * y)
+    at_zero = replace(point, values=(0.0, *point.values[1:]))  # as with all errors 0
+    assert nearest(replace(found, fronts={"none": (at_zero,)} | found.fronts), x, y) == ("classic3", point)
+    with pytest.raises(InputError, match="near a point"):
+        nearest(replace(found, fronts={"none": (at_zero,)}), x, y)
     assert read_place("3.5 0.1") == (3.5, 0.1)
     for bad in ("", "1", "1 -2", "nan 1", "a b", "1 2 3", "0 1", "1e999 1"):
         with pytest.raises(InputError):

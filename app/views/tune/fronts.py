@@ -135,7 +135,7 @@ def nearest(found: Pareto, x: float, y: float) -> tuple[str, Point]:
         for point in points:
             place = zip(point.values, (x, y), sizes, spans, strict=True)
             away = max(
-                abs(math.log10(value / size / at)) / span if at > 0.0 else math.inf
+                abs(math.log10(value / size / at)) / span if min(at, value) > 0.0 else math.inf
                 for value, at, size, span in place
             )
             if best is None or away < best[0]:
