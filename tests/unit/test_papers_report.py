@@ -12,7 +12,8 @@ import pytest
 
 from navcore.foundation.notation import in_symbols
 from navcore.scenario.file import presets
-from tools.papers.claim import Claim, Exhibit, Paper, about, at_least, at_most, number, order_of
+from tools.papers import deng, deng_errors
+from tools.papers.claim import Claim, Exhibit, Paper, Reading, about, at_least, at_most, number, order_of
 from tools.papers.markdown import Contradiction, check, exhibit_text, summary
 from tools.papers.measure import interval, last_above
 from tools.papers.runs import Runs, method, scenario_of
@@ -64,6 +65,43 @@ def test_a_claim_that_differs_needs_a_reason_and_one_that_agrees_must_not_have_o
         check(claim(2.3), Runs())
     with pytest.raises(Contradiction):
         check(claim(2.1, why="stale"), Runs())
+
+
+def test_another_reading_stands_in_the_row_and_is_not_counted():
+    other = Reading("as a variance", "4", about(4.0, 0.1), lambda runs: 3.0)
+    found = check(claim(2.0, readings=(other,)), Runs())
+    exhibit = Exhibit(name="x", title="X", presets=(), setting="Made up.")
+    row = (
+        "| 1 | x is two | 2; as a variance: 4 | 2.00; as a variance: 3.00 "
+        "| 1.80 to 2.20; as a variance: 3.60 to 4.40 | direction only | agrees; as a variance: differs |"
+    )
+    assert row in exhibit_text(exhibit, [found], [])
+    assert summary([(Paper("P", "", ()), exhibit, [found])]).rows[-1][3:] == ("", "", "1 of 1", "", "0", "0")
+
+
+def test_the_position_of_deng_tells_the_readings_of_variance_apart():
+    """With the log at 2 Hz four rows fit as variances, but longitude and latitude by no means."""
+    printed = np.array([row[1] for row in deng_errors.TABLE_1])
+    runs = Runs()
+    slow = deng_errors.log_spreads(runs, 2.0, range(1, 2)) ** 2 / printed
+    fast = deng_errors.log_spreads(runs, 200.0, range(1, 2)) / printed
+    four, position = [0, 1, 3, 4], [6, 7]
+    assert np.all((slow[four] > 0.5) & (slow[four] < 2.0))
+    assert np.all(slow[position] > 10.0)
+    assert np.all((fast[four] > 0.5) & (fast[four] < 2.0))
+    assert np.all((fast[position] > 0.3) & (fast[position] < 3.0))
+
+
+def test_the_reference_of_deng_explains_pitch_of_the_drive_but_not_roll_and_heading(monkeypatch):
+    """Table 4 has 0.0167, 0.0832 and 0.0734 deg; ours with the reference's 0.01 reach half of one."""
+    monkeypatch.setattr(deng_errors, "SEEDS", range(1, 2))
+    runs = Runs()
+    for row, explained in enumerate((True, False, False)):
+        own = deng_errors.statistics(runs, "deng-vehicle", deng_errors.DAMPED)[0, row, 1]
+        referenced = deng.with_reference(runs, "deng-vehicle", row)
+        half = 0.5 * deng_errors.TABLE_4[row][1]
+        assert own < half
+        assert (referenced > half) == explained
 
 
 def test_both_fidelities_must_agree():

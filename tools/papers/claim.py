@@ -51,6 +51,28 @@ def order_of(value: float, factor: float = 3.0) -> Span:
 
 
 @dataclass(frozen=True)
+class Reading:
+    """Another way to read a claim's number or setting; it stands in the claim's row and counts as none.
+
+    Attributes
+    ----------
+    name : str
+        How it is read: "as a variance".
+    printed : str
+        The paper's number in this reading.
+    agreed : tuple of float
+        Range of our number within which the two agree.
+    ours : callable
+        Our number in this reading, as `Claim.ours`.
+    """
+
+    name: str
+    printed: str
+    agreed: Span
+    ours: Callable[[Runs], float | np.ndarray | Estimate]
+
+
+@dataclass(frozen=True)
 class Claim:
     """One statement of a paper and how it is checked.
 
@@ -80,6 +102,9 @@ class Claim:
         Numbers that ``why`` and ``note`` name in braces.
     digits : int
         Significant digits of our number; 0: it is a count, and printed whole.
+    readings : tuple of Reading
+        The other readings of the same statement. The claim itself has the one that fits the whole exhibit,
+        and the exhibit's setting says why.
     """
 
     says: str
@@ -93,6 +118,7 @@ class Claim:
     note: str = ""
     facts: Mapping[str, Callable[[Runs], float]] = field(default_factory=dict)
     digits: int = 3
+    readings: tuple[Reading, ...] = ()
 
     def verdict(self, *found: Estimate) -> Verdict:
         """Agreement of all estimates with the range."""

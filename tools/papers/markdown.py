@@ -1,7 +1,7 @@
 """Papers with their claims -> the text of the report."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from navcore.foundation.markdown import markdown_table
 from navcore.foundation.notation import in_symbols
@@ -28,6 +28,10 @@ The kind of a claim says what its agreement is worth. *Predicted*: our number fo
 the paper prints. *Fitted*: a setting that the paper does not print was chosen so that the number comes out.
 *Direction only*: the paper states a relation without a number, or prints too little of its setting for more.
 *Own*: the claim is ours, about what this project adds; it says nothing about a paper.
+
+A claim is one row. Where a statement can be read in more than one way, every reading stands in its row;
+the verdict and the counts go by the first one, which fits the whole table or figure, for the reason given
+above it.
 """
 
 
@@ -45,6 +49,7 @@ class Checked:
     verdict: Verdict
     why: str
     note: str
+    readings: tuple["Checked", ...] = ()
 
 
 def check(claim: Claim, runs: Runs) -> Checked:
@@ -55,16 +60,29 @@ def check(claim: Claim, runs: Runs) -> Checked:
     Contradiction
         The verdict and ``claim.why`` contradict each other.
     """
+    found = _measured(claim, runs)
+    if found.verdict != "undecided" and (found.verdict == "differs") != bool(claim.why):
+        ours = " / ".join(f"{one}" for one in (found.linear, found.strapdown) if one is not None)
+        raise Contradiction(f"{claim.says}: {ours} {found.verdict} with {claim.agreed}, why = {claim.why!r}")
+    facts = {name: _fact(fact(runs)) for name, fact in claim.facts.items()}
+    others = (
+        replace(claim, printed=other.printed, agreed=other.agreed, ours=other.ours)
+        for other in claim.readings
+    )
+    return replace(
+        found,
+        why=claim.why.format_map(facts),
+        note=claim.note.format_map(facts),
+        readings=tuple(_measured(other, runs) for other in others),
+    )
+
+
+def _measured(claim: Claim, runs: Runs) -> Checked:
+    """Our numbers of one reading and its verdict."""
     linear = estimate(claim.ours(runs))
     strapdown = estimate(claim.ours(runs.in_strapdown())) if claim.strapdown else None
     verdict = claim.verdict(linear, *(() if strapdown is None else (strapdown,)))
-    if verdict != "undecided" and (verdict == "differs") != bool(claim.why):
-        found = f"{linear}" if strapdown is None else f"{linear} / {strapdown}"
-        raise Contradiction(f"{claim.says}: {found} {verdict} with {claim.agreed}, why = {claim.why!r}")
-    facts = {name: _fact(fact(runs)) for name, fact in claim.facts.items()}
-    return Checked(
-        claim, linear, strapdown, verdict, claim.why.format_map(facts), claim.note.format_map(facts)
-    )
+    return Checked(claim, linear, strapdown, verdict, "", "")
 
 
 def _fact(value: float) -> str:
@@ -144,12 +162,28 @@ def _claims(checked: Sequence[Checked]) -> Table:
     head = ("", *stated, *ours_head, "agrees within", "kind", "verdict")
     rows = []
     for i, c in enumerate(checked, 1):
-        ours = [_value(c.claim, c.linear)]
-        if both:
-            ours.append("" if c.strapdown is None else _value(c.claim, c.strapdown))
-        verdict = c.verdict if c.verdict == "agrees" else f"**{c.verdict}**"
-        rows.append((str(i), c.claim.says, c.claim.printed, *ours, c.claim.allowed, c.claim.kind, verdict))
+        printed, *ours, allowed, verdict = _with_readings(c, both)
+        rows.append((str(i), c.claim.says, printed, *ours, allowed, c.claim.kind, verdict))
     return Table("", head, tuple(rows))
+
+
+def _with_readings(c: Checked, both: bool) -> list[str]:
+    """Cells of a claim; another reading is named behind where it has another text."""
+    cells = _cells(c, both)
+    cells[-1] = cells[-1] if c.verdict == "agrees" else f"**{c.verdict}**"
+    for reading, other in zip(c.claim.readings, c.readings, strict=True):
+        for k, (first, text) in enumerate(zip(_cells(c, both), _cells(other, both), strict=True)):
+            if text != first:
+                cells[k] += f"; {reading.name}: {text}"
+    return cells
+
+
+def _cells(c: Checked, both: bool) -> list[str]:
+    """The paper's number, ours (linear and, with ``both``, strapdown), the range and the verdict."""
+    ours = [_value(c.claim, c.linear)]
+    if both:
+        ours.append("" if c.strapdown is None else _value(c.claim, c.strapdown))
+    return [c.claim.printed, *ours, c.claim.allowed, c.verdict]
 
 
 def _value(claim: Claim, found: Estimate) -> str:
