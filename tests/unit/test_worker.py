@@ -175,6 +175,7 @@ def test_jobs_elsewhere_take_no_core_and_no_memory_of_this_machine() -> None:
     ]
     for one in away:
         one.submit(1)
+    until(lambda: turns.figures()["running_cluster"] == 3.0)  # their threads begin when they can
     here = [
         Worker(lambda job, watch: None, load=lambda _, lane=lane: Load(lane, 1e9), turns=turns)
         for lane in (Lane.ANSWER, Lane.LONG, Lane.SPARE)
