@@ -154,7 +154,7 @@ def fine_alignment(
     for first, last, sigma, azimuth in parts:
         east = gains_from_sigma_xi(sigma, loop.xi, frequencies[1])
         north = gains_from_sigma_xi(sigma, loop.xi, frequencies[0])
-        up = azimuth_gains(sigma, loop.xi, frequencies[0], gravity)[:4]
+        up = azimuth_gains(sigma, loop.xi, frequencies[0], gravity)
         fine_kernel(
             increments,
             first,

@@ -31,7 +31,7 @@ from navcore.analysis.whole_system import (
 from navcore.foundation.earth import EARTH_RATE, SPHERE, Earth
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
-from navcore.networks.azimuth_loop import AzimuthGains
+from navcore.networks.azimuth_loop import AzimuthChannel, AzimuthGains
 from navcore.networks.base import LinearNetwork
 from navcore.networks.discrete import discretise
 
@@ -85,7 +85,7 @@ def held_log(
     lat: float,
     earth: Earth = SPHERE,
     coupled: bool = True,
-    azimuth: LinearNetwork | AzimuthGains | None = None,
+    azimuth: AzimuthChannel | None = None,
 ) -> HeldLog:
     """Check the sampled law of a method at rest.
 
@@ -129,7 +129,7 @@ def period_map(
     lat: float,
     earth: Earth = SPHERE,
     coupled: bool = True,
-    azimuth: LinearNetwork | AzimuthGains | None = None,
+    azimuth: AzimuthChannel | None = None,
 ) -> np.ndarray:
     """Map of the state over one period of the log, i.e. ``calls`` calls of the law.
 
@@ -162,7 +162,8 @@ def period_map(
     fresh[held : held + 2, held : held + 2] = 0.0
     fresh[held, 0] = fresh[held + 1, 1] = -1.0
     if isinstance(azimuth, AzimuthGains):
-        _turn_north(step, forced, azimuth, omega_s, law_step_s, EARTH_RATE * math.cos(lat))
+        pull = earth.gravity(lat, 0.0) / (EARTH_RATE * math.cos(lat))
+        _turn_north(step, forced, azimuth, omega_s, law_step_s, pull)
     elif azimuth is not None:
         y, z, u = discretise(azimuth, law_step_s), slice(held + 2, held + 1 + m), held + 1 + m
         step[:STATES, z] = np.outer(forced[:, 4], -y.C)
@@ -174,11 +175,14 @@ def period_map(
 
 
 def _turn_north(
-    step: np.ndarray, forced: np.ndarray, gains: AzimuthGains, omega_s: float, step_s: float, earth_n: float
+    step: np.ndarray, forced: np.ndarray, gains: AzimuthGains, omega_s: float, step_s: float, pull: float
 ) -> None:
-    """Put a gyrocompass in the place of the north network: w is the last state, d_N the one before."""
+    """Put a gyrocompass in the place of the north network: w is the last state, d_N the one before.
+
+    ``pull`` is g/(Omega cos L), m/s.
+    """
     w, held, left = len(step) - 1, len(step) - 2, math.exp(-gains.k4 * step_s)
-    gain = gains.k3 * gains.gravity * (1.0 - left) / (gains.k4 * omega_s**2 * earth_n)
+    gain = gains.k3 * pull * (1.0 - left) / (gains.k4 * omega_s**2)
     step[w, w], step[w, held] = left, -gain
     step[:STATES, STATES + (held - 1 - STATES) // 2 : held - 1] = 0.0
     step[:STATES, held] = (

@@ -16,7 +16,7 @@ from navcore.analysis.loop import closed_loop_poles
 from navcore.foundation.earth import EARTH_RATE, SPHERE, Earth
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG
-from navcore.networks.azimuth_loop import AzimuthGains
+from navcore.networks.azimuth_loop import AzimuthChannel, AzimuthGains
 from navcore.networks.base import ComplexArray, LinearNetwork
 from navcore.networks.roots import sorted_roots
 from navcore.networks.state_space import state_space, state_spaces
@@ -191,7 +191,7 @@ def system_matrix(
     lat: float,
     earth: Earth = SPHERE,
     height: float = 0.0,
-    azimuth: LinearNetwork | AzimuthGains | None = None,
+    azimuth: AzimuthChannel | None = None,
 ) -> np.ndarray:
     """System matrix with the law's states of the east, the north and the azimuth channel.
 
@@ -215,7 +215,7 @@ def system_matrix(
         f[DV_N, DV_N] -= azimuth.k1 / rate
         f[PHI_E, DV_N] += act[PHI_E, 1] * azimuth.k2
         f[PHI_U, -1], f[-1, -1] = 1.0, -azimuth.k4 / rate
-        f[-1, DV_N] = azimuth.k3 * azimuth.gravity / (rate**3 * EARTH_RATE * math.cos(lat))
+        f[-1, DV_N] = azimuth.k3 * earth.gravity(lat, height) / (rate**3 * EARTH_RATE * math.cos(lat))
     elif azimuth is not None:
         y, rate = law_form(azimuth), azimuth.omega_s / network.omega_s
         up, z = up_rate(lat, network.omega_s, earth, height), slice(STATES + 2 * n, None)
@@ -239,7 +239,7 @@ def whole_system(
     lat: float,
     earth: Earth = SPHERE,
     height: float = 0.0,
-    azimuth: LinearNetwork | AzimuthGains | None = None,
+    azimuth: AzimuthChannel | None = None,
 ) -> WholeSystem:
     """Analyse the whole system at rest.
 
@@ -276,7 +276,7 @@ def growth_over_latitude(
     network: LinearNetwork,
     lats: np.ndarray,
     earth: Earth = SPHERE,
-    azimuth: LinearNetwork | AzimuthGains | None = None,
+    azimuth: AzimuthChannel | None = None,
 ) -> np.ndarray:
     """Growth rate of the 24 h mode at each latitude (rad), 1/s, shape of ``lats``."""
     lats = np.asarray(lats, dtype=float)
@@ -298,7 +298,7 @@ def duration(seconds: float) -> str:
 
 
 def _named(
-    values: ComplexArray, network: LinearNetwork, lat: float, azimuth: LinearNetwork | AzimuthGains | None
+    values: ComplexArray, network: LinearNetwork, lat: float, azimuth: AzimuthChannel | None
 ) -> list[Mode]:
     """Name every eigenvalue after the mode it comes from; of a pair only the upper one is kept."""
     targets, names = _uncoupled(network, lat, azimuth)
@@ -311,7 +311,7 @@ def _named(
 
 
 def _uncoupled(
-    network: LinearNetwork, lat: float, azimuth: LinearNetwork | AzimuthGains | None
+    network: LinearNetwork, lat: float, azimuth: AzimuthChannel | None
 ) -> tuple[ComplexArray, list[str]]:
     """Modes as they were without coupling: those of s^2 + Omega^2 Y and the poles of both channels.
 
@@ -321,8 +321,8 @@ def _uncoupled(
     poles = closed_loop_poles(network)
     main = _least_damped(poles)
     if isinstance(azimuth, AzimuthGains):
-        pair = np.roots([1.0, azimuth.k1, math.sqrt(azimuth.k3 * azimuth.gravity)])
-        loop = np.tile(pair / network.omega_s, 2)
+        pair = np.roots([1.0, azimuth.k1 / network.omega_s, 0.5 * (azimuth.k2 + 1.0)])
+        loop = np.tile(pair, 2)
         targets = np.concatenate([[0.0], loop, poles, [0.0]]).astype(np.complex128)
         return targets, [
             EARTH_MODE,

@@ -17,7 +17,7 @@ from navcore.law.combination import combination_faults, combination_warnings, ne
 from navcore.law.policy.base import PolicyParameters
 from navcore.law.records import LawKind
 from navcore.law.switching.base import SwitchingParameters
-from navcore.networks.azimuth_loop import AzimuthGains
+from navcore.networks.azimuth_loop import AzimuthChannel
 from navcore.networks.base import LinearNetwork, NetworkParameters
 from navcore.networks.undamped import UndampedNetwork
 
@@ -154,7 +154,7 @@ class Damping:
         """Network in force: as configured, or the one that the policy brings; H = 1 where none acts."""
         return network_in_force(self.law, method.network, method.policy)
 
-    def azimuth(self, method: Configured, omega_s: float) -> LinearNetwork | AzimuthGains | None:
+    def azimuth(self, method: Configured, omega_s: float) -> AzimuthChannel | None:
         """Y(s) or gyrocompass of the azimuth channel at a Schuler frequency (rad/s); None: neither."""
         return None
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import ClassVar
 
-from navcore.damping.base import Configured, Need, NetworkDamping
+from navcore.damping.base import Configured, Need
 from navcore.damping.external import External
 from navcore.damping.whole import AZIMUTH_NEEDS
 from navcore.foundation.earth import SEMI_MAJOR_AXIS
@@ -51,7 +51,7 @@ class GyrocompassExternal(External):
 
     def faults(self, method: Configured, law_step_s: float) -> Iterator[Fault]:
         """Refuse also an azimuth network beside it, and a loop too fast for the law's step."""
-        yield from NetworkDamping.faults(self, method, law_step_s)
+        yield from super().faults(method, law_step_s)
         if method.azimuth.id != "none":
             reason = Text("must be left out beside gyrocompass: one azimuth channel has one loop")
             yield Fault("", "azimuth.id", method.azimuth.id, reason)

@@ -74,9 +74,7 @@ def _degrees(cell: str) -> float | None:
     return -value if cell[-1] in "SWsw" else value
 
 
-def times(
-    where: str, name: str, cells: Sequence[str], rows: Sequence[int], unit: str = ""
-) -> tuple[np.ndarray, bool]:
+def times(where: str, name: str, cells: Sequence[str], rows: Sequence[int]) -> tuple[np.ndarray, bool]:
     """Times of a column, s, and whether they are dated (since 1970) or of the file's own zero.
 
     Taken are ISO 8601 (no zone means UTC), what `navcore.io.stamps` reads, Unix time in s or ms, and times of
@@ -91,7 +89,7 @@ def times(
         parsed = np.array(cells, dtype=float)
     except ValueError:
         return _written_times(where, name, cells, rows)
-    return unix_or_elapsed(parsed, unit)
+    return unix_or_elapsed(parsed)
 
 
 def unix_or_elapsed(values: np.ndarray, unit: str = "") -> tuple[np.ndarray, bool]:

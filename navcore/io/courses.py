@@ -7,6 +7,7 @@ import numpy as np
 from navcore.foundation.earth import WGS84
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, KNOT
+from navcore.io.plausible import KNOT_SLIPS, slip_of
 from navcore.io.series import Recording, Series
 
 LARGEST_DRIFT = 45.0 * DEG
@@ -91,12 +92,19 @@ def _nearest(time_s: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     return np.where(wanted - time_s[before] < time_s[after] - wanted, before, after)
 
 
-def _angles(what: str, time_s: np.ndarray, angle: np.ndarray, way: _Way, most: float) -> list[str]:
+def _beside(time_s: np.ndarray, way: _Way) -> tuple[np.ndarray, np.ndarray] | None:
+    """Samples nearest to those of the way that have one within a leg, and which of the way these are."""
     near = _nearest(time_s, way.time_s)
     close = np.abs(time_s[near] - way.time_s) <= _LEG_S
-    if np.count_nonzero(close) < _FEWEST:
+    return (near[close], close) if np.count_nonzero(close) >= _FEWEST else None
+
+
+def _angles(what: str, time_s: np.ndarray, angle: np.ndarray, way: _Way, most: float) -> list[str]:
+    beside = _beside(time_s, way)
+    if beside is None:
         return []
-    told, course = angle[near][close], np.arctan2(way.east, way.north)[close]
+    near, close = beside
+    told, course = angle[near], np.arctan2(way.east, way.north)[close]
     off = _off(told, course)
     if off <= most:
         return []
@@ -126,9 +134,7 @@ def _off(angle: np.ndarray, course: np.ndarray) -> float:
     return float(np.median(np.abs((angle - course + np.pi) % (2.0 * np.pi) - np.pi)))
 
 
-_SLIPS = {
-    KNOT: Text("m/s taken for knots"),
-    1.0 / KNOT: Text("knots taken for m/s"),
+_SLIPS = KNOT_SLIPS | {
     3.6: Text("m/s taken for km/h, or the reverse"),
     1.0 / 3.6: Text("m/s taken for km/h, or the reverse"),
     1.852: Text("knots taken for km/h, or the reverse"),
@@ -139,17 +145,15 @@ _SLIPS = {
 
 
 def _speeds(velocity: Series, track: _Way) -> list[str]:
-    near = _nearest(velocity.time_s, track.time_s)
-    close = np.abs(velocity.time_s[near] - track.time_s) <= _LEG_S
-    if np.count_nonzero(close) < _FEWEST:
+    beside = _beside(velocity.time_s, track)
+    if beside is None:
         return []
-    given = float(np.median(np.hypot(*velocity.values[near][close].T)))
+    near, close = beside
+    given = float(np.median(np.hypot(*velocity.values[near].T)))
     moved = float(np.median(np.hypot(track.east, track.north)[close]))
     if abs(given - moved) <= max(_SLOWEST_MPS, LARGEST_SPEED_SHARE * max(given, moved)):
         return []
-    ratio = given / moved
-    slips = (name for size, name in _SLIPS.items() if abs(ratio / size - 1.0) < _RATIO_SLIP)
-    slip = next(slips, Text("a wrong unit or scale"))
+    slip = slip_of(given / moved, _SLIPS, _RATIO_SLIP) or Text("a wrong unit or scale")
     return [
         Text(
             "the speed over ground (median {given:.1f} kn, {source}) is not that of the positions "

@@ -318,7 +318,7 @@ def _timing(where: str, rows: _Rows, kept: list[int]) -> tuple[np.ndarray, bool,
         cells = [f"{dates[i].strip()} {cell.strip()}" for i, cell in zip(kept, cells, strict=True)]
     parsed = _as_numbers(cells)
     if parsed is None and column.stem in (UTC, CLOCK):
-        time_s, dated = times(where, name, cells, numbered, column.unit)
+        time_s, dated = times(where, name, cells, numbered)
         if dated and "gpst" in name:
             rows.warnings.append(Text("column {name} is GPS time: leap seconds removed", name=column.name))
             time_s = gps_to_unix(time_s - GPS_EPOCH_S)

@@ -1,5 +1,7 @@
 """Whether the speeds of a recording agree: a water speed far from the speed over ground is told."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from navcore.foundation.earth import WGS84
@@ -13,6 +15,8 @@ LARGEST_SHARE = 0.3
 """... nor is a difference plain that is less than this share of the larger speed."""
 _SHORTEST_LEG_S = 10.0
 _KNOT_SLIP = 0.06
+KNOT_SLIPS = {KNOT: Text("m/s taken for knots"), 1.0 / KNOT: Text("knots taken for m/s")}
+"""By the speed that is told over the true one."""
 
 
 def speed_warnings(recording: Recording) -> list[str]:
@@ -37,8 +41,7 @@ def speed_warnings(recording: Recording) -> list[str]:
     if difference <= max(LARGEST_CURRENT_MPS, LARGEST_SHARE * max(through, ground)):
         return []
     ratio = through / ground if ground > 0.0 else np.inf
-    slips = {KNOT: Text("m/s taken for knots"), 1.0 / KNOT: Text("knots taken for m/s")}
-    slip = next((words for size, words in slips.items() if abs(ratio / size - 1.0) < _KNOT_SLIP), "")
+    slip = slip_of(ratio, KNOT_SLIPS, _KNOT_SLIP)
     reason = (
         Text("the ratio {ratio:.2f} suggests {slip}", ratio=ratio, slip=slip)
         if slip
@@ -56,6 +59,11 @@ def speed_warnings(recording: Recording) -> list[str]:
             reason=reason,
         )
     ]
+
+
+def slip_of(ratio: float, slips: Mapping[float, str], within: float) -> str:
+    """Slip whose ratio lies within a share of a ratio of two speeds; empty where none does."""
+    return next((words for size, words in slips.items() if abs(ratio / size - 1.0) < within), "")
 
 
 def _over_ground(recording: Recording) -> tuple[np.ndarray, np.ndarray] | None:

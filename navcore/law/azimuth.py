@@ -56,11 +56,11 @@ def _compass(law, c, up):
         s.x[U, 0] = s.correction[N] = s.correction[U] = 0.0
         return Correction(c.c_e, 0.0, c.a_e, 0.0), 0.0
     d_n = s.difference[N]
-    after = p.compass[2] * w - p.compass[3] * d_n / up.earth_n
+    after = p.compass.left * w - p.compass.gain * d_n / up.earth_n
     s.x[U, 0] = after
-    c_n, c_u = -p.compass[1] * d_n, 0.5 * (w + after)
+    c_n, c_u = -p.compass.k2 * d_n, 0.5 * (w + after)
     s.correction[N], s.correction[U] = c_n, c_u
-    return Correction(c.c_e, c_n, c.a_e, p.compass[0] * d_n), c_u
+    return Correction(c.c_e, c_n, c.a_e, p.compass.k1 * d_n), c_u
 
 
 @inlined

@@ -34,7 +34,7 @@ from navcore.law.records import (
 from navcore.law.step import law_step
 from navcore.law.switching import SWITCHINGS, SwitchingParameters
 from navcore.law.tuned_network import tune
-from navcore.networks.azimuth_loop import AzimuthGains
+from navcore.networks.azimuth_loop import AzimuthChannel, AzimuthGains
 from navcore.networks.base import LinearNetwork, NetworkParameters
 from navcore.networks.discrete import discretise
 
@@ -69,7 +69,7 @@ def prepare_law(
     policy: PolicyParameters,
     switching: SwitchingParameters,
     law_step_s: float,
-    azimuth: LinearNetwork | AzimuthGains | None = None,
+    azimuth: AzimuthChannel | None = None,
 ) -> Law:
     """Fill the records of a method's law.
 
@@ -115,7 +115,8 @@ def prepare_law(
     if isinstance(azimuth, AzimuthGains):
         left = math.exp(-azimuth.k4 * law_step_s)
         p["gyrocompass"], p["azimuth_order"] = True, 1
-        p["compass"] = azimuth.k1, azimuth.k2, left, azimuth.k3 * (1.0 - left) / azimuth.k4
+        gain = azimuth.k3 * (1.0 - left) / azimuth.k4
+        fill_record(p["compass"], {"k1": azimuth.k1, "k2": azimuth.k2, "left": left, "gain": gain})
     elif azimuth is not None:
         p["azimuth_order"] = azimuth.order
         fill_record(s["azimuth"], _complement(azimuth, law_step_s))

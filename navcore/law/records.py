@@ -33,13 +33,19 @@ TUNING = record_type(
     values=(REAL, (3,)),  # its parameters, meaning per network
     low=REAL,  # below this damping coefficient the re-tuned loop is unstable
 )
+COMPASS = record_type(
+    k1=REAL,  # K_U1 of the gyrocompass, 1/s
+    k2=REAL,  # K_U2
+    left=REAL,  # what a call leaves of its rate about the vertical
+    gain=REAL,  # what a call adds to it for the north difference, times Omega cos L
+)
 PARAMETERS = {
     "damping": COUNT,  # FREE, INTERNAL, EXTERNAL
     "realisation": COUNT,  # NETWORK, FEEDBACK, AS_PRINTED
     "order": COUNT,  # states of a level channel
     "azimuth_order": COUNT,  # states of the azimuth channel; 0: nothing acts there
     "gyrocompass": FLAG,  # a gyrocompass acts there, no network
-    "compass": (REAL, (4,)),  # K_U1 (1/s), K_U2, what a step leaves of its rate, gain of a step (rad/m)
+    "compass": COMPASS,
     "policy": COUNT,  # place of the policy in its registry
     "switching": COUNT,  # place of the switching method in its registry
     "plain": FLAG,  # policy and switching need nothing but the present difference

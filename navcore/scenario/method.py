@@ -81,9 +81,8 @@ class Method(_Settled):
         """Kind of damping."""
         if self.gyrocompass is not None and self.damping == GYROCOMPASS.id:
             return GYROCOMPASS
-        return (
-            KINDS[self.damping] if self.azimuth.id == "none" else WHOLE.get(self.damping, KINDS[self.damping])
-        )
+        whole = WHOLE.get(self.damping) if self.azimuth.id != "none" else None
+        return whole or KINDS[self.damping]
 
     @property
     def reads_log(self) -> bool:

@@ -2,12 +2,10 @@
 
 from collections.abc import Callable, Iterator
 
+from navcore.alignment.loop import LARGEST_LATITUDE_DEG
 from navcore.averaging.record import under_way
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.fields import ScenarioFields
-
-_HIGHEST_LAT_DEG = 85.0
-"""Latitude up to which an azimuth channel means anything, deg."""
 
 
 def need_faults(scenario: ScenarioFields) -> Iterator[Fault]:
@@ -47,6 +45,6 @@ _UNMET = {
     "coupled channels": _unless(lambda scenario: scenario.run.fidelity != "channel"),
     "simulated IMU": _unless(lambda scenario: scenario.imu.file is None),
     "standing start": _under_way,
-    "below 85 deg": _unless(lambda scenario: abs(scenario.site.lat_deg) <= _HIGHEST_LAT_DEG),
+    "below 85 deg": _unless(lambda scenario: abs(scenario.site.lat_deg) <= LARGEST_LATITUDE_DEG),
 }
 """How the conditions of `navcore.damping.base.Need` are checked."""

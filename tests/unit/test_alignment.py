@@ -66,7 +66,7 @@ def test_angular_random_walk_alone_gives_0_14_deg_of_heading():
 
 def test_azimuth_poles_are_those_of_the_design():
     sigma, xi, omega_s = 0.02, 0.707, 1.24e-3
-    k1, k2, k3, k4, _ = azimuth_gains(sigma, xi, omega_s, GRAVITY)
+    k1, k2, k3, k4 = azimuth_gains(sigma, xi, omega_s, GRAVITY)
     # (s + k4) [s (s + k1) + (1 + k2) ws^2] + g k3, from the north channel with the azimuth loop closed
     got = np.polyadd(np.polymul([1, k4], [1, k1, (1 + k2) * omega_s**2, 0]), [GRAVITY * k3])
     design = np.polymul([1, 2 * sigma, sigma**2 / xi**2], [1, 2 * sigma, sigma**2 / xi**2])

@@ -276,6 +276,10 @@ def _floor_line(value: float, suffix: str, row: int) -> dict[str, Any]:
     }
 
 
+def _together(*notes: str) -> str:
+    return Text.joined("; ", filter(None, notes))
+
+
 def _layout(
     budget: Budget,
     labels: Sequence[str],
@@ -286,7 +290,7 @@ def _layout(
     note: str,
 ) -> dict[str, Any]:
     if any(_GROWS in label for label in labels):
-        note = Text.joined("; ", filter(None, (Text("{sign} grows by e in this time", sign=_GROWS), note)))
+        note = _together(Text("{sign} grows by e in this time", sign=_GROWS), note)
     what = (
         Text("standard deviation, steady state at rest")
         if budget.steady
@@ -296,7 +300,7 @@ def _layout(
         what = Text("{what}; the dashed line is the floor", what=what)
         if not grid.long:
             what = Text("{what}, × how many times it", what=what)
-            if _NOTE_LETTER_PX * len(Text.joined("; ", filter(None, (what, note)))) > width_px - _RIGHT_PX:
+            if _NOTE_LETTER_PX * len(_together(what, note)) > width_px - _RIGHT_PX:
                 what = Text("the dashed line is the floor, × how many times it")
     layout = style.layout(
         meta={"aspect": aspect},
@@ -340,7 +344,7 @@ def _layout(
         style.text(
             1.0,
             1.0,
-            Text.joined("; ", filter(None, (what, note))),
+            _together(what, note),
             xref="paper",
             yref="paper",
             xanchor="right",

@@ -168,10 +168,10 @@ class MethodView(View):
         unset = {(*path, "network", name): _TAKEN for name in method.network.taken()}
         self.sections["parameters"].show(network if "network" in blocks else [], values, moved, unset)
         for part in ("azimuth", "policy", "switching"):
-            own = form.fields(type(getattr(method, part)), (*path, part))
+            fields = form.fields(type(getattr(method, part)), (*path, part))
             if part == "azimuth":
-                own = [replace(spec, label=Text("azimuth {label}", label=spec.label)) for spec in own]
-            specs = [_catalogue(part, path), *own]
+                fields = [replace(spec, label=Text("azimuth {label}", label=spec.label)) for spec in fields]
+            specs = [_catalogue(part, path), *fields]
             self.sections[part].show(specs if part in blocks else [], _values_at(scenario, specs), moved)
         own = method.kind.settings if method.damping in blocks else None
         block = form.fields(own, (*path, method.damping)) if own else []
