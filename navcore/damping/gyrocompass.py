@@ -39,7 +39,6 @@ class Gyrocompass(Parameters):
 class GyrocompassExternal(External):
     """External damping of the east channel; the north channel drives the azimuth loop."""
 
-    no_covariance: ClassVar[str] = Text("the gyrocompass couples the north channel with the heading")
     needs: ClassVar[tuple[Need, ...]] = (*External.needs, *AZIMUTH_NEEDS)
 
     def azimuth(self, method: Configured, omega_s: float) -> AzimuthGains | None:

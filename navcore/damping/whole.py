@@ -15,8 +15,6 @@ _UNITY = 1e-3
 
 
 class _Whole(NetworkDamping):
-    no_covariance: ClassVar[str] = Text("the azimuth network couples both channels with heading and latitude")
-
     def azimuth(self, method: Configured, omega_s: float) -> LinearNetwork | None:
         """Y(s) at Omega."""
         return method.azimuth.at_earth_rate()

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from navcore.design.azimuth import AzimuthForm, azimuth_form, up_rate
 from navcore.design.constants import Column, own_columns, shared_columns
 from navcore.design.course import Course, log_axes
 from navcore.design.form import LawForm
@@ -18,6 +19,7 @@ from navcore.design.maps import (
     INPUTS,
     LOG,
     MOTION,
+    UP,
     LoopModel,
     interval_map,
     loop_model,
@@ -80,7 +82,9 @@ def along(
     """
     forms, stage = law_stages(method, scenario.omega_s, course)
     course, stage = _with_stages(course, stage)
-    loops = [loop_of(scenario, form, course, model) for form in forms]
+    kind = method.kind
+    azimuth = azimuth_form(kind.azimuth(method, scenario.omega_s), kind.uses_log, course.step_s)
+    loops = [loop_of(scenario, form, course, model, azimuth) for form in forms]
     loop = loops[-1]
     shared = shared_columns(scenario, course, model) if columns is None else columns
     with np.errstate(over="ignore", invalid="ignore"):  # an unstable loop: told by who reads the variances
@@ -111,7 +115,13 @@ def _with_stages(course: Course, stage: np.ndarray) -> tuple[Course, np.ndarray]
     return apart, pairs[:, 1]
 
 
-def loop_of(scenario: Scenario, form: LawForm, course: Course, model: StochasticModel) -> LoopModel:
+def loop_of(
+    scenario: Scenario,
+    form: LawForm,
+    course: Course,
+    model: StochasticModel,
+    azimuth: AzimuthForm | None = None,
+) -> LoopModel:
     """Collect what the maps of a method need."""
     return loop_model(
         form,
@@ -120,6 +130,7 @@ def loop_of(scenario: Scenario, form: LawForm, course: Course, model: Stochastic
         body_frame=scenario.reference.frame == "body",
         heading=scenario.run.fidelity != "channel",
         taus=(model.gyro_drift.tau_s, model.accel_drift.tau_s, model.log_drift.tau_s),
+        azimuth=azimuth,
     )
 
 
@@ -239,7 +250,7 @@ def _known(
         W[:, :, j] = column.drive
         X[:ERRORS, j] = column.start
     if loop.form.self_referenced:
-        _rest(loop, X, W[0])
+        _rest(loop, X, W[0], up_rate(course.half[course.kind[:1]]))
     drive = tables.B[course.kind] @ W
     out = np.empty((k + 1, len(_STATES), count))
     out[0] = X[_STATES]
@@ -254,12 +265,12 @@ def _known(
     return squares
 
 
-def _rest(loop: LoopModel, X: np.ndarray, first: np.ndarray) -> None:
-    """Internal damping starts at rest for the velocity at t = 0 (theory.md 3)."""
+def _rest(loop: LoopModel, X: np.ndarray, first: np.ndarray, by_error: np.ndarray) -> None:
+    """Internal damping starts at rest for the velocity and omega_U at t = 0 (theory.md 3, 3.7)."""
     n = loop.order
-    if n == 0:
-        return
-    steady = np.linalg.solve(loop.form.A, -loop.form.B)
+    steady = np.linalg.solve(loop.form.A, -loop.form.B) if n else np.zeros(0)
     for channel in (0, 1):
         u = first[MOTION.start + channel] - X[channel]
         X[ERRORS + n * channel : ERRORS + n * (channel + 1)] = steady[:, None] * u
+    if loop.azimuth is not None:
+        X[ERRORS + 2 * n : loop.networks.stop] = loop.azimuth.rest(first[UP] - (by_error @ X[:ERRORS])[0])

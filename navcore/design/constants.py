@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from navcore.design.course import Course, log_axes
-from navcore.design.maps import ACCEL, ERRORS, GYRO, INPUTS, LOG, MOTION, LoopModel
+from navcore.design.maps import ACCEL, ERRORS, GYRO, INPUTS, LOG, MOTION, UP, LoopModel
+from navcore.mechanization.trajectory import named
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from navcore.scenario.start import aligned_errors, independent_errors
@@ -73,7 +74,9 @@ def own_columns(method: Method, course: Course, loop: LoopModel) -> Iterator[Col
         t = np.arange(course.edges[-1] + 1) * course.step_s
         yield _column("log_events", LOG, course.log_counts * course.means(t, event_velocity(method.event, t)))
     if loop.form.self_referenced or loop.form.as_printed:
-        yield _column("motion", MOTION, -course.velocity)
+        motion = _column("motion", MOTION, -course.velocity)
+        motion.drive[:, UP] = -named(course.half)["w_u"][course.kind]
+        yield motion
 
 
 def _column(source: str, inputs: slice, drive: np.ndarray) -> Column:

@@ -4,8 +4,8 @@ One call of the damping law is written as a linear map, exactly as the simulatio
 difference, bilinear network, RK4 of the error model with held inputs); an interval of m calls is that map
 composed with itself, by doubling. Kinds of intervals are handled together, as stacks of matrices.
 
-States: the seven of the error model, the network of the east and of the north channel, and (when the log is
-slower than the law) the held difference of both.
+States: the seven of the error model, the network of the east and of the north channel, the azimuth channel's,
+and (when the log is slower than the law) the held difference of both level channels.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from typing import Protocol, Self, TypeVar
 
 import numpy as np
 
+from navcore.design.azimuth import AzimuthForm, put_azimuth
 from navcore.design.course import Course
 from navcore.design.form import LawForm
 from navcore.mechanization.trajectory import named, table_of
@@ -28,10 +29,10 @@ class _Piece(Protocol):
 
 Joined = TypeVar("Joined", bound=_Piece)
 
-GYRO, ACCEL, LOG, MOTION = slice(0, 3), slice(3, 5), slice(5, 7), slice(7, 9)
-"""Columns of the inputs: eps E, N, U; nabla E, N; error of the log E, N; minus the true velocity E, N, which
-enters where the law takes the computed velocity by itself."""
-INPUTS = 9
+GYRO, ACCEL, LOG, MOTION, UP = slice(0, 3), slice(3, 5), slice(5, 7), slice(7, 9), 9
+"""Columns of the inputs: eps E, N, U; nabla E, N; error of the log E, N; minus the true velocity E, N; minus
+the true rate omega_U about the vertical. The last three enter where the law takes the computed ones."""
+INPUTS = 10
 ERRORS = 7
 
 
@@ -163,6 +164,8 @@ class LoopModel:
         False for the `channel` fidelity: its up gyro drives nothing.
     decay : ndarray, shape (INPUTS,)
         What one call leaves of a drift; of the log's, one sample.
+    azimuth : AzimuthForm or None
+        What acts in the azimuth channel.
     """
 
     form: LawForm
@@ -172,6 +175,7 @@ class LoopModel:
     body_frame: bool
     heading: bool
     decay: np.ndarray
+    azimuth: AzimuthForm | None = None
 
     @property
     def order(self) -> int:
@@ -181,12 +185,13 @@ class LoopModel:
     @property
     def states(self) -> int:
         """States in all."""
-        return ERRORS + 2 * self.order + (2 if self.hold > 1 else 0)
+        return self.networks.stop + (2 if self.hold > 1 else 0)
 
     @property
     def networks(self) -> slice:
-        """Where the networks' states lie."""
-        return slice(ERRORS, ERRORS + 2 * self.order)
+        """Where the states of all channels lie: what is cleared when the log comes back."""
+        own = 0 if self.azimuth is None else self.azimuth.states
+        return slice(ERRORS, ERRORS + 2 * self.order + own)
 
 
 def interval_map(loop: LoopModel, half: np.ndarray, calls: int, damped: bool) -> Map:
@@ -237,39 +242,51 @@ def _put_law(
     B: np.ndarray,
 ) -> None:
     g, n = len(half), loop.order
-    printed = 1.0 if loop.form.as_printed else 0.0
+    compass = None if loop.azimuth is None else loop.azimuth.compass
     # velocity added to the transport rate, E and N -> rates of the errors
     rate = np.zeros((g, ERRORS, 2))
     rate[:, 5, 0], rate[:, 4, 1] = named(half)["inv_n"], -named(half)["inv_m"]
     rate = integral @ rate
-    fed = integral[:, :, 0:2] * law.F
-    into = rate * (law.D - printed) + fed  # of the input u on the errors
-    Phi[:, :ERRORS, 0:2] -= printed * rate
-    B[:, :ERRORS, MOTION] = printed * rate
-    enters = LOG if loop.form.uses_log else MOTION
-    own = np.zeros((g, 2, ERRORS))
-    own[:, 0, 0] = own[:, 1, 1] = -1.0
-    if loop.body_frame and loop.form.uses_log:
-        own[:, 0, 6], own[:, 1, 6] = named(half)["v_n"], -named(half)["v_e"]
-    held = slice(ERRORS + 2 * n, ERRORS + 2 * n + 2)
-    for channel in (0, 1):
+    printed = rate * (1.0 if loop.form.as_printed else 0.0)
+    into = rate * law.D + integral[:, :, 0:2] * law.F  # of the input u on the errors
+    if compass is not None:
+        printed[:, :, 1] = 0.0
+        into[:, :, 1] = integral[:, :, 1] * compass.k1 - rate[:, :, 1] * compass.k2
+    into -= printed
+    Phi[:, :ERRORS, 0:2] -= printed
+    B[:, :ERRORS, MOTION] = printed
+    d, entered = _difference(loop, half, fresh)
+    Phi[:, :ERRORS] += into @ d.swapaxes(0, 1)
+    B[:, :ERRORS] += into @ entered.swapaxes(0, 1)
+    for channel in (0, 1) if compass is None else (0,):
         net = slice(ERRORS + n * channel, ERRORS + n * (channel + 1))
         Phi[:, net, net] = law.A
         Phi[:, :ERRORS, net] = rate[:, :, channel, None] * law.C + integral[:, :, channel, None] * law.E
-        if fresh:
-            Phi[:, net, :ERRORS] = law.B[:, None] * own[:, channel, None, :]
-            B[:, net, enters.start + channel] = law.B
-        else:
-            Phi[:, net, held.start + channel] = law.B
-    if fresh:
-        Phi[:, :ERRORS, :ERRORS] += into @ own
-        B[:, :ERRORS, enters] = into
-        if loop.hold > 1:
-            Phi[:, held, held] = 0.0
-            Phi[:, held, :ERRORS] = own
-            B[:, held, enters] = np.eye(2)
-    else:
-        Phi[:, :ERRORS, held] = into
+        Phi[:, net] += law.B[:, None] * d[channel, :, None]
+        B[:, net] += law.B[:, None] * entered[channel, :, None]
+    if loop.azimuth is not None:
+        first = ERRORS + 2 * n
+        put_azimuth(loop.azimuth, half, integral[:, :, 6], (d, entered), first, fresh, UP, Phi, B)
+    if fresh and loop.hold > 1:
+        held = slice(loop.networks.stop, loop.states)
+        Phi[:, held] = d.swapaxes(0, 1)
+        B[:, held] = entered.swapaxes(0, 1)
+
+
+def _difference(loop: LoopModel, half: np.ndarray, fresh: bool) -> tuple[np.ndarray, np.ndarray]:
+    """The law's input u of both level channels by states, shape (2, g, n), and by inputs, (2, g, INPUTS)."""
+    g, uses_log = len(half), loop.form.uses_log
+    d, entered = np.zeros((2, g, loop.states)), np.zeros((2, g, INPUTS))
+    if not fresh:
+        held = loop.networks.stop
+        d[0, :, held] = d[1, :, held + 1] = 1.0
+        return d, entered
+    d[0, :, 0] = d[1, :, 1] = -1.0
+    if loop.body_frame and uses_log:
+        d[0, :, 6], d[1, :, 6] = named(half)["v_n"], -named(half)["v_e"]
+    enters = LOG if uses_log else MOTION
+    entered[0, :, enters.start] = entered[1, :, enters.start + 1] = 1.0
+    return d, entered
 
 
 def loop_model(
@@ -280,13 +297,14 @@ def loop_model(
     body_frame: bool,
     heading: bool,
     taus: tuple[float, float, float],
+    azimuth: AzimuthForm | None = None,
 ) -> LoopModel:
     """Collect what `call_map` needs; ``taus`` are the correlation times of gyros, accelerometers, log (s)."""
     hold = course.hold if form.uses_log else 1
     decay = np.ones(INPUTS)
     for columns, tau, calls in zip((GYRO, ACCEL, LOG), taus, (1, 1, hold), strict=True):
         decay[columns] = math.exp(-calls * course.step_s / tau)
-    return LoopModel(form, omega_s, course.step_s, hold, body_frame, heading, decay)
+    return LoopModel(form, omega_s, course.step_s, hold, body_frame, heading, decay, azimuth)
 
 
 def mean_coefficients(course: Course) -> np.ndarray:

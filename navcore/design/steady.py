@@ -52,6 +52,13 @@ def _steady_loop(
         warnings.append(
             Text('policy "{id}" looks at the data: shown is the loop while it is damped', id=method.policy.id)
         )
+    if method.kind.azimuth(method, scenario.omega_s) is not None:
+        warnings.append(
+            Text(
+                "the steady state is that of one level channel by its network; what acts in the azimuth "
+                "channel is in the budget along the run"
+            )
+        )
     missing = [name for name, part in parts.items() if None in (part.rms.tilt_rad, part.rms.velocity_mps)]
     if missing:
         warnings.append(
