@@ -50,6 +50,9 @@ def with_value(
     data = scenario.canonical()
     if len(path) == 4 and path[2] == "network":
         _choose_alternative(scenario, data, path, on_screen)
+    if path[-1] == "gyrocompass":  # a block that is there or not
+        value = {} if value else None
+        data["method"][int(path[1])].pop("azimuth", None)
     _place(data, path, value)
     if path == ("run", "fidelity") and value != "strapdown":
         _leave_strapdown(data)

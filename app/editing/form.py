@@ -231,6 +231,12 @@ def choice(model: type[BaseModel], name: str, path: Path, label: str = "") -> Fi
     )
 
 
+def flag(model: type[BaseModel], name: str, path: Path) -> FieldSpec:
+    """Control of a block that is there or not."""
+    info = model.model_fields[name]
+    return FieldSpec((*path, name), full_label(name, info), _hint(info, ""), "flag", False)
+
+
 def choices_of(info: FieldInfo) -> tuple[str, ...]:
     """Values that a field offers; none where it takes others."""
     annotation = _without_none(info.annotation)

@@ -204,6 +204,12 @@ def loop_key(network: LinearNetwork) -> Loop:
     return Loop(coefficients, network.omega_s, network)
 
 
+def azimuth_curve(method: MethodRun) -> FrequencyCurve | None:
+    """Frequency response Y(jω) of the azimuth network; None where no network acts there."""
+    azimuth = method.method.kind.azimuth(method.method, method.network.omega_s)
+    return network_curve(loop_key(azimuth)) if isinstance(azimuth, LinearNetwork) else None
+
+
 def realisation(method: MethodRun) -> str:
     """How the network is carried out; internal damping always uses the network form."""
     return method.method.kind.acting(method.network).realisation

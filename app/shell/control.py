@@ -22,9 +22,10 @@ _TEXTS = {
     "pairs": (typed.read_pairs, typed.write_pairs),
 }
 """Kinds of fields that are shown as text: how that is read and written."""
-_AS_THEY_ARE = ("integer", "choice", "flag")
+_AS_THEY_ARE = ("integer", "choice")
 EXACT = ", exact"
 """Ends the label of a number box that stands beside a slider."""
+_CAST = {"number": float, "flag": bool}
 _UNKNOWN = object()
 
 Edit = Callable[["Control", bool], None]
@@ -150,8 +151,8 @@ class Control:
         self._slider.show(slider.position(value))
 
     def _as_shown(self, value: Any) -> Any:
-        if self.spec.kind == "number":
-            return float(value)
+        if self.spec.kind in ("number", "flag"):
+            return _CAST[self.spec.kind](value)
         return value if self.spec.kind in _AS_THEY_ARE else self.as_text(value)
 
     def as_text(self, value: Any) -> str:

@@ -15,6 +15,7 @@ from navcore.foundation.units import ARCSEC, DEG_PER_HOUR
 from navcore.networks.discrete import discretise
 from schuler_bench.plots import style
 from schuler_bench.plots.effective import OMEGA_MAX, OMEGA_MIN, TRANSFERS, VIEWS
+from schuler_bench.plots.plotly_data import values_of
 from schuler_bench.views.frequency.curves import law_step_s, measured_gain
 from schuler_bench.views.frequency.figure import bode, natural_frequencies
 from schuler_bench.views.frequency.nyquist import HIGH, LOW, margin_words, margins_of, nyquist
@@ -40,6 +41,22 @@ class TestBode:
         np.testing.assert_allclose(
             level, 20.0 * np.log10(np.abs(run.methods[1].network.response(omega))), atol=1e-4
         )
+
+    def test_the_azimuth_network_is_dotted_beside_the_level_network(self) -> None:
+        whole = {**THREE[1], "name": "whole", "azimuth": {"id": "unity2", "zeta": 0.5}}
+        run = run_of(method=[THREE[1], whole])
+        figure = bode(run)
+        (dotted,) = (
+            trace
+            for trace in figure["data"]
+            if trace["yaxis"] == "y" and trace.get("line", {}).get("dash") == "dot"
+        )
+        assert dotted["line"]["color"] == trace_of(figure, "whole")["line"]["color"]
+        assert any("Y(jω)" in text for text in texts_of(figure))
+        assert not any("Y(jω)" in text for text in texts_of(bode(static_run())))
+        network = run.methods[1].method.azimuth.at_earth_rate()
+        omega, level = (np.array(values_of(dotted[axis]), float) for axis in "xy")
+        np.testing.assert_allclose(level, 20.0 * np.log10(np.abs(network.response(omega))), atol=1e-4)
 
     @pytest.mark.parametrize("place", [1, 2])
     def test_shows_the_transfer_in_its_unit_and_its_phase_continuously(self, place: int) -> None:

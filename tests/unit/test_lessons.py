@@ -8,6 +8,7 @@ from functools import lru_cache
 import pytest
 
 from navcore.averaging.parameters import Averaging
+from navcore.damping.gyrocompass import Gyrocompass
 from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
@@ -63,6 +64,7 @@ def all_fields() -> Iterator[tuple[str, FieldSpec]]:
         "alignment": Alignment,
         "method": Method,
         "averaging": Averaging,
+        "gyrocompass": Gyrocompass,
     }
     plain |= {f"reference.{name}": model for name, model in _KINDS.items()}
     plain |= {"motion.swing.pitch": Oscillation}
@@ -94,6 +96,8 @@ def test_every_control_is_explained_and_every_slider_with_unit_and_range(key: st
 def test_no_explanation_is_left_over() -> None:
     keys = [key for key, _ in FIELDS] + [
         "network.id",
+        "azimuth.id",
+        "method.gyrocompass",
         "policy.id",
         "switching.id",
         "motion.kind",
@@ -118,6 +122,9 @@ SCENARIO = Scenario.parse({"method": [COMPASS], "reference": {"kind": "log"}, "m
     [
         (("method", 0, "network", "xi"), "network.compass.xi"),
         (("method", 0, "network", "id"), "network.id"),
+        (("method", 0, "azimuth", "id"), "azimuth.id"),
+        (("method", 0, "azimuth", "zeta"), "network.none.zeta"),
+        (("method", 0, "gyrocompass", "sigma"), "gyrocompass.sigma"),
         (("method", 0, "policy", "a"), "policy.variation.a"),
         (("method", 0, "averaging", "variant"), "averaging.variant"),
         (("motion", "kind"), "motion.kind"),
@@ -159,8 +166,8 @@ def run_of(lesson: str, index: int) -> Run:
     return simulate(next(other for other in LESSONS if other.id == lesson).scenario_of(index))
 
 
-def test_there_are_the_nine_lessons_with_questions_and_actions() -> None:
-    assert [lesson.id[0] for lesson in LESSONS] == list("123456789")
+def test_there_are_the_ten_lessons_with_questions_and_actions() -> None:
+    assert [int(lesson.id.partition("-")[0]) for lesson in LESSONS] == [*range(1, 11)]
     for lesson in LESSONS:
         assert sum(step.question is not None for step in lesson.steps) >= 3, lesson.id
         assert all(step.action is not None for step in lesson.steps), lesson.id

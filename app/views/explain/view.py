@@ -76,9 +76,10 @@ def key_of(path: Path, scenario: Scenario) -> str:
         kind = scenario.motion.kind if block == "motion" and last != "kind" else ""
         return ".".join([block, kind, *names[1:]] if kind else names)
     part = names[1]
-    if last == "id" or part in KINDS:
+    if last == "id" or part in (*KINDS, "gyrocompass"):
         return f"{part}.{last}"
-    return ".".join([part, getattr(scenario.method[int(path[1])], part).id, *names[2:]])
+    catalogue = "network" if part == "azimuth" else part
+    return ".".join([catalogue, getattr(scenario.method[int(path[1])], part).id, *names[2:]])
 
 
 def explanation(key: str) -> Explanation | None:

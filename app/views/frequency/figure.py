@@ -1,4 +1,4 @@
-"""Bode plots: the network H on the left, a transfer of the closed loop on the right, all methods in each."""
+"""Bode plots: the networks H and Y on the left, a transfer of the closed loop right, of all methods."""
 
 import math
 from functools import partial
@@ -18,6 +18,7 @@ from schuler_bench.plots.effective import (
     VIEWS,
     FrequencyCurve,
     TransferView,
+    azimuth_curve,
     curve_of_loop,
     loop_key,
     loop_of,
@@ -52,6 +53,9 @@ _REFERENCE = style.lines("", 0) | {
     "legendgroup": "reference",
     "line": {"color": style.INK, "width": style.LINE_WIDTH, "dash": "dash", "simplify": False},
 }
+_H = (Text("Damping network H(jω)"), "H(jω)")
+_HY = (Text("Networks H(jω) and, dotted, Y(jω) of the azimuth"), Text("H(jω) and, dotted, Y(jω)"), "H, Y")
+"""Titles of the left column, longest first."""
 _MUTED_FONT = {"size": style.FONT_SIZE, "color": style.MUTED}
 
 
@@ -143,9 +147,20 @@ def bode(
             if curve is not None and curves is not None:  # an undamped resonance leaves its axis
                 drawn[yaxes[0]].append(curves[0][curve.finite])
                 drawn[yaxes[1]].append(curves[1])
+    slow = [azimuth_curve(method) for method in run.methods]
+    for index, (method, y) in enumerate(zip(run.methods, slow, strict=True)):
+        if y is not None:
+            line = style.lines(method.method.name, index)
+            line |= {"line": line["line"] | {"dash": "dot"}}
+            curves = decibel(y.value), phase(y.value)
+            traces = pair(line, y.omega, curves, "x", ("y", "y2"), Text("%{{y:.2f}} dB, Y"))
+            data += [trace | {"showlegend": False} for trace in traces]
+            for axis, curve in zip(("y", "y2"), (curves[0][y.finite], curves[1]), strict=True):
+                drawn[axis].append(curve)
     if discrete:
         data += [dots for i, method in enumerate(run.methods) for dots in _discrete_dots(run, method, i)]
-    return figure(data, _layout(run, view, drawn, silent, names, aspect, width_px))
+    title = _HY if any(y is not None for y in slow) else _H
+    return figure(data, _layout(run, view, drawn, silent, names, aspect, width_px, title))
 
 
 def _of_reference(
@@ -194,11 +209,12 @@ def _layout(
     names: list[str],
     aspect: float,
     width_px: float,
+    title: tuple[str, ...],
 ) -> dict[str, Any]:
     share = style.column(width_px - 84.0)
     column_px = share * (width_px - 84.0)
     annotations = [
-        style.heading(Text("<b>Damping network H(jω)</b>"), 48, "x domain"),
+        style.heading(Text("<b>{title}</b>", title=style.fitting(title, column_px)), 48, "x domain"),
         style.heading(_transfer_title(view, silent, column_px), 48, "x2 domain"),
         *(note for axis in ("x", "x2") for note in _marker_labels(run, axis, column_px)),
     ]

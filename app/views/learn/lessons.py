@@ -148,14 +148,14 @@ class Lesson(_Part):
 
 @lru_cache(maxsize=1)
 def lessons() -> tuple[Lesson, ...]:
-    """All lessons that come with the product, in the order of their files' names.
+    """All lessons that come with the product, in the order of the numbers that begin their files' names.
 
     Raises
     ------
     InputError
         A file is no lesson.
     """
-    files = sorted(asset_path("lessons").glob("*.md"))
+    files = sorted(asset_path("lessons").glob("*.md"), key=lambda file: int(file.stem.partition("-")[0]))
     return tuple(read_lesson(file.stem, file.read_text(encoding="utf-8")) for file in files)
 
 

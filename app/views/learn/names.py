@@ -14,6 +14,8 @@ number, and nothing in a lesson is evaluated as code. ``N`` stands for the numbe
 ``loop.N.damping``, ``loop.N.h0``   its damping ratio; H(0)
 ``loop.N.settling``                 to 2 % of an initial tilt (min)
 ``whole.N.days``, ``.slope``         e-folding time of the 24 h mode (days), growing or not; H'(0) (s)
+``whole.N.slow``, ``.fastest``      damping ratio of the slow oscillation; time in which the fastest growing
+                                    mode grows by e (h)
 ``error.N.Q.S``                     statistics of an error: Q a key of `navcore.quantities.ERRORS`, S of
                                     `STATISTICS`
 ``curve.N.Q.period``                twice the mean distance of its zero crossings (min)
@@ -162,7 +164,14 @@ def _loop(what: str, number: int, run: Run) -> Named:
 def _whole(what: str, number: int, run: Run) -> Named:
     whole = run.methods[number].whole
     days = Named(abs(whole.e_folding_s) / _DAY, "days")
-    return {"days": days, "slope": Named(whole.h_slope, "s", _LINE_DIGITS)}[what]
+    growth = max(mode.growth for mode in whole.modes)
+    slow = whole.slow_mode
+    return {
+        "days": days,
+        "slope": Named(whole.h_slope, "s", _LINE_DIGITS),
+        "slow": Named(math.inf if slow is None else slow.damping_ratio, ""),
+        "fastest": Named(1.0 / growth / HOUR if growth > 0.0 else math.inf, "h"),
+    }[what]
 
 
 def _error(what: str, number: int, run: Run) -> Named:

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from navcore.analysis.loop import velocity_settling
+from navcore.damping.gyrocompass import Gyrocompass
 from navcore.design.vary import network_not_in_force
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
@@ -167,12 +168,11 @@ class MethodView(View):
         )
         unset = {(*path, "network", name): _TAKEN for name in method.network.taken()}
         self.sections["parameters"].show(network if "network" in blocks else [], values, moved, unset)
-        for part in ("azimuth", "policy", "switching"):
-            fields = form.fields(type(getattr(method, part)), (*path, part))
-            if part == "azimuth":
-                fields = [replace(spec, label=Text("azimuth {label}", label=spec.label)) for spec in fields]
-            specs = [_catalogue(part, path), *fields]
+        for part in ("policy", "switching"):
+            specs = [_catalogue(part, path), *form.fields(type(getattr(method, part)), (*path, part))]
             self.sections[part].show(specs if part in blocks else [], _values_at(scenario, specs), moved)
+        slow = azimuth_fields(method, path) if "azimuth" in blocks else []
+        self.sections["azimuth"].show(slow, _values_at(scenario, slow), moved)
         own = method.kind.settings if method.damping in blocks else None
         block = form.fields(own, (*path, method.damping)) if own else []
         self.sections["settings"].show(block, _values_at(scenario, block), moved)
@@ -207,6 +207,16 @@ def described(spec: FieldSpec, method: Method) -> FieldSpec:
     reason = "" if method.undamped else network_not_in_force(method, f"network.{spec.path[-1]}")
     hint = Text("This value does not act: {reason}. {hint}", reason=reason, hint=spec.hint)
     return replace(spec, hint=hint) if reason else spec
+
+
+def azimuth_fields(method: Method, path: Path) -> list[FieldSpec]:
+    """Controls of the azimuth channel: a gyrocompass, which needs the log, or a network."""
+    switch = form.flag(Method, "gyrocompass", path)
+    if method.gyrocompass is not None:
+        return [switch, *form.fields(Gyrocompass, (*path, "gyrocompass"))]
+    fields = form.fields(type(method.azimuth), (*path, "azimuth"))
+    network = [replace(spec, label=Text("azimuth {label}", label=spec.label)) for spec in fields]
+    return [*([switch] if method.kind.uses_log else []), _catalogue("azimuth", path), *network]
 
 
 def _catalogue(part: str, path: Path) -> FieldSpec:
