@@ -171,6 +171,9 @@ class View:
     def draw(self, found: Shown) -> None:
         """Show what the pictures are of from now on; large pictures belong to `PictureView`."""
 
+    def follow_time(self, t_s: float) -> None:
+        """The time that the 3D view shows is another, s."""
+
     def resize(self) -> None:
         """The window has another size."""
 

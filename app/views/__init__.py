@@ -30,6 +30,7 @@ VIEWS: tuple[str, ...] = (
     "schuler_bench.views.frequency",
     "schuler_bench.views.poles",
     "schuler_bench.views.step",
+    "schuler_bench.views.diagram",
     "schuler_bench.views.misprints",
     "schuler_bench.views.errors",
     "schuler_bench.views.switching",

@@ -15,6 +15,7 @@ window.schuler.words = {
   "View": "视图",
   "Compare": "对比",
   "Design": "设计",
+  "Diagram": "框图",
   "Errors": "误差",
   "Files": "文件",
   "Frequency": "频率特性",

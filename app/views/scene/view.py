@@ -323,6 +323,8 @@ class SceneView(View):
         if self._run is not None:
             display, selected = self.session.display, self.session.selected
             self._count += 1
+            for view in self.frame.views():
+                view.follow_time(state.time_s)
             self._bar.content = bar_html(
                 self._count, state, self._cameras.chosen, self._run, selected, display, self._scene
             )

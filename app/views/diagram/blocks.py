@@ -1,0 +1,377 @@
+"""The loop of a method as blocks and lines: what stands where, with the values in force.
+
+The figures of the papers, in one form for all kinds of damping: Deng 1 to 4, Liu 1, 2, 6, 9 and 10, Sun 1, 2
+and 5 to 9 (theory.md 3).
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from navcore.foundation.earth import EARTH_RATE
+from navcore.foundation.notation import symbol, with_unit
+from navcore.foundation.parameters import extra_of
+from navcore.foundation.text import Text
+from navcore.foundation.units import MINUTE
+from navcore.networks.base import NetworkParameters
+from navcore.scenario.method import Method
+from navcore.scenario.model import Scenario
+from schuler_bench.plots.units import number
+
+METHOD, LOG, SENSORS = "Method", "Log", "Sensors"
+"""Tabs that a block opens."""
+WIDTH = 780
+_LINE, _BRANCH = 84, 166
+"""Height of the main line, and of the damping below it."""
+_HIGH, _LOW = 268, 226
+"""Of one channel, with and without the blocks that decide."""
+_LETTERS = 21
+"""In a line of the network's block."""
+
+
+@dataclass(frozen=True)
+class State:
+    """What the law does at a moment.
+
+    Attributes
+    ----------
+    damped : bool
+        The switch is closed.
+    coefficient : float or None
+        Damping coefficient in force, where a policy sets it.
+    """
+
+    damped: bool = True
+    coefficient: float | None = None
+
+
+@dataclass(frozen=True)
+class Block:
+    """A box with lines of text; what is left of ``opens`` empty cannot be pressed.
+
+    Attributes
+    ----------
+    x, y, width, height : float
+        Upper left corner and size, px.
+    lines : tuple of str
+        The first one is written larger; ``V_c`` has an index.
+    opens : str
+        Tab with its controls.
+    own : bool
+        It belongs to the method, and has its colour.
+    """
+
+    x: float
+    y: float
+    width: float
+    height: float
+    lines: tuple[str, ...]
+    opens: str = ""
+    own: bool = False
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of signal through points, with an arrow at its end.
+
+    Attributes
+    ----------
+    points : tuple of (float, float)
+    own : bool
+        It is part of the damping, and dead while the switch is open.
+    dashed : bool
+        It carries a decision, no signal.
+    arrow : bool
+    """
+
+    points: tuple[tuple[float, float], ...]
+    own: bool = False
+    dashed: bool = False
+    arrow: bool = True
+
+
+@dataclass(frozen=True)
+class Sum:
+    """A circle in which signals are added.
+
+    Attributes
+    ----------
+    x, y : float
+        Its middle.
+    minus : tuple of str
+        Sides at which what enters is subtracted: "left", "top", "bottom".
+    """
+
+    x: float
+    y: float
+    minus: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Word:
+    """A word beside a line; ``muted`` is written paler."""
+
+    x: float
+    y: float
+    text: str
+    anchor: str = "middle"
+    muted: bool = False
+
+
+@dataclass(frozen=True)
+class Switch:
+    """The switch of the damping, at its left end."""
+
+    x: float
+    y: float
+
+
+Part = Block | Line | Sum | Word | Switch
+
+
+@dataclass
+class Diagram:
+    """All parts of a method's picture.
+
+    Attributes
+    ----------
+    title, told : str
+        Its name, and what it is in a line.
+    parts : list
+        In the order in which they are drawn.
+    height : float
+        px; the width is `WIDTH`.
+    """
+
+    title: str
+    told: str
+    parts: list[Part] = field(default_factory=list)
+    height: float = _HIGH
+
+    @property
+    def decides(self) -> bool:
+        """Whether a policy, or an outage of the log, opens the switch."""
+        return any(isinstance(part, Line) and part.dashed for part in self.parts)
+
+
+def diagram(scenario: Scenario, index: int, state: State | None = None) -> Diagram:
+    """Lay out the loop of a method.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Gives sensors, log and site.
+    index : int
+        Which method.
+    state : State, optional
+        What its law does at the moment that is shown.
+    """
+    method = scenario.method[index]
+    state = state or State()
+    found = Diagram(method.label(), method.kind.description(method))
+    found.parts += _level(scenario, method)
+    if method.kind.carrying == "filter":
+        found.parts += _filter(scenario)
+    elif method.kind.carrying == "copies":
+        found.parts += _copies(scenario)
+    elif method.kind.uses_network:
+        found.parts += _damping(scenario, method, state)
+    found.height = _HIGH if found.decides or method.kind.carrying != "law" else _LOW
+    if method.kind.azimuth(method, scenario.omega_s) is not None:
+        found.parts += _azimuth(scenario, method, found.height)
+        found.height += _LOW
+    return found
+
+
+def _level(scenario: Scenario, method: Method) -> Iterator[Part]:
+    """Accelerometer, velocity, transport rate, tilt, and the gravity that a tilt feeds back."""
+    y = _LINE
+    which = Text("level channels, east and north alike")
+    if scenario.run.fidelity == "channel":
+        which = Text("one level channel")
+    elif method.gyrocompass is not None:
+        which = Text("east channel; the north one turns the heading")
+    yield Word(8, 20, which, "start", True)
+    yield Block(8, y - 20, 104, 40, (Text("accelerometer"), "f + ∇"), SENSORS)
+    yield Line(((112, y), (131, y)))
+    yield Sum(140, y, ("top",))
+    yield Line(((149, y), (166, y)))
+    yield Block(166, y - 18, 44, 36, ("1/s",))
+    if method.kind.uses_network or method.kind.carrying == "filter":
+        yield Line(((210, y), (471, y)))
+        yield Sum(480, y)
+        yield Line(((489, y), (522, y)))
+    else:
+        yield Line(((210, y), (522, y)))
+    yield Word(246, y - 8, "V_c")
+    if method.kind.uses_network:
+        yield Word(505, y - 8, "V*")
+    yield Block(522, y - 18, 48, 36, ("1/R",))
+    yield Line(((570, y), (595, y)))
+    yield Sum(604, y)
+    yield Block(556, y + 58, 96, 40, (Text("gyro"), "−ε"), SENSORS)
+    yield Line(((604, y + 58), (604, y + 9)))
+    yield Line(((613, y), (634, y)))
+    yield Block(634, y - 18, 44, 36, ("1/s",))
+    yield Line(((678, y), (WIDTH - 12, y)))
+    yield Word(WIDTH - 34, y - 8, Text("tilt φ"))
+    yield Line(((704, y), (704, 32), (434, 32)))
+    yield Block(390, 16, 44, 32, ("g",))
+    yield Line(((390, 32), (140, 32), (140, y - 9)))
+
+
+def _damping(scenario: Scenario, method: Method, state: State) -> Iterator[Part]:
+    """Difference to the log, network, switch, and who decides."""
+    y, main = _BRANCH, _LINE
+    yield Line(((228, main), (228, y - 9)), own=True)
+    if method.kind.uses_log:
+        yield _log(scenario, y)
+        yield Line(((112, y), (219, y)), own=True)
+        yield Word(166, y - 7, "V_r")
+    yield Sum(228, y, ("top",))
+    yield Line(((237, y), (264, y)), own=True)
+    network = method.kind.network(method)
+    form = method.kind.acting(network.transfer(scenario.omega_s)).realisation
+    values = _values(network, scenario.omega_s, state.coefficient)
+    lines = ("1 − H(s)", network.id, *values)
+    if form != "network":
+        gains = network.values(scenario.omega_s)
+        k1, *others = (_value(network, name, gains.get(name)) for name in ("k1", "k2", "k3"))
+        lines = ("−(K₂ + K₃/s)", network.id, *values, *_pairs(others))
+        yield Line(((246, y), (246, y - 36), (214, y - 36)), own=True)
+        yield Block(154, y - 53, 60, 34, tuple(k1.split(" ")[:2]), METHOD, own=True)
+        yield Line(((154, y - 36), (140, y - 36), (140, main + 9)), own=True)
+    height = 22.0 + 15.0 * (len(lines) - 1)
+    yield Block(264, y - 18, 136, height, lines, METHOD, own=True)
+    yield Line(((400, y), (418, y)), own=True, arrow=False)
+    yield Switch(418, y)
+    yield Line(((454, y), (480, y), (480, main + 9)), own=True)
+    if method.policy.id != "constant" or (scenario.reference.interrupted and method.kind.referenced):
+        yield from _decision(method, y)
+
+
+def _decision(method: Method, y: float) -> Iterator[Part]:
+    """Who decides, and how the passage is made."""
+    low = y + 66
+    yield Block(418, low - 15, 118, 46, (Text("switching"), method.switching.id), METHOD, own=True)
+    yield Line(((436, low - 15), (436, y + 8)), dashed=True)
+    yield Block(
+        110, low - 15, 130, 46, (Text("policy"), method.policy.id.replace("_", " ")), METHOD, own=True
+    )
+    if method.policy.id != "constant":
+        yield Line(((228, y + 9), (228, low - 15)), dashed=True)
+    yield Line(((240, low + 20), (418, low + 20)), dashed=True)
+
+
+def _filter(scenario: Scenario) -> Iterator[Part]:
+    """A Kalman filter in the place of network and switch."""
+    y = _BRANCH
+    yield Line(((228, _LINE), (228, y - 9)), own=True)
+    yield _log(scenario, y)
+    yield Line(((112, y), (219, y)), own=True)
+    yield Word(166, y - 7, "V_r")
+    yield Sum(228, y, ("top",))
+    yield Line(((237, y), (264, y)), own=True)
+    yield Block(264, y - 22, 136, 44, (Text("Kalman filter"), Text("K of its covariance")), METHOD, own=True)
+    yield Line(((400, y), (480, y), (480, _LINE + 9)), own=True)
+    yield Word(440, y - 7, "δV, φ, ε")
+    yield Line(((440, y), (440, y + 56), (716, y + 56), (716, _LINE + 4)), own=True)
+    yield Word(580, y + 50, Text("corrections of velocity, attitude and drifts"), muted=True)
+
+
+def _copies(scenario: Scenario) -> Iterator[Part]:
+    """Averaged copies of a free navigation."""
+    y, half = _BRANCH + 20, f"{math.pi / scenario.omega_s / MINUTE:.1f} min"
+    yield Block(
+        264, y - 24, 190, 48, (Text("copy, begun {half} ahead", half=half), "e^(sT_s/2)"), METHOD, True
+    )
+    yield Line(((454, y), (WIDTH - 62, y)), own=True)
+    yield Word(359, y + 42, Text("the same navigation on forecast sensors"), muted=True)
+    yield Block(WIDTH - 62, y - 24, 54, 48, (Text("mean"), "½ Σ"), METHOD, own=True)
+    yield Line(((WIDTH - 35, _LINE), (WIDTH - 35, y - 24)), own=True)
+
+
+def _azimuth(scenario: Scenario, method: Method, top: float) -> Iterator[Part]:
+    """The azimuth channel below the level ones: Y(s), or a gyrocompass."""
+    y, low = top + _LINE, top + _BRANCH
+    yield Word(8, top + 30, Text("azimuth channel: error of the heading"), "start", True)
+    yield Block(8, y - 22, 202, 44, ("ω_U", "Ω sin L_c + V_E tan L_c/R"))
+    yield Line(((210, y), (471, y)))
+    yield Sum(480, y)
+    yield Line(((489, y), (595, y)))
+    yield Word(540, y - 8, "ω_U + c_U")
+    yield Sum(604, y)
+    yield Block(556, y + 58, 96, 40, (Text("gyro"), "−ε_U"), SENSORS)
+    yield Line(((604, y + 58), (604, y + 9)))
+    yield Line(((613, y), (634, y)))
+    yield Block(634, y - 18, 44, 36, ("1/s",))
+    yield Line(((678, y), (WIDTH - 12, y)))
+    yield Word(WIDTH - 34, y - 8, "φ_U")
+    own = method.gyrocompass
+    if own is not None:
+        yield Block(8, low - 20, 204, 40, (Text("north difference to the log"), "V_cN − V_rN"), LOG)
+        lines = (
+            "K_U3/(Ω cos L (s + K_U4))",
+            Text("gyrocompass"),
+            f"σ {number(own.sigma, 3)} 1/s, ζ {number(own.xi, 3)}",
+        )
+        yield Line(((212, low), (264, low)), own=True)
+        yield Block(264, low - 20, 178, 56, lines, METHOD, own=True)
+        yield Line(((442, low), (480, low), (480, y + 9)), own=True)
+        yield Word(500, low - 26, "w", "start")
+        return
+    network = method.azimuth
+    if method.kind.uses_log:
+        yield Block(8, low - 22, 104, 44, (Text("log"), "L_r, V_r"), LOG)
+        yield Line(((112, low), (219, low)), own=True)
+        yield Word(166, low - 7, "ω_Ur")
+    yield Line(((228, y), (228, low - 9)), own=True)
+    yield Sum(228, low, ("top",))
+    yield Line(((237, low), (264, low)), own=True)
+    lines = ("1 − Y(s)", network.id, *_values(network, EARTH_RATE, None))
+    yield Block(264, low - 18, 136, 22.0 + 15.0 * (len(lines) - 1), lines, METHOD, own=True)
+    yield Line(((400, low), (418, low)), own=True, arrow=False)
+    yield Switch(418, low)
+    yield Line(((454, low), (480, low), (480, y + 9)), own=True)
+
+
+def _log(scenario: Scenario, y: float) -> Block:
+    return Block(8, y - 20, 104, 40, (Text("log"), _log_words(scenario)), LOG)
+
+
+def _log_words(scenario: Scenario) -> str:
+    reference = scenario.reference
+    if reference.kind == "log":
+        return with_unit(f"{reference.rate_hz:g}", "Hz")
+    return Text("recorded") if reference.kind == "file" else Text("no error")
+
+
+def _values(network: NetworkParameters, omega_s: float, coefficient: float | None) -> Iterator[str]:
+    """Values that were given, two in a line; where a policy sets the coefficient, that one in force."""
+    if coefficient is not None:
+        yield Text("ζ {value} now", value=number(coefficient, 3))
+        return
+    values = network.values(omega_s)
+    given = [name for name in type(network).model_fields if getattr(network, name, None) is not None]
+    words = [_value(network, name, values.get(name)) for name in given]
+    yield from _pairs([word for word in words if word])
+
+
+def _value(network: NetworkParameters, name: str, value: object) -> str:
+    """A number with its symbol and unit; empty for anything else."""
+    info = type(network).model_fields[name]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return ""
+    unit = str(extra_of(info).get("unit", ""))
+    return with_unit(f"{symbol(name)} {number(float(value), 3)}", "" if unit == "1" else unit)
+
+
+def _pairs(words: list[str]) -> Iterator[str]:
+    """Two words in a line where they fit, four lines at most."""
+    lines: list[str] = []
+    for word in words:
+        if lines and "," not in lines[-1] and len(lines[-1]) + 2 + len(word) <= _LETTERS:
+            lines[-1] = f"{lines[-1]}, {word}"
+        else:
+            lines.append(word)
+    yield from lines[:4]

@@ -1,0 +1,76 @@
+"""Tab "Diagram": the selected method's loop as blocks, at the time that the 3D view shows."""
+
+from navcore.engine.run import MethodRun
+from navcore.foundation.text import Text
+from navcore.mechanization.recorder import DAMPED_COLUMN, XI_COLUMN
+from schuler_bench.plots import style
+from schuler_bench.session.shown import Shown
+from schuler_bench.shell.view import Frame, PictureView, Tab
+from schuler_bench.views.diagram.blocks import State, diagram
+from schuler_bench.views.diagram.svg import diagram_svg
+
+
+class DiagramView(PictureView[str]):
+    """The picture alone."""
+
+    title = Text("Diagram")
+    place = "upper"
+    look_for = Text(
+        "Where the log enters and what the network does with it. A click on a block opens its tab."
+    )
+
+    def __init__(self, frame: Frame) -> None:
+        super().__init__(frame)
+        self._time_s = 0.0
+        self._state: State | None = None
+
+    def build(self, tab: Tab) -> None:
+        """Make the place of the picture."""
+        with tab:
+            self._picture = self.frame.gui.add_html("")
+
+    @property
+    def of_selected(self) -> bool:
+        """It is that of the selected method."""
+        return True
+
+    def picture(self, found: Shown) -> str:
+        """Draw the loop of the selected method."""
+        index = min(found.selected, len(found.run.methods) - 1)
+        self._state = state_at(found.run.methods[index], self._time_s)
+        return _html(diagram_svg(diagram(found.run.scenario, index, self._state), _color(index), self._state))
+
+    def show(self, picture: str) -> None:
+        """Show the picture."""
+        self._picture.content = picture
+
+    def follow_time(self, t_s: float) -> None:
+        """Turn the switch to what it is at the time that is shown."""
+        self._time_s = t_s
+        run, index = self.session.run, self.session.selected
+        if self._state is None or run is None or index >= len(run.methods):
+            return
+        state = state_at(run.methods[index], t_s)
+        if state != self._state:
+            self._state = state
+            self.show(_html(diagram_svg(diagram(run.scenario, index, state), _color(index), state)))
+
+
+def state_at(method: MethodRun, t_s: float) -> State:
+    """What a method's law does at a time: the output row at or before it."""
+    if not method.method.kind.uses_network or not len(method.t_s):
+        return State()
+    row = method.rows[max(int(method.t_s.searchsorted(t_s, "right")) - 1, 0)]
+    coefficient = float(row[XI_COLUMN]) if method.method.policy.tunes else None
+    return State(bool(row[DAMPED_COLUMN] > 0.5), coefficient)
+
+
+def _color(index: int) -> str:
+    return style.method_color(index)
+
+
+def _html(svg: str) -> str:
+    return Text('<div class="sb-diagram" style="padding:4px 10px">{svg}</div>', svg=svg)
+
+
+VIEW = DiagramView
