@@ -14,6 +14,7 @@ WIDTH, HEIGHT = 312, 244
 _LEFT, _RIGHT, _TOP, _PANEL, _BETWEEN = 46, 8, 24, 76, 40
 _MOST = 240
 """Points of a curve: means over as many parts of the record."""
+_TOLD = Text("forward speed of log and ship, and their difference, over time")
 _STEPS = (1.0, 2.0, 5.0, 10.0)
 
 
@@ -45,7 +46,7 @@ def log_svg(log: LogAlongTrack, delay_s: float) -> str:
         'fill="{ink}">{panels}</svg>',
         width=WIDTH,
         height=HEIGHT,
-        told=Text("forward speed of log and ship, and their difference, over time"),
+        told=_TOLD,
         font=style.FONT_FAMILY.replace(chr(34), chr(39)),
         ink=style.INK,
         panels=Text.joined("", panels),
