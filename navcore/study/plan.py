@@ -6,6 +6,7 @@ import copy
 import json
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import lru_cache
 from itertools import product
 from typing import Any
@@ -22,7 +23,7 @@ from navcore.study.file import load, scenario_data
 from navcore.study.model import Factor, Study
 from navcore.study.sampling import drawn_value, unit_point
 
-_CHECKED = (0.001, 0.5, 0.999)
+_CHECKED = (0.001, 0.999)
 """Parts of a distribution at which its values are checked before anything runs."""
 MOST_POINTS = 10**9
 STEP_NS, SHARED_NS, SAMPLE_NS, RUN_S = 75.0, 130.0, 60.0, 2e-3
@@ -62,9 +63,8 @@ class Plan:
         self._shown = [_shown(factor) for factor in self.grid]
         self._data = scenario_data(study, where)
         self._made = lru_cache(maxsize=64)(self._make)
-        first = (0,) * (len(self.grid) + 1)
-        self._checked = [self.scenario_of(first), *self._check_values(first)]
-        self.scenario = self._checked[0]
+        self._checked = [*self._check_values()]
+        self.scenario = self.scenario_of((0,) * (len(self.grid) + 1))
         for i, hours in enumerate(study.output.epochs_h):
             if not 0.0 <= hours <= self.scenario.run.duration_h:
                 end = Text("must be >= 0 and <= {end_h:g} (h)", end_h=self.scenario.run.duration_h)
@@ -141,31 +141,34 @@ class Plan:
         grid = [(f, f.values[place]) for f, place in zip(self.grid, setting[1:], strict=True)]
         return self._with([*grid, *zip(self.random, self._draw(setting[0]), strict=True)])
 
-    def _with(self, values: list[tuple[Factor, Any]]) -> Scenario:
+    def _with(self, values: list[tuple[Factor, Any]], changed: Factor | None = None) -> Scenario:
+        """Scenario with values; a fault names the factor that set its field, else the changed one."""
         data = copy.deepcopy(self._data)
-        for factor, value in values:
-            for field, one in _assigned(factor, value):
-                fault = set_field(data, field, copy.deepcopy(one))
-                if fault:
-                    raise InputError(Fault(self.where, field, one, fault))
-        return Scenario.parse(data, self.where)
+        try:
+            for factor, value in values:
+                for field, one in _assigned(factor, value):
+                    fault = set_field(data, field, copy.deepcopy(one))
+                    if fault:
+                        raise InputError(Fault("", field, one, fault))
+            return Scenario.parse(data)
+        except InputError as error:
+            raise InputError(self._blamed(fault, values, changed) for fault in error.faults) from None
 
-    def _check_values(self, first: Setting) -> Iterator[Scenario]:
+    def _blamed(self, fault: Fault, values: list[tuple[Factor, Any]], changed: Factor | None) -> Fault:
+        for factor, value in values:
+            if factor is changed or any(f"{fault.field}.".startswith(f"{field}.") for field in factor.fields):
+                place = f"factor.{self.study.factor.index(factor)}"
+                place += f".values.{factor.values.index(value)}" if factor.values else ""
+                return Fault(self.where, place, value, str(fault))
+        return replace(fault, where=self.where)
+
+    def _check_values(self) -> Iterator[Scenario]:
         """Yield scenarios with one factor changed at a time; raises `InputError` that names the value."""
-        others = [(f, f.values[0]) for f in self.grid] + list(
-            zip(self.random, self._draw(first[0]), strict=True)
-        )
-        for i, factor in enumerate(self.study.factor):
-            values = factor.values or [drawn_value(factor, part) for part in _CHECKED]
-            for k, value in enumerate(values):
-                try:
-                    yield self._with([(f, value if f is factor else other) for f, other in others])
-                except InputError as error:
-                    at = f"factor.{i}.values.{k}" if factor.values else f"factor.{i}"
-                    raise InputError(
-                        Fault(self.where, at, value, str(Fault("", f.field, f.value, f.allowed)))
-                        for f in error.faults
-                    ) from None
+        usual = [(f, f.values[0]) if f.values else (f, drawn_value(f, 0.5)) for f in self.study.factor]
+        yield self._with(usual)
+        for factor in self.study.factor:
+            for value in factor.values or [drawn_value(factor, part) for part in _CHECKED]:
+                yield self._with([(f, value if f is factor else one) for f, one in usual], factor)
 
 
 def plan_of(source: str) -> Plan:

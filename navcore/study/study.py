@@ -15,7 +15,7 @@ from navcore.study.results import Folder
 from navcore.study.running import Row, run_points
 from navcore.study.summary import summary
 
-_PART_S = 1.0
+_PART_S = 0.3
 """Time after which the rows that a worker has are kept."""
 _BLOCK_S = 4.0
 """Work of a block, which one worker does: long enough that neighbours share, short enough for an even end."""
