@@ -9,6 +9,8 @@ import tomlkit
 from scipy.stats import norm, qmc
 
 import navcore.engine.ensemble
+import navcore.sensors.imu
+import navcore.sensors.simulated_log
 from navcore.engine.measures import metrics
 from navcore.engine.simulation import simulate
 from navcore.scenario.file import load as load_scenario
@@ -171,3 +173,18 @@ def test_methods_that_come_out_the_same_are_not_run_again(tmp_path, monkeypatch)
     zeta = {"field": "method.1.network.zeta", "values": [0.3, 0.5, 0.7]}
     rows_of(plan(tmp_path, factor=[zeta], seeds=2))
     assert [began.count(name) for name in dict.fromkeys(began)] == [2, 6]
+
+
+def test_seeds_share_what_follows_from_the_truth(tmp_path, monkeypatch):
+    made = []
+    for module, name in (
+        (navcore.sensors.simulated_log, "horizontal_state"),
+        (navcore.sensors.imu, "_mean_attitude"),
+    ):
+        real = getattr(module, name)
+        monkeypatch.setattr(module, name, lambda *a, real=real, name=name: made.append(name) or real(*a))
+    legs = {"kind": "legs", "leg": [{"duration_s": 1801.5, "speed_mps": 6.25, "turn_dps": 0.03}]}
+    log = {**SHIP["reference"], "frame": "body", "delay_s": 0.75}
+    rows = rows_of(plan(tmp_path, scenario={**SHIP, "motion": legs, "reference": log}, seeds=4))
+    assert len({row["position_final_m"] for row in rows}) == len(rows)
+    assert sorted(made) == ["_mean_attitude", "horizontal_state", "horizontal_state"]
