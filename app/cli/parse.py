@@ -18,6 +18,7 @@ from schuler_bench.cli.pareto import ParetoCommand
 from schuler_bench.cli.presets import PresetsCommand
 from schuler_bench.cli.run import RunCommand
 from schuler_bench.cli.serve import ServeCommand
+from schuler_bench.cli.study import StudyCommand
 from schuler_bench.cli.terminal import emit, lost
 from schuler_bench.cli.tune import TuneCommand
 
@@ -36,6 +37,7 @@ _COMMANDS = {
     "tune": TuneCommand,
     "pareto": ParetoCommand,
     "design": DesignCommand,
+    "study": StudyCommand,
     "bench": BenchCommand,
 }
 _NO_INT = "invalid literal for int() with base 10: "

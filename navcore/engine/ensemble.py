@@ -14,7 +14,7 @@ import numpy as np
 
 from navcore.engine.drivers.kalman import Gains
 from navcore.engine.drivers.linear import carried_out
-from navcore.engine.environment import environment
+from navcore.engine.environment import Environment, environment
 from navcore.engine.run import Span, spans
 from navcore.engine.simulation import simulate
 from navcore.foundation.units import ARCMIN, ARCSEC, DEG_PER_HOUR, MICRO_G
@@ -123,7 +123,7 @@ def outcomes(
         return [outcome]
 
     with ThreadPoolExecutor(_WORKERS) as pool:
-        if _batchable(bare):
+        if batchable(bare):
             for some in pool.map(partial(_batch, bare, report), _blocks(numbers)):
                 done += some
             return done
@@ -138,7 +138,7 @@ def outcomes(
     return done
 
 
-def _batchable(scenario: Scenario) -> bool:
+def batchable(scenario: Scenario) -> bool:
     """Whether strapdown runs of several seeds can go side by side (`navcore.engine.drivers.batch`)."""
     simulated = scenario.strapdown and scenario.imu.file is None
     laws = all(method.kind.carrying == "law" for method in scenario.method)
@@ -154,25 +154,71 @@ def _blocks(numbers: Sequence[int]) -> list[Sequence[int]]:
 def _batch(
     scenario: Scenario, report: Callable[[float], bool], numbers: Sequence[int]
 ) -> list[tuple[Outcome, ...]]:
+    return batch_outcomes([drawn(scenario, number) for number in numbers], report)
+
+
+def batch_outcomes(
+    scenarios: Sequence[Scenario], report: Callable[[float], bool]
+) -> list[tuple[Outcome, ...]]:
+    """Run scenarios side by side that differ in seeds and constants; as `run_batches`.
+
+    Returns
+    -------
+    list of tuple of Outcome
+        For each scenario one a method; empty when it was stopped.
+    """
     from navcore.engine.drivers.batch import run_batches
 
-    batches = run_batches([drawn(scenario, number) for number in numbers], report)
-    step_s = scenario.sampling.record_step_s
+    batches = run_batches(scenarios, report)
+    step_s = scenarios[0].sampling.record_step_s
     return [
         tuple(Outcome(not b.diverged[k], spans(b.spans[k], step_s), float(b.position_m[k])) for b in batches)
-        for k in range(len(numbers) if batches else 0)
+        for k in range(len(scenarios) if batches else 0)
     ]
 
 
 def _linear(scenario: Scenario, number: int, gains: Mapping[int, Gains]) -> Iterator[Outcome]:
-    seeded = drawn(scenario, number)
-    env, state = environment(seeded), np.array(seeded.initial_error.state())
+    env, state = _inputs(drawn(scenario, number))
     for k, method in enumerate(scenario.method):
-        run, _, status, _ = carried_out(scenario, method, env, state, lambda _: None, None, gains.get(k))
-        final = float(run.recorder.stats[POSITION, FINAL])
-        yield Outcome(
-            status == "ok" and math.isfinite(final), spans(run.recorder.spans, scenario.run.step_s), final
-        )
+        yield _outcome(scenario, method, env, state, gains.get(k))
+
+
+def linear_outcomes(scenario: Scenario, known: Mapping[Method, Outcome]) -> tuple[Outcome, ...]:
+    """Run a scenario as it stands on the linear error model.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Of fidelity ``channel`` or ``error_model``.
+    known : mapping of Method to Outcome
+        Methods whose outcome is known in all else of this scenario; they are not run again.
+
+    Returns
+    -------
+    tuple of Outcome
+        One a method.
+
+    Raises
+    ------
+    InputError
+        The motion cannot be carried out, or a recording cannot serve the run.
+    """
+    env, state = _inputs(scenario)
+    return tuple(known.get(each) or _outcome(scenario, each, env, state, None) for each in scenario.method)
+
+
+def _inputs(scenario: Scenario) -> tuple[Environment, np.ndarray]:
+    return environment(scenario), np.array(scenario.initial_error.state())
+
+
+def _outcome(
+    scenario: Scenario, method: Method, env: Environment, state: np.ndarray, gains: Gains | None
+) -> Outcome:
+    run, _, status, _ = carried_out(scenario, method, env, state, lambda _: None, None, gains)
+    final = float(run.recorder.stats[POSITION, FINAL])
+    return Outcome(
+        status == "ok" and math.isfinite(final), spans(run.recorder.spans, scenario.run.step_s), final
+    )
 
 
 def _strapdown(scenario: Scenario, number: int) -> Iterator[Outcome]:

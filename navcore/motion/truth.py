@@ -20,7 +20,7 @@ class Site:
     height: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Truth:
     """True trajectory and attitude at t = k * step_s.
 

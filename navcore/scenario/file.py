@@ -61,15 +61,24 @@ def load(source: str, overrides: Iterable[str] = ()) -> Scenario:
     >>> load("zha-fast", ["site.lat_deg=45"]).site.lat_deg
     45.0
     """
-    known = presets()
-    path = known.get(source, Path(source))
+    return Scenario.parse(read(source, overrides), source)
+
+
+def read(source: str, overrides: Iterable[str] = ()) -> dict[str, Any]:
+    """Read what `load` checks: the mapping of a scenario with its overrides, recordings by absolute path."""
+    path = presets().get(source, Path(source))
     data = read_toml(path, source)
     apply_overrides(data, overrides)
+    resolve_files(data, path.parent)
+    return data
+
+
+def resolve_files(data: dict[str, Any], folder: Path) -> None:
+    """Make the paths of recordings in a scenario mapping absolute in place; they are relative to a folder."""
     for block, field in _FILE_FIELDS:
         table = data.get(block)
         if isinstance(table, dict) and field in table:
-            table[field] = _resolved(table[field], path.parent)
-    return Scenario.parse(data, source)
+            table[field] = _resolved(table[field], folder)
 
 
 def read_toml(path: Path, where: str) -> dict[str, Any]:
@@ -161,7 +170,7 @@ def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> None:
                 Fault("--set", "", override, Text("must have the form KEY=VALUE, e.g. run.duration_h=2"))
             )
             continue
-        fault = _set(data, key.strip().split("."), _value(text.strip()))
+        fault = set_field(data, key.strip(), _value(text.strip()))
         if fault:
             faults.append(Fault("--set", key.strip(), text, fault))
     if faults:
@@ -175,8 +184,9 @@ def _value(text: str) -> Any:
         return text
 
 
-def _set(data: Any, path: list[str], value: Any) -> str:
-    """Set one field; return what is wrong with the path, or nothing."""
+def set_field(data: Any, key: str, value: Any) -> str:
+    """Set one field of a scenario mapping by its dotted key; return what is wrong with it, or nothing."""
+    path = key.split(".")
     for depth, part in enumerate(path[:-1]):
         if isinstance(data, list):
             if not part.isdigit() or int(part) >= len(data):

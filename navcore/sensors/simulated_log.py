@@ -1,11 +1,14 @@
 """The simulated log: truth with current, tide, scale error, bias, drift, noise, events, delay, resolution."""
 
+import hashlib
 import math
+import weakref
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
+from navcore.foundation.stage_cache import kept
 from navcore.motion.truth import Truth
 from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.log_errors.base import LogPart
@@ -34,14 +37,14 @@ def log_works(reference: Reference, truth: Truth, time_s: np.ndarray) -> np.ndar
     works = in_service(reference.outage, time_s)
     if reference.min_speed_mps > 0.0:
         water = _Log(reference.all_parts(), False).water(time_s)
-        through = horizontal_state(truth, time_s)[0] - water
+        through = _true_state(truth, time_s)[0] - water
         works &= np.hypot(through[:, 0], through[:, 1]) >= reference.min_speed_mps
     return works
 
 
 def moored(reference: Reference, truth: Truth, time_s: np.ndarray) -> np.ndarray:
     """Whether the ship knows at each time (m,) that it lies still; ndarray of bool, shape (m,) or (1,)."""
-    velocity = horizontal_state(truth, time_s)[0]
+    velocity = _true_state(truth, time_s)[0]
     return np.hypot(velocity[:, 0], velocity[:, 1]) < reference.zero_below_mps
 
 
@@ -92,7 +95,7 @@ def simulated_errors(
     still = np.zeros(0, dtype=bool)
     if reference.zero_below_mps > 0.0:
         still = np.array(np.broadcast_to(moored(reference, truth, time_s), time_s.size))
-        error = np.where(still[:, None], -horizontal_state(truth, time_s)[0], error)
+        error = np.where(still[:, None], -_true_state(truth, time_s)[0], error)
         valid |= still
     return ReferenceErrors(
         time_s=time_s,
@@ -179,7 +182,7 @@ class _Log:
         error = self.by_acceleration(truth, time_s) - (1.0 + self.scale) * self.water(time_s)
         if self.scale == 0.0 and not self.body_frame:
             return error + own
-        velocity, heading = horizontal_state(truth, time_s)
+        velocity, heading = _true_state(truth, time_s)
         return error + self.scale * velocity + (to_navigation(own, heading) if self.body_frame else own)
 
     def delayed_rounded_errors(
@@ -195,11 +198,19 @@ class _Log:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Readings before they are rounded, in the log's axes; present heading and velocity."""
         measured_at = np.maximum(time_s - delay_s, 0.0)
-        velocity, heading = horizontal_state(truth, time_s)
-        then_velocity, then_heading = horizontal_state(truth, measured_at)
+        velocity, heading = _true_state(truth, time_s)
+        then_velocity, then_heading = _true_state(truth, measured_at)
         seen = (1.0 + self.scale) * (then_velocity - self.water(measured_at))
         seen = seen + self.by_acceleration(truth, measured_at)
         return (to_ship(seen, then_heading) if self.body_frame else seen) + own, heading, velocity
+
+
+def _true_state(truth: Truth, time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Take `horizontal_state` from the cache if it is there: the log of another seed needs the same."""
+    if truth.constant:
+        return horizontal_state(truth, time_s)
+    times = hashlib.blake2b(np.ascontiguousarray(time_s).data, digest_size=16).digest()
+    return kept(("true state", weakref.ref(truth), times), lambda: horizontal_state(truth, time_s))
 
 
 def _rounded(reading: np.ndarray, lsb: float) -> np.ndarray:

@@ -12,6 +12,7 @@ import pytest
 
 from navcore.scenario.file import presets
 from navcore.scenario.schema_file import schema_text
+from navcore.study.file import studies
 from schuler_bench.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -26,7 +27,7 @@ def run(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> tuple[int, 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ([], "{serve, run, network, presets, check, budget, tune, pareto, design, bench}"),
+        ([], "{serve, run, network, presets, check, budget, tune, pareto, design, study, bench}"),
         (["simulate"], "bench}, not 'simulate'"),
         (["run"], "run needs SCENARIO"),
         (["run", "zha-fast", "--fromat", "csv"], "run does not know --fromat; perhaps --format"),
@@ -162,7 +163,8 @@ def test_json_lists_every_preset_with_its_source(capsys):
     captured = capsys.readouterr()
     document = json.loads(captured.out)
     assert list(document) == ["presets", "studies", "schema_file"]
-    assert document["studies"] == []
+    assert [s["name"] for s in document["studies"]] == sorted(studies())
+    assert all(list(study) == ["name", "title"] for study in document["studies"])
     assert [p["name"] for p in document["presets"]] == sorted(presets())
     assert {"liu-networks", "liu-overshoot", "sun-step", "zha-fast"} <= set(presets())
     for preset in document["presets"]:

@@ -60,12 +60,13 @@ def unchanged_methods(scenario: Scenario, before: Run | None) -> tuple[MethodRun
     """
     if before is None or scenario.reference.file is not None or hasattr(scenario.motion, "file"):
         return ()
-    if scenario.imu.file is not None or _shared(scenario) != _shared(before.scenario):
+    if scenario.imu.file is not None or all_but_methods(scenario) != all_but_methods(before.scenario):
         return ()
     return tuple(method for method in before.methods if method.status != "stopped")
 
 
-def _shared(scenario: Scenario) -> Scenario:
+def all_but_methods(scenario: Scenario) -> Scenario:
+    """Return what all methods share: a method of two scenarios in which it is equal comes out the same."""
     begins = tuple(sorted({one.from_h for one in scenario.requirement} - {0.0}))
     return scenario.model_copy(update={"method": (), "title": "", "source": "", "requirement": begins})
 

@@ -1,0 +1,86 @@
+"""``schuler study``: one scenario over many settings and seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Annotated
+
+from tyro.conf import Positional, arg
+
+from navcore.foundation.errors import Fault, InputError
+from schuler_bench.cli.terminal import emit_result, say
+
+
+@dataclass(frozen=True)
+class StudyCommand:
+    """Run a study: a scenario over factors and seeds.
+
+    Attributes
+    ----------
+    study : str
+        Name of a listed study, or a TOML file.
+    out : Path or None
+        Folder for runs.parquet, study.toml and summary.json; without it only the summary is printed.
+    resume : bool
+        Go on with the results in the folder: only what is missing is run.
+    workers : int or None
+        Runs at a time; by default one for each core.
+    hours : float or None
+        Largest estimated time that is begun; by default 24.
+    json : bool
+        Print the summary as one JSON document.
+    quiet : bool
+        No progress bar.
+    """
+
+    study: Annotated[Positional[str], arg(metavar="STUDY")]
+    out: Annotated[Path | None, arg(metavar="DIR")] = None
+    resume: bool = False
+    workers: Annotated[int | None, arg(metavar="N")] = None
+    hours: Annotated[float | None, arg(metavar="H")] = None
+    json: bool = False
+    quiet: bool = False
+
+    def execute(self) -> int:
+        """Run, sum up, print; 3 when it was stopped. A run that diverges is a result."""
+        from navcore.study.plan import plan_of, require_affordable
+        from navcore.study.results import Folder
+        from navcore.study.study import carry_out, cores
+        from schuler_bench.cli.progress import working
+        from schuler_bench.cli.study_text import study_text
+
+        workers = cores() if self.workers is None else self.workers
+        if not 1 <= workers <= 256:
+            raise InputError(Fault("--workers", "", workers, "must be >= 1 and <= 256"))
+        if self.hours is not None and not self.hours > 0.0:
+            raise InputError(Fault("--hours", "", self.hours, "must be > 0 (h)"))
+        if self.resume and self.out is None:
+            raise InputError(Fault("--resume", "", None, "needs --out DIR, the folder of the results"))
+        plan = plan_of(self.study)
+        require_affordable(plan, workers, self.hours)
+        with _folder(self.out) as path:
+            folder = Folder(path, plan)
+            with (
+                folder.opened(self.resume),
+                working(plan.study.title or "study", self.quiet, self.study) as (progress, stopped),
+            ):
+                document = carry_out(plan, folder, workers, progress, stopped)
+        emit_result(self.json, document, lambda: study_text(document))
+        if document["status"] == "complete":
+            return 0
+        kept = f"; --out {self.out} --resume goes on" if self.out else ""
+        say(f"{self.study}: stopped after {document['runs']} of {document['of']} runs{kept}")
+        return 3
+
+
+@contextmanager
+def _folder(out: Path | None) -> Iterator[Path]:
+    if out is not None:
+        yield out
+        return
+    with TemporaryDirectory(prefix="schuler-study-") as folder:
+        yield Path(folder)

@@ -1,0 +1,220 @@
+"""The folder of a study: parts as they come, one file at the end; what is there is never run again."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.kernel_files import replacing
+from navcore.foundation.text import Text
+from navcore.foundation.version import __version__
+from navcore.scenario.file import names_files, scenario_hash
+from navcore.study.file import to_toml
+from navcore.study.plan import Plan
+from navcore.study.running import Row
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+STUDY_FILE, RUNS_FILE, SUMMARY_FILE, PARTS = "study.toml", "runs.parquet", "summary.json", "parts"
+_FIELD = "--out"
+_GROUP_ROWS = 65_536
+
+
+class Folder:
+    """Results of a study on disk.
+
+    Parameters
+    ----------
+    path : path
+        Of the folder.
+    plan : Plan
+        The study.
+    """
+
+    def __init__(self, path: Path, plan: Plan) -> None:
+        self.path, self._plan = path, plan
+        self._parts = path / PARTS
+        self._schema = schema(plan)
+
+    @contextmanager
+    def opened(self, resume: bool) -> Iterator[None]:
+        """Make, go on with or replace the folder, and keep other commands from it meanwhile.
+
+        Parameters
+        ----------
+        resume : bool
+            Go on with what is there.
+
+        Raises
+        ------
+        InputError
+            The folder holds something else, results of another study, unfinished results that are not to be
+            resumed, or is in use; or it cannot be written (disk full, read-only).
+        """
+        import fcntl
+
+        with writing(self.path):
+            self.path.mkdir(parents=True, exist_ok=True)
+            held = os.open(self.path, os.O_RDONLY)
+            try:
+                fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                self._claim(resume)
+                yield
+            except BlockingIOError:
+                raise _refused(self.path, Text("is in use by another command")) from None
+            finally:
+                os.close(held)
+
+    def _claim(self, resume: bool) -> None:
+        there = {entry.name for entry in self.path.iterdir() if not entry.name.startswith(".")}
+        foreign = sorted(there - {STUDY_FILE, RUNS_FILE, SUMMARY_FILE, PARTS})
+        if foreign:
+            named = ", ".join(foreign[:3])
+            raise _refused(self.path, Text("holds what no study wrote: {named}", named=named))
+        text, study = _identity(self._plan), self.path / STUDY_FILE
+        if resume and study.exists():
+            before = study.read_text("utf-8")
+            if before != text:
+                allowed = Text(
+                    "holds results of another study ({difference}): give the changed one a folder of its "
+                    "own, or leave --resume out to replace them",
+                    difference=_difference(before, text),
+                )
+                raise _refused(self.path, allowed)
+            if self.summary() is not None:
+                shutil.rmtree(self._parts, ignore_errors=True)
+                return
+        elif self.summary() is None and self.done():
+            raise _refused(
+                self.path, Text("holds unfinished results: --resume goes on; or remove the folder")
+            )
+        else:
+            for name in (SUMMARY_FILE, RUNS_FILE):
+                (self.path / name).unlink(missing_ok=True)
+            shutil.rmtree(self._parts, ignore_errors=True)
+            self._parts.mkdir()
+            with self._placing(STUDY_FILE) as file:
+                file.write(text.encode())
+        self._parts.mkdir(exist_ok=True)
+        for half_written in self._parts.glob(".*"):
+            half_written.unlink()
+
+    def summary(self) -> dict[str, Any] | None:
+        """Return the summary of a complete study, all of whose runs are in ``runs.parquet``; else None."""
+        try:
+            document = json.loads((self.path / SUMMARY_FILE).read_text("utf-8"))
+            return document if document["status"] == "complete" else None
+        except (OSError, ValueError, KeyError):
+            return None
+
+    def done(self) -> list[tuple[int, int]]:
+        """Runs in the parts: ranges from a number to one before another, in order."""
+        names = (path.stem.split("-") for path in self._parts.glob("[0-9]*.parquet"))
+        return sorted((int(first), int(end)) for first, end in names)
+
+    def missing(self) -> list[tuple[int, int]]:
+        """Runs that no part holds, as `done`."""
+        found, begin = [], 0
+        for first, end in [*self.done(), (self._plan.runs, 0)]:
+            if first > begin:
+                found.append((begin, first))
+            begin = max(begin, end)
+        return found
+
+    def write_part(self, first: int, rows: Sequence[Row]) -> None:
+        """Keep the rows of the runs from ``first`` on: under another name until they are complete."""
+        import pyarrow as pa
+
+        end = rows[-1]["run"] + 1
+        with replacing(self._parts / f"{first:012d}-{end:012d}.parquet") as file:
+            self._write(file, [pa.Table.from_pylist(rows, self._schema)])
+
+    def join(self) -> Path:
+        """Write ``runs.parquet`` from the parts, in the order of the runs; at no time all of it in memory."""
+        with self._placing(RUNS_FILE) as file:
+            self._write(file, self._grouped())
+        return self.path / RUNS_FILE
+
+    def finish(self, summary: dict[str, Any]) -> None:
+        """Write ``summary.json``; of a complete study the parts are removed."""
+        with self._placing(SUMMARY_FILE) as file:
+            file.write((json.dumps(summary, indent=2, allow_nan=False) + "\n").encode())
+        if summary["status"] == "complete":
+            shutil.rmtree(self._parts, ignore_errors=True)
+
+    def _grouped(self) -> Iterator[pa.Table]:
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        waiting: list[pa.Table] = []
+        for first, end in self.done():
+            waiting.append(pq.read_table(self._parts / f"{first:012d}-{end:012d}.parquet"))
+            if sum(map(len, waiting)) >= _GROUP_ROWS:
+                yield pa.concat_tables(waiting)
+                waiting = []
+        yield pa.concat_tables([*waiting, self._schema.empty_table()])
+
+    @contextmanager
+    def _placing(self, name: str) -> Iterator[IO[bytes]]:
+        """Give a file that gets its name once complete; what a kill leaves of it lies with the parts."""
+        with replacing(self._parts / name) as file:
+            yield file
+        os.replace(self._parts / name, self.path / name)
+
+    def _write(self, file: IO[bytes], tables: Iterable[pa.Table]) -> None:
+        import pyarrow.parquet as pq
+
+        with pq.ParquetWriter(file, self._schema, compression="zstd") as writer:
+            for table in tables:
+                writer.write_table(table)
+
+
+def schema(plan: Plan) -> pa.Schema:
+    """Columns of the results."""
+    import pyarrow as pa
+
+    number, text, flag = pa.float64(), pa.string(), pa.bool_()
+    of_factors = plan.values((0,) * (len(plan.grid) + 1))
+    fields = [("run", pa.int64()), ("seed", pa.int64())]
+    fields += [(name, text if isinstance(value, str) else number) for name, value in of_factors.items()]
+    fields += [("method", text), ("status", text), ("reason", text), ("met", flag)]
+    fields += [(key, number) for key in plan.study.output.metrics]
+    for k in range(len(plan.scenario.requirement)):
+        fields += [(f"requirement_{k}", number), (f"requirement_{k}_met", flag)]
+    output = plan.study.output
+    fields += [(f"{name}@{hours:g}h", number) for hours in output.epochs_h for name in output.series]
+    return pa.schema(fields)
+
+
+def _identity(plan: Plan) -> str:
+    """Text of ``study.toml``: the complete study, and what else its numbers depend on."""
+    files = f", recordings {scenario_hash(plan.scenario)}" if names_files(plan.scenario) else ""
+    return f"# schuler-bench {__version__}{files}\n{to_toml(plan.study)}"
+
+
+def _difference(before: str, after: str) -> str:
+    """Name the first line that differs."""
+    pairs = zip([*before.splitlines(), ""], [*after.splitlines(), ""], strict=False)
+    old, new = next((pair for pair in pairs if pair[0] != pair[1]), ("", ""))
+    return Text("{old} there, {new} here", old=old or Text("nothing"), new=new or Text("nothing"))
+
+
+@contextmanager
+def writing(folder: Path) -> Iterator[None]:
+    """Tell what keeps a folder from being written as a fault of ``--out``."""
+    try:
+        yield
+    except OSError as error:
+        reason = Text("cannot be written: {strerror}", strerror=error.strerror or error)
+        raise _refused(folder, reason) from None
+
+
+def _refused(folder: Path, reason: str) -> InputError:
+    return InputError(Fault(_FIELD, "", str(folder), reason))

@@ -1,0 +1,72 @@
+"""A study that is killed twenty times at random, and stopped once, ends as one that was left alone."""
+
+import itertools
+import json
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from navcore.study.plan import plan_of
+from navcore.study.results import Folder
+from schuler_bench.cli import main
+from tests.studies import LATITUDE, NOISE, SHIP, stored, write
+
+KILLS, RUNS = 20, 2 * 8 * 100
+
+
+def command(study: str, folder: Path) -> subprocess.Popen[bytes]:
+    """The command in a process of its own."""
+    arguments = [sys.executable, "-m", "schuler_bench", "study", study, "--out", str(folder), "--resume"]
+    return subprocess.Popen([*arguments, "--workers", "2"], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+def parts(folder: Path) -> set[Path]:
+    """Parts that are complete."""
+    return {*folder.glob("parts/[0-9]*.parquet")}
+
+
+def further(process: subprocess.Popen[bytes], folder: Path) -> None:
+    """Wait until the command has kept another part."""
+    there, until = parts(folder), time.monotonic() + 100.0
+    while parts(folder) <= there and process.poll() is None:
+        assert time.monotonic() < until
+        time.sleep(0.005)
+
+
+def test_killed_twenty_times_it_ends_as_if_left_alone(tmp_path):
+    scenario = {**SHIP, "run": {"duration_h": 24.0, "seed": 7}}
+    blocks = {"factor": [LATITUDE, NOISE], "sample": {"points": 8}, "seeds": 100}
+    study = write(tmp_path / "study.toml", scenario=scenario, **blocks)
+    folder = tmp_path / "killed"
+    chance = random.Random(26)
+    kept: list[tuple[int, int]] = []
+    told = b""
+    for number in [signal.SIGKILL] * KILLS + [signal.SIGINT]:
+        process = command(study, folder)
+        # while it works, or at any time after it was started
+        working = number == signal.SIGINT or chance.random() < 0.4
+        if working:
+            further(process, folder)
+        time.sleep(chance.uniform(0.0, 0.1 if working else 2.0))
+        process.send_signal(number)
+        _, told = process.communicate(timeout=100)
+        assert process.returncode == (3 if number == signal.SIGINT else -number), told.decode()
+        done = Folder(folder, plan_of(study)).done()
+        # a part that is there stays as it is, and no run is in two
+        assert {*kept} <= {*done} and len({*kept}) + working <= len(done)
+        assert all(end <= after for (_, end), (after, _) in itertools.pairwise(done))
+        kept = done
+    assert "--resume goes on" in told.decode()
+    assert json.loads((folder / "summary.json").read_text())["status"] == "stopped"
+    process = command(study, folder)
+    _, told = process.communicate(timeout=300)
+    assert process.returncode == 0, told.decode()
+    assert {*folder.iterdir()} == {folder / name for name in ("runs.parquet", "study.toml", "summary.json")}
+    assert main(["study", study, "--out", str(tmp_path / "alone"), "--quiet"]) == 0
+    rows = stored(folder)
+    assert [(row["run"], row["method"]) for row in rows[::2]] == [(run, "free") for run in range(RUNS)]
+    assert rows == stored(tmp_path / "alone")
+    assert (folder / "summary.json").read_text() == (tmp_path / "alone" / "summary.json").read_text()
