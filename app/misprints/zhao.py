@@ -234,8 +234,8 @@ ZHAO = (
         paper="Zhao 2015",
         where="section 5.1.2",
         printed=Text("angle random walk in °/h, velocity random walk 5×10⁻⁴ g"),
-        right=Text("°/√h; 5×10⁻⁴ g per 100 Hz sample = 50 µg/√Hz"),
-        consequence=Text("read per √Hz, ten times the velocity random walk"),
+        right=Text("both per 100 Hz sample: 0.005 °/h = 8.3×10⁻⁶ °/√h, 5×10⁻⁴ g = 50 µg/√Hz"),
+        consequence=Text("read per root of time, 600 and ten times the random walks"),
         compute=_unit,
     ),
 )
