@@ -26,8 +26,10 @@ from navcore.study.sampling import drawn_value, unit_point
 _CHECKED = (0.001, 0.999)
 """Parts of a distribution at which its values are checked before anything runs."""
 MOST_POINTS = 10**9
-STEP_NS, SHARED_NS, SAMPLE_NS, RUN_S = 75.0, 130.0, 60.0, 2e-3
-"""Cost (docs/scale.md): a step of a method, the inputs of a step, a strapdown sample of a method, a run."""
+RUN_S = 2e-3
+STEP_NS, INPUT_NS = 75.0, 130.0
+SAMPLE_NS, SAMPLE_INPUT_NS = 25.0, 30.0
+"""Cost on one core (docs/scale.md): a run; a step of a method, and its inputs; likewise in strapdown."""
 
 Setting = tuple[int, ...]
 """Number of the draw, and the number of its value for each factor of the grid."""
@@ -231,5 +233,5 @@ def _run_seconds(scenario: Scenario) -> float:
     methods = len(scenario.method)
     if scenario.strapdown:
         samples = scenario.run.duration_h * HOUR * scenario.run.rate_hz
-        return RUN_S + 1e-9 * samples * (methods * SAMPLE_NS + SHARED_NS)
-    return RUN_S + 1e-9 * scenario.steps * (methods * STEP_NS + SHARED_NS)
+        return RUN_S + 1e-9 * samples * (methods * SAMPLE_NS + SAMPLE_INPUT_NS)
+    return RUN_S + 1e-9 * scenario.steps * (methods * STEP_NS + INPUT_NS)
