@@ -71,11 +71,10 @@ class Plan:
             if not 0.0 <= hours <= self.scenario.run.duration_h:
                 end = Text("must be >= 0 and <= {end_h:g} (h)", end_h=self.scenario.run.duration_h)
                 raise InputError(Fault(where, f"output.epochs_h.{i}", hours, end))
-        # Slowest first. Settings that differ in methods alone follow each other: they share truth and noise.
-        # The batch of the strapdown takes seeds side by side, so there the seeds follow each other.
-        seeds_last = self.scenario.strapdown
-        rank = {-1: 3 if seeds_last else 0, 0: 2 if _of_methods(self.random) else 1}
-        rank |= {k: 2 if factor.of_methods else 1 for k, factor in enumerate(self.grid, 1)}
+        # Slowest first: what changes the truth, seeds, what changes sensors, what changes methods alone, so
+        # that neighbours share most. A batch of the strapdown takes seeds side by side: there they are last.
+        rank = {-1: 4 if self.scenario.strapdown else 1, 0: min((f.depth for f in self.random), default=0)}
+        rank |= {k: factor.depth for k, factor in enumerate(self.grid, 1)}
         sizes = {-1: study.seeds, 0: study.draws} | {k: len(f.values) for k, f in enumerate(self.grid, 1)}
         self._axes = sorted(sizes, key=lambda axis: rank[axis])
         self._sizes = [sizes[axis] for axis in self._axes]
@@ -222,10 +221,6 @@ def _shown(factor: Factor) -> list[Any]:
     if all(isinstance(value, int | float) and not isinstance(value, bool) for value in factor.values):
         return [float(value) for value in factor.values]
     return [value if isinstance(value, str) else json.dumps(value, default=str) for value in factor.values]
-
-
-def _of_methods(factors: list[Factor]) -> bool:
-    return all(factor.of_methods for factor in factors)
 
 
 def _run_seconds(scenario: Scenario) -> float:
