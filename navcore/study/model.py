@@ -63,9 +63,12 @@ class Factor(Parameters):
         return self.name or self.fields[0]
 
     @property
-    def of_methods(self) -> bool:
-        """Whether it leaves truth, sensors and log as they are."""
-        return all(field.startswith(("method.", "requirement.")) for field in self.fields)
+    def depth(self) -> int:
+        """What it leaves as it is: 0 nothing, 2 the truth, 3 truth, sensors and log."""
+        blocks = {field.partition(".")[0] for field in self.fields}
+        if blocks <= {"method", "requirement"}:
+            return 3
+        return 2 if blocks <= {"method", "requirement", "imu", "reference", "initial_error"} else 0
 
     def faults(self, at: str) -> Iterator[Fault]:
         """Yield what is wrong beyond single fields; ``at`` names the block."""

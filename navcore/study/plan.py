@@ -26,8 +26,10 @@ from navcore.study.sampling import drawn_value, unit_point
 _CHECKED = (0.001, 0.999)
 """Parts of a distribution at which its values are checked before anything runs."""
 MOST_POINTS = 10**9
-STEP_NS, SHARED_NS, SAMPLE_NS, RUN_S = 75.0, 130.0, 60.0, 2e-3
-"""Cost (docs/scale.md): a step of a method, the inputs of a step, a strapdown sample of a method, a run."""
+RUN_S = 2e-3
+STEP_NS, INPUT_NS = 75.0, 130.0
+SAMPLE_NS, SAMPLE_INPUT_NS = 25.0, 30.0
+"""Cost on one core (docs/scale.md): a run; a step of a method, and its inputs; likewise in strapdown."""
 
 Setting = tuple[int, ...]
 """Number of the draw, and the number of its value for each factor of the grid."""
@@ -69,11 +71,10 @@ class Plan:
             if not 0.0 <= hours <= self.scenario.run.duration_h:
                 end = Text("must be >= 0 and <= {end_h:g} (h)", end_h=self.scenario.run.duration_h)
                 raise InputError(Fault(where, f"output.epochs_h.{i}", hours, end))
-        # Slowest first. Settings that differ in methods alone follow each other: they share truth and noise.
-        # The batch of the strapdown takes seeds side by side, so there the seeds follow each other.
-        seeds_last = self.scenario.strapdown
-        rank = {-1: 3 if seeds_last else 0, 0: 2 if _of_methods(self.random) else 1}
-        rank |= {k: 2 if factor.of_methods else 1 for k, factor in enumerate(self.grid, 1)}
+        # Slowest first: what changes the truth, seeds, what changes sensors, what changes methods alone, so
+        # that neighbours share most. A batch of the strapdown takes seeds side by side: there they are last.
+        rank = {-1: 4 if self.scenario.strapdown else 1, 0: min((f.depth for f in self.random), default=0)}
+        rank |= {k: factor.depth for k, factor in enumerate(self.grid, 1)}
         sizes = {-1: study.seeds, 0: study.draws} | {k: len(f.values) for k, f in enumerate(self.grid, 1)}
         self._axes = sorted(sizes, key=lambda axis: rank[axis])
         self._sizes = [sizes[axis] for axis in self._axes]
@@ -222,14 +223,10 @@ def _shown(factor: Factor) -> list[Any]:
     return [value if isinstance(value, str) else json.dumps(value, default=str) for value in factor.values]
 
 
-def _of_methods(factors: list[Factor]) -> bool:
-    return all(factor.of_methods for factor in factors)
-
-
 def _run_seconds(scenario: Scenario) -> float:
     """Estimated cost of one run of all methods on one core, s."""
     methods = len(scenario.method)
     if scenario.strapdown:
         samples = scenario.run.duration_h * HOUR * scenario.run.rate_hz
-        return RUN_S + 1e-9 * samples * (methods * SAMPLE_NS + SHARED_NS)
-    return RUN_S + 1e-9 * scenario.steps * (methods * STEP_NS + SHARED_NS)
+        return RUN_S + 1e-9 * samples * (methods * SAMPLE_NS + SAMPLE_INPUT_NS)
+    return RUN_S + 1e-9 * scenario.steps * (methods * STEP_NS + INPUT_NS)

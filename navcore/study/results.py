@@ -203,7 +203,8 @@ def _difference(before: str, after: str) -> str:
     """Name the first line that differs."""
     pairs = zip([*before.splitlines(), ""], [*after.splitlines(), ""], strict=False)
     old, new = next((pair for pair in pairs if pair[0] != pair[1]), ("", ""))
-    return Text("{old} there, {new} here", old=old or Text("nothing"), new=new or Text("nothing"))
+    nothing = Text("nothing")
+    return Text("{old} there, {new} here", old=old or nothing, new=new or nothing)
 
 
 @contextmanager

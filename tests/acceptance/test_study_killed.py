@@ -9,18 +9,22 @@ import sys
 import time
 from pathlib import Path
 
+import pytest
+
 from navcore.study.plan import plan_of
 from navcore.study.results import Folder
 from schuler_bench.cli import main
 from tests.studies import LATITUDE, NOISE, SHIP, stored, write
 
-KILLS, RUNS = 20, 2 * 8 * 100
+KILLS, RUNS = 20, 2 * 8 * 60
 
 
-def command(study: str, folder: Path) -> subprocess.Popen[bytes]:
+def command(study: str, folder: Path, workers: str = "1") -> subprocess.Popen[bytes]:
     """The command in a process of its own."""
     arguments = [sys.executable, "-m", "schuler_bench", "study", study, "--out", str(folder), "--resume"]
-    return subprocess.Popen([*arguments, "--workers", "2"], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    return subprocess.Popen(
+        [*arguments, "--workers", workers], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
 
 
 def parts(folder: Path) -> set[Path]:
@@ -36,9 +40,10 @@ def further(process: subprocess.Popen[bytes], folder: Path) -> None:
         time.sleep(0.005)
 
 
+@pytest.mark.timeout(400)
 def test_killed_twenty_times_it_ends_as_if_left_alone(tmp_path):
     scenario = {**SHIP, "run": {"duration_h": 24.0, "seed": 7}}
-    blocks = {"factor": [LATITUDE, NOISE], "sample": {"points": 8}, "seeds": 100}
+    blocks = {"factor": [LATITUDE, NOISE], "sample": {"points": 8}, "seeds": 60}
     study = write(tmp_path / "study.toml", scenario=scenario, **blocks)
     folder = tmp_path / "killed"
     chance = random.Random(26)
@@ -50,9 +55,9 @@ def test_killed_twenty_times_it_ends_as_if_left_alone(tmp_path):
         working = number == signal.SIGINT or chance.random() < 0.4
         if working:
             further(process, folder)
-        time.sleep(chance.uniform(0.0, 0.1 if working else 2.0))
+        time.sleep(chance.uniform(0.0, 0.1 if working else 1.5))
         process.send_signal(number)
-        _, told = process.communicate(timeout=100)
+        _, told = process.communicate()
         assert process.returncode == (3 if number == signal.SIGINT else -number), told.decode()
         done = Folder(folder, plan_of(study)).done()
         # a part that is there stays as it is, and no run is in two
@@ -61,8 +66,7 @@ def test_killed_twenty_times_it_ends_as_if_left_alone(tmp_path):
         kept = done
     assert "--resume goes on" in told.decode()
     assert json.loads((folder / "summary.json").read_text())["status"] == "stopped"
-    process = command(study, folder)
-    _, told = process.communicate(timeout=300)
+    _, told = (process := command(study, folder, "2")).communicate()
     assert process.returncode == 0, told.decode()
     assert {*folder.iterdir()} == {folder / name for name in ("runs.parquet", "study.toml", "summary.json")}
     assert main(["study", study, "--out", str(tmp_path / "alone"), "--quiet"]) == 0

@@ -41,7 +41,9 @@ def test_grid_draws_and_seeds_are_combined(tmp_path):
     drawn = sorted({s.imu.gyro_arw_dpsh for s in scenarios})
     unit = qmc.Sobol(1, bits=31, rng=1).random(4)[:, 0]
     assert drawn == pytest.approx(sorted(0.001 + 0.009 * unit), rel=1e-12)
-    assert [made.seeded(made.scenario_of(p), s).run.seed for p, s in points[:8]] == [7] * 8
+    # truth slowest, then the seed, then what changes sensors alone
+    assert [(s.site.lat_deg, s.run.seed) for s in scenarios[3:9:4]] == [(10, 7), (10, 8)]
+    assert [s.site.lat_deg for s in scenarios] == [10] * 12 + [45] * 12
 
 
 def test_several_fields_go_together(tmp_path):
