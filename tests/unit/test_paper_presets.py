@@ -1,0 +1,78 @@
+"""Presets of single items of the papers: each is the scenario from which the report makes its exhibit."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from navcore.analysis import analyse
+from navcore.engine.simulation import simulate
+from navcore.foundation.units import DEG_PER_HOUR
+from navcore.mechanization.recorder import PHI_E
+from navcore.scenario.file import load
+from navcore.scenario.model import Scenario
+from tools.papers import liu_fig_11, liu_switching, sun_vehicle
+from tools.papers.runs import Runs, scenario_of
+from tools.papers.zha import LABORATORY
+
+
+def content(scenario: Scenario) -> dict[str, Any]:
+    """What decides the run: all but titles, and of the view nothing."""
+    data = scenario.canonical()
+    return {key: value for key, value in data.items() if key not in ("title", "source", "view")}
+
+
+def unnamed(scenario: Scenario) -> list[dict[str, Any]]:
+    return [{**method, "name": ""} for method in scenario.canonical()["method"]]
+
+
+@pytest.fixture
+def unrun(monkeypatch: pytest.MonkeyPatch) -> Runs:
+    """Runs of the exhibits that carry the scenario and nothing else."""
+    for module in (liu_switching, liu_fig_11, sun_vehicle):
+        monkeypatch.setattr(module, "simulate", lambda scenario: SimpleNamespace(scenario=scenario))
+    return Runs()
+
+
+def test_liu_step_is_the_scenario_of_figure_7(unrun: Runs) -> None:
+    assert content(load("liu-step")) == content(liu_switching.fig_7(unrun).scenario)
+
+
+def test_liu_switch_has_the_five_ways_to_come_back_of_figure_7(unrun: Runs) -> None:
+    ways = [("hard", {}), ("keep", {}), ("ramp", {}), ("ramp", {"form": "as_printed"}), ("bumpless", {})]
+    exhibits = [liu_switching.switched(unrun, name, **more).scenario for name, more in ways]
+    preset = load("liu-switch")
+    assert unnamed(preset) == [unnamed(scenario)[0] for scenario in exhibits]
+    for scenario in exhibits:
+        assert content(preset) | {"method": []} == content(scenario) | {"method": []}
+
+
+def test_liu_days_is_the_scenario_of_figures_11_and_12(unrun: Runs) -> None:
+    assert content(load("liu-days")) == content(liu_fig_11.long_run(unrun, 1).scenario)
+
+
+def test_sun_vehicle_is_the_scenario_of_section_5_2(unrun: Runs) -> None:
+    assert content(load("sun-vehicle")) == content(sun_vehicle.drive(unrun, 1).scenario)
+
+
+def test_zha_laboratory_is_the_scenario_of_figure_5() -> None:
+    assert content(load("zha-laboratory")) == content(scenario_of("zha-external", LABORATORY))
+
+
+@pytest.mark.parametrize("drive", range(2, 7))
+def test_each_drive_of_zha_is_the_first_one_with_its_own_seed(drive: int) -> None:
+    expected = scenario_of("zha-drive", [f"run.seed={drive}"])
+    assert content(load(f"zha-drive-{drive}")) == content(expected)
+
+
+def test_k1_and_k2_leave_the_tilt_of_zha_8_and_k3_takes_it_out() -> None:
+    scenario = load("zha-gains")
+    drift = 0.01 * DEG_PER_HOUR
+    run = simulate(scenario)
+    for method in run.methods[1:]:
+        network = method.method.network
+        k1, k2, k3 = (getattr(network, name) for name in ("k1", "k2", "k3"))
+        steady = 0.0 if k3 else -k1 / ((1.0 + k2) * scenario.omega_s**2) * drift
+        assert method.rows[-1, PHI_E] == pytest.approx(steady, rel=2e-3, abs=1e-12), method.method.name
+    alone = run.methods[1].method.network.transfer(scenario.omega_s)
+    assert analyse(alone).damping_ratio == pytest.approx(0.7, rel=2e-3)
