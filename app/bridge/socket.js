@@ -5,8 +5,10 @@
 // `schuler.send` into it, and tests/attack/test_viser_insides.py looks for the messages to and from the worker.
 (() => {
   const PERIOD_MS = 30;
+  const TYPING_MS = 400; // so long a number that is being typed waits for its next letter: "540" may become "540 min"
   const Plain = window.Worker;
   const waiting = new Map(); // by control; the newest is last
+  const held = new Map(); // what is being typed, by control: {message, timer}
   let socket = null;
   let resting = false;
 
@@ -39,13 +41,39 @@
     if (resting) setTimeout(flush, PERIOD_MS);
   }
 
+  // What was being typed in a control is done with.
+  function release(control) {
+    const { message, timer } = held.get(control) ?? {};
+    clearTimeout(timer);
+    if (held.delete(control)) enqueue(message);
+  }
+
+  function enqueue(message) {
+    const control = message.type === "GuiUpdateMessage" ? message.uuid : Symbol();
+    waiting.delete(control);
+    waiting.set(control, message);
+    if (!resting) flush();
+  }
+
+  // Enter, or another control: nothing more is typed.
+  for (const kind of ["keydown", "focusout", "pointerdown"]) {
+    addEventListener(kind, (event) => (kind !== "keydown" || event.key === "Enter") && [...held.keys()].forEach(release));
+  }
+
   window.schuler = {
     // A message of viser's page: of one control's values the newest, at most one in 30 ms, in the order of their changes.
+    // A number waits while it is typed (boxes.js).
     send(message) {
-      const control = message.type === "GuiUpdateMessage" ? message.uuid : Symbol();
-      waiting.delete(control);
-      waiting.set(control, message);
-      if (!resting) flush();
+      const control = message.uuid;
+      window.schuler.forget(control);
+      [...held.keys()].forEach(release);
+      if (message.type !== "GuiUpdateMessage" || !window.schuler.typing?.(control)) return enqueue(message);
+      held.set(control, { message, timer: setTimeout(() => release(control), TYPING_MS) });
+    },
+    // Forget what was being typed in a control.
+    forget(control) {
+      clearTimeout(held.get(control)?.timer);
+      held.delete(control);
     },
     // Give a control a value on the server at once; the page itself goes on showing what it shows.
     tell: (uuid, value) => post({ type: "GuiUpdateMessage", uuid, updates: { value } }),

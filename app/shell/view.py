@@ -33,6 +33,8 @@ from schuler_bench.shell.opening import Opening
 if TYPE_CHECKING:
     import viser
 
+    from navcore.scenario.model import Scenario
+
 Place = Literal["edit", "upper", "lower", "page"]
 """Left tabs with controls; tabs of the upper and of the lower right panel; anywhere, without a tab."""
 Tab = AbstractContextManager[Any]
@@ -236,6 +238,8 @@ class FieldsView(View):
 
     def build(self, tab: Tab) -> None:
         """Make the sections."""
+        self._opened: Scenario | None = None
+        self._given: set[tuple[str | int, ...]] = set()
         gui, edit = self.frame.gui, self.frame.editor.edit
         self.sections = {name: Section(gui, tab, edit, order) for name, order in self.places.items()}
 
@@ -243,6 +247,17 @@ class FieldsView(View):
     def controls(self) -> list[Control]:
         """Controls of the fields."""
         return [control for section in self.sections.values() for control in section.controls.values()]
+
+    def given(self, specs: Sequence[FieldSpec]) -> list[FieldSpec]:
+        """Fields that the scenario sets, and those that it has set since it was opened.
+
+        A control stays while its value passes the default: "0" is the beginning of "0.8".
+        """
+        scenario, opened = self.session.scenario, self.session.opened
+        if opened is not self._opened:
+            self._opened, self._given = opened, set()
+        self._given |= {s.path for s in specs if edits.value_at(scenario, s.path) != s.default}
+        return [spec for spec in specs if spec.path in self._given]
 
     def show_fields(self, fields: Mapping[str, list[FieldSpec]]) -> None:
         """Show fields of the session's scenario in the sections with these names."""

@@ -206,6 +206,7 @@ def test_rounding_is_no_error() -> None:
     assert (
         re.search(r"pitch</th>.*<td>0 [µa][a-z]+</td></tr>", html) and "e-" not in html and "×10" not in html
     )
+    assert "µ" not in html
 
 
 class TestPendulum:

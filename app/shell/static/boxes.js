@@ -4,7 +4,8 @@
 (() => {
   const BOX = ".mantine-NumberInput-input";
   const UNIT = /^[smhdknarguµ° ]$/i;
-  let typed = null;
+  let typed = null; // the box into which digits are being typed
+  let before = ""; // what it held before them
 
   // The control in whose row something is: the server knows it by its id, whatever the page calls it.
   const labelOf = (inside) => inside.closest(".mantine-Flex-root")?.querySelector("label");
@@ -29,7 +30,12 @@
   // ------------------------------------------------------------ units
 
   addEventListener("focusin", () => (typed = null));
+  addEventListener("beforeinput", ({ target }) => target.matches?.(BOX) && typed !== target && (before = target.value), true);
   addEventListener("input", (event) => event.target.matches?.(BOX) && event.isTrusted && (typed = event.target), true);
+  addEventListener("keydown", ({ key }) => /^(Arrow(Up|Down)|Enter)$/.test(key) && (typed = null), true);
+
+  // Whether a unit may still follow what is being typed into a control: its value waits (socket.js).
+  window.schuler.typing = (control) => typed?.id === control && /\(.+\)/.test(labelOf(typed)?.textContent ?? "");
 
   // Before the keys of commands.js, which listens on the document's element.
   addEventListener(
@@ -39,7 +45,9 @@
       if (box !== typed || event.ctrlKey || event.metaKey || event.altKey || !UNIT.test(event.key)) return;
       event.preventDefault();
       event.stopPropagation();
-      ask(box, `${box.value} ${event.key.trim()}`);
+      const text = `${box.value} ${event.key.trim()}`;
+      takeBack(box);
+      ask(box, text);
     },
     true,
   );
@@ -56,6 +64,13 @@
     },
     true,
   );
+
+  // A number whose unit comes is no value yet: until it is complete the box keeps what it held.
+  function takeBack(box) {
+    typed = null;
+    window.schuler.forget(box.id);
+    if (box.value !== before) window.schuler.write(box, before);
+  }
 
   function ask(box, text) {
     const label = labelOf(box);

@@ -9,10 +9,10 @@
   const SLOP_PX = 3;
   const PAUSE_MS = 1000; // keys that follow each other faster are one step of undo
   const SETTLE_MS = 1500; // so long a picture of the pair is waited for
-  const INSET = 0.06; // of the height, above and below the scale of the damping ratio in a Bode plot
+  const LENGTH = 0.88; // of the scale of the damping ratio in a Bode plot, over the height of its panel
   const ABOVE_PX = 24; // what stands at the lower edge of a panel
   const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
-  const figures = new Map(); // figure: {rings, told, pair, until}
+  const figures = new Map(); // figure: {rings, told, pair, until, anchors}
   let dragged = null;
   let last = { gesture: 0, time: -1e9, figure: null };
 
@@ -27,20 +27,21 @@
         return [across.d2p(-part * size), up.d2p(size * Math.sqrt(1 - part * part))];
       },
       pair: ([left, top], across, up) => {
-        const [re, im] = [Math.min(across.p2d(left), 0), Math.max(up.p2d(top), 0)];
+        const [re, im] = [Math.min(across.p2d(left), 0), Math.max(up.p2d(within(top, [0, up._length])), 0)];
         const size = Math.max(Math.hypot(re, im), 1e-6);
         return [Math.max(-re / size, 1e-6), size];
       },
     },
-    // Across is the frequency of the plot; up is the damping ratio, small above, where a resonance is high.
+    // Across is the frequency of the plot; up is the damping ratio, small above, where a resonance is high. The anchor
+    // is where the ring stands on its curve, and at which ratio: the scale is logarithmic from there, as long as its range.
     bode: {
-      place: ([damping, size], across, up, { dampings: [low, high], omega_s }) => {
-        const part = Math.log(within(damping, [low, high]) / low) / Math.log(high / low);
-        return [across.d2p(size * omega_s), up._length * (INSET + (1 - 2 * INSET) * part)];
+      place: ([damping, size], across, up, { dampings: [low, high], omega_s, anchor }) => {
+        const ratio = within(damping, [low, high]);
+        return [across.d2p(size * omega_s), anchor.top + (LENGTH * up._length * Math.log(ratio / anchor.damping)) / Math.log(high / low)];
       },
-      pair: ([left, top], across, up, { dampings: [low, high], omega_s }) => {
-        const part = (top / up._length - INSET) / (1 - 2 * INSET);
-        return [low * (high / low) ** within(part, [0, 1]), across.p2d(left) / omega_s];
+      pair: ([left, top], across, up, { dampings: [low, high], omega_s, anchor }) => {
+        const ratio = anchor.damping * (high / low) ** ((top - anchor.top) / (LENGTH * up._length));
+        return [within(ratio, [low, high]), across.p2d(left) / omega_s];
       },
     },
   };
@@ -54,6 +55,37 @@
 
   const handleOf = (figure) => figure._fullLayout?.meta?.handle;
   const axes = (figure, [across, up]) => [figure._fullLayout[across], figure._fullLayout[up]];
+
+  // How high the method's curve runs in a panel, px from its upper edge; null where it has none.
+  function heightOfCurve(figure, { color, panels }, panel, omega) {
+    const [x, y] = panels[panel].map((name) => name.replace("axis", ""));
+    const traces = (figure.calcdata ?? []).map((points) => points[0]?.trace);
+    const trace = traces.find((each) => each?.visible === true && each.xaxis === x && each.yaxis === y && each.line?.color === color);
+    const next = trace?.x.findIndex((value) => value >= omega) ?? -1;
+    if (next < 1) return null;
+    const [across, up] = axes(figure, panels[panel]);
+    const [left, right] = [next - 1, next].map((place) => across.d2p(trace.x[place]));
+    const [from, to] = [next - 1, next].map((place) => up.d2p(trace.y[place]));
+    const top = from + ((to - from) * (across.d2p(omega) - left)) / (right - left);
+    return Number.isFinite(top) ? top : null;
+  }
+
+  // A handle as its panel has it: in a Bode plot with the anchor, which stays while a picture of the pair is waited for.
+  function inPanel(figure, panel) {
+    const handle = handleOf(figure);
+    if (handle.kind !== "bode") return handle;
+    const state = figures.get(figure);
+    const pair = pairOf(figure);
+    if (state.pair === null || state.anchors[panel] === undefined) {
+      const [low, high] = handle.dampings;
+      const damping = within(pair[0], [low, high]);
+      const [, up] = axes(figure, handle.panels[panel]);
+      const top = heightOfCurve(figure, handle, panel, pair[1] * handle.omega_s);
+      const alone = ((1 - LENGTH) / 2 + (LENGTH * Math.log(damping / low)) / Math.log(high / low)) * up._length;
+      state.anchors[panel] = { damping, top: top ?? alone };
+    }
+    return { ...handle, anchor: state.anchors[panel] };
+  }
 
   // ------------------------------------------------------------ drawing
 
@@ -74,11 +106,17 @@
     if (handle.kind !== "bode") return void scale.remove();
     if (made.nextSibling !== scale) made.after(scale);
     const [low, high] = handle.dampings;
-    const marks = [low, Math.sqrt(low * high), high].map((value) => `ζ ${short(value)}`);
+    const placeOf = (damping) => within(KINDS.bode.place([damping, 1], { d2p: () => 0 }, up, handle)[1], [0, up._length]);
+    const ratioAt = (top) => KINDS.bode.pair([0, top], { p2d: () => 0 }, up, handle)[0];
+    const [from, to] = [low, high].map(placeOf);
+    const marks = [from, handle.anchor.top, to];
     while (scale.childElementCount < marks.length) scale.append(window.schuler.element("span", ""));
-    for (const [place, mark] of marks.entries()) scale.children[place].textContent = mark;
-    scale.style.height = `${(1 - 2 * INSET) * up._length}px`;
-    scale.style.transform = `translate(${across}px,${up._offset + INSET * up._length}px)`;
+    for (const [place, top] of marks.entries()) {
+      scale.children[place].textContent = `ζ ${short(ratioAt(top))}`;
+      scale.children[place].style.top = `${top - from}px`;
+    }
+    scale.style.height = `${to - from}px`;
+    scale.style.transform = `translate(${across}px,${up._offset + from}px)`;
   }
 
   function name(element, pair, handle) {
@@ -94,7 +132,7 @@
     let state = figures.get(figure);
     if (state === undefined) {
       if (handle === undefined) return;
-      figures.set(figure, (state = { rings: [], told: null, pair: null, until: 0 }));
+      figures.set(figure, (state = { rings: [], told: null, pair: null, until: 0, anchors: [] }));
       figure.on("plotly_afterplot", () => show(figure)); // a zoom, another size
     }
     const there = handle?.pair !== undefined && !window.schuler.alone ? handle : undefined;
@@ -111,13 +149,15 @@
     for (const [panel, { made, numbers, scale }] of state.rings.entries()) {
       if (made.parentElement !== frame) frame.append(made);
       const [across, up] = axes(figure, there.panels[panel]);
-      const [left, top] = KINDS[there.kind].place(pair, across, up, there);
-      const inside = left >= 0 && left <= across._length && top >= -1 && top <= up._length + 1;
+      const handle = inPanel(figure, panel);
+      const [left, top] = KINDS[there.kind].place(pair, across, up, handle);
+      const height = handle.anchor?.top ?? top;
+      const inside = left >= 0 && left <= across._length && height >= -1 && height <= up._length + 1;
       made.hidden = !inside && dragged?.made !== made;
       const x = across._offset + within(left, [0, across._length]);
       const y = up._offset + within(top, [0, up._length]);
       made.style.transform = `translate(${x.toFixed(1)}px,${y.toFixed(1)}px)`;
-      showScale(scale, made, there, x, up);
+      showScale(scale, made, handle, x, up);
       made.style.setProperty("--color", there.color);
       made.classList.toggle("sb-left", left > 0.7 * across._length);
       const schuler = there.unit === "ωₛ";
@@ -155,9 +195,9 @@
   // ------------------------------------------------------------ moving
 
   function move(figure, panel, place, gesture, ends) {
-    const handle = handleOf(figure);
+    const handle = inPanel(figure, panel);
     const [across, up] = axes(figure, handle.panels[panel]);
-    const wanted = KINDS[handle.kind].pair([within(place[0], [0, across._length]), within(place[1], [0, up._length])], across, up, handle);
+    const wanted = KINDS[handle.kind].pair([within(place[0], [0, across._length]), place[1]], across, up, handle);
     const pair = nearest(wanted, handle);
     const state = figures.get(figure);
     [state.pair, state.until] = [pair, performance.now() + SETTLE_MS];
@@ -177,7 +217,7 @@
     made.focus();
     made.setPointerCapture(event.pointerId);
     const [across, up] = axes(figure, handleOf(figure).panels[panel]);
-    const [left, top] = KINDS[handleOf(figure).kind].place(pairOf(figure), across, up, handleOf(figure));
+    const [left, top] = KINDS[handleOf(figure).kind].place(pairOf(figure), across, up, inPanel(figure, panel));
     const [x, y] = [event.clientX, event.clientY];
     dragged = { figure, panel, made, id: event.pointerId, x, y, left, top, gesture: Date.now(), at: null, frame: 0, moved: false };
     if (handleOf(figure).kind === "poles") window.schuler.holdAxes(figure); // a Bode plot's frequencies stand still
@@ -220,7 +260,7 @@
     if (way === undefined || event.ctrlKey || event.metaKey || event.altKey || dragged !== null) return;
     event.preventDefault();
     event.stopPropagation();
-    const handle = handleOf(figure);
+    const handle = inPanel(figure, panel);
     const [across, up] = axes(figure, handle.panels[panel]);
     const place = KINDS[handle.kind].place(pairOf(figure), across, up, handle);
     const size = STEP_PX * (event.shiftKey ? FAST : 1);

@@ -64,6 +64,16 @@
     soon();
   }
 
+  // The page is laid out for its window: it is printed as it stands there, on one sheet of the window's proportions, which
+  // the browser fits to the paper.
+  const sheet = document.createElement("style");
+  function setSheet() {
+    sheet.textContent = `@media print { @page { size: ${innerWidth}px ${innerHeight}px; margin: 0; } }`;
+  }
+  document.documentElement.append(sheet);
+  setSheet();
+  addEventListener("resize", () => matchMedia("print").matches || setSheet());
+
   window.schuler.changed(openTab);
   addEventListener("resize", () => soon(150));
   addEventListener("filled-plots", () => soon());

@@ -46,6 +46,20 @@
 
   setInterval(bringToFront, 150);
 
+  // ------------------------------------------------------------ help while the pointer rests
+
+  // Of a control in the left column it stands beside the column, not over the control's neighbours, where viser has it.
+  let pointed = null;
+  addEventListener("pointerover", (event) => (pointed = event.target.closest?.("[data-sb-kind]") ?? null));
+  window.schuler.changed(() => {
+    const help = document.querySelector(".mantine-Tooltip-tooltip:not([data-sb-beside])");
+    const row = pointed?.getBoundingClientRect();
+    if (help === null || row === undefined || row.left > 40) return;
+    help.dataset.sbBeside = "";
+    help.style.setProperty("--sb-left", `${row.right + 8}px`);
+    help.style.setProperty("--sb-top", `${Math.max(8, Math.min(row.top, innerHeight - help.offsetHeight - 8))}px`);
+  });
+
   // ------------------------------------------------------------ the control in use, explained
 
   const ROW = ".mantine-Flex-root";

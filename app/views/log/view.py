@@ -126,7 +126,7 @@ class LogView(FieldsView):
         first, more = specs[:_FIRST], specs[_FIRST:]
         self._all.visible = bool(more)
         if not self._all.value:
-            more = [spec for spec in more if edits.value_at(scenario, spec.path) != spec.default]
+            more = self.given(more)
         self._buttons.visible = self._outages.visible = self._clipboard.visible = kind != "none"
         self.show_fields(
             {

@@ -212,6 +212,8 @@ def _way(bob: Bob, factor: float) -> str:
 _AS_IT_FITS = Display()
 _LEAST = 0.01
 """Of the smallest units, such as µas: no sensor and no plot knows less."""
+_SMALLEST = {choose(1e-30).name: choose(0.0).name for choose in (angle_unit, speed_unit, length_unit)}
+"""The smallest units, and in which unit 0 is told."""
 _COMPUTED = (6, 7, 8)
 """Pitch, roll and heading among the columns of `MethodRun.navigation`."""
 
@@ -361,6 +363,6 @@ def _degrees(angle: float) -> str:
 def _signed(value: float, unit: Unit) -> str:
     """Error with its sign; what is below a hundredth of the smallest unit is rounding, and reads as 0."""
     rounded = float(f"{value / unit.si:.3g}")
-    if unit.name.startswith("µ") and abs(rounded) < _LEAST:
-        return f"0 {unit.name}"
+    if unit.name in _SMALLEST and abs(rounded) < _LEAST:
+        return f"0 {_SMALLEST[unit.name]}"
     return f"{'+' if rounded > 0 else ''}{with_unit(number(rounded), unit.name)}"

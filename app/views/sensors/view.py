@@ -4,7 +4,7 @@ from pathlib import Path
 
 from navcore.foundation.text import Text
 from navcore.sensors.imu import Imu
-from schuler_bench.editing import edits, form
+from schuler_bench.editing import form
 from schuler_bench.shell import notices
 from schuler_bench.shell.view import FieldsView, Tab, if_user
 
@@ -40,7 +40,7 @@ class SensorsView(FieldsView):
 
     def follow_scenario(self) -> None:
         """Show the scenario's values; errors that it sets are always shown."""
-        scenario, file = self.session.scenario, self.session.scenario.imu.file
+        file = self.session.scenario.imu.file
         told = Text(
             "The run is on the recorded IMU {name}: it brings its own errors.", name=Path(file or "").name
         )
@@ -50,7 +50,7 @@ class SensorsView(FieldsView):
         simulated = [spec for spec in self._specs if spec not in recorded]
         first, more = (recorded, []) if file else (simulated[:_FIRST], simulated[_FIRST:])
         if not self._all.value:
-            more = [spec for spec in more if edits.value_at(scenario, spec.path) != spec.default]
+            more = self.given(more)
         self.show_fields({"first": first, "more": more})
 
 

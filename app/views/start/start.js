@@ -67,7 +67,9 @@
 
   // ------------------------------------------------------------ the tour
 
+  const LOST_LOOKS = 4;
   let tour = null;
+  let lost = 0; // looks in a row at which what the card speaks of was out of sight
 
   // A control is found by its label, which the server says in the page's language, as it does the label itself.
   function target(step) {
@@ -80,6 +82,7 @@
   function endTour() {
     tour?.remove();
     tour = null;
+    lost = 0;
     document.querySelector(".sb-ring")?.remove();
   }
 
@@ -119,8 +122,12 @@
   // Card and ring stay with what they speak of while the page is laid out.
   function follow(card, ring, step) {
     if (tour !== card) return;
+    if (document.querySelector("dialog.sb-dialog[open]") !== null) return endTour();
     const box = target(step)?.getBoundingClientRect();
     const seen = box !== undefined && box.width > 0;
+    if (seen) card.dataset.seen = "";
+    else if (card.dataset.seen === "" && ++lost > LOST_LOOKS) return endTour(); // another tab has come before it
+    if (seen) lost = 0;
     ring.style.display = seen ? "" : "none";
     const { width, height } = card.getBoundingClientRect();
     let [left, top] = [(innerWidth - width) / 2, (innerHeight - height) / 2];
@@ -130,11 +137,13 @@
       });
       const below = box.bottom + 12 + height <= innerHeight;
       const above = box.top - 12 - height >= 0;
-      if (below || above) {
+      // What stands in the left column has the controls above and below it.
+      const beside = box.left < 40 && box.width < innerWidth / 2 && box.right + 16 + width <= innerWidth;
+      if ((below || above) && !beside) {
         left = box.left;
         top = below ? box.bottom + 12 : box.top - 12 - height;
       } else {
-        left = box.left > width + 24 ? box.left - width - 16 : box.right + 16;
+        left = !beside && box.left > width + 24 ? box.left - width - 16 : box.right + 16;
         top = box.top + 24;
       }
     }

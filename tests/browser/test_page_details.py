@@ -1,0 +1,129 @@
+"""Small things of the page: what is typed, printed, hovered, and where cards and handles stand."""
+
+import re
+from typing import Any
+
+import pytest
+
+from schuler_bench.session.session import Session
+from tests.browser.driver import Bench
+from tests.browser.placing import place
+
+
+def boxes(bench: Bench, *selectors: str) -> list[Any]:
+    """Where the first visible element of each selector stands, CSS px."""
+    found = [bench.page.locator(f"{selector} >> visible=true").first for selector in selectors]
+    return [locator.bounding_box() or {} for locator in found]
+
+
+def overlap(one: dict[str, float], other: dict[str, float]) -> bool:
+    return all(
+        one[at] < other[at] + other[size] and other[at] < one[at] + one[size]
+        for at, size in (("x", "width"), ("y", "height"))
+    )
+
+
+def test_a_value_that_begins_with_the_default_can_be_typed(bench: Bench, session: Session) -> None:
+    bench.reset("sikuliaq-like", "Log", selected=2)
+    bench.box("reference.delay_s").click()
+    bench.page.keyboard.press("Control+a")
+    with bench.next_run():
+        bench.page.keyboard.type("0")
+    bench.page.keyboard.type(".8")
+    bench.wait_until(lambda: session.scenario.reference.delay_s == 0.8, 10.0)
+
+
+def test_a_number_whose_unit_follows_starts_no_run(fresh: Bench, session: Session) -> None:
+    durations: list[float] = []
+    change = session.change
+
+    def noted(scenario: Any, *rest: Any, **more: Any) -> Any:
+        durations.append(scenario.run.duration_h)
+        return change(scenario, *rest, **more)
+
+    fresh.tab("Run")
+    session.change = noted  # type: ignore[method-assign]
+    try:
+        box = fresh.box("run.duration_h")
+        box.click()
+        fresh.page.keyboard.press("Control+a")
+        fresh.page.keyboard.type("540 min", delay=40)
+        fresh.page.keyboard.press("Enter")
+        fresh.wait_until(lambda: session.scenario.run.duration_h == 9.0)
+        fresh.settle()
+        assert set(durations) <= {4.0, 9.0}
+        # after a pause the number alone counts, until the unit comes; Escape leaves what was there before it
+        box.click()
+        fresh.page.keyboard.press("Control+a")
+        fresh.page.keyboard.type("12")
+        fresh.wait_until(lambda: session.scenario.run.duration_h == 12.0)
+        fresh.page.keyboard.type(" m")
+        fresh.page.keyboard.press("Escape")
+        fresh.wait_until(lambda: session.scenario.run.duration_h == 9.0)
+        fresh.settle()
+        assert box.input_value() == "9"
+    finally:
+        del session.change
+
+
+def test_the_window_is_printed_on_one_sheet(fresh: Bench) -> None:
+    pdf = fresh.page.pdf(prefer_css_page_size=True)
+    assert re.findall(rb"/Count (\d+)", pdf) == [b"1"]
+    ((width, height),) = re.findall(rb"/MediaBox ?\[0 0 ([\d.]+) ([\d.]+)\]", pdf)
+    assert float(width) / float(height) == pytest.approx(1920 / 1080, rel=0.01)
+
+
+def test_the_card_of_the_tour_leaves_the_sliders_free_and_goes_with_its_subject(fresh: Bench) -> None:
+    fresh.page.evaluate("schuler.command('tour')")
+    card = fresh.page.locator(".sb-tour")
+    card.wait_for()
+    card.get_by_role("button", name="Next").click()
+    fresh.page.wait_for_timeout(400)
+    ring, told = boxes(fresh, ".sb-ring", ".sb-tour")
+    sliders = fresh.page.locator(".mantine-Slider-root >> visible=true").all()
+    assert len(sliders) == 5 and ring["x"] < told["x"]
+    assert not any(overlap(told, slider.bounding_box() or {}) for slider in sliders)
+    fresh.tab("Sensors")
+    card.wait_for(state="detached")
+
+
+def test_the_help_of_a_control_covers_no_other_control(fresh: Bench) -> None:
+    fresh.choose_and_run("network", "optimal")
+    fresh.page.mouse.move(1000, 600)
+    box = fresh.box("network.realisation")
+    box.hover()
+    fresh.page.locator(".mantine-Tooltip-tooltip").wait_for()
+    fresh.page.wait_for_timeout(200)
+    (told,) = boxes(fresh, ".mantine-Tooltip-tooltip")
+    rows = fresh.page.locator("[data-sb-kind] label >> visible=true").all()
+    column = [row.bounding_box() or {} for row in rows]
+    column = [row for row in column if row["x"] < 40]
+    assert len(column) > 10
+    assert not any(overlap(told, row | {"width": 340.0}) for row in column)
+
+
+def test_the_handle_of_the_bode_plot_stands_on_its_curve(bench: Bench) -> None:
+    off = """() => {
+      const rings = [...document.querySelectorAll('.sb-handle')];
+      const ring = rings.find((each) => each.offsetParent && !each.hidden);
+      const figure = ring.closest('.js-plotly-plot');
+      const { handle } = figure._fullLayout.meta;
+      const { xaxis2: across, yaxis3: up } = figure._fullLayout;
+      const trace = figure._fullData.find((each) => each.yaxis === 'y3' && each.line?.color === handle.color);
+      const omega = handle.pair[1] * handle.omega_s;
+      const near = [...trace.x].reduce((best, x, i) => Math.abs(Math.log(x / omega)) <
+        Math.abs(Math.log(trace.x[best] / omega)) ? i : best, 0);
+      const box = figure.getBoundingClientRect();
+      const spot = ring.getBoundingClientRect();
+      return Math.abs(spot.top + spot.height / 2 - box.top - up._offset - up.d2p(trace.y[near]));
+    }"""
+    place(bench, "Frequency")
+    bench.page.locator(".sb-handle:visible").last.wait_for()
+    bench.wait_until(lambda: bench.page.evaluate(off) < 6.0, 3.0)
+    before = bench.session.scenario
+    bench.page.locator(".sb-handle:visible").last.press("ArrowDown")
+    bench.settle()
+    assert bench.session.scenario != before
+    bench.wait_until(lambda: bench.page.evaluate(off) < 6.0, 3.0)
+    bench.reset("zha-fast", "Frequency", "Errors", "Method", selected=2)
+    bench.wait_until(lambda: bench.page.evaluate(off) < 6.0, 3.0)
