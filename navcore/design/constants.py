@@ -1,8 +1,8 @@
 """Error sources that are constant or known in shape: each is one response of the linear error model.
 
 Biases and initial errors count with their standard deviation, axis by axis. Scale factors, misalignments,
-current, events, delay and a resolution that no noise averages out count with the numbers of the scenario as
-they stand, the tide with its amplitude and an unknown phase.
+current, events and delay count with the numbers of the scenario as they stand, the tide with its amplitude
+and an unknown phase.
 """
 
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ from navcore.scenario.stochastic import StochasticModel
 from navcore.sensors.imu import imu_errors
 from navcore.sensors.log_errors.events import event_velocity
 from navcore.sensors.reference import Reference
-from navcore.sensors.simulated_log import rounding_errors, simulated_errors
+from navcore.sensors.simulated_log import simulated_errors
 
 _INITIAL = {
     "initial_tilt": (4, 5),
@@ -136,7 +136,3 @@ def _log_shapes(scenario: Scenario, course: Course) -> Iterator[Column]:
             quiet = Reference(kind="log", frame=log.frame, rate_hz=log.rate_hz)
             errors = simulated_errors(quiet, course.truth, end_s, 0, course.step_s, (element,))
             yield _column(part.source, LOG, course.log_counts * course.means(errors.time_s, errors.error))
-    if log.kind == "log" and log.coarse_lsb > 0.0:
-        time_s, paths = rounding_errors(log, course.truth, end_s, course.step_s)
-        for error in paths:
-            yield _column("log_resolution", LOG, course.log_counts * course.means(time_s, error))

@@ -79,7 +79,6 @@ def level(form: LawForm, model: StochasticModel, omega_s: float) -> Level:
     A[:, DV] += own * law
     A[PHI, DV] += printed
     A[PHI, gyro], A[DV, accel], A[:, log] = -1.0, 1.0, reference * law
-    log_density = model.log_sample() ** 2 / model.figures.log_rate_hz
     constants = {
         "gyro": -RADIUS * _unit(size, PHI),
         "accel": _unit(size, DV) / omega_s,
@@ -88,7 +87,7 @@ def level(form: LawForm, model: StochasticModel, omega_s: float) -> Level:
     drives = {
         "gyro_white": constants["gyro"] * model.figures.gyro_white * math.sqrt(omega_s),
         "accel_white": constants["accel"] * model.figures.accel_white * math.sqrt(omega_s),
-        "log_white": constants["log"] * math.sqrt(log_density * omega_s),
+        "log_white": constants["log"] * math.sqrt(model.figures.log_density * omega_s),
     }
     sizes = {
         "gyro_drift": (gyro, model.gyro_drift, RADIUS),

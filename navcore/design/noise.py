@@ -66,10 +66,11 @@ def interval_noise(
 def _one_call(loop: LoopModel, model: StochasticModel, one: Map, fresh: bool) -> Injection:
     n = loop.states
     A, Q = np.zeros((2, len(RANDOM_SOURCES), n + AXES, n + AXES))
+    samples = max(1.0, model.figures.log_rate_hz * loop.step_s)
     densities = {
         "gyro_white": model.figures.gyro_white**2 / loop.step_s,
         "accel_white": model.figures.accel_white**2 / loop.step_s,
-        "log_white": model.log_sample(loop.step_s) ** 2 if fresh else 0.0,
+        "log_white": model.figures.log_noise**2 / samples if fresh else 0.0,
     }
     variances = {
         "gyro_drift": model.gyro_drift.sigma**2,

@@ -136,7 +136,7 @@ def sampled_level(form: LawForm, model: StochasticModel, omega_s: float, timing:
         step[at, at] = left = math.exp(-h / drift.tau_s)
         column = added[f"{source}_drift"] = np.zeros(size)
         column[at] = drift.sigma * math.sqrt(1.0 - left * left)
-    read = reference * model.log_sample(h)
+    read = reference * figures.log_noise / math.sqrt(max(1.0, figures.log_rate_hz * h))
     return SampledLevel(fresh, step, added, read, timing, omega_s)
 
 

@@ -48,14 +48,6 @@ def _steady_loop(
         amplitude = float(np.sqrt(np.mean(model.tide**2)))
         parts["log_tide"] = line_part(channel, amplitude, 2.0 * math.pi / model.tide_period_s)
     warnings = [*unmodelled]
-    if model.coarse_lsb and method.reads_log:
-        warnings.append(
-            Text(
-                "reference.lsb_mps = {lsb:g}: without noise of half a step, rounding is a constant error at "
-                "a steady speed; what changes of speed make of it is in the budget along the run",
-                lsb=model.coarse_lsb,
-            )
-        )
     if method.kind.uses_network and method.policy.id not in ("constant", "schedule"):
         warnings.append(
             Text('policy "{id}" looks at the data: shown is the loop while it is damped', id=method.policy.id)
@@ -139,17 +131,12 @@ def random_parts(channel: Level, sampled: SampledLevel) -> dict[str, Entry]:
 
 
 def constant_parts(channel: Level, model: StochasticModel) -> dict[str, Entry]:
-    """Standard deviations that biases leave, root mean square of the axes of each sensor, and rounding.
-
-    At a steady speed a coarse log is wrong by a constant, up to half a step.
-    """
+    """Standard deviations that biases leave; root mean square of the axes of each sensor."""
     biases = {"gyro": model.gyro_bias[:2], "accel": model.accel_bias[:2], "log": model.log_bias}
-    parts = {
+    return {
         f"{name}_bias": constant_part(channel, name, float(np.sqrt(np.mean(values**2))))
         for name, values in biases.items()
     }
-    held = model.log_held()
-    return parts | {"log_resolution": constant_part(channel, "log", held)} if held else parts
 
 
 def instability(sampled: SampledLevel) -> str:

@@ -41,8 +41,6 @@ def untold_squares(scenario: Scenario, method: Method, t_s: np.ndarray) -> dict[
     every = told.run.model_copy(update={"output_step_s": step_s})
     told = told.model_copy(update={"run": every})
     parts = [part for part in (*told.imu.all_parts(), *told.reference.all_parts()) if part.has_shape]
-    if told.reference.kind == "log" and told.reference.coarse_lsb > 0.0:
-        parts += [part for part in told.reference.all_parts() if part.lsb > 0.0]
     labels = {part.label: part.source for part in parts}
     if method.event:
         labels.setdefault(Text("log events"), "log_events")

@@ -1,6 +1,5 @@
 """The stochastic model of a scenario's sensors, log and start, in SI (theory.md 14)."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,7 +7,6 @@ import numpy as np
 from navcore.foundation.units import HOUR
 from navcore.networks.lqg import SensorFigures
 from navcore.scenario.model import Scenario
-from navcore.sensors.rounding import deviations
 
 RANDOM_SOURCES = ("gyro_white", "gyro_drift", "accel_white", "accel_drift", "log_white", "log_drift")
 """Sources that are random processes, in the order of every table; the others are random constants."""
@@ -42,7 +40,7 @@ class StochasticModel:
     Attributes
     ----------
     figures : SensorFigures
-        Random errors, as a filter is told of them: the log's resolution counts as noise of lsb / sqrt(12).
+        Random errors; the log's resolution counts as noise of lsb / sqrt(12).
     log : bool
         Whether there is a log at all.
     tide : ndarray, shape (2,)
@@ -55,10 +53,6 @@ class StochasticModel:
         Standard deviations in the log's axes, m/s.
     initial : ndarray, shape (7,)
         Standard deviations of dV_E, dV_N, dL, dlambda, phi_E, phi_N, phi_U at t = 0.
-    log_noise : float
-        Noise of a sample of the log before it is rounded, m/s.
-    coarse_lsb : float
-        Resolution (m/s) that the log's noise is too small to turn into noise; 0 where it is not.
     """
 
     figures: SensorFigures
@@ -69,24 +63,6 @@ class StochasticModel:
     accel_bias: np.ndarray
     log_bias: np.ndarray
     initial: np.ndarray
-    log_noise: float = 0.0
-    coarse_lsb: float = 0.0
-
-    def log_sample(self, step_s: float = 0.0) -> float:
-        """White noise of an epoch of the log that is read each ``step_s`` or more slowly, m/s."""
-        noise = self.figures.log_noise / math.sqrt(max(1.0, self.figures.log_rate_hz * step_s))
-        if self.coarse_lsb == 0.0:
-            return noise
-        own = self._before_rounding(step_s)
-        return math.hypot(own, deviations(self.coarse_lsb, own)[1])
-
-    def log_held(self, step_s: float = 0.0) -> float:
-        """Deviation over all speeds of the rounding error that stays while the speed does, m/s."""
-        return deviations(self.coarse_lsb, self._before_rounding(step_s))[0]
-
-    def _before_rounding(self, step_s: float) -> float:
-        samples = max(1.0, self.figures.log_rate_hz * step_s)
-        return self.log_noise / math.sqrt(samples)
 
     @property
     def gyro_drift(self) -> Drift:
@@ -133,6 +109,4 @@ def stochastic_model(scenario: Scenario) -> StochasticModel:
         accel_bias=imu.accel().deviation,
         log_bias=known * log.deviation,
         initial=np.array(scenario.initial_error.standard_deviations()),
-        log_noise=known * log.noise,
-        coarse_lsb=known * log.coarse_lsb,
     )

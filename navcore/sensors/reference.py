@@ -14,7 +14,6 @@ from navcore.foundation.text import Text
 from navcore.sensors.base import NO_DRIFT, modelled_drift
 from navcore.sensors.log_errors import TERMS
 from navcore.sensors.log_errors.base import LogPart
-from navcore.sensors.rounding import DITHER
 
 if TYPE_CHECKING:
     from navcore.sensors.log_errors.events import LogEvents
@@ -141,17 +140,6 @@ class Reference(_Errors):
         """Noise of a sample with that of rounding, m/s."""
         values = (value for part in self.all_parts() for value in (part.white, part.lsb / math.sqrt(12.0)))
         return math.hypot(*values)
-
-    @property
-    def noise(self) -> float:
-        """Noise of a sample before it is rounded, m/s."""
-        return math.hypot(*(part.white for part in self.all_parts()))
-
-    @property
-    def coarse_lsb(self) -> float:
-        """Resolution (m/s) that the noise is too small to average out; 0 where it is at least half of it."""
-        lsb = sum(part.lsb for part in self.all_parts())
-        return lsb if self.noise < DITHER * lsb else 0.0
 
     @property
     def markov(self) -> tuple[float, float]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,13 +11,11 @@ from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.log_errors.base import LogPart
 from navcore.sensors.noise import gauss_markov, unit_noise
 from navcore.sensors.reference import Reference, in_service
-from navcore.sensors.rounding import DITHER, rounded
 from navcore.sensors.true_state import horizontal_acceleration, horizontal_state, to_navigation, to_ship
 
 SHORTEST_HOLD_S = 5.0
 """A sample stands for three intervals of the log, and at least this long."""
-_PATHS = 8
-"""Paths of the log's drift for which the rounding error is followed."""
+_FINEST_LSB = 1e-9
 
 
 def hold_time(interval_s: float) -> float:
@@ -106,48 +104,6 @@ def simulated_errors(
     )
 
 
-def rounding_errors(
-    reference: Reference, truth: Truth, duration_s: float, step_s: float
-) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Errors by rounding alone, mean over the noise, of a log with too little noise to average them out.
-
-    Of a log that drifts they depend on the drift: there are several, for as many paths of it, each divided by
-    the square root of their number, so that the squares of what they do add up to its mean square.
-
-    Parameters
-    ----------
-    reference : Reference
-        With ``kind = "log"`` and ``coarse_lsb`` above 0.
-    truth : Truth
-        True motion over the run.
-    duration_s, step_s : float
-        Length of the run and step of the mechanization, s.
-
-    Returns
-    -------
-    time_s : ndarray, shape (m,)
-        Epochs of the log.
-    errors : list of ndarray, shape (m, 2)
-        E and N, m/s.
-    """
-    samples = max(1.0, reference.rate_hz * step_s)
-    interval = samples / reference.rate_hz
-    time_s = np.arange(int(duration_s / interval + 1e-9) + 1) * interval
-    active = tuple(part for part in reference.all_parts() if part.active)
-    log = _Log(active, reference.frame == "body")
-    noise = reference.noise / math.sqrt(samples)
-    still = _Log(tuple(replace(part, white=0.0) for part in active), log.body_frame)
-    delay_s, lsb = sum(part.delay_s for part in active), reference.coarse_lsb
-    count = _PATHS if any(part.markov[0] > 0.0 for part in active) else 1
-    errors = []
-    for seed in range(count):
-        own, _ = still.own(time_s.size, interval, seed, 1.0)
-        fine = still.delayed_rounded_errors(truth, time_s, own, delay_s, 0.0)
-        coarse = still.delayed_rounded_errors(truth, time_s, own, delay_s, lsb, noise)
-        errors.append(np.broadcast_to(coarse - fine, (time_s.size, 2)) / math.sqrt(count))
-    return time_s, errors
-
-
 @dataclass(frozen=True, eq=False)
 class _Log:
     """The active parts of a log and its axes."""
@@ -173,7 +129,7 @@ class _Log:
         """Errors in the log's axes, shape (m, 2) or (1, 2), and the rounding that is left."""
         noise = math.hypot(*(part.white for part in self.parts))
         lsb = sum(part.lsb for part in self.parts)
-        if samples > 1.0 and noise >= DITHER * lsb:
+        if samples > 1.0 and noise >= 0.5 * lsb:
             noise, lsb = math.hypot(noise, lsb / math.sqrt(12.0)), 0.0
         own = sum((part.constant for part in self.parts), np.zeros((1, 2)))
         for part in self.parts:
@@ -195,23 +151,18 @@ class _Log:
         return error + self.scale * velocity + (to_navigation(own, heading) if self.body_frame else own)
 
     def delayed_rounded_errors(
-        self,
-        truth: Truth,
-        time_s: np.ndarray,
-        own: np.ndarray,
-        delay_s: float,
-        lsb: float,
-        noise: float = 0.0,
+        self, truth: Truth, time_s: np.ndarray, own: np.ndarray, delay_s: float, lsb: float
     ) -> np.ndarray:
-        """Errors of readings of an earlier velocity, rounded; a body log is turned by the present heading.
-
-        Of readings with ``noise`` (m/s) beside that in ``own``, the mean.
-        """
+        """Errors of readings of an earlier velocity, rounded; a body log is turned by the present heading."""
         measured_at = np.maximum(time_s - delay_s, 0.0)
         velocity, heading = horizontal_state(truth, time_s)
         then_velocity, then_heading = horizontal_state(truth, measured_at)
         seen = (1.0 + self.scale) * (then_velocity - self.water(measured_at))
         seen = seen + self.by_acceleration(truth, measured_at)
         if self.body_frame:
-            return to_navigation(rounded(to_ship(seen, then_heading) + own, lsb, noise), heading) - velocity
-        return rounded(seen + own, lsb, noise) - velocity
+            return to_navigation(_rounded(to_ship(seen, then_heading) + own, lsb), heading) - velocity
+        return _rounded(seen + own, lsb) - velocity
+
+
+def _rounded(reading: np.ndarray, lsb: float) -> np.ndarray:
+    return reading if lsb < _FINEST_LSB else np.round(reading / lsb) * lsb

@@ -11,8 +11,7 @@ from navcore.sensors.log_errors.base import LogPart, LogTerm
 class LogReading(LogTerm):
     """Scale error, error by acceleration, delay and resolution.
 
-    The covariance takes the resolution for white noise of lsb / sqrt(12) where the log's noise is at least
-    half of it, else for the rounding error along the motion (`navcore.sensors.rounding`).
+    The covariance takes the resolution for white noise of lsb / sqrt(12).
     """
 
     scale_ppm: float = quantity(
