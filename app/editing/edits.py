@@ -157,8 +157,8 @@ def values_at(scenario: Scenario, paths: Iterable[Path]) -> dict[Path, Any]:
     return {path: value_at(scenario, path) for path in paths}
 
 
-def with_network(scenario: Scenario, index: int, network: dict[str, Any]) -> Scenario:
-    """Return a scenario with another network in one method.
+def with_network(scenario: Scenario, index: int, network: dict[str, Any], block: str = "network") -> Scenario:
+    """Return a scenario with another network, or azimuth network, in one method.
 
     Raises
     ------
@@ -168,8 +168,8 @@ def with_network(scenario: Scenario, index: int, network: dict[str, Any]) -> Sce
     if not 0 <= index < len(scenario.method) or scenario.method[index].undamped:
         raise InputError(Fault("", f"method.{index}", None, Text("is no method with a network any more")))
     data = scenario.canonical()
-    data["method"][index]["network"] = dict(network)
-    if network.get("id") != scenario.method[index].network.id:
+    data["method"][index][block] = dict(network)
+    if block == "network" and network.get("id") != scenario.method[index].network.id:
         _forget_made_name(scenario, data, index)
     return Scenario.parse(data)
 

@@ -3,12 +3,14 @@
 import math
 import re
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 from navcore.analysis import analyse
 from navcore.analysis.placement import LEAST_DAMPING, place, placeable
+from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.networks.base import NetworkParameters
 from navcore.networks.pair import MainPair
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
@@ -16,6 +18,9 @@ from schuler_bench.editing.edits import with_network
 from schuler_bench.plots.units import number
 
 COMMAND = "place"
+Block = Literal["network", "azimuth"]
+"""Whose pair: of the level channels, in units of omega_s, or of the azimuth network, in units of Omega."""
+SIGNS: dict[Block, str] = {"network": "ωₛ", "azimuth": "Ω"}
 _FARTHEST = 1e6
 _SAME = 1e-6
 
@@ -89,8 +94,18 @@ def pair_at(point: complex) -> tuple[float, float]:
     return ratio, size
 
 
+def unit_frequency(scenario: Scenario, block: Block) -> float:
+    """Frequency in whose units a pair is told, rad/s."""
+    return EARTH_RATE if block == "azimuth" else scenario.omega_s
+
+
 def with_pair(
-    scenario: Scenario, index: int, damping_ratio: float, ratio: float, h_slope_limit_s: float | None = None
+    scenario: Scenario,
+    index: int,
+    damping_ratio: float,
+    ratio: float,
+    h_slope_limit_s: float | None = None,
+    block: Block = "network",
 ) -> Placed:
     """Give a method's network the closed-loop pair that is wanted.
 
@@ -101,9 +116,11 @@ def with_pair(
     index : int
         Which method.
     damping_ratio, ratio : float
-        Of the pair: xi, and |p| / omega_s.
+        Of the pair: xi, and |p| over `unit_frequency`.
     h_slope_limit_s : float, optional
         H(0) must be 1 and H'(0) no larger than this, s.
+    block : {"network", "azimuth"}
+        Which network of the method.
 
     Raises
     ------
@@ -117,16 +134,16 @@ def with_pair(
             name=method.name,
         )
         raise InputError(Fault("", f"method.{index}.damping", method.damping, allowed))
-    omega_s = scenario.omega_s
-    wanted = f"ζ = {number(damping_ratio, 3)}, ω = {number(ratio, 3)} ωₛ"
+    omega_s, sign = unit_frequency(scenario, block), SIGNS[block]
+    wanted = f"ζ = {number(damping_ratio, 3)}, ω = {number(ratio, 3)} {sign}"
     try:
         placed = place(
-            method.network, damping_ratio, ratio * omega_s, omega_s, h_slope_limit_s=h_slope_limit_s
+            getattr(method, block), damping_ratio, ratio * omega_s, omega_s, h_slope_limit_s=h_slope_limit_s
         )
     except InputError as error:
-        raise _why_not(method, wanted, omega_s, error) from None
-    changed = with_network(scenario, index, placed.parameters.model_dump(exclude_none=True))
-    words = f"ζ = {number(placed.damping_ratio, 3)}, ω = {number(placed.frequency / omega_s, 3)} ωₛ"
+        raise _why_not(method, block, wanted, omega_s, error) from None
+    changed = with_network(scenario, index, placed.parameters.model_dump(exclude_none=True), block)
+    words = f"ζ = {number(placed.damping_ratio, 3)}, ω = {number(placed.frequency / omega_s, 3)} {sign}"
     return Placed(changed, Text("{name}: pair at {words}", name=method.name, words=words), placed.note)
 
 
@@ -177,13 +194,18 @@ def read_drag(text: str) -> Drag | None:
 
 
 def with_nearest_pair(
-    scenario: Scenario, index: int, damping_ratio: float, ratio: float, h_slope_limit_s: float | None = None
+    scenario: Scenario,
+    index: int,
+    damping_ratio: float,
+    ratio: float,
+    h_slope_limit_s: float | None = None,
+    block: Block = "network",
 ) -> Placed:
     """Give a method's network the possible pair that is next to a wanted one; ``note`` says if it is another.
 
     Parameters
     ----------
-    scenario, index, damping_ratio, ratio, h_slope_limit_s
+    scenario, index, damping_ratio, ratio, h_slope_limit_s, block
         As for `with_pair`.
 
     Raises
@@ -191,11 +213,11 @@ def with_nearest_pair(
     InputError
         As `with_pair`, except for a pair out of the parameters' range.
     """
-    pair, omega_s = main_pair(scenario, index), scenario.omega_s
+    pair, omega_s = main_pair(scenario, index, block), unit_frequency(scenario, block)
     if pair is None:
-        return with_pair(scenario, index, damping_ratio, ratio, h_slope_limit_s)
+        return with_pair(scenario, index, damping_ratio, ratio, h_slope_limit_s, block)
     damping, frequency = pair.nearest(damping_ratio, ratio * omega_s)
-    placed = with_pair(scenario, index, damping, frequency / omega_s, h_slope_limit_s)
+    placed = with_pair(scenario, index, damping, frequency / omega_s, h_slope_limit_s, block)
     met = math.isclose(damping, damping_ratio, rel_tol=_SAME)
     if met and math.isclose(frequency, ratio * omega_s, rel_tol=_SAME):
         return placed
@@ -204,22 +226,26 @@ def with_nearest_pair(
     )
 
 
-def main_pair(scenario: Scenario, index: int) -> MainPair | None:
+def main_pair(scenario: Scenario, index: int, block: Block = "network") -> MainPair | None:
     """Pair of a method that can be placed, as it is; None where there is none."""
     method = scenario.method[index]
-    return None if method.undamped else method.network.main_pair(scenario.omega_s)
+    if method.undamped:
+        return None
+    network: NetworkParameters = getattr(method, block)
+    return network.main_pair(unit_frequency(scenario, block))
 
 
-def handle_of(scenario: Scenario, index: int) -> dict[str, Any]:
-    """Describe the handle of a method's pair to a page, frequencies in units of omega_s.
+def handle_of(scenario: Scenario, index: int, block: Block = "network") -> dict[str, Any]:
+    """Describe the handle of a method's pair to a page, frequencies in units of `unit_frequency`.
 
     Without a handle ``pair`` is missing, and ``told`` says why. The shown run may lack the method.
     """
     if index >= len(scenario.method):
         return {}
-    method, pair, omega_s = scenario.method[index], main_pair(scenario, index), scenario.omega_s
+    method, pair = scenario.method[index], main_pair(scenario, index, block)
+    omega_s = unit_frequency(scenario, block)
     if pair is None:
-        reason = Text("it runs without its network") if method.undamped else method.network.no_handle
+        reason = Text("it runs without its network") if method.undamped else getattr(method, block).no_handle
         return {"told": Text("No handle for {name}: {reason}.", name=method.name, reason=reason)}
     return {
         "method": index,
@@ -228,16 +254,19 @@ def handle_of(scenario: Scenario, index: int) -> dict[str, Any]:
         "dampings": list(pair.dampings),
         "frequencies": [[min(end / omega_s, _FARTHEST) for end in ends] for ends in pair.frequencies],
         "omega_s": omega_s,
+        "unit": SIGNS[block],
     }
 
 
-def _why_not(method: Method, wanted: str, omega_s: float, error: InputError) -> InputError:
+def _why_not(method: Method, block: Block, wanted: str, omega_s: float, error: InputError) -> InputError:
     """Say why the network cannot, what it does now, and what can."""
-    loop = analyse(method.network.transfer(omega_s))
+    network: NetworkParameters = getattr(method, block)
+    loop = analyse(network.at_earth_rate() if block == "azimuth" else network.transfer(omega_s))
     now = Text(
-        "its least damped pair stays at ζ = {damping_ratio}, ω = {natural_frequency} ωₛ",
+        "its least damped pair stays at ζ = {damping_ratio}, ω = {natural_frequency} {sign}",
         damping_ratio=number(loop.damping_ratio, 3),
         natural_frequency=number(loop.natural_frequency / omega_s, 3),
+        sign=SIGNS[block],
     )
     fault = error.faults[0]
     if fault.field == "network":
@@ -247,7 +276,7 @@ def _why_not(method: Method, wanted: str, omega_s: float, error: InputError) -> 
             now=now,
             placeable=placeable(),
         )
-        return InputError(Fault("", Text("{name}, network", name=method.name), method.network.id, reason))
+        return InputError(Fault("", Text("{name}, network", name=method.name), network.id, reason))
     return InputError(
         Fault(
             "",

@@ -179,6 +179,14 @@ class Scheduler:
             }
             return counts | {"running_bytes": sum(t.load.bytes for t in self._running)}
 
+    def others_about(self, visitor: object) -> bool:
+        """Whether anybody but a visitor has been answered of late, or is to be."""
+        with self._changed:
+            since_s = time.monotonic() - _ABOUT_S
+            about = {v for v, s in self._last_answer_s.items() if s > since_s}
+            about |= {t.visitor for t in (*self._waiting, *self._running) if t.load.lane is not Lane.SPARE}
+            return bool(about - {visitor})
+
     # ------------------------------------------------------------ choosing
 
     def _must_wait(self, ticket: Ticket) -> bool:

@@ -35,6 +35,9 @@ STOPPED, CHANGED = (
     Text("Stopped: the scenario was changed meanwhile."),
 )
 
+SEEDS = 4
+"""Seeds over which the two models are compared."""
+
 Verify = Callable[[Scenario, Callable[[float], None], Callable[[], bool]], "Verification"]
 
 
@@ -76,4 +79,4 @@ def _verify(
 ) -> Verification:
     from navcore.engine.verification import verify
 
-    return verify(scenario, progress, cancelled)
+    return verify(scenario, progress, cancelled, SEEDS)

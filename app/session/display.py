@@ -40,9 +40,9 @@ class Display(BaseModel):
     optimal : bool
         The optimal network for the scenario's sensors is drawn beside H.
     poles : str
-        Whose poles the tab "Poles" shows: one level channel's, or the whole system's.
+        Whose poles the tab "Poles" shows: one level channel's, the azimuth network's, the whole system's.
     locus : str
-        Parameter of the selected method's network over which the root locus is drawn; "": none.
+        Parameter of the network (or azimuth network) over which the root locus is drawn; "": none.
     exaggeration : float or None
         Of the errors in 3D; None: chosen to fit.
     angle, length, speed, time : str
@@ -92,7 +92,7 @@ class Display(BaseModel):
     transfer: Annotated[str, _one_of(SHOWN)] = FIRST_TRANSFER
     discrete: bool = False
     optimal: bool = False
-    poles: Literal["channel", "whole"] = "channel"
+    poles: Literal["channel", "azimuth", "whole"] = "channel"
     locus: Annotated[str, Field(max_length=40)] = ""
     exaggeration: Annotated[float | None, Field(gt=0.0, le=1e6)] = None
     angle: Literal["auto", "arcsec", "arcmin", "deg"] = "auto"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from navcore.foundation.errors import Fault, InputError
@@ -10,7 +12,8 @@ from navcore.motion.track import TrackMotion
 from navcore.scenario.model import Scenario
 
 if TYPE_CHECKING:
-    from navcore.sensors.fit import LogErrorFit
+    from navcore.sensors.fit import LogAlongTrack, LogErrorFit
+    from navcore.sensors.reference import Reference
 
 
 def can_fit(scenario: Scenario) -> bool:
@@ -18,8 +21,30 @@ def can_fit(scenario: Scenario) -> bool:
     return scenario.reference.kind == "file" and isinstance(scenario.motion, TrackMotion)
 
 
-def fit_of(scenario: Scenario) -> LogErrorFit:
-    """Fit delay, bias, noise and drift of the recorded log.
+@dataclass(frozen=True, eq=False)
+class FittedLog:
+    """A fit and what it was made from.
+
+    Attributes
+    ----------
+    fit : LogErrorFit
+        Of the speed that the scenario uses.
+    log : LogAlongTrack
+        That speed beside the track.
+    other : LogErrorFit or None
+        Of the other speed, where the log gives both: through the water, and over ground.
+    other_speed : str
+        "water" or "ground".
+    """
+
+    fit: LogErrorFit
+    log: LogAlongTrack
+    other: LogErrorFit | None
+    other_speed: str
+
+
+def fit_of(scenario: Scenario) -> FittedLog:
+    """Fit delay, bias, noise and drift of the recorded log, of both its speeds where it has them.
 
     Raises
     ------
@@ -27,13 +52,26 @@ def fit_of(scenario: Scenario) -> LogErrorFit:
         A recording is missing, or the record is too short for a fit.
     """
     from navcore.sensors.fit import fit_delay, fit_log_error, log_along_track
+    from navcore.sensors.recorded import log_recording
 
-    if not isinstance(scenario.motion, TrackMotion) or scenario.reference.kind != "file":
+    motion, reference = scenario.motion, scenario.reference
+    if not isinstance(motion, TrackMotion) or reference.kind != "file":
         allowed = Text('must be a recorded log ("file") beside a recorded track ("track")')
-        raise InputError(Fault("", "reference.kind", scenario.reference.kind, allowed))
-    log = log_along_track(scenario.reference, scenario.motion)
-    delay_s = fit_delay(log)
-    return fit_log_error(*log.error(delay_s), delay_s=delay_s)
+        raise InputError(Fault("", "reference.kind", reference.kind, allowed))
+
+    def fitted(used: Reference) -> tuple[LogErrorFit, LogAlongTrack]:
+        log = log_along_track(used, motion)
+        delay_s = fit_delay(log)
+        return fit_log_error(*log.error(delay_s), delay_s=delay_s), log
+
+    recording = log_recording(reference)
+    other_speed = "ground" if reference.speed == "water" else "water"
+    other = None
+    if recording.water is not None and recording.ground is not None:
+        with suppress(InputError):
+            other, _ = fitted(reference.model_copy(update={"speed": other_speed}))
+    fit, log = fitted(reference)
+    return FittedLog(fit, log, other, other_speed)
 
 
 def with_fitted_log(scenario: Scenario, fit: LogErrorFit) -> Scenario:
@@ -44,8 +82,9 @@ def with_fitted_log(scenario: Scenario, fit: LogErrorFit) -> Scenario:
     return Scenario.parse(scenario.canonical() | {"reference": reference.model_dump(mode="json")})
 
 
-def fit_lines(fit: LogErrorFit) -> list[str]:
+def fit_lines(fitted: FittedLog) -> list[str]:
     """Say what the fit found, a line each."""
+    fit = fitted.fit
     (starboard, forward), (of_starboard, of_forward) = fit.bias, fit.bias_std
     return [
         Text(
@@ -66,4 +105,20 @@ def fit_lines(fit: LogErrorFit) -> list[str]:
             drift=fit.drift,
             drift_tau_s=fit.drift_tau_s,
         ),
+        *_other_lines(fitted),
     ]
+
+
+def _other_lines(fitted: FittedLog) -> list[str]:
+    """Say what the log's other speed would give."""
+    if fitted.other is None:
+        return []
+    words = {"ground": Text("the speed over ground"), "water": Text("the speed through the water")}
+    told = Text(
+        'The log gives {other} too: its drift is {drift:.3f} m/s; choose it by speed = "{speed}".',
+        other=words[fitted.other_speed],
+        drift=fitted.other.drift,
+        speed=fitted.other_speed,
+    )
+    through = Text("Through the water, the stream counts as a drift of the log.")
+    return [told, through] if fitted.other_speed == "ground" else [told]

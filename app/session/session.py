@@ -13,6 +13,7 @@ from navcore.scenario.model import Scenario
 from schuler_bench.http.ids import log_name
 from schuler_bench.jobs.envelopes import Envelopes, Simulate
 from schuler_bench.jobs.load import refuse_too_large, run_load, runs_on_demand
+from schuler_bench.jobs.long_runs import run_for
 from schuler_bench.jobs.searches import Searches
 from schuler_bench.jobs.verifier import Verifier, Verify
 from schuler_bench.jobs.words import for_a_page
@@ -89,8 +90,7 @@ class Session:
         simulate: Simulate | None = None,
         verify: Verify | None = None,
     ) -> None:
-        name = log_name(id)
-        self.id = id
+        self.id, self._name = id, (name := log_name(id))
         self.lock = threading.RLock()
         self._take(State(scenario, origin, first_editable(scenario), scenario))
         self.history = History(self.state)
@@ -339,7 +339,7 @@ class Session:
 
         try:
             refuse_too_large(scenario)
-            run = self._simulate(scenario, progress, watch.cancelled)
+            run = run_for(self._name, self._simulate, scenario, progress, watch)
         except Exception as error:
             self._after_run = []
             if isinstance(error, InputError):
@@ -349,7 +349,7 @@ class Session:
             failure = error
             self._tell(lambda view: view.run_failed(failure))
             return
-        if run.status == "stopped":
+        if run is None or run.status == "stopped":
             if runs_on_demand(self.scenario) and scenario != self.scenario:
                 self._tell(lambda view: view.run_waits())
             elif not watch.superseded():

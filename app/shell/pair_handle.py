@@ -1,12 +1,12 @@
 """The handle in a plot with which the pole pair of the edited method is dragged to where it is wanted."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Literal
 
 from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from schuler_bench.bridge.controls import id_of
-from schuler_bench.editing.placing import handle_of, read_drag, with_nearest_pair
+from schuler_bench.editing.placing import Block, handle_of, read_drag, with_nearest_pair
 from schuler_bench.plots import style
 from schuler_bench.session.requirements import limits_of
 from schuler_bench.session.shown import Shown
@@ -32,10 +32,18 @@ class PairHandle:
         What the axes of the plot are.
     panels : sequence of (str, str)
         Names of the axes of each panel that has the handle.
+    block : callable, optional
+        Gives the network of the method whose pair it is.
     """
 
-    def __init__(self, frame: Frame, kind: Kind, panels: Sequence[tuple[str, str]]) -> None:
-        self._frame, self._kind, self._panels = frame, kind, panels
+    def __init__(
+        self,
+        frame: Frame,
+        kind: Kind,
+        panels: Sequence[tuple[str, str]],
+        block: Callable[[], Block] = lambda: "network",
+    ) -> None:
+        self._frame, self._kind, self._panels, self._block = frame, kind, panels, block
         self._control: Any = None
         self._announced = ""
 
@@ -46,7 +54,7 @@ class PairHandle:
 
     def meta(self, sources: Shown) -> dict[str, Any]:
         """Description of the handle in a figure's ``meta``."""
-        handle = handle_of(sources.run.scenario, sources.selected)
+        handle = handle_of(sources.run.scenario, sources.selected, self._block())
         note = {"told": handle.pop("told", "")}
         where = {
             "control": id_of(self._control),
@@ -69,7 +77,7 @@ class PairHandle:
             try:
                 limit = limits_of(session.scenario.requirement).get("h_slope_s")
                 placed = with_nearest_pair(
-                    session.scenario, drag.method, drag.damping_ratio, drag.ratio, limit
+                    session.scenario, drag.method, drag.damping_ratio, drag.ratio, limit, self._block()
                 )
             except InputError as error:
                 words, lines = Text("The pair was not placed"), notices.fault_lines(error)

@@ -17,6 +17,7 @@ from navcore.io.plausible import speed_warnings
 from navcore.io.recording import read_recording
 from navcore.io.series import Recording, Series, SourceReport, StreamReport, utc_text
 from navcore.io.source import require_file
+from navcore.io.stretches import stretch_warnings
 
 _SNIFFED_BYTES = 8192
 _NAMES = {
@@ -257,7 +258,12 @@ def _extent(key: str, extent: list[float]) -> str:
 
 
 def _warnings(source: SourceReport, recording: Recording) -> tuple[str, ...]:
-    existing = [*source.warnings, *speed_warnings(recording), *course_warnings(recording)]
+    existing = [
+        *source.warnings,
+        *speed_warnings(recording),
+        *stretch_warnings(recording.water, recording.ground, recording.velocity),
+        *course_warnings(recording),
+    ]
     for name, series in recording.quantities().items():
         gaps, longest = series.gaps()
         if gaps:

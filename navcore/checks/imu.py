@@ -8,18 +8,20 @@ import numpy as np
 from navcore.checks.file import Checker, FileReport
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, DEG_PER_HOUR
-from navcore.sensors.recorded_imu import ImuRecord, is_imu_header, is_psins, read_imu, upward_axis
+from navcore.sensors.recorded_imu import ImuRecord, header_of, is_psins, read_imu, upward_axis
 
 _GRAVITY = 9.76, 9.84
 """From the equator at 5 km to the poles, m/s^2."""
 _FORCE_ERROR = 0.02
 _SLOWEST_HZ = 10.0
+_JITTER = 0.1
+"""Part of an interval by which stamps may be off without a word."""
 
 
 def recognises(path: Path, head: bytes) -> bool:
     """Whether a file that begins so is a recorded IMU: PSINS text, or a CSV that names its quantities."""
     text = head.decode("utf-8", errors="replace")
-    return (is_psins(text) and _numbers_below(text)) or is_imu_header(text.lstrip().split("\n", 1)[0])
+    return (is_psins(text) and _numbers_below(text)) or header_of(text) is not None
 
 
 def _numbers_below(text: str) -> bool:
@@ -58,6 +60,7 @@ def _details(record: ImuRecord) -> dict[str, Any]:
         "rate_hz": round(record.rate_hz, 6),
         "span_s": round(record.duration_s, 4),
         "gaps": 0,
+        "jitter_s": round(record.jitter_s, 6),
         "place": place,
         "mean_force_mps2": [round(float(value), 5) for value in force],
         "mean_force_size_mps2": round(float(np.linalg.norm(force)), 5),
@@ -127,6 +130,14 @@ def _warnings(details: dict[str, Any]) -> list[str]:
                 "the {up} axis looks like up: a run needs x right, y forward, z up (or frd), "
                 "turn the columns",
                 up=up,
+            )
+        )
+    if details["jitter_s"] > _JITTER / details["rate_hz"]:
+        warnings.append(
+            Text(
+                "the stamps lie up to {jitter:.3g} ms off an even record: {rate_hz:g} Hz throughout is taken",
+                jitter=1e3 * details["jitter_s"],
+                rate_hz=details["rate_hz"],
             )
         )
     if details["rate_hz"] < _SLOWEST_HZ:

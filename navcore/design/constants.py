@@ -20,7 +20,7 @@ from navcore.scenario.stochastic import StochasticModel
 from navcore.sensors.imu import imu_errors
 from navcore.sensors.log_errors.events import event_velocity
 from navcore.sensors.reference import Reference
-from navcore.sensors.simulated_log import simulated_errors
+from navcore.sensors.simulated_log import mean_rounding_of, simulated_errors
 
 _INITIAL = {
     "initial_tilt": (4, 5),
@@ -136,3 +136,6 @@ def _log_shapes(scenario: Scenario, course: Course) -> Iterator[Column]:
             quiet = Reference(kind="log", frame=log.frame, rate_hz=log.rate_hz)
             errors = simulated_errors(quiet, course.truth, end_s, 0, course.step_s, (element,))
             yield _column(part.source, LOG, course.log_counts * course.means(errors.time_s, errors.error))
+    if log.kind == "log" and log.rounding > 0.0:
+        times, error = mean_rounding_of(log, course.truth, end_s, course.step_s)
+        yield _column("log_resolution", LOG, course.log_counts * course.means(times, error))

@@ -87,7 +87,7 @@ def level(form: LawForm, model: StochasticModel, omega_s: float) -> Level:
     drives = {
         "gyro_white": constants["gyro"] * model.figures.gyro_white * math.sqrt(omega_s),
         "accel_white": constants["accel"] * model.figures.accel_white * math.sqrt(omega_s),
-        "log_white": constants["log"] * math.sqrt(model.figures.log_density * omega_s),
+        "log_white": constants["log"] * math.sqrt(model.loop_figures.log_density * omega_s),
     }
     sizes = {
         "gyro_drift": (gyro, model.gyro_drift, RADIUS),

@@ -70,7 +70,7 @@ def _one_call(loop: LoopModel, model: StochasticModel, one: Map, fresh: bool) ->
     densities = {
         "gyro_white": model.figures.gyro_white**2 / loop.step_s,
         "accel_white": model.figures.accel_white**2 / loop.step_s,
-        "log_white": model.figures.log_noise**2 / samples if fresh else 0.0,
+        "log_white": model.loop_figures.log_noise**2 / samples if fresh else 0.0,
     }
     variances = {
         "gyro_drift": model.gyro_drift.sigma**2,

@@ -29,8 +29,13 @@ LEFT_OUT = ("none", "custom")
 _LEAST = 1e-12
 """Value that stands for 0 where ratios are compared."""
 _WEIGHTS = np.linspace(0.0, 1.0, 7)
-_EFFORT = Effort(6, 8, 40)
-_EFFORT_ALONG = Effort(5, 3, 14)
+_EFFORTS = {
+    (False, False): Effort(6, 8, 40),
+    (False, True): Effort(10, 22, 160),
+    (True, False): Effort(5, 3, 14),
+    (True, True): Effort(6, 6, 40),
+}
+"""By whether objectives are over a run, and whether one is sought alone: the ends of the front."""
 _POINTS = 24
 
 
@@ -125,6 +130,7 @@ def pareto(
     *,
     networks: Sequence[str] | None = None,
     along: bool = False,
+    whole: bool = False,
     progress: Callable[[float], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Pareto:
@@ -142,6 +148,8 @@ def pareto(
         Ids; default: all that have parameters or fixed coefficients of their own.
     along : bool
         Over the scenario's run, else in the steady state at rest.
+    whole : bool
+        Beyond the sliders, over all that the fields allow.
     progress, cancelled : callable, optional
         Told the fraction done; asked before each evaluation.
 
@@ -174,7 +182,9 @@ def pareto(
             if progress is not None:
                 progress((done + fraction) / len(ids))
 
-        seen, stopped = _front(scenario, method, name, objectives, along, report, cancelled)
+        seen, stopped = _front(
+            scenario, method, name, objectives, report, cancelled, along=along, whole=whole
+        )
         fronts[name] = tuple(
             _judged(point, Setting(ship, _with_network(scenario.method[method], point.network)))
             for point in _best(seen)
@@ -251,9 +261,11 @@ def _front(
     index: int,
     network: str,
     names: tuple[str, str],
-    along: bool,
     report: Callable[[float], None],
     cancelled: Callable[[], bool] | None,
+    *,
+    along: bool,
+    whole: bool,
 ) -> tuple[list[tuple[tuple[float, float], dict[str, Any]]], bool]:
     """Every setting of a network that a few weighted searches saw, and whether they were stopped."""
     method = scenario.method[index]
@@ -267,14 +279,15 @@ def _front(
     fields = with_network.network.design_fields()
     if not fields:
         return seen, False
-    varied = read_varied(other, [f"method.{index}.network.{field}" for field in fields], whole=True)
+    varied = read_varied(other, [f"method.{index}.network.{field}" for field in fields], whole)
     search = _Weighed(ship, varied, names)
     search.cancelled = cancelled
     for k, weight in enumerate(_WEIGHTS):
         report(k / len(_WEIGHTS))
         search.weight = float(weight)
         start = None if search.best is None else search.best[1]
-        if search.run(_EFFORT_ALONG if along else _EFFORT, start):
+        end = weight in (_WEIGHTS[0], _WEIGHTS[-1])
+        if search.run(_EFFORTS[along, end], start):
             return seen + search.seen, True
         assert search.best is not None and search.best[0] > -MISSED
     return seen + search.seen, False

@@ -127,7 +127,7 @@ def sampled_level(form: LawForm, model: StochasticModel, omega_s: float, timing:
     step[net, net], step[net, held] = law.A, law.B
     step[:2, gyro], step[:2, accel] = -RADIUS * into_phi, into_dv / omega_s
     fresh[held, held], fresh[held, DV], fresh[held, log] = 0.0, own, reference
-    figures, added = model.figures, {}
+    figures, added = model.loop_figures, {}
     for source, white, at in (("gyro", figures.gyro_white, gyro), ("accel", figures.accel_white, accel)):
         added[f"{source}_white"] = np.zeros(size)
         added[f"{source}_white"][:2] = step[:2, at] * white / math.sqrt(h)

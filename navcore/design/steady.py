@@ -131,12 +131,15 @@ def random_parts(channel: Level, sampled: SampledLevel) -> dict[str, Entry]:
 
 
 def constant_parts(channel: Level, model: StochasticModel) -> dict[str, Entry]:
-    """Standard deviations that biases leave; root mean square of the axes of each sensor."""
+    """Standard deviations that biases and rounding leave; root mean square of the axes of each sensor."""
     biases = {"gyro": model.gyro_bias[:2], "accel": model.accel_bias[:2], "log": model.log_bias}
-    return {
+    parts = {
         f"{name}_bias": constant_part(channel, name, float(np.sqrt(np.mean(values**2))))
         for name, values in biases.items()
     }
+    if model.rounding > 0.0:
+        parts["log_resolution"] = constant_part(channel, "log", model.rounding)
+    return parts
 
 
 def instability(sampled: SampledLevel) -> str:

@@ -7,20 +7,16 @@ a sensor error neither the truth nor its coefficients.
 from collections.abc import Hashable
 from dataclasses import dataclass
 
+from navcore.engine.notices import input_notices, site_notices
 from navcore.foundation.errors import InputError
 from navcore.foundation.stage_cache import file_state, kept
-from navcore.foundation.text import Text
-from navcore.foundation.units import DEG, HOUR
 from navcore.mechanization.trajectory import Coefficients, coefficients
-from navcore.motion.truth import LAT, Truth
+from navcore.motion.truth import Truth
 from navcore.scenario.model import Scenario
 from navcore.sensors.base import ReferenceErrors, SensorErrors
 from navcore.sensors.imu import imu_errors
 from navcore.sensors.log import reference_errors
-from navcore.sensors.recorded import recorded_window, recording_notices, short_run_notices
-
-FAR_FROM_SITE_DEG = 2.0
-"""Latitude by which a track may start off the site before the user is told, deg."""
+from navcore.sensors.recorded import recorded_window
 
 
 @dataclass(frozen=True)
@@ -49,29 +45,6 @@ class Environment:
     sensors: SensorErrors
     reference: ReferenceErrors
     warnings: tuple[str, ...]
-
-
-def input_notices(scenario: Scenario) -> tuple[str, ...]:
-    """Return the notices about a scenario's recordings and a motion that ends early; raises `InputError`."""
-    recorded = scenario.reference.kind == "file" or scenario.imu.file is not None
-    end_s = scenario.run.duration_h * HOUR
-    short = short_run_notices(scenario.motion, recorded, end_s)
-    return (*recording_notices(scenario.motion, scenario.reference), *short, *scenario.motion.ending(end_s))
-
-
-def site_notices(scenario: Scenario, truth: Truth) -> list[str]:
-    """Say so when a recorded track starts far from the site, whose gravity gives omega_s."""
-    start = float(truth.values[0, LAT]) / DEG
-    if abs(start - scenario.site.lat_deg) < FAR_FROM_SITE_DEG:
-        return []
-    return [
-        Text(
-            "the track starts at latitude {start:.2f}°, the site is at {lat_deg:g}°: ωₛ, "
-            "and with it every network, is that of the site",
-            start=start,
-            lat_deg=scenario.site.lat_deg,
-        )
-    ]
 
 
 def _start_utc(scenario: Scenario) -> float | None:

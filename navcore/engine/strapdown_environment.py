@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from navcore.engine.alignment_start import aligned_start, start_errors
-from navcore.engine.environment import input_notices, site_notices
+from navcore.engine.notices import input_notices, site_notices
 from navcore.engine.recorded_start import RecordedImu, recorded_imu
 from navcore.foundation.errors import InputError
 from navcore.foundation.stage_cache import file_state, kept

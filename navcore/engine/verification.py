@@ -15,6 +15,7 @@ import numpy as np
 from navcore.engine.drivers import linear
 from navcore.engine.drivers.common import STOPPED, Cancelled, Progress
 from navcore.engine.environment import Environment, environment
+from navcore.engine.levels import Level, level_text, levels, limit_texts, worst
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
@@ -70,6 +71,8 @@ class Verification:
     differences : tuple of dict
         For each method: quantity (`navcore.quantities.NAMES`) -> `Difference`. Empty for a method
         of which one of the runs has no two rows.
+    levels : tuple of dict
+        For each method: quantity -> `navcore.engine.levels.Level`, the second half over all seeds.
     statements : tuple of str
         Plain words: why the linear model is not to be trusted here (tilt, latitude, duration, a method that
         diverged ...); empty when nothing speaks against it.
@@ -82,6 +85,7 @@ class Verification:
     differences: tuple[dict[str, Difference], ...]
     statements: tuple[str, ...]
     complete: bool
+    levels: tuple[dict[str, Level], ...] = ()
 
 
 def why_not(scenario: Scenario) -> str:
@@ -99,7 +103,10 @@ def why_not(scenario: Scenario) -> str:
 
 
 def verify(
-    scenario: Scenario, progress: Progress | None = None, cancelled: Cancelled | None = None
+    scenario: Scenario,
+    progress: Progress | None = None,
+    cancelled: Cancelled | None = None,
+    seeds: int = 1,
 ) -> Verification:
     """Run a scenario as full strapdown and as linear error model on the same noise, and compare them.
 
@@ -113,44 +120,71 @@ def verify(
         Called with the fraction done, 0..1, from any thread.
     cancelled : callable, optional
         Asked at least every 60 s of IMU data; True ends both runs, and what was computed is kept.
+    seeds : int
+        Seeds over which the difference is held against the methods' own level: that of the scenario, which
+        the two runs shown are of, and those that follow.
 
     Raises
     ------
     InputError
         The scenario cannot be verified (`why_not`), or not be run as strapdown: one fault per field.
     """
-    # Only now: the strapdown kernels are slow to import, and the page shows this module's names at once.
-    from navcore.engine.drivers import strapdown
-    from navcore.engine.strapdown_environment import strapdown_environment
-
     full = _as_strapdown(scenario)
-    simple = full.model_copy(update={"run": full.run.model_copy(update={"fidelity": "error_model"})})
-    began = time.perf_counter()
-    env, flat = strapdown_environment(full), environment(simple)
-    sums: list[np.ndarray] = []
 
-    def report(fraction: float) -> None:
+    def report(index: int, fraction: float) -> None:
         if progress is not None:
-            progress(_STRAPDOWN_SHARE * fraction)
+            progress((index + fraction) / seeds)
 
-    first = strapdown.run_methods(full, env, report, cancelled, began, lambda part: sums.append(part.copy()))
-    fed = _fed(flat, np.concatenate(sums), full.run.step_s, env.block / env.sampling.rate_hz, env.reference)
-    second = _linear_run(simple, fed, env.errors)
-    complete = first.status != "stopped"
-    if not complete:
-        stopped = (replace(m, status="stopped", reason=STOPPED) for m in second.methods)
-        second = replace(second, methods=tuple(stopped))
-    if progress is not None:
-        progress(1.0)
+    first, second = _both(full, lambda fraction: report(0, fraction), cancelled)
     pairs = list(zip(first.methods, second.methods, strict=True))
+    of_seeds = [[pair] for pair in pairs]
+    for k in range(1, seeds):
+        if first.status == "stopped" or (cancelled is not None and cancelled()):
+            break
+        later = full.run.model_copy(update={"seed": full.run.seed + k})
+        strapdown, simple = _both(
+            full.model_copy(update={"run": later}), lambda fraction, k=k: report(k, fraction), cancelled
+        )
+        if strapdown.status != "stopped":
+            for held, pair in zip(of_seeds, zip(strapdown.methods, simple.methods, strict=True), strict=True):
+                held.append(pair)
     differences = tuple(_differences(*pair) for pair in pairs)
+    found = tuple(levels(held) for held in of_seeds)
     return Verification(
         strapdown=first,
         linear=second,
         differences=differences,
-        statements=tuple(_statements(scenario, first, pairs, differences)),
-        complete=complete,
+        statements=tuple(_statements(scenario, first, pairs, differences, found)),
+        complete=first.status != "stopped",
+        levels=found,
     )
+
+
+def _both(full: Scenario, report: Progress, cancelled: Cancelled | None) -> tuple[Run, Run]:
+    """Run a scenario as full strapdown, and as linear model on the noise that this has made."""
+    # Only now: the strapdown kernels are slow to import, and the page shows this module's names at once.
+    from navcore.engine.drivers import strapdown
+    from navcore.engine.strapdown_environment import strapdown_environment
+
+    simple = full.model_copy(update={"run": full.run.model_copy(update={"fidelity": "error_model"})})
+    began = time.perf_counter()
+    env, flat = strapdown_environment(full), environment(simple)
+    sums: list[np.ndarray] = []
+    first = strapdown.run_methods(
+        full,
+        env,
+        lambda fraction: report(_STRAPDOWN_SHARE * fraction),
+        cancelled,
+        began,
+        lambda part: sums.append(part.copy()),
+    )
+    fed = _fed(flat, np.concatenate(sums), full.run.step_s, env.block / env.sampling.rate_hz, env.reference)
+    second = _linear_run(simple, fed, env.errors)
+    if first.status == "stopped":
+        stopped = (replace(m, status="stopped", reason=STOPPED) for m in second.methods)
+        second = replace(second, methods=tuple(stopped))
+    report(1.0)
+    return first, second
 
 
 def _linear_run(scenario: Scenario, env: Environment, state: np.ndarray) -> Run:
@@ -219,6 +253,7 @@ def _statements(
     full: Run,
     pairs: list[tuple[MethodRun, MethodRun]],
     differences: tuple[dict[str, Difference], ...],
+    found: tuple[dict[str, Level], ...],
 ) -> Iterator[str]:
     latitude = float(np.abs(full.truth[:, LAT]).max()) / DEG
     if latitude > LATITUDE_DEG:
@@ -248,12 +283,15 @@ def _statements(
                 step_s_2=scenario.run.step_s,
             )
         )
-    for (strapdown, linear_run), difference in zip(pairs, differences, strict=True):
-        for text in _about_method(strapdown, linear_run, difference):
-            yield Text("{name}: {text}", name=strapdown.method.name, text=text)
+    for pair, difference, level in zip(pairs, differences, found, strict=True):
+        texts = (*_about_method(*pair, difference, level), *limit_texts(scenario.requirement, pair))
+        for text in texts:
+            yield Text("{name}: {text}", name=pair[0].method.name, text=text)
 
 
-def _about_method(full: MethodRun, simple: MethodRun, differences: dict[str, Difference]) -> Iterator[str]:
+def _about_method(
+    full: MethodRun, simple: MethodRun, differences: dict[str, Difference], found: dict[str, Level]
+) -> Iterator[str]:
     for run, which in ((full, Text("the strapdown run")), (simple, Text("the linear model"))):
         if run.status == "diverged":
             yield Text("{which} diverged: {reason}.", which=which, reason=run.reason)
@@ -290,9 +328,9 @@ def _about_method(full: MethodRun, simple: MethodRun, differences: dict[str, Dif
                 t_s=full.t_s[apart[0]] / HOUR,
             )
         )
-    worst = _worst(differences)
-    if worst is not None:
-        error, difference = worst
+    of_peak = _worst(differences)
+    if of_peak is not None:
+        error, difference = of_peak
         share = (
             ""
             if difference.of_peak is None
@@ -305,6 +343,9 @@ def _about_method(full: MethodRun, simple: MethodRun, differences: dict[str, Dif
             unit=error.kind.unit,
             share=share,
         )
+    of_level = worst(found, _SMALLEST)
+    if of_level is not None:
+        yield level_text(*of_level)
 
 
 def _worst(differences: dict[str, Difference]) -> tuple[RecordedError, Difference] | None:

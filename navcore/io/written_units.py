@@ -6,7 +6,7 @@
 import re
 from typing import NamedTuple
 
-from navcore.foundation.units import DEG, KNOT
+from navcore.foundation.units import DEG, DEG_PER_HOUR, KNOT, MICRO_G, STANDARD_GRAVITY
 
 UNITS = {
     "angle": {"deg": DEG, "rad": 1.0, "mrad": 1e-3},
@@ -14,6 +14,8 @@ UNITS = {
         "mps": 1.0, "kn": KNOT, "kmh": 1.0 / 3.6, "cms": 0.01, "mms": 1e-3, "mph": 0.44704, "fps": 0.3048,
     },
     "length": {"m": 1.0, "cm": 0.01, "mm": 1e-3, "km": 1e3, "ft": 0.3048, "nm": 1852.0, "mi": 1609.344},
+    "turn": {"radps": 1.0, "mradps": 1e-3, "dps": DEG, "mdps": 1e-3 * DEG, "dph": DEG_PER_HOUR},
+    "force": {"mps2": 1.0, "g": STANDARD_GRAVITY, "mg": 1e-3 * STANDARD_GRAVITY, "ug": MICRO_G},
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0, "day": 86400.0},
 }  # fmt: skip
 """SI over each unit, by dimension."""
@@ -44,6 +46,19 @@ _SPELT = {
         "nm": "nmi naut_mi nautical_mile nautical_miles",
         "mi": "mile miles",
     },
+    "turn": {
+        "radps": "rad_s rad_s_1 rads rads_1 rad_sec radian_s radians_s radian_second radians_per_second",
+        "mradps": "mrad_s mrad_s_1 mrad_sec",
+        "dps": "deg_s deg_s_1 deg_sec degree_s degrees_s degree_second degrees_per_second degs",
+        "mdps": "mdeg_s mdeg_s_1",
+        "dph": "deg_h deg_h_1 deg_hr degh degrees_per_hour",
+    },
+    "force": {
+        "mps2": "m_s2 m_s_2 ms2 ms_2 m_sec2 m_sec_2 m_s_s meter_second_2 metre_second_2",
+        "g": "gee gees",
+        "mg": "milli_g millig",
+        "ug": "micro_g microg",
+    },
     "time": {
         "s": "sec secs second seconds",
         "ms": "msec millis millisecond milliseconds",
@@ -61,6 +76,8 @@ _NAMES = {
 _HARMLESS = {
     "angle": frozenset("true t n e north east decimal dec dd wgs84 wgs_84".split()),
     "speed": frozenset("true water ground".split()),
+    "turn": frozenset(),
+    "force": frozenset(),
     "length": frozenset("msl wgs84 ellipsoid ellipsoidal".split()),
     "time": frozenset("utc gmt z iso iso8601 8601 gps gpst unix epoch posix time".split()),
 }
@@ -68,7 +85,7 @@ _HARMLESS = {
 _CONTRARY = frozenset("magnetic mag compass relative local lt".split())
 """Words that make another quantity of a column, whatever unit stands beside them."""
 _STAMP_FORM = re.compile(r"(?:y{2,4}|h{1,2})[ymdhs_tz0-9]{0,40}", re.IGNORECASE)
-_SPELLINGS = str.maketrans({"⁻": "-", "¹": "1", "·": " ", "⋅": " ", "µ": "u", "μ": "u"})
+_SPELLINGS = str.maketrans({"⁻": "-", "¹": "1", "²": "2", "·": " ", "⋅": " ", "µ": "u", "μ": "u"})
 _SIGNS = re.compile(r"[^a-z0-9]+")
 
 

@@ -1,6 +1,7 @@
 """The stochastic model of a scenario's sensors, log and start, in SI (theory.md 14)."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,7 +41,7 @@ class StochasticModel:
     Attributes
     ----------
     figures : SensorFigures
-        Random errors; the log's resolution counts as noise of lsb / sqrt(12).
+        Random errors, as a filter is told of them: the log's resolution counts as noise of lsb / sqrt(12).
     log : bool
         Whether there is a log at all.
     tide : ndarray, shape (2,)
@@ -53,6 +54,9 @@ class StochasticModel:
         Standard deviations in the log's axes, m/s.
     initial : ndarray, shape (7,)
         Standard deviations of dV_E, dV_N, dL, dlambda, phi_E, phi_N, phi_U at t = 0.
+    rounding : float
+        Root mean square of the error of the log's rounding that stands while the speed does, m/s; part of
+        ``figures.log_noise``.
     """
 
     figures: SensorFigures
@@ -63,6 +67,13 @@ class StochasticModel:
     accel_bias: np.ndarray
     log_bias: np.ndarray
     initial: np.ndarray
+    rounding: float = 0.0
+
+    @property
+    def loop_figures(self) -> SensorFigures:
+        """Random errors as they act on a loop: without the part of the rounding that stands."""
+        left = self.figures.log_noise**2 - self.rounding**2
+        return replace(self.figures, log_noise=math.sqrt(max(left, 0.0)))
 
     @property
     def gyro_drift(self) -> Drift:
@@ -109,4 +120,5 @@ def stochastic_model(scenario: Scenario) -> StochasticModel:
         accel_bias=imu.accel().deviation,
         log_bias=known * log.deviation,
         initial=np.array(scenario.initial_error.standard_deviations()),
+        rounding=known * log.rounding,
     )

@@ -11,6 +11,7 @@ from navcore.io.courses import course_warnings
 from navcore.io.plausible import speed_warnings
 from navcore.io.recording import Window, load, require_cover, shared_window
 from navcore.io.series import Recording, Series
+from navcore.io.stretches import stretch_warnings
 from navcore.motion.base import MotionParameters
 from navcore.motion.truth import Truth
 from navcore.sensors.base import ReferenceErrors
@@ -176,6 +177,7 @@ def _log_notices(moving: MotionParameters, reference: Reference) -> Iterator[str
     recording = log_recording(reference)
     series, along_axes = log_series(reference, recording)
     yield from recording.warnings
+    yield from stretch_warnings(series)
     if along_axes and series is not getattr(recording, reference.speed):
         yield Text(
             "{file} holds no {speed} speed: its other speed is used", file=series.file, speed=reference.speed

@@ -15,6 +15,8 @@ import numpy as np
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG
+from navcore.sensors.even_stamps import interval_of
+from navcore.sensors.imu_columns import imu_columns, is_imu_header
 
 Axes = Literal["rfu", "frd"]
 _PSINS_GRAVITY = 9.780327
@@ -24,10 +26,9 @@ _LARGEST_FORCE_ERROR = 0.02
 _LARGEST_TILT = 30.0 * DEG
 _LARGEST_FILE = 128 * 1024 * 1024
 """Bytes: a day at 100 Hz."""
-_GAP = 1.5
-"""Sample intervals; more is a gap."""
-_RATES = ("gx_rad_s", "gy_rad_s", "gz_rad_s", "fx_mps2", "fy_mps2", "fz_mps2")
-_INCREMENTS = ("dax_rad", "day_rad", "daz_rad", "dvx_mps", "dvy_mps", "dvz_mps")
+_HEADER_LINES = 20
+"""Lines at the beginning of a table among which its header is looked for."""
+_SEPARATORS = (",", ";", "\t")
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,8 @@ class ImuRecord:
         File it came from.
     lat, lon, height : float or None
         Position if the file gives one, rad, m.
+    jitter_s : float
+        Largest distance of a stamp from an even record, s.
     """
 
     increments: np.ndarray
@@ -52,6 +55,7 @@ class ImuRecord:
     lat: float | None = None
     lon: float | None = None
     height: float | None = None
+    jitter_s: float = 0.0
 
     @property
     def duration_s(self) -> float:
@@ -98,9 +102,15 @@ def is_psins(text: str) -> bool:
     return text.lstrip().startswith("%")
 
 
-def is_imu_header(line: str) -> bool:
-    """Whether the first line of a CSV names some of an IMU's quantities."""
-    return len(set(_RATES + _INCREMENTS) & {name.strip() for name in line.split(",")}) >= 2
+def header_of(text: str) -> tuple[int, list[str], str] | None:
+    """Line of the header of an IMU's table from 0, its names and the separator; None where there is none."""
+    for number, line in enumerate(text.split("\n", _HEADER_LINES)[:_HEADER_LINES]):
+        bare = line.strip().lstrip("#").strip()
+        for separator in _SEPARATORS:
+            names = [name.strip().strip('"') for name in bare.split(separator)]
+            if len(names) > 1 and is_imu_header(names):
+                return number, names, separator
+    return None
 
 
 def upward_axis(force: np.ndarray) -> str:
@@ -185,23 +195,44 @@ def _psins(text: str, source: str) -> ImuRecord:
 
 
 def _csv(text: str, source: str, axes: Axes) -> ImuRecord:
-    lines = [line for line in text.splitlines() if line.strip()]
-    header = [name.strip() for name in lines[0].split(",")] if lines else []
-    kind = next((names for names in (_RATES, _INCREMENTS) if set(names) <= set(header)), None)
-    if kind is None or "t_s" not in header:
-        allowed = Text(
-            "needs a header with t_s and {rates} (or {increments})",
-            rates=", ".join(_RATES),
-            increments=", ".join(_INCREMENTS),
-        )
-        raise InputError(Fault(source, "imu.file", ",".join(header), allowed))
-    table = _numbers(lines[1:], len(header), source, first_line=2, separator=",")
-    columns = {name: table[:, i] for i, name in enumerate(header)}
-    interval = _regular(columns["t_s"], source)
-    values = np.column_stack([columns[name] for name in kind]) * (interval if kind is _RATES else 1.0)
+    found = header_of(text)
+    if found is None:
+        first = next((line for line in text.splitlines() if line.strip()), "")
+        found = 0, [name.strip() for name in first.split(",")], ","
+    number, header, separator = found
+    columns = imu_columns(header, source)
+    table = _table(text, number + 1, header, separator, source)
+    try:
+        interval, jitter_s = interval_of(table[:, columns.time] * columns.time_s)
+    except ValueError as error:
+        raise InputError(Fault(source, "imu.file", None, error.args[0])) from None
+    values = table[:, columns.places] * np.array(columns.factors) * (1.0 if columns.increments else interval)
     if axes == "frd":
         values = values[:, [1, 0, 2, 4, 3, 5]] * np.array([1.0, 1.0, -1.0, 1.0, 1.0, -1.0])
-    return ImuRecord(values, 1.0 / interval, source)
+    return ImuRecord(values, 1.0 / interval, source, jitter_s=jitter_s)
+
+
+def _table(text: str, skipped: int, names: list[str], separator: str, source: str) -> np.ndarray:
+    """Rows of numbers below the header, by pyarrow; what it refuses is read again, to name the line."""
+    import pyarrow as pa
+    from pyarrow import csv
+
+    columns = [str(place) for place in range(len(names))]
+    try:
+        read = csv.read_csv(
+            pa.BufferReader(text.encode()),
+            csv.ReadOptions(skip_rows=skipped, column_names=columns),
+            csv.ParseOptions(delimiter=separator),
+            csv.ConvertOptions(column_types=dict.fromkeys(columns, pa.float64()), null_values=[]),
+        )
+        table = np.column_stack([column.to_numpy() for column in read.columns])
+        if len(table) > 1 and np.isfinite(table).all():
+            return table
+    except pa.ArrowInvalid:
+        pass
+    lines = text.split("\n")
+    kept = [line for line in lines[skipped:] if line.strip()]
+    return _numbers(kept, len(names), source, first_line=skipped + 1, separator=separator)
 
 
 def _numbers(
@@ -238,26 +269,3 @@ def _is_row(line: str, columns: int, separator: str | None) -> bool:
         return len(words) == columns and all(word.strip() and float(word) is not None for word in words)
     except ValueError:
         return False
-
-
-def _regular(time_s: np.ndarray, source: str) -> float:
-    """Sample interval of an even record; gaps and time running backwards are refused with their place."""
-    steps = np.diff(time_s)
-    back = np.flatnonzero(steps <= 0.0)
-    if back.size:
-        what = Text("time stands still or runs backwards at t = {time_s:g} s", time_s=time_s[back[0] + 1])
-        raise InputError(Fault(source, "imu.file", None, what))
-    interval = float(np.median(steps))
-    gaps = np.flatnonzero(steps > _GAP * interval)
-    if gaps.size:
-        longest = float(steps[gaps].max())
-        what = Text(
-            "{size} gaps, the first at t = {time_s:g} s, the longest {longest:g} s",
-            size=gaps.size,
-            time_s=time_s[gaps[0]],
-            longest=longest,
-        )
-        raise InputError(
-            Fault(source, "imu.file", None, Text("{what}: a strapdown run needs every sample", what=what))
-        )
-    return float((time_s[-1] - time_s[0]) / (len(time_s) - 1))

@@ -14,6 +14,7 @@ from navcore.foundation.text import Text
 from navcore.sensors.base import NO_DRIFT, modelled_drift
 from navcore.sensors.log_errors import TERMS
 from navcore.sensors.log_errors.base import LogPart
+from navcore.sensors.rounding import standing_rounding
 
 if TYPE_CHECKING:
     from navcore.sensors.log_errors.events import LogEvents
@@ -140,6 +141,16 @@ class Reference(_Errors):
         """Noise of a sample with that of rounding, m/s."""
         values = (value for part in self.all_parts() for value in (part.white, part.lsb / math.sqrt(12.0)))
         return math.hypot(*values)
+
+    @property
+    def rounding(self) -> float:
+        """Root mean square of the error of rounding that stands while the speed does, m/s."""
+        return standing_rounding(sum(part.lsb for part in self.all_parts()), self.dither)
+
+    @property
+    def dither(self) -> float:
+        """Noise of a sample before it is rounded, m/s."""
+        return math.hypot(*(part.white for part in self.all_parts()))
 
     @property
     def markov(self) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.log_errors.base import LogPart
 from navcore.sensors.noise import gauss_markov, unit_noise
 from navcore.sensors.reference import Reference, in_service
+from navcore.sensors.rounding import mean_rounding
 from navcore.sensors.true_state import horizontal_acceleration, horizontal_state, to_navigation, to_ship
 
 SHORTEST_HOLD_S = 5.0
@@ -104,6 +105,37 @@ def simulated_errors(
     )
 
 
+def mean_rounding_of(
+    reference: Reference, truth: Truth, duration_s: float, step_s: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Mean over the noise of the error that rounding adds to a simulated log's readings.
+
+    Parameters
+    ----------
+    reference, truth, duration_s, step_s
+        As of `simulated_errors`. Its other errors count as far as they are known numbers; a drift is noise.
+
+    Returns
+    -------
+    time_s : ndarray, shape (m,)
+        Epochs of the log, s.
+    error : ndarray, shape (m, 2)
+        E and N, m/s.
+    """
+    samples = max(1.0, reference.rate_hz * step_s)
+    interval = samples / reference.rate_hz
+    time_s = np.arange(int(duration_s / interval + 1e-9) + 1) * interval
+    log = _Log(tuple(part for part in reference.all_parts() if part.active), reference.frame == "body")
+    lsb, drift = sum(part.lsb for part in log.parts), (part.markov[0] for part in log.parts)
+    sigma = math.hypot(reference.dither / math.sqrt(samples), *drift)
+    own = sum((part.constant for part in log.parts), np.zeros((1, 2)))
+    seen, heading, _ = log.readings(truth, time_s, sum(part.delay_s for part in log.parts), own)
+    error = mean_rounding(seen, lsb, sigma)
+    return time_s, np.broadcast_to(
+        to_navigation(error, heading) if log.body_frame else error, (time_s.size, 2)
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class _Log:
     """The active parts of a log and its axes."""
@@ -154,14 +186,20 @@ class _Log:
         self, truth: Truth, time_s: np.ndarray, own: np.ndarray, delay_s: float, lsb: float
     ) -> np.ndarray:
         """Errors of readings of an earlier velocity, rounded; a body log is turned by the present heading."""
+        seen, heading, velocity = self.readings(truth, time_s, delay_s, own)
+        read = _rounded(seen, lsb)
+        return (to_navigation(read, heading) if self.body_frame else read) - velocity
+
+    def readings(
+        self, truth: Truth, time_s: np.ndarray, delay_s: float, own: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Readings before they are rounded, in the log's axes; present heading and velocity."""
         measured_at = np.maximum(time_s - delay_s, 0.0)
         velocity, heading = horizontal_state(truth, time_s)
         then_velocity, then_heading = horizontal_state(truth, measured_at)
         seen = (1.0 + self.scale) * (then_velocity - self.water(measured_at))
         seen = seen + self.by_acceleration(truth, measured_at)
-        if self.body_frame:
-            return to_navigation(_rounded(to_ship(seen, then_heading) + own, lsb), heading) - velocity
-        return _rounded(seen + own, lsb) - velocity
+        return (to_ship(seen, then_heading) if self.body_frame else seen) + own, heading, velocity
 
 
 def _rounded(reading: np.ndarray, lsb: float) -> np.ndarray:

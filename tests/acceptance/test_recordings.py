@@ -141,7 +141,8 @@ def test_a_run_along_the_recordings_by_all_three_methods(repo_root):
     assert [m.method.name for m in run.methods] == ["free", "classic2", "complementary"]
     assert [m.status for m in run.methods] == ["ok"] * 3
     warnings = [text for text in run.warnings if NO_HEIGHT not in text]
-    assert ["of a Schuler period" in warning for warning in warnings] == [True]
+    assert ["of a Schuler period" in warning for warning in warnings] == [False, True]
+    assert warnings[0].startswith("beside the recording")
     assert run.t_s[-1] == SHARED_S
     for method in run.methods:
         assert np.abs(method.rows).max() < 1e4

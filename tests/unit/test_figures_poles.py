@@ -12,6 +12,7 @@ from navcore.analysis.whole_system import EARTH_MODE, NETWORK_MODE, SCHULER_MODE
 from navcore.foundation.units import ARCSEC, DEG
 from schuler_bench.plots.effective import earth_mode_text
 from schuler_bench.views.method.view import loop_text
+from schuler_bench.views.poles.azimuth import azimuth_loops
 from schuler_bench.views.poles.figure import poles
 from schuler_bench.views.poles.grid import locus_fields, locus_of, settling_lines
 from schuler_bench.views.poles.whole import LATITUDES, whole_system_figure
@@ -42,6 +43,27 @@ class TestPoles:
     def test_free_poles_lie_on_the_boundary(self) -> None:
         x, y = of_trace(poles(run_of(method=ALONE)), "free")
         assert (x.tolist(), np.abs(y).tolist()) == ([0.0, 0.0], [1.0, 1.0])
+
+    def test_the_azimuth_map_is_that_of_y_in_units_of_the_earths_rate(self) -> None:
+        """Without Y the pair stays undamped at Omega; a gyrocompass and a free method have no such loop."""
+        whole = {**THREE[1], "name": "whole", "azimuth": {"id": "unity2", "zeta": 0.6}}
+        compass = {**THREE[2], "name": "gyro", "gyrocompass": {}}
+        run = run_of(method=[THREE[0], THREE[1], whole, compass])
+        figure = poles(azimuth_loops(run), block="azimuth")
+        level = poles(
+            run_of(method=[{**THREE[1], "name": "whole", "network": {"id": "unity2", "zeta": 0.6}}])
+        )
+        mine, same = (sorted(zip(*of_trace(one, "whole"), strict=True)) for one in (figure, level))
+        np.testing.assert_allclose(mine, same, atol=1e-5)
+        x, y = of_trace(figure, "classic2")
+        assert np.abs(x).max() < 1e-9 and np.abs(y).tolist() == [1.0, 1.0]
+        assert all(len(of_trace(figure, name)[0]) == 0 for name in ("free", "gyro"))
+        texts = [*texts_of(figure), figure["layout"]["xaxis"]["title"]["text"]]
+        assert "Re s / Ω" in texts and any("Earth" in text for text in texts)
+        assert not any("ω<sub>s" in text for text in texts)
+        assert any("j Ω" in text for text in trace_of(figure, "whole")["text"])
+        locus = poles(azimuth_loops(run), block="azimuth", selected=2, locus="zeta")
+        assert len(of_trace(locus, "whole locus")[0]) > 100
 
     def test_every_pole_is_inside_the_left_panel(self) -> None:
         run = run_of(method=[*THREE, INTERNAL, UNSTABLE])

@@ -8,9 +8,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from navcore.design.sun import TuningSettings
+from navcore.engine.run import Run
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.file import load
@@ -18,9 +20,12 @@ from navcore.scenario.model import Scenario
 from schuler_bench.jobs import helper
 from schuler_bench.jobs.designer import Budgeter, Designer, Fronts, FrontsTask, TableTask, Tuner, TuningTask
 from schuler_bench.jobs.envelopes import Envelopes
+from schuler_bench.jobs.long_runs import run_for
+from schuler_bench.jobs.scheduler import Lane, Scheduler
 from schuler_bench.jobs.search import Search
 from schuler_bench.jobs.verifier import Verifier
 from schuler_bench.jobs.why import Explainer
+from schuler_bench.jobs.worker import Watch
 from tests.waiting import until
 
 Progress = Callable[[float], None]
@@ -207,3 +212,40 @@ def test_no_search_takes_the_time_of_the_server(name: str, monkeypatch: pytest.M
     assert search.wait_idle(30.0)
     assert own_s + theirs_s >= 1.0 or search.result is not None, search.words
     assert own_s < 0.25 * (own_s + theirs_s)
+
+
+@pytest.mark.parametrize(
+    ("lane", "others", "helped"), [("long", True, True), ("long", False, False), ("answer", True, False)]
+)
+def test_a_long_run_beside_others_is_done_by_a_helper(
+    lane: str, others: bool, helped: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is the same run to the last bit; alone, or short, it stays where the last run is at hand."""
+    turns = Scheduler(2, 1e12)
+    if others:
+        turns._answered("another", 0.01)
+    turns._answered("mine", 0.01)
+    monkeypatch.setattr("schuler_bench.jobs.long_runs.scheduler", lambda: turns)
+    here = list[Scenario]()
+
+    def run_here(scenario: Scenario, progress: Progress, cancelled: Cancelled) -> Run:
+        here.append(scenario)
+        return simulate(scenario, progress, cancelled)
+
+    watch = Watch(lambda: False, lane=Lane(lane))
+    run = run_for("mine", run_here, load("zha-fast"), lambda _: None, watch)
+    assert run is not None and (here == []) is helped
+    for one, other in zip(run.methods, simulate(load("zha-fast")).methods, strict=True):
+        np.testing.assert_array_equal(one.rows, other.rows)
+        assert one.errors == other.errors
+
+
+def test_a_long_run_in_a_helper_ends_when_it_is_superseded(monkeypatch: pytest.MonkeyPatch) -> None:
+    turns = Scheduler(2, 1e12)
+    turns._answered("another", 0.01)
+    monkeypatch.setattr("schuler_bench.jobs.long_runs.scheduler", lambda: turns)
+    watch = Watch(lambda: True, lane=Lane.LONG)
+    watch.began -= 10.0
+    scenario = load("zha-fast", ["run.duration_h=800"])
+    run = run_for("mine", lambda *_: simulate(scenario), scenario, lambda _: None, watch)
+    assert run is None or run.status == "stopped"

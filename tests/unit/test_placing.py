@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from navcore.analysis import analyse
+from navcore.foundation.earth import EARTH_RATE
 from navcore.foundation.errors import InputError
+from navcore.scenario.file import load
 from navcore.scenario.model import Scenario
 from schuler_bench.editing.placing import (
     handle_of,
@@ -167,3 +169,20 @@ def test_hostile_places_of_a_handle_are_ignored(text: str) -> None:
 
 def test_a_method_that_the_shown_run_lacks_has_no_handle() -> None:
     assert handle_of(scenario(), 99) == {}
+
+
+def test_the_pair_of_an_azimuth_network_is_placed_in_units_of_the_earths_rate() -> None:
+    scenario = load("sea-whole")
+    index = next(i for i, method in enumerate(scenario.method) if method.azimuth.id == "unity2")
+    level = scenario.method[index].network
+    handle = handle_of(scenario, index, "azimuth")
+    assert handle["unit"] == "Ω" and handle["omega_s"] == EARTH_RATE
+    assert handle["pair"][0] == pytest.approx(0.5)
+    placed = with_nearest_pair(scenario, index, 0.8, handle["pair"][1], block="azimuth")
+    method = placed.scenario.method[index]
+    assert analyse(method.azimuth.at_earth_rate()).damping_ratio == pytest.approx(0.8, rel=1e-6)
+    assert method.network == level and "Ω" in placed.words
+    bare = next(i for i, one in enumerate(scenario.method) if one.azimuth.id == "none" and not one.undamped)
+    with pytest.raises(InputError, match="network"):
+        with_pair(scenario, bare, 0.8, 1.0, block="azimuth")
+    assert "told" in handle_of(scenario, bare, "azimuth")

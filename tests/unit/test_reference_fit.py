@@ -1,6 +1,7 @@
 """The fit of a log's error gives back what simulated logs were made with."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from navcore.sensors.recorded import recorded_window
 from navcore.sensors.reference import Reference
 from navcore.sensors.true_state import horizontal_state, to_ship
 from schuler_bench.session.log_fit import can_fit, fit_lines, fit_of, with_fitted_log
+from schuler_bench.views.log.picture import log_svg
 
 AT_REST = Truth(0.5, np.zeros((1, COLUMNS)))
 
@@ -110,14 +112,42 @@ def test_the_autocovariance_is_the_mean_of_products():
 def test_the_recorded_ships_log_errs_as_the_preset_that_was_fitted_to_it() -> None:
     recorded = load("sikuliaq-recorded")
     assert can_fit(recorded)
-    fit = fit_of(recorded)
+    fitted = fit_of(recorded)
+    fit = fitted.fit
     like = load("sikuliaq-like").reference
     assert fit.delay_s == pytest.approx(like.delay_s, abs=0.5)
     assert tuple(fit.bias) == pytest.approx(like.bias_mps, abs=0.005)
-    assert f"Delay {fit.delay_s:.1f} s." in fit_lines(fit)
+    assert f"Delay {fit.delay_s:.1f} s." in fit_lines(fitted)
     made = with_fitted_log(recorded, fit)
     assert made.reference.kind == "log" and made.reference.bias_mps == fit.reference().bias_mps
     assert made.motion == recorded.motion and not can_fit(made)
+
+
+def test_both_speeds_of_the_log_are_fitted_and_the_stream_is_named() -> None:
+    """Through the water the tidal stream looks like a drift of the log."""
+    recorded = load("sikuliaq-recorded")
+    through = recorded.reference.model_copy(update={"speed": "water"})
+    fitted = fit_of(recorded.model_copy(update={"reference": through}))
+    assert fitted.other is not None and fitted.other_speed == "ground"
+    assert fitted.fit.drift == pytest.approx(0.388, abs=0.002)
+    assert fitted.other.drift == pytest.approx(0.020, abs=0.002)
+    told = "\n".join(fit_lines(fitted))
+    assert 'its drift is 0.020 m/s; choose it by speed = "ground"' in told and "stream" in told
+
+
+def test_the_picture_shows_log_and_ship_and_what_lies_between_them() -> None:
+    fitted = fit_of(load("sikuliaq-recorded"))
+    svg = log_svg(fitted.log, fitted.fit.delay_s)
+    ship, log, difference = (
+        np.array([point.split(",") for point in points.split()], float)
+        for points in re.findall(r'polyline points="([^"]+)"', svg)
+    )
+    assert ship.shape == log.shape == difference.shape and len(ship) == 240
+    assert np.all(np.diff(ship[:, 0]) > 0.0)
+    # in pixels of one scale, the two curves lie as far apart as the fit says
+    assert np.corrcoef(log[:, 1] - ship[:, 1], difference[:, 1])[0, 1] > 0.999
+    late = re.findall(r'polyline points="([^"]+)"', log_svg(fitted.log, 0.0))[2]
+    assert np.ptp([float(point.split(",")[1]) for point in late.split()]) > 0.0
 
 
 def test_the_true_motion_ends_with_the_time_that_log_and_track_share() -> None:

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from navcore.engine.verification import verify, why_not
+from navcore.engine.measures import judged
+from navcore.engine.verification import OF_PEAK, verify, why_not
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG
 from navcore.mechanization.recorder import NAMES
@@ -128,3 +129,39 @@ def test_what_cannot_be_run_as_strapdown_is_refused():
     with pytest.raises(InputError, match="too low for the motion"):
         verify(scenario(motion=motion | {"roll": {"amplitude_deg": 1.0, "frequency_hz": 4.0}}))
     assert not why_not(scenario(motion=motion))
+
+
+def far_off(**blocks: Any) -> Scenario:
+    """A start far off level and north, which leaves a loop that settles with differences of its own size."""
+    classic2 = {"damping": "external", "network": {"id": "classic2"}}
+    start = {"attitude_arcmin": [40.0, 40.0, 200.0]}
+    return scenario(run={"duration_h": 8.0}, initial_error=start, method=[classic2], **blocks)
+
+
+def test_a_difference_of_the_methods_own_level_is_said_with_an_interval_over_seeds():
+    """Below 5 % of the peak, which is that of the start, nothing was said."""
+    found = verify(far_off(), seeds=3)
+    assert max(d.of_peak or 0.0 for d in found.differences[0].values()) < OF_PEAK
+    level = found.levels[0]["phi_e_rad"]
+    assert level.share is not None and level.low is not None and level.high is not None
+    assert level.low < level.share < level.high and level.seeds == 3
+    (told,) = found.statements
+    assert f"differs by {100.0 * level.share:.3g} % RMS of its own level in the second half" in told
+    assert "over 3 seeds" in told
+    rows = [run.methods[0].rows[len(run.t_s) // 2 :, 0] for run in (found.strapdown, found.linear)]
+    assert verify(far_off()).levels[0]["phi_e_rad"].share == pytest.approx(
+        np.sqrt(np.mean((rows[0] - rows[1]) ** 2) / np.mean(rows[0] ** 2)), rel=1e-12
+    )
+
+
+def test_a_limit_that_one_model_meets_and_the_other_misses_is_said():
+    limited = {"quantity": "velocity_rms_mps", "from_h": 4.0, "at_most": 1.0}
+    found = verify(far_off(requirement=[limited]))
+    runs = found.strapdown, found.linear
+    values = [judged(run.scenario.requirement[0], run.methods[0])[0] for run in runs]
+    assert None not in values
+    between = 0.5 * (values[0] + values[1])
+    found = verify(far_off(requirement=[limited | {"at_most": between}]))
+    assert any("meets the limit" in text and "misses it" in text for text in found.statements)
+    clear = verify(far_off(requirement=[limited | {"at_most": 2.0 * max(values)}]))
+    assert not any("limit" in text for text in clear.statements)

@@ -70,7 +70,7 @@ window.schuler.words = {
   "Whoever opens this link gets a copy of the present state, under an address of their own. What you or they change afterwards does not change what the link opens.": "打开此链接的人得到当前状态的一份副本，有其自己的地址。您或他们此后的更改不影响链接所打开的内容。",
   "Only this computer can open this link: its address is that of the computer itself. Others can open it when the server listens on the network (schuler serve --host) and this page is opened at that address.": "只有本机能打开此链接：其地址是本机自身的地址。若服务器在网络上监听 (schuler serve --host) 并从该地址打开本页，其他人即可打开。",
   "Share this state": "分享当前状态",
-  "Pair of {0}: damping ratio {1}, frequency {2} ωₛ. The arrow keys move it.": "{0} 的极点对：阻尼比 {1}，频率 {2} ωₛ。方向键可移动它。",
+  "Pair of {0}: damping ratio {1}, frequency {2} {3}. The arrow keys move it.": "{0} 的极点对：阻尼比 {1}，频率 {2} {3}。方向键可移动它。",
   "The connection to the server is lost. The page shows the last state and takes no input. It connects again by itself as soon as the server answers.": "与服务器的连接已断开。页面显示最后的状态，不接受输入。服务器恢复应答后会自动重新连接。",
   "Copy": "复制",
   "Paste it into the page of another session with Ctrl+V, or into a scenario file.": "可用 Ctrl+V 粘贴到另一会话的页面，或粘贴到场景文件中。",

@@ -82,7 +82,7 @@
   }
 
   function name(element, pair, handle) {
-    const told = `Pair of ${handle.name}: damping ratio ${short(pair[0])}, frequency ${short(pair[1])} ωₛ. The arrow keys move it.`;
+    const told = `Pair of ${handle.name}: damping ratio ${short(pair[0])}, frequency ${short(pair[1])} ${handle.unit}. The arrow keys move it.`;
     const said = window.schuler.say(told);
     if (element.ariaLabel !== said) element.ariaLabel = said;
   }
@@ -120,8 +120,10 @@
       showScale(scale, made, there, x, up);
       made.style.setProperty("--color", there.color);
       made.classList.toggle("sb-left", left > 0.7 * across._length);
-      const said = `ζ ${short(pair[0])}  ω ${short(pair[1])} ω`;
+      const schuler = there.unit === "ωₛ";
+      const said = `ζ ${short(pair[0])}  ω ${short(pair[1])} ${schuler ? "ω" : there.unit}`;
       if (numbers.data !== said) numbers.data = said;
+      numbers.nextSibling.hidden = !schuler;
       name(made, pair, there);
     }
   }

@@ -23,6 +23,7 @@ SOURCES = {
     "log_white": (Text("log white noise"), "#1E6B3A"),
     "log_drift": (Text("log drift"), "#5FAE6F"),
     "log_bias": (Text("log bias"), "#B5DDBB"),
+    "log_resolution": (Text("log resolution"), "#8FBF5A"),
     "log_tide": ("tide", "#7A7A18"),
     "initial_tilt": (Text("initial tilt"), "#8A8F98"),
     "initial_heading": (Text("initial heading"), "#5B6169"),

@@ -1,20 +1,16 @@
 """Tab "Log": the reference velocity, its errors, events and outages."""
 
-from typing import TYPE_CHECKING
-
 from navcore.foundation.text import Text
 from navcore.scenario.model import Scenario
 from navcore.sensors.log_errors.events import LogEvent
 from navcore.sensors.reference import Outage, Reference
 from schuler_bench.editing import edits, form
 from schuler_bench.editing.form import FieldSpec
-from schuler_bench.session.log_fit import can_fit, fit_lines, fit_of, with_fitted_log
+from schuler_bench.session.log_fit import FittedLog, can_fit, fit_lines, fit_of, with_fitted_log
 from schuler_bench.shell import notices
 from schuler_bench.shell.palette import COPY_LOG, PASTE
 from schuler_bench.shell.view import FieldsView, Tab, if_user
-
-if TYPE_CHECKING:
-    from navcore.sensors.fit import LogErrorFit
+from schuler_bench.views.log.picture import log_svg
 
 ADD_EVENT, REMOVE_EVENT = Text("add event"), Text("remove event")
 ADD_OUTAGE, REMOVE_OUTAGE = Text("add outage"), Text("remove outage")
@@ -74,7 +70,7 @@ class LogView(FieldsView):
             self._fit = gui.add_button(FIT, hint=_FIT_TOLD, order=20, visible=False)
             self._fitted = gui.add_html("", order=21)
             self._use = gui.add_button(USE_FIT, color="gray", hint=_USE_TOLD, order=22, visible=False)
-        self._last_fit: tuple[Scenario, LogErrorFit] | None = None
+        self._last_fit: tuple[Scenario, FittedLog] | None = None
         self._fit.on_click(lambda _: self._fit_error())
         self._use.on_click(lambda _: self._use_fit())
         self._all.on_update(if_user(self.frame.refresh))
@@ -108,7 +104,7 @@ class LogView(FieldsView):
         session = self.session
         with session.lock, notices.told(self.frame.client, Text("Not possible"), self.frame.refresh):
             if self._last_fit is not None:
-                session.change(with_fitted_log(session.scenario, self._last_fit[1]), None)
+                session.change(with_fitted_log(session.scenario, self._last_fit[1].fit), None)
 
     def _show_fit(self, scenario: Scenario) -> None:
         """Show the fit as long as it is of the scenario's own recordings."""
@@ -117,9 +113,7 @@ class LogView(FieldsView):
             of = self._last_fit[0]
             if (of.reference, of.motion) != (scenario.reference, scenario.motion):
                 self._last_fit = None
-        self._fitted.content = (
-            "" if self._last_fit is None else notices.note(fit_lines(self._last_fit[1]), "info")
-        )
+        self._fitted.content = "" if self._last_fit is None else _told(self._last_fit[1])
         self._use.visible = self._last_fit is not None
 
     def follow_scenario(self) -> None:
@@ -143,6 +137,11 @@ class LogView(FieldsView):
                 "outage": _blocks(scenario, "outage"),
             }
         )
+
+
+def _told(fitted: FittedLog) -> str:
+    """What the fit found, and the log against the track."""
+    return notices.note(fit_lines(fitted), "info") + log_svg(fitted.log, fitted.fit.delay_s)
 
 
 def _blocks(scenario: Scenario, name: str) -> list[FieldSpec]:

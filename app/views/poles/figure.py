@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.text import Text
-from schuler_bench.editing.placing import COMMAND
+from schuler_bench.editing.placing import COMMAND, Block, unit_frequency
 from schuler_bench.plots import style
 from schuler_bench.plots.plotly_data import PlotlyFigure, figure, packed
 from schuler_bench.plots.units import duration
@@ -42,11 +42,23 @@ _RAY_PX = 27.0, 18.0
 """Room of the label of a ray, across and up."""
 _KEYS = {Text("closed-loop pole"): ("x-thin", 2.6), Text("zero of H"): ("circle-open", 2.0)}
 """Legend entries that say what the two marks mean."""
-_TITLES = {
-    "": (Text("All closed-loop poles (┊ settling time)"), Text("All closed-loop poles"), Text("All poles")),
-    "2": (Text("Near the Schuler frequency"), Text("Near Schuler")),
+_ALL = Text("All closed-loop poles (┊ settling time)"), Text("All closed-loop poles"), Text("All poles")
+
+
+class _Unit(NamedTuple):
+    """In what a pole map is drawn: sign of its unit, name of the network, and titles, longest first."""
+
+    sign: str
+    network: str
+    titles: dict[str, tuple[str, ...]]
+
+
+_UNITS: dict[Block, _Unit] = {
+    "network": _Unit(
+        "ω<sub>s</sub>", "H", {"": _ALL, "2": (Text("Near the Schuler frequency"), Text("Near Schuler"))}
+    ),
+    "azimuth": _Unit("Ω", "Y", {"": _ALL, "2": (Text("Near the Earth's rate"), Text("Near Ω"))}),
 }
-"""Title of each panel, then shorter ones for smaller panels."""
 
 
 def poles(
@@ -57,6 +69,7 @@ def poles(
     selected: int = 0,
     locus: str = NO_LOCUS,
     limits: Mapping[str, float] | None = None,
+    block: Block = "network",
 ) -> PlotlyFigure:
     """Closed-loop poles (x) and zeros of H (o) of every method, in units of omega_s.
 
@@ -78,6 +91,8 @@ def poles(
         Parameter of its network over which the locus is drawn.
     limits : mapping of str to float, optional
         `schuler_bench.session.requirements.Requirements.limits`: what they rule out is shaded.
+    block : {"network", "azimuth"}
+        Whose loops the run holds: "azimuth" for one of `schuler_bench.views.poles.azimuth.azimuth_loops`.
     """
     names = [*(method.method.name for method in run.methods), *_KEYS]
     layout = style.framed(names, aspect, width_px, {"l": 58, "r": 16, "t": 32, "b": 48}, hovermode="closest")
@@ -88,7 +103,8 @@ def poles(
     shape = panel_px / max(aspect * width_px - margin["t"] - margin["b"], 1.0)
     marks = [(_scaled(m, m.loop.poles), _scaled(m, m.network.zeros)) for m in run.methods]
     full = _half_height(np.concatenate([roots for roots, _ in marks]), shape)
-    note, omega_s = locus_note(run, selected, locus), run.scenario.omega_s
+    note, omega_s = locus_note(run, selected, locus), unit_frequency(run.scenario, block)
+    unit = _UNITS[block]
     panels = (("", full, [0.0, share]), ("2", ZOOM, [1.0 - share, 1.0]))
     data, shapes = [], []
     notes: list[dict[str, Any]] = []
@@ -97,13 +113,13 @@ def poles(
         data.append(damping_lines(suffix, re, im))
         data += locus_traces(run, selected, locus, suffix)
         for i, (method, (roots, zeros)) in enumerate(zip(run.methods, marks, strict=True)):
-            data += _method_marks(method, i, roots, zeros, suffix)
-        layout |= _axes(suffix, re, im, domain)
-        title = Text("<b>{titles}</b>", titles=style.fitting(_TITLES[suffix], panel_px))
+            data += _method_marks(method, i, (roots, zeros), suffix, unit)
+        layout |= _axes(suffix, re, im, domain, unit.sign)
+        title = Text("<b>{titles}</b>", titles=style.fitting(unit.titles[suffix], panel_px))
         if suffix and note:  # in plain letters: those of a parameter's ends take more room
             title = Text('<b><span style="font-weight:400">{note}</span></b>', note=note)
         notes.append(style.heading(title, 13.0, f"x{suffix} domain") | {"yref": f"y{suffix} domain"})
-        notes += _panel_labels(suffix, re, im, panel_px)
+        notes += _panel_labels(suffix, re, im, panel_px, unit.sign)
         notes += settling_labels(suffix, re, omega_s, panel_px)
         shapes += _boundary(suffix)
         shapes += settling_shapes(suffix, re, omega_s, panel_px)
@@ -139,8 +155,9 @@ def _panel(half_height: float, shape: float) -> tuple[Interval, Interval]:
 
 
 def _method_marks(
-    method: MethodRun, index: int, roots: np.ndarray, zeros: np.ndarray, suffix: str
+    method: MethodRun, index: int, marks: tuple[np.ndarray, np.ndarray], suffix: str, unit: _Unit
 ) -> list[dict[str, Any]]:
+    roots, zeros = marks
     color, name = style.method_color(index), method.method.name
     axes = {"xaxis": f"x{suffix}", "yaxis": f"y{suffix}"}
     plain = style.plain(name)
@@ -148,7 +165,7 @@ def _method_marks(
     cross |= {
         "x": packed(np.real(roots)),
         "y": packed(np.imag(roots)),
-        "text": [_about_pole(complex(root), method.network.omega_s) for root in roots],
+        "text": [_about_pole(complex(root), method.network.omega_s, unit.sign) for root in roots],
         "hovertemplate": Text("<b>{plain}</b><br>%{{text}}<extra></extra>", plain=plain),
         "showlegend": suffix == "",
     }
@@ -162,15 +179,18 @@ def _method_marks(
         "x": packed(np.real(zeros)),
         "y": packed(np.imag(zeros)),
         "hovertemplate": Text(
-            "<b>{plain}</b><br>zero of H: %{{x:.4g}} %{{y:+.4g}}j ω<sub>s</sub><extra></extra>", plain=plain
+            "<b>{plain}</b><br>zero of {of}: %{{x:.4g}} %{{y:+.4g}}j {sign}<extra></extra>",
+            plain=plain,
+            of=unit.network,
+            sign=unit.sign,
         ),
     }
     return [cross, ring]
 
 
-def _about_pole(root: complex, omega_s: float) -> str:
+def _about_pole(root: complex, omega_s: float, sign: str) -> str:
     size = abs(root)
-    lines = [Text("pole: {real:.4g} {imag:+.4g}j ω<sub>s</sub>", real=root.real, imag=root.imag)]
+    lines = [Text("pole: {real:.4g} {imag:+.4g}j {sign}", real=root.real, imag=root.imag, sign=sign)]
     if size > 0.0:
         period = duration(2.0 * math.pi / (size * omega_s))
         lines.append(
@@ -186,14 +206,14 @@ def _about_pole(root: complex, omega_s: float) -> str:
     return Text.joined("<br>", lines)
 
 
-def _axes(suffix: str, re: Interval, im: Interval, domain: list[float]) -> dict[str, Any]:
+def _axes(suffix: str, re: Interval, im: Interval, domain: list[float], sign: str) -> dict[str, Any]:
     # "domain": else plotly widens the range for a size in which it draws once, and never takes that back
     common = {"constrain": "domain", "showgrid": False}
     across = {"domain": domain, "anchor": f"y{suffix}", "range": list(re), "tickangle": 0}
     up = {"anchor": f"x{suffix}", "range": list(im), "scaleanchor": f"x{suffix}"}
     return {
-        f"xaxis{suffix}": style.axis(Text("Re s / ω<sub>s</sub>"), **common, **across),
-        f"yaxis{suffix}": style.axis(Text("Im s / ω<sub>s</sub>"), **common, **up),
+        f"xaxis{suffix}": style.axis(Text("Re s / {sign}", sign=sign), **common, **across),
+        f"yaxis{suffix}": style.axis(Text("Im s / {sign}", sign=sign), **common, **up),
     }
 
 
@@ -208,7 +228,9 @@ def _boundary(suffix: str) -> list[dict[str, Any]]:
     ]
 
 
-def _panel_labels(suffix: str, re: Interval, im: Interval, width_px: float) -> list[dict[str, Any]]:
+def _panel_labels(
+    suffix: str, re: Interval, im: Interval, width_px: float, sign: str
+) -> list[dict[str, Any]]:
     """Name the half plane and every second damping ray, as far as the names have room beside each other."""
     font = {"size": style.FONT_SIZE, "color": style.MUTED}
     where = {"xref": f"x{suffix}", "yref": f"y{suffix}", "font": font}
@@ -239,9 +261,7 @@ def _panel_labels(suffix: str, re: Interval, im: Interval, width_px: float) -> l
         side = {"xanchor": "left"} if x <= _INSIDE * re[0] + 1e-9 else {}
         notes.append(style.text(x, y, content, **where, bgcolor=PAPER, borderpad=0, **side))
     if im[1] < 8.0:
-        notes.append(
-            style.text(-1.0, 0.0, "ω<sub>s</sub>", **where, xanchor="right", yanchor="top", xshift=-3)
-        )
+        notes.append(style.text(-1.0, 0.0, sign, **where, xanchor="right", yanchor="top", xshift=-3))
     return notes
 
 

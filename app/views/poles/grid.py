@@ -40,7 +40,7 @@ def locus_of(run: Run, index: int, field: str) -> Locus | None:
     method = run.methods[index]
     if method.method.undamped or field not in locus_fields(method.method.network):
         return None
-    locus = _computed(_giving(run, index, field), field, run.scenario.omega_s)
+    locus = _computed(_giving(run, index, field), field, method.network.omega_s)
     return locus if len(locus.values) > 1 else None
 
 

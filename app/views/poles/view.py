@@ -9,7 +9,7 @@ from navcore.foundation.text import Text
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from schuler_bench.editing.limits import with_limit
-from schuler_bench.editing.placing import COMMAND, pair_at, read_point, typed_pair, with_pair
+from schuler_bench.editing.placing import COMMAND, Block, pair_at, read_point, typed_pair, with_pair
 from schuler_bench.plots.plotly_data import PlotlyFigure
 from schuler_bench.session.display import Display
 from schuler_bench.session.requirements import limits_of
@@ -19,6 +19,7 @@ from schuler_bench.shell.layout import CHOOSER_PX, TOOLS
 from schuler_bench.shell.pair_handle import PairHandle
 from schuler_bench.shell.plotly_view import PlotlyView
 from schuler_bench.shell.view import Frame, if_user
+from schuler_bench.views.poles.azimuth import azimuth_loops
 from schuler_bench.views.poles.figure import PANELS, poles
 from schuler_bench.views.poles.grid import NO_LOCUS, locus_fields
 from schuler_bench.views.poles.whole import whole_system_figure
@@ -27,7 +28,7 @@ LOCUS = Text("locus")
 DECAYS = "H'(0) ≤ 0"
 PAIR_XI, PAIR_OMEGA, PLACE = Text("pair ζ"), Text("pair ω/ωₛ"), Text("Place")
 POLES_OF = Text("poles of")
-SYSTEMS = {"channel": "channel", "system": "whole"}
+SYSTEMS = {"channel": "channel", Text("azimuth"): "azimuth", "system": "whole"}
 _NONE = Text("nothing")
 
 
@@ -45,13 +46,13 @@ class PolesView(PlotlyView):
 
     def __init__(self, frame: Frame) -> None:
         super().__init__(frame)
-        self._handle = PairHandle(frame, "poles", PANELS)
+        self._handle = PairHandle(frame, "poles", PANELS, lambda: self._block)
         frame.commands.register(COMMAND, lambda text: self._place(lambda: pair_at(read_point(text))))
 
     def build_tools(self) -> None:
         """Make the chooser, the boxes and the button."""
         gui, display = self.frame.gui, self.session.display
-        self._fields = _offered(self._method)
+        self._fields = _offered(self._method, self._block)
         gui.add_html(TOOLS)
         self._handle.build()
         self._system: Any = gui.add_dropdown(
@@ -59,9 +60,10 @@ class PolesView(PlotlyView):
             tuple(SYSTEMS),
             initial_value=_system(display),
             hint=Text(
-                "Channel: the closed loop of one level channel. System: the whole one, "
-                "both channels with "
-                "heading and latitude, whose 24 h mode most networks let grow, and its growth over latitude."
+                "Channel: the closed loop of one level channel. Azimuth: that of the slow oscillation with "
+                "the azimuth network, in units of the Earth's rate Ω. System: the whole one, both channels "
+                "with heading and latitude, whose 24 h mode most networks let grow, and its growth over "
+                "latitude."
             ),
         )
         self._system.on_update(if_user(lambda: self.frame.show(poles=SYSTEMS[self._system.value])))
@@ -117,7 +119,7 @@ class PolesView(PlotlyView):
         with session.lock:
             try:
                 limit = limits_of(session.scenario.requirement).get("h_slope_s")
-                placed = with_pair(session.scenario, session.selected, *wanted(), limit)
+                placed = with_pair(session.scenario, session.selected, *wanted(), limit, self._block)
             except InputError as error:
                 notices.tell(client, Text("The pair was not placed"), notices.fault_lines(error), "warning")
                 return
@@ -127,6 +129,10 @@ class PolesView(PlotlyView):
             notices.tell(client, Text("Placed in part"), [placed.words, placed.note], "warning")
         else:
             notices.tell(client, Text("Placed"), [placed.words], "info")
+
+    @property
+    def _block(self) -> Block:
+        return "azimuth" if self.session.display.poles == "azimuth" else "network"
 
     @property
     def _method(self) -> Method:
@@ -141,7 +147,7 @@ class PolesView(PlotlyView):
     def follow_scenario(self) -> None:
         """Offer the parameters of the selected method's network, and show which is chosen, and the limit."""
         self._decays.value = _decays(self.session.scenario)
-        offered = _offered(self._method)
+        offered = _offered(self._method, self._block)
         if offered != self._fields:
             self._fields, self._locus.options = offered, tuple(offered)
         chosen = _chosen(offered, self.session.display)
@@ -166,21 +172,23 @@ class PolesView(PlotlyView):
         """Pole map, or the modes of the whole system."""
         if found.display.poles == "whole":
             return whole_system_figure(both, self.aspect, width_px=self.width_px)
+        slow = found.display.poles == "azimuth"
         plot = poles(
-            both,
+            azimuth_loops(both) if slow else both,
             self.aspect,
             width_px=self.width_px,
             selected=found.selected,
             locus=found.display.locus,
-            limits=limits_of(found.run.scenario.requirement),
+            limits={} if slow else limits_of(found.run.scenario.requirement),
+            block="azimuth" if slow else "network",
         )
         plot["layout"]["meta"] |= self._handle.meta(found)
         return plot
 
 
-def _offered(method: Method) -> dict[str, str]:
+def _offered(method: Method, block: Block) -> dict[str, str]:
     """Choices of the locus: label -> field."""
-    fields = {} if method.undamped else locus_fields(method.network)
+    fields = {} if method.undamped else locus_fields(getattr(method, block))
     return {_NONE: NO_LOCUS} | {label: name for name, label in fields.items()}
 
 

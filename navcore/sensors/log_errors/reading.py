@@ -11,7 +11,7 @@ from navcore.sensors.log_errors.base import LogPart, LogTerm
 class LogReading(LogTerm):
     """Scale error, error by acceleration, delay and resolution.
 
-    The covariance takes the resolution for white noise of lsb / sqrt(12).
+    The covariance takes the resolution by `navcore.sensors.rounding`.
     """
 
     scale_ppm: float = quantity(

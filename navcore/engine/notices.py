@@ -1,0 +1,80 @@
+"""What a run says of its scenario's inputs: recordings, what is simulated beside them, waves, the site."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from navcore.foundation.text import Text
+from navcore.foundation.units import DEG, HOUR
+from navcore.motion.truth import LAT, Truth
+from navcore.scenario.model import Scenario
+from navcore.sensors.recorded import recording_notices, short_run_notices
+
+FAR_FROM_SITE_DEG = 2.0
+"""Latitude by which a track may start off the site before the user is told, deg."""
+
+
+def input_notices(scenario: Scenario) -> tuple[str, ...]:
+    """Return the notices about a scenario's recordings and a motion that ends early; raises `InputError`."""
+    recorded = scenario.reference.kind == "file" or scenario.imu.file is not None
+    end_s = scenario.run.duration_h * HOUR
+    short = short_run_notices(scenario.motion, recorded, end_s)
+    beside = _beside_recordings(scenario) if recorded or scenario.motion.recorded else ()
+    return (
+        *recording_notices(scenario.motion, scenario.reference),
+        *beside,
+        *short,
+        *scenario.motion.ending(end_s),
+        *_waves_without_effect(scenario),
+    )
+
+
+def site_notices(scenario: Scenario, truth: Truth) -> list[str]:
+    """Say so when a recorded track starts far from the site, whose gravity gives omega_s."""
+    start = float(truth.values[0, LAT]) / DEG
+    if abs(start - scenario.site.lat_deg) < FAR_FROM_SITE_DEG:
+        return []
+    return [
+        Text(
+            "the track starts at latitude {start:.2f}°, the site is at {lat_deg:g}°: ωₛ, "
+            "and with it every network, is that of the site",
+            start=start,
+            lat_deg=scenario.site.lat_deg,
+        )
+    ]
+
+
+def _beside_recordings(scenario: Scenario) -> Iterator[str]:
+    """Yield which sensors' and initial errors the scenario adds to what is recorded."""
+    if scenario.imu.file is not None:
+        return
+    given = [*_given(scenario.imu, "imu"), *_given(scenario.initial_error, "initial_error")]
+    if not given:
+        yield Text("beside the recording, gyros, accelerometers and the start are taken as free of error")
+        return
+    yield Text(
+        "beside the recording, gyros, accelerometers and initial errors are simulated as the scenario says: "
+        "{given}",
+        given=", ".join(given),
+    )
+
+
+def _given(block: Any, name: str) -> Iterator[str]:
+    """Yield the numbers of a block that are not those of its class."""
+    for field, info in type(block).model_fields.items():
+        value = getattr(block, field)
+        if value != info.default and isinstance(value, float | tuple):
+            parts = value if isinstance(value, tuple) else (value,)
+            words = ", ".join(f"{part:g}" for part in parts)
+            yield f"{name}.{field} = [{words}]" if isinstance(value, tuple) else f"{name}.{field} = {words}"
+
+
+def _waves_without_effect(scenario: Scenario) -> Iterator[str]:
+    """Say why waves change nothing, where they do not: the error model has nothing that they act on."""
+    waves = scenario.motion.kind == "waves" or getattr(scenario.motion, "rough", False)
+    parts = (*scenario.imu.all_parts(), *scenario.reference.all_parts())
+    acts = any(part.active for part in parts) or any(scenario.initial_error.state())
+    if waves and not scenario.strapdown and not acts:
+        yield Text(
+            "the waves change nothing in this run: the error model carries errors along the motion, and the "
+            'scenario has none; give the sensors errors, or take run.fidelity = "strapdown"'
+        )
