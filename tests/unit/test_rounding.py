@@ -48,6 +48,8 @@ def scenario(seed: int = 1, **reference: Any) -> Scenario:
         ({"rate_hz": 0.1, "lsb_mps": 0.5}, 1, 0.02),
         ({"noise_mps": 0.02}, 60, 0.12),
         ({"noise_mps": 0.1}, 60, 0.12),
+        ({"noise_mps": 0.05, "rate_hz": 10.0}, 60, 0.12),  # counted as if it had no noise, 40 times too large
+        ({"drift_mps": 0.02}, 60, 0.12),  # its rounding is no noise
     ],
     ids=str,
 )
