@@ -62,6 +62,20 @@ def test_the_budget_of_a_rounded_log_is_that_of_its_runs(reference, seeds, withi
     assert ratio[[0, 1, 3, 4]] == pytest.approx(1.0, abs=within)
 
 
+def test_a_filter_is_not_told_of_rounding_that_stands() -> None:
+    """It takes it for noise, and its own covariance has nothing of what a steady speed makes of it."""
+    imu = {"gyro_arw_dpsh": 0.001}
+    data = scenario().canonical() | {"imu": imu, "method": [{"damping": "kalman"}]}
+    runs = [
+        simulate(Scenario.parse({**data, "run": {**data["run"], "seed": seed}})).methods[0].rows[:, :7] ** 2
+        for seed in range(20)
+    ]
+    found = budget(Scenario.parse(data)).methods[0].series
+    assert found is not None and "log_resolution" in found.sources
+    ratio = np.sqrt(np.mean(runs, axis=(0, 1)) / found.total.mean(axis=0))
+    assert ratio[[3, 4]] == pytest.approx(1.0, abs=0.1)
+
+
 def test_in_the_steady_state_it_is_a_constant_beside_the_noise() -> None:
     """Velocity feedback pulls the velocity onto the log, and so onto its standing error."""
     compass = {"damping": "external", "network": {"id": "compass", "sigma": 0.0088, "xi": 0.7}}
