@@ -137,5 +137,6 @@ def _log_shapes(scenario: Scenario, course: Course) -> Iterator[Column]:
             errors = simulated_errors(quiet, course.truth, end_s, 0, course.step_s, (element,))
             yield _column(part.source, LOG, course.log_counts * course.means(errors.time_s, errors.error))
     if log.kind == "log" and log.rounding > 0.0:
-        times, error = mean_rounding_of(log, course.truth, end_s, course.step_s)
-        yield _column("log_resolution", LOG, course.log_counts * course.means(times, error))
+        times, errors = mean_rounding_of(log, course.truth, end_s, course.step_s)
+        for error in errors:
+            yield _column("log_resolution", LOG, course.log_counts * course.means(times, error))

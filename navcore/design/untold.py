@@ -17,6 +17,7 @@ from navcore.mechanization.recorder import QUANTITIES
 from navcore.quantities import COMPONENTS
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
+from navcore.sensors.rounding import DITHERED
 
 
 def untold_squares(scenario: Scenario, method: Method, t_s: np.ndarray) -> dict[str, np.ndarray]:
@@ -41,6 +42,8 @@ def untold_squares(scenario: Scenario, method: Method, t_s: np.ndarray) -> dict[
     every = told.run.model_copy(update={"output_step_s": step_s})
     told = told.model_copy(update={"run": every})
     parts = [part for part in (*told.imu.all_parts(), *told.reference.all_parts()) if part.has_shape]
+    if told.reference.kind == "log":  # rounding that no noise averages out
+        parts += [part for part in told.reference.all_parts() if told.reference.dither < DITHERED * part.lsb]
     labels = {part.label: part.source for part in parts}
     if method.event:
         labels.setdefault(Text("log events"), "log_events")

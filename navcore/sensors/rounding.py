@@ -14,6 +14,8 @@ import math
 
 import numpy as np
 
+DITHERED = 0.5
+"""Noise over resolution from which on rounding averages out."""
 _TERMS_TO = 1e-4
 """Size over q of the first term of the series that is left out."""
 _SHARP = 0.02

@@ -4,7 +4,7 @@ import hashlib
 import math
 import weakref
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,12 +14,14 @@ from navcore.sensors.base import ReferenceErrors
 from navcore.sensors.log_errors.base import LogPart
 from navcore.sensors.noise import gauss_markov, unit_noise
 from navcore.sensors.reference import Reference, in_service
-from navcore.sensors.rounding import mean_rounding
+from navcore.sensors.rounding import DITHERED, mean_rounding
 from navcore.sensors.true_state import horizontal_acceleration, horizontal_state, to_navigation, to_ship
 
 SHORTEST_HOLD_S = 5.0
 """A sample stands for three intervals of the log, and at least this long."""
 _FINEST_LSB = 1e-9
+_PATHS = 8
+"""Paths of the drift along which the rounding of a log that drifts is followed."""
 
 
 def hold_time(interval_s: float) -> float:
@@ -110,33 +112,39 @@ def simulated_errors(
 
 def mean_rounding_of(
     reference: Reference, truth: Truth, duration_s: float, step_s: float
-) -> tuple[np.ndarray, np.ndarray]:
+) -> tuple[np.ndarray, list[np.ndarray]]:
     """Mean over the noise of the error that rounding adds to a simulated log's readings.
 
     Parameters
     ----------
     reference, truth, duration_s, step_s
-        As of `simulated_errors`. Its other errors count as far as they are known numbers; a drift is noise.
+        As of `simulated_errors`. Its other errors count as far as they are known numbers.
 
     Returns
     -------
     time_s : ndarray, shape (m,)
         Epochs of the log, s.
-    error : ndarray, shape (m, 2)
-        E and N, m/s.
+    errors : list of ndarray, shape (m, 2)
+        E and N, m/s: none where noise averages rounding out. Of a log that drifts, one for each of several
+        paths of its drift, over the square root of their number: their squares add up to a mean square.
     """
     samples = max(1.0, reference.rate_hz * step_s)
     interval = samples / reference.rate_hz
     time_s = np.arange(int(duration_s / interval + 1e-9) + 1) * interval
     log = _Log(tuple(part for part in reference.all_parts() if part.active), reference.frame == "body")
-    lsb, drift = sum(part.lsb for part in log.parts), (part.markov[0] for part in log.parts)
-    sigma = math.hypot(reference.dither / math.sqrt(samples), *drift)
-    own = sum((part.constant for part in log.parts), np.zeros((1, 2)))
-    seen, heading, _ = log.readings(truth, time_s, sum(part.delay_s for part in log.parts), own)
-    error = mean_rounding(seen, lsb, sigma)
-    return time_s, np.broadcast_to(
-        to_navigation(error, heading) if log.body_frame else error, (time_s.size, 2)
-    )
+    lsb = sum(part.lsb for part in log.parts)
+    if samples > 1.0 and reference.dither >= DITHERED * lsb:
+        return time_s, []
+    sigma, errors = reference.dither / math.sqrt(samples), []
+    still = _Log(tuple(replace(part, white=0.0) for part in log.parts), log.body_frame)
+    paths = _PATHS if any(part.markov[0] > 0.0 for part in log.parts) else 1
+    for seed in range(paths):
+        own, _ = still.own(time_s.size, interval, seed, 1.0)
+        seen, heading, _ = log.readings(truth, time_s, sum(part.delay_s for part in log.parts), own)
+        error = mean_rounding(seen, lsb, sigma) / math.sqrt(paths)
+        error = to_navigation(error, heading) if log.body_frame else error
+        errors.append(np.broadcast_to(error, (time_s.size, 2)))
+    return time_s, errors
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +172,7 @@ class _Log:
         """Errors in the log's axes, shape (m, 2) or (1, 2), and the rounding that is left."""
         noise = math.hypot(*(part.white for part in self.parts))
         lsb = sum(part.lsb for part in self.parts)
-        if samples > 1.0 and noise >= 0.5 * lsb:
+        if samples > 1.0 and noise >= DITHERED * lsb:
             noise, lsb = math.hypot(noise, lsb / math.sqrt(12.0)), 0.0
         own = sum((part.constant for part in self.parts), np.zeros((1, 2)))
         for part in self.parts:

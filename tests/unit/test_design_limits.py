@@ -17,7 +17,9 @@ from schuler_bench.editing.limits import with_limit
 from schuler_bench.jobs import judge
 from schuler_bench.jobs.designer import Limits
 from schuler_bench.jobs.judge import Judge, Odds
+from schuler_bench.session.requirements import asked
 from schuler_bench.views.design.limits import designs_html
+from schuler_bench.views.requirements.table import requirements_html
 
 
 @pytest.fixture(scope="module")
@@ -59,6 +61,41 @@ def test_shares_are_those_of_the_command_and_a_method_that_stays_is_not_run_agai
     # other limits, other shares
     stricter = with_limit(changed, "tilt_max_arcsec", "1")
     assert judging.odds(stricter, stricter.method[1]) is None
+
+
+def test_what_one_seed_meets_and_another_misses_has_its_share_beside_the_tick(judging: Judge) -> None:
+    """Seeds 1, 5 and 6 meet this limit, 2, 3 and 4 miss it: the share hardly depends on which is on show."""
+
+    def of_seed(seed: int) -> Scenario:
+        return Scenario.parse(
+            {
+                "run": {"duration_h": 2.0, "seed": seed},
+                "imu": {"gyro_arw_dpsh": 0.003, "gyro_instability_dph": 0.003},
+                "reference": {"kind": "log", "noise_mps": 0.1, "drift_mps": 0.05},
+                "method": [{"damping": "external", "network": {"id": "complementary"}}],
+                "requirement": [{"quantity": "velocity_rms_mps", "at_most": 0.3}],
+            }
+        )
+
+    runs = {seed: simulate(of_seed(seed)) for seed in range(1, 7)}
+    ticks = {seed: asked(run, run.scenario.requirement)[0].passed[0] for seed, run in runs.items()}
+    assert [seed for seed, met in ticks.items() if met] == [1, 5, 6]
+    shown = {}
+    for seed in (1, 2):
+        scenario = runs[seed].scenario
+        judging.follow(scenario)
+        assert judging.wait_idle(120.0)
+        odds = judging.odds(scenario, scenario.method[0])
+        assert odds is not None and odds.seeds == 12
+        html = requirements_html(runs[seed], odds=[odds])
+        assert ("✓ met" if ticks[seed] else "✗ missed") in html
+        said = re.findall(r"class=\"sb-share\"[^>]*>([\d.]+) % \((\d+) to (\d+)\)", html)
+        assert len(said) == 2 and len(set(said)) == 1  # beside the limit's tick, and below, all together
+        share, low, high = (float(text) for text in said[0])
+        assert 0.0 < low < share < high < 100.0 and high - low > 20.0
+        shown[seed] = share
+    # eleven of their twelve seeds are the same
+    assert abs(shown[1] - shown[2]) < 100.0 / 12.0 + 0.1
 
 
 def test_without_a_limit_nothing_is_judged_and_a_wrong_one_is_refused_in_words(

@@ -48,6 +48,8 @@ def scenario(seed: int = 1, **reference: Any) -> Scenario:
         ({"rate_hz": 0.1, "lsb_mps": 0.5}, 1, 0.02),
         ({"noise_mps": 0.02}, 60, 0.12),
         ({"noise_mps": 0.1}, 60, 0.12),
+        ({"noise_mps": 0.05, "rate_hz": 10.0}, 60, 0.12),  # counted as if it had no noise, 40 times too large
+        ({"drift_mps": 0.02}, 60, 0.12),  # its rounding is no noise
     ],
     ids=str,
 )
@@ -58,6 +60,20 @@ def test_the_budget_of_a_rounded_log_is_that_of_its_runs(reference, seeds, withi
     assert series is not None and (seeds > 1 or "log_resolution" in series.sources)
     ratio = np.sqrt(np.mean(runs, axis=(0, 1)) / series.total.mean(axis=0))
     assert ratio[[0, 1, 3, 4]] == pytest.approx(1.0, abs=within)
+
+
+def test_a_filter_is_not_told_of_rounding_that_stands() -> None:
+    """It takes it for noise, and its own covariance has nothing of what a steady speed makes of it."""
+    imu = {"gyro_arw_dpsh": 0.001}
+    data = scenario().canonical() | {"imu": imu, "method": [{"damping": "kalman"}]}
+    runs = [
+        simulate(Scenario.parse({**data, "run": {**data["run"], "seed": seed}})).methods[0].rows[:, :7] ** 2
+        for seed in range(20)
+    ]
+    found = budget(Scenario.parse(data)).methods[0].series
+    assert found is not None and "log_resolution" in found.sources
+    ratio = np.sqrt(np.mean(runs, axis=(0, 1)) / found.total.mean(axis=0))
+    assert ratio[[3, 4]] == pytest.approx(1.0, abs=0.1)
 
 
 def test_in_the_steady_state_it_is_a_constant_beside_the_noise() -> None:
