@@ -27,6 +27,8 @@ class ParetoCommand:
         Only these networks.
     along : bool
         Over the scenario's run, in place of the steady state at rest.
+    beyond_sliders : bool
+        Search all that the fields allow, not only what the page's sliders reach.
     set : tuple of str
         Override one field of the scenario first.
     json : bool
@@ -41,6 +43,7 @@ class ParetoCommand:
     method: Annotated[int, arg(metavar="N")] = 0
     network: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="ID")] = ()
     along: bool = False
+    beyond_sliders: bool = False
     set: Annotated[UseAppendAction[tuple[str, ...]], arg(metavar="KEY=VALUE")] = ()
     json: bool = False
     quiet: bool = False
@@ -60,6 +63,7 @@ class ParetoCommand:
                 self.method,
                 networks=self.network or None,
                 along=self.along,
+                whole=self.beyond_sliders,
                 progress=progress,
                 cancelled=stopped,
             )

@@ -87,12 +87,15 @@ class FrontsTask:
         Of `navcore.quantities.OBJECTIVES`: what is on the axes.
     networks : tuple of str or None
         Ids; None: all of the catalogue that have a design of their own.
+    whole : bool
+        Search all that the fields allow, not only what their sliders reach.
     """
 
     scenario: Scenario
     method: int
     objectives: tuple[str, str]
     networks: tuple[str, ...] | None = None
+    whole: bool = False
 
     def fits(self, scenario: Scenario) -> bool:
         """Whether the fronts are those of a scenario: all but its method's network and name is the same."""
@@ -225,6 +228,7 @@ def _fronts(task: FrontsTask, progress: Progress, cancelled: Cancelled) -> Paret
         task.objectives,
         task.method,
         networks=task.networks,
+        whole=task.whole,
         progress=progress,
         cancelled=cancelled,
     )

@@ -256,7 +256,7 @@ def test_words_that_are_not_understood() -> None:
 
 def test_pareto_fronts_cannot_be_beaten_by_the_known_optimum() -> None:
     """Points of a front trade one for the other; nothing is below the floor."""
-    found = pareto(set_a({"id": "classic2"}), networks=["classic2", "compass", "optimal"])
+    found = pareto(set_a({"id": "classic2"}), networks=["classic2", "compass", "optimal"], whole=True)
     assert list(found.fronts) == ["classic2", "compass", "optimal"]
     assert len(found.fronts["classic2"]) == 1
     for points in found.fronts.values():

@@ -100,7 +100,8 @@ class FrontsPanel:
             notices.tell(self.frame.client, Text("Nothing to weigh"), lines)
             return
         with session.lock:
-            task = FrontsTask(session.scenario, session.selected, self.objectives)
+            whole = session.display.beyond_sliders
+            task = FrontsTask(session.scenario, session.selected, self.objectives, whole=whole)
         self._fronts.begin(task)
 
     def _pick(self, text: str) -> None:
