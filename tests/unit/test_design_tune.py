@@ -1,6 +1,7 @@
 """Tuning and Pareto fronts: the known optima from any start, requirements, ends of ranges, bad input."""
 
 import json
+import signal
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +16,11 @@ from navcore.design.vary import read_varied, tunable_fields
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import ARCSEC
-from navcore.scenario.file import load
+from navcore.scenario.file import load, to_toml
 from navcore.scenario.model import Scenario
+from navcore.scenario.requirement import Requirement
 from schuler_bench.cli import main
+from schuler_bench.cli.progress import Bar
 from schuler_bench.editing import form
 from schuler_bench.views.method.view import described
 from schuler_bench.views.tune.setting import left_out_html
@@ -287,6 +290,37 @@ def test_what_the_24_h_mode_of_optimal_costs(q: float, tilt: float, velocity: fl
     requirement = read_requirement("earth_mode_growth_per_s<=0")
     setting = Setting(Ship(scenario, along_run=False), scenario.method[0])
     assert (requirement.excess(setting) > 0.0) is (q == 0.0)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["tune", "--objective", "tilt_rms", "--vary", "method.0.network.xi"],
+        ["pareto", "--network", "compass", "--network", "unity2"],
+        ["design", "--seeds", "40"],
+    ],
+)
+def test_ctrl_c_keeps_what_was_found_and_marks_it(
+    command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[float] = []
+
+    def interrupt_once(bar: Bar, fraction: float) -> None:
+        if fraction > 0.1 and not asked:
+            asked.append(fraction)
+            signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(Bar, "advance", interrupt_once)
+    scenario = set_a({"id": "compass"})
+    limit = Requirement(quantity="tilt_rms_arcsec", at_most=20.0)
+    run = scenario.run.model_copy(update={"duration_h": 1.0})
+    path = tmp_path / "ship.toml"
+    path.write_text(to_toml(scenario.model_copy(update={"requirement": (limit,), "run": run})), "utf-8")
+    assert main([command[0], str(path), *command[1:], "--json"]) == 3
+    out, err = capsys.readouterr()
+    document = json.loads(out)
+    assert asked[0] < 0.9 and document["stopped"] is True and "stopped" in err
+    assert document.get("best") or document.get("fronts") or document.get("methods")
 
 
 def test_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
