@@ -28,7 +28,7 @@ class ParetoCommand:
     along : bool
         Over the scenario's run, in place of the steady state at rest.
     beyond_sliders : bool
-        Search all that the fields allow, in place of the ranges of the page's sliders.
+        Search all that the fields allow, not only what the page's sliders reach.
     set : tuple of str
         Override one field of the scenario first.
     json : bool

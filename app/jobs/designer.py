@@ -88,7 +88,7 @@ class FrontsTask:
     networks : tuple of str or None
         Ids; None: all of the catalogue that have a design of their own.
     whole : bool
-        Beyond the sliders.
+        Search all that the fields allow, not only what their sliders reach.
     """
 
     scenario: Scenario
@@ -123,7 +123,7 @@ class Designer(Search[TuningTask, "Tuned"]):
     """Searches for the best setting of one method at a time; ``tell`` and ``name`` as of `Search`."""
 
     def __init__(self, tell: Callable[[], None], name: str = "designer") -> None:
-        super().__init__(tell, _tune, stopped=Text("Stopped: there is no proposal."), name=name)
+        super().__init__(tell, _tune, stopped=Text("Stopped: there is no proposal."), name=name, keeps=True)
 
     accepted: Scenario | None = None
     """The scenario with the proposal in place, once it was accepted."""
@@ -166,7 +166,12 @@ class Fronts(Search[FrontsTask, "Pareto"]):
 
     def __init__(self, tell: Callable[[], None], name: str = "fronts") -> None:
         super().__init__(
-            tell, _fronts, lambda found: not found.stopped, Text("Stopped: no fronts were found."), name
+            tell,
+            _fronts,
+            lambda found: bool(found.fronts),
+            Text("Stopped: no fronts were found."),
+            name,
+            keeps=True,
         )
 
 
@@ -174,7 +179,7 @@ class Limits(Search[Scenario, "Designs"]):
     """Tunes every network for the limits of one scenario at a time; ``tell`` and ``name`` as of `Search`."""
 
     def __init__(self, tell: Callable[[], None], name: str = "limits") -> None:
-        super().__init__(tell, _designs, lambda found: not found.stopped, Text("Stopped: no design."), name)
+        super().__init__(tell, _designs, stopped=Text("Stopped: no design."), name=name, keeps=True)
 
     def beside(self, scenario: Scenario) -> Designs | None:
         """Designs for the same ship and limits; None when there are none."""

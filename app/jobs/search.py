@@ -5,7 +5,7 @@ import threading
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
-from navcore.foundation.errors import InputError
+from navcore.foundation.errors import InputError, StoppedError
 from navcore.foundation.text import Text
 from schuler_bench.jobs.elsewhere import LOST, carried_out
 from schuler_bench.jobs.load import heavy_load
@@ -15,6 +15,7 @@ from schuler_bench.jobs.worker import ElsewhereLost, Watch, Worker
 
 Asked = TypeVar("Asked")
 Found = TypeVar("Found")
+_STOPPING = Text("Stopping: what was found so far is kept.")
 _log = logging.getLogger("schuler.search")
 
 
@@ -38,6 +39,8 @@ class Search(Generic[Asked, Found]):
         ``load(asked)``: what it will take; by default that of heavy work on the scenario that is asked about.
     still_s : float
         Nothing newer must have been asked for so long before it is begun.
+    keeps : bool
+        What a job that is halted has found so far is a result, which says itself that it was stopped.
 
     Attributes
     ----------
@@ -66,7 +69,9 @@ class Search(Generic[Asked, Found]):
         name: str = "search",
         load: Callable[[Asked], Load] | None = None,
         still_s: float = 0.0,
+        keeps: bool = False,
     ) -> None:
+        self._keeps, self._halted = keeps, False
         self._tell, self._compute, self._complete = tell, compute, complete
         self._stopped, self._name = stopped, name
         self._lock = threading.Lock()
@@ -90,6 +95,7 @@ class Search(Generic[Asked, Found]):
     def _set(self, fraction: float | None, words: tuple[str, ...], under_way: Asked | None) -> None:
         with self._lock:
             self.fraction, self.words, self.under_way = fraction, words, under_way
+            self._halted = False
 
     def cancel(self, why: str = "") -> None:
         """Stop, and say why; an earlier result stays."""
@@ -99,6 +105,19 @@ class Search(Generic[Asked, Found]):
         self._worker.cancel()
         if self.words:
             self._tell()
+
+    def halt(self) -> None:
+        """Stop, and keep what was found so far where the job gives that; the second time, drop it."""
+        with self._lock:
+            first = self._keeps and self.under_way is not None and not self._halted
+            self._halted = self._halted or first
+        if first and self._worker.cancel():
+            with self._lock:
+                if self._halted and self.under_way is not None:
+                    self.words = (_STOPPING,)
+            self._tell()
+        else:
+            self.cancel()
 
     def forget(self) -> None:
         """Drop the result and what was said of it."""
@@ -151,6 +170,8 @@ class Search(Generic[Asked, Found]):
                     self.fraction, self.words = 0.0, (LOST,)
             self._tell()
             raise
+        except StoppedError:
+            words = self._because()
         except InputError as error:
             words = self._refused(error)
         except Exception as error:
@@ -162,7 +183,8 @@ class Search(Generic[Asked, Found]):
             if self.under_way is not asked:  # stopped, or another one waits
                 return
             self.fraction = self.under_way = None
-            self.words = words if complete or result is None else self._because()
+            ended_early = self._halted if result is None else not complete
+            self.words = words or (self._because() if ended_early else ())
             if complete:
                 self.result, self.asked = result, asked
         self._ended() if complete else self._tell()

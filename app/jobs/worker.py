@@ -115,8 +115,8 @@ class Worker(Generic[Job]):
                 self._stand_in_line()
             self._changed.notify_all()
 
-    def cancel(self) -> None:
-        """Stop the running job and forget the waiting one."""
+    def cancel(self) -> bool:
+        """Stop the running job and forget the waiting one; return whether one is running."""
         with self._changed:
             self._slot = []
             if self._ticket is not None:
@@ -125,6 +125,7 @@ class Worker(Generic[Job]):
             if self._watch is not None:
                 self._watch.stop_asked.set()
             self._changed.notify_all()
+            return self._watch is not None
 
     def stop(self) -> None:
         """Cancel everything; what runs is not waited for."""

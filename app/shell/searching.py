@@ -55,7 +55,7 @@ class SearchControls:
         self._stop = gui.add_button(words[1], color="orange", visible=False, order=stop)
         self._progress = gui.add_progress_bar(0.0, visible=False, order=progress)
         self._start.on_click(if_user(begin))
-        self._stop.on_click(if_user(search.cancel))
+        self._stop.on_click(if_user(search.halt))
 
     def follow(self, visible: bool = True) -> bool:
         """Show how far the search is, nothing where not ``visible``; return whether it is under way."""

@@ -11,6 +11,7 @@ from navcore.design.ship import Ship
 from navcore.design.stated import assumed_zero
 from navcore.design.tuned_designs import kalman, tuned_methods
 from navcore.engine.ensemble import outcomes
+from navcore.engine.load import estimated_seconds
 from navcore.foundation.errors import Fault, InputError, StoppedError
 from navcore.foundation.progress import part_of
 from navcore.foundation.text import Text
@@ -18,6 +19,8 @@ from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 
 SEEDS = 200
+_FEW, _AFTER_STOP_S = 4, 2.0
+"""Seeds that judge what was tuned before a stop, and about how long these may take, s."""
 _TUNING_SHARE = 0.5
 """Of the time that a design takes."""
 
@@ -87,7 +90,8 @@ def designs(
         Judge the scenario's methods as they stand; else each network of the catalogue, tuned for the largest
         share, and a Kalman filter that is told the same standard deviations.
     progress, cancelled : callable, optional
-        Told the fraction done, 0..1; when ``cancelled`` says True, what was completed is judged.
+        Told the fraction done, 0..1; when ``cancelled`` says True, what was completed is judged: what was
+        tuned by then, on a few seeds, or all methods on the seeds that were run.
 
     Raises
     ------
@@ -105,14 +109,17 @@ def designs(
         raise InputError(Fault("", "--seeds", seeds, Text("must be >= 1")))
     share = 0.0 if as_set else _TUNING_SHARE
     if as_set:
-        methods, left_out = scenario.method, ()
+        methods, left_out, early = scenario.method, (), False
     else:
         tuned, left_out = tuned_methods(scenario, part_of(progress, 0.0, share), cancelled)
-        methods = (*tuned, *kalman(scenario))
-    if not methods:
+        early = cancelled is not None and cancelled()
+        methods = tuple(tuned) if early else (*tuned, *kalman(scenario))
+    if early:
+        seeds, cancelled = _few(scenario, methods, seeds), None
+    elif not methods:
         raise InputError([Fault("", "method", name, reason) for name, reason in left_out])
     found = outcomes(scenario, methods, range(seeds), part_of(progress, share, 1.0), cancelled)
-    stopped = cancelled is not None and cancelled()
+    stopped = early or (cancelled is not None and cancelled())
     if not found:
         raise StoppedError(
             Fault("", "--seeds", seeds, Text("the command was stopped before a seed was completed"))
@@ -120,6 +127,23 @@ def designs(
     shares = _judged(scenario, methods, found)
     result = Designs(len(found), shares, assumed_zero(scenario), tuple(left_out), stopped=stopped)
     return result if result.met or stopped else replace(result, needed=needed(scenario, shares, cancelled))
+
+
+def _few(scenario: Scenario, methods: Sequence[Method], seeds: int) -> int:
+    """Seeds by which to judge what a search has found that was stopped: a few, which take little time.
+
+    Raises
+    ------
+    StoppedError
+        Not even one, or nothing was found.
+    """
+    each_s = estimated_seconds(scenario.model_copy(update={"method": tuple(methods)}))
+    few = min(seeds, _FEW, int(_AFTER_STOP_S / each_s))
+    if not (methods and few):
+        raise StoppedError(
+            Fault("", "--seeds", seeds, Text("the command was stopped before a seed was completed"))
+        )
+    return few
 
 
 def _judged(scenario: Scenario, methods: Sequence[Method], found: Sequence[Any]) -> tuple[Share, ...]:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -28,15 +29,22 @@ LEFT_OUT = ("none", "custom")
 """Networks without parameters of a design of their own."""
 _LEAST = 1e-12
 """Value that stands for 0 where ratios are compared."""
-_WEIGHTS = np.linspace(0.0, 1.0, 7)
-_EFFORTS = {
-    (False, False): Effort(6, 8, 40),
-    (False, True): Effort(10, 22, 160),
-    (True, False): Effort(5, 3, 14),
-    (True, True): Effort(6, 6, 40),
-}
-"""By whether objectives are over a run, and whether one is sought alone: the ends of the front."""
+_WEIGHTS, _WEIGHTS_ALONG = np.linspace(0.0, 1.0, 7), np.linspace(0.0, 1.0, 3)
+_EFFORT = Effort(6, 8, 40)
+_EFFORT_ALONG = Effort(8, 6, 30)
 _POINTS = 24
+_WEIGHED_PART = 0.7
+"""Part of a network's search that weighs the objectives; the rest mends ends and gaps."""
+_END, _END_ALONG = 150, 50
+"""Evaluations of a search on from an end of the front."""
+_GAP, _GAP_ALONG, _GAPS = 60, 25, 12
+"""Evaluations of a search in a gap, and how many gaps are searched at most."""
+_NARROW = 0.01
+"""A gap in which no setting can be better by more than this part is left."""
+_ALSO = 1e-3
+"""Weight of the objective that does not matter."""
+Seen = tuple[tuple[float, float], dict[str, Any]]
+"""Objectives and network block of a setting."""
 
 
 @dataclass(frozen=True)
@@ -106,12 +114,17 @@ class Pareto:
 
 
 class _Weighed(Search):
-    """Search for w log a + (1 - w) log b that remembers every setting it saw."""
+    """Search for w log a + (1 - w) log b that remembers every setting it saw.
+
+    With a ``gap`` it looks between two neighbours of the front for what is least in the larger of the two
+    distances from the corner where both would have their better value: weighing finds no hollow of a front.
+    """
 
     def __init__(self, ship: Ship, varied: Sequence[Any], names: tuple[str, str]) -> None:
         super().__init__([ship], varied, read_objective(names[0]), ())
         self.names, self.weight = names, 0.5
-        self.seen: list[tuple[tuple[float, float], dict[str, Any]]] = []
+        self.gap: tuple[Point, Point] | None = None
+        self.seen: list[Seen] = []
 
     def value(self, settings: Sequence[Setting]) -> float:
         both = _both(settings[0], self.names)
@@ -119,8 +132,17 @@ class _Weighed(Search):
             return math.inf
         self.seen.append((both, settings[0].method.network.model_dump(mode="json", exclude_none=True)))
         # above zero, or the clipping of missed requirements would take it
+        if self.gap is not None:
+            left, right = self.gap
+            across = math.log(_ratio(both[0], left.values[0])) / _step(left, right, 0)
+            up = math.log(_ratio(both[1], right.values[1])) / _step(right, left, 1)
+            return 100.0 + max(across, up) + _ALSO * (across + up)
         first, second = (math.log(max(value, _LEAST)) for value in both)
         return 100.0 + self.weight * first + (1.0 - self.weight) * second
+
+    def place(self, point: Point) -> np.ndarray:
+        """Place of a point within the ranges."""
+        return np.array([one.place(point.network[one.path[-1]]) for one in self.varied])
 
 
 def pareto(
@@ -149,7 +171,7 @@ def pareto(
     along : bool
         Over the scenario's run, else in the steady state at rest.
     whole : bool
-        Beyond the sliders, over all that the fields allow.
+        Search all that the fields allow, not only what their sliders reach.
     progress, cancelled : callable, optional
         Told the fraction done; asked before each evaluation.
 
@@ -182,9 +204,7 @@ def pareto(
             if progress is not None:
                 progress((done + fraction) / len(ids))
 
-        seen, stopped = _front(
-            scenario, method, name, objectives, report, cancelled, along=along, whole=whole
-        )
+        seen, stopped = _front(scenario, method, name, objectives, along, whole, report, cancelled)
         fronts[name] = tuple(
             _judged(point, Setting(ship, _with_network(scenario.method[method], point.network)))
             for point in _best(seen)
@@ -261,12 +281,11 @@ def _front(
     index: int,
     network: str,
     names: tuple[str, str],
-    report: Callable[[float], None],
-    cancelled: Callable[[], bool] | None,
-    *,
     along: bool,
     whole: bool,
-) -> tuple[list[tuple[tuple[float, float], dict[str, Any]]], bool]:
+    report: Callable[[float], None],
+    cancelled: Callable[[], bool] | None,
+) -> tuple[list[Seen], bool]:
     """Every setting of a network that a few weighted searches saw, and whether they were stopped."""
     method = scenario.method[index]
     with_network = scenario.designed(_with_network(method, {"id": network}))
@@ -282,25 +301,81 @@ def _front(
     varied = read_varied(other, [f"method.{index}.network.{field}" for field in fields], whole)
     search = _Weighed(ship, varied, names)
     search.cancelled = cancelled
-    for k, weight in enumerate(_WEIGHTS):
-        report(k / len(_WEIGHTS))
+    weights = _WEIGHTS_ALONG if along else _WEIGHTS
+    for k, weight in enumerate(weights):
+        report(_WEIGHED_PART * k / len(weights))
         search.weight = float(weight)
         start = None if search.best is None else search.best[1]
-        end = weight in (_WEIGHTS[0], _WEIGHTS[-1])
-        if search.run(_EFFORTS[along, end], start):
+        if search.run(_EFFORT_ALONG if along else _EFFORT, start):
             return seen + search.seen, True
         assert search.best is not None and search.best[0] > -MISSED
-    return seen + search.seen, False
+    report(_WEIGHED_PART)
+    stopped = _ends(search, _END_ALONG if along else _END) or _gaps(search, _GAP_ALONG if along else _GAP)
+    return seen + search.seen, stopped
 
 
-def _best(seen: Sequence[tuple[tuple[float, float], dict[str, Any]]]) -> tuple[Point, ...]:
-    """Points that no other beats in both objectives, thinned out to equal ratios."""
+def _ends(search: _Weighed, evaluations: int) -> bool:
+    """Search on from both ends of the front; return whether that was stopped.
+
+    The other objective counts a little: along a flat end much of it may be lost for nothing.
+    """
+    for weight, at in ((1.0 - _ALSO, 0), (_ALSO, -1)):
+        for _ in range(2):  # again from where it stood: a flat valley shrinks the simplex
+            points = _undominated(search.seen)
+            if not points:
+                return False
+            search.weight = weight
+            if search.near(search.place(points[at]), evaluations):
+                return True
+    return False
+
+
+def _gaps(search: _Weighed, evaluations: int) -> bool:
+    """Search in the widest gaps of the front; return whether that was stopped."""
+    tried = set()
+    for _ in range(_GAPS):
+        points = _undominated(search.seen)
+        pairs = [pair for pair in pairwise(points) if (pair[0].values, pair[1].values) not in tried]
+        widest = max(pairs, key=_width, default=None)
+        if widest is None or _width(widest) < _NARROW:
+            break
+        search.gap = widest
+        tried.add((widest[0].values, widest[1].values))
+        middle = 0.5 * (search.place(widest[0]) + search.place(widest[1]))
+        if search.near(middle, evaluations):
+            return True
+    return False
+
+
+def _ratio(first: float, second: float) -> float:
+    return max(first, _LEAST) / max(second, _LEAST)
+
+
+def _step(less: Point, more: Point, axis: int) -> float:
+    """Logarithm of the ratio of two neighbours' objectives."""
+    return math.log(_ratio(more.values[axis], less.values[axis]))
+
+
+def _width(pair: tuple[Point, Point]) -> float:
+    """By how much at most a setting between two neighbours beats the nearer one, as a logarithm."""
+    left, right = pair
+    return min(_step(left, right, 0), _step(right, left, 1))
+
+
+def _undominated(seen: Sequence[Seen]) -> list[Point]:
+    """Points that no other beats in both objectives, in order of the first."""
     front: list[Point] = []
     lowest = math.inf
     for values, network in sorted(seen, key=lambda one: one[0]):
         if values[1] < lowest:
             lowest = values[1]
             front.append(Point(values, network))
+    return front
+
+
+def _best(seen: Sequence[Seen]) -> tuple[Point, ...]:
+    """Points that no other beats in both objectives, thinned out to equal ratios."""
+    front = _undominated(seen)
     if len(front) <= _POINTS:
         return tuple(front)
     places = np.log(np.maximum([p.values for p in front], _LEAST))

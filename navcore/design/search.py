@@ -133,7 +133,7 @@ class Search:
 
     def run(self, effort: Effort, start: np.ndarray | None) -> bool:
         """Search; the best is then in `best`. Return whether the search was stopped."""
-        from scipy.optimize import differential_evolution, minimize
+        from scipy.optimize import differential_evolution
 
         count = len(self.varied)
         self.done, self.best = 0, None
@@ -154,19 +154,31 @@ class Search:
                 x0=start,
             )
             assert self.best is not None
-            for _ in range(2):  # Nelder-Mead again from where it stood: a flat valley shrinks its simplex
-                simplex = self.best[1] + 0.04 * np.vstack([np.zeros(count), np.eye(count)])
-                simplex = np.where(simplex > 1.0, simplex - 0.08, simplex)
-                options = {
-                    "initial_simplex": simplex,
-                    "maxfev": effort.finish // 2,
-                    "xatol": 1e-6,
-                    "fatol": 1e-9,
-                }
-                minimize(self.cost, self.best[1], method="Nelder-Mead", bounds=bounds, options=options)
+            for _ in range(2):  # again from where it stood: a flat valley shrinks the simplex
+                self._local(self.best[1], effort.finish // 2)
         except _Stopped:
             return True
         return False
+
+    def near(self, start: np.ndarray, evaluations: int) -> bool:
+        """Search around a place; the best is then in `best`. Return whether the search was stopped."""
+        self.best = None
+        try:
+            self._local(start, evaluations)
+        except _Stopped:
+            return True
+        return False
+
+    def _local(self, start: np.ndarray, evaluations: int) -> None:
+        """Nelder-Mead from a place."""
+        from scipy.optimize import minimize
+
+        count = len(self.varied)
+        simplex = start + 0.04 * np.vstack([np.zeros(count), np.eye(count)])
+        simplex = np.where(simplex > 1.0, simplex - 0.08, simplex)
+        options = {"initial_simplex": simplex, "maxfev": evaluations, "xatol": 1e-6, "fatol": 1e-9}
+        bounds = [(0.0, 1.0)] * count
+        minimize(self.cost, start, method="Nelder-Mead", bounds=bounds, options=options)
 
 
 def no_method(search: Search, vary: str) -> Iterator[Fault]:

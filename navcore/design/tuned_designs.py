@@ -21,6 +21,7 @@ from navcore.design.vary import read_varied
 from navcore.engine.ensemble import SEARCHED, outcomes
 from navcore.engine.measures import begins_s
 from navcore.foundation.errors import InputError
+from navcore.foundation.text import Text
 from navcore.networks import NETWORKS
 from navcore.quantities import HEADING, POSITION, QUANTITIES, TILT, VELOCITY, Quantity, limit_unit
 from navcore.scenario.method import Method
@@ -57,6 +58,7 @@ def tuned_methods(
     left_out: list[tuple[str, str]] = []
     for k, name in enumerate(ids):
         if cancelled is not None and cancelled():
+            left_out += [(other, Text("the search was stopped before it")) for other in ids[k:]]
             break
         found, reason = _candidates(scenario, name, cancelled)
         if found:

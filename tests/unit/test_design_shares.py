@@ -16,7 +16,7 @@ from navcore.design.tune import tune
 from navcore.engine.ensemble import drawn, outcomes
 from navcore.engine.measures import judged
 from navcore.engine.simulation import simulate
-from navcore.foundation.errors import InputError
+from navcore.foundation.errors import InputError, StoppedError
 from navcore.foundation.units import ARCMIN, ARCSEC
 from navcore.scenario.file import to_toml
 from navcore.scenario.method import Method
@@ -199,6 +199,24 @@ def test_networks_are_tuned_for_the_largest_share() -> None:
     as_set = designs(scenario.model_copy(update={"method": (default,)}), 40, as_set=True)
     assert shares["compass"] > as_set.methods[0].met + 0.1
     assert progress[-1] == pytest.approx(1.0) and sorted(progress)[0] > 0.0
+
+
+@pytest.mark.parametrize("part", [0.2, 0.7])
+def test_a_design_that_is_stopped_keeps_what_it_has(part: float) -> None:
+    """While it tunes: the networks so far on a few seeds; while it runs: all methods on fewer seeds."""
+    done = [0.0]
+    found = designs(ship(), 40, progress=done.append, cancelled=lambda: done[-1] >= part)
+    names = [share.method.name for share in found.methods]
+    late = [name for name, reason in found.left_out if reason == "the search was stopped before it"]
+    assert found.stopped and 1 <= found.seeds < 40
+    assert sorted([*names, *late]) == sorted(set(names) | set(late))
+    assert {"compass", "classic2", "kalman"} <= {*names, *late, "kalman"}
+    assert ("kalman" in names) is not bool(late) and bool(late) is (part < 0.35)
+
+
+def test_a_design_that_is_stopped_at_once_has_nothing() -> None:
+    with pytest.raises(StoppedError):
+        designs(ship(), 40, cancelled=lambda: True)
 
 
 def test_drawn_errors_reach_the_run() -> None:

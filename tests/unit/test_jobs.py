@@ -11,7 +11,7 @@ from navcore.design.sun_settings import TuningSettings
 from navcore.foundation.errors import Fault, InputError
 from navcore.scenario.model import Scenario
 from schuler_bench.editing import edits
-from schuler_bench.jobs.designer import TableTask, Tuner
+from schuler_bench.jobs.designer import Designer, Fronts, FrontsTask, Limits, TableTask, Tuner, TuningTask
 from schuler_bench.jobs.scheduler import Lane, Load
 from schuler_bench.jobs.searches import Searches
 from schuler_bench.jobs.verifier import CHANGED, STOPPED, Verifier
@@ -182,6 +182,78 @@ def test_a_table_is_found_stopped_refused_and_kept() -> None:
         assert words in tuner.words[0] and tuner.fraction is None
         assert tuner.result is kept
     tuner.stop()
+
+
+# ---------------------------------------------------------------- a search that is halted
+
+
+COMPASS = {"id": "compass"}
+SHIP = Scenario.parse(
+    {
+        "run": {"duration_h": 2.0},
+        "imu": {"gyro_arw_dpsh": 0.003, "accel_vrw_ugpshz": 20.0},
+        "reference": {"kind": "log", "noise_mps": 0.1, "drift_mps": 0.05},
+        "method": [{"name": "compass", "damping": "external", "network": COMPASS}],
+        "requirement": [{"quantity": "tilt_max_arcsec", "at_most": 30.0, "from_h": 0.5}],
+    }
+)
+
+
+@pytest.mark.parametrize(
+    ("kind", "task", "found"),
+    [
+        (Designer, TuningTask(SHIP, "tilt_rms", ("method.0.network.xi",), ()), lambda one: one.best),
+        (Fronts, FrontsTask(SHIP, 0, ("tilt_rms", "velocity_rms")), lambda one: one.fronts["compass"]),
+        (Limits, SHIP, lambda one: one.methods),
+    ],
+)
+def test_what_a_halted_search_has_found_is_kept_and_marked(kind: Any, task: Any, found: Any) -> None:
+    halted: list[float] = []
+
+    def tell() -> None:
+        if search.fraction and not halted:
+            halted.append(search.fraction)
+            search.halt()
+
+    search = kind(tell)
+    search._worker._load = lambda _: Load(Lane.SPARE)
+    search.report_after_s = search.report_every_s = 0.0
+    search.begin(task)
+    assert search.wait_idle(60.0)
+    assert 0.0 < halted[0] < 0.9
+    assert search.result is not None and search.result.stopped and found(search.result)
+    assert search.words == () and search.fraction is None and search.asked is task
+    search.stop()
+
+
+def test_a_search_that_is_halted_twice_or_before_its_turn_leaves_nothing() -> None:
+    begun, go_on = threading.Event(), threading.Event()
+
+    def compute(asked: Any, progress: Any, cancelled: Any) -> Any:
+        begun.set()
+        go_on.wait(10.0)
+        return SimpleNamespace(fronts={"compass": ()}, stopped=True)
+
+    fronts = Fronts(lambda: None)
+    fronts._compute = compute
+    fronts._worker._load = lambda _: Load(Lane.SPARE)
+    task = FrontsTask(SHIP, 0, ("tilt_rms", "velocity_rms"))
+    fronts.begin(task)
+    assert begun.wait(5.0)
+    fronts.halt()
+    assert fronts.words == ("Stopping: what was found so far is kept.",) and fronts.under_way is task
+    fronts.halt()
+    assert fronts.words == ("Stopped: no fronts were found.",) and fronts.under_way is None
+    fronts.begin(task)  # waits for the one that does not end
+    fronts.begin(task)
+    go_on.set()
+    assert fronts.wait_idle(5.0) and fronts.result is not None
+    fronts.forget()
+    fronts._worker._still_s = 60.0
+    fronts.begin(task)
+    fronts.halt()
+    assert fronts.words == ("Stopped: no fronts were found.",) and fronts.result is None
+    fronts.stop()
 
 
 # ---------------------------------------------------------------- verification

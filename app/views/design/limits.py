@@ -30,6 +30,8 @@ NO_LIMITS = Text(
     "Requirements; this table then says which methods meet it, and with what probability."
 )
 _TAKE, _TAKE_HINT = Text("Take"), Text("Put it into the method that is edited; undo takes it back.")
+_TUNED = Text("Every network, tuned for these limits, and a Kalman filter")
+_STOPPED = Text("The search was stopped: what was found so far")
 _UNDER_WAY = Text("runs are under way")
 _HEADS = (
     Text("method"),
@@ -95,8 +97,7 @@ def designs_html(
             Line(share.method, Odds(share, found.seeds), "", place, growth_of(run.scenario, share.method))
             for place, share in enumerate(found.methods)
         ]
-        title = Text("Every network, tuned for these limits, and a Kalman filter")
-        body += [_title(title), *map(_line, designs)]
+        body += [_title(_STOPPED if found.stopped else _TUNED), *map(_line, designs)]
     limits = limits_of(run.scenario.requirement)
     words = Text.joined(", ", (limit_words(key, limit, short_label(key)) for key, limit in limits.items()))
     said = Text("Limits: {asked}.", asked=words)

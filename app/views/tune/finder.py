@@ -18,6 +18,7 @@ from schuler_bench.views.tune.fronts import COMMAND, nearest, setting_text
 ACROSS, UP = "across", "up"
 FIND, STOP = Text("Find the fronts"), Text("Stop finding")
 _OLD = Text("of an earlier scenario: find the fronts again")
+_SO_FAR = Text("the search was stopped: the fronts so far")
 _CLICK = Text("Click a point to put it into the method; undo takes it back.")
 
 
@@ -63,10 +64,12 @@ class FrontsPanel:
 
     @property
     def note(self) -> str:
-        """Note that the fronts are of an earlier scenario; empty while they fit."""
-        task = self._fronts.asked
-        old = self.found is not None and task is not None and not task.fits(self.session.scenario)
-        return _OLD if old else ""
+        """Note that the fronts are of an earlier scenario, or not complete; empty otherwise."""
+        task, found = self._fronts.asked, self.found
+        if found is None or task is None:
+            return ""
+        old = not task.fits(self.session.scenario)
+        return _OLD if old else _SO_FAR if found.stopped else ""
 
     @property
     def method(self) -> int:

@@ -84,7 +84,7 @@ class SettingPanel:
         self._beyond.on_update(if_user(lambda: show(beyond_sliders=self._beyond.value)))
 
     def show(self, *, chosen: bool) -> None:
-        """Show how far the search is, or its proposal; nothing while something else is ``chosen``."""
+        """Show how far the search is, or its proposal; only what fronts share while those are ``chosen``."""
         designer, scenario = self._designer, self.session.scenario
         self._offer(scenario)
         display = self.session.display
@@ -119,7 +119,6 @@ class SettingPanel:
             (self._objective, chosen),
             (self._vary, chosen),
             (self._keep, chosen),
-            (self._beyond, chosen),
             (self._accept, chosen and offered),
             (self._discard, chosen and offered),
             (self._undo, chosen and accepted),
