@@ -8,7 +8,8 @@ import numpy as np
 from navcore.checks.file import Checker, FileReport
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, DEG_PER_HOUR
-from navcore.sensors.recorded_imu import ImuRecord, is_imu_header, is_psins, read_imu, upward_axis
+from navcore.io.imu_table import is_imu_table
+from navcore.sensors.recorded_imu import ImuRecord, is_psins, read_imu, upward_axis
 
 _GRAVITY = 9.76, 9.84
 """From the equator at 5 km to the poles, m/s^2."""
@@ -19,7 +20,7 @@ _SLOWEST_HZ = 10.0
 def recognises(path: Path, head: bytes) -> bool:
     """Whether a file that begins so is a recorded IMU: PSINS text, or a CSV that names its quantities."""
     text = head.decode("utf-8", errors="replace")
-    return (is_psins(text) and _numbers_below(text)) or is_imu_header(text.lstrip().split("\n", 1)[0])
+    return (is_psins(text) and _numbers_below(text)) or is_imu_table(text)
 
 
 def _numbers_below(text: str) -> bool:
@@ -37,7 +38,9 @@ def check_imu(path: Path) -> FileReport:
     record = read_imu(path)
     kind = "recorded IMU, PSINS" if record.lat is not None else "recorded IMU, CSV"
     details = _details(record)
-    return FileReport(str(path), kind, details, tuple(_text(details)), tuple(_warnings(details)))
+    return FileReport(
+        str(path), kind, details, tuple(_text(details)), (*record.warnings, *_warnings(details))
+    )
 
 
 IMU_CHECKER = Checker(recognises, check_imu)

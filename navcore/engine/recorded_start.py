@@ -178,6 +178,7 @@ def _align(scenario: Scenario, record: ImuRecord, begin: int, first: int, truth:
 
 
 def _notices(scenario: Scenario, record: ImuRecord, site: Site) -> Iterator[str]:
+    yield from record.warnings
     if not scenario.motion.recorded:
         yield from _parked_notices(scenario, record, site)
     unused = [

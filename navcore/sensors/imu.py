@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import lru_cache
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from pydantic import Field, create_model
@@ -17,6 +17,7 @@ from navcore.sensors.imu_errors import TERMS
 from navcore.sensors.imu_errors.base import Clock, Part
 from navcore.sensors.imu_errors.triad import Triad
 from navcore.sensors.imu_kernels import attitude_changes, mean_attitude, scaled_signals, turn_errors
+from navcore.sensors.recorded_imu import Axes
 
 if TYPE_CHECKING:
     from navcore.sensors.imu_errors.bias import Bias, BiasDeviation
@@ -44,14 +45,16 @@ class Imu(_Errors):
         description=Text(
             "Recorded IMU in place of the simulated one (strapdown): PSINS text, or CSV with t_s and "
             "gx_rad_s, gy_rad_s, gz_rad_s, fx_mps2, fy_mps2, fz_mps2 (means), or dax_rad ... dvz_mps "
-            "(increments). Alignment and navigation take its samples one after the other."
+            "(increments), or names such as GYRO X [deg/s]. Alignment and navigation take its samples one "
+            "after the other."
         ),
         json_schema_extra={"label": Text("IMU file")},
     )
-    axes: Literal["rfu", "frd"] = choice(
+    axes: Axes = choice(
         "rfu",
         help=Text(
-            "Axes of a recorded CSV: right, forward, up, or forward, right, down. PSINS files are rfu."
+            "Where x, y and z of a recorded CSV point: r or l (right, left), f or b (forward, back), u or d "
+            "(up, down). PSINS files are rfu."
         ),
     )
     begin_s: float = quantity(

@@ -15,8 +15,15 @@ import numpy as np
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG
+from navcore.io.coarse_stamps import spread
+from navcore.io.even_stamps import Evenness, evenness
+from navcore.io.imu_table import is_imu_table, read_imu_table
 
-Axes = Literal["rfu", "frd"]
+Axes = Literal[
+    "rfu", "frd", "flu", "rbd", "rub", "rdf", "lfd", "lbu", "luf", "ldb", "fur", "fdl",
+    "bru", "bld", "bul", "bdr", "urf", "ulb", "ufl", "ubr", "drb", "dlf", "dfr", "dbl",
+]  # fmt: skip
+"""Directions of x, y and z in the vehicle: right or left, forward or back, up or down; right-handed."""
 _PSINS_GRAVITY = 9.780327
 """The g of PSINS's ug, m/s^2."""
 _LARGEST_FORCE_ERROR = 0.02
@@ -24,10 +31,9 @@ _LARGEST_FORCE_ERROR = 0.02
 _LARGEST_TILT = 30.0 * DEG
 _LARGEST_FILE = 128 * 1024 * 1024
 """Bytes: a day at 100 Hz."""
-_GAP = 1.5
-"""Sample intervals; more is a gap."""
-_RATES = ("gx_rad_s", "gy_rad_s", "gz_rad_s", "fx_mps2", "fy_mps2", "fz_mps2")
-_INCREMENTS = ("dax_rad", "day_rad", "daz_rad", "dvx_mps", "dvy_mps", "dvz_mps")
+_HEAD_BYTES = 8192
+_UNEVEN = 0.1
+"""Share of the sample interval by which stamps may be uneven without a word."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +50,8 @@ class ImuRecord:
         File it came from.
     lat, lon, height : float or None
         Position if the file gives one, rad, m.
+    warnings : tuple of str
+        What was assumed of it.
     """
 
     increments: np.ndarray
@@ -52,6 +60,7 @@ class ImuRecord:
     lat: float | None = None
     lon: float | None = None
     height: float | None = None
+    warnings: tuple[str, ...] = ()
 
     @property
     def duration_s(self) -> float:
@@ -62,15 +71,15 @@ class ImuRecord:
 def read_imu(path: str | os.PathLike[str], axes: Axes = "rfu") -> ImuRecord:
     """Read a recorded IMU: PSINS text (``%`` comments) or CSV with a header.
 
-    CSV columns: ``t_s`` and ``gx_rad_s ... fz_mps2`` (means over the interval that ends at t_s), or
-    ``dax_rad ... dvz_mps`` (increments).
+    CSV columns: a time, three rates and three forces (means over the interval that ends at their time), or
+    three increments of angle and three of velocity, by the names that `navcore.io.imu_columns` knows.
 
     Parameters
     ----------
     path : path
         File.
-    axes : {"rfu", "frd"}
-        Axes of a CSV: right-forward-up or forward-right-down. PSINS files are right-forward-up.
+    axes : Axes
+        Of a CSV, such as ``rfu`` or ``frd``. PSINS files are right-forward-up.
 
     Raises
     ------
@@ -90,17 +99,14 @@ def read_imu(path: str | os.PathLike[str], axes: Axes = "rfu") -> ImuRecord:
         binary = isinstance(error, UnicodeDecodeError)
         reason = Text("is not a text file") if binary else (error.strerror or Text("cannot be read"))
         raise InputError(Fault(str(path), "imu.file", None, reason)) from None
-    return _psins(text, str(path)) if is_psins(text) else _csv(text, str(path), axes)
+    if is_psins(text) and not is_imu_table(text):
+        return _psins(text, str(path))
+    return _csv(text, str(path), axes)
 
 
 def is_psins(text: str) -> bool:
     """Whether a text begins as PSINS files do."""
-    return text.lstrip().startswith("%")
-
-
-def is_imu_header(line: str) -> bool:
-    """Whether the first line of a CSV names some of an IMU's quantities."""
-    return len(set(_RATES + _INCREMENTS) & {name.strip() for name in line.split(",")}) >= 2
+    return text[:_HEAD_BYTES].lstrip().startswith("%")
 
 
 def upward_axis(force: np.ndarray) -> str:
@@ -185,23 +191,30 @@ def _psins(text: str, source: str) -> ImuRecord:
 
 
 def _csv(text: str, source: str, axes: Axes) -> ImuRecord:
-    lines = [line for line in text.splitlines() if line.strip()]
-    header = [name.strip() for name in lines[0].split(",")] if lines else []
-    kind = next((names for names in (_RATES, _INCREMENTS) if set(names) <= set(header)), None)
-    if kind is None or "t_s" not in header:
-        allowed = Text(
-            "needs a header with t_s and {rates} (or {increments})",
-            rates=", ".join(_RATES),
-            increments=", ".join(_INCREMENTS),
+    table = read_imu_table(text, source)
+    time_s, _ = spread(table.time_s)
+    stamps = _regular(time_s, source)
+    interval, told = stamps.interval_s, list(table.warnings)
+    if stamps.jitter_s > _UNEVEN * interval:
+        told.append(
+            Text(
+                "the stamps are uneven by up to {jitter:.3g} ms, but no sample is missing: taken as "
+                "{rate:.6g} samples a second",
+                jitter=1e3 * stamps.jitter_s,
+                rate=1.0 / interval,
+            )
         )
-        raise InputError(Fault(source, "imu.file", ",".join(header), allowed))
-    table = _numbers(lines[1:], len(header), source, first_line=2, separator=",")
-    columns = {name: table[:, i] for i, name in enumerate(header)}
-    interval = _regular(columns["t_s"], source)
-    values = np.column_stack([columns[name] for name in kind]) * (interval if kind is _RATES else 1.0)
-    if axes == "frd":
-        values = values[:, [1, 0, 2, 4, 3, 5]] * np.array([1.0, 1.0, -1.0, 1.0, 1.0, -1.0])
-    return ImuRecord(values, 1.0 / interval, source)
+    values = turned(table.values * (1.0 if table.increments else interval), axes)
+    return ImuRecord(values, 1.0 / interval, source, warnings=tuple(told))
+
+
+def turned(values: np.ndarray, axes: Axes) -> np.ndarray:
+    """Angles and velocities, shape (n, 6), from the given axes to right, forward, up."""
+    places = [next(i for i, letter in enumerate(axes) if letter in pair) for pair in ("rl", "fb", "ud")]
+    signs = [1.0 if axes[i] in "rfu" else -1.0 for i in places]
+    if places == [0, 1, 2] and signs == [1.0, 1.0, 1.0]:
+        return values
+    return values[:, [*places, *(3 + i for i in places)]] * np.array([*signs, *signs])
 
 
 def _numbers(
@@ -240,24 +253,21 @@ def _is_row(line: str, columns: int, separator: str | None) -> bool:
         return False
 
 
-def _regular(time_s: np.ndarray, source: str) -> float:
-    """Sample interval of an even record; gaps and time running backwards are refused with their place."""
-    steps = np.diff(time_s)
-    back = np.flatnonzero(steps <= 0.0)
+def _regular(time_s: np.ndarray, source: str) -> Evenness:
+    """Stamps of a record without gaps; gaps and time running backwards are refused with their place."""
+    back = np.flatnonzero(np.diff(time_s) <= 0.0)
     if back.size:
         what = Text("time stands still or runs backwards at t = {time_s:g} s", time_s=time_s[back[0] + 1])
         raise InputError(Fault(source, "imu.file", None, what))
-    interval = float(np.median(steps))
-    gaps = np.flatnonzero(steps > _GAP * interval)
-    if gaps.size:
-        longest = float(steps[gaps].max())
+    stamps = evenness(time_s)
+    if stamps.gaps.size:
         what = Text(
             "{size} gaps, the first at t = {time_s:g} s, the longest {longest:g} s",
-            size=gaps.size,
-            time_s=time_s[gaps[0]],
-            longest=longest,
+            size=stamps.gaps.size,
+            time_s=time_s[stamps.gaps[0]],
+            longest=stamps.longest_s,
         )
         raise InputError(
             Fault(source, "imu.file", None, Text("{what}: a strapdown run needs every sample", what=what))
         )
-    return float((time_s[-1] - time_s[0]) / (len(time_s) - 1))
+    return stamps
