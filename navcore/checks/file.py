@@ -12,6 +12,7 @@ import numpy as np
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, KNOT
+from navcore.io.compressed import head_of
 from navcore.io.courses import course_warnings
 from navcore.io.plausible import speed_warnings
 from navcore.io.recording import read_recording
@@ -110,8 +111,7 @@ def check_file(path: str | os.PathLike[str], others: Sequence[Checker] = ()) -> 
     """
     try:
         existing = require_file(path)
-        with existing.open("rb") as stream:
-            head = stream.read(_SNIFFED_BYTES)
+        head = head_of(existing, _SNIFFED_BYTES)
         checker = next((c for c in others if c.recognises(existing, head)), None)
         return checker.check(existing) if checker is not None else check_log(existing)
     except InputError as error:

@@ -16,6 +16,7 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG
 from navcore.io.coarse_stamps import spread
+from navcore.io.compressed import unpacked
 from navcore.io.even_stamps import Evenness, evenness
 from navcore.io.imu_table import is_imu_table, read_imu_table
 
@@ -94,7 +95,7 @@ def read_imu(path: str | os.PathLike[str], axes: Axes = "rfu") -> ImuRecord:
                 largest_file=_LARGEST_FILE >> 20,
             )
             raise InputError(Fault(str(path), "imu.file", None, allowed))
-        text = file.read_text("utf-8")
+        text = unpacked(file, _LARGEST_FILE, "imu.file").decode("utf-8-sig").replace("\r\n", "\n")
     except (OSError, UnicodeDecodeError) as error:
         binary = isinstance(error, UnicodeDecodeError)
         reason = Text("is not a text file") if binary else (error.strerror or Text("cannot be read"))
