@@ -12,6 +12,7 @@ import numpy as np
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, KNOT
+from navcore.io.column_map import ColumnMap
 from navcore.io.compressed import head_of
 from navcore.io.courses import course_warnings
 from navcore.io.plausible import speed_warnings
@@ -118,9 +119,9 @@ def check_file(path: str | os.PathLike[str], others: Sequence[Checker] = ()) -> 
         return FileReport(str(path), "", faults=error.faults)
 
 
-def check_log(path: Path) -> FileReport:
+def check_log(path: Path, column_map: ColumnMap | None = None) -> FileReport:
     """Say what a log, track or heading file holds; raises `InputError`."""
-    recording = read_recording(path)
+    recording = read_recording(path, column_map)
     source = recording.sources[0]
     quantities = {name: _quantity(name, series) for name, series in recording.quantities().items()}
     details = {

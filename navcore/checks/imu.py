@@ -5,10 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from navcore.checks.file import Checker, FileReport
+from navcore.checks.file import Checker, FileReport, check_log
+from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, DEG_PER_HOUR
+from navcore.io.column_map import ColumnMap, read_map
 from navcore.io.imu_table import is_imu_table
+from navcore.io.source import require_file
 from navcore.sensors.recorded_imu import ImuRecord, is_psins, read_imu, upward_axis
 
 _GRAVITY = 9.76, 9.84
@@ -33,9 +36,9 @@ def _numbers_below(text: str) -> bool:
         return False
 
 
-def check_imu(path: Path) -> FileReport:
+def check_imu(path: Path, column_map: ColumnMap | None = None) -> FileReport:
     """Read a recorded IMU, its axes as they are; gaps, NaN, time running backwards raise `InputError`."""
-    record = read_imu(path)
+    record = read_imu(path, column_map=column_map)
     kind = "recorded IMU, PSINS" if record.lat is not None else "recorded IMU, CSV"
     details = _details(record)
     return FileReport(
@@ -44,6 +47,15 @@ def check_imu(path: Path) -> FileReport:
 
 
 IMU_CHECKER = Checker(recognises, check_imu)
+
+
+def check_mapped(file: str, map_file: str) -> FileReport:
+    """Say what a text table holds by a map: an IMU where the map names its quantities, else a log."""
+    try:
+        path, column_map = require_file(file), read_map(map_file)
+        return check_imu(path, column_map) if column_map.is_imu else check_log(path, column_map)
+    except InputError as error:
+        return FileReport(file, "", faults=error.faults)
 
 
 def _details(record: ImuRecord) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """Cells of a text table to numbers and times; a fault for each that makes no sense."""
 
+import math
 import re
 from collections.abc import Sequence
 from datetime import UTC, datetime
@@ -23,6 +24,23 @@ _DAY = 86400.0
 def is_empty(cell: str) -> bool:
     """Whether a cell stands for no reading."""
     return cell.strip().lower() in _EMPTY
+
+
+def is_number(cell: str) -> bool:
+    """Whether a cell is a number, or degrees with a hemisphere."""
+    try:
+        float(cell)
+    except ValueError:
+        return _degrees(cell.strip()) is not None
+    return True
+
+
+def is_time(cell: str) -> bool:
+    """Whether a cell is a number or a time that `times` reads."""
+    try:
+        return math.isfinite(float(cell))
+    except ValueError:
+        return _moment(cell.strip(), StampReader()) is not None
 
 
 def numbers(

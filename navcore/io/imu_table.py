@@ -10,11 +10,14 @@ import numpy as np
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
-from navcore.io.cells import times
+from navcore.io.cells import is_number, times
+from navcore.io.column_map import ColumnMap
 from navcore.io.column_names import QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns
 from navcore.io.columns import MOST_COLUMNS, listed
 from navcore.io.epochs import numeric_times
 from navcore.io.imu_columns import AXES, DIMENSIONS, FORCE, PAIRS, ImuColumn, imu_columns
+from navcore.io.mapped_rows import mapped_layout, skipped_text
+from navcore.io.mapped_times import MappedClock
 from navcore.io.written_units import UNITS, G
 
 if TYPE_CHECKING:
@@ -73,36 +76,46 @@ def is_imu_table(head: str) -> bool:
     return len(found) >= _FEWEST_NAMED and not known_columns(header.names).keys() & QUANTITIES.keys()
 
 
-def read_imu_table(text: str, source: str) -> ImuTable:
-    """Read a table whose header may stand in a comment or below a title.
+def read_imu_table(text: str, source: str, column_map: ColumnMap | None = None) -> ImuTable:
+    """Read a table whose header may stand in a comment or below a title; by a map, or by its names.
 
     Raises
     ------
     InputError
         A column is missing or its unit is not known (names the columns found), or a row is no row of numbers.
     """
-    header = _header(text)
-    found = imu_columns(header.names)
-    kinds = _kinds(found)
-    clock = _clock(header.names)
+    header = _header(text) if column_map is None else _mapped_header(text, column_map)
+    found = imu_columns(header.names) if column_map is None else column_map.imu_columns(source, header.names)
+    kinds, clock = _kinds(found), _clock(header.names, column_map)
     if kinds is None or clock is None:
         raise _missing(source, header, found)
     columns = [found[kind, axis] for kind in kinds for axis in AXES]
     _refuse_unknown(source, [*columns, clock])
-    names = [clock.name, *(column.name for column in columns)]
-    table = _numbers(text, header, [clock.index, *(column.index for column in columns)], names, source)
-    time_s, told = _seconds(table[0], clock, source)
-    raw = np.column_stack(table[1:])
+    clocks = [clock.index] if column_map is None else column_map.clocks(source, header.names)
+    rows = _Wanted(clocks, [column.index for column in columns], column_map)
+    cells, raw, skipped = _numbers(text, header, rows, source)
+    mapped = column_map is not None and (column_map.time.unit or column_map.time.zone)
+    if mapped and column_map is not None:
+        time_s, told = _mapped_seconds(cells, column_map, source)
+    else:
+        time_s, told = _seconds(cells[0], clock, source)
     lost = np.flatnonzero(~np.isfinite(raw).all(axis=1) | ~np.isfinite(time_s))
     if lost.size:
         what = Text(
             "{size} samples are NaN or infinite, the first at sample {lost}", size=lost.size, lost=lost[0] + 1
         )
         raise InputError(Fault(source, FIELD, None, what))
+    told += [skipped_text(skipped)] if skipped else []
     factors, guessed = _factors(columns, raw, source)
     if abs(time_s[0]) >= _DATED_FROM_S:
         time_s = time_s - time_s[0]
     return ImuTable(time_s, raw * factors, kinds != PAIRS[0], (*told, *guessed))
+
+
+def imu_layout(text: str) -> tuple[str, str, list[str]]:
+    """Separator, header line and header cells of a text."""
+    header = _header(text)
+    return header.separator, text[:_HEAD_BYTES].split("\n")[header.line], header.names
 
 
 def _header(text: str) -> _Header:
@@ -128,7 +141,15 @@ def _kinds(found: dict[tuple[str, str], ImuColumn]) -> tuple[str, str] | None:
     return next((p for p in PAIRS if all((kind, axis) in found for kind in p for axis in AXES)), None)
 
 
-def _clock(names: Sequence[str]) -> Column | None:
+def _mapped_header(text: str, column_map: ColumnMap) -> _Header:
+    lines = text[:_HEAD_BYTES].split("\n")[:_HEAD_LINES]
+    separator, line, names = mapped_layout(lines, column_map)
+    return _Header(lines.index(line) if line else 0, separator, [name.strip() for name in names])
+
+
+def _clock(names: Sequence[str], column_map: ColumnMap | None) -> Column | None:
+    if column_map is not None:
+        return Column(0, column_map.time.columns[0], UTC)
     known = known_columns(names)
     return next((known[stem] for stem in _CLOCKS if stem in known), None)
 
@@ -185,6 +206,19 @@ def _factors(columns: list[ImuColumn], raw: np.ndarray, source: str) -> tuple[np
     return np.array(given), (told,)
 
 
+def _mapped_seconds(
+    cells: list[np.ndarray], column_map: ColumnMap, source: str
+) -> tuple[np.ndarray, list[str]]:
+    """Times in s from the first sample, by a map."""
+    clock = MappedClock(column_map.time, column_map.decimal)
+    unit = column_map.time.numeric
+    if unit and cells[0].dtype.kind in "iuf":
+        return (cells[0] - cells[0][0]).astype(float) * UNITS["time"][unit], []
+    texts = [" ".join(row) for row in zip(*(map(str, column.tolist()) for column in cells), strict=True)]
+    time_s, _ = clock.read(source, texts, range(1, len(texts) + 1))
+    return time_s, clock.warnings()
+
+
 def _seconds(cells: np.ndarray, clock: Column, source: str) -> tuple[np.ndarray, list[str]]:
     """Times in s, and what was assumed of them."""
     if cells.dtype.kind not in "iuf":
@@ -209,10 +243,22 @@ def _seconds(cells: np.ndarray, clock: Column, source: str) -> tuple[np.ndarray,
     return numbers, told
 
 
+class _Wanted(NamedTuple):
+    """Places of the columns of time and of the six others, and the map that says so."""
+
+    clocks: list[int]
+    columns: list[int]
+    column_map: ColumnMap | None
+
+    @property
+    def decimal(self) -> str:
+        return "." if self.column_map is None else self.column_map.decimal
+
+
 def _numbers(
-    text: str, header: _Header, wanted: list[int], names: list[str], source: str
-) -> list[np.ndarray]:
-    """Columns of a table by their places, the first one (time) of any type; names a line that is no row."""
+    text: str, header: _Header, wanted: _Wanted, source: str
+) -> tuple[list[np.ndarray], np.ndarray, list[int]]:
+    """Columns of time, the six others, shape (n, 6), and the numbers of the rows that were skipped."""
     begin = 0
     for _ in range(header.line + 1):
         begin = text.find("\n", begin) + 1 or len(text)
@@ -221,27 +267,30 @@ def _numbers(
         raise InputError(Fault(source, FIELD, None, Text("holds fewer than two samples")))
     if header.separator == " ":
         body = "\n".join(" ".join(line.split()) for line in body.split("\n"))
+    skipped: list[int] = []
     try:
-        table = _parsed(body, header, wanted, names, clock_text=False)
+        table = _parsed(body, header, wanted, clock_text=False)
     except ValueError:
-        bad = _first_bad(body, header, wanted)
-        if bad is None:
-            table = _parsed(body, header, wanted, names, clock_text=True)
-        else:
-            number, line = bad
+        first = header.line + 2
+        bad = _bad_rows(body, header, wanted)
+        if bad and (wanted.column_map is None or not wanted.column_map.skip_bad_rows):
             what = Text(
                 "data line {bad} is no row of {columns} numbers: {lines}",
-                bad=number + header.line + 2,
+                bad=bad[0] + first,
                 columns=len(header.names),
-                lines=line[:60],
+                lines=body.split("\n")[bad[0]][:60],
             )
             raise InputError(Fault(source, FIELD, None, what)) from None
-    return [np.asarray(column.to_numpy()) for column in table.columns]
+        left_out = set(bad)
+        body = "\n".join(line for i, line in enumerate(body.split("\n")) if i not in left_out)
+        skipped = [number + first for number in bad]
+        table = _parsed(body, header, wanted, clock_text=True)
+    arrays = [np.asarray(column.to_numpy()) for column in table.columns]
+    clocks = len(wanted.clocks)
+    return arrays[:clocks], np.column_stack(arrays[clocks:]), skipped
 
 
-def _parsed(
-    body: str, header: _Header, wanted: list[int], names: list[str], *, clock_text: bool
-) -> pyarrow.Table:
+def _parsed(body: str, header: _Header, wanted: _Wanted, *, clock_text: bool) -> pyarrow.Table:
     """Read by pyarrow; raises ValueError for a row that does not fit."""
     import pyarrow
     from pyarrow import csv
@@ -249,35 +298,39 @@ def _parsed(
     def rest(row: csv.InvalidRow) -> Literal["skip", "error"]:
         return "skip" if row.text.lstrip().startswith(_COMMENTS) else "error"
 
-    places = [str(index) for index in range(len(header.names))]
-    number = pyarrow.float64()
-    types = {str(index): number for index in wanted[1:]}
-    if clock_text:
-        types[str(wanted[0])] = pyarrow.string()
+    number, text = pyarrow.float64(), pyarrow.string()
+    types = {str(index): number for index in wanted.columns}
+    if clock_text or len(wanted.clocks) > 1:
+        types |= {str(index): text for index in wanted.clocks}
     return csv.read_csv(
         io.BytesIO(body.encode()),
-        read_options=csv.ReadOptions(column_names=places, use_threads=False),
+        read_options=csv.ReadOptions(
+            column_names=[str(i) for i in range(len(header.names))], use_threads=False
+        ),
         parse_options=csv.ParseOptions(delimiter=header.separator, invalid_row_handler=rest),
         convert_options=csv.ConvertOptions(
-            include_columns=[str(index) for index in wanted],
+            include_columns=[str(index) for index in (*wanted.clocks, *wanted.columns)],
             column_types=types,
             null_values=["nan", "NaN", "NAN"],
             timestamp_parsers=["\0"],
+            decimal_point=wanted.decimal,
         ),
     )
 
 
-def _first_bad(body: str, header: _Header, wanted: list[int]) -> tuple[int, str] | None:
-    """Number (from 0) and text of the first line that is no row; the time may be a text."""
+def _bad_rows(body: str, header: _Header, wanted: _Wanted) -> list[int]:
+    """Numbers (from 0) of the lines that are no rows; only the first one where a row may not be skipped."""
+    skip = wanted.column_map is not None and wanted.column_map.skip_bad_rows
+    bad: list[int] = []
     for number, line in enumerate(body.split("\n")):
         if not line.strip() or line.lstrip().startswith(_COMMENTS):
             continue
         words = line.split(None if header.separator == " " else header.separator)
-        try:
-            if len(words) != len(header.names):
-                return number, line
-            for index in wanted[1:]:
-                float(words[index])
-        except ValueError:
-            return number, line
-    return None
+        if len(words) == len(header.names) and all(
+            is_number(words[i].replace(wanted.decimal, ".")) for i in wanted.columns
+        ):
+            continue
+        bad.append(number)
+        if not skip:
+            break
+    return bad

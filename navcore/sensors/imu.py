@@ -50,6 +50,11 @@ class Imu(_Errors):
         ),
         json_schema_extra={"label": Text("IMU file")},
     )
+    map: FileName | None = Field(
+        default=None,
+        description=Text("Map (TOML) that says what the columns of a text table mean: docs/import.md."),
+        json_schema_extra={"label": Text("map")},
+    )
     axes: Axes = choice(
         "rfu",
         help=Text(

@@ -16,6 +16,7 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG
 from navcore.io.coarse_stamps import spread
+from navcore.io.column_map import ColumnMap
 from navcore.io.compressed import unpacked
 from navcore.io.even_stamps import Evenness, evenness
 from navcore.io.imu_table import is_imu_table, read_imu_table
@@ -69,7 +70,9 @@ class ImuRecord:
         return len(self.increments) / self.rate_hz
 
 
-def read_imu(path: str | os.PathLike[str], axes: Axes = "rfu") -> ImuRecord:
+def read_imu(
+    path: str | os.PathLike[str], axes: Axes = "rfu", column_map: ColumnMap | None = None
+) -> ImuRecord:
     """Read a recorded IMU: PSINS text (``%`` comments) or CSV with a header.
 
     CSV columns: a time, three rates and three forces (means over the interval that ends at their time), or
@@ -81,6 +84,8 @@ def read_imu(path: str | os.PathLike[str], axes: Axes = "rfu") -> ImuRecord:
         File.
     axes : Axes
         Of a CSV, such as ``rfu`` or ``frd``. PSINS files are right-forward-up.
+    column_map : ColumnMap, optional
+        What the columns of a CSV mean.
 
     Raises
     ------
@@ -100,9 +105,9 @@ def read_imu(path: str | os.PathLike[str], axes: Axes = "rfu") -> ImuRecord:
         binary = isinstance(error, UnicodeDecodeError)
         reason = Text("is not a text file") if binary else (error.strerror or Text("cannot be read"))
         raise InputError(Fault(str(path), "imu.file", None, reason)) from None
-    if is_psins(text) and not is_imu_table(text):
+    if column_map is None and is_psins(text) and not is_imu_table(text):
         return _psins(text, str(path))
-    return _csv(text, str(path), axes)
+    return _csv(text, str(path), axes, column_map)
 
 
 def is_psins(text: str) -> bool:
@@ -191,8 +196,8 @@ def _psins(text: str, source: str) -> ImuRecord:
     return ImuRecord(counts * factors, 1000.0 / interval_ms, source, lat * DEG, lon * DEG, height)
 
 
-def _csv(text: str, source: str, axes: Axes) -> ImuRecord:
-    table = read_imu_table(text, source)
+def _csv(text: str, source: str, axes: Axes, column_map: ColumnMap | None) -> ImuRecord:
+    table = read_imu_table(text, source, column_map)
     time_s, _ = spread(table.time_s)
     stamps = _regular(time_s, source)
     interval, told = stamps.interval_s, list(table.warnings)
