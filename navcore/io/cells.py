@@ -132,7 +132,16 @@ def unix_or_elapsed(values: np.ndarray, unit: str = "") -> tuple[np.ndarray, boo
 def _written_times(
     where: str, name: str, cells: Sequence[str], rows: Sequence[int]
 ) -> tuple[np.ndarray, bool]:
-    reader = StampReader(day_comes_first(cell for cell in cells if "/" in cell))
+    day_first = day_comes_first(cell for cell in cells if "/" in cell)
+    if day_first is None:
+        at = next(index for index, cell in enumerate(cells) if "/" in cell)
+        allowed = Text(
+            "may begin with the day or with the month: say which by a map, with time.unit = "
+            "'%d/%m/%Y %H:%M:%S' (day first) or '%m/%d/%Y %H:%M:%S' (month first)"
+        )
+        row = Text("{where}, row {rows}", where=where, rows=rows[at])
+        raise InputError(Fault(row, name, cells[at].strip(), allowed))
+    reader = StampReader(day_first)
     seconds, dated = np.empty(len(cells)), np.ones(len(cells), dtype=bool)
     faults: list[Fault] = []
     for index, cell in enumerate(cells):
