@@ -13,7 +13,7 @@ from navcore.foundation.errors import InputError
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 
-SKIPPED = ("file", "axes", "speed")
+SKIPPED = ("file", "map", "axes", "speed")
 """Fields that only mean something with a recorded file."""
 _MOST_ITEMS = 3
 _ATTEMPTS = 4

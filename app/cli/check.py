@@ -30,24 +30,46 @@ class CheckCommand:
     ----------
     file : str
         The file.
+    map : str
+        Map (TOML) that says what the columns of the file mean.
+    write_map : str
+        Write the guess of such a map to this file, to be edited.
     json : bool
         Print one JSON document.
     """
 
     file: Annotated[Positional[str], arg(metavar="FILE")]
+    map: str | None = None
+    write_map: str | None = None
     json: bool = False
 
     def execute(self) -> int:
         """Print the report; 0 when the file was understood, else 2."""
-        report = guarded_check(self.file)
+        if self.write_map is not None and not self._write_map(self.write_map):
+            return 2
+        report = guarded_check(self.file, self.map)
         if self.json or report.ok:
             emit_result(self.json, report.as_dict(), report.lines)
         for fault in report.faults:
             say(str(fault))
         return 0 if report.ok else 2
 
+    def _write_map(self, target: str) -> bool:
+        """Write the guess; say why not where that cannot be."""
+        from navcore.checks.map_guess import write_map
+        from navcore.foundation.errors import InputError
 
-def guarded_check(file: str) -> FileReport:
+        try:
+            write_map(self.file, target, self.map)
+        except InputError as error:
+            for fault in error.faults:
+                say(str(fault))
+            return False
+        say(f"map: {target}")
+        return True
+
+
+def guarded_check(file: str, map_file: str | None = None) -> FileReport:
     """Check a file in a child process with bounds on memory and time: it may come from anywhere."""
     from navcore.checks.file import FileReport
     from navcore.foundation import guarded
@@ -62,7 +84,7 @@ def guarded_check(file: str) -> FileReport:
         compile_once(lambda what: say(f"kernels: {what}"))
     guarded.start((*_READERS, *_BY_ENDING.get(ending, ())), guarded.Limits(2 << 30, cpu_s=120, wall_s=600.0))
     try:
-        return guarded.call(file, check, file)
+        return guarded.call(file, check, file, map_file)
     except InputError as error:
         return FileReport(file, "", faults=error.faults)
     finally:
@@ -75,16 +97,18 @@ def _is_scenario(file: str) -> bool:
     return PurePath(file).suffix.lower() == ".toml" or file in presets()
 
 
-def check(file: str) -> FileReport:
-    """Check a file, or a preset by its name, in this process."""
+def check(file: str, map_file: str | None = None) -> FileReport:
+    """Check a file (by a map), or a preset by its name, in this process."""
     from pathlib import Path
 
     from navcore.checks.file import FileReport, check_file
-    from navcore.checks.imu import IMU_CHECKER
+    from navcore.checks.imu import IMU_CHECKER, check_mapped
     from navcore.foundation.errors import InputError
     from navcore.scenario.file import presets
     from schuler_bench.cli.check_scenario import SCENARIO_CHECKER, check_scenario
 
+    if map_file is not None:
+        return check_mapped(file, map_file)
     if file in presets() and not Path(file).exists():
         try:
             return check_scenario(file)

@@ -21,7 +21,7 @@ from schuler_bench.editing.form import Path
 _STRAPDOWN_ONLY: dict[str, tuple[str, ...]] = {
     "run": ("vertical", "compensation"),
     "alignment": ("kind",),
-    "imu": ("file", "axes", "begin_s"),
+    "imu": ("file", "map", "axes", "begin_s"),
 }
 
 

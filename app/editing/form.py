@@ -28,7 +28,7 @@ _SIGNIFICANT = 3
 _OUTSIDE = 1e-6
 """Part of a slider's range by which a value may lie outside and still counts as its end: rounding."""
 _LEAST, _MOST = 1e-100, 1e100
-_LEFT_OUT = ("kind", "id", "file")
+_LEFT_OUT = ("kind", "id", "file", "map")
 """Discriminators, and files: a visitor must name none of the server's."""
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -312,10 +313,10 @@ def shared_files(scenario: Scenario, names: Mapping[str, Path]) -> Scenario:
     ours = {path.name: path for path in asset_path("recordings").glob("*.csv")} | dict(names)
     data, faults = plain_names(scenario.canonical()), list[Fault]()
 
-    def path_of(block: str, name: str) -> str:
+    def path_of(field: str, name: str) -> str:
         if name not in ours:
             wanted = Text("upload this file first, then the scenario")
-            faults.append(Fault("", f"{block}.file", name, wanted))
+            faults.append(Fault("", field, name, wanted))
         return str(ours.get(name, name))
 
     data = _renamed(data, path_of)
@@ -365,12 +366,12 @@ def plain_names(data: dict[str, Any]) -> dict[str, Any]:
 
 
 def _renamed(data: dict[str, Any], rename: Callable[[str, str], str]) -> dict[str, Any]:
-    """Give every file in a scenario's canonical data the name ``rename(block, name)``."""
+    """Give every file in a scenario's canonical data the name ``rename(field, name)``."""
     data = dict(data)
-    for block in _WITH_FILES:
-        named = data.get(block, {}).get("file")
+    for block, key in product(_WITH_FILES, ("file", "map")):
+        named = data.get(block, {}).get(key)
         if named:
             single = isinstance(named, str)
-            names = [rename(block, str(name)) for name in ([named] if single else named)]
-            data[block] = data[block] | {"file": names[0] if single else names}
+            names = [rename(f"{block}.{key}", str(name)) for name in ([named] if single else named)]
+            data[block] = data[block] | {key: names[0] if single else names}
     return data

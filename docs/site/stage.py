@@ -19,7 +19,10 @@ _LINK = re.compile(r"\[([^\]]*)\]\(([^)#\s:]+)(#[^)\s]+)?\)")
 _ANCHORED_LINK = re.compile(r"\]\((?:[\w./-]+\.md)?#((?:s|eq)-[\w-]+)\)")
 
 _GUIDE = [
-    ("Start", ["docs/tutorial", "docs/scenario", "docs/networks", "docs/interface", "docs/scale"]),
+    (
+        "Start",
+        ["docs/tutorial", "docs/scenario", "docs/import", "docs/networks", "docs/interface", "docs/scale"],
+    ),
     ("Theory", ["docs/theory", "docs/design", "docs/papers"]),
     ("Lessons", []),
     ("Examples", []),

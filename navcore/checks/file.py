@@ -12,6 +12,8 @@ import numpy as np
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, KNOT
+from navcore.io.column_map import ColumnMap
+from navcore.io.compressed import head_of
 from navcore.io.courses import course_warnings
 from navcore.io.plausible import speed_warnings
 from navcore.io.recording import read_recording
@@ -111,17 +113,16 @@ def check_file(path: str | os.PathLike[str], others: Sequence[Checker] = ()) -> 
     """
     try:
         existing = require_file(path)
-        with existing.open("rb") as stream:
-            head = stream.read(_SNIFFED_BYTES)
+        head = head_of(existing, _SNIFFED_BYTES)
         checker = next((c for c in others if c.recognises(existing, head)), None)
         return checker.check(existing) if checker is not None else check_log(existing)
     except InputError as error:
         return FileReport(str(path), "", faults=error.faults)
 
 
-def check_log(path: Path) -> FileReport:
+def check_log(path: Path, column_map: ColumnMap | None = None) -> FileReport:
     """Say what a log, track or heading file holds; raises `InputError`."""
-    recording = read_recording(path)
+    recording = read_recording(path, column_map)
     source = recording.sources[0]
     quantities = {name: _quantity(name, series) for name, series in recording.quantities().items()}
     details = {

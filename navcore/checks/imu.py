@@ -5,23 +5,25 @@ from typing import Any
 
 import numpy as np
 
-from navcore.checks.file import Checker, FileReport
+from navcore.checks.file import Checker, FileReport, check_log
+from navcore.foundation.errors import InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, DEG_PER_HOUR
-from navcore.sensors.recorded_imu import ImuRecord, header_of, is_psins, read_imu, upward_axis
+from navcore.io.column_map import ColumnMap, read_map
+from navcore.io.imu_table import is_imu_table
+from navcore.io.source import require_file
+from navcore.sensors.recorded_imu import ImuRecord, is_psins, read_imu, upward_axis
 
 _GRAVITY = 9.76, 9.84
 """From the equator at 5 km to the poles, m/s^2."""
 _FORCE_ERROR = 0.02
 _SLOWEST_HZ = 10.0
-_JITTER = 0.1
-"""Part of an interval by which stamps may be off without a word."""
 
 
 def recognises(path: Path, head: bytes) -> bool:
     """Whether a file that begins so is a recorded IMU: PSINS text, or a CSV that names its quantities."""
     text = head.decode("utf-8", errors="replace")
-    return (is_psins(text) and _numbers_below(text)) or header_of(text) is not None
+    return (is_psins(text) and _numbers_below(text)) or is_imu_table(text)
 
 
 def _numbers_below(text: str) -> bool:
@@ -34,15 +36,26 @@ def _numbers_below(text: str) -> bool:
         return False
 
 
-def check_imu(path: Path) -> FileReport:
+def check_imu(path: Path, column_map: ColumnMap | None = None) -> FileReport:
     """Read a recorded IMU, its axes as they are; gaps, NaN, time running backwards raise `InputError`."""
-    record = read_imu(path)
+    record = read_imu(path, column_map=column_map)
     kind = "recorded IMU, PSINS" if record.lat is not None else "recorded IMU, CSV"
     details = _details(record)
-    return FileReport(str(path), kind, details, tuple(_text(details)), tuple(_warnings(details)))
+    return FileReport(
+        str(path), kind, details, tuple(_text(details)), (*record.warnings, *_warnings(details))
+    )
 
 
 IMU_CHECKER = Checker(recognises, check_imu)
+
+
+def check_mapped(file: str, map_file: str) -> FileReport:
+    """Say what a text table holds by a map: an IMU where the map names its quantities, else a log."""
+    try:
+        path, column_map = require_file(file), read_map(map_file)
+        return check_imu(path, column_map) if column_map.is_imu else check_log(path, column_map)
+    except InputError as error:
+        return FileReport(file, "", faults=error.faults)
 
 
 def _details(record: ImuRecord) -> dict[str, Any]:
@@ -60,7 +73,6 @@ def _details(record: ImuRecord) -> dict[str, Any]:
         "rate_hz": round(record.rate_hz, 6),
         "span_s": round(record.duration_s, 4),
         "gaps": 0,
-        "jitter_s": round(record.jitter_s, 6),
         "place": place,
         "mean_force_mps2": [round(float(value), 5) for value in force],
         "mean_force_size_mps2": round(float(np.linalg.norm(force)), 5),
@@ -130,14 +142,6 @@ def _warnings(details: dict[str, Any]) -> list[str]:
                 "the {up} axis looks like up: a run needs x right, y forward, z up (or frd), "
                 "turn the columns",
                 up=up,
-            )
-        )
-    if details["jitter_s"] > _JITTER / details["rate_hz"]:
-        warnings.append(
-            Text(
-                "the stamps lie up to {jitter:.3g} ms off an even record: {rate_hz:g} Hz throughout is taken",
-                jitter=1e3 * details["jitter_s"],
-                rate_hz=details["rate_hz"],
             )
         )
     if details["rate_hz"] < _SLOWEST_HZ:

@@ -17,7 +17,7 @@ from navcore.design.ship import Ship
 from navcore.design.sources import contributions
 from navcore.engine.run import MethodRun, Run
 from navcore.foundation.earth import EARTH_RATE
-from navcore.foundation.stage_cache import file_state, kept
+from navcore.foundation.stage_cache import kept, recorded_state
 from navcore.foundation.text import Text
 from navcore.motion.truth import LAT
 from navcore.quantities import COMPONENTS, HEADING, NAMES, POSITION, TILT, Kind, components
@@ -187,7 +187,7 @@ def _causes(run: Run, method: MethodRun, squares: dict[str, np.ndarray]) -> tupl
 def _swing_once(run: Run, method: MethodRun, names: tuple[str, ...]) -> Swing | None:
     """`swing`, kept: a slider of one method leaves the curves of the others as they were."""
     scenario = run.scenario
-    files = file_state(getattr(scenario.motion, "file", None))
+    files = recorded_state(scenario.motion)
     key = ("swing", scenario.motion, files, scenario.site, scenario.run, method.fingerprint, names)
     return kept(key, lambda: swing(run, method, names))
 

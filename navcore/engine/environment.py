@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from navcore.engine.notices import input_notices, site_notices
 from navcore.foundation.errors import InputError
-from navcore.foundation.stage_cache import file_state, kept
+from navcore.foundation.stage_cache import kept, recorded_state
 from navcore.mechanization.trajectory import Coefficients, coefficients
 from navcore.motion.truth import Truth
 from navcore.scenario.model import Scenario
@@ -53,9 +53,9 @@ def _start_utc(scenario: Scenario) -> float | None:
 
 
 def _truth_key(scenario: Scenario, steps: int, step_s: float) -> Hashable:
-    motion_key = (scenario.motion, file_state(getattr(scenario.motion, "file", None)))
+    motion_key = (scenario.motion, recorded_state(scenario.motion))
     # t = 0 is the first epoch that track and log share, so each depends on the other's files.
-    log_files = file_state(scenario.reference.file)
+    log_files = recorded_state(scenario.reference)
     return (motion_key, log_files, scenario.site, steps, step_s, scenario.earth.name)
 
 
@@ -100,7 +100,7 @@ def environment(scenario: Scenario) -> Environment:
     steps, h, earth = scenario.steps, scenario.run.step_s, scenario.earth
     channel = scenario.run.fidelity == "channel"
     truth_key = _truth_key(scenario, steps, h)
-    log_key = (scenario.reference, file_state(scenario.reference.file))
+    log_key = (scenario.reference, recorded_state(scenario.reference))
     seed = scenario.run.seed
     start_utc = _start_utc(scenario)
 

@@ -13,9 +13,10 @@ from navcore.alignment.fine import coarse_alignment, fine_alignment
 from navcore.foundation import guarded
 from navcore.foundation.compiled import plain
 from navcore.foundation.errors import Fault, InputError
-from navcore.foundation.stage_cache import file_state, kept
+from navcore.foundation.stage_cache import kept, recorded_state
 from navcore.foundation.text import Text
 from navcore.foundation.units import DEG, HOUR
+from navcore.io.column_map import read_map
 from navcore.mechanization.strapdown import Start, start_from
 from navcore.mechanization.strapdown.attitude import angles_of
 from navcore.mechanization.strapdown.run import turned_by
@@ -31,7 +32,7 @@ _COARSE_S = 120.0
 _REST_S = 60.0
 """Time from the start in which the force is held against gravity when there is no alignment."""
 _SAME_PLACE_DEG = 0.001
-_NO_ERRORS = ("file", "axes", "begin_s")
+_NO_ERRORS = ("file", "map", "axes", "begin_s")
 
 
 @dataclass(frozen=True)
@@ -88,9 +89,10 @@ def recorded_imu(scenario: Scenario, start_utc: float | None = None) -> Recorded
         Unreadable, gaps, wrong axes, shorter than skipped part, alignment and run together.
     """
     imu, aligned = scenario.imu, scenario.alignment.kind == "compass"
+    column_map = read_map(imu.map, "imu.map") if imu.map else None
     record: ImuRecord = kept(
-        (Text("imu record"), file_state(imu.file), imu.axes),
-        lambda: guarded.call("imu.file", read_imu, imu.file or "", imu.axes),
+        (Text("imu record"), recorded_state(imu), imu.axes),
+        lambda: guarded.call("imu.file", read_imu, imu.file or "", imu.axes, column_map),
     )
     rates = sampling(scenario.run, scenario.reference, record.rate_hz)
     begin = round(imu.begin_s * record.rate_hz)
@@ -178,6 +180,7 @@ def _align(scenario: Scenario, record: ImuRecord, begin: int, first: int, truth:
 
 
 def _notices(scenario: Scenario, record: ImuRecord, site: Site) -> Iterator[str]:
+    yield from record.warnings
     if not scenario.motion.recorded:
         yield from _parked_notices(scenario, record, site)
     unused = [

@@ -10,7 +10,7 @@ from navcore.engine.alignment_start import aligned_start, start_errors
 from navcore.engine.notices import input_notices, site_notices
 from navcore.engine.recorded_start import RecordedImu, recorded_imu
 from navcore.foundation.errors import InputError
-from navcore.foundation.stage_cache import file_state, kept
+from navcore.foundation.stage_cache import kept, recorded_state
 from navcore.foundation.text import Text
 from navcore.mechanization.strapdown import Start, start_from
 from navcore.motion.truth import VE, VN, Truth
@@ -83,7 +83,7 @@ def strapdown_environment(scenario: Scenario) -> StrapdownEnvironment:
     rates, window = scenario.sampling, recorded_window(scenario.motion, scenario.reference)
     start_utc = None if window is None else window.start_s
     seed = scenario.run.seed
-    files = file_state(getattr(scenario.motion, "file", None)), file_state(scenario.reference.file)
+    files = recorded_state(scenario.motion), recorded_state(scenario.reference)
     truth_key = (Text("strapdown truth"), scenario.motion, files, scenario.site, rates, scenario.earth.name)
     try:
         imu = ImuSimulation(

@@ -135,3 +135,10 @@ def file_state(files: Any) -> tuple[tuple[str, int, int], ...]:
         except OSError:
             states.append((path, 0, -1))
     return tuple(states)
+
+
+def recorded_state(block: Any) -> tuple[tuple[str, int, int], ...]:
+    """`file_state` of the recordings and of the map that a block of the scenario names."""
+    files = getattr(block, "file", None)
+    listed = [files] if isinstance(files, str) else list(files or [])
+    return file_state([*listed, *filter(None, [getattr(block, "map", None)])])

@@ -1,5 +1,6 @@
 """Cells of a text table to numbers and times; a fault for each that makes no sense."""
 
+import math
 import re
 from collections.abc import Sequence
 from datetime import UTC, datetime
@@ -23,6 +24,23 @@ _DAY = 86400.0
 def is_empty(cell: str) -> bool:
     """Whether a cell stands for no reading."""
     return cell.strip().lower() in _EMPTY
+
+
+def is_number(cell: str) -> bool:
+    """Whether a cell is a number, or degrees with a hemisphere."""
+    try:
+        float(cell)
+    except ValueError:
+        return _degrees(cell.strip()) is not None
+    return True
+
+
+def is_time(cell: str) -> bool:
+    """Whether a cell is a number or a time that `times` reads."""
+    try:
+        return math.isfinite(float(cell))
+    except ValueError:
+        return _moment(cell.strip(), StampReader()) is not None
 
 
 def numbers(
@@ -114,7 +132,16 @@ def unix_or_elapsed(values: np.ndarray, unit: str = "") -> tuple[np.ndarray, boo
 def _written_times(
     where: str, name: str, cells: Sequence[str], rows: Sequence[int]
 ) -> tuple[np.ndarray, bool]:
-    reader = StampReader(day_comes_first(cell for cell in cells if "/" in cell))
+    day_first = day_comes_first(cell for cell in cells if "/" in cell)
+    if day_first is None:
+        at = next(index for index, cell in enumerate(cells) if "/" in cell)
+        allowed = Text(
+            "may begin with the day or with the month: say which by a map, with time.unit = "
+            "'%d/%m/%Y %H:%M:%S' (day first) or '%m/%d/%Y %H:%M:%S' (month first)"
+        )
+        row = Text("{where}, row {rows}", where=where, rows=rows[at])
+        raise InputError(Fault(row, name, cells[at].strip(), allowed))
+    reader = StampReader(day_first)
     seconds, dated = np.empty(len(cells)), np.ones(len(cells), dtype=bool)
     faults: list[Fault] = []
     for index, cell in enumerate(cells):

@@ -97,7 +97,8 @@ _IN_MPS = {"speed_made_good": "sog", "pl_spd": "sog", "pl_sow": "speed"}
 """Names of R2R and SAMOS, whose speeds are in m/s."""
 _TIMES = {
     UTC: "utc time timestamp datetime date_time iso_time isotime time_utc utc_time gps_time timestamp_utc "
-    "gpst utc_timestamp datetime_utc date_time_utc utc_datetime time_iso iso8601 date_time_iso time_gmt "
+    "gpst stamp header_stamp field_header_stamp rosbag_timestamp utc_timestamp datetime_utc date_time_utc "
+    "utc_datetime time_iso iso8601 date_time_iso time_gmt "
     "gmt_time datetime_gmt gmt",
     UNIX: "unix unix_time unixtime epoch epoch_time posix posix_time unix_s time_unix",
     SECONDS: "t_s t s sec seconds elapsed elapsed_s elapsed_seconds time_s time_sec time_seconds",

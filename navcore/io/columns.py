@@ -66,6 +66,35 @@ def require_columns(where: str, names: Sequence[str]) -> dict[str, Column]:
             held=held,
         )
         faults.append(Fault(where, "", None, missing))
+    faults += pair_faults(where, columns)
+    lowered = [name.strip().lower() for name in names]
+    faults += [
+        Fault(where, "", column.name.lower(), Text("column given twice"))
+        for column in columns.values()
+        if lowered.count(column.name.lower()) > 1
+    ]
+    faults += [
+        Fault(
+            where,
+            "",
+            column.name,
+            Text(
+                "names a unit or qualifier that is not understood: {unknown}; "
+                "rename the column, with a unit as in heading_deg, speed_mps, time (ms)",
+                unknown=column.unknown,
+            ),
+        )
+        for column in columns.values()
+        if column.unknown
+    ]
+    if faults:
+        raise InputError(faults)
+    return columns
+
+
+def pair_faults(where: str, columns: Mapping[str, Column]) -> list[Fault]:
+    """A fault for each column whose partner is missing."""
+    faults: list[Fault] = []
     for first, second, unit in _TOGETHER:
         faults += [
             Fault(
@@ -93,29 +122,7 @@ def require_columns(where: str, names: Sequence[str]) -> dict[str, Column]:
                     Text("missing column: {needed} (starboard speed is there)", needed=needed),
                 )
             )
-    lowered = [name.strip().lower() for name in names]
-    faults += [
-        Fault(where, "", column.name.lower(), Text("column given twice"))
-        for column in columns.values()
-        if lowered.count(column.name.lower()) > 1
-    ]
-    faults += [
-        Fault(
-            where,
-            "",
-            column.name,
-            Text(
-                "names a unit or qualifier that is not understood: {unknown}; "
-                "rename the column, with a unit as in heading_deg, speed_mps, time (ms)",
-                unknown=column.unknown,
-            ),
-        )
-        for column in columns.values()
-        if column.unknown
-    ]
-    if faults:
-        raise InputError(faults)
-    return columns
+    return faults
 
 
 def listed(names: Sequence[str]) -> str:

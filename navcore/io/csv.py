@@ -6,7 +6,7 @@ The standard library's reader and numpy are enough, name the row of a bad cell, 
 import csv
 import io
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy as np
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.io.cells import is_empty, numbers, times
+from navcore.io.column_map import ColumnMap
 from navcore.io.column_names import CLOCK, DATE, QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns
 from navcore.io.columns import (
     MOST_CELLS,
@@ -21,12 +22,16 @@ from navcore.io.columns import (
     Table,
     column_warnings,
     limited,
+    pair_faults,
     require_columns,
     table_recording,
 )
 from navcore.io.epochs import GPS_EPOCH_S, gps_to_unix, numeric_times
 from navcore.io.formats import Candidate
 from navcore.io.hemispheres import candidates, signed
+from navcore.io.mapped_rows import mapped_layout, skip_bad
+from navcore.io.mapped_times import MappedClock
+from navcore.io.rows import Rows
 from navcore.io.series import Recording
 from navcore.io.source import read_text
 
@@ -35,21 +40,6 @@ _SEPARATORS = ",;\t|"
 _HEAD_BYTES = 65536
 _HEAD_LINES = 60
 """A header stands within so many lines; before it may stand what a logger says about the cruise."""
-
-
-@dataclass
-class _Rows:
-    """Remains of a table's text: the header, and the cells of the columns that are used."""
-
-    header: list[str]
-    columns: dict[str, Column]
-    numbers: list[int] = field(default_factory=list)
-    cells: dict[str, list[str]] = field(default_factory=dict)
-    warnings: list[str] = field(default_factory=list)
-    sides: dict[int, list[str]] = field(default_factory=dict)
-    """Cells of columns that may hold a hemisphere."""
-    heeded: set[int] = field(default_factory=set)
-    """Those that do."""
 
 
 def recognises(candidate: Candidate) -> bool:
@@ -63,8 +53,8 @@ def recognises(candidate: Candidate) -> bool:
     return len(header) > 1 and len(alike) >= max(1, len(following) - 1)
 
 
-def read(path: Path) -> Recording:
-    """Read one table.
+def read(path: Path, column_map: ColumnMap | None = None) -> Recording:
+    """Read one table, by a map or by the names of its columns.
 
     Raises
     ------
@@ -73,10 +63,12 @@ def read(path: Path) -> Recording:
         time out of order, or more cells than are read.
     """
     content = read_text(path)
-    rows = _rows(path.name, content.text)
+    rows = _rows(path.name, content.text, column_map)
+    if column_map is not None and column_map.skip_bad_rows:
+        skip_bad(rows, column_map)
     if not rows.numbers:
         raise InputError(Fault(path.name, "", None, Text("a header but no rows")))
-    table = _table(path.name, rows)
+    table = _table(path.name, rows, column_map)
     others = ["" if index in rows.heeded else name for index, name in enumerate(rows.header)]
     unused = column_warnings(others, rows.columns)
     warnings = (*content.warnings(), *rows.warnings, *unused, *table.warnings)
@@ -118,6 +110,11 @@ def _layout(head: list[str]) -> tuple[str, str, list[str]]:
     return _separator(plain), plain, _cells(plain, _separator(plain))
 
 
+def layout(text: str) -> tuple[str, str, list[str]]:
+    """Separator, header line and header cells of a text."""
+    return _layout(_head(text))
+
+
 def _is_number(cell: str) -> bool:
     try:
         float(cell)
@@ -126,26 +123,42 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def _rows(where: str, text: str) -> _Rows:
-    separator, header_line, header = _layout(_head(text))
-    rows = _Rows(header, require_columns(where, header))
+def _rows(where: str, text: str, column_map: ColumnMap | None) -> Rows:
+    if column_map is None:
+        separator, header_line, header = _layout(_head(text))
+        rows = Rows(header, require_columns(where, header))
+        clock: list[int] = []
+    else:
+        separator, header_line, header = mapped_layout(_head(text), column_map)
+        found = column_map.log_columns(where, header)
+        clock = column_map.clocks(where, header)
+        rows = Rows(header, {stem: column for stem, (column, _) in found.items()}, decimal=column_map.decimal)
+        rows.columns[UTC] = Column(clock[0], column_map.time.columns[0], UTC)
+        rows.signs = {stem: sign for stem, (_, sign) in found.items() if sign < 0.0}
+        if pairs := pair_faults(where, rows.columns):
+            raise InputError(pairs)
     _refuse_size(where, text, len(rows.columns))
     width, faults = len(header), []
     columns = list(rows.columns.values())
     beside = {index for found in candidates(header, rows.columns).values() for index in found}
     for number, row in _after_header(where, text, separator, header_line):
         row = _fitted(row, width, separator, rows.columns)
+        if len(row) != width and column_map is not None and column_map.skip_bad_rows:
+            rows.skipped.append(number)
+            continue
         if len(row) != width:
             allowed = Text("has {row} cells, the header {width}", row=len(row), width=width)
             faults.append(Fault(Text("{where}, row {number}", where=where, number=number), "", None, allowed))
             continue
-        if not rows.numbers and _is_units(row):
+        if not rows.numbers and column_map is None and _is_units(row):
             rows.columns = require_columns(where, [f"{n} ({u})" for n, u in zip(header, row, strict=True)])
             columns = list(rows.columns.values())
             continue
         rows.numbers.append(number)
         for column in columns:
             rows.cells.setdefault(column.stem, []).append(row[column.index])
+        if len(clock) > 1:
+            rows.cells[UTC][-1] = " ".join(row[index].strip() for index in clock)
         for index in beside:
             rows.sides.setdefault(index, []).append(row[index])
     if len(faults) == 1 and rows.numbers and "cells" in faults[0].allowed and _is_last(text, faults[0]):
@@ -224,24 +237,27 @@ def _is_last(text: str, fault: Fault) -> bool:
     return fault.where.endswith(f"row {len(text.rstrip().split(chr(10)))}")
 
 
-def _table(where: str, rows: _Rows) -> Table:
+def _table(where: str, rows: Rows, column_map: ColumnMap | None) -> Table:
     faults: list[Fault] = []
     values: dict[str, np.ndarray] = {}
     missing: dict[str, np.ndarray] = {}
     kept, untimed = _timed(rows)
     timing = None
     try:
-        timing = _timing(where, rows, kept)
+        timing = _timing(where, rows, kept, column_map)
     except InputError as error:
         faults += error.faults
     numbered = [rows.numbers[i] for i in kept] if untimed else rows.numbers
     for stem in (stem for stem in QUANTITIES if stem in rows.columns):
         cells = [rows.cells[stem][i] for i in kept] if untimed else rows.cells[stem]
+        if rows.decimal == ",":
+            cells = [cell.replace(",", ".") for cell in cells]
         try:
             values[stem], empty = numbers(where, rows.columns[stem].name.lower(), cells, numbered)
         except InputError as error:
             faults += error.faults
             continue
+        values[stem] = values[stem] * rows.signs.get(stem, 1.0)
         if empty.any():
             missing[stem] = empty
     hemispheres = _hemispheres(where, rows, kept, numbered, values, missing)
@@ -273,7 +289,7 @@ def _table(where: str, rows: _Rows) -> Table:
 
 def _hemispheres(
     where: str,
-    rows: _Rows,
+    rows: Rows,
     kept: list[int],
     numbered: list[int],
     values: dict[str, np.ndarray],
@@ -300,19 +316,26 @@ def _clock_column(columns: dict[str, Column]) -> Column:
     return next(columns[stem] for stem in (CLOCK, UTC, UNIX, SECONDS) if stem in columns)
 
 
-def _timed(rows: _Rows) -> tuple[list[int], int]:
+def _timed(rows: Rows) -> tuple[list[int], int]:
     """Rows whose time is not empty, and how many are not."""
     cells = rows.cells[_clock_column(rows.columns).stem]
     kept = [index for index, cell in enumerate(cells) if not is_empty(cell)]
     return kept, len(cells) - len(kept)
 
 
-def _timing(where: str, rows: _Rows, kept: list[int]) -> tuple[np.ndarray, bool, str]:
+def _timing(
+    where: str, rows: Rows, kept: list[int], column_map: ColumnMap | None
+) -> tuple[np.ndarray, bool, str]:
     """Times, whether they are dated, and the name of their column."""
     column = _clock_column(rows.columns)
     numbered = [rows.numbers[i] for i in kept]
     name = column.name.lower()
     cells = [rows.cells[column.stem][i] for i in kept]
+    if column_map is not None and (column_map.time.unit or column_map.time.zone):
+        clock = MappedClock(column_map.time, rows.decimal)
+        time_s, dated = clock.read(where, cells, numbered)
+        rows.warnings += clock.warnings()
+        return time_s, dated, name
     if column.stem == CLOCK and DATE in rows.columns:
         dates = rows.cells[DATE]
         cells = [f"{dates[i].strip()} {cell.strip()}" for i, cell in zip(kept, cells, strict=True)]

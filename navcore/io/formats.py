@@ -64,3 +64,13 @@ def format_of(path: Path) -> Format:
             return module
     otherwise: Any = import_module(_OTHERWISE)
     return otherwise
+
+
+def takes_map(path: Path) -> bool:
+    """Whether a file is a text table, which a map may describe; raises `InputError` for a binary file."""
+    candidate = Candidate(path)
+    for name in FORMATS[:-1]:
+        module: Any = import_module(name)
+        if module.recognises(candidate):
+            return False
+    return True

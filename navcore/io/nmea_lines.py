@@ -96,7 +96,9 @@ def looks_like_nmea(text: str) -> bool:
 def intact_lines(text: str, tally: Tally) -> Iterator[Line]:
     """Yield the intact sentences in the order in which they stand; count the others."""
     lines = text.split("\n")
-    stamps = StampReader(day_comes_first(_before(line) for line in lines[:_LINES_LOOKED_AT] if "/" in line))
+    stamps = StampReader(
+        bool(day_comes_first(_before(line) for line in lines[:_LINES_LOOKED_AT] if "/" in line))
+    )
     for number, raw in enumerate(lines, start=1):
         line = raw.strip()
         if not line or line.startswith("#"):

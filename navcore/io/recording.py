@@ -13,12 +13,14 @@ from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.stage_cache import kept
 from navcore.foundation.text import Text
 from navcore.foundation.units import HOUR
-from navcore.io.formats import format_of
+from navcore.io.column_map import ColumnMap, read_map
+from navcore.io.formats import format_of, takes_map
 from navcore.io.placeholders import without_zero_places
 from navcore.io.series import LONGEST_REACH_S, Recording, Series, utc_text
 from navcore.io.source import require_file
 
 PathLike = str | os.PathLike[str]
+NO_TABLE = Text("describes a text table (CSV), and this is none")
 _SLACK_S = 0.01
 _MIXED_DATES = Text("some files give times without a date and some with one: they cannot be joined")
 
@@ -53,7 +55,9 @@ FileKey = tuple[str, int, int]
 """Resolved path, time of the last change (ns) and size: what the caches go by."""
 
 
-def load(paths: PathLike | Sequence[PathLike], where: str = "", field: str = "") -> Recording:
+def load(
+    paths: PathLike | Sequence[PathLike], where: str = "", field: str = "", map_file: PathLike | None = None
+) -> Recording:
     """Read one or several files; each quantity comes from the first file of the list that holds it.
 
     Parameters
@@ -62,6 +66,8 @@ def load(paths: PathLike | Sequence[PathLike], where: str = "", field: str = "")
         NMEA 0183 or CSV text, Parquet or MAT, told apart by content.
     where, field : str
         Place and field that faults about the files name.
+    map_file : path, optional
+        Map that says what the columns of the text tables among the files mean.
 
     Returns
     -------
@@ -74,16 +80,25 @@ def load(paths: PathLike | Sequence[PathLike], where: str = "", field: str = "")
     """
     parts: list[Recording] = []
     faults: list[Fault] = []
+    map_key, column_map = None, None
+    if map_file is not None:
+        (map_key,), column_map = file_keys(map_file, where, "map"), read_map(map_file)
+    taken = 0
     for key in file_keys(paths, where, field):
+        path = Path(key[0])
         try:
+            mapped = column_map if column_map is not None and takes_map(path) else None
+            taken += mapped is not None
             parts.append(
                 kept(
-                    ("recording", key),
-                    lambda path=Path(key[0]): guarded.call(path.name, read_recording, path),
+                    ("recording", key, map_key if mapped else None),
+                    lambda path=path, mapped=mapped: guarded.call(path.name, read_recording, path, mapped),
                 )
             )
         except InputError as error:
             faults += [replace(fault, field=fault.field or field) for fault in error.faults]
+    if column_map is not None and not taken and not faults:
+        faults.append(Fault(where, "map", str(map_file), NO_TABLE))
     if faults:
         raise InputError(faults)
     quantities: dict[str, Series] = {}
@@ -115,9 +130,15 @@ def file_keys(paths: PathLike | Sequence[PathLike], where: str = "", field: str 
     return tuple(keys)
 
 
-def read_recording(path: Path) -> Recording:
-    """Read one file by its content, without the cache; raises `InputError`."""
-    return without_zero_places(format_of(path).read(path))
+def read_recording(path: Path, column_map: ColumnMap | None = None) -> Recording:
+    """Read one file by its content, or a text table by a map, without the cache; raises `InputError`."""
+    if column_map is None:
+        return without_zero_places(format_of(path).read(path))
+    if not takes_map(path):
+        raise InputError(Fault(path.name, "map", None, NO_TABLE))
+    from navcore.io import csv
+
+    return without_zero_places(csv.read(path, column_map))
 
 
 def shared_window(series: Iterable[Series], field: str = "file") -> Window:

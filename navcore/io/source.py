@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
+from navcore.io.compressed import unpacked
 
 LARGEST_FILE_BYTES = 64 * 1024 * 1024
 """Larger files are refused before they are read."""
@@ -85,7 +86,7 @@ class FileText(NamedTuple):
 
 
 def read_text(path: Path, field: str = "") -> FileText:
-    """Text of a file that is not binary; single odd bytes (line noise) become U+FFFD.
+    """Text of a file, unpacked if it is compressed; single odd bytes (line noise) become U+FFFD.
 
     A run of NUL bytes counts as one: a logger that loses its power leaves them behind.
 
@@ -94,7 +95,7 @@ def read_text(path: Path, field: str = "") -> FileText:
     InputError
         Binary content (more than 1 % of bytes that are not printable text), or nothing but white space.
     """
-    raw = _unwrapped(path.read_bytes())
+    raw = _unwrapped(unpacked(path, LARGEST_FILE_BYTES, field))
     text = _utf8(raw)
     odd = len(raw.translate(None, _ASCII_TEXT if text is None else _ASCII_TEXT + _HIGH_BYTES))
     if odd > max(_MOST_ODD_BYTES * len(raw), _FEW_ODD_BYTES):

@@ -189,14 +189,34 @@ class StampReader:
         return None, text
 
 
-_EITHER = re.compile(r"(?<!\d)(\d\d?)/(\d\d?)/(?:\d{4}|\d\d)(?!\d)")
+_EITHER = re.compile(r"(?<!\d)(\d\d?)/(\d\d?)/(\d{4}|\d\d)(?!\d)")
 
 
-def day_comes_first(texts: Iterable[str]) -> bool:
-    """Whether dates with slashes begin with the day: some first number is above 12 and no second one."""
-    first, second = 0, 0
-    for text in texts:
-        match = _EITHER.search(text)
-        if match is not None:
-            first, second = max(first, int(match[1])), max(second, int(match[2]))
-    return first > 12 >= second
+def day_comes_first(texts: Iterable[str]) -> bool | None:
+    """Whether dates with slashes begin with the day; None where both orders are possible.
+
+    A number above 12 is a day. Else the dates themselves may say it: days that follow each other in one order
+    lie months apart in the other.
+    """
+    dates = (tuple(map(int, match.groups())) for match in map(_EITHER.search, texts) if match is not None)
+    found = {(first, second, year) for first, second, year in dates if first and second}
+    first, second = (max((date[i] for date in found), default=0) for i in (0, 1))
+    if first > 12 or second > 12:
+        return first > 12 >= second
+    if all(date[0] == date[1] for date in found):
+        return False
+    reach = [_days(found, day_first) for day_first in (False, True)]
+    longest = _SEASON * max(len(found), 2)
+    if len(found) > 1 and min(reach) <= longest < max(reach):
+        return reach[1] < reach[0]
+    return None
+
+
+_SEASON = 3
+"""Days that a date of a recording may stand for, weekends among them."""
+
+
+def _days(dates: Iterable[tuple[int, int, int]], day_first: bool) -> float:
+    """Days from the first to the last of dates in one of the two orders."""
+    days = [midnight(year, *((b, a) if day_first else (a, b))) / _DAY for a, b, year in dates]
+    return max(days) - min(days)

@@ -6,17 +6,19 @@
 import re
 from typing import NamedTuple
 
-from navcore.foundation.units import DEG, DEG_PER_HOUR, KNOT, MICRO_G, STANDARD_GRAVITY
+from navcore.foundation.units import ARCSEC, DEG, KNOT
 
+G = 9.80665
+"""Standard gravity, m/s^2."""
 UNITS = {
-    "angle": {"deg": DEG, "rad": 1.0, "mrad": 1e-3},
+    "angle": {"deg": DEG, "rad": 1.0, "mrad": 1e-3, "urad": 1e-6, "arcsec": ARCSEC},
     "speed": {
         "mps": 1.0, "kn": KNOT, "kmh": 1.0 / 3.6, "cms": 0.01, "mms": 1e-3, "mph": 0.44704, "fps": 0.3048,
     },
     "length": {"m": 1.0, "cm": 0.01, "mm": 1e-3, "km": 1e3, "ft": 0.3048, "nm": 1852.0, "mi": 1609.344},
-    "turn": {"radps": 1.0, "mradps": 1e-3, "dps": DEG, "mdps": 1e-3 * DEG, "dph": DEG_PER_HOUR},
-    "force": {"mps2": 1.0, "g": STANDARD_GRAVITY, "mg": 1e-3 * STANDARD_GRAVITY, "ug": MICRO_G},
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0, "day": 86400.0},
+    "rate": {"rad_s": 1.0, "mrad_s": 1e-3, "deg_s": DEG, "mdeg_s": 1e-3 * DEG, "deg_h": DEG / 3600.0},
+    "force": {"mps2": 1.0, "g": G, "mg": 1e-3 * G, "ug": 1e-6 * G, "gal": 0.01, "fps2": 0.3048},
 }  # fmt: skip
 """SI over each unit, by dimension."""
 _SPELT = {
@@ -25,6 +27,8 @@ _SPELT = {
         "degree_east degrees_n degrees_e degree_n degree_e",
         "rad": "rads radian radians",
         "mrad": "milliradian milliradians",
+        "urad": "microradian microradians",
+        "arcsec": "arcsecond arcseconds",
     },
     "speed": {
         "mps": "m_s ms meter_second meters_second metre_second metres_second m_sec m_s_1 ms_1 m_sec_1 "
@@ -46,19 +50,6 @@ _SPELT = {
         "nm": "nmi naut_mi nautical_mile nautical_miles",
         "mi": "mile miles",
     },
-    "turn": {
-        "radps": "rad_s rad_s_1 rads rads_1 rad_sec radian_s radians_s radian_second radians_per_second",
-        "mradps": "mrad_s mrad_s_1 mrad_sec",
-        "dps": "deg_s deg_s_1 deg_sec degree_s degrees_s degree_second degrees_per_second degs",
-        "mdps": "mdeg_s mdeg_s_1",
-        "dph": "deg_h deg_h_1 deg_hr degh degrees_per_hour",
-    },
-    "force": {
-        "mps2": "m_s2 m_s_2 ms2 ms_2 m_sec2 m_sec_2 m_s_s meter_second_2 metre_second_2",
-        "g": "gee gees",
-        "mg": "milli_g millig",
-        "ug": "micro_g microg",
-    },
     "time": {
         "s": "sec secs second seconds",
         "ms": "msec millis millisecond milliseconds",
@@ -68,6 +59,24 @@ _SPELT = {
         "h": "hr hrs hour hours",
         "day": "d days",
     },
+    "rate": {
+        "rad_s": "rad_sec rad_s_1 rad_sec_1 radps rads_s rad_per_s rad_per_sec radian_s radians_s "
+        "radian_per_second radians_per_second radian_second_1 radians_second",
+        "mrad_s": "mrad_sec mrad_s_1",
+        "deg_s": "dps deg_sec deg_s_1 deg_sec_1 deg_per_s deg_per_sec degps degree_s degrees_s "
+        "degree_per_second degrees_per_second degrees_second",
+        "mdeg_s": "mdps mdeg_s_1",
+        "deg_h": "dph deg_hr deg_h_1 deg_hr_1 deg_hour degree_per_hour degrees_per_hour",
+    },
+    "force": {
+        "mps2": "m_s2 m_s_2 m_s_s m_ss m_sec2 m_sec_2 mss m_per_s2 m_per_s_2 meter_per_second_squared "
+        "meters_per_second_squared metre_per_second_squared metres_per_second_squared m_s_squared",
+        "g": "gs g_n gn",
+        "mg": "milli_g millig",
+        "ug": "micro_g microg",
+        "gal": "cm_s2 cm_s_2",
+        "fps2": "ft_s2 ft_s_2",
+    },
 }
 _NAMES = {
     dimension: {name: unit for unit in units for name in (unit, *_SPELT[dimension].get(unit, "").split())}
@@ -76,10 +85,10 @@ _NAMES = {
 _HARMLESS = {
     "angle": frozenset("true t n e north east decimal dec dd wgs84 wgs_84".split()),
     "speed": frozenset("true water ground".split()),
-    "turn": frozenset(),
-    "force": frozenset(),
     "length": frozenset("msl wgs84 ellipsoid ellipsoidal".split()),
     "time": frozenset("utc gmt z iso iso8601 8601 gps gpst unix epoch posix time".split()),
+    "rate": frozenset(),
+    "force": frozenset(),
 }
 """Words that say what is taken anyway, or that other modules heed (``gps``)."""
 _CONTRARY = frozenset("magnetic mag compass relative local lt".split())

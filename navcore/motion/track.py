@@ -72,6 +72,11 @@ class TrackMotion(MotionParameters):
         ),
         json_schema_extra={"label": Text("track files")},
     )
+    map: FileName | None = Field(
+        default=None,
+        description=Text("Map (TOML) that says what the columns of a text table mean: docs/import.md."),
+        json_schema_extra={"label": Text("map")},
+    )
     pitch_deg: float = quantity(
         0.0,
         unit="deg",
@@ -104,7 +109,7 @@ class TrackMotion(MotionParameters):
 
     def recording(self) -> Recording:
         """Read (or take from the cache) the files; raises `InputError` with field ``file``."""
-        return load(self.file or (), field="file")
+        return load(self.file or (), field="file", map_file=self.map)
 
     def streams(self) -> Streams:
         """Positions and angles of the recording; raises `InputError` if positions or heading are missing."""
@@ -183,8 +188,9 @@ class TrackMotion(MotionParameters):
 
     def _smoothed(self) -> _Smoothed:
         files = (self.file,) if isinstance(self.file, str) else self.file or ()
-        key = Text("smoothed track"), file_keys(files, "", "file"), self.smoothing_s
-        return kept(key, lambda: _smooth(files, self.smoothing_s))
+        map_key = file_keys(self.map, "", "map") if self.map else ()
+        key = Text("smoothed track"), file_keys(files, "", "file"), map_key, self.smoothing_s
+        return kept(key, lambda: _smooth(self.streams(), files, self.smoothing_s))
 
 
 @dataclass(frozen=True)
@@ -212,9 +218,8 @@ def _streams(recording: Recording, file: object) -> Streams:
     return Streams(recording, recording.position, recording.heading, recording.attitude)
 
 
-def _smooth(files: tuple[str, ...], smoothing_s: float) -> _Smoothed:
+def _smooth(streams: Streams, files: tuple[str, ...], smoothing_s: float) -> _Smoothed:
     """Fit the splines: 10 h at 1 Hz take most of a second."""
-    streams = _streams(load(files, field="file"), files)
     return _Smoothed(
         shared_window(streams.series()),
         _Path(streams.position, smoothing_s, streams.recording.velocity),

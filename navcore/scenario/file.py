@@ -20,7 +20,7 @@ from navcore.scenario.model import Scenario
 
 _NAMED = {"motion": "kind", "network": "id", "policy": "id", "switching": "id"}
 """Blocks that may be given by their name alone, and the field that bears it."""
-_FILE_FIELDS = (("motion", "file"), ("reference", "file"), ("imu", "file"))
+_FILE_FIELDS = tuple((block, field) for block in ("motion", "reference", "imu") for field in ("file", "map"))
 
 
 def presets() -> dict[str, Path]:

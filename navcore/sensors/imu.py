@@ -1,18 +1,15 @@
 """The inertial measurement unit: its errors as a scenario gives them, and their effect along a motion."""
 
-import weakref
 from collections.abc import Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextvars import copy_context
 from functools import lru_cache
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from pydantic import Field, create_model
 
 from navcore.foundation.earth import Earth
 from navcore.foundation.parameters import FileName, choice, quantity
-from navcore.foundation.stage_cache import kept
 from navcore.foundation.text import Text
 from navcore.motion.truth import Truth
 from navcore.sensors.base import SensorErrors
@@ -20,6 +17,7 @@ from navcore.sensors.imu_errors import TERMS
 from navcore.sensors.imu_errors.base import Clock, Part
 from navcore.sensors.imu_errors.triad import Triad
 from navcore.sensors.imu_kernels import attitude_changes, mean_attitude, scaled_signals, turn_errors
+from navcore.sensors.recorded_imu import Axes
 
 if TYPE_CHECKING:
     from navcore.sensors.imu_errors.bias import Bias, BiasDeviation
@@ -47,15 +45,21 @@ class Imu(_Errors):
         description=Text(
             "Recorded IMU in place of the simulated one (strapdown): PSINS text, or CSV with t_s and "
             "gx_rad_s, gy_rad_s, gz_rad_s, fx_mps2, fy_mps2, fz_mps2 (means), or dax_rad ... dvz_mps "
-            "(increments), or with names that tell sensor, axis and unit, such as gyro_x [deg/s]. Alignment "
-            "and navigation take its samples one after the other."
+            "(increments), or names such as GYRO X [deg/s]. Alignment and navigation take its samples one "
+            "after the other."
         ),
         json_schema_extra={"label": Text("IMU file")},
     )
-    axes: Literal["rfu", "frd"] = choice(
+    map: FileName | None = Field(
+        default=None,
+        description=Text("Map (TOML) that says what the columns of a text table mean: docs/import.md."),
+        json_schema_extra={"label": Text("map")},
+    )
+    axes: Axes = choice(
         "rfu",
         help=Text(
-            "Axes of a recorded CSV: right, forward, up, or forward, right, down. PSINS files are rfu."
+            "Where x, y and z of a recorded CSV point: r or l (right, left), f or b (forward, back), u or d "
+            "(up, down). PSINS files are rfu."
         ),
     )
     begin_s: float = quantity(
@@ -143,7 +147,7 @@ def imu_errors(
     level = level_body or all(model.perfect for model in models)
     # Gyros, accelerometers and attitude at the same time: of a new seed this is a fifth of the whole run.
     with ThreadPoolExecutor(2) as pool:
-        turning = pool.submit(copy_context().run, _attitude, truth_half, count, level)
+        turning = pool.submit(_level if level else _mean_attitude, values, count)
         errors = [
             pool.submit(_navigation_errors, model, turning, signal[i], coupled[i], clock)
             for i, model in enumerate(models)
@@ -151,12 +155,9 @@ def imu_errors(
         return SensorErrors(errors[0].result(), errors[1].result())
 
 
-def _attitude(truth_half: Truth, count: int, level: bool) -> np.ndarray:
-    """C_b^n of a level body pointing north, (1, 9), or that of the truth, which other seeds need as well."""
-    if level:
-        return np.eye(3).reshape(1, 9)
-    key = "mean attitude", weakref.ref(truth_half), count
-    return kept(key, lambda: _mean_attitude(truth_half.values, count))
+def _level(values: np.ndarray, count: int) -> np.ndarray:
+    """C_b^n of a level body pointing north, row by row: (1, 9)."""
+    return np.eye(3).reshape(1, 9)
 
 
 def _mean_attitude(values: np.ndarray, count: int) -> np.ndarray:

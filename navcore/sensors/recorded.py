@@ -21,12 +21,12 @@ from navcore.sensors.simulated_log import hold_time
 from navcore.sensors.true_state import horizontal_state, to_navigation
 
 SCHULER_PERIOD_S = 84.4 * 60.0
-_RECORDED_FIELDS = {"kind", "frame", "event", "outage", "min_speed_mps", "file", "speed"}
+_RECORDED_FIELDS = {"kind", "frame", "event", "outage", "min_speed_mps", "file", "map", "speed"}
 
 
 def log_recording(reference: Reference) -> Recording:
     """Read (or take from the cache) the files of the log; raises `InputError` with field ``file``."""
-    return load(reference.file or (), field="file")
+    return load(reference.file or (), field="file", map_file=reference.map)
 
 
 def log_series(reference: Reference, recording: Recording) -> tuple[Series, bool]:
@@ -168,7 +168,7 @@ def recording_notices(motion: MotionParameters, reference: Reference) -> tuple[s
     if reference.kind == "file":
         notices += _log_notices(motion, reference)
     else:
-        notices += _unused(reference, {"file": None})
+        notices += _unused(reference, {"file": None, "map": None})
     return tuple(dict.fromkeys(notices))
 
 

@@ -15,10 +15,17 @@ import numpy as np
 from navcore.foundation.errors import Fault, InputError
 from navcore.foundation.text import Text
 from navcore.foundation.units import ARCSEC, DEG
-from navcore.sensors.even_stamps import interval_of
-from navcore.sensors.imu_columns import imu_columns, is_imu_header
+from navcore.io.coarse_stamps import spread
+from navcore.io.column_map import ColumnMap
+from navcore.io.compressed import unpacked
+from navcore.io.even_stamps import Evenness, evenness
+from navcore.io.imu_table import is_imu_table, read_imu_table
 
-Axes = Literal["rfu", "frd"]
+Axes = Literal[
+    "rfu", "frd", "flu", "rbd", "rub", "rdf", "lfd", "lbu", "luf", "ldb", "fur", "fdl",
+    "bru", "bld", "bul", "bdr", "urf", "ulb", "ufl", "ubr", "drb", "dlf", "dfr", "dbl",
+]  # fmt: skip
+"""Directions of x, y and z in the vehicle: right or left, forward or back, up or down; right-handed."""
 _PSINS_GRAVITY = 9.780327
 """The g of PSINS's ug, m/s^2."""
 _LARGEST_FORCE_ERROR = 0.02
@@ -26,9 +33,9 @@ _LARGEST_FORCE_ERROR = 0.02
 _LARGEST_TILT = 30.0 * DEG
 _LARGEST_FILE = 128 * 1024 * 1024
 """Bytes: a day at 100 Hz."""
-_HEADER_LINES = 20
-"""Lines at the beginning of a table among which its header is looked for."""
-_SEPARATORS = (",", ";", "\t")
+_HEAD_BYTES = 8192
+_UNEVEN = 0.1
+"""Share of the sample interval by which stamps may be uneven without a word."""
 
 
 @dataclass(frozen=True)
@@ -45,8 +52,8 @@ class ImuRecord:
         File it came from.
     lat, lon, height : float or None
         Position if the file gives one, rad, m.
-    jitter_s : float
-        Largest distance of a stamp from an even record, s.
+    warnings : tuple of str
+        What was assumed of it.
     """
 
     increments: np.ndarray
@@ -55,7 +62,7 @@ class ImuRecord:
     lat: float | None = None
     lon: float | None = None
     height: float | None = None
-    jitter_s: float = 0.0
+    warnings: tuple[str, ...] = ()
 
     @property
     def duration_s(self) -> float:
@@ -63,18 +70,22 @@ class ImuRecord:
         return len(self.increments) / self.rate_hz
 
 
-def read_imu(path: str | os.PathLike[str], axes: Axes = "rfu") -> ImuRecord:
+def read_imu(
+    path: str | os.PathLike[str], axes: Axes = "rfu", column_map: ColumnMap | None = None
+) -> ImuRecord:
     """Read a recorded IMU: PSINS text (``%`` comments) or CSV with a header.
 
-    CSV columns: ``t_s`` and ``gx_rad_s ... fz_mps2`` (means over the interval that ends at t_s), or
-    ``dax_rad ... dvz_mps`` (increments).
+    CSV columns: a time, three rates and three forces (means over the interval that ends at their time), or
+    three increments of angle and three of velocity, by the names that `navcore.io.imu_columns` knows.
 
     Parameters
     ----------
     path : path
         File.
-    axes : {"rfu", "frd"}
-        Axes of a CSV: right-forward-up or forward-right-down. PSINS files are right-forward-up.
+    axes : Axes
+        Of a CSV, such as ``rfu`` or ``frd``. PSINS files are right-forward-up.
+    column_map : ColumnMap, optional
+        What the columns of a CSV mean.
 
     Raises
     ------
@@ -89,28 +100,19 @@ def read_imu(path: str | os.PathLike[str], axes: Axes = "rfu") -> ImuRecord:
                 largest_file=_LARGEST_FILE >> 20,
             )
             raise InputError(Fault(str(path), "imu.file", None, allowed))
-        text = file.read_text("utf-8")
+        text = unpacked(file, _LARGEST_FILE, "imu.file").decode("utf-8-sig").replace("\r\n", "\n")
     except (OSError, UnicodeDecodeError) as error:
         binary = isinstance(error, UnicodeDecodeError)
         reason = Text("is not a text file") if binary else (error.strerror or Text("cannot be read"))
         raise InputError(Fault(str(path), "imu.file", None, reason)) from None
-    return _psins(text, str(path)) if is_psins(text) else _csv(text, str(path), axes)
+    if column_map is None and is_psins(text) and not is_imu_table(text):
+        return _psins(text, str(path))
+    return _csv(text, str(path), axes, column_map)
 
 
 def is_psins(text: str) -> bool:
     """Whether a text begins as PSINS files do."""
-    return text.lstrip().startswith("%")
-
-
-def header_of(text: str) -> tuple[int, list[str], str] | None:
-    """Line of the header of an IMU's table from 0, its names and the separator; None where there is none."""
-    for number, line in enumerate(text.split("\n", _HEADER_LINES)[:_HEADER_LINES]):
-        bare = line.strip().lstrip("#").strip()
-        for separator in _SEPARATORS:
-            names = [name.strip().strip('"') for name in bare.split(separator)]
-            if len(names) > 1 and is_imu_header(names):
-                return number, names, separator
-    return None
+    return text[:_HEAD_BYTES].lstrip().startswith("%")
 
 
 def upward_axis(force: np.ndarray) -> str:
@@ -194,45 +196,31 @@ def _psins(text: str, source: str) -> ImuRecord:
     return ImuRecord(counts * factors, 1000.0 / interval_ms, source, lat * DEG, lon * DEG, height)
 
 
-def _csv(text: str, source: str, axes: Axes) -> ImuRecord:
-    found = header_of(text)
-    if found is None:
-        first = next((line for line in text.splitlines() if line.strip()), "")
-        found = 0, [name.strip() for name in first.split(",")], ","
-    number, header, separator = found
-    columns = imu_columns(header, source)
-    table = _table(text, number + 1, header, separator, source)
-    try:
-        interval, jitter_s = interval_of(table[:, columns.time] * columns.time_s)
-    except ValueError as error:
-        raise InputError(Fault(source, "imu.file", None, error.args[0])) from None
-    values = table[:, columns.places] * np.array(columns.factors) * (1.0 if columns.increments else interval)
-    if axes == "frd":
-        values = values[:, [1, 0, 2, 4, 3, 5]] * np.array([1.0, 1.0, -1.0, 1.0, 1.0, -1.0])
-    return ImuRecord(values, 1.0 / interval, source, jitter_s=jitter_s)
-
-
-def _table(text: str, skipped: int, names: list[str], separator: str, source: str) -> np.ndarray:
-    """Rows of numbers below the header, by pyarrow; what it refuses is read again, to name the line."""
-    import pyarrow as pa
-    from pyarrow import csv
-
-    columns = [str(place) for place in range(len(names))]
-    try:
-        read = csv.read_csv(
-            pa.BufferReader(text.encode()),
-            csv.ReadOptions(skip_rows=skipped, column_names=columns),
-            csv.ParseOptions(delimiter=separator),
-            csv.ConvertOptions(column_types=dict.fromkeys(columns, pa.float64()), null_values=[]),
+def _csv(text: str, source: str, axes: Axes, column_map: ColumnMap | None) -> ImuRecord:
+    table = read_imu_table(text, source, column_map)
+    time_s, _ = spread(table.time_s)
+    stamps = _regular(time_s, source)
+    interval, told = stamps.interval_s, list(table.warnings)
+    if stamps.jitter_s > _UNEVEN * interval:
+        told.append(
+            Text(
+                "the stamps are uneven by up to {jitter:.3g} ms, but no sample is missing: taken as "
+                "{rate:.6g} samples a second",
+                jitter=1e3 * stamps.jitter_s,
+                rate=1.0 / interval,
+            )
         )
-        table = np.column_stack([column.to_numpy() for column in read.columns])
-        if len(table) > 1 and np.isfinite(table).all():
-            return table
-    except pa.ArrowInvalid:
-        pass
-    lines = text.split("\n")
-    kept = [line for line in lines[skipped:] if line.strip()]
-    return _numbers(kept, len(names), source, first_line=skipped + 1, separator=separator)
+    values = turned(table.values * (1.0 if table.increments else interval), axes)
+    return ImuRecord(values, 1.0 / interval, source, warnings=tuple(told))
+
+
+def turned(values: np.ndarray, axes: Axes) -> np.ndarray:
+    """Angles and velocities, shape (n, 6), from the given axes to right, forward, up."""
+    places = [next(i for i, letter in enumerate(axes) if letter in pair) for pair in ("rl", "fb", "ud")]
+    signs = [1.0 if axes[i] in "rfu" else -1.0 for i in places]
+    if places == [0, 1, 2] and signs == [1.0, 1.0, 1.0]:
+        return values
+    return values[:, [*places, *(3 + i for i in places)]] * np.array([*signs, *signs])
 
 
 def _numbers(
@@ -269,3 +257,23 @@ def _is_row(line: str, columns: int, separator: str | None) -> bool:
         return len(words) == columns and all(word.strip() and float(word) is not None for word in words)
     except ValueError:
         return False
+
+
+def _regular(time_s: np.ndarray, source: str) -> Evenness:
+    """Stamps of a record without gaps; gaps and time running backwards are refused with their place."""
+    back = np.flatnonzero(np.diff(time_s) <= 0.0)
+    if back.size:
+        what = Text("time stands still or runs backwards at t = {time_s:g} s", time_s=time_s[back[0] + 1])
+        raise InputError(Fault(source, "imu.file", None, what))
+    stamps = evenness(time_s)
+    if stamps.gaps.size:
+        what = Text(
+            "{size} gaps, the first at t = {time_s:g} s, the longest {longest:g} s",
+            size=stamps.gaps.size,
+            time_s=time_s[stamps.gaps[0]],
+            longest=stamps.longest_s,
+        )
+        raise InputError(
+            Fault(source, "imu.file", None, Text("{what}: a strapdown run needs every sample", what=what))
+        )
+    return stamps

@@ -119,6 +119,11 @@ class Reference(_Errors):
         ),
         json_schema_extra={"label": Text("log files")},
     )
+    map: FileName | None = Field(
+        default=None,
+        description=Text("Map (TOML) that says what the columns of a text table mean: docs/import.md."),
+        json_schema_extra={"label": Text("map")},
+    )
     speed: Literal["water", "ground"] = Field(
         default="water",
         description=Text(

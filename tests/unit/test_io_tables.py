@@ -9,6 +9,7 @@ import pytest
 from navcore.foundation.errors import InputError
 from navcore.foundation.units import DEG, KNOT
 from navcore.io.recording import read_recording
+from navcore.io.series import utc_text
 
 T0 = datetime(2024, 2, 28, 23, 59, 59, tzinfo=UTC).timestamp()
 CSV = """# a comment
@@ -274,3 +275,28 @@ def test_a_date_and_a_time_in_gmt_are_one_time(tmp_path: Path) -> None:
     heading = read_recording(path).heading
     assert heading is not None and heading.dated
     assert heading.time_s[1] - heading.time_s[0] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("dates", "first_day"),
+    [
+        (["13/05/2024", "13/05/2024"], "2024-05-13"),
+        (["05/13/2024", "05/13/2024"], "2024-05-13"),
+        (["31/05/2024", "01/06/2024"], "2024-05-31"),
+        (["01/05/2024", "02/05/2024", "03/05/2024"], "2024-05-01"),
+        (["05/01/2024", "05/02/2024", "05/03/2024"], "2024-05-01"),
+        (["05/05/2024", "05/05/2024"], "2024-05-05"),
+    ],
+)
+def test_day_or_month_first_is_told_by_the_dates(tmp_path: Path, dates: list[str], first_day: str) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("utc,stw_kn\n" + "".join(f"{date} 12:00:0{k},5\n" for k, date in enumerate(dates)))
+    water = read_recording(path).water
+    assert water is not None and utc_text(water.time_s[0]).startswith(first_day)
+
+
+def test_day_or_month_first_is_asked_where_both_are_possible(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("utc,stw_kn\n01/05/2024 12:00:00,5\n01/05/2024 12:00:01,5\n")
+    with pytest.raises(InputError, match=r"row 2: utc = '01/05/2024 12:00:00': may begin with the day or"):
+        read_recording(path)

@@ -1,0 +1,287 @@
+"""Maps: what the columns of a table mean, said by the user in a TOML file instead of guessed from names.
+
+time = { column = "zeit", unit = "iso", zone = "Europe/Berlin" }
+decimal = ","
+delimiter = ";"
+skip_bad_rows = true
+
+[quantity.speed]
+column = "fahrt"
+unit = "kn"
+sign = 1
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import tomllib
+from functools import cached_property
+from pathlib import Path
+from typing import Literal
+from zoneinfo import ZoneInfo
+
+from pydantic import Field, ValidationError
+
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.faults import faults_from
+from navcore.foundation.parameters import Parameters
+from navcore.foundation.text import Text
+from navcore.io.column_names import QUANTITIES, Column, known_columns, plain_name
+from navcore.io.columns import listed
+from navcore.io.imu_columns import DIMENSIONS, ImuColumn, imu_column
+from navcore.io.written_units import UNITS, unit_of, written
+
+LARGEST_MAP_BYTES = 65536
+GPS_WEEK = "gps_week_s"
+ISO = "iso"
+_OFFSET = re.compile(r"(?:UTC|GMT)?([+-])(\d\d?)(?::?(\d\d))?")
+
+
+class TimeMap(Parameters):
+    """Where the time stands.
+
+    Parameters
+    ----------
+    column : str or list of str
+        Name in the header; several are joined by a space (date and time, GPS week and seconds).
+    unit : str
+        ``iso``; ``s``, ``ms``, ``us``, ``ns``, ``min``, ``h`` or ``day``, of Unix time or of the file's own
+        zero; ``gps_week_s``; or a format of `datetime.strptime`. Empty: as it would be guessed.
+    zone : str
+        Of dates and times that state none: ``Europe/Berlin``, ``+02:00``. Empty: UTC.
+    """
+
+    column: str | tuple[str, ...]
+    unit: str = ""
+    zone: str = ""
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the columns, in their order."""
+        return (self.column,) if isinstance(self.column, str) else self.column
+
+    @property
+    def numeric(self) -> str:
+        """Key of `UNITS` for a column of numbers; empty for others."""
+        return unit_of(plain_name(self.unit), "time") if "%" not in self.unit else ""
+
+
+class QuantityMap(Parameters):
+    """Where a quantity stands.
+
+    Parameters
+    ----------
+    column : str
+        Name in the header.
+    unit : str
+        Of its numbers; empty: that of the quantity's own name (``heading_deg``) or of the column's.
+    sign : int
+        1, or -1 for a column that counts the other way.
+    """
+
+    column: str
+    unit: str = ""
+    sign: Literal[1, -1] = 1
+
+
+class ColumnMap(Parameters):
+    r"""What the columns of one kind of table mean.
+
+    Parameters
+    ----------
+    time : TimeMap
+    quantity : dict of QuantityMap
+        By the name of a known column: ``lat_deg``, ``speed``, ``gx_rad_s``.
+    decimal : {".", ","}
+    delimiter : str
+        One character; ``\t`` for tabs, a space for any white space. Empty: as it would be guessed.
+    skip_bad_rows : bool
+        Leave out rows that cannot be read and count them; else they are faults.
+    """
+
+    time: TimeMap
+    quantity: dict[str, QuantityMap] = Field(min_length=1, max_length=40)
+    decimal: Literal[".", ","] = "."
+    delimiter: str = Field(default="", max_length=1)
+    skip_bad_rows: bool = False
+
+    @cached_property
+    def is_imu(self) -> bool:
+        """Whether the quantities are those of an IMU."""
+        return any(imu_column(0, name) is not None for name in self.quantity)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all columns that the map uses."""
+        return (*self.time.columns, *(entry.column for entry in self.quantity.values()))
+
+    def places(self, where: str, header: list[str]) -> dict[str, int]:
+        """Place of each mapped column; raises `InputError` that names those the table does not hold."""
+        held = {name.strip(): index for index, name in reversed(list(enumerate(header)))}
+        faults = [
+            Fault(
+                where,
+                "map",
+                name,
+                Text("is no column of the file; columns found: {held}", held=listed(header)),
+            )
+            for name in self.names
+            if name.strip() not in held
+        ]
+        if faults:
+            raise InputError(faults)
+        return {name: held[name.strip()] for name in self.names}
+
+    def clocks(self, where: str, header: list[str]) -> list[int]:
+        """Places of the columns of time."""
+        places = self.places(where, header)
+        return [places[name] for name in self.time.columns]
+
+    def log_columns(self, where: str, header: list[str]) -> dict[str, tuple[Column, float]]:
+        """Columns of a log with their signs, by what they hold; the time is not among them."""
+        places = self.places(where, header)
+        return {
+            stem: (Column(places[e.column], e.column, stem, unit), float(e.sign))
+            for name, e in self.quantity.items()
+            for stem, unit in [_meant(name, e)]
+        }
+
+    def imu_columns(self, where: str, header: list[str]) -> dict[tuple[str, str], ImuColumn]:
+        """Columns of an IMU by kind and axis."""
+        places = self.places(where, header)
+        found: dict[tuple[str, str], ImuColumn] = {}
+        for name, entry in self.quantity.items():
+            meant = imu_column(0, name)
+            assert meant is not None  # checked by `parse_map`
+            unit = _imu_unit(meant, entry)
+            found[meant.kind, meant.axis] = ImuColumn(
+                places[entry.column], entry.column, meant.kind, meant.axis, unit, sign=float(entry.sign)
+            )
+        return found
+
+
+def read_map(path: str | os.PathLike[str], field: str = "map") -> ColumnMap:
+    """Read a map.
+
+    Raises
+    ------
+    InputError
+        No such file, no TOML, or a field that is wrong: names it, its value and what is allowed.
+    """
+    file = Path(path)
+    try:
+        with file.open("rb") as stream:
+            raw = stream.read(LARGEST_MAP_BYTES + 1)
+        if len(raw) > LARGEST_MAP_BYTES:
+            allowed = Text("is larger than {most} bytes: no map", most=LARGEST_MAP_BYTES)
+            raise InputError(Fault("", field, str(path), allowed))
+        text = raw.decode("utf-8-sig")
+    except (OSError, ValueError) as problem:
+        why = getattr(problem, "strerror", None) or Text("is not UTF-8 text: no map")
+        raise InputError(Fault("", field, str(path), why)) from None
+    return parse_map(text, file.name)
+
+
+def parse_map(text: str, where: str) -> ColumnMap:
+    """Parse the text of a map; raises `InputError` as `read_map` does."""
+    try:
+        data = tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as problem:
+        raise InputError(Fault(where, "", None, Text("not TOML ({problem})", problem=str(problem)))) from None
+    try:
+        found = ColumnMap.model_validate(data)
+    except ValidationError as error:
+        raise InputError(faults_from(error, ColumnMap, data, where)) from None
+    faults = [*_time_faults(found.time, where), *_quantity_faults(found, where)]
+    if faults:
+        raise InputError(faults)
+    return found
+
+
+def zone_of(name: str) -> ZoneInfo | float:
+    """Zone of a name, or the offset in s of one such as ``+02:00``; raises ValueError for neither."""
+    offset = _OFFSET.fullmatch(name.strip())
+    if offset:
+        seconds = int(offset[2]) * 3600.0 + int(offset[3] or 0) * 60.0
+        if seconds > 15 * 3600.0:
+            raise ValueError(name)
+        return -seconds if offset[1] == "-" else seconds
+    try:
+        return ZoneInfo(name)
+    except (KeyError, OSError) as problem:  # no such file, or a folder of the database
+        raise ValueError(name) from problem
+
+
+def _time_faults(time: TimeMap, where: str) -> list[Fault]:
+    faults: list[Fault] = []
+    if time.zone:
+        try:
+            zone_of(time.zone)
+        except ValueError:
+            allowed = Text("must be a time zone such as Europe/Berlin, or an offset such as +02:00")
+            faults.append(Fault(where, "time.zone", time.zone, allowed))
+        if time.numeric or time.unit == GPS_WEEK:
+            allowed = Text("must be left out: counts of {unit} have no time zone", unit=time.unit)
+            faults.append(Fault(where, "time.zone", time.zone, allowed))
+    if not (time.unit in ("", ISO, GPS_WEEK) or time.numeric or "%" in time.unit):
+        allowed = Text(
+            "must be iso, {units}, gps_week_s, or a format such as %d.%m.%Y %H:%M:%S",
+            units=", ".join(UNITS["time"]),
+        )
+        faults.append(Fault(where, "time.unit", time.unit, allowed))
+    return faults
+
+
+def _quantity_faults(found: ColumnMap, where: str) -> list[Fault]:
+    faults: list[Fault] = []
+    meanings: list[object] = []
+    for name, entry in found.quantity.items():
+        field = f"quantity.{name}"
+        meant = imu_column(0, name) if found.is_imu else known_columns([name])
+        stem = next((stem for stem in meant if stem in QUANTITIES), "") if isinstance(meant, dict) else ""
+        if not meant or (isinstance(meant, dict) and not stem):
+            known = (
+                "gx_rad_s, gy_rad_s, gz_rad_s, fx_mps2, fy_mps2, fz_mps2, dax_rad ... dvz_mps"
+                if found.is_imu
+                else ", ".join(QUANTITIES)
+            )
+            faults.append(
+                Fault(where, field, None, Text("is no known quantity; known: {known}", known=known))
+            )
+            continue
+        meanings.append((meant.kind, meant.axis) if isinstance(meant, ImuColumn) else stem)
+        dimension = DIMENSIONS[meant.kind] if isinstance(meant, ImuColumn) else QUANTITIES[stem].dimension
+        unit = _imu_unit(meant, entry) if isinstance(meant, ImuColumn) else _meant(name, entry)[1]
+        if not unit:
+            allowed = Text("must be one of {units}", units=", ".join(UNITS[dimension]))
+            faults.append(Fault(where, f"{field}.unit", entry.unit or None, allowed))
+        if meanings.count(meanings[-1]) > 1:
+            faults.append(Fault(where, field, None, Text("is given twice")))
+    return faults
+
+
+def _unit(text: str, dimension: str) -> str:
+    """Key of `UNITS` for a unit as users write it; empty when it is none of this dimension."""
+    said = written([text], dimension)
+    return said.unit if said.dimension == dimension else ""
+
+
+def _meant(name: str, entry: QuantityMap) -> tuple[str, str]:
+    """What a quantity's name says, and the unit of its column; empty when it is not known."""
+    stem, column = next((s, c) for s, c in known_columns([name]).items() if s in QUANTITIES)
+    if entry.unit:
+        return stem, _unit(entry.unit, QUANTITIES[stem].dimension)
+    if column.unit_given and plain_name(name) not in QUANTITIES[stem].names:
+        return stem, column.unit
+    said = known_columns([entry.column]).get(stem)
+    if said is not None and said.unit_given and not said.unknown:
+        return stem, said.unit
+    return stem, column.unit if column.unit_given else ""
+
+
+def _imu_unit(meant: ImuColumn, entry: QuantityMap) -> str:
+    if entry.unit:
+        return _unit(entry.unit, DIMENSIONS[meant.kind])
+    said = imu_column(0, entry.column)
+    return meant.unit or (said.unit if said and said.kind == meant.kind else "")

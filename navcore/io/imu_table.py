@@ -1,0 +1,336 @@
+"""Text tables of a recorded IMU: header, units and time found; pyarrow's CSV reader reads the numbers."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from navcore.foundation.errors import Fault, InputError
+from navcore.foundation.text import Text
+from navcore.io.cells import is_number, times
+from navcore.io.column_map import ColumnMap
+from navcore.io.column_names import QUANTITIES, SECONDS, UNIX, UTC, Column, known_columns
+from navcore.io.columns import MOST_COLUMNS, listed
+from navcore.io.epochs import numeric_times
+from navcore.io.imu_columns import AXES, DIMENSIONS, FORCE, PAIRS, ImuColumn, imu_columns
+from navcore.io.mapped_rows import mapped_layout, skipped_text
+from navcore.io.mapped_times import MappedClock
+from navcore.io.written_units import UNITS, G
+
+if TYPE_CHECKING:
+    import pyarrow
+
+FIELD = "imu.file"
+"""Field that faults name."""
+_COMMENTS = ("#", "%", "//")
+_SEPARATORS = ",;\t|"
+_HEAD_LINES = 60
+_HEAD_BYTES = 65536
+_CLOCKS = (SECONDS, UNIX, UTC)
+_FEWEST_NAMED = 2
+_SLOWEST_S = 2.0
+"""A column of time without a unit whose steps are longer may be in ms, us or ns."""
+_DATED_FROM_S = 1e8
+_GRAVITY_SHARE = 0.05
+_FORCE_UNITS = {"mps2": 1.0, "g": G, "mg": 1e-3 * G}
+
+
+class ImuTable(NamedTuple):
+    """Numbers of a table.
+
+    Attributes
+    ----------
+    time_s : ndarray, shape (n,)
+        s, from the file's own zero; dated ones from the first sample.
+    values : ndarray, shape (n, 6)
+        Rates (rad/s) and forces (m/s^2), or increments (rad, m/s), in the table's axes.
+    increments : bool
+        Which of the two.
+    warnings : tuple of str
+        What was assumed.
+    """
+
+    time_s: np.ndarray
+    values: np.ndarray
+    increments: bool
+    warnings: tuple[str, ...]
+
+
+class _Header(NamedTuple):
+    """Where the header stands, and what it says."""
+
+    line: int
+    separator: str
+    names: list[str]
+
+
+def is_imu_table(head: str) -> bool:
+    """Whether the first lines of a text hold a header that names an IMU's quantities."""
+    header = _header(head)
+    found = imu_columns(header.names)
+    if _kinds(found) is not None:
+        return True
+    return len(found) >= _FEWEST_NAMED and not known_columns(header.names).keys() & QUANTITIES.keys()
+
+
+def read_imu_table(text: str, source: str, column_map: ColumnMap | None = None) -> ImuTable:
+    """Read a table whose header may stand in a comment or below a title; by a map, or by its names.
+
+    Raises
+    ------
+    InputError
+        A column is missing or its unit is not known (names the columns found), or a row is no row of numbers.
+    """
+    header = _header(text) if column_map is None else _mapped_header(text, column_map)
+    found = imu_columns(header.names) if column_map is None else column_map.imu_columns(source, header.names)
+    kinds, clock = _kinds(found), _clock(header.names, column_map)
+    if kinds is None or clock is None:
+        raise _missing(source, header, found)
+    columns = [found[kind, axis] for kind in kinds for axis in AXES]
+    _refuse_unknown(source, [*columns, clock])
+    clocks = [clock.index] if column_map is None else column_map.clocks(source, header.names)
+    rows = _Wanted(clocks, [column.index for column in columns], column_map)
+    cells, raw, skipped = _numbers(text, header, rows, source)
+    mapped = column_map is not None and (column_map.time.unit or column_map.time.zone)
+    if mapped and column_map is not None:
+        time_s, told = _mapped_seconds(cells, column_map, source)
+    else:
+        time_s, told = _seconds(cells[0], clock, source)
+    lost = np.flatnonzero(~np.isfinite(raw).all(axis=1) | ~np.isfinite(time_s))
+    if lost.size:
+        what = Text(
+            "{size} samples are NaN or infinite, the first at sample {lost}", size=lost.size, lost=lost[0] + 1
+        )
+        raise InputError(Fault(source, FIELD, None, what))
+    told += [skipped_text(skipped)] if skipped else []
+    factors, guessed = _factors(columns, raw, source)
+    if abs(time_s[0]) >= _DATED_FROM_S:
+        time_s = time_s - time_s[0]
+    return ImuTable(time_s, raw * factors, kinds != PAIRS[0], (*told, *guessed))
+
+
+def imu_layout(text: str) -> tuple[str, str, list[str]]:
+    """Separator, header line and header cells of a text."""
+    header = _header(text)
+    return header.separator, text[:_HEAD_BYTES].split("\n")[header.line], header.names
+
+
+def _header(text: str) -> _Header:
+    """The line among the first that names most of an IMU's columns; else the first one that is no comment."""
+    best, most = None, 0
+    plain = None
+    for at, line in enumerate(text[:_HEAD_BYTES].split("\n")[:_HEAD_LINES]):
+        bare = line.strip().lstrip("#%/ ") if line.lstrip().startswith(_COMMENTS) else line.strip()
+        separator = max(_SEPARATORS, key=bare.count)
+        separator = separator if bare.count(separator) else " "
+        names = [name.strip().strip('"') for name in bare.split(None if separator == " " else separator)]
+        header = _Header(at, separator, names[:MOST_COLUMNS])
+        if plain is None and bare:
+            plain = header
+        count = len(imu_columns(header.names))
+        if count > most:
+            best, most = header, count
+    return best or plain or _Header(0, ",", [])
+
+
+def _kinds(found: dict[tuple[str, str], ImuColumn]) -> tuple[str, str] | None:
+    """The pair of kinds whose six columns are all there."""
+    return next((p for p in PAIRS if all((kind, axis) in found for kind in p for axis in AXES)), None)
+
+
+def _mapped_header(text: str, column_map: ColumnMap) -> _Header:
+    lines = text[:_HEAD_BYTES].split("\n")[:_HEAD_LINES]
+    separator, line, names = mapped_layout(lines, column_map)
+    return _Header(lines.index(line) if line else 0, separator, [name.strip() for name in names])
+
+
+def _clock(names: Sequence[str], column_map: ColumnMap | None) -> Column | None:
+    if column_map is not None:
+        return Column(0, column_map.time.columns[0], UTC)
+    known = known_columns(names)
+    return next((known[stem] for stem in _CLOCKS if stem in known), None)
+
+
+def _missing(source: str, header: _Header, found: dict[tuple[str, str], ImuColumn]) -> InputError:
+    known = ", ".join(column.name for column in found.values()) or Text("none")
+    allowed = Text(
+        "needs a header with t_s and gx_rad_s, gy_rad_s, gz_rad_s, fx_mps2, fy_mps2, fz_mps2 (rates and "
+        "forces, in any unit that the names give), or dax_rad ... dvz_mps (increments); columns found: "
+        "{held}; of an IMU: {known}",
+        held=listed(header.names),
+        known=known,
+    )
+    return InputError(Fault(source, FIELD, None, allowed))
+
+
+def _refuse_unknown(source: str, columns: Sequence[ImuColumn | Column]) -> None:
+    faults = [
+        Fault(
+            source,
+            FIELD,
+            column.name,
+            Text("gives a unit that is not understood: {unknown}", unknown=column.unknown),
+        )
+        for column in columns
+        if column.unknown
+    ]
+    if faults:
+        raise InputError(faults)
+
+
+def _factors(columns: list[ImuColumn], raw: np.ndarray, source: str) -> tuple[np.ndarray, tuple[str, ...]]:
+    """SI over the unit of each column; forces without a unit have the one in which they are gravity."""
+    bare = [column for column in columns if not column.unit]
+    if not bare:
+        return np.array([column.factor for column in columns]), ()
+    size = float(np.linalg.norm(raw[:, 3:].mean(axis=0)))
+    unit = next((u for u, si in _FORCE_UNITS.items() if abs(size * si / G - 1.0) < _GRAVITY_SHARE), "")
+    unsure = [column for column in bare if column.kind != FORCE or not unit]
+    if unsure:
+        needed = ", ".join(UNITS[DIMENSIONS[unsure[0].kind]])
+        allowed = Text(
+            "names no unit: name one, as in gyro_x (deg/s); known: {needed}; columns without: {columns}",
+            needed=needed,
+            columns=", ".join(column.name for column in unsure),
+        )
+        raise InputError(Fault(source, FIELD, unsure[0].name, allowed))
+    told = Text(
+        "columns {columns} name no unit: taken as {unit}, in which their mean size is gravity",
+        columns=", ".join(column.name for column in bare),
+        unit={"mps2": "m/s²"}.get(unit, unit),
+    )
+    given = [column.sign * _FORCE_UNITS[unit] if column in bare else column.factor for column in columns]
+    return np.array(given), (told,)
+
+
+def _mapped_seconds(
+    cells: list[np.ndarray], column_map: ColumnMap, source: str
+) -> tuple[np.ndarray, list[str]]:
+    """Times in s from the first sample, by a map."""
+    clock = MappedClock(column_map.time, column_map.decimal)
+    unit = column_map.time.numeric
+    if unit and cells[0].dtype.kind in "iuf":
+        return (cells[0] - cells[0][0]).astype(float) * UNITS["time"][unit], []
+    texts = [" ".join(row) for row in zip(*(map(str, column.tolist()) for column in cells), strict=True)]
+    time_s, _ = clock.read(source, texts, range(1, len(texts) + 1))
+    return time_s, clock.warnings()
+
+
+def _seconds(cells: np.ndarray, clock: Column, source: str) -> tuple[np.ndarray, list[str]]:
+    """Times in s, and what was assumed of them."""
+    if cells.dtype.kind not in "iuf":
+        texts = [str(cell) for cell in cells.tolist()]
+        try:
+            return times(source, clock.name, texts, range(1, len(texts) + 1))[0], []
+        except InputError as error:
+            raise InputError([Fault(f.where, FIELD, f.value, f.allowed) for f in error.faults]) from None
+    whole = cells.dtype.kind in "iu"
+    if whole and cells.size and abs(int(cells[0])) >= _DATED_FROM_S:
+        # A count of ns since 1970 has more digits than a float: its differences are what is needed.
+        ends, _, told = numeric_times(source, clock, np.array([cells[0], cells[-1]], dtype=float))
+        span = float(cells[-1] - cells[0])
+        scale = (ends[1] - ends[0]) / span if span else 1.0
+        numbers = (cells - cells[0]).astype(float) * float(f"{scale:.3g}")
+    else:
+        numbers, _, told = numeric_times(source, clock, cells.astype(float))
+    step = float(np.median(np.diff(numbers))) if numbers.size > 1 else 0.0
+    if step > _SLOWEST_S and not clock.unit and clock.stem != SECONDS:
+        allowed = Text("has steps of {step:g}: s, ms, us or ns? Name the unit, as in time (ms)", step=step)
+        raise InputError(Fault(source, FIELD, clock.name, allowed))
+    return numbers, told
+
+
+class _Wanted(NamedTuple):
+    """Places of the columns of time and of the six others, and the map that says so."""
+
+    clocks: list[int]
+    columns: list[int]
+    column_map: ColumnMap | None
+
+    @property
+    def decimal(self) -> str:
+        return "." if self.column_map is None else self.column_map.decimal
+
+
+def _numbers(
+    text: str, header: _Header, wanted: _Wanted, source: str
+) -> tuple[list[np.ndarray], np.ndarray, list[int]]:
+    """Columns of time, the six others, shape (n, 6), and the numbers of the rows that were skipped."""
+    begin = 0
+    for _ in range(header.line + 1):
+        begin = text.find("\n", begin) + 1 or len(text)
+    body = text[begin:]
+    if body.count("\n", 0, _HEAD_BYTES) <= 2 and len(body.strip().splitlines()) < 2:
+        raise InputError(Fault(source, FIELD, None, Text("holds fewer than two samples")))
+    if header.separator == " ":
+        body = "\n".join(" ".join(line.split()) for line in body.split("\n"))
+    skipped: list[int] = []
+    try:
+        table = _parsed(body, header, wanted, clock_text=False)
+    except ValueError:
+        first = header.line + 2
+        bad = _bad_rows(body, header, wanted)
+        if bad and (wanted.column_map is None or not wanted.column_map.skip_bad_rows):
+            what = Text(
+                "data line {bad} is no row of {columns} numbers: {lines}",
+                bad=bad[0] + first,
+                columns=len(header.names),
+                lines=body.split("\n")[bad[0]][:60],
+            )
+            raise InputError(Fault(source, FIELD, None, what)) from None
+        left_out = set(bad)
+        body = "\n".join(line for i, line in enumerate(body.split("\n")) if i not in left_out)
+        skipped = [number + first for number in bad]
+        table = _parsed(body, header, wanted, clock_text=True)
+    arrays = [np.asarray(column.to_numpy()) for column in table.columns]
+    clocks = len(wanted.clocks)
+    return arrays[:clocks], np.column_stack(arrays[clocks:]), skipped
+
+
+def _parsed(body: str, header: _Header, wanted: _Wanted, *, clock_text: bool) -> pyarrow.Table:
+    """Read by pyarrow; raises ValueError for a row that does not fit."""
+    import pyarrow
+    from pyarrow import csv
+
+    def rest(row: csv.InvalidRow) -> Literal["skip", "error"]:
+        return "skip" if row.text.lstrip().startswith(_COMMENTS) else "error"
+
+    number, text = pyarrow.float64(), pyarrow.string()
+    types = {str(index): number for index in wanted.columns}
+    if clock_text or len(wanted.clocks) > 1:
+        types |= {str(index): text for index in wanted.clocks}
+    return csv.read_csv(
+        io.BytesIO(body.encode()),
+        read_options=csv.ReadOptions(
+            column_names=[str(i) for i in range(len(header.names))], use_threads=False
+        ),
+        parse_options=csv.ParseOptions(delimiter=header.separator, invalid_row_handler=rest),
+        convert_options=csv.ConvertOptions(
+            include_columns=[str(index) for index in (*wanted.clocks, *wanted.columns)],
+            column_types=types,
+            null_values=["nan", "NaN", "NAN"],
+            timestamp_parsers=["\0"],
+            decimal_point=wanted.decimal,
+        ),
+    )
+
+
+def _bad_rows(body: str, header: _Header, wanted: _Wanted) -> list[int]:
+    """Numbers (from 0) of the lines that are no rows; only the first one where a row may not be skipped."""
+    skip = wanted.column_map is not None and wanted.column_map.skip_bad_rows
+    bad: list[int] = []
+    for number, line in enumerate(body.split("\n")):
+        if not line.strip() or line.lstrip().startswith(_COMMENTS):
+            continue
+        words = line.split(None if header.separator == " " else header.separator)
+        if len(words) == len(header.names) and all(
+            is_number(words[i].replace(wanted.decimal, ".")) for i in wanted.columns
+        ):
+            continue
+        bad.append(number)
+        if not skip:
+            break
+    return bad
