@@ -1,16 +1,24 @@
 """What a run says of its scenario's inputs: recordings, what is simulated beside them, waves, the site."""
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+
 from navcore.foundation.text import Text
-from navcore.foundation.units import DEG, HOUR
+from navcore.foundation.units import DEG, HOUR, KNOT
+from navcore.io.stretches import FASTEST_MPS
 from navcore.motion.truth import LAT, Truth
 from navcore.scenario.model import Scenario
+from navcore.sensors.log_errors.events import event_velocity
 from navcore.sensors.recorded import recording_notices, short_run_notices
 
 FAR_FROM_SITE_DEG = 2.0
 """Latitude by which a track may start off the site before the user is told, deg."""
+
+_LOOK_S = 10.0
+"""Spacing of the times at which the log's events are looked at, s."""
 
 
 def input_notices(scenario: Scenario) -> tuple[str, ...]:
@@ -25,6 +33,7 @@ def input_notices(scenario: Scenario) -> tuple[str, ...]:
         *short,
         *scenario.motion.ending(end_s),
         *_waves_without_effect(scenario),
+        *_too_fast_a_log(scenario),
     )
 
 
@@ -78,3 +87,23 @@ def _waves_without_effect(scenario: Scenario) -> Iterator[str]:
             "the waves change nothing in this run: the error model carries errors along the motion, and the "
             'scenario has none; give the sensors errors, or take run.fidelity = "strapdown"'
         )
+
+
+def _too_fast_a_log(scenario: Scenario) -> Iterator[str]:
+    """Say where events of the simulated log add a speed to it that no ship has."""
+    log, end_s = scenario.reference, scenario.run.duration_h * HOUR
+    if log.kind != "log":
+        return
+    time_s = np.linspace(0.0, end_s, max(2, math.ceil(end_s / _LOOK_S) + 1))
+    events = {"reference.event": log.event} | {
+        f"method.{k}.event": method.event for k, method in enumerate(scenario.method)
+    }
+    for field, own in events.items():
+        most = float(np.max(np.hypot(*event_velocity(own, time_s).T))) if own else 0.0
+        if most > FASTEST_MPS:
+            yield Text(
+                "{field}: the log errs by up to {most:.1f} kn, more than any ship makes; an acceleration "
+                "adds up over its time, and what it adds stays",
+                field=field,
+                most=most / KNOT,
+            )
