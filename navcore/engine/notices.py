@@ -1,7 +1,7 @@
 """What a run says of its scenario's inputs: recordings, what is simulated beside them, waves, the site."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from navcore.foundation.units import DEG, HOUR, KNOT
 from navcore.io.stretches import FASTEST_MPS
 from navcore.motion.truth import LAT, Truth
 from navcore.scenario.model import Scenario
+from navcore.sensors.base import ErrorPart
 from navcore.sensors.log_errors.events import event_velocity
 from navcore.sensors.recorded import recording_notices, short_run_notices
 
@@ -82,11 +83,27 @@ def _waves_without_effect(scenario: Scenario) -> Iterator[str]:
     waves = scenario.motion.kind == "waves" or getattr(scenario.motion, "rough", False)
     parts = (*scenario.imu.all_parts(), *scenario.reference.all_parts())
     acts = any(part.active for part in parts) or any(scenario.initial_error.state())
+    if waves and acts and scenario.run.fidelity == "channel" and not _sees_motion(scenario, parts):
+        yield Text(
+            'the waves change nothing in this run: of its errors, fidelity "channel" lets only scale errors, '
+            "misalignments, delay and resolution depend on the motion, and the scenario has none of them; "
+            'take run.fidelity = "error_model" or "strapdown"'
+        )
     if waves and not scenario.strapdown and not acts:
         yield Text(
             "the waves change nothing in this run: the error model carries errors along the motion, and the "
             'scenario has none; give the sensors errors, or take run.fidelity = "strapdown"'
         )
+
+
+def _sees_motion(scenario: Scenario, parts: Iterable[ErrorPart]) -> bool:
+    """Whether an error or a method of a channel run depends on the motion."""
+    own = (
+        method.kind.self_referenced or method.policy.id not in ("constant", "schedule")
+        for method in scenario.method
+    )
+    in_axes = scenario.reference.frame == "body" and scenario.reference.kind == "log"
+    return in_axes or any(own) or any(part.has_shape or np.any(part.lsb) for part in parts)
 
 
 def _too_fast_a_log(scenario: Scenario) -> Iterator[str]:
