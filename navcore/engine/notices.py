@@ -1,16 +1,25 @@
 """What a run says of its scenario's inputs: recordings, what is simulated beside them, waves, the site."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterable, Iterator
 from typing import Any
 
+import numpy as np
+
 from navcore.foundation.text import Text
-from navcore.foundation.units import DEG, HOUR
+from navcore.foundation.units import DEG, HOUR, KNOT
+from navcore.io.stretches import FASTEST_MPS
 from navcore.motion.truth import LAT, Truth
 from navcore.scenario.model import Scenario
+from navcore.sensors.base import ErrorPart
+from navcore.sensors.log_errors.events import event_velocity
 from navcore.sensors.recorded import recording_notices, short_run_notices
 
 FAR_FROM_SITE_DEG = 2.0
 """Latitude by which a track may start off the site before the user is told, deg."""
+
+_LOOK_S = 10.0
+"""Spacing of the times at which the log's events are looked at, s."""
 
 
 def input_notices(scenario: Scenario) -> tuple[str, ...]:
@@ -25,6 +34,7 @@ def input_notices(scenario: Scenario) -> tuple[str, ...]:
         *short,
         *scenario.motion.ending(end_s),
         *_waves_without_effect(scenario),
+        *_too_fast_a_log(scenario),
     )
 
 
@@ -73,8 +83,44 @@ def _waves_without_effect(scenario: Scenario) -> Iterator[str]:
     waves = scenario.motion.kind == "waves" or getattr(scenario.motion, "rough", False)
     parts = (*scenario.imu.all_parts(), *scenario.reference.all_parts())
     acts = any(part.active for part in parts) or any(scenario.initial_error.state())
+    if waves and acts and scenario.run.fidelity == "channel" and not _sees_motion(scenario, parts):
+        yield Text(
+            'the waves change nothing in this run: of its errors, fidelity "channel" lets only scale errors, '
+            "misalignments, delay and resolution depend on the motion, and the scenario has none of them; "
+            'take run.fidelity = "error_model" or "strapdown"'
+        )
     if waves and not scenario.strapdown and not acts:
         yield Text(
             "the waves change nothing in this run: the error model carries errors along the motion, and the "
             'scenario has none; give the sensors errors, or take run.fidelity = "strapdown"'
         )
+
+
+def _sees_motion(scenario: Scenario, parts: Iterable[ErrorPart]) -> bool:
+    """Whether an error or a method of a channel run depends on the motion."""
+    own = (
+        method.kind.self_referenced or method.policy.id not in ("constant", "schedule")
+        for method in scenario.method
+    )
+    in_axes = scenario.reference.frame == "body" and scenario.reference.kind == "log"
+    return in_axes or any(own) or any(part.has_shape or np.any(part.lsb) for part in parts)
+
+
+def _too_fast_a_log(scenario: Scenario) -> Iterator[str]:
+    """Say where events of the simulated log add a speed to it that no ship has."""
+    log, end_s = scenario.reference, scenario.run.duration_h * HOUR
+    if log.kind != "log":
+        return
+    time_s = np.linspace(0.0, end_s, max(2, math.ceil(end_s / _LOOK_S) + 1))
+    events = {"reference.event": log.event} | {
+        f"method.{k}.event": method.event for k, method in enumerate(scenario.method)
+    }
+    for field, own in events.items():
+        most = float(np.max(np.hypot(*event_velocity(own, time_s).T))) if own else 0.0
+        if most > FASTEST_MPS:
+            yield Text(
+                "{field}: the log errs by up to {most:.1f} kn, more than any ship makes; an acceleration "
+                "adds up over its time, and what it adds stays",
+                field=field,
+                most=most / KNOT,
+            )

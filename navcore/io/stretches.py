@@ -1,4 +1,6 @@
-"""Stretches of a recorded speed far off the speeds before and after: a log that fails for a while."""
+"""Stretches of a recorded speed that no ship has, or far off those before and after: a log that fails."""
+
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -9,11 +11,13 @@ from navcore.io.series import Series, utc_text
 _JUMP_MPS, _WITHIN_S = 3.0, 10.0
 """A ship does not change its speed by so much between two samples no farther apart."""
 _LONGEST_S = 600.0
+FASTEST_MPS = 36.0
+"""About 70 kn: no ship with a log is faster."""
 _MOST_TOLD, _MOST_JUMPS = 3, 2000
 
 
 def stretch_warnings(*streams: Series | None) -> list[str]:
-    """Name each stretch of recorded speeds that begins and ends by a jump, far off its surroundings.
+    """Name recorded speeds that begin and end by a jump, far off their surroundings, or that no ship has.
 
     Parameters
     ----------
@@ -29,7 +33,7 @@ def _of(series: Series) -> list[str]:
         return []
     time_s, speed = series.time_s[kept], np.hypot(*series.values[kept, :2].T)
     found = stretches(time_s, speed)
-    told = []
+    told = [*_too_fast(series, time_s, speed, found)]
     for first, last in found[:_MOST_TOLD]:
         told.append(
             Text(
@@ -47,6 +51,26 @@ def _of(series: Series) -> list[str]:
         more = len(found) - _MOST_TOLD
         told.append(Text("{source}: {more} more stretches like these", source=series.source, more=more))
     return told
+
+
+def _too_fast(
+    series: Series, time_s: np.ndarray, speed: np.ndarray, found: list[tuple[int, int]]
+) -> Iterator[str]:
+    """Yield a sentence on speeds that no ship has, outside of the stretches that are named anyway."""
+    fast = speed > FASTEST_MPS
+    for first, last in found:
+        fast[first:last] = False
+    at = np.flatnonzero(fast)
+    if len(at):
+        yield Text(
+            "{source}: {count} samples from {begin} on are faster than {fastest:.0f} kn "
+            "(up to {most:.1f} kn), which no ship is: leave them out, or state an outage of the log",
+            source=series.source,
+            count=len(at),
+            begin=_moment(series, float(time_s[at[0]])),
+            fastest=FASTEST_MPS / KNOT,
+            most=float(np.max(speed[at])) / KNOT,
+        )
 
 
 def _moment(series: Series, time_s: float) -> str:

@@ -58,3 +58,28 @@ def test_waves_that_change_nothing_say_why(blocks: dict[str, Any], told: bool) -
             for motion in ({"motion": waves}, {})
         )
         np.testing.assert_array_equal(rough[:, :7], calm[:, :7])
+
+
+@pytest.mark.parametrize(
+    ("blocks", "told"),
+    [
+        ({}, True),
+        ({"imu": {"gyro_bias_dph": [0.01, 0.02, 0.01], "accel_scale_ppm": [500.0, 500.0, 500.0]}}, False),
+    ],
+    ids=str,
+)
+def test_waves_in_a_channel_run_say_why_they_change_nothing(blocks: dict[str, Any], told: bool) -> None:
+    """Where an error depends on the motion nothing is claimed."""
+    data: dict[str, Any] = {
+        "run": {"duration_h": 1.0, "fidelity": "channel"},
+        "imu": {"gyro_bias_dph": [0.01, 0.02, 0.01], "accel_vrw_ugpshz": 10.0},
+        "reference": {"kind": "log", "noise_mps": 0.1},
+        "method": [{"damping": "external", "network": {"id": "complementary"}}],
+    }
+    waves = {"motion": {"kind": "waves", "height_m": 3.0}}
+    assert ("the waves change nothing" in warnings_of(**(data | blocks | waves))) is told
+    rough, calm = (
+        simulate(Scenario.parse(data | blocks | motion)).methods[0].rows[:, :5] for motion in (waves, {})
+    )
+    apart = np.abs(rough - calm).max(axis=0) / np.maximum(np.abs(calm).max(axis=0), 1e-30)
+    assert apart.max() < 1e-8 or not told

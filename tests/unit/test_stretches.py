@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from navcore.checks.file import check_file
+from navcore.engine.notices import input_notices
 from navcore.io.stretches import stretches
 from navcore.scenario.model import Scenario
 from navcore.sensors.recorded import recording_notices
@@ -53,3 +54,31 @@ def test_a_step_that_stays_is_no_stretch() -> None:
 
 def test_very_many_jumps_are_noise_and_take_no_time() -> None:
     assert stretches(np.arange(1e5) * 0.1, np.resize([5.0, 15.0], 100_000)) == []
+
+
+@pytest.mark.parametrize(
+    "part", [slice(0, 60), slice(-60, None), slice(3000, 3660)], ids=["first", "last", "eleven minutes"]
+)
+def test_speeds_that_no_ship_has_are_told_wherever_they_stand(tmp_path: Path, part: slice) -> None:
+    speed = np.full(len(TIME_S), 10.0)
+    speed[part] = 99.9
+    (told,) = (
+        text for text in check_file(table(tmp_path / "log.csv", speed)).warnings if "no ship is" in text
+    )
+    begin = float(TIME_S[part][0])
+    assert f"{len(TIME_S[part])} samples from t = {begin:.1f} s on" in told and "up to 99.9 kn" in told
+
+
+def test_an_event_that_gives_the_log_a_speed_no_ship_has_is_told() -> None:
+    def notices(accel: float) -> list[str]:
+        event = {"t_h": 0.2, "duration_s": 60.0, "accel_mps2": [accel, 0.0]}
+        own = {"damping": "external", "network": {"id": "classic2"}, "event": [event]}
+        both = Scenario.parse(
+            {"reference": {"kind": "log", "event": [event]}, "method": [own], "run": {"duration_h": 0.5}}
+        )
+        return [text for text in input_notices(both) if "any ship" in text]
+
+    assert notices(0.05) == []
+    first, second = notices(51.4 / 60.0)
+    assert first.startswith("reference.event: the log errs by up to 99.9 kn")
+    assert second.startswith("method.0.event:")
