@@ -15,10 +15,12 @@ from navcore.design.vary import read_varied
 from navcore.engine.ensemble import drawn
 from navcore.engine.simulation import simulate
 from navcore.foundation.errors import UnstableError
-from navcore.scenario.file import to_toml
+from navcore.scenario.file import load, to_toml
 from navcore.scenario.method import Method
 from navcore.scenario.model import Scenario
 from schuler_bench.cli import main
+from schuler_bench.jobs.designer import TuningTask
+from schuler_bench.views.tune.proposal import doubts
 
 SHIP: dict[str, Any] = {
     "run": {"duration_h": 3.0},
@@ -107,6 +109,25 @@ def test_a_proposal_that_runs_refute_gives_way_to_one_over_the_run() -> None:
     assert refuted is not None and refuted.verdict("velocity_rms")
     assert found.confirmed is not None and not found.confirmed.verdict("velocity_rms")
     assert found.judged == "ensemble" and "no better in the runs" in found.warnings[0]
+
+
+def test_a_proposal_that_is_worse_on_a_recorded_track_is_marked() -> None:
+    """The recorded log counts as free of error: what is promised (-93 %) does not come true (+16 %)."""
+    recorded = load("sikuliaq-recorded", ['method.2.network={id="compass"}'])
+    vary = ["method.2.network.sigma", "method.2.network.xi"]
+    found = tune(recorded, "velocity_rms", vary, confirm=True)
+    assert found.before is not None and found.objective < 0.2 * found.before and found.confirmed is not None
+    others = recorded.model_copy(update={"run": recorded.run.model_copy(update={"seed": 5001})})
+    again = confirmed(others, recorded.method[2], found.scenario.method[2], 60)
+    assert again is not None
+    for result in (found.confirmed, again):
+        low = result.changes["velocity_rms"].low
+        assert low is not None and low > 0.0
+    assert found.warnings[0] == "velocity_rms is larger after it, over 32 seeds of the run"
+    asked = TuningTask(recorded, "velocity_rms", tuple(vary), ())
+    assert doubts(asked, found) == [
+        "ensemble velocity RMS per axis is larger after it, over 32 seeds of the run"
+    ]
 
 
 def test_the_damping_is_not_tuned_away() -> None:

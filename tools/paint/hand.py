@@ -1,8 +1,9 @@
 """How the page follows a hand: ``python -m tools.paint.hand [--before TREE] [--rounds N] [--seconds S]``.
 
-A slider is dragged, moved step by step, and the page is opened, in headless Chromium with software rendering.
-Everything is read from the page alone, so that the same script measures the tree of an earlier commit: with
-``--before`` both are served side by side and measured in turns, and the ratios are told.
+A slider is dragged, moved step by step (with the tab Design in front, too), and the page is opened, in
+headless Chromium with software rendering. Everything is read from the page alone, so that the same script
+measures the tree of an earlier commit: with ``--before`` both are served side by side and measured in turns,
+and the ratios are told.
 """
 
 import argparse
@@ -28,7 +29,10 @@ SLIDER = ["zeta", *slider_labels("network.zeta")]
 SIZES: dict[str, tuple[Any, tuple[str, ...]]] = {
     "Frequency, Errors, 3D": (WINDOW, ("Method", "Frequency", "Errors")),
     "Errors alone": ({"width": 1366, "height": 768}, ("Method", "Errors")),
+    "Design": (WINDOW, ("Method", "Frequency", "Design")),
 }
+_STEPPED = {"Frequency, Errors, 3D": "", "Design": ", Design,"}
+"""Where single steps are timed, and how these are told."""
 _THREADS = ("main thread", "painting")
 """Parts that `browser_cpu_ms` tells apart."""
 _MOVES = 60
@@ -178,10 +182,11 @@ def measure(browser: Browser, tree: Path, options: Any, seen: Followed) -> None:
             if options.only and options.only not in what:
                 continue
             page = open_page(browser, url, size, tabs, seen)
-            drag(page, options.seconds, what, seen)
-            if size == WINDOW:
-                steps(page, options.steps, process.pid, seen, "")
-            if size == WINDOW and options.pins:
+            if "Errors" in tabs:
+                drag(page, options.seconds, what, seen)
+            if what in _STEPPED:
+                steps(page, options.steps, process.pid, seen, _STEPPED[what])
+            if options.pins and _STEPPED.get(what) == "":
                 for _ in range(2):
                     pin(page)
                 drag(page, options.seconds, "two pins", seen)

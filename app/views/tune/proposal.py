@@ -104,12 +104,14 @@ def doubts(task: TuningTask, tuned: Tuned) -> list[str]:
     """Say what speaks against the proposal in its runs."""
     if tuned.confirmed is None:
         return [Text("No run has confirmed this setting.")]
-    return [spoken(text) for text in _doubts(task, tuned)]
+    quantity = QUANTITIES[task.objective]
+    name = quantity.names.get("ensemble", quantity.label)  # of the runs, whatever was searched by
+    return [Text(*text.forms, **(text.values | {"name": name})) for text in _doubts(task, tuned)]
 
 
-def _doubts(task: TuningTask, tuned: Tuned) -> list[str]:
+def _doubts(task: TuningTask, tuned: Tuned) -> list[Text]:
     verdict = "" if tuned.confirmed is None else tuned.confirmed.verdict(task.objective)
-    return [verdict] if verdict else []
+    return [verdict] if isinstance(verdict, Text) else []
 
 
 def _row(cells: Sequence[str], tag: str = "td") -> str:
