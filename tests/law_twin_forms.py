@@ -80,8 +80,8 @@ def controller(parameters: NetworkParameters, omega_s: float, a: float) -> Form:
 
 def adaptive(policy: Any, knots: float) -> float:
     """Coefficient of the policy `adaptive` for a difference: the printed curve, or the table's."""
-    if policy.law == "quadratic":
-        xi = 0.3076 * knots**2 - 1.1452 * knots + 0.8101
+    if policy.law in ("quadratic", "as_printed"):
+        xi = 0.3076 * knots**2 + (1.1452 if policy.law == "as_printed" else -1.1452) * knots + 0.8101
     else:
         x, y = np.array(sorted(policy.table)).T
         xi = float(PchipInterpolator(x, y)(np.clip(knots, x[0], x[-1])))

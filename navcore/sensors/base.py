@@ -67,8 +67,9 @@ def load_terms(*places: str) -> tuple[Any, ...]:
 
 
 def modelled_drift(parts: Iterable[ErrorPart]) -> ErrorPart | None:
-    """Return the drift of a sensor that the stochastic model holds: the first one; None without any."""
-    return next((part for part in parts if part.markov[0] > 0.0), None)
+    """Return the drift of a sensor that the stochastic model holds: the strongest; None without any."""
+    drifts = (part for part in parts if part.markov[0] > 0.0)
+    return max(drifts, key=lambda part: part.markov[0] ** 2 * part.markov[1], default=None)
 
 
 @dataclass(frozen=True)

@@ -78,10 +78,11 @@ class Reference(_Errors):
     """Block ``reference``: the velocity that external damping compares with.
 
     The simulated log (``kind = "log"``) reads, in its own axes,
-    ``(1 + scale) (V - V_water) + k a + bias + drift + noise``, rounded to ``lsb_mps``, with V, the ship's
-    acceleration a and the velocity of the water ``V_water`` (current and tide) taken ``delay_s`` earlier;
-    events are added to that. The recorded one (``kind = "file"``) uses only ``file``, ``speed``, ``frame``,
-    ``event``, ``outage`` and ``min_speed_mps``.
+    ``(1 + scale) (V - V_water) + k a + k_t w x (V - V_water) + bias + drift + noise``, rounded to
+    ``lsb_mps``, with V, the ship's acceleration a, its yaw rate w and the velocity of the water ``V_water``
+    (current and tide) taken ``delay_s`` earlier. What depends on V, and the noise, is smoothed with the
+    time constant ``smoothing_s``. Events are added to that. The recorded one (``kind = "file"``) uses only
+    ``file``, ``speed``, ``frame``, ``event``, ``outage`` and ``min_speed_mps``.
     """
 
     outage: tuple[Outage, ...] = Field(
@@ -171,7 +172,8 @@ class Reference(_Errors):
 
 @lru_cache(maxsize=64)
 def _parts_of(reference: Reference) -> tuple[LogPart, ...]:
-    return tuple(part for term in TERMS for part in term.parts(reference))
+    filtered = reference.smoothing_s, 1.0 / reference.rate_hz
+    return tuple(part.smoothed(*filtered) for term in TERMS for part in term.parts(reference))
 
 
 def in_service(outages: Iterable[Outage], time_s: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""The simulated log: truth with current, tide, scale error, bias, drift, noise, events, delay, resolution."""
+"""The simulated log: the truth with all errors of its reading, its own errors, the water and events."""
 
 import hashlib
 import math
@@ -15,7 +15,13 @@ from navcore.sensors.log_errors.base import LogPart
 from navcore.sensors.noise import gauss_markov, unit_noise
 from navcore.sensors.reference import Reference, in_service
 from navcore.sensors.rounding import DITHERED, mean_rounding
-from navcore.sensors.true_state import horizontal_acceleration, horizontal_state, to_navigation, to_ship
+from navcore.sensors.true_state import (
+    heading_rate,
+    horizontal_acceleration,
+    horizontal_state,
+    to_navigation,
+    to_ship,
+)
 
 SHORTEST_HOLD_S = 5.0
 """A sample stands for three intervals of the log, and at least this long."""
@@ -73,7 +79,7 @@ def simulated_errors(
     duration_s, step_s : float
         Length of the run and step of the mechanization, s.
     seed : int
-        Seed of the run; its streams ``log.noise`` and ``log.drift`` are used.
+        Seed of the run; its streams ``log.noise`` (``log.white`` when smoothed) and ``log.drift`` are used.
     parts : iterable of LogPart, optional
         The errors; those of ``reference`` when left out.
 
@@ -88,10 +94,11 @@ def simulated_errors(
     log = _Log(tuple(part for part in all_parts if part.active), reference.frame == "body")
     own, lsb = log.own(time_s.size, interval, seed, samples)
     delay_s = sum(part.delay_s for part in log.parts)
-    if delay_s == 0.0 and lsb == 0.0:
+    smoothing_s = sum(part.smoothing_s for part in log.parts)
+    if delay_s == smoothing_s == lsb == 0.0:
         error = log.linear_errors(truth, time_s, own)
     else:
-        error = log.delayed_rounded_errors(truth, time_s, own, delay_s, lsb)
+        error = log.delayed_rounded_errors(truth, time_s, own, delay_s, smoothing_s, lsb)
     error = sum((part.after(time_s) for part in log.parts if part.after), error)
     valid = log_works(reference, truth, time_s)
     still = np.zeros(0, dtype=bool)
@@ -137,10 +144,12 @@ def mean_rounding_of(
         return time_s, []
     sigma, errors = reference.dither / math.sqrt(samples), []
     still = _Log(tuple(replace(part, white=0.0) for part in log.parts), log.body_frame)
+    delay_s = sum(part.delay_s for part in log.parts)
+    smoothing_s = sum(part.smoothing_s for part in log.parts)
     paths = _PATHS if any(part.markov[0] > 0.0 for part in log.parts) else 1
     for seed in range(paths):
         own, _ = still.own(time_s.size, interval, seed, 1.0)
-        seen, heading, _ = log.readings(truth, time_s, sum(part.delay_s for part in log.parts), own)
+        seen, heading, _ = log.readings(truth, time_s, delay_s, smoothing_s, own)
         error = mean_rounding(seen, lsb, sigma) / math.sqrt(paths)
         error = to_navigation(error, heading) if log.body_frame else error
         errors.append(np.broadcast_to(error, (time_s.size, 2)))
@@ -159,10 +168,15 @@ class _Log:
         """Relative error of the measured velocity."""
         return sum(part.scale for part in self.parts)
 
-    def by_acceleration(self, truth: Truth, time_s: np.ndarray) -> np.ndarray | float:
-        """Error by the ship's acceleration, E and N, m/s; shape (m, 2) or (1, 2), or 0."""
+    def by_motion(self, truth: Truth, time_s: np.ndarray) -> np.ndarray | float:
+        """Errors by acceleration and in turns, E and N, m/s; shape (m, 2) or (1, 2), or 0."""
         seconds = sum(part.acceleration_s for part in self.parts)
-        return seconds * horizontal_acceleration(truth, time_s) if seconds else 0.0
+        error = seconds * horizontal_acceleration(truth, time_s) if seconds else 0.0
+        if seconds := sum(part.turn_s for part in self.parts):
+            through = horizontal_state(truth, time_s)[0] - self.water(time_s)
+            across = through[:, ::-1] * [1.0, -1.0]  # to starboard
+            error = error + seconds * heading_rate(truth, time_s)[:, None] * across
+        return error
 
     def water(self, time_s: np.ndarray) -> np.ndarray:
         """Velocity of the water over the ground, E and N, m/s; shape (m, 2) or (1, 2)."""
@@ -187,30 +201,40 @@ class _Log:
 
     def linear_errors(self, truth: Truth, time_s: np.ndarray, own: np.ndarray) -> np.ndarray:
         """Errors without delay and rounding: the velocity itself cancels, and is often not needed."""
-        error = self.by_acceleration(truth, time_s) - (1.0 + self.scale) * self.water(time_s)
+        error = self.by_motion(truth, time_s) - (1.0 + self.scale) * self.water(time_s)
         if self.scale == 0.0 and not self.body_frame:
             return error + own
         velocity, heading = _true_state(truth, time_s)
         return error + self.scale * velocity + (to_navigation(own, heading) if self.body_frame else own)
 
     def delayed_rounded_errors(
-        self, truth: Truth, time_s: np.ndarray, own: np.ndarray, delay_s: float, lsb: float
+        self,
+        truth: Truth,
+        time_s: np.ndarray,
+        own: np.ndarray,
+        delay_s: float,
+        smoothing_s: float,
+        lsb: float,
     ) -> np.ndarray:
-        """Errors of readings of an earlier velocity, rounded; a body log is turned by the present heading."""
-        seen, heading, velocity = self.readings(truth, time_s, delay_s, own)
+        """Errors of readings of an earlier velocity, smoothed and rounded, in the log's axes.
+
+        A body log is turned by the present heading.
+        """
+        seen, heading, velocity = self.readings(truth, time_s, delay_s, smoothing_s, own)
         read = _rounded(seen, lsb)
         return (to_navigation(read, heading) if self.body_frame else read) - velocity
 
     def readings(
-        self, truth: Truth, time_s: np.ndarray, delay_s: float, own: np.ndarray
+        self, truth: Truth, time_s: np.ndarray, delay_s: float, smoothing_s: float, own: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Readings before they are rounded, in the log's axes; present heading and velocity."""
         measured_at = np.maximum(time_s - delay_s, 0.0)
         velocity, heading = _true_state(truth, time_s)
         then_velocity, then_heading = _true_state(truth, measured_at)
         seen = (1.0 + self.scale) * (then_velocity - self.water(measured_at))
-        seen = seen + self.by_acceleration(truth, measured_at)
-        return (to_ship(seen, then_heading) if self.body_frame else seen) + own, heading, velocity
+        seen = seen + self.by_motion(truth, measured_at)
+        along_axes = to_ship(seen, then_heading) if self.body_frame else seen
+        return _smoothed(along_axes, time_s, smoothing_s) + own, heading, velocity
 
 
 def _true_state(truth: Truth, time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -219,6 +243,19 @@ def _true_state(truth: Truth, time_s: np.ndarray) -> tuple[np.ndarray, np.ndarra
         return horizontal_state(truth, time_s)
     times = hashlib.blake2b(np.ascontiguousarray(time_s).data, digest_size=16).digest()
     return kept(("true state", weakref.ref(truth), times), lambda: horizontal_state(truth, time_s))
+
+
+def _smoothed(reading: np.ndarray, time_s: np.ndarray, tau_s: float) -> np.ndarray:
+    """First-order filter, at rest on the first reading; exact for readings that are linear between epochs."""
+    if tau_s == 0.0 or len(reading) < 2:
+        return reading
+    from scipy.signal import lfilter
+
+    ratio = float(time_s[1] - time_s[0]) / tau_s
+    decay = math.exp(-ratio)
+    new = 1.0 + math.expm1(-ratio) / ratio
+    earlier = 1.0 - decay - new
+    return lfilter([new, earlier], [1.0, -decay], reading, axis=0, zi=(1.0 - new) * reading[:1])[0]
 
 
 def _rounded(reading: np.ndarray, lsb: float) -> np.ndarray:

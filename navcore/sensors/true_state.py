@@ -48,6 +48,14 @@ def horizontal_acceleration(truth: Truth, time_s: np.ndarray) -> np.ndarray:
     return np.column_stack([np.interp(time_s, grid_s, values[:, axis]) for axis in (AE, AN)])
 
 
+def heading_rate(truth: Truth, time_s: np.ndarray) -> np.ndarray:
+    """Rate of change of the heading, rad/s, linear between grid points; shape (m,), or (1,) if constant."""
+    values = truth.values
+    if truth.constant:
+        return values[:, HEADING_RATE]
+    return np.interp(time_s, truth.step_s * np.arange(len(values)), values[:, HEADING_RATE])
+
+
 def _hermite(
     values: np.ndarray,
     step_s: float,

@@ -192,6 +192,15 @@ def test_adaptive_quadratic_is_clamped_and_says_so(knots, xi):
     assert "negative between 0.95 and 2.77 kn" in run.policy.warnings(run.network)[0]
 
 
+@pytest.mark.parametrize(
+    ("knots", "xi"), [(0.0, 0.8101), (0.1, 0.9277), (0.15, 0.9888), (0.16, 0.99), (3.0, 0.99)]
+)
+def test_sun_9_as_printed_rises_with_the_difference_and_says_so(knots, xi):
+    run = LawRun({"id": "unity2"}, {"id": "adaptive", "law": "as_printed"}, HARD)
+    assert coefficient(run, knots) == pytest.approx(xi, abs=1e-4)
+    assert "rises with the difference" in run.policy.warnings(run.network)[0]
+
+
 def test_adaptive_takes_the_users_table_in_any_order():
     table = [[2.0, 0.1], [0.0, 0.9], [1.0, 0.5]]
     run = LawRun({"id": "none"}, {"id": "adaptive", "table": table}, HARD)

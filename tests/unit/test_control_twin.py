@@ -53,12 +53,13 @@ def drawn_blocks(rng: np.random.Generator, step_s: float) -> dict[str, dict[str,
     a, b, c = np.sort(u(0.05, 0.8, 3)).tolist()
     first, last = u([0.0, 1.0, 1e-3], [0.03, 9.0, 0.05], (2, 3)).tolist()
     table = [[kn, u(0.01, 1.2)] for kn in np.cumsum(u(0.1, 1.0, rng.integers(2, 6))).tolist()]
+    adaptive = {"law": "quadratic"}, {"law": "as_printed"}, {"table": table}
     return {
         "threshold": {"limit_mps": u(0.3, 1.0)},
         "yaw_rate": {"window_s": times[0], "limit_deg": u(1.0, 30.0)},
         "acceleration": {"mean_s": times[1], "limit_mps2": u(0.01, 0.06)},
         "variation": {"n_s": times[2], "t0_s": times[3], "a": a, "b": b, "c": c, "count": pick(1, 2, 4)},
-        "adaptive": {"lowpass_s": times[4], **pick({"law": "quadratic"}, {"table": table})},
+        "adaptive": {"lowpass_s": times[4], **pick(*adaptive)},
         "schedule": {"from": first, "to": last, "duration_s": times[5]},
         "ramp": {"duration_s": 1.0 + step_s * pick(0, 2, 5), "form": pick("state", "as_printed")},
         "step": {"every_s": times[6], "size": u(0.05, 0.4)},

@@ -232,3 +232,50 @@ def test_ship_axes_are_starboard_and_forward():
 def test_fields_out_of_range_are_refused(fields):
     with pytest.raises(ValidationError):
         Reference(**fields)
+
+
+@pytest.mark.parametrize("frame", ["enu", "body"])
+@pytest.mark.parametrize("reading", [{}, {"lsb_mps": 1e-9, "delay_s": 0.0}], ids=["plain", "rounded"])
+def test_the_error_in_turns_is_that_by_acceleration_at_a_constant_speed(frame, reading):
+    # At a constant speed the acceleration is yaw rate times speed, across the course.
+    motion = truth(accel=0.0)
+    found = errors(motion, turn_s=0.3, frame=frame, **reading).error
+    by_acceleration = errors(motion, acceleration_s=0.3, frame=frame).error
+    assert np.hypot(*found.T) == pytest.approx(0.3 * 0.02 * 5.0)
+    np.testing.assert_allclose(found, by_acceleration, rtol=0.0, atol=1e-8)
+
+
+def test_the_error_in_turns_goes_by_the_speed_through_the_water():
+    motion, current = truth(accel=0.0), np.array([0.5, -0.4])
+    found = errors(motion, turn_s=0.3, current_mps=tuple(current)).error + current
+    through = motion.values[::2, [VE, VN]] - current
+    np.testing.assert_allclose(found, 0.3 * 0.02 * np.column_stack([through[:, 1], -through[:, 0]]))
+
+
+@pytest.mark.parametrize("frame", ["enu", "body"])
+@pytest.mark.parametrize("rate", [1.0, 0.1])
+def test_a_smoothed_reading_lags_by_the_time_constant(frame, rate):
+    found = errors(truth(turn=0.0), smoothing_s=40.0, frame=frame, rate_hz=rate)
+    forward = found.error @ [math.sin(0.3), math.cos(0.3)]
+    assert forward == pytest.approx(-0.01 * 40.0 * -np.expm1(-found.time_s / 40.0))
+
+
+def test_smoothing_makes_a_drift_of_the_noise_and_lets_a_bias_pass():
+    found = errors(
+        duration_s=400_000.0, noise_mps=0.3, smoothing_s=20.0, rate_hz=0.5, bias_mps=(0.5, 0.0)
+    ).error
+    assert found.mean(axis=0) == pytest.approx([0.5, 0.0], abs=0.01)
+    white = 0.3 * np.random.default_rng(1).standard_normal(200_000)
+    decay = math.exp(-2.0 / 20.0)
+    smoothed = np.zeros_like(white)
+    for k in range(1, len(white)):
+        smoothed[k] = decay * smoothed[k - 1] + (1.0 - decay) * white[k]
+    assert found.std(axis=0) == pytest.approx([smoothed.std()] * 2, rel=0.03)
+    lagged = found - [0.5, 0.0]
+    assert np.mean(lagged[:-10] * lagged[10:]) == pytest.approx(math.exp(-1.0) * lagged.var(), rel=0.06)
+
+
+@pytest.mark.parametrize(("field", "value"), [("turn_s", 101.0), ("smoothing_s", -1.0)])
+def test_errors_in_turns_and_smoothing_have_their_ranges(field, value):
+    with pytest.raises(ValueError, match=field):
+        Reference(kind="log", **{field: value})

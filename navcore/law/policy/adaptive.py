@@ -81,7 +81,7 @@ def law_coefficient(own, low, d):
     """Damping coefficient for a difference d (m/s): the law, clamped, and kept at least ``low``."""
     if own.quadratic:
         knots = d / KNOT
-        xi = QUADRATIC[2] + knots * (QUADRATIC[1] + knots * QUADRATIC[0])
+        xi = QUADRATIC[2] + knots * (own.linear + knots * QUADRATIC[0])
     else:
         xi = _hermite(own, d)
     return max(min(max(xi, LOWEST), HIGHEST), low)
@@ -112,12 +112,13 @@ class Adaptive(PolicyParameters):
     The east and the north difference are low-passed, and the norm is taken afterwards (theory.md 11).
 
     ``table`` holds pairs [difference in kn, xi]; between them the curve is monotone where they are (PCHIP),
-    beyond them it stays. Either law is held within 0.04 and 0.99, and above what the network needs to be
+    beyond them it stays. Every law is held within 0.04 and 0.99, and above what the network needs to be
     stable. The network that is re-tuned is the policy's own one, else the method's: `unity2` or `pole2`.
     """
 
     numbers: ClassVar[np.dtype] = record_type(
         quadratic=FLAG,
+        linear=REAL,  # coefficient of the quadratic, per kn
         share=REAL,  # of a new sample in the low-pass
         rows=COUNT,  # of the table
         argument=(REAL, (_MOST_ROWS,)),  # m/s
@@ -131,10 +132,13 @@ class Adaptive(PolicyParameters):
     tunes: ClassVar[bool] = True
     measure: ClassVar[Measure | None] = Measure(Text("|low-passed V_r - V_c|"), "kn", KNOT)
     id: Literal["adaptive"] = "adaptive"
-    law: Literal["table", "quadratic"] = choice(
+    law: Literal["table", "quadratic", "as_printed"] = choice(
         "table",
         label=Text("law"),
-        help=Text("table: Sun's Table 1 or your own; quadratic: Sun 9 with its sign mended, clamped."),
+        help=Text(
+            "table: Sun's Table 1 or your own; quadratic: Sun 9 with its sign mended; as_printed: Sun 9 as "
+            "printed. Both are clamped."
+        ),
     )
     table: tuple[TableRow, ...] = Field(
         default=SUN_TABLE,
@@ -190,7 +194,8 @@ class Adaptive(PolicyParameters):
         x, y = np.array(sorted(self.table)).T
         slopes = PchipInterpolator(x, y).derivative()(x)
         return {
-            "quadratic": self.law == "quadratic",
+            "quadratic": self.law != "table",
+            "linear": -QUADRATIC[1] if self.law == "as_printed" else QUADRATIC[1],
             "share": -math.expm1(-law_step_s / self.lowpass_s),
             "rows": len(x),
             "argument": _filled(x * KNOT),
@@ -213,13 +218,20 @@ class Adaptive(PolicyParameters):
         return Unity2Network() if isinstance(network, UndampedNetwork) else network
 
     def warnings(self, network: NetworkParameters) -> tuple[str, ...]:
-        """The quadratic's flaw, and a printed form held where it is stable."""
+        """The flaw of either quadratic, and a printed form held where it is stable."""
         texts = []
         if self.law == "quadratic":
             texts.append(
                 Text(
                     "adaptive: the quadratic is negative between 0.95 and 2.77 kn (held at 0.04 there), and "
                     "beyond it rises again: use the table"
+                )
+            )
+        if self.law == "as_printed":
+            texts.append(
+                Text(
+                    "adaptive: Sun 9 as printed rises with the difference (held at 0.99 from 0.15 kn on): "
+                    "use the table"
                 )
             )
         least = self.network_in_force(network).least_coefficient()
