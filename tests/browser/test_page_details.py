@@ -158,7 +158,8 @@ def test_a_browser_that_blocks_cookies_brings_the_tabs_of_the_address(another: A
     bench = another(1280, 720)
     bench.page.add_init_script(
         """const get = () => { throw new DOMException("blocked", "SecurityError"); };
-        for (const name of ["sessionStorage", "localStorage"]) Object.defineProperty(window, name, { get });"""
+        for (const store of ["sessionStorage", "localStorage"])
+          Object.defineProperty(window, store, { get });"""
     )
     bench.open(query="?fixedDpr=0.25&start=no&tab=Poles,Sensors")
     for name in ("Poles", "Sensors"):
@@ -188,3 +189,32 @@ def test_forced_colours_leave_legends_and_slider_tracks(fresh: Bench) -> None:
         assert gone == dict.fromkeys(held, set()) and all(held.values())
     finally:
         page.emulate_media(forced_colors="none")
+
+
+def test_without_webgl_the_page_comes_without_3d_and_says_so(another: Another) -> None:
+    bench = another(1280, 720)
+    # as a browser without WebGL answers
+    bench.page.add_init_script(
+        """const real = HTMLCanvasElement.prototype.getContext;
+        HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+          return kind.includes("webgl") ? null : real.call(this, kind, ...rest);
+        };"""
+    )
+    bench.open()
+    bench.page.get_by_text("No 3D view: this browser has no WebGL.").wait_for()
+    bench.reset("zha-fast", "Errors", "Method", selected=2)
+    bench.type("network.xi", "0.6")
+    bench.tab("Metrics")
+    assert bench.page.locator(".sb-t >> visible=true").count() > 0
+
+
+def test_a_lost_context_is_told_and_the_page_goes_on(another: Another) -> None:
+    bench = another(1280, 720).open()
+    bench.page.evaluate(
+        """() => document.querySelector("canvas[data-engine]").getContext("webgl2")
+          .getExtension("WEBGL_lose_context").loseContext()"""
+    )
+    bench.page.get_by_text("The 3D view is lost").wait_for()
+    bench.reset("zha-fast", "Errors", "Method", selected=2)
+    bench.type("network.xi", "0.6")
+    bench.faults.clear()  # the browser itself tells of the lost context
